@@ -1,0 +1,99 @@
+"""What trundle raises: each message states the rule, the value received and the remedy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+
+class TrundleError(Exception):
+    """Anything that trundle refuses or cannot do; every other kind derives from it."""
+
+
+class InvalidValueError(TrundleError, ValueError):
+    """A value breaks a rule that the reader can mend.
+
+    Parameters
+    ----------
+    key : str
+        Name of the value as the reader wrote it, such as ``"body.radius"``.
+    rule : str
+        What is allowed, as the end of a sentence: ``"must be positive"``.
+    received : object
+        The value that came.
+    remedy : str
+        What to do about it.
+
+    Examples
+    --------
+    >>> print(InvalidValueError("tilt", "must lie in (-90°, 90°)", "172 deg", "Did you mean 1.72 deg?"))
+    `tilt` must lie in (-90°, 90°); got '172 deg'. Did you mean 1.72 deg?
+    """
+
+    def __init__(self, key: str, rule: str, received: object, remedy: str = "") -> None:
+        self.key, self.rule, self.received, self.remedy = key, rule, received, remedy
+        super().__init__(f"`{key}` {rule}; got {_shown(received)}.{' ' + remedy if remedy else ''}")
+
+    def __reduce__(self) -> tuple[type, tuple[object, ...]]:
+        return type(self), (self.key, self.rule, self.received, self.remedy)
+
+
+class ScenarioError(InvalidValueError):
+    """A scenario file, or a key in it, is not as the format asks."""
+
+
+class OutOfDomainError(TrundleError):
+    """A closed form or a method was asked for a system outside its stated domain."""
+
+
+class SolverError(TrundleError):
+    """A numerical method did not reach the tolerance or the time asked for."""
+
+
+class UnknownNameError(TrundleError, AttributeError):
+    """A name is not among those that exist; the message lists them.
+
+    Examples
+    --------
+    >>> print(UnknownNameError("frame", "wrold", ["support", "world", "corotating"]))
+    unknown frame 'wrold'. Did you mean 'world'? There are: support, world, corotating
+    """
+
+    def __init__(self, kind: str, received: str, known: Iterable[str]) -> None:
+        self.kind, self.received, self.known = kind, received, list(known)
+        super().__init__(
+            f"unknown {kind} {received!r}.{did_you_mean(received, self.known)} There are: "
+            + ", ".join(self.known)
+        )
+
+    def __reduce__(self) -> tuple[type, tuple[object, ...]]:
+        return type(self), (self.kind, self.received, self.known)
+
+
+def did_you_mean(received: str, known: Iterable[str]) -> str:
+    """Suggest the known name closest to a mistyped one.
+
+    Parameters
+    ----------
+    received : str
+        The name that came.
+    known : iterable of str
+        The names that exist.
+
+    Returns
+    -------
+    str
+        ``" Did you mean 'x'?"``, or nothing where no name is close.
+
+    Examples
+    --------
+    >>> did_you_mean("radios", ["radius", "mass"])
+    " Did you mean 'radius'?"
+    """
+    close = get_close_matches(str(received), list(known), n=1)
+    return f" Did you mean {close[0]!r}?" if close else ""
+
+
+def _shown(received: object) -> str:
+    text = repr(received)
+    return text if len(text) <= 120 else text[:117] + "..."
