@@ -1,0 +1,100 @@
+"""The dynamics of bodies that roll without slipping."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from . import units
+    from .errors import (
+        InvalidValueError,
+        OutOfDomainError,
+        ScenarioError,
+        SolverError,
+        TrundleError,
+        UnknownNameError,
+    )
+    from .mechanics.bodies import Body, Isotropic, Principal
+    from .mechanics.loads import Drag, Force, Torque
+    from .mechanics.motions import Fixed, Spin
+    from .mechanics.shapes import Sphere
+    from .mechanics.surfaces import Plane
+    from .mechanics.system import RollingSystem, State, Support
+    from .simulation import Scenario, simulate
+    from .trajectory import Event, Trajectory
+    from .verify import Card
+
+# Public name -> module that holds it: `import trundle` loads nothing until a name is used.
+_HOMES = {
+    "errors": (
+        "TrundleError",
+        "InvalidValueError",
+        "ScenarioError",
+        "OutOfDomainError",
+        "SolverError",
+        "UnknownNameError",
+    ),
+    "mechanics.bodies": ("Body", "Isotropic", "Principal"),
+    "mechanics.shapes": ("Sphere",),
+    "mechanics.surfaces": ("Plane",),
+    "mechanics.motions": ("Fixed", "Spin"),
+    "mechanics.loads": ("Force", "Torque", "Drag"),
+    "mechanics.system": ("RollingSystem", "State", "Support"),
+    "simulation": ("simulate", "Scenario"),
+    "trajectory": ("Trajectory", "Event"),
+    "verify": ("Card",),
+}
+_HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
+
+__all__ = [
+    "Body",
+    "Card",
+    "Drag",
+    "Event",
+    "Fixed",
+    "Force",
+    "InvalidValueError",
+    "Isotropic",
+    "OutOfDomainError",
+    "Plane",
+    "Principal",
+    "RollingSystem",
+    "Scenario",
+    "ScenarioError",
+    "SolverError",
+    "Sphere",
+    "Spin",
+    "State",
+    "Support",
+    "Torque",
+    "Trajectory",
+    "TrundleError",
+    "UnknownNameError",
+    "__version__",
+    "simulate",
+    "units",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOME_OF:
+        value = getattr(import_module(f".{_HOME_OF[name]}", __name__), name)
+    elif name == "units":
+        value = import_module(".units", __name__)
+    elif name == "__version__":
+        from importlib.metadata import version
+
+        value = version("trundle")
+    elif name.startswith("_"):
+        raise AttributeError(name)
+    else:
+        from .errors import UnknownNameError
+
+        raise UnknownNameError("name in trundle", name, sorted(_HOME_OF))
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

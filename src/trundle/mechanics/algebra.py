@@ -1,0 +1,250 @@
+"""Vectors, matrices and quaternions over any scalar of `scalars`: the vector algebra of the theory page.
+
+A `Vector` holds three scalars, so the same expression is arithmetic on floats, on whole arrays of balls
+(each component an array), and symbolic algebra. Literal zeros stay literal, and symbolic kinds drop them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from .scalars import Scalar, namespace
+
+
+@dataclass(frozen=True, slots=True)
+class Vector:
+    """A vector in space, by its three components in one frame.
+
+    Examples
+    --------
+    >>> Vector(1.0, 0.0, 0.0).cross(Vector(0.0, 1.0, 0.0))
+    Vector(x=0.0, y=0.0, z=1.0)
+    """
+
+    x: Scalar
+    y: Scalar
+    z: Scalar
+
+    __array_ufunc__ = None  # so that array * Vector asks Vector
+
+    def __iter__(self) -> Any:
+        return iter((self.x, self.y, self.z))
+
+    def __add__(self, other: Vector) -> Vector:
+        return Vector(self.x + other.x, self.y + other.y, self.z + other.z)
+
+    def __sub__(self, other: Vector) -> Vector:
+        return Vector(self.x - other.x, self.y - other.y, self.z - other.z)
+
+    def __neg__(self) -> Vector:
+        return Vector(-self.x, -self.y, -self.z)
+
+    def __mul__(self, factor: Scalar) -> Vector:
+        return Vector(self.x * factor, self.y * factor, self.z * factor)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, divisor: Scalar) -> Vector:
+        return Vector(self.x / divisor, self.y / divisor, self.z / divisor)
+
+    def dot(self, other: Vector) -> Scalar:
+        """Return the scalar product with another vector."""
+        return self.x * other.x + self.y * other.y + self.z * other.z
+
+    def cross(self, other: Vector) -> Vector:
+        """Return the vector product, right-handed: x cross y points along z."""
+        return Vector(
+            self.y * other.z - self.z * other.y,
+            self.z * other.x - self.x * other.z,
+            self.x * other.y - self.y * other.x,
+        )
+
+    def norm(self) -> Scalar:
+        """Return the length."""
+        return namespace(self.x, self.y, self.z).sqrt(self.dot(self))
+
+    @staticmethod
+    def of(components: Any) -> Vector:
+        """Take three components from a sequence, or from the last axis of an array."""
+        if hasattr(components, "__array_namespace__"):
+            return Vector(components[..., 0], components[..., 1], components[..., 2])
+        x, y, z = components
+        return Vector(x, y, z)
+
+    def array(self) -> Any:
+        """Return a NumPy array whose last axis holds the components; they broadcast against each other."""
+        import numpy as np
+
+        return np.stack(np.broadcast_arrays(self.x, self.y, self.z), axis=-1).astype(float, copy=False)
+
+
+ZERO = Vector(0.0, 0.0, 0.0)
+E_X = Vector(1.0, 0.0, 0.0)
+E_Y = Vector(0.0, 1.0, 0.0)
+E_Z = Vector(0.0, 0.0, 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Matrix:
+    """A 3×3 matrix by its three rows.
+
+    Examples
+    --------
+    >>> Matrix.identity() @ Vector(1.0, 2.0, 3.0)
+    Vector(x=1.0, y=2.0, z=3.0)
+    """
+
+    a: Vector
+    b: Vector
+    c: Vector
+
+    __array_ufunc__ = None
+
+    @staticmethod
+    def identity() -> Matrix:
+        """Return the unit matrix."""
+        return Matrix(E_X, E_Y, E_Z)
+
+    @staticmethod
+    def zero() -> Matrix:
+        """Return the matrix of zeros."""
+        return Matrix(ZERO, ZERO, ZERO)
+
+    @staticmethod
+    def diagonal(x: Scalar, y: Scalar, z: Scalar) -> Matrix:
+        """Return a diagonal matrix."""
+        return Matrix(Vector(x, 0.0, 0.0), Vector(0.0, y, 0.0), Vector(0.0, 0.0, z))
+
+    @staticmethod
+    def outer(u: Vector, v: Vector) -> Matrix:
+        """Return u vᵀ."""
+        return Matrix(v * u.x, v * u.y, v * u.z)
+
+    @property
+    def transpose(self) -> Matrix:
+        """The transposed matrix."""
+        return Matrix(*(Vector(*column) for column in zip(self.a, self.b, self.c, strict=True)))
+
+    def __add__(self, other: Matrix) -> Matrix:
+        return Matrix(self.a + other.a, self.b + other.b, self.c + other.c)
+
+    def __sub__(self, other: Matrix) -> Matrix:
+        return Matrix(self.a - other.a, self.b - other.b, self.c - other.c)
+
+    def __mul__(self, factor: Scalar) -> Matrix:
+        return Matrix(self.a * factor, self.b * factor, self.c * factor)
+
+    __rmul__ = __mul__
+
+    def __matmul__(self, other: Any) -> Any:
+        if isinstance(other, Matrix):
+            columns = other.transpose
+            return Matrix(*(Vector(row.dot(columns.a), row.dot(columns.b), row.dot(columns.c)) for row in self.rows))
+        return Vector(self.a.dot(other), self.b.dot(other), self.c.dot(other))
+
+    @property
+    def rows(self) -> tuple[Vector, Vector, Vector]:
+        """The three rows."""
+        return self.a, self.b, self.c
+
+    def solve(self, v: Vector) -> Vector:
+        """Return x with (this matrix) x = v, by Cramer's rule: no pivoting, so that symbols can pass."""
+        p, q, r = self.transpose.rows
+        qr = q.cross(r)
+        determinant = p.dot(qr)
+        return Vector(v.dot(qr), p.dot(v.cross(r)), p.dot(q.cross(v))) / determinant
+
+
+def point_inertia(mass: Scalar, offset: Vector) -> Matrix:
+    """Return m(ρ² 1 − ρ ρᵀ), the inertia of a point mass about a point at distance ρ.
+
+    Written without ρ² − ρ_i², so that nothing is lost for an offset along an axis.
+
+    Parameters
+    ----------
+    mass : Scalar
+        Mass, kg.
+    offset : Vector
+        From the point to the mass, m.
+
+    Returns
+    -------
+    Matrix
+        kg m².
+
+    Examples
+    --------
+    >>> point_inertia(2.0, Vector(0.0, 0.0, 3.0)).a
+    Vector(x=18.0, y=0.0, z=0.0)
+    """
+    x, y, z = offset
+    return mass * Matrix(
+        Vector(y * y + z * z, -(x * y), -(x * z)),
+        Vector(-(y * x), z * z + x * x, -(y * z)),
+        Vector(-(z * x), -(z * y), x * x + y * y),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Quaternion:
+    """A unit quaternion w + x i + y j + z k that takes body components to components in the support frame.
+
+    Examples
+    --------
+    >>> quarter = 0.5**0.5
+    >>> turn_about_z = Quaternion(quarter, 0.0, 0.0, quarter)
+    >>> [round(c, 12) for c in turn_about_z.matrix() @ Vector(1.0, 0.0, 0.0)]
+    [0.0, 1.0, 0.0]
+    """
+
+    w: Scalar
+    x: Scalar
+    y: Scalar
+    z: Scalar
+
+    def __iter__(self) -> Any:
+        return iter((self.w, self.x, self.y, self.z))
+
+    @staticmethod
+    def of(components: Any) -> Quaternion:
+        """Take four components (w, x, y, z) from a sequence, or from the last axis of an array."""
+        if hasattr(components, "__array_namespace__"):
+            return Quaternion(*(components[..., i] for i in range(4)))
+        w, x, y, z = components
+        return Quaternion(w, x, y, z)
+
+    def __mul__(self, other: Quaternion) -> Quaternion:
+        a, b, c, d = self
+        w, x, y, z = other
+        return Quaternion(
+            a * w - b * x - c * y - d * z,
+            a * x + b * w + c * z - d * y,
+            a * y - b * z + c * w + d * x,
+            a * z + b * y - c * x + d * w,
+        )
+
+    @property
+    def conjugate(self) -> Quaternion:
+        """The inverse rotation."""
+        return Quaternion(self.w, -self.x, -self.y, -self.z)
+
+    def rate(self, angular_velocity: Vector) -> Quaternion:
+        """Return q̇ = ½ Ω q for an angular velocity Ω in the support frame."""
+        omega = Quaternion(0.0, *angular_velocity)
+        return Quaternion(*(0.5 * component for component in omega * self))
+
+    def matrix(self) -> Matrix:
+        """Return the rotation matrix Q (body to support frame); for a unit quaternion it is orthogonal."""
+        w, x, y, z = self
+        return Matrix(
+            Vector(1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)),
+            Vector(2.0 * (x * y + w * z), 1.0 - 2.0 * (z * z + x * x), 2.0 * (y * z - w * x)),
+            Vector(2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)),
+        )
+
+    def array(self) -> Any:
+        """Return a NumPy array whose last axis holds (w, x, y, z)."""
+        import numpy as np
+
+        return np.stack(np.broadcast_arrays(self.w, self.x, self.y, self.z), axis=-1).astype(float, copy=False)

@@ -1,0 +1,191 @@
+"""Bodies: a mass, an inertia tensor and a shape, and builders for the common ones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from ..errors import InvalidValueError
+from . import checks
+from .algebra import Matrix
+from .scalars import Scalar, is_number
+from .shapes import Shape, Sphere, concentric_sphere
+
+SOLID_SPHERE, HOLLOW_SPHERE = 2 / 5, 2 / 3  # k = I/(m a²)
+
+
+@dataclass(frozen=True)
+class Isotropic:
+    """The same moment of inertia about every axis through the centre of mass.
+
+    Parameters
+    ----------
+    moment : float
+        I, kg m².
+
+    Examples
+    --------
+    >>> Isotropic(2.0).in_space(Matrix.identity()).a
+    Vector(x=2.0, y=0.0, z=0.0)
+    """
+
+    moment: Scalar
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "moment", checks.positive(self.moment, "inertia", "inertia.moment"))
+
+    def in_space(self, Q: Matrix) -> Matrix:  # noqa: ARG002  the same from every side
+        """Return the inertia tensor in the support frame, kg m²."""
+        return Matrix.diagonal(self.moment, self.moment, self.moment)
+
+
+@dataclass(frozen=True)
+class Principal:
+    """Three principal moments of inertia, about the axes of the body frame.
+
+    Parameters
+    ----------
+    x, y, z : float
+        Moments about the centre of mass, kg m².
+
+    Examples
+    --------
+    >>> Principal(1.0, 2.0, 2.5).in_space(Matrix.identity()).b
+    Vector(x=0.0, y=2.0, z=0.0)
+    """
+
+    x: Scalar
+    y: Scalar
+    z: Scalar
+
+    def __post_init__(self) -> None:
+        moments = [checks.positive(getattr(self, name), "inertia", f"inertia.{name}") for name in "xyz"]
+        for name, moment in zip("xyz", moments, strict=True):
+            object.__setattr__(self, name, moment)
+        if all(is_number(moment) for moment in moments) and 2 * max(moments) > sum(moments) * (1 + 1e-12):
+            raise InvalidValueError(
+                "inertia", "must obey the triangle rule, each moment at most the sum of the others", tuple(moments)
+            )
+
+    def in_space(self, Q: Matrix) -> Matrix:
+        """Return Q diag(x, y, z) Qᵀ, the inertia tensor in the support frame, kg m²."""
+        return Q @ Matrix.diagonal(self.x, self.y, self.z) @ Q.transpose
+
+
+@dataclass(frozen=True)
+class Body:
+    """A rigid convex body.
+
+    Parameters
+    ----------
+    mass : float
+        m, kg.
+    inertia : Isotropic or Principal
+        J about the centre of mass.
+    shape : Shape
+        The surface that touches the support.
+
+    Examples
+    --------
+    >>> Body.solid_sphere(radius=0.025, mass=0.065).inertia_ratio
+    0.4
+    """
+
+    mass: Scalar
+    inertia: Isotropic | Principal
+    shape: Shape
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "mass", checks.positive(self.mass, "mass", "mass"))
+
+    @staticmethod
+    def sphere(radius: Any, mass: Any, inertia_ratio: Any) -> Body:
+        """Make a sphere whose mass lies symmetrically about its centre.
+
+        Parameters
+        ----------
+        radius : float or quantity
+            a, m.
+        mass : float or quantity
+            m, kg.
+        inertia_ratio : float
+            k = I/(m a²): 2/5 for a solid sphere, 2/3 for a shell, never more.
+
+        Returns
+        -------
+        Body
+            The sphere.
+
+        Raises
+        ------
+        InvalidValueError
+            If a value is not positive, or k is more than a shell's.
+
+        Examples
+        --------
+        >>> ball = Body.sphere(radius="40 mm", mass="2.7 g", inertia_ratio=0.5)
+        >>> ball.shape.radius, round(ball.inertia_ratio, 12)
+        (0.04, 0.5)
+        """
+        a = checks.positive(radius, "length", "radius")
+        m = checks.positive(mass, "mass", "mass")
+        k = checks.positive(inertia_ratio, "number", "inertia_ratio")
+        if is_number(k) and k > HOLLOW_SPHERE * (1 + 1e-12):
+            raise InvalidValueError(
+                "inertia_ratio", "must lie in (0, 2/3]", inertia_ratio, "A thin shell has 2/3; no sphere has more."
+            )
+        return Body(m, Isotropic(k * m * a * a), Sphere(a))
+
+    @staticmethod
+    def solid_sphere(radius: Any, mass: Any) -> Body:
+        """Make a homogeneous ball, I = (2/5) m a².
+
+        Parameters
+        ----------
+        radius, mass : float or quantity
+            a in m, m in kg.
+
+        Returns
+        -------
+        Body
+            The ball.
+
+        Examples
+        --------
+        >>> Body.solid_sphere(radius=1.0, mass=5.0).inertia.moment
+        2.0
+        """
+        return Body.sphere(radius, mass, SOLID_SPHERE)
+
+    @staticmethod
+    def hollow_sphere(radius: Any, mass: Any) -> Body:
+        """Make a thin spherical shell, I = (2/3) m a².
+
+        Parameters
+        ----------
+        radius, mass : float or quantity
+            a in m, m in kg.
+
+        Returns
+        -------
+        Body
+            The shell.
+
+        Examples
+        --------
+        >>> Body.hollow_sphere(radius=1.0, mass=3.0).inertia.moment
+        2.0
+        """
+        return Body.sphere(radius, mass, HOLLOW_SPHERE)
+
+    @property
+    def is_isotropic_sphere(self) -> bool:
+        """Whether this is a sphere about its centre of mass with the same inertia about every axis."""
+        return concentric_sphere(self.shape) and isinstance(self.inertia, Isotropic)
+
+    @property
+    def inertia_ratio(self) -> Scalar:
+        """k = I/(m a²) of an isotropic sphere."""
+        if not (isinstance(self.shape, Sphere) and isinstance(self.inertia, Isotropic)):
+            raise InvalidValueError("inertia_ratio", "exists only for a sphere with isotropic inertia", self)
+        return self.inertia.moment / (self.mass * self.shape.radius * self.shape.radius)

@@ -1,0 +1,134 @@
+"""Checks on the numbers that a user hands to the mechanics; symbols and arrays pass unlooked at where they must."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..errors import InvalidValueError
+from ..units import to_si
+from .scalars import is_number
+
+
+def real(value: Any, kind: str, key: str) -> Any:
+    """Return a quantity in SI, any finite value allowed.
+
+    Parameters
+    ----------
+    value : float, str, pint.Quantity, array or symbolic scalar
+        What the user gave.
+    kind : str
+        A kind of `trundle.units.UNITS`.
+    key : str
+        The name that an error message uses.
+
+    Returns
+    -------
+    Scalar
+        The value in SI.
+
+    Examples
+    --------
+    >>> real("3 deg", "angle", "tilt")
+    0.05235987755982989
+    """
+    return to_si(value, kind, key)
+
+
+def positive(value: Any, kind: str, key: str) -> Any:
+    """Return a quantity in SI that must be above zero (each element of an array).
+
+    Parameters
+    ----------
+    value, kind, key
+        As for `real`.
+
+    Returns
+    -------
+    Scalar
+        The value in SI.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is zero or negative.
+
+    Examples
+    --------
+    >>> positive("65 g", "mass", "mass")
+    0.065
+    """
+    number = to_si(value, kind, key)
+    if (is_number(number) and not number > 0) or (_is_numpy(number) and not (number > 0).all()):
+        raise InvalidValueError(key, "must be positive", value, "Zero and negative values have no meaning here.")
+    return number
+
+
+def non_negative(value: Any, kind: str, key: str) -> Any:
+    """Return a quantity in SI that must not be below zero (each element of an array).
+
+    Parameters
+    ----------
+    value, kind, key
+        As for `real`.
+
+    Returns
+    -------
+    Scalar
+        The value in SI.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is negative.
+
+    Examples
+    --------
+    >>> non_negative(0, "damping", "coefficient")
+    0.0
+    """
+    number = to_si(value, kind, key)
+    if (is_number(number) and not number >= 0) or (_is_numpy(number) and not (number >= 0).all()):
+        raise InvalidValueError(key, "must not be negative", value)
+    return number
+
+
+def components(value: Any, kind: str, key: str, count: int = 3) -> tuple[Any, ...]:
+    """Return the components of a vector in SI.
+
+    Parameters
+    ----------
+    value : sequence or array
+        `count` quantities.
+    kind, key
+        As for `real`; the components are named ``key[0]``, ``key[1]``, ...
+    count : int
+        How many components there must be.
+
+    Returns
+    -------
+    tuple of Scalar
+        The components in SI.
+
+    Raises
+    ------
+    InvalidValueError
+        If the number of components differs or one of them is refused.
+
+    Examples
+    --------
+    >>> components(["10 cm", 0], "length", "position", 2)
+    (0.1, 0.0)
+    """
+    if hasattr(value, "to") and hasattr(value, "magnitude"):  # a pint quantity that holds an array
+        value = list(value)
+    try:
+        parts = None if isinstance(value, (str, bytes)) else tuple(value)
+    except TypeError:
+        parts = None
+    if parts is None or len(parts) != count:
+        raise InvalidValueError(key, f"must be a list of {count} components", value, f"Each is a {kind}.")
+    return tuple(to_si(part, kind, f"{key}[{i}]") for i, part in enumerate(parts))
+
+
+def _is_numpy(value: Any) -> bool:
+    return type(value).__module__ == "numpy" and hasattr(value, "all")

@@ -1,0 +1,178 @@
+"""One set of functions for every kind of scalar: float, NumPy or Array-API array, mpmath, heyoka, SymPy.
+
+The mechanics is written once over whatever supports + - * /; what else it needs (square root, sine, a choice
+between two values) is looked up here from the scalars themselves.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Iterator
+from typing import Any
+
+Scalar = Any  # float | numpy.ndarray | Array-API array | mpmath.mpf | heyoka.expression | sympy.Expr
+
+
+def is_number(value: Any) -> bool:
+    """Tell whether a scalar is a plain real number, whose value can be looked at, rather than a symbol or an array.
+
+    Parameters
+    ----------
+    value : Scalar
+        Anything the mechanics computes with.
+
+    Returns
+    -------
+    bool
+        True for Python and NumPy real numbers.
+
+    Examples
+    --------
+    >>> import sympy
+    >>> is_number(0.4), is_number(sympy.Symbol("k"))
+    (True, False)
+    """
+    return isinstance(value, (int, float)) or (type(value).__module__ == "numpy" and getattr(value, "ndim", None) == 0)
+
+
+def is_zero(value: Any) -> bool:
+    """Tell whether a scalar is known to be zero: a number 0, never a symbol or an array that happens to vanish.
+
+    Parameters
+    ----------
+    value : Scalar
+        Anything the mechanics computes with.
+
+    Returns
+    -------
+    bool
+        True for the numbers 0 and 0.0 only.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> is_zero(0.0), is_zero(np.zeros(3))
+    (True, False)
+    """
+    return is_number(value) and bool(value == 0)
+
+
+def _leaves(values: tuple[Any, ...]) -> Iterator[Any]:
+    for value in values:
+        if isinstance(value, tuple):
+            yield from _leaves(value)
+        else:
+            yield value
+
+
+class _Python:
+    """Python floats: the math module under the names that the arrays' namespaces use."""
+
+    sqrt, sin, cos, exp, expm1 = math.sqrt, math.sin, math.cos, math.exp, math.expm1
+
+    @staticmethod
+    def where(condition: Any, yes: Any, no: Any) -> Any:
+        return yes if condition else no
+
+
+class _Heyoka:
+    """heyoka expressions, whose choice is `select` between two expressions."""
+
+    def __init__(self) -> None:
+        import heyoka
+
+        self.sqrt, self.sin, self.cos = heyoka.sqrt, heyoka.sin, heyoka.cos
+        self.exp, self.expm1 = heyoka.exp, heyoka.expm1
+        self._heyoka = heyoka
+
+    def where(self, condition: Any, yes: Any, no: Any) -> Any:
+        expression = self._heyoka.expression
+        as_expression = [v if isinstance(v, expression) else expression(float(v)) for v in (yes, no)]
+        return self._heyoka.select(condition, *as_expression)
+
+
+class _SymPy:
+    """SymPy expressions."""
+
+    def __init__(self) -> None:
+        import sympy
+
+        self.sqrt, self.sin, self.cos, self.exp = sympy.sqrt, sympy.sin, sympy.cos, sympy.exp
+        self._sympy = sympy
+
+    def expm1(self, x: Any) -> Any:
+        return self._sympy.exp(x) - 1
+
+    def where(self, condition: Any, yes: Any, no: Any) -> Any:
+        return self._sympy.Piecewise((yes, condition), (no, True))
+
+
+class _Mpmath:
+    """mpmath numbers."""
+
+    def __init__(self) -> None:
+        import mpmath
+
+        self.sqrt, self.sin, self.cos = mpmath.sqrt, mpmath.sin, mpmath.cos
+        self.exp, self.expm1 = mpmath.exp, mpmath.expm1
+
+    @staticmethod
+    def where(condition: Any, yes: Any, no: Any) -> Any:
+        return yes if condition else no
+
+
+def namespace(*values: Any) -> Any:
+    """Return the functions (sqrt, sin, cos, exp, expm1, where) that fit the given scalars.
+
+    Parameters
+    ----------
+    *values : Scalar or (nested) tuple of Scalar
+        What will be computed with; plain numbers go along with any other kind.
+
+    Returns
+    -------
+    object
+        A namespace such as NumPy's; for arrays it is the one of the Array-API standard.
+
+    Examples
+    --------
+    >>> namespace(4.0).sqrt(4.0)
+    2.0
+    """
+    for value in _leaves(values):
+        if is_number(value):
+            continue
+        if hasattr(value, "__array_namespace__"):
+            return value.__array_namespace__()
+        package = type(value).__module__.partition(".")[0]
+        if package in _SYMBOLIC:
+            return _SYMBOLIC[package]()
+    return _Python
+
+
+_SYMBOLIC = {"heyoka": _Heyoka, "sympy": _SymPy, "mpmath": _Mpmath}
+
+
+def less(a: Any, b: Any) -> Any:
+    """Compare two scalars, a < b, in the form that `where` of their namespace takes.
+
+    Parameters
+    ----------
+    a, b : Scalar
+        The two sides.
+
+    Returns
+    -------
+    bool, array of bool or expression
+        The condition.
+
+    Examples
+    --------
+    >>> less(1.0, 2.0)
+    True
+    """
+    heyoka = sys.modules.get("heyoka")
+    if heyoka is not None and (isinstance(a, heyoka.expression) or isinstance(b, heyoka.expression)):
+        return heyoka.lt(a, b)
+    return a < b

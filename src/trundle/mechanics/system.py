@@ -1,0 +1,253 @@
+"""A rolling system (body, support, loads) and a state to start it from."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+from ..errors import InvalidValueError
+from . import checks
+from .algebra import E_Z, ZERO, Quaternion, Vector
+from .bodies import Body
+from .contact import touch
+from .loads import BodyMotion, Gravity, Load
+from .motions import Fixed, Motion
+from .scalars import Scalar, is_number, namespace
+from .surfaces import Surface
+
+STANDARD_GRAVITY = 9.80665  # m/s², exact by definition (3rd CGPM, 1901)
+SLIP_TOLERANCE = 1e-9  # of the largest speed at the contact: beyond it a start slips
+
+
+@dataclass(frozen=True)
+class Support:
+    """What the body rolls on: a surface, how it moves, how it leans.
+
+    Parameters
+    ----------
+    surface : Surface
+        The surface in the support's own frame.
+    motion : Motion
+        How it moves; at rest unless said otherwise.
+    tilt : float or quantity
+        α, the angle between the support's axis and the vertical, rad; the first axis points down the slope.
+    friction : float, optional
+        Coulomb coefficient; absent: it holds whatever rolling takes, and the card says how much that was.
+
+    Examples
+    --------
+    >>> from trundle.mechanics.surfaces import Plane
+    >>> Support(Plane(), tilt="3 deg").tilt
+    0.05235987755982989
+    """
+
+    surface: Surface
+    motion: Motion = field(default_factory=Fixed)
+    tilt: Scalar = 0.0
+    friction: Scalar | None = None
+
+    def __post_init__(self) -> None:
+        tilt = checks.real(self.tilt, "angle", "tilt")
+        if is_number(tilt) and not abs(tilt) < math.pi / 2:
+            remedy = "Did you mean degrees? Write 'deg' behind the number." if isinstance(self.tilt, (int, float)) else ""
+            raise InvalidValueError("tilt", "must lie in (−90°, 90°)", self.tilt, remedy)
+        object.__setattr__(self, "tilt", tilt)
+        if self.friction is not None:
+            object.__setattr__(self, "friction", checks.non_negative(self.friction, "number", "friction"))
+
+
+@dataclass(frozen=True)
+class State:
+    """Where a body is and how it moves, in the inertial support frame.
+
+    Parameters
+    ----------
+    position : tuple of 3 floats
+        Centre of mass, m.
+    velocity : tuple of 3 floats
+        Of the centre of mass, m/s.
+    angular_velocity : tuple of 3 floats
+        Ω, rad/s.
+    orientation : tuple of 4 floats
+        Unit quaternion (w, x, y, z), body frame to support frame.
+    time : float
+        s.
+
+    Examples
+    --------
+    >>> State((0.1, 0.0, 0.025), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)).orientation
+    (1.0, 0.0, 0.0, 0.0)
+    """
+
+    position: tuple[float, float, float]
+    velocity: tuple[float, float, float]
+    angular_velocity: tuple[float, float, float]
+    orientation: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
+    time: float = 0.0
+
+
+@dataclass(frozen=True)
+class RollingSystem:
+    """A body that rolls on a support under loads.
+
+    Parameters
+    ----------
+    body : Body
+        What rolls.
+    support : Support
+        What it rolls on.
+    loads : sequence of Load
+        Forces and torques besides gravity.
+    gravity : float or quantity
+        g, m/s²; 0 turns it off.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> table = tr.Support(tr.Plane(rim=0.5), motion=tr.Spin(3.49), tilt=0.05)
+    >>> system = tr.RollingSystem(tr.Body.solid_sphere(radius=0.025, mass=0.065), table)
+    >>> start = system.place(position=(0.10, 0.0), velocity=(0.0, 0.2))
+    >>> [round(rate, 6) for rate in start.angular_velocity]
+    [5.96, 0.0, 0.0]
+    """
+
+    body: Body
+    support: Support
+    loads: tuple[Load, ...] = ()
+    gravity: Scalar = STANDARD_GRAVITY
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "loads", tuple(self.loads))
+        object.__setattr__(self, "gravity", checks.non_negative(self.gravity, "acceleration", "gravity"))
+
+    @property
+    def weight(self) -> Gravity:
+        """Gravity in the support frame: g(sin α, 0, −cos α)."""
+        xp = namespace(self.support.tilt)
+        slope, normal = xp.sin(self.support.tilt), xp.cos(self.support.tilt)
+        return Gravity(self.gravity * slope, 0.0, -(self.gravity * normal))
+
+    @property
+    def all_loads(self) -> tuple[Load, ...]:
+        """Gravity and the other loads."""
+        return (self.weight, *self.loads)
+
+    def loads_on(self, motion: BodyMotion) -> tuple[Vector, Vector]:
+        """Return the applied force F, N, and torque K about the centre of mass, N m."""
+        force, torque = ZERO, ZERO
+        for load in self.all_loads:
+            force, torque = force + load.force(motion), torque + load.torque(motion)
+        return force, torque
+
+    def place(
+        self,
+        position: Any = (0.0, 0.0),
+        velocity: Any = None,
+        spin: Any = None,
+        angular_velocity: Any = None,
+        orientation: Any = (1.0, 0.0, 0.0, 0.0),
+    ) -> State:
+        """Put the body down so that it rolls from the first instant.
+
+        Parameters
+        ----------
+        position : sequence of 2 floats or quantities
+            Centre of the body over the support, support frame, m.
+        velocity : sequence of 2 floats or quantities, or "co-rotating", optional
+            Of the centre, in the inertial support frame, m/s; absent: at rest. "co-rotating" releases the body
+            from rest relative to the support's material under it.
+        spin : float or quantity, optional
+            Ω·n, rad/s; the rest of Ω follows from no slip. Absent: 0, or the support's rate when co-rotating.
+        angular_velocity : sequence of 3 floats or quantities, optional
+            Ω instead of `spin`; it must agree with rolling.
+        orientation : sequence of 4 floats
+            Quaternion (w, x, y, z), body frame to support frame; it is normalised.
+
+        Returns
+        -------
+        State
+            The start.
+
+        Raises
+        ------
+        InvalidValueError
+            If a value is refused, the body is outside the rim, or the start contradicts itself.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> table = tr.Support(tr.Plane(), motion=tr.Spin(2.0))
+        >>> system = tr.RollingSystem(tr.Body.solid_sphere(radius=0.5, mass=1.0), table)
+        >>> system.place(position=(1.0, 0.0), velocity="co-rotating").velocity
+        (0.0, 2.0, 0.0)
+        """
+        x, y = checks.components(position, "length", "position", 2)
+        q = _unit_quaternion(orientation)
+        contact = touch(self, 0.0, Vector(x, y, 0.0), q)
+        contact = touch(self, 0.0, Vector(x + contact.offset.x, y + contact.offset.y, 0.0), q)
+        self._check_rim(contact.point, position)
+        u, rho = contact.support.material_velocity(contact.point), contact.offset
+        co_rotating = isinstance(velocity, str)
+        if co_rotating:
+            if velocity != "co-rotating":
+                raise InvalidValueError("velocity", 'must be two components or "co-rotating"', velocity)
+            vx, vy = (contact.support.material_velocity(contact.centre)).x, contact.support.material_velocity(contact.centre).y
+        else:
+            vx, vy = checks.components((0.0, 0.0) if velocity is None else velocity, "velocity", "velocity", 2)
+        V = Vector(vx, vy, (u.dot(rho) - vx * rho.x - vy * rho.y) / rho.z)
+        if angular_velocity is None:
+            turning = contact.support.angular_velocity.dot(contact.normal) if co_rotating else 0.0
+            about_normal = turning if spin is None else checks.real(spin, "angular velocity", "spin")
+            Omega = _rolling_rate(V - u, rho, contact.normal, about_normal)
+        elif spin is not None:
+            raise InvalidValueError(
+                "angular_velocity", "must not stand beside `spin`", angular_velocity, "Give one of the two."
+            )
+        else:
+            Omega = Vector(*checks.components(angular_velocity, "angular velocity", "angular_velocity"))
+            _check_no_slip(contact.slip_velocity(V, Omega), V, Omega.cross(rho), u)
+        return State(_triple(contact.centre), _triple(V), _triple(Omega), tuple(q))
+
+    def _check_rim(self, point: Vector, position: Any) -> None:
+        rim = self.support.surface.rim
+        if rim is not None and math.hypot(point.x, point.y) >= rim:
+            distance = math.hypot(point.x, point.y)
+            raise InvalidValueError(
+                "position",
+                f"must lie inside the rim at {rim:g} m",
+                position,
+                f"The contact is {distance:g} m from the axis.",
+            )
+
+
+def _triple(v: Vector) -> tuple[float, float, float]:
+    return v.x + 0.0, v.y + 0.0, v.z + 0.0  # + 0.0 turns -0.0 into 0.0
+
+
+def _unit_quaternion(orientation: Any) -> Quaternion:
+    parts = checks.components(orientation, "number", "orientation", 4)
+    length = math.hypot(*parts)
+    if not 0 < length < math.inf:
+        raise InvalidValueError("orientation", "must be a quaternion other than zero", orientation)
+    return Quaternion(*(part / length for part in parts))
+
+
+def _rolling_rate(relative: Vector, rho: Vector, n: Vector, spin: Scalar) -> Vector:
+    """Solve ρ×Ω = V − u for the Ω with Ω·n = spin."""
+    across = relative.cross(rho) / rho.dot(rho)
+    return across + rho * ((spin - across.dot(n)) / rho.dot(n))
+
+
+def _check_no_slip(slip: Vector, *speeds: Vector) -> None:
+    scale = max(speed.norm() for speed in speeds)
+    if slip.norm() > SLIP_TOLERANCE * scale:
+        raise InvalidValueError(
+            "angular_velocity",
+            "must agree with rolling, V + Ω×ρ = u(p)",
+            f"a slip of {slip.norm():.6g} m/s",
+            "Give `spin` instead and the rest follows from no slip; starts that slip are not covered yet.",
+        )
+
+
+__all__ = ["E_Z", "STANDARD_GRAVITY", "RollingSystem", "State", "Support"]
