@@ -1,0 +1,86 @@
+# Everything from a bare machine: Python 3.11 or newer and make are all it needs.
+.POSIX:
+.DELETE_ON_ERROR:
+.PHONY: help demo test bench lint format clean
+
+# make PYTHON=/some/python3.12 demo  chooses the interpreter; otherwise the first of these that is new enough.
+PYTHON =
+PYTHONS = $(PYTHON) python3 python3.13 python3.12 python3.11 python3.14 python
+
+BIN = .venv/bin
+PLAIN = NO_COLOR=1 PY_COLORS=0 MPLBACKEND=Agg
+# The build environment is pinned too: older pips read the first name for it, newer ones the second.
+PINNED = PIP_CONSTRAINT=constraints.txt PIP_BUILD_CONSTRAINT=constraints.txt PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_NO_INPUT=1
+# Two workers; `loadscope` keeps the blocks of one document on one worker, in their order.
+PYTEST = $(PLAIN) $(BIN)/python -m pytest -n 2 --dist loadscope --color=no
+
+help:
+	@echo 'make demo    install into .venv, then run the shipped tilted turntable into demo/'
+	@echo 'make test    install into .venv, then run every check: tests, documents, lint, types, layers'
+	@echo 'make bench   install the peers too, then print the ratios of one benchmark run'
+	@echo 'make lint    only ruff, mypy and the order of the layers'
+	@echo 'make format  let ruff write its format into the sources'
+	@echo 'make clean   remove .venv, demo/ and every cache'
+
+demo: .venv/installed
+	$(PLAIN) $(BIN)/trundle run tilted-turntable -o demo
+
+test: .venv/installed-test
+	$(PYTEST)
+	@$(MAKE) lint
+
+lint: .venv/installed-test
+	$(PLAIN) $(BIN)/ruff check .
+	$(PLAIN) $(BIN)/ruff format --check .
+	$(PLAIN) $(BIN)/mypy --no-color-output
+	$(PLAIN) $(BIN)/lint-imports --no-cache
+
+format: .venv/installed-test
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix .
+
+bench: .venv/installed-bench
+	$(PLAIN) $(BIN)/python benchmarks/run.py
+
+# The stamps: an installation is repeated only when what it installs has changed.
+.venv/installed: pyproject.toml constraints.txt
+	@$(PREPARE)
+	@$(INSTALL) -e '.'
+	@touch $@
+
+.venv/installed-test: pyproject.toml constraints.txt
+	@$(PREPARE)
+	@$(INSTALL) -e '.[test]'
+	@touch .venv/installed $@
+
+.venv/installed-bench: pyproject.toml constraints.txt
+	@$(PREPARE)
+	@$(INSTALL) -e '.[test,bench]'
+	@touch .venv/installed .venv/installed-test $@
+
+INSTALL = echo 'Installing trundle and its pinned dependencies into .venv (a minute or two the first time) ...' && \
+	$(PINNED) $(BIN)/python -m pip install --quiet --progress-bar off -c constraints.txt
+
+# Keep a .venv that works; otherwise make one with the first Python that is new enough.
+PREPARE = \
+	if $(BIN)/python -m pip --version >/dev/null 2>&1; then exit 0; fi; \
+	found=; \
+	for name in $(PYTHONS); do \
+	  if "$$name" -c 'import sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1; then found=$$name; break; fi; \
+	done; \
+	if [ -z "$$found" ]; then \
+	  echo 'trundle needs Python 3.11 or newer, and none of these is one: $(PYTHONS).' >&2; \
+	  echo 'Install Python 3.11 or newer, or name yours: make PYTHON=/path/to/python3.12 demo' >&2; \
+	  exit 1; \
+	fi; \
+	echo "Creating .venv with $$("$$found" --version)"; \
+	rm -rf .venv; \
+	if ! "$$found" -m venv .venv; then \
+	  rm -rf .venv; \
+	  echo "$$found could not create a virtual environment: install its venv module (Debian and Ubuntu: python3-venv)." >&2; \
+	  exit 1; \
+	fi
+
+clean:
+	rm -rf .venv demo out dist build .pytest_cache .hypothesis .mypy_cache .ruff_cache .import_linter_cache .benchmarks
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
