@@ -1,0 +1,143 @@
+"""Execute every code block of the documents, and run each doctest in a folder of its own.
+
+- `python` blocks run in order, in one namespace per document;
+- `toml` blocks are parsed, and whole scenarios loaded;
+- in `console` blocks each `$ command` runs, must exit as the comment before it says (`# exit status 3`; without
+  one, 0), and must print the lines shown, in that order, with `...` for what varies;
+- `text` blocks are not run.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+from sybil import Example, Sybil
+from sybil.evaluators.python import PythonEvaluator
+from sybil.integration.pytest import SybilItem
+from sybil.parsers.markdown import CodeBlockParser
+
+ROOT = Path(__file__).parent
+WHOLE_SCENARIO = {"body", "support", "start", "run"}
+# What a reader types to install or change trundle; a test must not.
+NOT_RUN = {"cd", "git", "pip", "python3"}
+TIME_LIMIT = 120  # s, for one command of a document
+
+os.environ["MPLBACKEND"] = "Agg"  # no window, here and in every command that a document runs
+
+
+def run_toml(example: Example) -> None:
+    """Parse a TOML block; load it as a scenario when it is a whole one."""
+    tables = tomllib.loads(example.parsed)
+    if tables.keys() >= WHOLE_SCENARIO:
+        from trundle.scenario import ScenarioFile
+
+        ScenarioFile.read(tables).start_state()
+
+
+def run_console(example: Example) -> str | None:
+    """Run the commands of a console block in order; return what is wrong with the first that is wrong."""
+    problems = (check(*command) for command in commands(example.parsed))
+    return next((problem for problem in problems if problem), None)
+
+
+def commands(block: str) -> list[tuple[str, int, list[str]]]:
+    """Split a console block into commands, the exit status each must have, and the lines shown under each."""
+    found: list[tuple[str, int, list[str]]] = []
+    status = 0
+    for line in block.splitlines():
+        if line.startswith("$ "):
+            found.append((line[2:], status, []))
+            status = 0
+        elif stated := re.match(r"#.*exit status (\d+)", line):
+            status = int(stated[1])
+        elif line.strip() and not line.startswith("#"):
+            found[-1][2].append(line.strip())
+    return found
+
+
+def check(command: str, status: int, shown: list[str]) -> str | None:
+    """Return what is wrong with one command of a document, or None."""
+    words = shlex.split(command, comments=True)
+    if words[0] == "make":
+        makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+        unknown = [
+            word for word in words[1:] if not re.search(rf"^{re.escape(word)}:", makefile, re.MULTILINE)
+        ]
+        return f"the Makefile has no target {unknown}" if unknown else None
+    if words[0] in NOT_RUN:
+        return None
+    done = run(command)
+    printed = done.stdout + done.stderr
+    if done.returncode != status:
+        return f"$ {command}\nexited with {done.returncode}, not {status}, and printed:\n{printed}"
+    rest = iter(printed.splitlines())
+    for line in shown:
+        pattern = re.escape(line).replace(re.escape("..."), ".*")
+        if not any(re.fullmatch(pattern, candidate.strip()) for candidate in rest):
+            return f"$ {command}\ndid not print, in its place:\n{line}\nbut:\n{printed}"
+    return None
+
+
+def run(command: str) -> subprocess.CompletedProcess[str]:
+    """Run one command of a document as a reader's shell would, the environment's own scripts first."""
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    return subprocess.run(  # noqa: S602  a shell, because documents show redirections
+        command,
+        shell=True,
+        env=os.environ | {"PATH": path, "NO_COLOR": "1", "COLUMNS": "120"},
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=TIME_LIMIT,
+        check=False,
+    )
+
+
+def enter_folder(namespace: dict[str, Any]) -> None:
+    """Give a document an empty working folder."""
+    namespace["_came_from"] = Path.cwd()
+    namespace["_folder"] = tempfile.mkdtemp(prefix="document-")
+    os.chdir(namespace["_folder"])
+
+
+def leave_folder(namespace: dict[str, Any]) -> None:
+    """Remove a document's working folder, and close the figures it left open."""
+    os.chdir(namespace["_came_from"])
+    shutil.rmtree(namespace["_folder"])
+    if "matplotlib.pyplot" in sys.modules:
+        sys.modules["matplotlib.pyplot"].close("all")
+
+
+# Sybil's own filter breaks on a failure outside a block, such as a warning raised when its objects are deleted.
+SybilItem._traceback_filter = pytest.Item._traceback_filter  # type: ignore[method-assign]
+
+pytest_collect_file = Sybil(
+    parsers=[
+        CodeBlockParser("python", PythonEvaluator()),
+        CodeBlockParser("toml", run_toml),
+        CodeBlockParser("console", run_console),
+    ],
+    patterns=["README.md", "CONTRIBUTING.md", "docs/*.md"],
+    path=str(ROOT),
+    setup=enter_folder,
+    teardown=leave_folder,
+).pytest()
+
+
+@pytest.fixture(autouse=True)
+def _doctest_folder(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Run a doctest in an empty folder, so that an example may save a file."""
+    if isinstance(request.node, pytest.DoctestItem):
+        monkeypatch.chdir(tmp_path_factory.mktemp("doctest"))
