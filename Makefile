@@ -33,7 +33,7 @@ lint: .venv/installed-test
 	$(PLAIN) $(BIN)/ruff check .
 	$(PLAIN) $(BIN)/ruff format --check .
 	$(PLAIN) $(BIN)/mypy --no-color-output
-	$(PLAIN) $(BIN)/lint-imports --no-cache
+	$(PLAIN) $(BIN)/lint-imports --no-logo --no-cache
 
 format: .venv/installed-test
 	$(BIN)/ruff format .

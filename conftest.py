@@ -2,8 +2,8 @@
 
 - `python` blocks run in order, in one namespace per document;
 - `toml` blocks are parsed, and whole scenarios loaded;
-- in `console` blocks each `$ command` runs, must exit as the comment before it says (`# exit status 3`; without
-  one, 0), and must print the lines shown, in that order, with `...` for what varies;
+- in `console` blocks each `$ command` runs, must exit as its comment says (`# exit status 3`; else 0),
+  and must print the lines shown, in that order, with `...` for what varies;
 - `text` blocks are not run.
 """
 
@@ -118,7 +118,7 @@ def leave_folder(namespace: dict[str, Any]) -> None:
         sys.modules["matplotlib.pyplot"].close("all")
 
 
-# Sybil's own filter breaks on a failure outside a block, such as a warning raised when its objects are deleted.
+# Sybil's own filter breaks on a failure outside a block, such as a warning at the deletion of its objects.
 SybilItem._traceback_filter = pytest.Item._traceback_filter  # type: ignore[method-assign]
 
 pytest_collect_file = Sybil(
