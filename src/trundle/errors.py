@@ -39,7 +39,33 @@ class InvalidValueError(TrundleError, ValueError):
 
 
 class ScenarioError(InvalidValueError):
-    """A scenario file, or a key in it, is not as the format asks."""
+    """A scenario file, or a key in it, is not as the format asks.
+
+    Parameters
+    ----------
+    key, rule, received, remedy : see InvalidValueError
+        The key is its path in the file, such as ``"loads[0].value[1]"``.
+    source : str
+        The file, where there is one.
+    others : int
+        How many more things are wrong with the same file.
+
+    Examples
+    --------
+    >>> print(ScenarioError("run.every", "must be positive", 0, "A step is longer than 0 s.", "my.toml", 2))
+    my.toml: `run.every` must be positive; got 0. A step is longer than 0 s. (2 more errors in this file.)
+    """
+
+    def __init__(
+        self, key: str, rule: str, received: object, remedy: str = "", source: str = "", others: int = 0
+    ) -> None:
+        super().__init__(key, rule, received, remedy)
+        self.source, self.others = source, others
+        more = f" ({others} more error{'s' * (others > 1)} in this file.)" if others else ""
+        self.args = (f"{source + ': ' if source else ''}{self.args[0]}{more}",)
+
+    def __reduce__(self) -> tuple[type, tuple[object, ...]]:
+        return type(self), (self.key, self.rule, self.received, self.remedy, self.source, self.others)
 
 
 class OutOfDomainError(TrundleError):
@@ -95,5 +121,8 @@ def did_you_mean(received: str, known: Iterable[str]) -> str:
 
 
 def _shown(received: object) -> str:
-    text = repr(received)
+    try:
+        text = repr(received)
+    except (ValueError, RecursionError):  # an integer of more than 4300 digits, a structure nested too deep
+        return f"a value of type {type(received).__name__} too large to show"
     return text if len(text) <= 120 else text[:117] + "..."

@@ -1,9 +1,10 @@
-"""Units at the edges: "33.3 rpm", "25 mm", "3 deg" and pint quantities become SI floats; inside, all is SI."""
+"""Units at the edges: "33.3 rpm", "3 deg" and pint quantities become SI floats; inside, all is SI."""
 
 from __future__ import annotations
 
 import math
 import re
+from fractions import Fraction
 from functools import cache
 from typing import Any
 
@@ -25,15 +26,22 @@ UNITS: dict[str, tuple[str, str]] = {
     "number": ("", "0.4"),
 }
 
-_NUMBER = re.compile(r"\s*([+-]?(?:\d[\d_]*\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?|[+-]?(?:nan|inf(?:inity)?))(?![\w.])?\s*(.*)", re.DOTALL)
+_LONGEST = 200
+_NUMBER = re.compile(
+    r"([+-]?(?:\d+(?:_\d+)*(?:\.(?:\d+(?:_\d+)*)?)?|\.\d+(?:_\d+)*)(?:[eE][+-]?\d{1,4})?"
+    r"|[+-]?(?:nan|inf(?:inity)?)(?![a-z]))\s*(\D.*)?",
+    re.DOTALL | re.ASCII | re.IGNORECASE,
+)
 _UNIT = re.compile(r"[A-Za-z°µμΩ%²³·/*^() \-\d]{0,40}")
-_LARGE_POWER = re.compile(r"\d{2,}|(?:\^|\*\*)[^0-9-]*-?\d{2,}")
+_LARGE_POWER = re.compile(r"\d{2,}|(?:\^|\*\*)[^0-9-]*-?\d{2,}|(?:\^|\*\*).*(?:\^|\*\*).*(?:\^|\*\*)")
 
 
 def to_si(value: Any, kind: str, key: str) -> Any:
     """Turn a number, a text with a unit or a pint quantity into SI.
 
-    A bare number is SI already. Arrays and symbolic scalars pass through unchanged.
+    A bare number is SI already. Arrays and symbolic scalars pass through unchanged. A text in metres, grams,
+    seconds, newtons, joules, degrees, turns or rpm (with the usual prefixes, products and powers) is
+    converted exactly and rounded once: "35 mm" is the float 0.035. Other units are pint's to convert.
 
     Parameters
     ----------
@@ -56,15 +64,15 @@ def to_si(value: Any, kind: str, key: str) -> Any:
 
     Examples
     --------
-    >>> to_si("25 mm", "length", "radius")
-    0.025
+    >>> to_si("35 mm", "length", "radius")
+    0.035
     >>> round(to_si("33.3 rpm", "angular velocity", "rate"), 6)
     3.487168
     """
     if isinstance(value, str):
         return finite(_from_text(value, kind, key), key, value)
     if isinstance(value, bool) or value is None:
-        raise InvalidValueError(key, f"must be a {kind}", value, _example(kind))
+        raise InvalidValueError(key, _must_be(kind), value, _example(kind))
     if isinstance(value, (int, float)):
         return finite(_as_float(value, key), key, value)
     if hasattr(value, "to") and hasattr(value, "magnitude"):
@@ -99,9 +107,14 @@ def finite(number: Any, key: str, received: Any) -> Any:
     return number
 
 
+def _must_be(kind: str) -> str:
+    return f"must be {'an' if kind[0] in 'aeiou' else 'a'} {kind}"
+
+
 def _example(kind: str) -> str:
     unit, example = UNITS[kind]
-    return f"Write for instance '{example}'" + (f", or a bare number in {unit}." if unit else ", a bare number.")
+    bare = f"or a bare number in {unit}." if unit else "a bare number."
+    return f"Write for instance '{example}', {bare}"
 
 
 def _as_float(value: int | float, key: str) -> float:
@@ -112,12 +125,108 @@ def _as_float(value: int | float, key: str) -> float:
 
 
 def _from_text(text: str, kind: str, key: str) -> float:
-    match = _NUMBER.fullmatch(text)
-    if match is None or not _UNIT.fullmatch(match[2]) or _LARGE_POWER.search(match[2]):
-        raise InvalidValueError(key, f"must be a {kind}", text, _example(kind))
-    number, unit = float(match[1]), match[2].strip()
-    if not unit:
+    plain = text.replace("\u2212", "-").replace("\u00a0", " ").strip()
+    match = _NUMBER.fullmatch(plain) if len(plain) <= _LONGEST else None
+    if match is None or not _UNIT.fullmatch(match[2] or "") or _LARGE_POWER.search(match[2] or ""):
+        comma = re.fullmatch(r"[+-]?\d+,\d+.*", plain, re.DOTALL)
+        hint = "A decimal point, not a comma." if comma else _example(kind)
+        raise InvalidValueError(key, _must_be(kind), text, hint)
+    unit = (match[2] or "").strip()
+    unit = "1" + unit if unit.startswith("/") else unit  # "3/s" is "3 1/s"
+    number = float(match[1])
+    if not unit or not math.isfinite(number):
         return number
+    factor = _exact_factor(unit)
+    if factor is None:
+        return _through_pint(number, unit, kind, key, text)
+    if not _same_dimension(factor[1], kind):
+        raise InvalidValueError(key, _must_be(kind), text, _example(kind))
+    try:
+        return float(Fraction(match[1]) * factor[0])
+    except OverflowError:
+        return math.inf
+
+
+# --- the common units, exactly --------------------------------------------------------------------------
+# A unit is a factor to SI and the powers of (metre, kilogram, second, radian).
+
+_Unit = tuple[Fraction, tuple[int, int, int, int]]
+_PI = Fraction("3.14159265358979323846264338327950288419716939937510")
+_NAMED: dict[str, _Unit] = {
+    "1": (Fraction(1), (0, 0, 0, 0)),
+    "m": (Fraction(1), (1, 0, 0, 0)),
+    "g": (Fraction(1, 1000), (0, 1, 0, 0)),
+    "s": (Fraction(1), (0, 0, 1, 0)),
+    "min": (Fraction(60), (0, 0, 1, 0)),
+    "h": (Fraction(3600), (0, 0, 1, 0)),
+    "rad": (Fraction(1), (0, 0, 0, 1)),
+    "deg": (_PI / 180, (0, 0, 0, 1)),
+    "°": (_PI / 180, (0, 0, 0, 1)),
+    "turn": (2 * _PI, (0, 0, 0, 1)),
+    "rev": (2 * _PI, (0, 0, 0, 1)),
+    "rpm": (_PI / 30, (0, 0, -1, 1)),
+    "N": (Fraction(1), (1, 1, -2, 0)),
+    "J": (Fraction(1), (2, 1, -2, 0)),
+}
+_PREFIXES = {
+    "M": Fraction(10**6),
+    "k": Fraction(10**3),
+    "d": Fraction(1, 10),
+    "c": Fraction(1, 100),
+    "m": Fraction(1, 10**3),
+    "µ": Fraction(1, 10**6),
+    "μ": Fraction(1, 10**6),
+    "u": Fraction(1, 10**6),
+    "n": Fraction(1, 10**9),
+}
+_TAKES_PREFIX = ("m", "g", "s", "rad", "N", "J")
+_FACTOR = re.compile(r"([A-Za-zµμ°]+|1(?=\s*/))(?:(?:\^|\*\*)(-?\d)|([²³]))?")
+_OPERATOR = re.compile(r"\s*(/|\*(?!\*)|·)\s*|\s+")
+_POWER = {None: 1, "²": 2, "³": 3}
+
+
+@cache
+def _exact_factor(text: str) -> _Unit | None:
+    """Read a product of common units; None where pint must (another unit, brackets, "a/b c")."""
+    factor, powers, position, sign = Fraction(1), [0, 0, 0, 0], 0, 1
+    while True:
+        match = _FACTOR.match(text, position)
+        unit = _common_unit(match[1]) if match else None
+        if match is None or unit is None:
+            return None
+        power = sign * (int(match[2]) if match[2] else _POWER[match[3]])
+        factor *= unit[0] ** power
+        powers = [have + power * more for have, more in zip(powers, unit[1], strict=True)]
+        position = match.end()
+        if position == len(text):
+            return factor, (powers[0], powers[1], powers[2], powers[3])
+        operator = _OPERATOR.match(text, position)
+        if operator is None or (operator[1] is None and "/" in text[:position]):
+            return None
+        sign = -1 if operator[1] == "/" else 1
+        position = operator.end()
+
+
+def _common_unit(symbol: str) -> _Unit | None:
+    if symbol in _NAMED:
+        return _NAMED[symbol]
+    if symbol[0] in _PREFIXES and symbol[1:] in _TAKES_PREFIX:
+        factor, powers = _NAMED[symbol[1:]]
+        return _PREFIXES[symbol[0]] * factor, powers
+    return None
+
+
+def _same_dimension(powers: tuple[int, int, int, int], kind: str) -> bool:
+    if kind == "angular velocity" and powers == (0, 0, -1, 0):
+        return True  # 1/s: the radian is often left out
+    wanted = _exact_factor(UNITS[kind][0])
+    return powers == (wanted[1] if wanted else (0, 0, 0, 0))
+
+
+# --- every other unit, through pint ---------------------------------------------------------------------
+
+
+def _through_pint(number: float, unit: str, kind: str, key: str, text: str) -> float:
     registry = unit_registry()
     try:
         quantity = registry.Quantity(number, registry.parse_units(unit))
@@ -127,17 +236,36 @@ def _from_text(text: str, kind: str, key: str) -> float:
 
 
 def _convert(quantity: Any, kind: str, key: str, received: Any) -> Any:
-    unit = UNITS[kind][0]
     try:
-        converted = quantity.to(unit or "dimensionless").magnitude
+        hint = _angle_trap(quantity, kind)
+        converted = quantity.to(UNITS[kind][0] or "dimensionless").magnitude
     except Exception:  # noqa: BLE001  as above: dimension, offset unit, overflow
-        raise InvalidValueError(key, f"must be a {kind}", str(received), _example(kind)) from None
+        raise InvalidValueError(key, _must_be(kind), str(received), _example(kind)) from None
+    if hint:
+        raise InvalidValueError(key, _must_be(kind), str(received), hint)
     return float(converted) if isinstance(converted, (int, float)) else converted
+
+
+def _angle_trap(quantity: Any, kind: str) -> str:
+    """Say what is wrong with a unit that pint takes because to it an angle is a plain number."""
+    units = {name for name, _ in quantity.unit_items()}
+    root = dict(quantity.to_root_units().unit_items())
+    per_time = all(name.endswith(_TIMES) for name in units)  # 1/s: the radian is often left out
+    if kind == "angular velocity" and "radian" not in root and not per_time:
+        return "A frequency counts turns: write '0.5 turn/s', '30 rpm' or '3.14 rad/s'."
+    if kind == "angle" and units and root != {"radian": 1}:
+        return _example(kind)
+    if kind == "number" and root:
+        return _example(kind)
+    return ""
+
+
+_TIMES = ("second", "minute", "hour", "day")
 
 
 @cache
 def unit_registry() -> Any:
-    """Return trundle's pint registry, made on first use (pint keeps its parsed definitions in the user's cache).
+    """Return trundle's pint registry, made on first use (pint keeps its definitions in the user's cache).
 
     Returns
     -------
