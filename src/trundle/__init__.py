@@ -15,7 +15,7 @@ if TYPE_CHECKING:
         TrundleError,
         UnknownNameError,
     )
-    from .mechanics.bodies import Body, Isotropic, Principal
+    from .mechanics.bodies import Body, Isotropic, Principal, RatioInertia
     from .mechanics.loads import Drag, Force, Torque
     from .mechanics.motions import Fixed, Spin
     from .mechanics.shapes import Sphere
@@ -35,7 +35,7 @@ _HOMES = {
         "SolverError",
         "UnknownNameError",
     ),
-    "mechanics.bodies": ("Body", "Isotropic", "Principal"),
+    "mechanics.bodies": ("Body", "Isotropic", "Principal", "RatioInertia"),
     "mechanics.shapes": ("Sphere",),
     "mechanics.surfaces": ("Plane",),
     "mechanics.motions": ("Fixed", "Spin"),
@@ -59,6 +59,7 @@ __all__ = [
     "OutOfDomainError",
     "Plane",
     "Principal",
+    "RatioInertia",
     "RollingSystem",
     "Scenario",
     "ScenarioError",

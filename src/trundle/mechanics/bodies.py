@@ -25,7 +25,7 @@ class Isotropic:
 
     Examples
     --------
-    >>> Isotropic(2.0).in_space(Matrix.identity()).a
+    >>> Body(1.0, Isotropic(2.0), Sphere(1.0)).inertia_in_space(Matrix.identity()).a
     Vector(x=2.0, y=0.0, z=0.0)
     """
 
@@ -34,9 +34,48 @@ class Isotropic:
     def __post_init__(self) -> None:
         object.__setattr__(self, "moment", checks.positive(self.moment, "inertia", "inertia.moment"))
 
-    def in_space(self, Q: Matrix) -> Matrix:  # noqa: ARG002  the same from every side
+    def in_space(self, Q: Matrix, body: Body) -> Matrix:  # noqa: ARG002  the same from every side
         """Return the inertia tensor in the support frame, kg m²."""
         return Matrix.diagonal(self.moment, self.moment, self.moment)
+
+    def ratio_of(self, body: Body) -> Scalar:
+        """Return k = I/(m a²) for a spherical body of radius a."""
+        return self.moment / (body.mass * body.shape.radius * body.shape.radius)
+
+
+@dataclass(frozen=True)
+class RatioInertia:
+    """The inertia I = k m a² of a sphere, given by its ratio k, which is kept to the last digit.
+
+    Parameters
+    ----------
+    ratio : float
+        k = I/(m a²): 2/5 for a solid sphere, 2/3 for a shell, never more for a sphere.
+
+    Examples
+    --------
+    >>> RatioInertia(0.4).ratio
+    0.4
+    """
+
+    ratio: Scalar
+
+    def __post_init__(self) -> None:
+        k = checks.positive(self.ratio, "number", "inertia_ratio")
+        if is_number(k) and k > HOLLOW_SPHERE * (1 + 1e-12):
+            raise InvalidValueError(
+                "inertia_ratio", "must lie in (0, 2/3]", self.ratio, "A thin shell has 2/3; no sphere has more."
+            )
+        object.__setattr__(self, "ratio", k)
+
+    def in_space(self, Q: Matrix, body: Body) -> Matrix:  # noqa: ARG002  the same from every side
+        """Return the inertia tensor in the support frame, kg m²."""
+        moment = self.ratio * body.mass * body.shape.radius * body.shape.radius
+        return Matrix.diagonal(moment, moment, moment)
+
+    def ratio_of(self, body: Body) -> Scalar:  # noqa: ARG002
+        """Return k."""
+        return self.ratio
 
 
 @dataclass(frozen=True)
@@ -50,7 +89,7 @@ class Principal:
 
     Examples
     --------
-    >>> Principal(1.0, 2.0, 2.5).in_space(Matrix.identity()).b
+    >>> Body(1.0, Principal(1.0, 2.0, 2.5), Sphere(3.0)).inertia_in_space(Matrix.identity()).b
     Vector(x=0.0, y=2.0, z=0.0)
     """
 
@@ -67,9 +106,12 @@ class Principal:
                 "inertia", "must obey the triangle rule, each moment at most the sum of the others", tuple(moments)
             )
 
-    def in_space(self, Q: Matrix) -> Matrix:
+    def in_space(self, Q: Matrix, body: Body) -> Matrix:  # noqa: ARG002
         """Return Q diag(x, y, z) Qᵀ, the inertia tensor in the support frame, kg m²."""
         return Q @ Matrix.diagonal(self.x, self.y, self.z) @ Q.transpose
+
+
+Inertia = Isotropic | RatioInertia | Principal
 
 
 @dataclass(frozen=True)
@@ -80,7 +122,7 @@ class Body:
     ----------
     mass : float
         m, kg.
-    inertia : Isotropic or Principal
+    inertia : Isotropic, RatioInertia or Principal
         J about the centre of mass.
     shape : Shape
         The surface that touches the support.
@@ -92,7 +134,7 @@ class Body:
     """
 
     mass: Scalar
-    inertia: Isotropic | Principal
+    inertia: Inertia
     shape: Shape
 
     def __post_init__(self) -> None:
@@ -127,14 +169,7 @@ class Body:
         >>> ball.shape.radius, round(ball.inertia_ratio, 12)
         (0.04, 0.5)
         """
-        a = checks.positive(radius, "length", "radius")
-        m = checks.positive(mass, "mass", "mass")
-        k = checks.positive(inertia_ratio, "number", "inertia_ratio")
-        if is_number(k) and k > HOLLOW_SPHERE * (1 + 1e-12):
-            raise InvalidValueError(
-                "inertia_ratio", "must lie in (0, 2/3]", inertia_ratio, "A thin shell has 2/3; no sphere has more."
-            )
-        return Body(m, Isotropic(k * m * a * a), Sphere(a))
+        return Body(mass, RatioInertia(inertia_ratio), Sphere(radius))
 
     @staticmethod
     def solid_sphere(radius: Any, mass: Any) -> Body:
@@ -152,7 +187,7 @@ class Body:
 
         Examples
         --------
-        >>> Body.solid_sphere(radius=1.0, mass=5.0).inertia.moment
+        >>> Body.solid_sphere(radius=1.0, mass=5.0).inertia_in_space(Matrix.identity()).c.z
         2.0
         """
         return Body.sphere(radius, mass, SOLID_SPHERE)
@@ -173,19 +208,23 @@ class Body:
 
         Examples
         --------
-        >>> Body.hollow_sphere(radius=1.0, mass=3.0).inertia.moment
-        2.0
+        >>> Body.hollow_sphere(radius=1.0, mass=3.0).inertia_ratio
+        0.6666666666666666
         """
         return Body.sphere(radius, mass, HOLLOW_SPHERE)
+
+    def inertia_in_space(self, Q: Matrix) -> Matrix:
+        """Return J in the support frame, kg m², for the rotation matrix Q from the body frame to that frame."""
+        return self.inertia.in_space(Q, self)
 
     @property
     def is_isotropic_sphere(self) -> bool:
         """Whether this is a sphere about its centre of mass with the same inertia about every axis."""
-        return concentric_sphere(self.shape) and isinstance(self.inertia, Isotropic)
+        return concentric_sphere(self.shape) and not isinstance(self.inertia, Principal)
 
     @property
     def inertia_ratio(self) -> Scalar:
         """k = I/(m a²) of an isotropic sphere."""
-        if not (isinstance(self.shape, Sphere) and isinstance(self.inertia, Isotropic)):
+        if isinstance(self.inertia, Principal) or not self.is_isotropic_sphere:
             raise InvalidValueError("inertia_ratio", "exists only for a sphere with isotropic inertia", self)
-        return self.inertia.moment / (self.mass * self.shape.radius * self.shape.radius)
+        return self.inertia.ratio_of(self)

@@ -148,7 +148,7 @@ def roll(
     p_rate, rho_rate = contact.rates(zero, Omega, V)
     u_rate = contact.support.material_acceleration(point, p_rate)
     F, K = system.loads_on(BodyMotion(time, m, contact.centre, V, orientation, Omega))
-    J = system.body.inertia.in_space(orientation.matrix())
+    J = system.body.inertia_in_space(orientation.matrix())
     inertial = u_rate - Omega.cross(rho_rate)
     # T2
     moment = K - Omega.cross(J @ Omega) - rho.cross(F) + m * rho.cross(inertial)

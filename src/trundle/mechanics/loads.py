@@ -38,6 +38,11 @@ class Load:
 
     constant = False  # the same force and torque always and everywhere
 
+    @property
+    def linear_drag(self) -> Scalar | None:
+        """c of a load that is purely −c V, kg/s; None for any other load."""
+        return None
+
     def force(self, motion: BodyMotion) -> Vector:  # noqa: ARG002
         """Return the force on the centre of mass, N."""
         return ZERO
@@ -180,6 +185,11 @@ class Drag(Load):
     def __post_init__(self) -> None:
         value = checks.non_negative(self.coefficient, "damping", "coefficient")
         object.__setattr__(self, "coefficient", value)
+
+    @property
+    def linear_drag(self) -> Scalar:
+        """c, kg/s."""
+        return self.coefficient
 
     def force(self, motion: BodyMotion) -> Vector:
         """Return −c V."""

@@ -95,6 +95,8 @@ class _Heyoka:
 class _SymPy:
     """SymPy expressions."""
 
+    exact = True  # computes with as many digits as asked, so definitions need no care against rounding
+
     def __init__(self) -> None:
         import sympy
 
@@ -110,6 +112,8 @@ class _SymPy:
 
 class _Mpmath:
     """mpmath numbers."""
+
+    exact = True
 
     def __init__(self) -> None:
         import mpmath
