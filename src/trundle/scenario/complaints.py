@@ -1,0 +1,185 @@
+"""One `ScenarioError` from whatever pydantic found: the key's path, the rule, what came, what to do."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any, get_args
+
+from pydantic import BaseModel, ValidationError
+from pydantic.fields import FieldInfo
+
+from ..errors import InvalidValueError, ScenarioError, did_you_mean
+from .tables import KINDS, Method
+
+
+class _Nothing:
+    def __repr__(self) -> str:
+        return "nothing"
+
+
+@dataclass(frozen=True)
+class Complaint:
+    """One thing that is wrong with a file."""
+
+    path: str
+    rule: str
+    received: Any
+    remedy: str
+    unknown: bool = False  # the key is none of the format's
+    missing: bool = False
+
+
+def complain(error: ValidationError, model: type[BaseModel], source: str = "") -> ScenarioError:
+    """Turn a pydantic error into the one message that a reader gets.
+
+    Parameters
+    ----------
+    error : pydantic.ValidationError
+        What pydantic found.
+    model : type
+        The model of the whole file.
+    source : str
+        The name of the file.
+
+    Returns
+    -------
+    ScenarioError
+        It names the first thing that is wrong and counts the rest. A key that does not exist goes before all
+        others: it may be why another is missing.
+    """
+    found = [_translate(detail, model) for detail in error.errors(include_url=False)]
+    found = _without_echoes(sorted(found, key=lambda complaint: not complaint.unknown))
+    first = found[0]
+    return ScenarioError(first.path, first.rule, first.received, first.remedy, source, len(found) - 1)
+
+
+def _without_echoes(found: list[Complaint]) -> list[Complaint]:
+    """Drop a missing key that an unknown one is a misspelling of."""
+    meant = {
+        path_of(complaint.path, name)
+        for complaint in found
+        if complaint.unknown
+        for name in re.findall(r"^Did you mean '(.*?)'", complaint.remedy)
+    }
+    return [complaint for complaint in found if not (complaint.missing and complaint.path in meant)]
+
+
+def path_of(beside: str, name: str) -> str:
+    """Return the path of the key `name` in the table that holds the key `beside`."""
+    return beside.rpartition(".")[0] + "." * ("." in beside) + name
+
+
+def _translate(detail: Any, model: type[BaseModel]) -> Complaint:
+    path, table, key = _locate(detail["loc"], model)
+    kind, received = detail["type"], detail["input"]
+    if kind == "value_error" and isinstance(detail["ctx"]["error"], InvalidValueError):
+        told = detail["ctx"]["error"]
+        return Complaint(_join(path, told.key), told.rule, told.received, told.remedy)
+    if kind == "missing":
+        return Complaint(path, "must be given", _Nothing(), _how_to_add(_keys(table)[key], key), missing=True)
+    if kind == "extra_forbidden":
+        known = list(_keys(table))
+        place = f"[{path.rpartition('.')[0]}]" if "." in path else "the file"
+        remedy = f"{did_you_mean(key, known)} {_there_are(known)}".strip()
+        return Complaint(path, f"is no key of {place}", received, remedy, unknown=True)
+    if kind == "union_tag_not_found":
+        known = list(_kinds(path))
+        remedy = f'Say which, for instance: kind = "{known[0]}". {_there_are(known)}'
+        return Complaint(_join(path, "kind"), "must be given", _Nothing(), remedy, missing=True)
+    if kind == "union_tag_invalid":
+        return _not_one_of(_join(path, "kind"), received.get("kind"), _kinds(path))
+    if kind == "literal_error":
+        known = list(get_args(Method)) if path == "run.method" else list(_kinds(path.rpartition(".")[0]))
+        return _not_one_of(path, received, known)
+    rule, remedy = _SHAPES.get(kind, (f"is not as it should be ({detail['msg']})", ""))
+    return Complaint(path, rule, received, remedy.format(path=path))
+
+
+_SHAPES = {
+    "string_type": ("must be text", "Put it in quotes."),
+    "tuple_type": ("must be a list of tables", "Head each with [[{path}]]."),
+    "model_type": ("must be a table", "Head it with [{path}] and give its keys below."),
+    "model_attributes_type": ("must be a table", "Head it with [{path}] and give its keys below."),
+    "dict_type": ("must be a table", "Head it with [{path}] and give its keys below."),
+}
+
+
+def _not_one_of(path: str, received: Any, known: Any) -> Complaint:
+    hint = did_you_mean(received, known) if isinstance(received, str) else ""
+    remedy = f"{hint} {_there_are(known)}".strip()
+    return Complaint(path, "must be one of those that exist", received, remedy)
+
+
+def _there_are(known: Iterable[str]) -> str:
+    return f"There are: {', '.join(known)}."
+
+
+def _kinds(path: str) -> dict[str, Any]:
+    return KINDS[re.sub(r"\[\d+\]", "", path)]
+
+
+def _locate(loc: tuple[int | str, ...], model: type[BaseModel]) -> tuple[str, type[BaseModel], str]:
+    """Return the path of a pydantic location, the table class that holds its last key, and that key.
+
+    Where a table has several kinds, pydantic puts the kind into the location; a reader knows of no such part.
+    """
+    path, key, table = "", "", model
+    inside: type[BaseModel] | None = model  # holds the keys that come next; None: the next part is a kind
+    for part in loc:
+        if isinstance(part, int):
+            path = f"{path}[{part}]"
+        elif inside is None:
+            inside = _kinds(path)[part]
+        else:
+            table, key, path = inside, part, _join(path, _quoted(part))
+            inside = _table_of(table, key, path)
+    return path, table, key
+
+
+def _table_of(table: type[BaseModel], key: str, path: str) -> type[BaseModel] | None:
+    kinds = list(KINDS.get(path, {}).values())
+    if kinds:
+        return kinds[0] if len(kinds) == 1 else None
+    return _plain_table(_keys(table)[key]) if key in _keys(table) else None
+
+
+def _keys(table: type[BaseModel]) -> dict[str, FieldInfo]:
+    return {field.alias or name: field for name, field in table.model_fields.items()}
+
+
+def _plain_table(field: FieldInfo) -> type[BaseModel] | None:
+    kind = field.annotation
+    return kind if isinstance(kind, type) and issubclass(kind, BaseModel) else None
+
+
+def _join(path: str, key: str) -> str:
+    return path + key if not path or not key or key.startswith("[") else f"{path}.{key}"
+
+
+def _quoted(key: str) -> str:
+    """Return a key as it may be printed: what is no bare key comes quoted, cut and escaped."""
+    return key if re.fullmatch(r"[A-Za-z0-9_-]{1,60}", key) else repr(key[:60])
+
+
+def _how_to_add(field: FieldInfo, key: str) -> str:
+    table = _plain_table(field)
+    if key in KINDS:
+        table = next(iter(KINDS[key].values()))
+    if table is None:
+        return f"Add for instance: {_example(field, key)}"
+    lines = [_example(inner, name) for name, inner in _keys(table).items() if inner.is_required()]
+    return f"Add for instance, each on a line of its own: [{key}] {' ; '.join(lines)}"
+
+
+def _example(field: FieldInfo, key: str) -> str:
+    if field.examples:
+        offer = f'"{field.examples[0]}"' if isinstance(field.examples[0], str) else str(field.examples[0])
+    elif get_args(field.annotation):
+        offer = f'"{get_args(field.annotation)[0]}"'
+    else:
+        offer = ""
+    for note in field.metadata:
+        offer = getattr(note, "offer", None) or offer
+    return f"{key} = {offer}"

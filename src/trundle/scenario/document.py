@@ -1,0 +1,362 @@
+"""The scenario file as a whole: from TOML to a validated model, to the system and start, and back."""
+
+from __future__ import annotations
+
+import math
+import os
+import unicodedata
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Self
+
+from pydantic import Field, ValidationError, field_validator, model_validator
+
+from ..errors import InvalidValueError, ScenarioError
+from . import files
+from .complaints import complain
+from .fields import Measure, written
+from .layout import layout
+from .tables import Bodies, Loads, Run, Start, Supports, Table
+
+if TYPE_CHECKING:
+    from ..mechanics.system import RollingSystem, State
+
+Gravity = Annotated[float, Measure("acceleration", "not negative")]
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+
+
+class ScenarioFile(Table):
+    """A body, a support, loads, a start and a run, as a scenario file says them.
+
+    Every number is a float in SI; it remembers the text that it was written as, and `to_toml` writes that.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> scenario = tr.Scenario.load("tilted-turntable")
+    >>> scenario.body.radius
+    0.025
+    >>> scenario.system().support.motion.rate == scenario.support.motion.rate
+    True
+    """
+
+    title: str = ""
+    notes: str = Field(default="", description="What a lecturer says about it.")
+    gravity: Gravity = Field(default=9.80665, description="g; 0 turns it off.")
+    body: Annotated[Bodies, Field(discriminator="kind")]
+    support: Supports
+    start: Start
+    # `loads` in the file; in Python that name is the method that reads a text, as in `json` and `tomllib`.
+    applied_loads: tuple[Annotated[Loads, Field(discriminator="kind")], ...] = Field(
+        default=(), alias="loads"
+    )
+    run: Run
+
+    # --- reading -----------------------------------------------------------------------------------------
+
+    @classmethod
+    def load(cls, name_or_path: str | os.PathLike[str]) -> Self:
+        """Read a scenario that ships with the package, or a file.
+
+        Parameters
+        ----------
+        name_or_path : str or path
+            One of `names()`, or the path of a TOML file.
+
+        Returns
+        -------
+        ScenarioFile
+            The validated scenario.
+
+        Raises
+        ------
+        ScenarioError
+            If there is no such file, or it is not as the format asks.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> tr.Scenario.load("level-turntable-nudged").body.kind
+        'solid-sphere'
+        """
+        return cls.loads(files.read(name_or_path), os.fspath(name_or_path))
+
+    @classmethod
+    def loads(cls, text: str, source: str = "scenario") -> Self:
+        """Read a scenario from TOML text.
+
+        Parameters
+        ----------
+        text : str
+            The whole file.
+        source : str
+            Its name, for error messages and, without its suffix, as the title of a scenario that has none.
+
+        Returns
+        -------
+        ScenarioFile
+            The validated scenario.
+
+        Raises
+        ------
+        ScenarioError
+            If the text is not as the format asks.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> text = tr.Scenario.load("ball-under-force").to_toml()
+        >>> tr.Scenario.loads(text).title
+        'Ball on a level plane under a constant force'
+        """
+        return cls.read(files.parse(text, source), source)
+
+    @classmethod
+    def read(cls, data: Mapping[str, Any], source: str = "scenario") -> Self:
+        """Read a scenario from nested dictionaries, as a TOML file holds them.
+
+        Parameters
+        ----------
+        data : mapping
+            The tables of the file.
+        source : str
+            As for `loads`.
+
+        Returns
+        -------
+        ScenarioFile
+            The validated scenario.
+
+        Raises
+        ------
+        ScenarioError
+            If the data are not as the format asks.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> scenario = tr.Scenario.read(
+        ...     {
+        ...         "body": {"kind": "solid-sphere", "radius": "25 mm", "mass": "65 g"},
+        ...         "support": {"kind": "plane"},
+        ...         "start": {"position": [0, 0], "velocity": ["0.1 m/s", 0]},
+        ...         "run": {"duration": "1 s", "every": "10 ms"},
+        ...     }
+        ... )
+        >>> scenario.start_state().angular_velocity
+        (0.0, 4.0, 0.0)
+        """
+        try:
+            return cls.model_validate({"title": _title_from(source), **data})
+        except ValidationError as error:
+            raise complain(error, cls, source) from None
+        except RecursionError:
+            raise ScenarioError(
+                "scenario", "must not nest this deep", "tables within tables", "", source
+            ) from None
+
+    @classmethod
+    def names(cls) -> list[str]:
+        """Return the names of the scenarios that ship with the package.
+
+        Returns
+        -------
+        list of str
+            In alphabetical order.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> tr.Scenario.names()[0]
+        'ball-under-force'
+        """
+        return files.names()
+
+    @classmethod
+    def describe(
+        cls,
+        system: RollingSystem,
+        start: State,
+        *,
+        duration: float,
+        every: float,
+        method: str = "auto",
+        title: str = "",
+    ) -> Self:
+        """Write a system and its start as a scenario, each number so that it reads back to the same float.
+
+        Parameters
+        ----------
+        system : RollingSystem
+            One system (no arrays of members).
+        start : State
+            Its start, at time 0.
+        duration, every : float
+            Length of the run and time between samples, s.
+        method : str
+            ``"auto"``, ``"exact"``, ``"taylor"`` or ``"runge-kutta"``.
+        title : str
+            The title.
+
+        Returns
+        -------
+        ScenarioFile
+            The scenario.
+
+        Raises
+        ------
+        ScenarioError
+            If the format has no words for the system.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> system = tr.RollingSystem(tr.Body.hollow_sphere(radius=0.02, mass=0.0027), tr.Support(tr.Plane()))
+        >>> start = system.place(position=(0.1, 0.0))
+        >>> scenario = tr.Scenario.describe(system, start, duration=1.0, every=0.01)
+        >>> scenario.system() == system and scenario.start_state() == start
+        True
+        """
+        from .description import describe
+
+        data = describe(system, start)
+        data["run"] = {"duration": float(duration), "every": float(every), "method": method}
+        return cls.read({"title": title, **data}, title or "scenario")
+
+    # --- checks that look at the whole -------------------------------------------------------------------
+
+    @field_validator("title", "notes")
+    @classmethod
+    def _printable(cls, text: str, info: Any) -> str:
+        allowed = "\n\t" if info.field_name == "notes" else ""
+        if any(unicodedata.category(letter) in ("Cc", "Cs") and letter not in allowed for letter in text):
+            lines = "" if allowed else " on one line"
+            raise InvalidValueError(
+                "", f"must be text{lines} without control characters", text, "Leave them out."
+            )
+        return text
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        rim, distance = self.support.rim, math.hypot(*self.start.position)
+        if rim is not None and not distance < rim:
+            remedy = f"It is {distance:g} m from the axis and the rim is at {float(rim):g} m."
+            received = written(self.start.position)
+            raise InvalidValueError("start.position", "must lie inside the rim", received, remedy)
+        if self.start.angular_velocity is not None:
+            self.start_state()  # it knows whether the start rolls
+        return self
+
+    # --- what it describes -------------------------------------------------------------------------------
+
+    def system(self) -> RollingSystem:
+        """Return the rolling system.
+
+        Returns
+        -------
+        RollingSystem
+            Body, support and loads.
+
+        Raises
+        ------
+        ScenarioError
+            If the mechanics refuses a value.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> tr.Scenario.load("hollow-ball-turntable").system().body.mass
+        0.0027
+        """
+        from ..mechanics.system import RollingSystem
+
+        with _named_in(""):
+            body, support = self.body.build(), self.support.build()
+            return RollingSystem(
+                body, support, tuple(load.build() for load in self.applied_loads), float(self.gravity)
+            )
+
+    def start_state(self) -> State:
+        """Return the state at time 0.
+
+        Returns
+        -------
+        State
+            Position, velocity, angular velocity and orientation.
+
+        Raises
+        ------
+        ScenarioError
+            If the start contradicts itself: a velocity and an angular velocity that do not roll.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> tr.Scenario.load("level-turntable-put-down").start_state().velocity
+        (0.0, 0.0, 0.0)
+        """
+        system = self.system()
+        with _named_in("start"):
+            state = system.place(**self.start.arguments())
+        w, x, y, z = map(float, self.start.orientation)
+        if abs(math.hypot(w, x, y, z) - 1) < 4e-16:  # a unit quaternion stays as it is, to the last digit
+            state = replace(state, orientation=(w, x, y, z))
+        return state
+
+    # --- writing -----------------------------------------------------------------------------------------
+
+    def to_toml(self) -> str:
+        """Write the scenario as TOML: the keys that were given, as they were given.
+
+        Returns
+        -------
+        str
+            TOML that `loads` reads back to an equal scenario.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> text = tr.Scenario.load("tilted-turntable").to_toml()
+        >>> text[text.index("rate =") :].splitlines()[0]
+        'rate = "33.3 rpm"'
+        """
+        return layout(self.model_dump(exclude_unset=True, by_alias=True))
+
+    @classmethod
+    def schema(cls) -> dict[str, Any]:  # type: ignore[override]
+        """Return the JSON schema of a scenario file, for editors.
+
+        Returns
+        -------
+        dict
+            A schema of draft 2020-12.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> sorted(tr.Scenario.schema()["required"])
+        ['body', 'run', 'start', 'support']
+        """
+        schema = ScenarioFile.model_json_schema()
+        return {"$schema": DIALECT, **schema, "title": "trundle scenario"}
+
+
+class _named_in:  # noqa: N801  a context manager reads as a phrase
+    """Give a refusal by the mechanics its key in the file."""
+
+    def __init__(self, table: str) -> None:
+        self.table = table
+
+    def __enter__(self) -> None:
+        return None
+
+    def __exit__(self, kind: Any, error: Any, trace: Any) -> None:
+        if isinstance(error, InvalidValueError):
+            key = f"{self.table}.{error.key}" if self.table else error.key
+            raise ScenarioError(key, error.rule, error.received, error.remedy) from None
+
+
+def _title_from(source: str) -> str:
+    stem = Path(source).name.removesuffix(".toml")
+    return "".join(letter for letter in stem if unicodedata.category(letter) not in ("Cc", "Cs"))

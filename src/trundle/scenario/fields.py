@@ -1,0 +1,223 @@
+"""The values in a scenario file: numbers and texts with units, each checked under its own name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import date, time
+from typing import Any
+
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import CoreSchema, core_schema
+
+from ..errors import InvalidValueError, did_you_mean
+from ..units import UNITS, to_si
+
+
+class Quantity(float):
+    """A float in SI that remembers the text it was written as.
+
+    Parameters
+    ----------
+    value : float
+        The number in SI.
+    text : str, optional
+        What the user wrote, such as ``"33.3 rpm"``.
+
+    Examples
+    --------
+    >>> Quantity(0.025, "25 mm") * 2, Quantity(0.025, "25 mm").text
+    (0.05, '25 mm')
+    """
+
+    text: str | None
+
+    def __new__(cls, value: float, text: str | None = None) -> Quantity:
+        """Make the number and keep the text beside it."""
+        quantity = super().__new__(cls, value)
+        quantity.text = text
+        return quantity
+
+    def __getnewargs__(self) -> tuple[float, str | None]:  # type: ignore[override]
+        return float(self), self.text
+
+    @property
+    def written(self) -> str | float:
+        """The text as the user wrote it, or the bare number."""
+        return float(self) if self.text is None else self.text
+
+
+# Beyond these sizes products of a few numbers leave the range of floats; no experiment comes near.
+SMALLEST_DIVISOR, LARGEST = 1e-30, 1e30
+
+
+def written(value: Any) -> Any:
+    """Return what a user wrote for a number, or for each of a list of numbers.
+
+    Parameters
+    ----------
+    value : Quantity, list of Quantity, or anything else
+        A value of a scenario.
+
+    Returns
+    -------
+    object
+        Texts and bare numbers; anything else as it is.
+
+    Examples
+    --------
+    >>> written((Quantity(0.025, "25 mm"), Quantity(0.0)))
+    ['25 mm', 0.0]
+    """
+    if isinstance(value, (list, tuple)):
+        return [written(part) for part in value]
+    return value.written if isinstance(value, Quantity) else value
+
+
+Check = Callable[[float, Any], None]
+
+
+@dataclass(frozen=True)
+class Measure:
+    """The type of one number of a scenario file, for use in ``Annotated``.
+
+    Parameters
+    ----------
+    kind : str
+        One of `trundle.units.UNITS`.
+    sign : str
+        ``"positive"``, ``"not negative"`` or ``"any"``.
+    check : callable, optional
+        A further check of (number in SI, value as it came); it raises `InvalidValueError`, its key ``""``.
+    example : str, optional
+        What an error message offers; the kind's own example where it is absent.
+
+    Examples
+    --------
+    >>> Measure("length", "positive")("25 mm")
+    0.025
+    """
+
+    kind: str
+    sign: str = "any"
+    check: Check | None = None
+    example: str | None = None
+
+    def __call__(self, value: Any, key: str = "") -> Quantity:
+        """Return the checked number; `key` is its place inside its own field, such as ``"[1]"``."""
+        if isinstance(value, Quantity) and value.text is not None:
+            value = value.text
+        if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+            raise InvalidValueError(key, f"must be {_a(self.kind)}", value, _not_a_number(value, self.offer))
+        number = to_si(value, self.kind, key)
+        if self.check is not None:
+            self.check(number, value)
+        if self.sign == "positive" and not number > 0:
+            raise InvalidValueError(key, "must be positive", value, f"Write for instance {self.offer}.")
+        if self.sign == "not negative" and number < 0:
+            raise InvalidValueError(key, "must not be negative", value, f"Write for instance {self.offer}.")
+        if abs(number) > LARGEST or (self.sign == "positive" and number < SMALLEST_DIVISOR):
+            low = f"{SMALLEST_DIVISOR:g}" if self.sign == "positive" else "0"
+            raise InvalidValueError(
+                key, f"must be {low} to {LARGEST:g} in size, in SI", value, "Check the unit."
+            )
+        return Quantity(number + 0.0, value if isinstance(value, str) else None)
+
+    @property
+    def offer(self) -> str:
+        """An example of the value as it stands in a file."""
+        return self.example or f'"{UNITS[self.kind][1]}"'
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.__call__)
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """Return what an editor may know of it: a number in SI, or a text with a unit."""
+        number: dict[str, Any] = {"type": "number"}
+        if self.sign != "any":
+            number["exclusiveMinimum" if self.sign == "positive" else "minimum"] = 0
+        unit, example = UNITS[self.kind]
+        described = f"{_a(self.kind).capitalize()}: a bare number in {unit}" if unit else "A bare number"
+        text = {"type": "string", "pattern": r"^\s*[+\-−]?(\d|\.\d)", "examples": [example]}
+        return {
+            "anyOf": [number, text],
+            "description": described + (", or a text with a unit." if unit else "."),
+        }
+
+
+@dataclass(frozen=True)
+class Measures:
+    """The type of a list of numbers of one kind, for use in ``Annotated``.
+
+    Parameters
+    ----------
+    each : Measure
+        What each number is.
+    size : int
+        How many.
+    word : str, optional
+        A text that may stand instead of the list.
+
+    Examples
+    --------
+    >>> Measures(Measure("length"), 2)(["10 cm", 0])
+    (0.1, 0.0)
+    """
+
+    each: Measure
+    size: int
+    word: str | None = None
+
+    def __call__(self, value: Any) -> tuple[Quantity, ...] | str:
+        """Return the checked numbers, or the word."""
+        if self.word is not None and isinstance(value, str):
+            if value == self.word:
+                return value
+            raise InvalidValueError(
+                "", self._rule, value, (did_you_mean(value, [self.word]) or self._remedy).strip()
+            )
+        if not isinstance(value, (list, tuple)) or len(value) != self.size:
+            raise InvalidValueError("", self._rule, value, self._remedy)
+        return tuple(self.each(part, f"[{index}]") for index, part in enumerate(value))
+
+    @property
+    def offer(self) -> str:
+        """An example of the value as it stands in a file."""
+        return (
+            "["
+            + ", ".join(
+                [self.each.offer] + ['"0' + self.each.offer[self.each.offer.find(" ") :]] * (self.size - 1)
+            )
+            + "]"
+        )
+
+    @property
+    def _rule(self) -> str:
+        return f"must be a list of {self.size}" + (f', or "{self.word}"' if self.word else "")
+
+    @property
+    def _remedy(self) -> str:
+        return f"Write for instance {self.offer}."
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.__call__)
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """Return what an editor may know of it: a list of so many numbers, or the word."""
+        each = self.each.__get_pydantic_json_schema__(schema, handler)
+        numbers = {"type": "array", "items": each, "minItems": self.size, "maxItems": self.size}
+        return {"anyOf": [numbers, {"const": self.word}]} if self.word else numbers
+
+
+def _a(kind: str) -> str:
+    return f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
+
+
+def _not_a_number(value: Any, offer: str) -> str:
+    if isinstance(value, (date, time)):
+        return f"A date is no quantity; write for instance {offer}."
+    return f"Write for instance {offer}."

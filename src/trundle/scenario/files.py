@@ -1,0 +1,201 @@
+"""Scenario files as text: the shipped ones by name, any other by path; what is wrong with one not TOML.
+
+Neither pydantic nor pint is needed here, so that listing and completing names is quick.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from ..errors import ScenarioError, did_you_mean
+
+SHIPPED = Path(__file__).resolve().parent.parent / "scenarios"
+LARGEST = 2**20  # bytes; a scenario is a page of text
+
+
+def names() -> list[str]:
+    """Return the names of the scenarios that ship with the package.
+
+    Returns
+    -------
+    list of str
+        In alphabetical order.
+
+    Examples
+    --------
+    >>> "tilted-turntable" in names()
+    True
+    """
+    return sorted(path.stem for path in SHIPPED.glob("*.toml"))
+
+
+def title_of(name: str) -> str:
+    """Return the title of a shipped scenario.
+
+    Parameters
+    ----------
+    name : str
+        One of `names()`.
+
+    Returns
+    -------
+    str
+        The title.
+
+    Examples
+    --------
+    >>> title_of("tilted-turntable")
+    'Steel ball on a tilted turntable'
+    """
+    return str(parse(read(name), name)["title"])
+
+
+def locate(name_or_path: str | os.PathLike[str]) -> Path:
+    """Return the file of a shipped scenario or of a path; a shipped name goes before a file of the same name.
+
+    Parameters
+    ----------
+    name_or_path : str or path
+        One of `names()`, or the path of a file.
+
+    Returns
+    -------
+    Path
+        The file, which may not exist.
+
+    Examples
+    --------
+    >>> locate("tilted-turntable").name
+    'tilted-turntable.toml'
+    """
+    if isinstance(name_or_path, str) and name_or_path in names():
+        return SHIPPED / f"{name_or_path}.toml"
+    return Path(name_or_path)
+
+
+def read(name_or_path: str | os.PathLike[str]) -> str:
+    """Return the text of a scenario file.
+
+    Parameters
+    ----------
+    name_or_path : str or path
+        One of `names()`, or the path of a file.
+
+    Returns
+    -------
+    str
+        The text, without a byte order mark.
+
+    Raises
+    ------
+    ScenarioError
+        If there is no such file, or it is not a readable text in UTF-8 of reasonable size.
+
+    Examples
+    --------
+    >>> read("tilted-turntable").splitlines()[0]
+    'title = "Steel ball on a tilted turntable"'
+    """
+    shown = os.fspath(name_or_path)
+    try:
+        with locate(name_or_path).open("rb") as stream:
+            content = stream.read(LARGEST + 1)
+    except (FileNotFoundError, NotADirectoryError, ValueError):  # ValueError: a null character in the path
+        raise _no_such(str(shown)) from None
+    except IsADirectoryError:
+        raise ScenarioError(
+            "scenario", "must be a file", shown, "This is a folder; name a file in it."
+        ) from None
+    except OSError as error:
+        remedy = f"The system says: {error.strerror or error}."
+        raise ScenarioError("scenario", "must be a file that can be read", shown, remedy) from None
+    if len(content) > LARGEST:
+        raise ScenarioError("scenario", "must be a text of at most 1 MiB", shown, "Is this a scenario file?")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        wide = content[:2] in (b"\xff\xfe", b"\xfe\xff")
+        remedy = "It looks like UTF-16: save it as UTF-8." if wide else "Save it as plain text in UTF-8."
+        line = content.count(b"\n", 0, error.start) + 1
+        received = f"byte 0x{content[error.start]:02x} in line {line}"
+        raise ScenarioError("scenario", "must be text in UTF-8", received, remedy, str(shown)) from None
+
+
+def _no_such(shown: str) -> ScenarioError:
+    stem = Path(shown).name.removesuffix(".toml")
+    known = ", ".join(names())
+    alike = [name for name in names() if stem and stem.lower() in name]
+    if stem in alike:
+        hint = f"Did you mean {stem!r}, the one that ships with trundle?"
+    elif alike:
+        hint = f"Did you mean {' or '.join(map(repr, alike))}?"
+    else:
+        hint = did_you_mean(stem, names())
+    remedy = f"{hint.strip()} Those that ship with trundle: {known}.".strip()
+    return ScenarioError("scenario", "must be a file or the name of a shipped scenario", shown, remedy)
+
+
+def parse(text: str, source: str) -> dict[str, Any]:
+    """Return the tables of a TOML text.
+
+    Parameters
+    ----------
+    text : str
+        The whole file.
+    source : str
+        Its name, for messages.
+
+    Returns
+    -------
+    dict
+        The tables as `tomllib` reads them.
+
+    Raises
+    ------
+    ScenarioError
+        If the text is no TOML (with line and column), or is empty.
+
+    Examples
+    --------
+    >>> parse("gravity = 0", "mine")
+    {'gravity': 0}
+    """
+    if not text.strip():
+        remedy = "Start from one that ships with trundle: `trundle show tilted-turntable` prints it."
+        raise ScenarioError("scenario", "must hold a scenario", text[:20], remedy, source)
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise _no_toml(text, str(error), source) from None
+    except RecursionError:
+        raise ScenarioError("scenario", "must not nest this deep", text[:60], "", source) from None
+    except ValueError:  # Python reads no integer of more than 4300 digits
+        remedy = "Is there an integer of thousands of digits?"
+        raise ScenarioError(
+            "scenario", "must hold numbers that can be read", text[:60], remedy, source
+        ) from None
+
+
+_STATEMENT = re.compile(
+    r"\s*([\w.-]+)\s*=\s*([+-]?[\d.]+(?:[eE][+-]?\d+)?\s*[A-Za-z°µμ%][^#\"']*?)\s*(?:#.*)?"
+)
+
+
+def _no_toml(text: str, message: str, source: str) -> ScenarioError:
+    place = re.search(r"\(at (line (\d+), column \d+|end of document)\)$", message)
+    said = (message[: place.start()] if place else message).strip()
+    lines = text.splitlines() or [""]
+    number = int(place[2]) if place and place[2] else len(lines)
+    line = lines[min(number, len(lines)) - 1].strip()
+    where = f"line {number}" if place is None or place[2] is None else place[1]
+    unquoted = _STATEMENT.fullmatch(line)
+    if unquoted:
+        remedy = f'A quantity with a unit stands in quotes: {unquoted[1]} = "{unquoted[2].strip()}".'
+    else:
+        remedy = 'A line reads key = value; a text, or a quantity with a unit, stands in "quotes".'
+    rule = f"is not valid TOML ({said[:1].lower()}{said[1:]})"
+    return ScenarioError(where, rule, line, remedy, source)

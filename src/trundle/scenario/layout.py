@@ -1,0 +1,57 @@
+"""Scenario data as TOML text: plain keys first, lists on one line, tables in the order of the format."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import tomli_w
+
+from .fields import written
+
+
+def layout(data: Mapping[str, Any], path: str = "") -> str:
+    """Write nested dictionaries as TOML.
+
+    Parameters
+    ----------
+    data : mapping
+        Texts, numbers, lists of them, tables and lists of tables.
+    path : str
+        The table that the data stand in.
+
+    Returns
+    -------
+    str
+        The text; every float is written so that it reads back to itself.
+
+    Examples
+    --------
+    >>> print(layout({"title": "A", "run": {"every": 0.01}}), end="")
+    title = "A"
+    <BLANKLINE>
+    [run]
+    every = 0.01
+    """
+    plain = [f"{key} = {_value(value)}\n" for key, value in data.items() if not _is_table(value)]
+    blocks = ["".join(plain)]
+    for key, value in data.items():
+        if isinstance(value, Mapping):
+            blocks.append(f"\n[{path}{key}]\n{layout(value, f'{path}{key}.')}")
+        elif _is_table(value):
+            blocks.extend(f"\n[[{path}{key}]]\n{layout(part, f'{path}{key}.')}" for part in value)
+    return "".join(blocks)
+
+
+def _is_table(value: Any) -> bool:
+    several = isinstance(value, Sequence) and not isinstance(value, str) and bool(value)
+    return isinstance(value, Mapping) or (several and isinstance(value[0], Mapping))
+
+
+def _value(value: Any) -> str:
+    value = written(value)
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_value(part) for part in value) + "]"
+    # A text of several lines reads better as one, but TOML would turn its "\r\n" into "\n".
+    lines = isinstance(value, str) and "\n" in value and "\r" not in value
+    return tomli_w.dumps({"v": value}, multiline_strings=lines).removeprefix("v = ").removesuffix("\n")

@@ -1,0 +1,284 @@
+"""The tables of a scenario file: one class for each, told apart by `kind` where there are several.
+
+A new body, surface, motion or load is one class here with `kind` and `build`, in the union below its like.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from ..errors import InvalidValueError
+from .fields import Measure, Measures, written
+
+if TYPE_CHECKING:
+    from ..mechanics.bodies import Body
+    from ..mechanics.loads import Load
+    from ..mechanics.motions import Motion
+    from ..mechanics.system import Support
+
+Method = Literal["auto", "exact", "taylor", "runge-kutta"]
+
+
+class Table(BaseModel):
+    """A table of the file: frozen, and no key but those named."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+# --- numbers with a rule of their own -------------------------------------------------------------------
+
+
+def _check_tilt(tilt: float, received: Any) -> None:
+    if abs(tilt) < math.pi / 2:
+        return
+    bare = str(received).removesuffix("rad").strip()
+    try:
+        remedy = f'Did you mean "{bare} deg"?' if abs(float(bare)) < 90 else ""
+    except ValueError:
+        remedy = ""
+    raise InvalidValueError(
+        "", "must lie in (-90 deg, 90 deg)", received, remedy or "At 90 deg the plane is a wall."
+    )
+
+
+def _check_inertia_ratio(ratio: float, received: Any) -> None:
+    # I ≤ (2/3) m a² for any mass inside a sphere: I is a third of the trace, (2/3) Σ m r² with r ≤ a.
+    if not 0 < ratio <= 2 / 3 * (1 + 1e-12):
+        remedy = "2/3 is a thin shell, all its mass at the surface; no sphere has more."
+        raise InvalidValueError("", "must lie in (0, 2/3]", received, remedy)
+
+
+Radius = Annotated[float, Measure("length", "positive")]
+Mass = Annotated[float, Measure("mass", "positive")]
+Ratio = Annotated[float, Measure("number", "positive", _check_inertia_ratio, "0.4")]
+Tilt = Annotated[float, Measure("angle", check=_check_tilt)]
+Rim = Annotated[float, Measure("length", "positive", example='"0.5 m"')]
+Friction = Annotated[float, Measure("number", "not negative", example="0.3")]
+Rate = Annotated[float, Measure("angular velocity")]
+Coefficient = Annotated[float, Measure("damping", "not negative")]
+Duration = Annotated[float, Measure("time", "positive")]
+Step = Annotated[float, Measure("time", "positive", example='"10 ms"')]
+Force3 = Annotated[tuple[float, float, float], Measures(Measure("force"), 3)]
+Torque3 = Annotated[tuple[float, float, float], Measures(Measure("torque"), 3)]
+Rate3 = Annotated[tuple[float, float, float], Measures(Measure("angular velocity", example='"2 rad/s"'), 3)]
+Place2 = Annotated[tuple[float, float], Measures(Measure("length", example='"10 cm"'), 2)]
+Velocity2 = Annotated[tuple[float, float] | str, Measures(Measure("velocity"), 2, "co-rotating")]
+Turn4 = Annotated[tuple[float, float, float, float], Measures(Measure("number", example="1.0"), 4)]
+
+
+# --- bodies ---------------------------------------------------------------------------------------------
+
+
+class SolidSphere(Table):
+    """A homogeneous ball, k = 2/5."""
+
+    kind: Literal["solid-sphere"]
+    radius: Radius
+    mass: Mass
+
+    def build(self) -> Body:
+        """Return the body."""
+        from ..mechanics.bodies import Body
+
+        return Body.solid_sphere(radius=float(self.radius), mass=float(self.mass))
+
+
+class HollowSphere(Table):
+    """A thin spherical shell, k = 2/3."""
+
+    kind: Literal["hollow-sphere"]
+    radius: Radius
+    mass: Mass
+
+    def build(self) -> Body:
+        """Return the body."""
+        from ..mechanics.bodies import Body
+
+        return Body.hollow_sphere(radius=float(self.radius), mass=float(self.mass))
+
+
+class AnySphere(Table):
+    """A sphere of a given inertia ratio k = I/(m a²)."""
+
+    kind: Literal["sphere"]
+    radius: Radius
+    mass: Mass
+    inertia_ratio: Ratio = Field(
+        description="k = I/(m a²), above 0 and at most a shell's 2/3.", examples=[0.4]
+    )
+
+    def build(self) -> Body:
+        """Return the body."""
+        from ..mechanics.bodies import Body
+
+        return Body.sphere(float(self.radius), float(self.mass), float(self.inertia_ratio))
+
+
+Bodies = SolidSphere | HollowSphere | AnySphere
+
+
+# --- supports and how they move -------------------------------------------------------------------------
+
+
+class FixedMotion(Table):
+    """A support at rest."""
+
+    kind: Literal["fixed"]
+
+    def build(self) -> Motion:
+        """Return the motion."""
+        from ..mechanics.motions import Fixed
+
+        return Fixed()
+
+
+class SpinMotion(Table):
+    """A support that turns steadily about its axis."""
+
+    kind: Literal["spin"]
+    rate: Rate = Field(description="Positive turns the first axis towards the second.", examples=["33.3 rpm"])
+
+    def build(self) -> Motion:
+        """Return the motion."""
+        from ..mechanics.motions import Spin
+
+        return Spin(float(self.rate))
+
+
+Motions = FixedMotion | SpinMotion
+
+
+class PlaneSupport(Table):
+    """A plane, bounded by a circular rim or unbounded."""
+
+    kind: Literal["plane"]
+    tilt: Tilt = Field(
+        default=0.0, description="Angle of the plane's normal to the vertical; down the first axis."
+    )
+    rim: Rim | None = Field(default=None, description="Radius of the rim; absent: unbounded.")
+    friction: Friction | None = Field(default=None, description="Coulomb coefficient; absent: never slips.")
+    motion: Annotated[Motions, Field(discriminator="kind")] = FixedMotion(kind="fixed")
+
+    def build(self) -> Support:
+        """Return the support."""
+        from ..mechanics.surfaces import Plane
+        from ..mechanics.system import Support
+
+        surface = Plane(rim=None if self.rim is None else float(self.rim))
+        friction = None if self.friction is None else float(self.friction)
+        return Support(surface, motion=self.motion.build(), tilt=float(self.tilt), friction=friction)
+
+
+Supports = PlaneSupport
+
+
+# --- loads ----------------------------------------------------------------------------------------------
+
+
+class ForceLoad(Table):
+    """A constant force on the centre of mass."""
+
+    kind: Literal["force"]
+    value: Force3 = Field(description="In the support frame, which does not turn with the support.")
+
+    def build(self) -> Load:
+        """Return the load."""
+        from ..mechanics.loads import Force
+
+        return Force(tuple(map(float, self.value)))
+
+
+class TorqueLoad(Table):
+    """A constant torque about the centre of mass."""
+
+    kind: Literal["torque"]
+    value: Torque3 = Field(description="In the support frame, which does not turn with the support.")
+
+    def build(self) -> Load:
+        """Return the load."""
+        from ..mechanics.loads import Torque
+
+        return Torque(tuple(map(float, self.value)))
+
+
+class DragLoad(Table):
+    """Linear drag in still air, the force -c V."""
+
+    kind: Literal["drag"]
+    coefficient: Coefficient
+
+    def build(self) -> Load:
+        """Return the load."""
+        from ..mechanics.loads import Drag
+
+        return Drag(float(self.coefficient))
+
+
+Loads = ForceLoad | TorqueLoad | DragLoad
+
+
+# --- the start and the run ------------------------------------------------------------------------------
+
+
+class Start(Table):
+    """Where the body is put down, and how it moves then."""
+
+    position: Place2 = Field(description="Of the centre over the support, in the support frame.")
+    velocity: Velocity2 = Field(default=(0.0, 0.0), description="Of the centre, support frame.")
+    spin: Rate | None = Field(
+        default=None, description="Angular velocity about the normal; the rest follows."
+    )
+    angular_velocity: Rate3 | None = Field(default=None, description="All of it, instead of spin.")
+    orientation: Turn4 = Field(default=(1.0, 0.0, 0.0, 0.0), description="Quaternion w, x, y, z.")
+
+    @model_validator(mode="after")
+    def _check(self) -> Start:
+        if self.spin is not None and self.angular_velocity is not None:
+            remedy = "Give `spin` and the rest follows from no slip, or all three components and no `spin`."
+            shown = written(self.angular_velocity)
+            raise InvalidValueError("angular_velocity", "must not stand beside `spin`", shown, remedy)
+        length = math.hypot(*self.orientation)
+        if not 1e-150 < length < 1e150:
+            shown = written(self.orientation)
+            remedy = "Write [1, 0, 0, 0] for a body that is not turned."
+            raise InvalidValueError("orientation", "must be a quaternion of unit length", shown, remedy)
+        return self
+
+    def arguments(self) -> dict[str, Any]:
+        """Return what `RollingSystem.place` takes."""
+        velocity = self.velocity if isinstance(self.velocity, str) else tuple(map(float, self.velocity))
+        turning = None if self.angular_velocity is None else tuple(map(float, self.angular_velocity))
+        return {
+            "position": tuple(map(float, self.position)),
+            "velocity": velocity,
+            "spin": None if self.spin is None else float(self.spin),
+            "angular_velocity": turning,
+            "orientation": tuple(map(float, self.orientation)),
+        }
+
+
+class Run(Table):
+    """How long, how finely and by which method."""
+
+    duration: Duration = Field(examples=["60 s"])
+    every: Step = Field(description="Time between samples.", examples=["10 ms"])
+    method: Method = "auto"
+
+    @model_validator(mode="after")
+    def _check(self) -> Run:
+        from ..solve.sampling import check_sampling
+
+        check_sampling(written(self.duration), written(self.every))
+        return self
+
+
+# Which class stands for which table, so that an error can list the keys that a table has.
+KINDS: dict[str, dict[str, type[Table]]] = {
+    "body": {"solid-sphere": SolidSphere, "hollow-sphere": HollowSphere, "sphere": AnySphere},
+    "support": {"plane": PlaneSupport},
+    "support.motion": {"fixed": FixedMotion, "spin": SpinMotion},
+    "loads": {"force": ForceLoad, "torque": TorqueLoad, "drag": DragLoad},
+}

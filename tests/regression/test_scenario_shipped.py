@@ -1,0 +1,190 @@
+"""The notes of the shipped scenarios tell what one sees: their numbers come out of the lecture's equations.
+
+The motion is integrated here, not by trundle, from the lecture's equations for a sphere on a turning plane
+(Milne) or under a force and a torque (Landau).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from trundle.scenario import ScenarioFile, files
+
+STEEL, TABLE = 7.8e3, 33.3 * np.pi / 30  # kg/m³; rad/s
+Path = Callable[[object], np.ndarray]
+
+
+def path_of(name: str) -> Path:
+    """Return x, y and their rates as functions of time.
+
+    (1 + 1/k) r̈ = ω n×ṙ + (1/k)(g sin α e_x + F/m + K×n/(m a))
+    """
+    scenario = ScenarioFile.load(name)
+    system, start = scenario.system(), scenario.start_state()
+    m, a, k = system.body.mass, system.body.shape.radius, system.body.inertia_ratio
+    push = np.array([system.gravity * np.sin(system.support.tilt), 0.0])
+    for load in scenario.applied_loads:
+        x, y, _ = load.value
+        push += np.array([x, y]) / m if load.kind == "force" else np.array([y, -x]) / (m * a)
+    rate = getattr(system.support.motion, "rate", 0.0)
+
+    def motion(_: float, state: np.ndarray) -> list[float]:
+        _, _, u, v = state
+        ax, ay = (rate * np.array([-v, u]) + push / k) / (1 + 1 / k)
+        return [u, v, ax, ay]
+
+    first = [*start.position[:2], *start.velocity[:2]]
+    run = scenario.run
+    solved = solve_ivp(motion, (0, run.duration), first, "DOP853", rtol=1e-11, atol=1e-12, dense_output=True)
+    return lambda t: solved.sol(t)
+
+
+def first_return(path: Path, guess: float) -> float:
+    """Return the time near a guess at which the velocity points as it did at first."""
+    times = np.linspace(0.9 * guess, 1.1 * guess, 20001)
+    _, _, u, v = path(times)
+    _, _, u0, v0 = path(0.0)
+    turned = np.angle((u + 1j * v) / (u0 + 1j * v0))
+    return float(np.interp(0.0, turned, times))
+
+
+def radius_of(path: Path, round_time: float, drift: complex = 0) -> tuple[float, complex]:
+    """Return radius and first centre of the circle that the path makes about a drifting centre."""
+    times = np.linspace(0, round_time, 4096, endpoint=False)
+    x, y, _, _ = path(times)
+    wheel = x + 1j * y - drift * times
+    return float(np.abs(wheel - wheel.mean()).max()), complex(wheel.mean())
+
+
+def says(name: str, *numbers: str) -> None:
+    notes = ScenarioFile.load(name).notes.replace("\n", " ")
+    for number in numbers:
+        assert number in notes
+
+
+def test_the_titles_and_names_are_those_of_the_files() -> None:
+    assert ScenarioFile.names() == sorted(files.names())
+    titles = [ScenarioFile.load(name).title for name in ScenarioFile.names()]
+    assert titles == [files.title_of(name) for name in ScenarioFile.names()]
+    assert len(set(titles)) == len(titles)
+
+
+@pytest.mark.parametrize("name", files.names())
+def test_each_has_notes_and_a_realistic_ball(name: str) -> None:
+    scenario = ScenarioFile.load(name)
+    assert len(scenario.notes) > 200
+    if scenario.body.kind == "solid-sphere":
+        assert scenario.body.mass == pytest.approx(4 / 3 * np.pi * scenario.body.radius**3 * STEEL, rel=0.01)
+    else:
+        assert (scenario.body.radius, scenario.body.mass) == (
+            0.02,
+            0.0027,
+        )  # a table-tennis ball, by the rules
+    assert all(line == line.strip() for line in scenario.notes.splitlines())
+
+
+def test_tilted_turntable() -> None:
+    name = "tilted-turntable"
+    path = path_of(name)
+    period = first_return(path, 6.3)
+    x, y, u, v = path(period) - path(0.0)
+    drift = complex(x, y) / period
+    radius, centre = radius_of(path, period, drift)
+    assert abs(drift.real) < 1e-4 * abs(drift)  # sideways, not down
+    assert (abs(u), abs(v)) < (1e-4, 1e-4)
+    says(
+        name,
+        f"{abs(drift):.3f} m/s",
+        f"{period:.3f} s",
+        f"{radius:.3f} m",
+        f"{abs(drift) * 20:.1f} m of it in 20 s",
+    )
+    assert abs(centre + 10 * drift) < 0.05  # half-way through, over the axis
+
+
+def test_tilted_turntable_put_down() -> None:
+    name = "tilted-turntable-put-down"
+    path = path_of(name)
+    times = np.linspace(0, 10, 100001)
+    x, _, u, v = path(times)
+    start = path(0.0)
+    cusp = times[1000:][np.hypot(u, v)[1000:].argmin()]
+    along = path(cusp) - start
+    assert abs(along[0]) < 1e-6
+    says(name, f"{100 * along[1]:.1f} cm further", f"{100 * (x.max() - x[0]):.1f} cm deep", f"{cusp:.3f} s")
+    says(name, f"{1000 * along[1] / cusp:.1f} mm/s")
+    inside = path(np.linspace(0, 24, 5001))
+    assert np.hypot(inside[0], inside[1]).max() < 0.5
+
+
+def test_level_turntable_put_down() -> None:
+    path = path_of("level-turntable-put-down")
+    np.testing.assert_allclose(path(20.0), path(0.0), atol=1e-15)
+    says("level-turntable-put-down", f"{TABLE * 0.2:.3f} m/s", f"{TABLE * 0.2 / 0.025:.1f} rad/s")
+    Omega = ScenarioFile.load("level-turntable-put-down").start_state().angular_velocity
+    assert np.hypot(*Omega[:2]) == pytest.approx(TABLE * 0.2 / 0.025, rel=1e-12)
+
+
+def test_level_turntable_nudged() -> None:
+    path = path_of("level-turntable-nudged")
+    period = first_return(path, 6.3)
+    radius, centre = radius_of(path, period)
+    assert period == pytest.approx(3.5 * 60 / 33.3, rel=1e-6)
+    says(
+        "level-turntable-nudged", f"{period:.3f} s", f"is 0.1 m/s / (2/7 * 33.3 rpm) = {100 * radius:.1f} cm"
+    )
+    says("level-turntable-nudged", f"{100 * abs(centre):.1f} cm from the axis")
+
+
+def test_level_turntable_corotating() -> None:
+    name = "level-turntable-corotating"
+    path = path_of(name)
+    radius, centre = radius_of(path, 3.5 * 60 / 33.3)
+    furthest = np.hypot(*path(np.linspace(0, 20, 20001))[:2]).max()
+    says(name, f"{100 * radius:.1f} cm", f"{100 * abs(centre):.1f} cm away", f"{100 * furthest:.0f} cm")
+    np.testing.assert_allclose(
+        path(7 * 60 / 33.3), path(0.0), atol=1e-9
+    )  # and the table has turned seven times
+
+
+def test_hollow_ball() -> None:
+    path = path_of("hollow-ball-turntable")
+    period = first_return(path, 4.5)
+    radius, _ = radius_of(path, period)
+    assert period == pytest.approx(2.5 * 60 / 33.3, rel=1e-6)
+    says("hollow-ball-turntable", f"{period:.3f} s", f"{100 * radius:.2f} cm")
+
+
+def test_force_and_torque() -> None:
+    m, a, F, K = 0.51, 0.025, 0.1, 2.5e-3
+    force, torque = path_of("ball-under-force"), path_of("ball-under-torque")
+    np.testing.assert_allclose(force(5.0), torque(5.0), rtol=1e-9, atol=1e-12)
+    acceleration = force(5.0)[2] / 5
+    says(
+        "ball-under-force",
+        f"{acceleration:.3f} m/s each second",
+        f"{force(5.0)[0]:.2f} m away",
+        f"{F / m:.3f}",
+    )
+    says("ball-under-torque", f"{acceleration:.3f} m/s each second")
+    # m V̇ = F + R along the first axis
+    says("ball-under-force", f"{1000 * (F - m * acceleration):.1f} mN")
+    says("ball-under-torque", f"{1000 * m * acceleration:.1f} mN")
+    assert K / a == pytest.approx(F, rel=1e-12)
+
+
+def test_off_the_rim() -> None:
+    path = path_of("off-the-rim")
+    times = np.linspace(0, 10, 1000001)
+    leaves = times[(np.hypot(*path(times)[:2]) >= 0.5).argmax()]
+    radius, centre = radius_of(path, 3.5 * 60 / 33.3)
+    says(
+        "off-the-rim",
+        f"{leaves:.3f} s",
+        f"{100 * radius:.0f} cm",
+        f"{100 * abs(centre):.0f} cm on the other side",
+    )
