@@ -1,0 +1,5 @@
+"""`python -m trundle` is the `trundle` command."""
+
+from .cli import main
+
+main()

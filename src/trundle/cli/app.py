@@ -1,0 +1,170 @@
+"""The commands of `trundle`. Whatever is slow to load is loaded by the command that needs it."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from ..errors import ScenarioError
+from ..scenario import files
+from . import CARD_FAILED, screen
+
+FILES = ("run.nc", "path.png", "series.png")
+
+
+def command() -> Any:
+    """Return the whole command, for one call."""
+    app = typer.Typer(
+        rich_markup_mode="rich" if sys.stdout.isatty() else None,  # no boxes and no colours in a pipe
+        pretty_exceptions_enable=False,
+        context_settings={"help_option_names": ["-h", "--help"]},
+    )
+    app.callback(invoke_without_command=True)(_top)
+    app.command("run", short_help="Run a scenario; write its trajectory and figures.")(run)
+    app.command("list", short_help="Name the scenarios that ship with trundle.")(list_scenarios)
+    app.command("show", short_help="Print a scenario file, and what to expect of it.")(show)
+    app.command("schema", short_help="Print the JSON schema of scenario files, for editors.")(schema)
+    return typer.main.get_command(app)
+
+
+def _complete(incomplete: str) -> list[str]:
+    """Offer the shipped scenarios, and files and folders as a shell would."""
+    folder, _, start = incomplete.rpartition("/")
+    inside = Path(folder + "/" if folder or incomplete.startswith("/") else ".").expanduser()
+    try:
+        found = [path for path in inside.iterdir() if path.name.startswith(start)]
+    except OSError:
+        found = []
+    shown = [path for path in found if path.suffix == ".toml" or (path.is_dir() and path.name[0] != ".")]
+    ahead = incomplete[: len(incomplete) - len(start)]
+    paths = [f"{ahead}{path.name}{'/' if path.is_dir() else ''}" for path in sorted(shown)]
+    return [name for name in files.names() if name.startswith(incomplete)] + paths
+
+
+def _print_version(asked: bool) -> None:
+    if asked:
+        from importlib.metadata import version
+
+        screen.out(f"trundle {version('trundle')}")
+        raise typer.Exit
+
+
+Name = Annotated[
+    str,
+    typer.Argument(
+        metavar="SCENARIO", help="The name of a shipped one, or a TOML file.", autocompletion=_complete
+    ),
+]
+
+
+def _top(
+    context: typer.Context,
+    version: Annotated[  # noqa: ARG001
+        bool, typer.Option("--version", is_eager=True, callback=_print_version, help="Print the version.")
+    ] = False,
+) -> None:
+    """Compute the motion of bodies that roll without slipping, and say how far to trust it."""
+    if context.invoked_subcommand is None:
+        screen.out(context.get_help())
+
+
+def run(
+    scenario: Name,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", metavar="FOLDER", help="Default: a folder of the scenario's name."),
+    ] = None,
+    method: Annotated[
+        str | None, typer.Option(help="auto, exact, taylor or runge-kutta.", autocompletion=lambda: METHODS)
+    ] = None,
+    duration: Annotated[
+        str | None, typer.Option(help="Length of the run, such as '60 s', in place of the file's.")
+    ] = None,
+    every: Annotated[
+        str | None, typer.Option(help="Time between samples, such as '10 ms', in place of the file's.")
+    ] = None,
+    no_figure: Annotated[bool, typer.Option("--no-figure", help="Draw no figures.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print the card as JSON, and nothing else.")
+    ] = False,
+) -> None:
+    """Run a scenario, print its verification card, and write run.nc, path.png and series.png.
+
+    Exit status: 0, all is well; 2, bad input; 3, a figure of the card failed; 130, interrupted; 1, all else.
+    """
+    from .writing import check_folder, write_together
+
+    names = FILES[:1] if no_figure else FILES
+    loaded = load(scenario, duration=duration, every=every, method=method)
+    folder = Path(Path(scenario).stem) if output is None else output.expanduser()
+    check_folder(folder, names)
+    with screen.ProgressBar(wanted=not quiet) as bar:
+        trajectory = loaded.run(progress=bar if bar.wanted else None)
+    card = trajectory.card()
+    write = {"run.nc": trajectory.save}
+    if not no_figure:
+        write["path.png"] = lambda path: trajectory.plot("path").savefig(path)
+        write["series.png"] = lambda path: trajectory.plot("series").savefig(path)
+    written = write_together(folder, write)
+    if as_json:
+        screen.out(card.as_json())
+    elif not quiet:
+        screen.show_card(card)
+        for event in trajectory.events:
+            screen.out(f"{event.time:.6g} s: {event.text}")
+        screen.out(f"Wrote {', '.join(str(path) for path in written)}")
+    if not card.passed:
+        failed = [figure.name for figure in card.figures if figure.passed is False]
+        screen.note(f"trundle: the card fails: {', '.join(failed)}")
+        raise typer.Exit(CARD_FAILED)
+
+
+METHODS = ["auto", "exact", "taylor", "runge-kutta"]
+
+
+def load(scenario: str, **overrides: str | None) -> Any:
+    """Read a scenario, with some keys of its [run] table replaced by options of the command line."""
+    from ..simulation import Scenario
+
+    given = {key: value for key, value in overrides.items() if value is not None}
+    tables = files.parse(files.read(scenario), scenario)
+    if isinstance(tables.get("run", {}), dict):
+        tables["run"] = {**tables.get("run", {}), **given}
+    try:
+        return Scenario.read(tables, scenario)
+    except ScenarioError as error:
+        key = error.key.removeprefix("run.")
+        if key in given:
+            raise ScenarioError(f"--{key}", error.rule, error.received, error.remedy) from None
+        raise
+
+
+def list_scenarios() -> None:
+    """Name the scenarios that ship with trundle, with their titles."""
+    screen.show_names([(name, files.title_of(name)) for name in files.names()])
+
+
+def show(scenario: Name) -> None:
+    """Print a scenario file as it is, to read or to copy; on a terminal also the numbers to expect of it."""
+    from ..scenario import ScenarioFile
+
+    text = files.read(scenario)
+    loaded = ScenarioFile.loads(text, scenario)
+    screen.show_source(text)
+    if screen.on_terminal():
+        from .expectations import expectations
+
+        screen.show_pairs("To expect", expectations(loaded))
+
+
+def schema() -> None:
+    """Print the JSON schema of scenario files, for editors that check and complete TOML."""
+    import json
+
+    from ..scenario import ScenarioFile
+
+    screen.out(json.dumps(ScenarioFile.schema(), indent=2))

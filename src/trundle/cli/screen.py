@@ -1,0 +1,160 @@
+"""What the commands print: tables on a terminal, plain text anywhere else."""
+
+from __future__ import annotations
+
+import sys
+import time
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
+
+if TYPE_CHECKING:
+    from ..verify import Card
+
+PATIENCE = 1.0  # s without a progress bar
+
+
+def out(text: str = "", end: str = "\n") -> None:
+    """Print to standard output."""
+    print(text, end=end)  # noqa: T201
+
+
+def note(text: str) -> None:
+    """Print to standard error."""
+    print(text, file=sys.stderr)  # noqa: T201
+
+
+def on_terminal() -> bool:
+    """Whether a person reads the standard output as it comes."""
+    return sys.stdout.isatty()
+
+
+def show_names(rows: list[tuple[str, str]]) -> None:
+    """Print names and titles.
+
+    Parameters
+    ----------
+    rows : list of (name, title)
+        The scenarios.
+
+    Examples
+    --------
+    >>> show_names([("a", "First"), ("long", "Second")])
+    a     First
+    long  Second
+    """
+    if not on_terminal():
+        width = max((len(name) for name, _ in rows), default=0)
+        for name, title in rows:
+            out(f"{name:<{width}}  {title}")
+        return
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table("scenario", "what it is", box=SIMPLE_HEAD)
+    for name, title in rows:
+        table.add_row(Text(name, style="bold", no_wrap=True), Text(title))
+    _console().print(table)
+
+
+def show_source(text: str) -> None:
+    """Print a scenario file as it is; in colour on a terminal."""
+    if not on_terminal():
+        out(text, end="" if text.endswith("\n") else "\n")
+        return
+    from rich.syntax import Syntax
+
+    _console().print(Syntax(text, "toml", theme="ansi_dark", background_color="default", word_wrap=True))
+
+
+def show_pairs(title: str, rows: list[tuple[str, str]]) -> None:
+    """Print a few named values below a title."""
+    if not on_terminal():
+        out(title)
+        for name, value in rows:
+            out(f"  {name}: {value}")
+        return
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table.grid(padding=(0, 2))
+    for name, value in rows:
+        table.add_row(Text(name, style="bold"), Text(value))
+    console = _console()
+    console.print(Text(title, style="bold underline"))
+    console.print(table)
+
+
+def show_card(card: Card) -> None:
+    """Print the verification card: a table on a terminal, its own plain text anywhere else."""
+    if not on_terminal():
+        out(str(card).rstrip("\n"))
+        return
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+    from rich.text import Text
+
+    verdicts = {True: Text("holds", style="green"), False: Text("FAILS", style="bold red"), None: Text("")}
+    table = Table("", "value", "unit", "at most", "", "note", box=SIMPLE_HEAD, title_justify="left")
+    for figure in card.figures:
+        bound = "" if figure.bound is None else f"{figure.bound:.3g}"
+        style = "bold red" if figure.passed is False else ""
+        cells = [Text(cell) for cell in (figure.name, _value(figure.value), figure.unit, bound)]
+        table.add_row(*cells, verdicts[figure.passed], Text(figure.note), style=style)
+    console = _console()
+    console.print(Text(card.title, style="bold"))
+    console.print(table)
+
+
+def _value(value: Any) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def _console(*, stderr: bool = False) -> Any:
+    from rich.console import Console
+
+    return Console(stderr=stderr, highlight=False, soft_wrap=False)
+
+
+class ProgressBar:
+    """A bar on standard error, for a run that takes more than a second and a person who waits for it.
+
+    Parameters
+    ----------
+    wanted : bool
+        Whether there may be a bar at all.
+
+    Examples
+    --------
+    >>> with ProgressBar(wanted=True) as bar:  # no terminal here: nothing is printed
+    ...     bar(0.5)
+    """
+
+    def __init__(self, *, wanted: bool) -> None:
+        self.wanted = wanted and sys.stderr.isatty()
+        self._began = time.monotonic()
+        self._bar: Any = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._bar is not None:
+            self._bar.stop()
+
+    def __call__(self, fraction: float) -> None:
+        """Take note of how much of the run is done, 0 to 1."""
+        if self.wanted and self._bar is None and time.monotonic() - self._began > PATIENCE:
+            self._begin()
+        if self._bar is not None:
+            self._bar.update(self._bar.task_ids[0], completed=fraction)
+
+    def _begin(self) -> None:
+        from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+        columns = (TextColumn("rolling"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
+        self._bar = Progress(*columns, console=_console(stderr=True), transient=True)
+        self._bar.add_task("", total=1.0)
+        self._bar.start()

@@ -1,0 +1,159 @@
+"""Files that appear whole or not at all: written to a folder of their own beside the target, then renamed."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import os
+import shutil
+import signal
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+
+from ..errors import InvalidValueError, TrundleError
+
+
+class CannotWriteError(TrundleError):
+    """The files of a run could not be written."""
+
+
+def check_folder(folder: Path, names: tuple[str, ...]) -> None:
+    """Find out, before the work is done, whether files can be written to a folder that may not exist yet.
+
+    Parameters
+    ----------
+    folder : Path
+        Where the files will go.
+    names : tuple of str
+        The files.
+
+    Raises
+    ------
+    InvalidValueError
+        If the folder is a file, or stands below one.
+    CannotWriteError
+        If it may not be written to.
+
+    Examples
+    --------
+    >>> check_folder(Path("out"), ("run.nc",))
+    """
+    try:
+        above = _nearest_folder(folder)
+        taken = next((name for name in names if (folder / name).is_dir()), None)
+        allowed = os.access(above, os.W_OK | os.X_OK)
+    except (OSError, ValueError) as error:  # a name too long, for one
+        remedy = f"The system says: {_reason(error)}."
+        raise InvalidValueError("--output", "must be a folder", str(folder), remedy) from None
+    if not above.is_dir():
+        raise InvalidValueError("--output", "must be a folder", str(folder), f"'{above}' is a file.")
+    if taken:
+        raise InvalidValueError(
+            "--output", "must leave room for files", str(folder), f"'{taken}' is a folder there."
+        )
+    if not allowed:
+        raise CannotWriteError(
+            f"'{above}' may not be written to: name another folder with --output. Nothing was written."
+        )
+
+
+def write_together(folder: Path, files: Mapping[str, Callable[[Path], object]]) -> list[Path]:
+    """Write several files so that none of them is ever there in part.
+
+    Parameters
+    ----------
+    folder : Path
+        Where they go; it is made when all of them have been written.
+    files : mapping from str to callable
+        For each name, what writes the file to a path.
+
+    Returns
+    -------
+    list of Path
+        The files.
+
+    Raises
+    ------
+    CannotWriteError
+        If the disk is full, the folder may not be written to, or the like; then nothing has changed.
+
+    Examples
+    --------
+    >>> write_together(Path("out"), {"note.txt": lambda path: path.write_text("whole")})[0].read_text()
+    'whole'
+    """
+    try:
+        above = _nearest_folder(folder)
+        stage = Path(tempfile.mkdtemp(prefix=".trundle-", dir=above))
+    except OSError as error:
+        raise _failure(folder, error) from None
+    try:
+        for name, write in files.items():
+            write(stage / name)
+            _to_disk(stage / name)
+        with _uninterrupted():
+            _move(stage, folder, above, list(files))
+    except (OSError, RuntimeError) as error:  # RuntimeError: HDF5 on a full disk
+        if isinstance(error, RuntimeError) and "HDF5" not in str(error) and "H5" not in str(error):
+            raise
+        raise _failure(folder, error) from None
+    finally:
+        shutil.rmtree(stage, ignore_errors=True)
+    return [folder / name for name in files]
+
+
+def _nearest_folder(folder: Path) -> Path:
+    """Return the folder itself, or the nearest thing above it that exists."""
+    return next(path for path in (folder.absolute(), *folder.absolute().parents) if path.exists())
+
+
+def _to_disk(path: Path) -> None:
+    with path.open("rb") as stream:
+        os.fsync(stream.fileno())
+
+
+def _move(stage: Path, folder: Path, above: Path, names: list[str]) -> None:
+    made = [path for path in (folder.absolute(), *folder.absolute().parents) if above in path.parents]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name in names:
+            (stage / name).replace(folder / name)
+    except OSError:
+        for path in made:
+            with contextlib.suppress(OSError):
+                path.rmdir()
+        raise
+
+
+@contextlib.contextmanager
+def _uninterrupted() -> Iterator[None]:
+    """Hold Ctrl-C back for the moment that the renaming takes."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    held = {signal.SIGINT, signal.SIGTERM, signal.SIGHUP}
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, held)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _failure(folder: Path, error: Exception) -> CannotWriteError:
+    return CannotWriteError(f"could not write to '{folder}': {_reason(error)}. Nothing was written.")
+
+
+def _reason(error: Exception) -> str:
+    known = {
+        errno.ENOSPC: "the disk is full",
+        errno.EDQUOT: "the disk quota is used up",
+        errno.EFBIG: "a file would be larger than is allowed",
+        errno.EACCES: "permission denied",
+        errno.EROFS: "it is read-only",
+    }
+    number = getattr(error, "errno", None)
+    if number in known:
+        return known[number]
+    text = getattr(error, "strerror", None) or str(error).partition("\n")[0] or type(error).__name__
+    return text.rstrip(".")
