@@ -7,7 +7,7 @@ from typing import Any
 
 from ..errors import InvalidValueError
 from . import checks
-from .algebra import Matrix
+from .algebra import ZERO, Matrix, Vector
 from .scalars import Scalar, is_number
 from .shapes import Shape, Sphere, concentric_sphere
 
@@ -37,6 +37,10 @@ class Isotropic:
     def in_space(self, Q: Matrix, body: Body) -> Matrix:  # noqa: ARG002  the same from every side
         """Return the inertia tensor in the support frame, kg m²."""
         return Matrix.diagonal(self.moment, self.moment, self.moment)
+
+    def gyroscopic(self, Q: Matrix, Omega: Vector, body: Body) -> Vector:  # noqa: ARG002
+        """Return Ω×JΩ = 0: JΩ is along Ω."""
+        return ZERO
 
     def ratio_of(self, body: Body) -> Scalar:
         """Return k = I/(m a²) for a spherical body of radius a."""
@@ -72,6 +76,10 @@ class RatioInertia:
         """Return the inertia tensor in the support frame, kg m²."""
         moment = self.ratio * body.mass * body.shape.radius * body.shape.radius
         return Matrix.diagonal(moment, moment, moment)
+
+    def gyroscopic(self, Q: Matrix, Omega: Vector, body: Body) -> Vector:  # noqa: ARG002
+        """Return Ω×JΩ = 0: JΩ is along Ω."""
+        return ZERO
 
     def ratio_of(self, body: Body) -> Scalar:  # noqa: ARG002
         """Return k."""
@@ -109,6 +117,10 @@ class Principal:
     def in_space(self, Q: Matrix, body: Body) -> Matrix:  # noqa: ARG002
         """Return Q diag(x, y, z) Qᵀ, the inertia tensor in the support frame, kg m²."""
         return Q @ Matrix.diagonal(self.x, self.y, self.z) @ Q.transpose
+
+    def gyroscopic(self, Q: Matrix, Omega: Vector, body: Body) -> Vector:
+        """Return Ω×JΩ in the support frame, N m."""
+        return Omega.cross(self.in_space(Q, body) @ Omega)
 
 
 Inertia = Isotropic | RatioInertia | Principal
@@ -216,6 +228,10 @@ class Body:
     def inertia_in_space(self, Q: Matrix) -> Matrix:
         """Return J in the support frame, kg m², for the rotation matrix Q from the body frame to that frame."""
         return self.inertia.in_space(Q, self)
+
+    def gyroscopic(self, Q: Matrix, Omega: Vector) -> Vector:
+        """Return Ω×JΩ in the support frame, N m."""
+        return self.inertia.gyroscopic(Q, Omega, self)
 
     @property
     def is_isotropic_sphere(self) -> bool:

@@ -148,10 +148,11 @@ def roll(
     p_rate, rho_rate = contact.rates(zero, Omega, V)
     u_rate = contact.support.material_acceleration(point, p_rate)
     F, K = system.loads_on(BodyMotion(time, m, contact.centre, V, orientation, Omega))
-    J = system.body.inertia_in_space(orientation.matrix())
+    Q = orientation.matrix()
+    J = system.body.inertia_in_space(Q)
     inertial = u_rate - Omega.cross(rho_rate)
     # T2
-    moment = K - Omega.cross(J @ Omega) - rho.cross(F) + m * rho.cross(inertial)
+    moment = K - system.body.gyroscopic(Q, Omega) - rho.cross(F) + m * rho.cross(inertial)
     Omega_rate = (J + point_inertia(m, rho)).solve(moment)
     # T3
     R = m * (inertial - Omega_rate.cross(rho)) - F

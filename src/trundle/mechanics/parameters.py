@@ -1,0 +1,79 @@
+"""The numbers in a system, apart from its structure: so one compiled integrator serves every radius, tilt and rate."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import fields, is_dataclass
+from typing import Any, TypeVar
+
+from .scalars import Scalar, is_number
+
+T = TypeVar("T")
+
+
+def numbers(thing: Any) -> list[float]:
+    """List the numbers that a system is made of, in a fixed order.
+
+    Parameters
+    ----------
+    thing : RollingSystem or any part of it
+        Dataclasses, tuples and numbers, nested.
+
+    Returns
+    -------
+    list of float
+        Every number; names, None and types belong to the structure.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> numbers(tr.Support(tr.Plane(rim=0.5), motion=tr.Spin(3.5), tilt=0.05))
+    [0.5, 3.5, 0.05]
+    """
+    return [float(value) for value in _walk(thing)]
+
+
+def _walk(thing: Any) -> Iterator[Any]:
+    if is_dataclass(thing):
+        for field in fields(thing):
+            yield from _walk(getattr(thing, field.name))
+    elif isinstance(thing, tuple):
+        for part in thing:
+            yield from _walk(part)
+    elif is_number(thing) and not isinstance(thing, bool):
+        yield thing
+
+
+def with_numbers(thing: T, values: Sequence[Scalar]) -> T:
+    """Return the same structure with other scalars in the places of its numbers.
+
+    Parameters
+    ----------
+    thing : RollingSystem or any part of it
+        The structure.
+    values : sequence of Scalar
+        As many as `numbers(thing)` has: numbers, arrays or symbols.
+
+    Returns
+    -------
+    same type as thing
+        A new one.
+
+    Examples
+    --------
+    >>> import sympy
+    >>> import trundle as tr
+    >>> with_numbers(tr.Spin(3.5), [sympy.Symbol("omega")]).rate
+    omega
+    """
+    return _rebuild(thing, iter(values))
+
+
+def _rebuild(thing: Any, values: Iterator[Scalar]) -> Any:
+    if is_dataclass(thing) and not isinstance(thing, type):
+        return type(thing)(**{field.name: _rebuild(getattr(thing, field.name), values) for field in fields(thing)})
+    if isinstance(thing, tuple):
+        return tuple(_rebuild(part, values) for part in thing)
+    if is_number(thing) and not isinstance(thing, bool):
+        return next(values)
+    return thing

@@ -1,0 +1,93 @@
+"""The instants at which a run is sampled."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InvalidValueError
+from ..mechanics import checks
+
+MOST_SAMPLES = 10_000_000  # 1.7 GB of results
+
+
+def check_sampling(duration: Any, every: Any, prefix: str = "") -> tuple[float, float]:
+    """Return duration and step in s, or say what is wrong with them.
+
+    Parameters
+    ----------
+    duration, every : float or quantity
+        Length of the run and step between samples, s.
+    prefix : str
+        Put before the two names in messages, such as ``"run."``.
+
+    Returns
+    -------
+    duration, every : float
+        s.
+
+    Raises
+    ------
+    InvalidValueError
+        If one is not positive, the step is longer than the run, or there would be too many samples.
+
+    Examples
+    --------
+    >>> check_sampling("60 s", "10 ms")
+    (60.0, 0.01)
+    """
+    length = checks.positive(duration, "time", f"{prefix}duration")
+    step = checks.positive(every, "time", f"{prefix}every")
+    if step > length:
+        raise InvalidValueError(
+            f"{prefix}every", f"must not be longer than the run ({length:g} s)", every, "Give a shorter step."
+        )
+    count = length / step + 1
+    if count > MOST_SAMPLES:
+        least = _round_up(length / (MOST_SAMPLES - 1))
+        raise InvalidValueError(
+            f"{prefix}every",
+            f"must leave at most {MOST_SAMPLES:,} samples",
+            every,
+            f"It makes {_count(count)}; ask for {least:g} s or more, or a shorter duration.",
+        )
+    return length, step
+
+
+def sample_times(duration: Any, every: Any, prefix: str = "") -> NDArray[np.float64]:
+    """Return the instants 0, h, 2h, ... of a run and its end.
+
+    Parameters
+    ----------
+    duration, every, prefix
+        As for `check_sampling`.
+
+    Returns
+    -------
+    array
+        Ascending, s; the last is the duration, also where the step does not divide it.
+
+    Examples
+    --------
+    >>> sample_times(1.0, 0.4).tolist()
+    [0.0, 0.4, 0.8, 1.0]
+    """
+    length, step = check_sampling(duration, every, prefix)
+    whole = math.floor(length / step * (1 + 4e-16))
+    times = np.arange(whole + 1) * step
+    if length - times[-1] > 1e-9 * step:
+        return np.append(times, length)
+    times[-1] = length
+    return times
+
+
+def _round_up(value: float) -> float:
+    digits = 10.0 ** (math.floor(math.log10(value)) - 1)
+    return math.ceil(value / digits) * digits
+
+
+def _count(count: float) -> str:
+    return f"{round(count):,}" if count < 1e15 else f"{count:.3g}"
