@@ -46,7 +46,7 @@ def test_every_key_is_listed_and_no_other() -> None:
         == keys_of(*KINDS["support"].values()) - {"motion"} | motion
     )
     assert set(rows("`[start]`")) == keys_of(ScenarioFile.model_fields["start"].annotation)
-    assert set(rows("`[run]`")) == keys_of(ScenarioFile.model_fields["run"].annotation)
+    assert set(rows("`[run]`")) == keys_of(ScenarioFile.model_fields["timing"].annotation)
     assert rows("`[[loads]]`")[1:] == list(KINDS["loads"])
 
 

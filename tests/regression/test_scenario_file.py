@@ -83,7 +83,7 @@ def test_every_key_reaches_the_mechanics() -> None:
     assert start.velocity == (0.0, 0.2, 0.0)
     assert start.angular_velocity[2] == 1.0
     assert start.orientation == (0.0, 1.0, 0.0, 0.0)
-    assert (scenario.run.duration, scenario.run.every, scenario.run.method) == (60.0, 0.01, "taylor")
+    assert (scenario.timing.duration, scenario.timing.every, scenario.timing.method) == (60.0, 0.01, "taylor")
     assert (scenario.title, scenario.notes) == ("Everything at once", "Look.")
 
 
@@ -109,7 +109,7 @@ def test_what_is_left_out_has_its_default() -> None:
     assert (system.gravity, system.loads, system.support) == (9.80665, (), Support(Plane(), motion=Fixed()))
     assert (start.velocity, start.angular_velocity) == ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     assert start.orientation == (1.0, 0.0, 0.0, 0.0)
-    assert scenario.run.method == "auto"
+    assert scenario.timing.method == "auto"
 
 
 def test_the_text_keeps_the_users_own_words() -> None:
@@ -171,7 +171,7 @@ def test_a_described_system_reads_back_to_the_last_digit(
     again = ScenarioFile.loads(told.to_toml())
     assert again.system() == system
     assert again.start_state() == state
-    assert (again.run.duration, again.run.every, again.run.method) == (THIRD, 0.001, "exact")
+    assert (again.timing.duration, again.timing.every, again.timing.method) == (THIRD, 0.001, "exact")
     assert again.title == "A third"
 
 

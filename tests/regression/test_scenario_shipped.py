@@ -38,7 +38,7 @@ def path_of(name: str) -> Path:
         return [u, v, ax, ay]
 
     first = [*start.position[:2], *start.velocity[:2]]
-    run = scenario.run
+    run = scenario.timing
     solved = solve_ivp(motion, (0, run.duration), first, "DOP853", rtol=1e-11, atol=1e-12, dense_output=True)
     return lambda t: solved.sol(t)
 

@@ -50,7 +50,7 @@ def _circle(motion: Any, scenario: ScenarioFile) -> list[tuple[str, str]]:
     if math.hypot(*drift) > 0:
         rows += [
             ("which drifts at", f"{math.hypot(*drift):.6g} m/s, {_pair(drift, 'm/s')}"),
-            ("and ends at", _pair(motion.guiding_centre(float(scenario.run.duration)), "m")),
+            ("and ends at", _pair(motion.guiding_centre(float(scenario.timing.duration)), "m")),
         ]
     return rows
 

@@ -47,11 +47,11 @@ class ScenarioFile(Table):
     body: Annotated[Bodies, Field(discriminator="kind")]
     support: Supports
     start: Start
-    # `loads` in the file; in Python that name is the method that reads a text, as in `json` and `tomllib`.
+    # Two keys have other names in Python, where `loads` reads a text, as in `json`, and `run` runs it.
     applied_loads: tuple[Annotated[Loads, Field(discriminator="kind")], ...] = Field(
         default=(), alias="loads"
     )
-    run: Run
+    timing: Run = Field(alias="run")
 
     # --- reading -----------------------------------------------------------------------------------------
 
