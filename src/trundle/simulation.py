@@ -1,0 +1,168 @@
+"""The one entry: pick the method, run it, return a trajectory."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from . import trajectory
+from .errors import InvalidValueError
+from .mechanics.algebra import Quaternion, Vector
+from .mechanics.contact import touch
+from .mechanics.system import SLIP_TOLERANCE, RollingSystem, State
+from .scenario import ScenarioFile
+from .solve import methods
+from .solve.samples import Progress
+from .solve.sampling import sample_times
+from .trajectory import Trajectory
+
+
+def simulate(
+    system: RollingSystem,
+    start: State,
+    duration: Any,
+    every: Any,
+    method: str = "auto",
+    *,
+    title: str = "",
+    scenario: str | None = None,
+    progress: Progress | None = None,
+) -> Trajectory:
+    """Run a rolling system from a start and return its trajectory.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Body, support, loads.
+    start : State
+        As `RollingSystem.place` makes it.
+    duration : float or quantity
+        Length of the run, s.
+    every : float or quantity
+        Step between samples, s; the end is always sampled.
+    method : str
+        "exact": the closed form. "taylor": heyoka at 1e-15. "runge-kutta": SciPy's DOP853 at 1e-12. "auto": the closed
+        form where there is one, else Taylor's method.
+    title : str
+        For figures and the card.
+    scenario : str, optional
+        The scenario as TOML text, to be stored with the run; absent: written from the system and the start.
+    progress : callable, optional
+        Told the fraction done, 0 to 1.
+
+    Returns
+    -------
+    Trajectory
+        Labelled arrays that carry their evidence.
+
+    Raises
+    ------
+    InvalidValueError
+        If a value is refused or the start does not roll.
+    OutOfDomainError
+        If method is "exact" and no closed form covers the system.
+    SolverError
+        If a numerical method breaks down.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> ball = tr.Body.solid_sphere(radius=0.025, mass=0.065)
+    >>> table = tr.Support(tr.Plane(rim=0.5), motion=tr.Spin("33.3 rpm"))
+    >>> system = tr.RollingSystem(ball, table)
+    >>> run = tr.simulate(system, system.place(position=(0.1, 0.0)), duration="10 s", every="10 ms")
+    >>> run.method, run.data.time.size
+    ('exact', 1001)
+    """
+    _check_start(system, start)
+    times = start.time + sample_times(duration, every)
+    chosen = methods.choose(method, system, start)
+    samples = methods.solver(chosen)(system, start, times, methods.tolerance_of(chosen), progress)
+    if scenario is None:
+        length = float(times[-1] - start.time)
+        step = float(times[1] - times[0]) if times.size > 2 else length
+        described = ScenarioFile.describe(system, replace(start, time=0.0), duration=length, every=step, method=method, title=title)
+        title, scenario = described.title, described.to_toml()
+    data = trajectory.dataset(system, samples, trajectory.attributes(title, chosen))
+    return Trajectory(data, system, start, chosen, samples.events, scenario)
+
+
+def _check_start(system: RollingSystem, start: State) -> None:
+    """Refuse a hand-made start that does not touch the support or that slips."""
+    if not isinstance(start, State):
+        raise InvalidValueError("start", "must be a State, as system.place(...) makes it", start)
+    q, centre = Quaternion(*start.orientation), Vector(*start.position)
+    contact = touch(system, start.time, centre, q)
+    point = centre + contact.offset
+    gap, size = system.support.surface.level(point - contact.support.origin), contact.offset.norm()
+    if abs(gap) > SLIP_TOLERANCE * size:
+        raise InvalidValueError("start.position", "must put the body on the support", start.position, f"Gap: {gap:g} m.")
+    V, Omega = Vector(*start.velocity), Vector(*start.angular_velocity)
+    contact = touch(system, start.time, point, q)
+    slip = contact.slip_velocity(V, Omega).norm()
+    scale = max(V.norm(), Omega.cross(contact.offset).norm(), contact.support.material_velocity(point).norm())
+    if slip > SLIP_TOLERANCE * scale:
+        raise InvalidValueError(
+            "start.angular_velocity",
+            "must agree with rolling, V + Ω×ρ = u(p)",
+            f"a slip of {slip:.6g} m/s",
+            "Let system.place(...) find Ω from no slip.",
+        )
+
+
+class Scenario(ScenarioFile):
+    """A scenario file that can be run.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> run = tr.Scenario.load("level-turntable-nudged").run()
+    >>> run.method
+    'exact'
+    """
+
+    def run(
+        self,
+        method: str | None = None,
+        *,
+        duration: Any = None,
+        every: Any = None,
+        progress: Progress | None = None,
+    ) -> Trajectory:
+        """Run the scenario.
+
+        Parameters
+        ----------
+        method : str, optional
+            Instead of the file's.
+        duration, every : float or quantity, optional
+            Instead of the file's, s.
+        progress : callable, optional
+            Told the fraction done, 0 to 1.
+
+        Returns
+        -------
+        Trajectory
+            With the scenario's text and title.
+
+        Raises
+        ------
+        TrundleError
+            As `simulate`.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> tr.Scenario.load("tilted-turntable").run(duration=1.0, every=0.5).data.time.values.tolist()
+        [0.0, 0.5, 1.0]
+        """
+        return simulate(
+            self.system(),
+            self.start_state(),
+            float(self.timing.duration) if duration is None else duration,
+            float(self.timing.every) if every is None else every,
+            self.timing.method if method is None else method,
+            title=self.title,
+            scenario=self.to_toml(),
+            progress=progress,
+        )

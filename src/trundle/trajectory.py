@@ -1,0 +1,422 @@
+"""A trajectory: labelled arrays, where they came from, and what may be said of them."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import frames
+from .errors import InvalidValueError, TrundleError, UnknownNameError
+from .files import written_whole
+from .mechanics.algebra import Vector
+from .mechanics.system import RollingSystem, State
+from .scenario import ScenarioFile
+from .solve.methods import solver, tolerance_of
+from .solve.samples import Event, Samples
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.figure import Figure
+
+    from .verify import Card
+
+PHASES = {0: "rolling", 1: "slipping", 2: "flight"}
+
+# Dataset variable -> (field of Samples, long name, unit)
+_VECTORS = {
+    "position": ("centre of mass", "m"),
+    "contact": ("contact point on the support", "m"),
+    "velocity": ("velocity of the centre of mass", "m s-1"),
+    "angular_velocity": ("angular velocity of the body", "rad s-1"),
+    "contact_force": ("contact force on the body", "N"),
+    "slip_velocity": ("velocity of the body's material at the contact relative to the support's", "m s-1"),
+}
+
+
+@dataclass(frozen=True, repr=False)
+class Trajectory:
+    """The motion of one body: a dataset over time, with the system and the start that gave it.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        `position`, `contact`, `velocity`, `angular_velocity`, `orientation`, `contact_force`, `slip_velocity` and
+        `phase` over `time`, SI units in the attributes.
+    system : RollingSystem
+        What moved.
+    start : State
+        Where it started.
+    method : str
+        "exact", "taylor" or "runge-kutta".
+    events : tuple of Event
+        What happened on the way.
+    scenario : str
+        The scenario as TOML text.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> table = tr.Support(tr.Plane(), motion=tr.Spin(3.49))
+    >>> system = tr.RollingSystem(tr.Body.solid_sphere(radius=0.025, mass=0.065), table)
+    >>> run = tr.simulate(system, system.place((0.1, 0.0), (0.0, 0.2)), duration=2.0, every=0.5)
+    >>> run.data.position.shape
+    (5, 3)
+    """
+
+    data: xarray.Dataset
+    system: RollingSystem
+    start: State
+    method: str
+    events: tuple[Event, ...] = ()
+    scenario: str = ""
+    _kept: dict[str, Any] = field(default_factory=dict, compare=False)  # the card, once made
+
+    def __repr__(self) -> str:
+        t = self.data.time.values
+        ending = f", {self.events[-1].text}" if self.events else ""
+        return f"<Trajectory: {t.size} samples over {t[-1] - t[0]:g} s, {self.method}, {self.frame} frame{ending}>"
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        raise UnknownNameError("attribute of a Trajectory", name, [n for n in dir(type(self)) if n[0] != "_"] + ["data"])
+
+    @property
+    def frame(self) -> str:
+        """The frame of the vectors: "support", "world" or "corotating"."""
+        return str(self.data.attrs["frame"])
+
+    @property
+    def title(self) -> str:
+        """The scenario's title."""
+        return str(self.data.attrs.get("title", ""))
+
+    @property
+    def tolerance(self) -> float:
+        """The tolerance of the method; 0 for a closed form."""
+        return float(self.data.attrs["tolerance"])
+
+    @property
+    def samples(self) -> Samples:
+        """The arrays in the inertial support frame, as the methods and the card take them."""
+        data = self.in_frame("support").data
+        names = ("position", "contact", "velocity", "angular_velocity", "orientation", "contact_force")
+        return Samples(data.time.values, *(data[name].values for name in names), events=self.events)
+
+    def in_frame(self, frame: str) -> Trajectory:
+        """Return the same motion seen from another frame.
+
+        Parameters
+        ----------
+        frame : str
+            "support": inertial, third axis the support's, first axis down the slope. "world": inertial, third axis
+            vertically up. "corotating": turning with the support; velocities are those seen from it.
+
+        Returns
+        -------
+        Trajectory
+            A new one; the card stays that of the motion.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such frame.
+
+        Examples
+        --------
+        A ball put down on a turning table stays there, and so runs backwards in the table's eyes:
+
+        >>> import trundle as tr
+        >>> table = tr.Support(tr.Plane(), motion=tr.Spin(1.0))
+        >>> system = tr.RollingSystem(tr.Body.solid_sphere(radius=0.025, mass=0.065), table)
+        >>> run = tr.simulate(system, system.place((0.5, 0.0)), duration=1.0, every=1.0)
+        >>> [round(float(c), 6) for c in run.in_frame("corotating").data.velocity[0]]
+        [0.0, -0.5, 0.0]
+        """
+        if frame not in frames.FRAMES:
+            raise UnknownNameError("frame", str(frame), frames.FRAMES)
+        if frame == self.frame:
+            return self
+        return replace(self, data=frames.change(self.data, self.system.support, self.frame, frame))
+
+    def at(self, times: Any) -> Trajectory:
+        """Return the motion at other instants, by the same method from the same start: nothing is interpolated.
+
+        Parameters
+        ----------
+        times : array (n,)
+            Ascending, s, from the start on; past the end of the run nothing is known to have changed.
+
+        Returns
+        -------
+        Trajectory
+            In the same frame.
+
+        Raises
+        ------
+        InvalidValueError
+            If the times are not finite, ascending and within the run.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.5, 1.0), tr.Support(tr.Plane()))
+        >>> run = tr.simulate(system, system.place(velocity=(1.0, 0.0)), duration=2.0, every=1.0)
+        >>> run.at([0.25]).data.position[0, 0].item()
+        0.25
+        """
+        wanted = np.atleast_1d(np.asarray(times, dtype=float))
+        first, last = float(self.data.time.values[0]), float(self.data.time.values[-1])
+        inside = wanted.size and np.isfinite(wanted).all() and wanted[0] >= first and wanted[-1] <= last
+        if not inside or (np.diff(wanted) < 0).any():
+            raise InvalidValueError("times", f"must ascend within the run, {first:g} to {last:g} s", times)
+        samples = solver(self.method)(self.system, self.start, wanted, self.tolerance)
+        data = dataset(self.system, samples, {**self.data.attrs, "frame": "support"})
+        return replace(self, data=data).in_frame(self.frame)
+
+    def card(self) -> Card:
+        """Return the verification card: what was checked, and how well it held.
+
+        Returns
+        -------
+        Card
+            Made once; a loaded trajectory brings its own.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> tr.Scenario.load("level-turntable-nudged").run(duration=5.0).card().passed
+        True
+        """
+        from . import verify
+
+        if "card" not in self._kept:
+            self._kept["card"] = verify.card(self.system, self.start, self.samples, self.method, self.title)
+        return self._kept["card"]
+
+    def plot(self, kind: str = "path") -> Figure:
+        """Draw the motion.
+
+        Parameters
+        ----------
+        kind : str
+            "path": the path in each frame, one sheet. "series": what changes over time.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            Shown by notebooks; save it with `savefig`.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such figure.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> len(tr.Scenario.load("level-turntable-nudged").run().plot().axes) >= 2
+        True
+        """
+        from . import plots
+
+        kinds = {"path": plots.path_figure, "series": plots.series_figure}
+        if kind not in kinds:
+            raise UnknownNameError("figure", str(kind), kinds)
+        return kinds[kind](self)
+
+    def save(self, path: Any) -> Path:
+        """Write the trajectory to a NetCDF4 file, whole or not at all, with scenario, versions and card.
+
+        Parameters
+        ----------
+        path : path
+            Such as ``"run.nc"``; its folder must exist.
+
+        Returns
+        -------
+        pathlib.Path
+            The file.
+
+        Raises
+        ------
+        TrundleError
+            If it cannot be written.
+
+        Examples
+        --------
+        >>> import pathlib, tempfile
+        >>> import trundle as tr
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     run = tr.Scenario.load("level-turntable-nudged").run()
+        ...     again = tr.Trajectory.load(run.save(pathlib.Path(folder) / "run.nc"))
+        >>> again.data.identical(run.data)
+        True
+        """
+        target = Path(path)
+        extra = {
+            "scenario": self.scenario,
+            "start": json.dumps(asdict(self.start)),
+            "events": json.dumps([asdict(event) for event in self.events]),
+            "card": self.card().as_json(),
+        }
+        with written_whole(target) as temporary:
+            self.data.assign_attrs(extra).to_netcdf(temporary, engine="h5netcdf")
+        return target
+
+    @staticmethod
+    def load(path: Any) -> Trajectory:
+        """Read a trajectory back; nothing is lost.
+
+        Parameters
+        ----------
+        path : path
+            A file that `save` wrote.
+
+        Returns
+        -------
+        Trajectory
+            As it was saved.
+
+        Raises
+        ------
+        TrundleError
+            If the file cannot be read or is no trajectory of trundle's.
+
+        Examples
+        --------
+        See `save`.
+        """
+        import xarray
+
+        from . import verify
+
+        try:
+            data = xarray.load_dataset(Path(path), engine="h5netcdf")
+        except (OSError, ValueError) as error:
+            raise TrundleError(f"{path} cannot be read as NetCDF4: {error}") from None
+        missing = [key for key in ("scenario", "start", "events", "card", "method", "frame") if key not in data.attrs]
+        if missing:
+            raise TrundleError(f"{path} is no trajectory of trundle's: it lacks the attributes {', '.join(missing)}.")
+        scenario, start, events, card = (data.attrs.pop(key) for key in ("scenario", "start", "events", "card"))
+        return Trajectory(
+            data,
+            ScenarioFile.loads(scenario, source=str(path)).system(),
+            State(**{key: tuple(v) if isinstance(v, list) else v for key, v in json.loads(start).items()}),
+            str(data.attrs["method"]),
+            tuple(Event(**event) for event in json.loads(events)),
+            scenario,
+            {"card": verify.Card.from_json(card)},
+        )
+
+
+def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any]) -> xarray.Dataset:
+    """Label the samples of a method.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Gives the slip, from velocity and Ω against the support's material.
+    samples : Samples
+        In the inertial support frame.
+    attributes : dict
+        Of the dataset; `frame` must be "support".
+
+    Returns
+    -------
+    xarray.Dataset
+        The design's variables over `time`.
+
+    Examples
+    --------
+    See `Trajectory.data`.
+    """
+    import xarray
+
+    arrays = {name: getattr(samples, name, None) for name in _VECTORS}
+    arrays["slip_velocity"] = slip(system, samples)
+    variables = {
+        name: (("time", "axis"), arrays[name], {"long_name": long_name, "units": unit})
+        for name, (long_name, unit) in _VECTORS.items()
+    }
+    turning = {"long_name": "orientation, unit quaternion from body frame to this frame", "units": "1"}
+    phase = {
+        "long_name": "phase of the contact",
+        "units": "1",
+        "flag_values": np.array(list(PHASES), dtype=np.int8),
+        "flag_meanings": " ".join(PHASES.values()),
+    }
+    return xarray.Dataset(
+        {
+            **variables,
+            "orientation": (("time", "quaternion"), samples.orientation, turning),
+            "phase": (("time",), np.zeros(samples.time.size, dtype=np.int8), phase),
+        },
+        coords={
+            "time": (("time",), samples.time, {"long_name": "time", "units": "s", "axis": "T"}),
+            "axis": ["x", "y", "z"],
+            "quaternion": ["w", "x", "y", "z"],
+        },
+        attrs={"Conventions": "CF-1.11", **attributes},
+    )
+
+
+def slip(system: RollingSystem, samples: Samples) -> Any:
+    """Return s = V + Ω×ρ − u(p) from a trajectory's own numbers.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Gives u.
+    samples : Samples
+        In the inertial support frame.
+
+    Returns
+    -------
+    array (n, 3)
+        m/s; zero where it rolls.
+
+    Examples
+    --------
+    See `Trajectory.data`.
+    """
+    u = system.support.motion.at(samples.time).material_velocity(Vector.of(samples.contact))
+    rho = Vector.of(samples.contact - samples.position)
+    s = Vector.of(samples.velocity) + Vector.of(samples.angular_velocity).cross(rho) - u
+    return np.broadcast_to(s.array(), samples.position.shape).copy()
+
+
+def attributes(title: str, method: str) -> dict[str, Any]:
+    """Return what a dataset says of itself: title, method, tolerance, frame and versions.
+
+    Parameters
+    ----------
+    title : str
+        Of the scenario.
+    method : str
+        One of `trundle.solve.methods.METHODS`.
+
+    Returns
+    -------
+    dict
+        Of text and numbers.
+
+    Examples
+    --------
+    >>> attributes("A ball", "exact")["frame"]
+    'support'
+    """
+    from importlib.metadata import version
+
+    packages = ["trundle", "numpy", *{"taylor": ["heyoka"], "runge-kutta": ["scipy"]}.get(method, [])]
+    return {
+        "title": title,
+        "method": method,
+        "tolerance": tolerance_of(method),
+        "frame": "support",
+        "source": ", ".join(f"{package} {version(package)}" for package in packages),
+    }
