@@ -118,8 +118,8 @@ def run(
             screen.out(f"{event.time:.6g} s: {event.text}")
         screen.out(f"Wrote {', '.join(str(path) for path in written)}")
     if not card.passed:
-        failed = [figure.name for figure in card.figures if figure.passed is False]
-        screen.note(f"trundle: the card fails: {', '.join(failed)}")
+        failed = ", ".join(figure.name for figure in card.failures)
+        screen.note(f"trundle: the card fails: {failed}")
         raise typer.Exit(CARD_FAILED)
 
 

@@ -95,19 +95,17 @@ def show_card(card: Card) -> None:
     from rich.text import Text
 
     verdicts = {True: Text("holds", style="green"), False: Text("FAILS", style="bold red"), None: Text("")}
-    table = Table("", "value", "unit", "at most", "", "note", box=SIMPLE_HEAD, title_justify="left")
+    table = Table("", "", "value", "at most", "how", box=SIMPLE_HEAD)
     for figure in card.figures:
-        bound = "" if figure.bound is None else f"{figure.bound:.3g}"
-        style = "bold red" if figure.passed is False else ""
-        cells = [Text(cell) for cell in (figure.name, _value(figure.value), figure.unit, bound)]
-        table.add_row(*cells, verdicts[figure.passed], Text(figure.note), style=style)
+        digits = 6 if figure.passed is None and figure.bound is None else 2
+        value = f"{figure.value:.{digits}g} {figure.unit}".rstrip()
+        bound = "" if figure.bound is None else f"{figure.bound:.2g}"
+        cells = [Text(cell) for cell in (figure.name, value, bound, figure.note)]
+        table.add_row(verdicts[figure.passed], *cells)
     console = _console()
     console.print(Text(card.title, style="bold"))
+    console.print(Text(f"method: {card.method}"))
     console.print(table)
-
-
-def _value(value: Any) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def _console(*, stderr: bool = False) -> Any:

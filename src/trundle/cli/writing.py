@@ -98,6 +98,9 @@ def write_together(folder: Path, files: Mapping[str, Callable[[Path], object]]) 
         if isinstance(error, RuntimeError) and "HDF5" not in str(error) and "H5" not in str(error):
             raise
         raise _failure(folder, error) from None
+    except TrundleError as error:  # a writer that explains itself knows only the folder of our own
+        message = str(error).replace(str(stage), str(folder))
+        raise CannotWriteError(f"{message} Nothing was written.") from None
     finally:
         shutil.rmtree(stage, ignore_errors=True)
     return [folder / name for name in files]

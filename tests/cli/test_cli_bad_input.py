@@ -1,0 +1,107 @@
+"""Bad input: one message that names key, value and remedy; exit status 2; nothing written, no folder made."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from trundle.scenario import files
+
+from .conftest import Command
+
+TEXT = files.read("level-turntable-nudged")
+NUDGE, TURNING = 'velocity = ["0 m/s", "0.1 m/s"]', "`start.angular_velocity`"
+ROWS = [  # (what stands in the file, what comes instead, the key, the value that came, the remedy)
+    ('radius = "25 mm"', 'radios = "25 mm"', "`body.radios`", "'25 mm'", "Did you mean 'radius'?"),
+    ('radius = "25 mm"', "", "`body.radius`", "nothing", 'radius = "25 mm"'),
+    ('radius = "25 mm"', 'radius = "25 kg"', "`body.radius`", "'25 kg'", "Write for instance '25 mm'"),
+    ('radius = "25 mm"', 'radius = "small"', "`body.radius`", "'small'", "Write for instance '25 mm'"),
+    ('radius = "25 mm"', "radius = 25 mm", "`line", "'radius = 25 mm'", 'radius = "25 mm"'),
+    ('radius = "25 mm"', "radius = nan", "`body.radius`", "nan", "NaN and infinities are refused"),
+    ('"33.3 rpm"', "inf", "`support.motion.rate`", "inf", "NaN and infinities are refused"),
+    ('radius = "25 mm"', "radius = 0", "`body.radius`", "0", "Write for instance"),
+    ('mass = "510 g"', 'mass = "-510 g"', "`body.mass`", "'-510 g'", "Write for instance"),
+    ('duration = "20 s"', "duration = 0", "`run.duration`", "0", "Write for instance"),
+    ('duration = "20 s"', "duration = -3", "`run.duration`", "-3", "Write for instance"),
+    ('every = "10 ms"', "every = 0", "`run.every`", "0", "Write for instance"),
+    ('every = "10 ms"', 'every = "30 s"', "`run.every`", "'30 s'", "shorter step"),
+    ('"20 cm"', '"60 cm"', "`start.position`", "'60 cm'", "the rim is at 0.5 m"),
+    ('kind = "plane"', 'kind = "plane"\ntilt = "90 deg"', "`support.tilt`", "'90 deg'", "wall"),
+    ('kind = "plane"', 'kind = "plane"\ntilt = 5', "`support.tilt`", "5", 'Did you mean "5 deg"?'),
+    (NUDGE, "spin = 1\nangular_velocity = [0, 0, 1]", TURNING, "[0.0, 0.0, 1.0]", "Give `spin`"),
+    (NUDGE, "angular_velocity = [0, 0, 1]", TURNING, "slip", "Give `spin`"),
+    ('duration = "20 s"', "duration = 1e10", "`run.every`", "'10 ms'", "1,000,000,000,001"),
+    (TEXT, "", "`scenario`", "''", "trundle show"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("there", "instead", "key", "value", "remedy"), ROWS)
+def test_a_bad_file(
+    here: Command, folder: Path, there: str, instead: str, key: str, value: str, remedy: str
+) -> None:
+    assert TEXT.count(there) == 1
+    (folder / "bad.toml").write_text(TEXT.replace(there, instead), encoding="utf-8")
+    done = here("run", "bad.toml")
+    assert (done.status, done.out, done.files) == (2, "", {"bad.toml"})
+    (message,) = done.err.splitlines()
+    assert message.startswith(f"trundle: bad.toml: {key}")
+    assert value in message.partition("; got ")[2]
+    assert remedy in message
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["no-such-one"], "`scenario` must be a file or the name of a shipped scenario; got 'no-such-one'"),
+        (["titled-turntable"], "Did you mean 'tilted-turntable'?"),
+        (["."], "This is a folder"),
+        (["tilted-turntable", "--duration", "0"], "`--duration` must be positive; got '0'"),
+        (["tilted-turntable", "--duration", "20 m"], "`--duration` must be a time; got '20 m'"),
+        (["tilted-turntable", "--every", "nan"], "`--every` must be a finite number; got 'nan'"),
+        (["tilted-turntable", "--every", "1 h"], "`--every` must not be longer than the run"),
+        (["tilted-turntable", "--every", "1e-12"], "`--every` must leave at most 10,000,000 samples"),
+        (["tilted-turntable", "--method", "tailor"], "`--method` must be one of those that exist; got 't"),
+        (["tilted-turntable", "--method", "tailor"], "Did you mean 'taylor'?"),
+        (["tilted-turntable", "-o", "file"], "`--output` must be a folder; got 'file'"),
+        (["tilted-turntable", "-o", "file/below"], "`--output` must be a folder; got 'file/below'"),
+    ],
+)  # fmt: skip
+def test_bad_words(here: Command, folder: Path, words: list[str], said: str) -> None:
+    (folder / "file").write_text("in the way")
+    done = here("run", *words)
+    assert (done.status, done.out, done.files) == (2, "", {"file"})
+    assert said in done.err
+    assert len(done.err.splitlines()) == 1
+
+
+@pytest.mark.parametrize("option", ["--quiet", "--json"])
+def test_errors_are_told_even_when_quiet(here: Command, option: str) -> None:
+    done = here("run", "no-such-scenario", option)
+    assert (done.status, done.out) == (2, "")
+    assert done.err.startswith("trundle: `scenario` must be a file")
+
+
+def test_the_same_in_a_process_of_its_own(trundle: Command, folder: Path) -> None:
+    (folder / "bad.toml").write_bytes(b"\xff\xfe\x00")
+    done = trundle("run", "bad.toml")
+    assert (done.status, done.out, done.files) == (2, "", {"bad.toml"})
+    assert done.err == (
+        "trundle: bad.toml: `scenario` must be text in UTF-8; got 'byte 0xff in line 1'. "
+        "It looks like UTF-16: save it as UTF-8.\n"
+    )
+
+
+def test_what_is_no_bad_input_is_called_a_bug(here: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    def break_down(*_: object) -> list[str]:
+        raise ZeroDivisionError("at the worst moment")
+
+    monkeypatch.setattr(files, "names", break_down)
+    done = here("list")
+    assert done.status == 1
+    assert done.err == (
+        "trundle: this is a bug in trundle, ZeroDivisionError: at the worst moment\n"
+        "Please report it with the traceback, which TRUNDLE_DEBUG=1 in the environment prints.\n"
+    )
+    monkeypatch.setenv("TRUNDLE_DEBUG", "1")
+    assert "Traceback" in here("list").err
