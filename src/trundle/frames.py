@@ -95,4 +95,4 @@ def _vectors(data: xarray.Dataset) -> dict[Any, Vector]:
 def _with(data: xarray.Dataset, vectors: dict[Any, Vector], turn: Quaternion) -> xarray.Dataset:
     changed = {name: data[name].copy(data=vector.array()) for name, vector in vectors.items()}
     q = turn * Quaternion.of(data.orientation.values)
-    return data.assign(changed, orientation=data.orientation.copy(data=q.array()))
+    return data.assign({**changed, "orientation": data.orientation.copy(data=q.array())})

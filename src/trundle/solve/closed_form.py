@@ -164,7 +164,7 @@ def _first_exit(motion: Any, rim: float | None, duration: float) -> float | None
     for first in range(0, looks - 1, _LOOKS_AT_ONCE):
         index = np.arange(first, min(first + _LOOKS_AT_ONCE, looks - 1) + 1)
         t = index * (duration / (looks - 1))
-        out, rising = excess(t) >= 0, growth(t) > 0
+        out, rising = (np.broadcast_to(test, t.shape) for test in (excess(t) >= 0, growth(t) > 0))
         peaks = rising[:-1] & ~rising[1:] & ~out[1:]  # a maximum between two looks, both inside
         for j in np.flatnonzero(peaks | out[1:]):
             begin, end = float(t[j]), float(t[j + 1])

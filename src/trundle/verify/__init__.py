@@ -1,0 +1,276 @@
+"""What is checked of every trajectory, and the card that shows it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..mechanics.algebra import Quaternion, Vector
+from ..mechanics.invariants import Record, invariants_of
+from ..mechanics.loads import BodyMotion
+from ..mechanics.system import RollingSystem, State
+from ..solve.exact import SphereOnPlane, closed_form
+from ..solve.methods import solver, tolerance_of
+from ..solve.samples import Samples
+from .card import Card, CardFigure
+from .circle import measure
+from .law import residuals, window_times
+
+Array = NDArray[np.float64]
+
+# The two tolerances of a card, as shares: what rounding may do, and how many times the tolerance asked a method may
+# be off (per radian turned, for what adds up over a run).
+EXACT, SOLVER = 1e-12, 1e3
+_MOST_SAMPLES = 20_000  # looked at for integrals
+_CROSS_CHECKED = 200  # instants
+_MOST_RADIANS = 50_000.0  # of turning that a cross-check follows
+
+
+def card(system: RollingSystem, start: State, samples: Samples, method: str, title: str = "") -> Card:
+    """Check a trajectory and return what was found.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        What moved.
+    start : State
+        Where it started.
+    samples : Samples
+        The trajectory in the inertial support frame.
+    method : str
+        That made it.
+    title : str
+        Of the run.
+
+    Returns
+    -------
+    Card
+        Each figure with its bound.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> run = tr.Scenario.load("tilted-turntable").run()
+    >>> run.card()["no slip"].passed
+    True
+    """
+    motion = closed_form(system, start)
+    every = max(1, samples.time.size // _MOST_SAMPLES)
+    some = samples.part(slice(None, None, every)) if every > 1 else samples
+    figures = [
+        _no_slip(system, some, method),
+        *_law(system, start, some, method),
+        *_integrals(system, some, method),
+        *_guiding_centre(motion, start, some, method),
+        *_cross_check(system, start, some, method, motion),
+        *_circle(motion, start, samples, method),
+        *_contact_force(system, samples),
+    ]
+    return Card(title, _described(method, motion), tuple(figures))
+
+
+def _described(method: str, motion: SphereOnPlane | None) -> str:
+    if method == "exact" and motion is not None:
+        return f"closed form {motion.equation}, {motion.name} ({motion.source})"
+    name = {"taylor": "Taylor series (heyoka)", "runge-kutta": "Runge-Kutta DOP853 (SciPy)"}[method]
+    return f"{name}, tolerance {tolerance_of(method):g}"
+
+
+def _bound(method: str, turned: float = 1.0) -> float:
+    return max(EXACT, SOLVER * tolerance_of(method)) * max(1.0, turned / SOLVER)
+
+
+def _turned(samples: Samples) -> float:
+    """Return about how many radians the body turned."""
+    span = float(samples.time[-1] - samples.time[0])
+    return float(np.linalg.norm(samples.angular_velocity, axis=1).max()) * span
+
+
+def _checked(name: str, value: float, bound: float, note: str, unit: str = "") -> CardFigure:
+    value = float(value)
+    return CardFigure(name, value, unit, bound, bool(value <= bound), note)
+
+
+def _no_slip(system: RollingSystem, at: Samples, method: str) -> CardFigure:
+    u = system.support.motion.at(at.time).material_velocity(Vector.of(at.contact))
+    turning = Vector.of(at.angular_velocity).cross(Vector.of(at.contact - at.position))
+    V = Vector.of(at.velocity)
+    slip = (V + turning - u).norm()
+    size = max(float(np.max(speed.norm())) for speed in (V, turning, u))
+    return _checked("no slip", float(np.max(slip)) / max(size, 1e-300), _bound(method), "|V + Ω×ρ − u| over the speed")
+
+
+def _law(system: RollingSystem, start: State, at: Samples, method: str) -> Iterator[CardFigure]:
+    begin, end = float(at.time[0]), float(at.time[-1])
+    rate = system.support.motion.steady_rate or 0.0
+    fastest = float(np.linalg.norm(at.angular_velocity, axis=1).max()) + abs(float(rate)) + 1 / (end - begin)
+    times = window_times(begin, end, fastest)
+    windows = solver(method)(system, start, times.ravel(), tolerance_of(method))
+    found = residuals(system, windows, times)
+    # A slope taken over one radian of turning multiplies a method's own error by some tens.
+    bound = max(EXACT * 10, 100 * SOLVER * tolerance_of(method))
+    yield _checked("velocity is the slope of the path", found.path, bound, "at 24 instants, share of the speed")
+    yield _checked(
+        "law of motion", found.law, bound, "Newton, Euler and the constraint as one 9×9 system; T2 not used"
+    )
+    yield _checked(
+        "virtual power of the reaction", found.virtual_power, bound, "over the admissible velocities (d'Alembert)"
+    )
+
+
+def _integrals(system: RollingSystem, at: Samples, method: str) -> Iterator[CardFigure]:
+    motion = BodyMotion(
+        at.time,
+        system.body.mass,
+        Vector.of(at.position),
+        Vector.of(at.velocity),
+        Quaternion.of(at.orientation),
+        Vector.of(at.angular_velocity),
+    )
+    record, bound = Record(motion, Vector.of(at.contact)), _bound(method, _turned(at))
+    for integral in invariants_of(system):
+        terms = [_as_array(term, at.time.size) for term in integral.terms(system, record)]
+        drift = _drift(sum(terms), max(float(np.abs(term).max()) for term in terms))
+        yield _checked(f"drift of the {integral.name}", drift, bound, f"{integral.formula} stays the same")
+
+
+def _as_array(term: Any, count: int) -> Array:
+    array = term.array() if isinstance(term, Vector) else np.asarray(term, dtype=float)
+    return np.broadcast_to(array, (count, *array.shape[1:])) if array.ndim else np.full(count, float(array))
+
+
+def _drift(values: Any, size: float) -> float:
+    change = np.abs(values - values[0]).max()
+    return 0.0 if change == 0 else float(change / max(size, 1e-300))
+
+
+def _guiding_centre(
+    motion: SphereOnPlane | None, start: State, at: Samples, method: str
+) -> Iterator[CardFigure]:
+    """Check centre and radius of the circle from positions and velocities: integrals on a turning plane."""
+    if motion is None or not motion.has_guiding_centre:
+        return
+    t = at.time - start.time
+    kappa, drift = motion.kappa, complex(*motion.drift_velocity)
+    zeta, rate = (a[:, 0] + 1j * a[:, 1] for a in (at.position, at.velocity))
+    arm = -1j * (rate - drift) / kappa
+    centre = zeta - arm - drift * t
+    size = max(np.abs(zeta).max(), np.abs(arm).max(), np.abs(drift * t).max())
+    bound = _bound(method, _turned(at))
+    yield _checked(
+        "drift of the circle's centre", _drift(centre, size), bound, "ζ + i(ζ̇ − v_d)/κ − v_d t stays the same"
+    )
+    yield _checked("drift of the circle's radius", _drift(np.abs(arm), size), bound, "|ζ̇ − v_d|/κ stays the same")
+
+
+def _cross_check(
+    system: RollingSystem, start: State, at: Samples, method: str, motion: SphereOnPlane | None
+) -> Iterator[CardFigure]:
+    """Compare a closed form with a numerical method, whichever of the two made the run."""
+    if motion is None:
+        return
+    from ..solve.taylor import available
+
+    other = ("taylor" if available() else "runge-kutta") if method == "exact" else "exact"
+    numerical = other if method == "exact" else method
+    span = float(at.time[-1] - start.time)
+    speed = float(np.linalg.norm(at.angular_velocity, axis=1).max())
+    reach = start.time + min(span, _MOST_RADIANS / max(speed, 1e-300))
+    chosen = np.unique(np.linspace(0, np.searchsorted(at.time, reach, side="right") - 1, _CROSS_CHECKED).astype(int))
+    ours = at.part(chosen)
+    theirs = solver(other)(system, start, ours.time, tolerance_of(other))
+    count = min(theirs.time.size, ours.time.size)
+    ours, theirs = ours.part(slice(0, count)), theirs.part(slice(0, count))
+    turned = speed * float(ours.time[-1] - start.time)
+    bound = _bound(numerical, turned)
+    over = f"over {ours.time[-1] - start.time:g} s, {count} instants"
+    name = f"closed form against {'Taylor' if numerical == 'taylor' else 'Runge-Kutta'}"
+    difference = max(
+        _largest(getattr(ours, field) - getattr(theirs, field)) / max(_largest(getattr(ours, field)), 1e-300)
+        for field in ("position", "velocity", "angular_velocity")
+        if _largest(getattr(ours, field)) > 0
+    )
+    yield _checked(name, difference, bound, f"position, velocity, Ω; {over}")
+    turn = Quaternion.of(ours.orientation) * Quaternion.of(theirs.orientation).conjugate
+    angle = 2 * np.linalg.norm(turn.array()[:, 1:], axis=1).max()
+    yield _checked(f"{name}, orientation", angle, max(bound, EXACT * 10), "angle between the two", "rad")
+
+
+def _largest(array: Array) -> float:
+    return float(np.linalg.norm(array, axis=-1).max())
+
+
+def _circle(motion: SphereOnPlane | None, start: State, samples: Samples, method: str) -> Iterator[CardFigure]:
+    """Measure rate, centre and drift from the positions alone, beside the formula's."""
+    if motion is None or not motion.has_guiding_centre:
+        return
+    t = samples.time - start.time
+    path = samples.position[:, 0] + 1j * samples.position[:, 1]
+    even = np.isclose(np.diff(t), t[1] - t[0], rtol=1e-6)
+    whole = t.size if even.all() else int(np.argmin(even)) + 1
+    found = measure(t[:whole], path[:whole]) if motion.circle_radius > 0 else None
+    turns = abs(motion.kappa) * float(t[-1]) / (2 * math.pi)
+    yield CardFigure("circle rate by the formula", motion.kappa, "rad/s", note="κ = ω k/(1 + k)")
+    if motion.circle_radius == 0:
+        moved = float(np.abs(path - path[0] - complex(*motion.drift_velocity) * t).max())
+        size = max(float(np.abs(path).max()), 1e-300)
+        yield _checked("stays where it was put", moved / size, _bound(method), "largest departure over the distance")
+        return
+    if found is None or turns < 0.25 or found.rate_error > 1e-6 * abs(motion.kappa):
+        yield CardFigure("circle not measured", turns, "turns", note="the run shows too little of the circle")
+        return
+    slack = max(10.0, SOLVER * tolerance_of(method) / 2.2e-16)
+    centre, drift = complex(*motion.guiding_centre(0.0)), complex(*motion.drift_velocity)
+    for name, value, formula, error, unit in (
+        ("circle rate measured", found.rate, motion.kappa, found.rate_error, "rad/s"),
+        ("centre measured", found.centre, centre, found.centre_error, "m"),
+        ("drift measured", found.drift, drift, found.drift_error, "m/s"),
+    ):
+        scale = max(abs(formula), 1e-300)
+        shown = f"{value:.12g} {unit}" if isinstance(value, float) else _pair(value, unit)
+        wanted = f"{formula:.12g}" if isinstance(value, float) else _pair(formula, "")
+        if abs(formula) <= error:
+            yield _checked(f"{name}, off the formula's", abs(value - formula), slack * error, f"{shown}", unit)
+        else:
+            bound = max(slack * error / scale, EXACT)
+            note = f"{shown}; formula {wanted}"
+            yield _checked(f"{name}, off the formula's", abs(value - formula) / scale, bound, note)
+
+
+def _pair(value: complex, unit: str) -> str:
+    return f"({value.real:.9g}, {value.imag:.9g}) {unit}".rstrip()
+
+
+def _contact_force(system: RollingSystem, samples: Samples) -> Iterator[CardFigure]:
+    """Say what friction the motion needs, and whether the support pushes rather than pulls."""
+    contact = samples.part(slice(None))
+    normal = _normals(system, contact)
+    N = np.einsum("ni,ni->n", contact.contact_force, normal)
+    f = np.linalg.norm(contact.contact_force - N[:, None] * normal, axis=1)
+    least = int(np.argmin(N))
+    yield CardFigure(
+        "normal force", float(N[least]), "N", None, bool(N[least] > 0), f"least, at t = {samples.time[least]:.6g} s"
+    )
+    needed = np.where(N > 0, f / np.where(N > 0, N, 1.0), np.where(f > 0, np.inf, 0.0))
+    worst = int(np.argmax(needed))
+    mu = system.support.friction
+    note = f"max |f|/N, at t = {samples.time[worst]:.6g} s"
+    if mu is None:
+        yield CardFigure("friction coefficient needed", float(needed[worst]), note=note)
+    else:
+        remedy = "" if needed[worst] <= mu else "; it would slip"
+        yield _checked("friction coefficient needed", float(needed[worst]), float(mu), note + remedy)
+
+
+def _normals(system: RollingSystem, at: Samples) -> Array:
+    from ..mechanics.contact import touch
+
+    normal = touch(system, at.time, Vector.of(at.contact), Quaternion.of(at.orientation)).normal
+    return np.broadcast_to(normal.array(), at.position.shape)
+
+
+__all__ = ["Card", "CardFigure", "card"]

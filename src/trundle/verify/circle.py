@@ -1,0 +1,130 @@
+"""The circle measured from a path alone: rate, centre and drift, without a look at the formula."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+_MOST_POINTS = 4000
+
+
+@dataclass(frozen=True)
+class MeasuredCircle:
+    """A path fitted by ζ(t) = centre + drift·t + arm·e^{iκt}, with the digits that the fit can have.
+
+    Parameters
+    ----------
+    rate : float
+        κ, rad/s.
+    centre, drift, arm : complex
+        x + iy: m, m/s and m, at t = 0.
+    residual : float
+        Largest distance of the path from the fit, m.
+    rate_error, centre_error, drift_error : float
+        What one rounding of the path's coordinates can do to each, rad/s, m, m/s.
+
+    Examples
+    --------
+    >>> t = np.linspace(0.0, 20.0, 400)
+    >>> circle = measure(t, 1.0 + 0.3j + 0.1 * t + 0.5 * np.exp(0.8j * t))
+    >>> round(circle.rate, 12), round(abs(circle.arm), 12), round(circle.drift.real, 12)
+    (0.8, 0.5, 0.1)
+    """
+
+    rate: float
+    centre: complex
+    drift: complex
+    arm: complex
+    residual: float
+    rate_error: float
+    centre_error: float
+    drift_error: float
+
+
+def measure(times: Array, path: NDArray[np.complex128]) -> MeasuredCircle | None:
+    """Fit a drifting circle to a path.
+
+    Parameters
+    ----------
+    times : array (n,)
+        From 0 on, evenly spaced, s.
+    path : complex array (n,)
+        x + iy, m.
+
+    Returns
+    -------
+    MeasuredCircle or None
+        None where the path shows no circle: too few points, or no turning beyond rounding.
+
+    Examples
+    --------
+    See `MeasuredCircle`.
+    """
+    keep = np.unique(np.linspace(0, times.size - 1, min(times.size, _MOST_POINTS)).astype(int))
+    t, z = times[keep], path[keep]
+    if t.size < 8:
+        return None
+    rate = _first_guess(times, path)
+    if rate is None:
+        return None
+    length, size = float(t[-1]), float(np.abs(z - z.mean()).max())
+    for _ in range(12):
+        turning = np.exp(1j * rate * t)
+        design = np.stack([np.ones_like(turning), t / length, turning], axis=1)
+        fit = np.linalg.lstsq(design, z, rcond=None)[0]
+        slope = 1j * (t / length) * fit[2] * turning
+        step = _real_step(np.column_stack([design, slope]), z - design @ fit)
+        rate += step / length
+        if abs(step) < 1e-15 * (1 + abs(rate) * length):
+            break
+    if not np.isfinite(rate):
+        return None
+    rounding = np.finfo(float).eps * (size + float(np.abs(z).max()))
+    errors = _errors(np.column_stack([design, slope]), rounding)
+    return MeasuredCircle(
+        float(rate),
+        complex(fit[0]),
+        complex(fit[1] / length),
+        complex(fit[2]),
+        float(np.abs(z - design @ fit).max()),
+        errors[3] / length,
+        errors[0],
+        errors[1] / length,
+    )
+
+
+def _first_guess(times: Array, path: NDArray[np.complex128]) -> float | None:
+    """Return the rate at which the second differences of the path turn (centre and drift drop out of them)."""
+    step = float(times[1] - times[0])
+    stride = 1
+    while True:  # as wide a stride as the turning of one step allows
+        z = path[::stride]
+        if z.size < 8:
+            return None
+        bend = z[2:] - 2 * z[1:-1] + z[:-2]
+        if np.abs(bend).max() <= 1e-13 * np.abs(path).max():
+            stride *= 2
+            continue
+        turn = float(np.angle(np.vdot(bend[:-1], bend[1:])))
+        if abs(turn) < 0.3 and z.size > 64:
+            stride *= 2
+            continue
+        return turn / (step * stride)
+
+
+def _real_step(design: NDArray[np.complex128], rest: NDArray[np.complex128]) -> float:
+    """Return the change of the rate (a real number) that a linear fit of the rest asks for."""
+    others, column = design[:, :3], design[:, 3]
+    project = np.linalg.lstsq(others, np.stack([column, rest], axis=1), rcond=None)[0]
+    free, left = column - others @ project[:, 0], rest - others @ project[:, 1]
+    return float(np.real(np.vdot(free, left)) / max(np.real(np.vdot(free, free)), 1e-300))
+
+
+def _errors(design: NDArray[np.complex128], rounding: float) -> list[float]:
+    """Return what roundings of that size in each point do to each parameter, at worst."""
+    inverse = np.linalg.pinv(design)
+    return [float(rounding * np.abs(row).sum()) for row in inverse]

@@ -1,0 +1,161 @@
+"""The law checked by a route that does not use T2: Newton, Euler and the differentiated constraint, solved together.
+
+Rates come from the trajectory's own numbers: each is the slope at the middle of a polynomial through a short window.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..mechanics.algebra import Quaternion, Vector
+from ..mechanics.contact import touch
+from ..mechanics.loads import BodyMotion
+from ..mechanics.system import RollingSystem
+from ..solve.samples import Samples
+
+Array = NDArray[np.float64]
+
+WINDOWS = 24
+_HALF_NODES = 6  # a polynomial of degree 12
+_PHASE_A_WINDOW = 1.0  # rad of the fastest rotation
+
+
+@dataclass(frozen=True)
+class Residuals:
+    """How far a trajectory is from the law, each as a share of the terms that it is made of."""
+
+    path: float  # |ṗ − u − ...|: the slope of the position against the velocity
+    law: float  # accelerations and reaction against the 9 × 9 system
+    virtual_power: float  # of the reaction over the admissible velocities
+
+
+def window_times(begin: float, end: float, fastest: float) -> Array:
+    """Return the instants of short windows spread over a run.
+
+    Parameters
+    ----------
+    begin, end : float
+        Of the run, s.
+    fastest : float
+        The largest rate in the motion, rad/s.
+
+    Returns
+    -------
+    array (WINDOWS, nodes)
+        Chebyshev points of each window, ascending, s.
+
+    Examples
+    --------
+    >>> window_times(0.0, 10.0, 1.0).shape
+    (24, 13)
+    """
+    width = min(end - begin, _PHASE_A_WINDOW / max(fastest, 1e-300))
+    golden = 0.6180339887498949
+    middles = begin + width / 2 + np.sort((golden * (1 + np.arange(WINDOWS))) % 1.0) * (end - begin - width)
+    nodes = -np.cos(np.pi * np.arange(2 * _HALF_NODES + 1) / (2 * _HALF_NODES))
+    return np.clip(middles[:, None] + nodes * (width / 2), begin, end)
+
+
+def _slope_at_middle(times: Array, values: Array) -> Array:
+    """Return dy/dt at the middle node of each window; values (windows, nodes, ...)."""
+    middle = times[:, _HALF_NODES]
+    half = (times[:, -1:] - times[:, :1]) / 2
+    x = (times - middle[:, None]) / half
+    # Barycentric weights of Chebyshev points: alternating signs, half at the ends (Berrut and Trefethen 2004).
+    weights = (-1.0) ** np.arange(x.shape[1])
+    weights[[0, -1]] /= 2
+    weights /= weights[_HALF_NODES]
+    x[:, _HALF_NODES] = 1.0
+    row = weights / -x
+    row[:, _HALF_NODES] = 0.0
+    change = values - values[:, _HALF_NODES : _HALF_NODES + 1]
+    return np.einsum("wn,wn...->w...", row / half, change)
+
+
+def residuals(system: RollingSystem, windows: Samples, times: Array) -> Residuals:
+    """Compare a trajectory with the law by the independent route.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        What moved.
+    windows : Samples
+        The trajectory at `times.ravel()`.
+    times : array (windows, nodes)
+        As `window_times` returns them.
+
+    Returns
+    -------
+    Residuals
+        The largest over the windows.
+
+    Examples
+    --------
+    See `trundle.verify.card`.
+    """
+    shape = times.shape
+
+    def slope(array: Array) -> Array:
+        return _slope_at_middle(times, array.reshape(*shape, -1))
+
+    V_rate, Omega_rate = slope(windows.velocity), slope(windows.angular_velocity)
+    p_rate, r_rate = slope(windows.contact), slope(windows.position)
+    middle = windows.part(np.arange(_HALF_NODES, times.size, shape[1]))
+    m, V, Omega = float(system.body.mass), middle.velocity, middle.angular_velocity
+    rho = middle.contact - middle.position
+    F, K, J, gyroscopic, u_rate = _applied(system, middle, p_rate)
+    solved = _newton_euler(m, J, rho, F, K - gyroscopic, u_rate - np.cross(Omega, p_rate - V))
+
+    rate = np.linalg.norm(Omega, axis=1).max() + np.abs(V_rate).max() / max(np.abs(V).max(), 1e-300)
+    a_size = max(np.abs(F).max() / m, np.abs(V_rate).max(), np.abs(V).max() * rate, 1e-300)
+    turn_size = max(np.abs(Omega_rate).max(), np.abs(Omega).max() * rate, np.abs(solved[1]).max(), 1e-300)
+    R = middle.contact_force
+    law = max(
+        np.abs(solved[0] - V_rate).max() / a_size,
+        np.abs(solved[1] - Omega_rate).max() / turn_size,
+        np.abs(solved[2] - R).max() / (m * a_size),
+    )
+    path = np.abs(r_rate - V).max() / max(np.abs(V).max(), np.abs(middle.position).max() * rate, 1e-300)
+
+    force = m * V_rate - F  # the reaction and its torque as the motion shows them
+    torque = np.einsum("nij,nj->ni", J, Omega_rate) + gyroscopic - K
+    power = [
+        np.abs((force * np.cross(rho, turn)).sum(axis=1) + torque @ turn).max()  # δV = −δΩ×ρ = ρ×δΩ
+        for turn in np.eye(3)
+    ]
+    torque_size = m * a_size * np.linalg.norm(rho, axis=1).max()
+    return Residuals(float(path), float(law), float(max(power) / max(torque_size, 1e-300)))
+
+
+def _applied(system: RollingSystem, at: Samples, p_rate: Array) -> tuple[Array, ...]:
+    """Return F, K, J, Ω×JΩ and u̇ at each instant, as arrays."""
+    q, shape = Quaternion.of(at.orientation), at.position.shape
+    motion = BodyMotion(
+        at.time, system.body.mass, Vector.of(at.position), Vector.of(at.velocity), q, Vector.of(at.angular_velocity)
+    )
+    force, torque = system.loads_on(motion)
+    tensor = system.body.inertia_in_space(q.matrix())
+    J = np.stack([np.broadcast_to(row.array(), shape) for row in tensor.rows], axis=1)
+    JOmega = np.einsum("nij,nj->ni", J, at.angular_velocity)
+    support = touch(system, at.time, Vector.of(at.contact), q).support
+    u_rate = support.material_acceleration(Vector.of(at.contact), Vector.of(p_rate))
+    F, K, u = (np.broadcast_to(v.array(), shape) for v in (force, torque, u_rate))
+    return F, K, J, np.cross(at.angular_velocity, JOmega), u
+
+
+def _newton_euler(m: float, J: Array, rho: Array, F: Array, K: Array, constraint: Array) -> tuple[Any, Any, Any]:
+    """Solve m V̇ − R = F, J Ω̇ − ρ×R = K − Ω×JΩ, V̇ − ρ×Ω̇ = u̇ − Ω×ρ̇ for V̇, Ω̇ and R."""
+    n, one = len(F), np.eye(3)
+    cross = np.zeros((n, 3, 3))
+    cross[:, 0, 1], cross[:, 0, 2], cross[:, 1, 2] = -rho[:, 2], rho[:, 1], -rho[:, 0]
+    cross -= cross.transpose(0, 2, 1)
+    A = np.zeros((n, 9, 9))
+    A[:, :3, :3], A[:, :3, 6:] = m * one, -one
+    A[:, 3:6, 3:6], A[:, 3:6, 6:] = J, -cross
+    A[:, 6:, :3], A[:, 6:, 3:6] = one, -cross
+    x = np.linalg.solve(A, np.concatenate([F, K, constraint], axis=1)[..., None])[..., 0]
+    return x[:, :3], x[:, 3:6], x[:, 6:]
