@@ -78,13 +78,18 @@ def run(
         typer.Option("--output", "-o", metavar="FOLDER", help="Default: a folder of the scenario's name."),
     ] = None,
     method: Annotated[
-        str | None, typer.Option(help="auto, exact, taylor or runge-kutta.", autocompletion=lambda: METHODS)
+        str | None,
+        typer.Option(
+            metavar="METHOD", help="auto, exact, taylor or runge-kutta.", autocompletion=lambda: METHODS
+        ),
     ] = None,
     duration: Annotated[
-        str | None, typer.Option(help="Length of the run, such as '60 s', in place of the file's.")
+        str | None,
+        typer.Option(metavar="TIME", help="Length of the run, such as '60 s', in place of the file's."),
     ] = None,
     every: Annotated[
-        str | None, typer.Option(help="Time between samples, such as '10 ms', in place of the file's.")
+        str | None,
+        typer.Option(metavar="TIME", help="Time between samples, such as '10 ms', in place of the file's."),
     ] = None,
     no_figure: Annotated[bool, typer.Option("--no-figure", help="Draw no figures.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
