@@ -1,0 +1,159 @@
+"""What a figure says about a run besides its samples: title, key numbers, guiding centre, turns."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trundle.mechanics.loads import Drag, Force, Torque
+from trundle.solve.exact import closed_form
+
+from .scales import Array, as_ratio, with_unit
+
+if TYPE_CHECKING:
+    from trundle.mechanics.system import RollingSystem
+    from trundle.trajectory import Trajectory
+
+# Below this part of the natural size a length, speed or force is rounding error, and drawn as zero.
+NOTHING = 1e-9
+
+
+@dataclass(frozen=True)
+class Facts:
+    """The numbers of a system that a figure shows."""
+
+    title: str
+    numbers: str
+    radius: float
+    tilt: float
+    rate: float
+    rim: float | None
+    friction: float | None
+    pushes: tuple[tuple[str, float, float], ...]  # name and direction, in the plane, of what acts on the body
+
+    @property
+    def tilted(self) -> bool:
+        """Whether the support leans."""
+        return self.tilt != 0.0
+
+    @property
+    def turning(self) -> bool:
+        """Whether the support turns."""
+        return self.rate != 0.0
+
+
+def facts_of(run: Trajectory) -> Facts:
+    """Gather what the figures show of a run's system."""
+    system = run.system
+    support = system.support
+    surface = support.surface
+    return Facts(
+        title=_title(run),
+        numbers=_key_numbers(system),
+        radius=float(getattr(system.body.shape, "radius", 0.0)),
+        tilt=float(support.tilt),
+        rate=float(support.motion.steady_rate or 0.0),
+        rim=None if surface.rim is None else float(surface.rim),
+        friction=None if support.friction is None else float(support.friction),
+        pushes=_pushes(system),
+    )
+
+
+def guiding_centre(run: Trajectory, times: Array) -> Array | None:
+    """Return the point about which the ball circles, (n, 2), m, support frame, where a closed form has it."""
+    form = closed_form(run.system, run.start)
+    if form is None or not form.has_guiding_centre:
+        return None
+    x, y = form.guiding_centre(times - run.start.time)
+    return np.column_stack([x, y])
+
+
+def turns_in(time: Array, velocity: Array) -> float:
+    """Count the turns of the acceleration, which on a turntable are steady even where the ball halts.
+
+    Parameters
+    ----------
+    time : (n,) array
+        s.
+    velocity : (n, 2) array
+        m/s.
+
+    Returns
+    -------
+    float
+        Turns over the whole run, without sign.
+
+    Examples
+    --------
+    >>> t = np.linspace(0.0, 10.0, 501)
+    >>> round(turns_in(t, np.column_stack([np.cos(t), np.sin(t)])) * 2 * np.pi, 1)
+    10.0
+    """
+    seen = slice(0, 200_000)
+    change = np.diff(velocity[seen], axis=0)
+    real = np.hypot(*change.T) > 1e-12 * max(float(np.max(np.hypot(*velocity[seen].T))), 1e-300)
+    before, after = change[:-1], change[1:]
+    angle = np.arctan2(
+        before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], np.sum(before * after, axis=1)
+    )[real[:-1] & real[1:]]
+    if not len(angle):
+        return 0.0
+    duration = float(time[-1] - time[0])
+    return abs(float(np.sum(angle))) / (2 * math.pi) * duration / float(np.sum(np.diff(time[seen])[1:]))
+
+
+def _title(run: Trajectory) -> str:
+    given = run.data.attrs.get("title")
+    if not given:
+        try:
+            given = tomllib.loads(str(run.data.attrs.get("scenario", ""))).get("title")
+        except tomllib.TOMLDecodeError:
+            given = None
+    if given:
+        return "".join(letter if letter.isprintable() else " " for letter in str(given))
+    support = run.system.support
+    turning = "turning" if support.motion.steady_rate else "fixed"
+    return f"Ball on a {turning}{', tilted' if support.tilt else ''} plane"
+
+
+def _key_numbers(system: RollingSystem) -> str:
+    body, support = system.body, system.support
+    parts = []
+    rate = support.motion.steady_rate
+    if rate:
+        parts.append(f"table {_rate(rate)}")
+    if support.tilt:
+        parts.append(f"tilt {math.degrees(support.tilt):.4g}°".replace("-", "−"))
+    if body.is_isotropic_sphere:
+        parts.append(f"inertia ratio k = {as_ratio(float(body.inertia_ratio))}")
+        radius = float(getattr(body.shape, "radius", 0.0))
+        millimetres = 1e-3 <= radius < 0.1  # as balls are sold
+        parts.append(f"radius {f'{radius * 1e3:.4g} mm' if millimetres else with_unit(radius, 'length')}")
+    for load in system.loads:
+        if isinstance(load, Force):
+            parts.append(f"force {with_unit(math.hypot(*load.value), 'force')}")
+        elif isinstance(load, Torque):
+            parts.append(f"torque {with_unit(math.hypot(*load.value), 'torque')}")
+        elif isinstance(load, Drag):
+            parts.append(f"drag {with_unit(float(load.coefficient), 'damping')}")
+    return "  ·  ".join(parts)
+
+
+def _rate(rate: float) -> str:
+    per_minute = rate * 30 / math.pi
+    text = f"{rate:.4g} rad/s".replace("-", "−")
+    return f"{text} ({per_minute:.4g} rpm)".replace("-", "−") if 0.1 <= abs(per_minute) < 1e5 else text
+
+
+def _pushes(system: RollingSystem) -> tuple[tuple[str, float, float], ...]:
+    pushes = []
+    for kind, name in ((Force, "force"), (Torque, "torque")):
+        of_kind = [load.value for load in system.loads if isinstance(load, kind)]
+        x, y = sum(float(value.x) for value in of_kind), sum(float(value.y) for value in of_kind)
+        if math.hypot(x, y) > 0.0:
+            pushes.append((name, x / math.hypot(x, y), y / math.hypot(x, y)))
+    return tuple(pushes)

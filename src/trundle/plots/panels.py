@@ -1,0 +1,191 @@
+"""What each map of the sheet shows: the line to draw, the window on it, how the plane lies on the page."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .facts import NOTHING, Facts, guiding_centre, turns_in
+from .marks import Page
+from .scales import Array, refined, with_unit
+
+if TYPE_CHECKING:
+    from trundle.trajectory import Trajectory
+
+FEWEST_A_TURN = 5  # samples; with fewer, no honest line can be drawn through them
+SMOOTH_A_TURN = 60  # vertices; coarser lines are rounded off
+MANY_TURNS = 15  # beyond it lines thin out, and the first turn is drawn bold
+ELONGATED = 10.0  # length to breadth beyond which the first map shows the first turns only
+CROWDED = 0.6  # share of the path's box that its line fills, beyond which it is no line any more
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One map; all lengths in m, all points in the order x, y."""
+
+    name: str
+    title: str
+    labels: tuple[str, str]  # of x and of y
+    page: Page
+    samples: Array  # (n, 3)
+    time: Array  # (m,), of the line's vertices
+    line: Array  # (m, 3)
+    guide: Array | None  # (n, 2)
+    turns: float
+    at_rest: bool
+    sparse: bool  # too few samples a turn for a line
+    until: float | None = None  # the time up to which it is shown; None: all of it
+    low: tuple[float, float] = (0.0, 0.0)  # the view, (across, up)
+    high: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Width and height of the view, m."""
+        return self.high[0] - self.low[0], self.high[1] - self.low[1]
+
+    @property
+    def shown(self) -> slice:
+        """The part of the line that is shown."""
+        if self.until is None:
+            return slice(None)
+        return slice(0, max(2, int(np.searchsorted(self.time, self.until, side="right"))))
+
+    @property
+    def path(self) -> Array:
+        """The shown part of the line as (across, up)."""
+        return self.page.order(self.line[self.shown])
+
+    @property
+    def repeats(self) -> bool:
+        """Whether the last turn lies upon the first."""
+        if self.turns <= 1.2:
+            return False
+        count = self._turn
+        first, last = self.line[:count, :2], self.line[-count:, :2]
+        near = 0.03 * float(np.max(np.ptp(first, axis=0)))
+        return bool(
+            np.all(np.abs(np.min(first, axis=0) - np.min(last, axis=0)) < near)
+            and np.all(np.abs(np.max(first, axis=0) - np.max(last, axis=0)) < near)
+        )
+
+    @property
+    def first_turn(self) -> Array | None:
+        """The first of many turns, where it is large enough to see and the others do not lie upon it."""
+        if self.turns <= MANY_TURNS or self.until is not None or self.repeats:
+            return None
+        first = self.page.order(self.line[: self._turn])
+        return first if np.max(np.ptp(first, axis=0)) > 0.08 * np.max(np.ptp(self.path, axis=0)) else None
+
+    @property
+    def _turn(self) -> int:
+        return max(2, math.ceil(len(self.line) / self.turns) + 1)
+
+
+def panels_of(run: Trajectory, facts: Facts) -> list[Panel]:
+    """Return the maps that tell something about a run, with their views chosen."""
+    names = ["support"] + ["world"] * facts.tilted + ["corotating"] * facts.turning
+    time = np.asarray(run.data["time"].values, dtype=float)
+    panels = [_panel(run, facts, name, time) for name in names]
+    return [_viewed(panel, facts) for panel in _windowed(panels)]
+
+
+def _panel(run: Trajectory, facts: Facts, name: str, time: Array) -> Panel:
+    titles = {
+        "support": "Support frame" if facts.tilted else "Support and world frame",
+        "world": "World frame, from above",
+        "corotating": "Corotating frame",
+    }
+    labels = {
+        "support": ("x, down the slope", "y, level") if facts.tilted else ("x", "y"),
+        "world": ("X, level, downhill", "Y, level"),
+        "corotating": ("x′, on the table", "y′, on the table"),
+    }
+    data = run.in_frame(name).data
+    samples = np.asarray(data["position"].values, dtype=float)
+    velocity = np.asarray(data["velocity"].values, dtype=float)
+    at_rest = bool(np.all(np.ptp(samples[:, :2], axis=0) <= NOTHING * max(np.max(np.abs(samples)), 1e-300)))
+    turns = 0.0 if at_rest else turns_in(time, velocity[:, :2])
+    if name == "corotating" and not at_rest:
+        turns = max(turns, abs(facts.rate) * float(time[-1] - time[0]) / (2 * math.pi) - 1.0)
+    parts = min(12, max(1, math.ceil(turns * SMOOTH_A_TURN / len(samples))))
+    sparse = turns * FEWEST_A_TURN > len(samples)
+    fine = 1 if sparse else parts
+    steps = np.interp(np.arange((len(time) - 1) * fine + 1) / fine, np.arange(len(time)), time)
+    return Panel(
+        name,
+        titles[name],
+        labels[name],
+        Page.downhill_down(facts.tilt),
+        samples,
+        steps,
+        samples if fine == 1 else refined(time, samples, velocity, fine),
+        _guide(run, facts, name, time),
+        turns,
+        at_rest,
+        sparse,
+    )
+
+
+def _guide(run: Trajectory, facts: Facts, name: str, time: Array) -> Array | None:
+    guide = guiding_centre(run, time) if name != "corotating" else None
+    if guide is None or name == "support":
+        return guide
+    c, s = math.cos(facts.tilt), math.sin(facts.tilt)
+    return np.column_stack([guide[:, 0] * c + facts.radius * s, guide[:, 1]])
+
+
+def _windowed(panels: list[Panel]) -> list[Panel]:
+    """Show only the first turns of what would be a hairline or a blot; the world map always shows all."""
+    first, *others = panels
+    extent = np.sort(np.ptp(first.line[:, :2], axis=0))
+    if others and first.turns > 3 and extent[1] > ELONGATED * extent[0]:
+        turns = min(max(2.1, 5 * extent[0] / extent[1] * first.turns), 8.0)
+        first = replace(
+            first, until=float(first.time[0] + turns / first.turns * (first.time[-1] - first.time[0]))
+        )
+    return [first] + [_uncrowded(panel, first.until) for panel in others]
+
+
+def _uncrowded(panel: Panel, until: float | None) -> Panel:
+    if panel.name == "world" or panel.turns < 15 or panel.sparse:
+        return panel
+    path = panel.line[:: max(1, len(panel.line) // 200_000), :2]
+    cells = np.floor(90 * (path - np.min(path, axis=0)) / np.max(np.ptp(path, axis=0))).astype(int)
+    if len(np.unique(cells @ [1000, 1])) < CROWDED * math.pi / 4 * 90 * 90:
+        return panel
+    duration = float(panel.time[-1] - panel.time[0])
+    twelve = float(panel.time[0]) + 12 / panel.turns * duration
+    return replace(panel, until=twelve if until is None else min(until, twelve))
+
+
+def _viewed(panel: Panel, facts: Facts) -> Panel:
+    """Choose what a map must show: the path, and table, axis and guiding centre where they are near."""
+    path = panel.path
+    low, high = np.min(path, axis=0), np.max(path, axis=0)
+    span = float(np.max(high - low))
+    shown = [low, high]
+    reach = float(np.max(np.hypot(path[:, 0], path[:, 1])))
+    if facts.rim is not None and (panel.at_rest or span > facts.rim / 5 or reach > 0.8 * facts.rim):
+        shown += [np.full(2, -facts.rim), np.full(2, facts.rim)]
+    elif panel.at_rest:
+        shown += [low - 2.0 * facts.radius, high + 2.0 * facts.radius]
+    if panel.at_rest or float(np.max(np.abs((low + high) / 2))) <= 2.0 * span:
+        shown.append(np.zeros(2))
+    if panel.guide is not None:
+        guide = panel.page.order(panel.guide)
+        margin = 0.0 if panel.until is not None else span / 2
+        near = np.all((guide >= low - margin) & (guide <= high + margin), axis=1)
+        shown += [np.min(guide[near], axis=0), np.max(guide[near], axis=0)] if np.any(near) else []
+    low, high = np.min(shown, axis=0), np.max(shown, axis=0)
+    pad = 0.07 * max(float(np.max(high - low)), 1e-300)
+    return replace(panel, low=tuple(low - pad), high=tuple(high + pad))
+
+
+def until_text(panel: Panel) -> str:
+    """Return the title of a map, with the time up to which it is shown."""
+    if panel.until is None:
+        return panel.title
+    return f"{panel.title}, first {with_unit(panel.until - float(panel.time[0]), 'time', 2)}"
