@@ -81,7 +81,9 @@ def simulate(
     if scenario is None:
         length = float(times[-1] - start.time)
         step = float(times[1] - times[0]) if times.size > 2 else length
-        described = ScenarioFile.describe(system, replace(start, time=0.0), duration=length, every=step, method=method, title=title)
+        described = ScenarioFile.describe(
+            system, replace(start, time=0.0), duration=length, every=step, method=method, title=title
+        )
         title, scenario = described.title, described.to_toml()
     data = trajectory.dataset(system, samples, trajectory.attributes(title, chosen))
     return Trajectory(data, system, start, chosen, samples.events, scenario)
@@ -96,7 +98,9 @@ def _check_start(system: RollingSystem, start: State) -> None:
     point = centre + contact.offset
     gap, size = system.support.surface.level(point - contact.support.origin), contact.offset.norm()
     if abs(gap) > SLIP_TOLERANCE * size:
-        raise InvalidValueError("start.position", "must put the body on the support", start.position, f"Gap: {gap:g} m.")
+        raise InvalidValueError(
+            "start.position", "must put the body on the support", start.position, f"Gap: {gap:g} m."
+        )
     V, Omega = Vector(*start.velocity), Vector(*start.angular_velocity)
     contact = touch(system, start.time, point, q)
     slip = contact.slip_velocity(V, Omega).norm()

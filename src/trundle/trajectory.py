@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -83,7 +83,9 @@ class Trajectory:
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
             raise AttributeError(name)
-        raise UnknownNameError("attribute of a Trajectory", name, [n for n in dir(type(self)) if n[0] != "_"] + ["data"])
+        raise UnknownNameError(
+            "attribute of a Trajectory", name, [n for n in dir(type(self)) if n[0] != "_"] + ["data"]
+        )
 
     @property
     def frame(self) -> str:
@@ -104,8 +106,8 @@ class Trajectory:
     def samples(self) -> Samples:
         """The arrays in the inertial support frame, as the methods and the card take them."""
         data = self.in_frame("support").data
-        names = ("position", "contact", "velocity", "angular_velocity", "orientation", "contact_force")
-        return Samples(data.time.values, *(data[name].values for name in names), events=self.events)
+        arrays = {part.name: data[part.name].values for part in fields(Samples) if part.name != "events"}
+        return Samples(**arrays, events=self.events)
 
     def in_frame(self, frame: str) -> Trajectory:
         """Return the same motion seen from another frame.
@@ -306,12 +308,16 @@ class Trajectory:
         return Trajectory(
             data,
             ScenarioFile.loads(scenario, source=str(path)).system(),
-            State(**{key: tuple(v) if isinstance(v, list) else v for key, v in json.loads(start).items()}),
+            State(**_tuples(json.loads(start))),
             str(data.attrs["method"]),
             tuple(Event(**event) for event in json.loads(events)),
             scenario,
             {"card": verify.Card.from_json(card)},
         )
+
+
+def _tuples(values: dict[str, Any]) -> dict[str, Any]:
+    return {key: tuple(value) if isinstance(value, list) else value for key, value in values.items()}
 
 
 def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any]) -> xarray.Dataset:

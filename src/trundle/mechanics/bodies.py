@@ -44,7 +44,7 @@ class Isotropic:
 
     def ratio_of(self, body: Body) -> Scalar:
         """Return k = I/(m a²) for a spherical body of radius a."""
-        return self.moment / (body.mass * body.shape.radius * body.shape.radius)
+        return self.moment / (body.mass * body.radius * body.radius)
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class RatioInertia:
 
     def in_space(self, Q: Matrix, body: Body) -> Matrix:  # noqa: ARG002  the same from every side
         """Return the inertia tensor in the support frame, kg m²."""
-        moment = self.ratio * body.mass * body.shape.radius * body.shape.radius
+        moment = self.ratio * body.mass * body.radius * body.radius
         return Matrix.diagonal(moment, moment, moment)
 
     def gyroscopic(self, Q: Matrix, Omega: Vector, body: Body) -> Vector:  # noqa: ARG002
@@ -234,13 +234,20 @@ class Body:
         return self.inertia.gyroscopic(Q, Omega, self)
 
     @property
+    def radius(self) -> Scalar:
+        """A of a sphere, m."""
+        if not isinstance(self.shape, Sphere):
+            raise InvalidValueError("radius", "exists only for a sphere", self.shape)
+        return self.shape.radius
+
+    @property
     def is_isotropic_sphere(self) -> bool:
         """Whether this is a sphere about its centre of mass with the same inertia about every axis."""
         return concentric_sphere(self.shape) and not isinstance(self.inertia, Principal)
 
     @property
     def inertia_ratio(self) -> Scalar:
-        """k = I/(m a²) of an isotropic sphere."""
+        """K = I/(m a²) of an isotropic sphere."""
         if isinstance(self.inertia, Principal) or not self.is_isotropic_sphere:
             raise InvalidValueError("inertia_ratio", "exists only for a sphere with isotropic inertia", self)
         return self.inertia.ratio_of(self)

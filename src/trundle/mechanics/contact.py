@@ -31,7 +31,7 @@ class Contact:
 
     @property
     def centre(self) -> Vector:
-        """r = p − ρ, the centre of mass, m."""
+        """R = p − ρ, the centre of mass, m."""
         return self.point - self.offset
 
     def rates(self, slip: Vector, angular_velocity: Vector, velocity: Vector) -> tuple[Vector, Vector]:

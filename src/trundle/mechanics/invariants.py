@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from .algebra import Quaternion, Vector
-from .loads import BodyMotion, Load
+from .algebra import Vector
+from .loads import BodyMotion, Load, at_rest
 from .scalars import Scalar, is_zero
 from .shapes import concentric_sphere
 from .surfaces import Plane
@@ -70,30 +70,24 @@ def _contact_momentum(system: RollingSystem, at: Record) -> list[Vector]:
 
 
 def _conservative(load: Load) -> bool:
-    still = BodyMotion(0.0, 1.0, *(Vector(0.0, 0.0, 0.0),) * 2, Quaternion(1.0, 0.0, 0.0, 0.0), Vector(0.0, 0.0, 0.0))
-    return load.potential(still) is not None
+    return load.potential(at_rest(1.0)) is not None
 
 
 def _no_normal_torque(load: Load) -> bool:
-    return load.linear_drag is not None or (load.constant and is_zero(_constant_torque(load).z))
+    return load.linear_drag is not None or (load.constant and is_zero(load.torque(at_rest(1.0)).z))
 
 
-def _constant_torque(load: Load) -> Vector:
-    zero = Vector(0.0, 0.0, 0.0)
-    return load.torque(BodyMotion(0.0, 1.0, zero, zero, Quaternion(1.0, 0.0, 0.0, 0.0), zero))
-
-
-def _at_rest(system: RollingSystem) -> bool:
+def _is_fixed(system: RollingSystem) -> bool:
     rate = system.support.motion.steady_rate
     return rate is not None and is_zero(rate)
 
 
 def _has_energy(system: RollingSystem) -> bool:
-    return _at_rest(system) and all(_conservative(load) for load in system.all_loads)
+    return _is_fixed(system) and all(_conservative(load) for load in system.all_loads)
 
 
 def _has_moving_energy(system: RollingSystem) -> bool:
-    turns = system.support.motion.steady_rate is not None and not _at_rest(system)
+    turns = system.support.motion.steady_rate is not None and not _is_fixed(system)
     symmetric = all(_conservative(load) and load.symmetric for load in system.all_loads)
     return turns and system.support.surface.axisymmetric and symmetric
 
@@ -106,15 +100,13 @@ def _has_spin(system: RollingSystem) -> bool:
 def _has_contact_momentum(system: RollingSystem) -> bool:
     sphere = concentric_sphere(system.body.shape) and isinstance(system.support.surface, Plane)
     pressed = all(_conservative(load) and load.symmetric for load in system.all_loads)
-    return sphere and _at_rest(system) and pressed
+    return sphere and _is_fixed(system) and pressed
 
 
 INVARIANTS = (
     Invariant("energy", "½mV² + ½Ω·JΩ + U", "J", _has_energy, _energy),
     Invariant("moving energy", "E − ω·L", "J", _has_moving_energy, _moving_energy),
-    Invariant(
-        "spin about the normal", "Ω·n", "rad/s", _has_spin, lambda _, at: [at.motion.angular_velocity.z]
-    ),
+    Invariant("spin about the normal", "Ω·n", "rad/s", _has_spin, lambda _, at: [at.motion.angular_velocity.z]),
     Invariant(
         "angular momentum about the contact",
         "JΩ + mρ×(Ω×ρ)",

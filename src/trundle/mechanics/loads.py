@@ -33,6 +33,27 @@ class BodyMotion:
     angular_velocity: Vector  # rad/s
 
 
+def at_rest(mass: Scalar) -> BodyMotion:
+    """Return a body at rest at the origin, where a load that is constant can be read.
+
+    Parameters
+    ----------
+    mass : Scalar
+        kg.
+
+    Returns
+    -------
+    BodyMotion
+        At t = 0.
+
+    Examples
+    --------
+    >>> Gravity(0.0, 0.0, -10.0).force(at_rest(2.0)).z
+    -20.0
+    """
+    return BodyMotion(0.0, mass, ZERO, ZERO, Quaternion(1.0, 0.0, 0.0, 0.0), ZERO)
+
+
 class Load:
     """A force and a torque on the body; by default neither, and a potential of zero."""
 
@@ -40,7 +61,7 @@ class Load:
 
     @property
     def linear_drag(self) -> Scalar | None:
-        """c of a load that is purely −c V, kg/s; None for any other load."""
+        """C of a load that is purely −c V, kg/s; None for any other load."""
         return None
 
     def force(self, motion: BodyMotion) -> Vector:  # noqa: ARG002
@@ -199,3 +220,34 @@ class Drag(Load):
     def symmetric(self) -> bool:
         """True: still air looks the same from every side."""
         return True
+
+
+def constant_part(loads: tuple[Load, ...], mass: Scalar) -> tuple[Vector, Vector, Scalar]:
+    """Add up loads that are constant or linear drag.
+
+    Parameters
+    ----------
+    loads : tuple of Load
+        Each `constant`, or with a `linear_drag`.
+    mass : Scalar
+        Of the body, kg.
+
+    Returns
+    -------
+    force, torque : Vector
+        N and N m.
+    drag : Scalar
+        c, kg/s.
+
+    Examples
+    --------
+    >>> constant_part((Gravity(0.0, 0.0, -10.0), Drag(0.01), Drag(0.02)), 2.0)[2]
+    0.03
+    """
+    force, torque, drag = ZERO, ZERO, 0.0
+    for load in loads:
+        if load.linear_drag is not None:
+            drag = drag + load.linear_drag
+        else:
+            force, torque = force + load.force(at_rest(mass)), torque + load.torque(at_rest(mass))
+    return force, torque, drag

@@ -58,10 +58,27 @@ def is_zero(value: Any) -> bool:
     return is_number(value) and bool(value == 0)
 
 
-def _leaves(values: tuple[Any, ...]) -> Iterator[Any]:
+def leaves(values: tuple[Any, ...]) -> Iterator[Any]:
+    """Go through nested tuples and yield what is in them.
+
+    Parameters
+    ----------
+    values : (nested) tuple
+        Of scalars.
+
+    Yields
+    ------
+    Scalar
+        In order.
+
+    Examples
+    --------
+    >>> list(leaves((1.0, (2.0, 3.0))))
+    [1.0, 2.0, 3.0]
+    """
     for value in values:
         if isinstance(value, tuple):
-            yield from _leaves(value)
+            yield from leaves(value)
         else:
             yield value
 
@@ -144,7 +161,7 @@ def namespace(*values: Any) -> Any:
     >>> namespace(4.0).sqrt(4.0)
     2.0
     """
-    for value in _leaves(values):
+    for value in leaves(values):
         if is_number(value):
             continue
         if hasattr(value, "__array_namespace__"):

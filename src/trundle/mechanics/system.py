@@ -50,7 +50,9 @@ class Support:
     def __post_init__(self) -> None:
         tilt = checks.real(self.tilt, "angle", "tilt")
         if is_number(tilt) and not abs(tilt) < math.pi / 2:
-            remedy = "Did you mean degrees? Write 'deg' behind the number." if isinstance(self.tilt, (int, float)) else ""
+            remedy = (
+                "Did you mean degrees? Write 'deg' behind the number." if isinstance(self.tilt, (int, float)) else ""
+            )
             raise InvalidValueError("tilt", "must lie in (−90°, 90°)", self.tilt, remedy)
         object.__setattr__(self, "tilt", tilt)
         if self.friction is not None:
@@ -192,7 +194,10 @@ class RollingSystem:
         if co_rotating:
             if velocity != "co-rotating":
                 raise InvalidValueError("velocity", 'must be two components or "co-rotating"', velocity)
-            vx, vy = (contact.support.material_velocity(contact.centre)).x, contact.support.material_velocity(contact.centre).y
+            vx, vy = (
+                (contact.support.material_velocity(contact.centre)).x,
+                contact.support.material_velocity(contact.centre).y,
+            )
         else:
             vx, vy = checks.components((0.0, 0.0) if velocity is None else velocity, "velocity", "velocity", 2)
         V = Vector(vx, vy, (u.dot(rho) - vx * rho.x - vy * rho.y) / rho.z)

@@ -106,7 +106,7 @@ def _resolved_turns(angular_velocity: AngularVelocity, middle: Array, half: Arra
 
 
 @cache
-def _fit() -> tuple[Array, Array]:
+def _fit() -> tuple[Any, Any]:
     """Nodes on [−1, 1] and the matrix that takes values there to coefficients of 1, x, x², ..."""
     nodes, _ = np.polynomial.legendre.leggauss(_NODES)
     return nodes, np.linalg.inv(np.vander(nodes, increasing=True))
@@ -211,4 +211,3 @@ def periodic_orientation(
     q0 = np.asarray(start, dtype=float).reshape(4, 1)
     result = _product(within, _product(monodromy.power(turns), q0))
     return (result / np.sqrt((result * result).sum(axis=0))).T
-

@@ -66,9 +66,9 @@ def solve(
     )
     if result.status < 0:
         raise SolverError(f"The Runge-Kutta method broke down on the way to t = {end:g} s: {result.message}")
-    reached = float(result.t_events[0][0]) if result.status == 1 else None
-    times, states = result.t, result.y.T
-    if reached is not None:
+    times, states, reached = result.t, result.y.T, None
+    if result.status == 1 and result.t_events and result.y_events:
+        reached = float(result.t_events[0][0])
         times, states = cut(times, states, reached, result.y_events[0][0])
     samples = Samples.of_contact(system, times, states[:, :3], states[:, 3:7], states[:, 7:])
     return samples if reached is None else samples.ended(ran_off(reached, system.support.surface.rim))

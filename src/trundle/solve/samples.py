@@ -103,7 +103,7 @@ class Samples:
         )
 
 
-def ran_off(time: float, rim: float) -> Event:
+def ran_off(time: float, rim: Any) -> Event:
     """Return the event of a contact that reaches the rim.
 
     Parameters
@@ -123,7 +123,7 @@ def ran_off(time: float, rim: float) -> Event:
     >>> ran_off(1.25, 0.5).text
     'ran off the rim (0.5 m from the axis) at t = 1.25 s'
     """
-    return Event(time, "rim", f"ran off the rim ({rim:g} m from the axis) at t = {time:.9g} s")
+    return Event(time, "rim", f"ran off the rim ({float(rim):g} m from the axis) at t = {time:.9g} s")
 
 
 def cut(times: Array, states: Array, end: float, last: Array) -> tuple[Array, Array]:

@@ -77,9 +77,9 @@ def sample_times(duration: Any, every: Any, prefix: str = "") -> NDArray[np.floa
     """
     length, step = check_sampling(duration, every, prefix)
     whole = math.floor(length / step * (1 + 4e-16))
-    times = np.arange(whole + 1) * step
+    times = np.arange(whole + 1, dtype=np.float64) * np.float64(step)
     if length - times[-1] > 1e-9 * step:
-        return np.append(times, length)
+        return np.concatenate([times, [length]])
     times[-1] = length
     return times
 

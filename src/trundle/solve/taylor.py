@@ -9,15 +9,14 @@ import os
 import pickle
 import platform
 import stat
-import tempfile
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..errors import SolverError
+from ..files import written_whole
 from ..mechanics.parameters import numbers
 from ..mechanics.system import RollingSystem, State
 from .samples import Array, Progress, Samples, cut, ran_off
@@ -225,13 +224,5 @@ def _store(key: str, integrator: Any) -> None:
     with contextlib.suppress(Exception):
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         body = pickle.dumps(integrator)
-        handle, temporary = tempfile.mkstemp(dir=folder, prefix=".taylor-")
-        try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(hashlib.sha256(body).hexdigest().encode() + b"\n" + body)
-            os.replace(temporary, folder / f"taylor-{key}.pickle")
-        except BaseException:
-            Path(temporary).unlink(missing_ok=True)
-            raise
-
-
+        with written_whole(folder / f"taylor-{key}.pickle") as temporary:
+            temporary.write_bytes(hashlib.sha256(body).hexdigest().encode() + b"\n" + body)

@@ -23,7 +23,7 @@ from .law import residuals, window_times
 Array = NDArray[np.float64]
 
 # The two tolerances of a card, as shares: what rounding may do, and how many times the tolerance asked a method may
-# be off (per radian turned, for what adds up over a run).
+# be off (more after a thousand radians of turning, for what adds up over a run).
 EXACT, SOLVER = 1e-12, 1e3
 _MOST_SAMPLES = 20_000  # looked at for integrals
 _CROSS_CHECKED = 200  # instants
@@ -114,9 +114,7 @@ def _law(system: RollingSystem, start: State, at: Samples, method: str) -> Itera
     # A slope taken over one radian of turning multiplies a method's own error by some tens.
     bound = max(EXACT * 10, 100 * SOLVER * tolerance_of(method))
     yield _checked("velocity is the slope of the path", found.path, bound, "at 24 instants, share of the speed")
-    yield _checked(
-        "law of motion", found.law, bound, "Newton, Euler and the constraint as one 9×9 system; T2 not used"
-    )
+    yield _checked("law of motion", found.law, bound, "Newton, Euler and the constraint as one 9×9 system; T2 not used")
     yield _checked(
         "virtual power of the reaction", found.virtual_power, bound, "over the admissible velocities (d'Alembert)"
     )
@@ -148,9 +146,7 @@ def _drift(values: Any, size: float) -> float:
     return 0.0 if change == 0 else float(change / max(size, 1e-300))
 
 
-def _guiding_centre(
-    motion: SphereOnPlane | None, start: State, at: Samples, method: str
-) -> Iterator[CardFigure]:
+def _guiding_centre(motion: SphereOnPlane | None, start: State, at: Samples, method: str) -> Iterator[CardFigure]:
     """Check centre and radius of the circle from positions and velocities: integrals on a turning plane."""
     if motion is None or not motion.has_guiding_centre:
         return
@@ -197,7 +193,9 @@ def _cross_check(
     yield _checked(name, difference, bound, f"position, velocity, Ω; {over}")
     turn = Quaternion.of(ours.orientation) * Quaternion.of(theirs.orientation).conjugate
     angle = 2 * np.linalg.norm(turn.array()[:, 1:], axis=1).max()
-    yield _checked(f"{name}, orientation", angle, max(bound, EXACT * 10), "angle between the two", "rad")
+    # The angle is the error of Ω added up over the turning.
+    allowed = max(EXACT, 100 * tolerance_of(numerical)) * max(10.0, turned)
+    yield _checked(f"{name}, orientation", angle, allowed, f"angle between the two, after {turned:.3g} rad", "rad")
 
 
 def _largest(array: Array) -> float:
