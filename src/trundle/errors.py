@@ -88,8 +88,7 @@ class UnknownNameError(TrundleError, AttributeError):
     def __init__(self, kind: str, received: str, known: Iterable[str]) -> None:
         self.kind, self.received, self.known = kind, received, list(known)
         super().__init__(
-            f"unknown {kind} {received!r}.{did_you_mean(received, self.known)} There are: "
-            + ", ".join(self.known)
+            f"unknown {kind} {received!r}.{did_you_mean(received, self.known)} There are: " + ", ".join(self.known)
         )
 
     def __reduce__(self) -> tuple[type, tuple[object, ...]]:
