@@ -157,6 +157,11 @@ CASES = {
     "two samples": Run(rate=0.0, velocity=0.1 + 0.05j, samples=2),
     "two samples on a turntable": Run(velocity=0.1j, samples=2),
     "at rest on a fixed plane": Run(rate=0.0),
+    "one sample": Run(tilt=math.radians(1.0), samples=1),
+    "three samples": Run(tilt=math.radians(1.0), samples=3, duration=1.0),
+    "drifting straight": Run(
+        tilt=math.radians(1.0), velocity=1j * 9.80665 * math.sin(math.radians(1.0)) / (0.4 * OMEGA)
+    ),
     "few samples": Run(velocity=0.1j, duration=60.0, samples=41),
     "barely turning": Run(rate=1e-9, velocity=0.1j, duration=5.0),
     "a long title": Run(velocity=0.1j, title="A $title$ of\nmany words " * 20),
@@ -267,9 +272,7 @@ def test_only_frames_that_tell_something_are_shown(name: str, titles: list[str])
     assert [title for title in shown if title] == titles
 
 
-@pytest.mark.parametrize(
-    "name", ["off the rim", "hollow", "negative", "nudged", "co-rotating", "straight", "huge"]
-)
+@pytest.mark.parametrize("name", ["off the rim", "hollow", "negative", "nudged", "co-rotating", "straight", "huge"])
 def test_the_path_drawn_is_the_path_given(name: str) -> None:
     run = CASES[name]
     figure = sheet_of(name)
@@ -309,11 +312,7 @@ def test_the_guiding_centre_drawn_is_the_centre_of_curvature() -> None:
         ax = panel(path_figure(run), "Support")
         turned = ax.get_xlabel().startswith("y")
         scale = scale_of(ax.get_ylabel())
-        lines = [
-            line.get_xydata() * scale
-            for line in ax.lines
-            if line.get_color() == "#D55E00" and line.is_dashed()
-        ]
+        lines = [line.get_xydata() * scale for line in ax.lines if line.get_color() == "#D55E00" and line.is_dashed()]
         (track,) = lines
         drawn = track[:, 1] + 1j * track[:, 0] if turned else track[:, 0] + 1j * track[:, 1]
         assert np.allclose(drawn[[0, -1]], run.guide[[0, -1]], rtol=0, atol=1e-10)
@@ -332,13 +331,28 @@ def test_there_is_no_guiding_centre_where_nothing_turns() -> None:
             assert not [line for line in ax.lines if line.get_color() == "#D55E00"]
 
 
+def test_a_real_run_is_drawn_in_the_frames_of_its_trajectory() -> None:
+    run = tr.Scenario.load("tilted-turntable-put-down").run()
+    ax = panel(path_figure(run), "World")
+    (track,) = [line for line in ax.lines if line.get_color() == "#D55E00" and line.is_dashed()]
+    # Over whole circles the ball's mean place downhill is the guiding centre's.
+    circle = 2 * math.pi / (run.system.support.motion.rate * 2 / 7)
+    seen = run.at(np.linspace(0.0, circle, 720, endpoint=False)).in_frame("world").data["position"].values
+    assert np.allclose(track.get_ydata() * scale_of(ax.get_ylabel()), np.mean(seen[:, 0]), rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("scenario", tr.Scenario.names())
+def test_shipped_scenarios_are_drawn_by_their_trajectory(scenario: str) -> None:
+    run = tr.Scenario.load(scenario).run()
+    for kind in ("path", "series"):
+        assert rendered(run.plot(kind)).startswith(b"\x89PNG")
+
+
 def test_the_strip_shows_heights_above_the_start() -> None:
     run = CASES["off the rim"]
     figure = path_figure(run)
     strip = next(ax for ax in figure.axes if ax.get_ylabel().startswith("height"))
-    (line,) = [
-        line for line in strip.lines if len(line.get_xdata()) == len(run.time) and not line.is_dashed()
-    ]
+    (line,) = [line for line in strip.lines if len(line.get_xdata()) == len(run.time) and not line.is_dashed()]
     fall = -math.sin(run.tilt) * (run.zeta.real - run.zeta.real[0])
     assert np.allclose(line.get_ydata() * scale_of(strip.get_ylabel()), fall, atol=1e-12)
     (mean,) = [line for line in strip.lines if line.get_color() == "#D55E00" and line.is_dashed()]
@@ -382,9 +396,7 @@ def test_a_coarsely_sampled_circle_is_drawn_round() -> None:
         complex(round(z.real, 12), round(z.imag, 12)) for z in drawn
     }
     assert not [
-        line
-        for line in panel(figure, "Corotating").lines
-        if line.get_label() == "path" and line.get_ls() != "None"
+        line for line in panel(figure, "Corotating").lines if line.get_label() == "path" and line.get_ls() != "None"
     ]
 
 
@@ -422,9 +434,7 @@ def test_series_show_the_data_in_their_units() -> None:
     assert np.allclose(position.lines[1].get_ydata() * 0.01, run.zeta.imag)
     assert np.allclose(speed.lines[0].get_ydata() * 0.01, np.abs(run.zeta_dot))
     assert turning.get_ylabel().endswith("(rad/s)")
-    assert np.allclose(
-        turning.lines[0].get_ydata() * run.radius, (1j * run.zeta_dot + run.rate * run.zeta).real
-    )
+    assert np.allclose(turning.lines[0].get_ydata() * run.radius, (1j * run.zeta_dot + run.rate * run.zeta).real)
     assert force.get_ylabel().endswith("(mN)")
     R = run.data["contact_force"].values
     assert np.allclose(force.lines[0].get_ydata() * 1e-3, R[:, 2])

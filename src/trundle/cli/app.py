@@ -120,7 +120,7 @@ def run(
     elif not quiet:
         screen.show_card(card)
         for event in trajectory.events:
-            screen.out(f"{event.time:.6g} s: {event.text}")
+            screen.out(event.text)
         screen.out(f"Wrote {', '.join(str(path) for path in written)}")
     if not card.passed:
         failed = ", ".join(figure.name for figure in card.failures)

@@ -33,7 +33,7 @@ def path_figure(run: Trajectory) -> Figure:
     >>> import trundle as tr
     >>> run = tr.Scenario.load("tilted-turntable").run()
     >>> [panel.get_title(loc="left") for panel in path_figure(run).axes]
-    ['Support frame', 'World frame, from above', 'Corotating frame', '']
+    ['Support frame', 'World frame, from above', '', 'Corotating frame']
     """
     from .path import draw
 
@@ -61,7 +61,7 @@ def series_figure(run: Trajectory) -> Figure:
     >>> import trundle as tr
     >>> run = tr.Scenario.load("tilted-turntable").run()
     >>> series_figure(run).axes[0].get_ylabel()
-    'position (cm)'
+    'position (m)'
     """
     from .series import draw
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -93,13 +92,15 @@ def turns_in(time: Array, velocity: Array) -> float:
     >>> round(turns_in(t, np.column_stack([np.cos(t), np.sin(t)])) * 2 * np.pi, 1)
     10.0
     """
+    if len(time) < 3:
+        return 0.0
     seen = slice(0, 200_000)
     change = np.diff(velocity[seen], axis=0)
     real = np.hypot(*change.T) > 1e-12 * max(float(np.max(np.hypot(*velocity[seen].T))), 1e-300)
     before, after = change[:-1], change[1:]
-    angle = np.arctan2(
-        before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], np.sum(before * after, axis=1)
-    )[real[:-1] & real[1:]]
+    angle = np.arctan2(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], np.sum(before * after, axis=1))[
+        real[:-1] & real[1:]
+    ]
     if not len(angle):
         return 0.0
     duration = float(time[-1] - time[0])
@@ -108,11 +109,6 @@ def turns_in(time: Array, velocity: Array) -> float:
 
 def _title(run: Trajectory) -> str:
     given = run.data.attrs.get("title")
-    if not given:
-        try:
-            given = tomllib.loads(str(run.data.attrs.get("scenario", ""))).get("title")
-        except tomllib.TOMLDecodeError:
-            given = None
     if given:
         return "".join(letter if letter.isprintable() else " " for letter in str(given))
     support = run.system.support

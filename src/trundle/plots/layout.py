@@ -61,7 +61,7 @@ def arrange(maps: list[tuple[str, tuple[float, float]]]) -> Plan:
     shapes = [width / height for _, (width, height) in maps]
     names = [name for name, _ in maps]
     if len(maps) == 1:
-        return _row([min(max(shapes[0], 0.7), 2.4)], names, 4.6)
+        return _row([min(max(shapes[0], 0.7), 3.2)], names, 4.6)
     if max(shapes[: len(names) - names.count("corotating")]) > 1.6 and "corotating" in names:
         return _stack(names)
     return _row([min(max(shape, 0.6), 1.4) for shape in shapes], names, 4.4)

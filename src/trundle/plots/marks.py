@@ -76,9 +76,7 @@ def rim(ax: Axes, page: Page, ruler: Ruler, radius: float, tilt: float) -> None:
     """Draw the table: its rim, foreshortened downhill by its tilt, and its top as a faint ground."""
     sizes = [2 * radius / ruler.unit.scale * math.cos(tilt), 2 * radius / ruler.unit.scale]
     centre = ruler(np.zeros(2))
-    ax.add_patch(
-        Ellipse(tuple(centre), sizes[page.across], sizes[page.up], fc=TABLE, ec=GREY, lw=1.1, zorder=0.5)
-    )
+    ax.add_patch(Ellipse(tuple(centre), sizes[page.across], sizes[page.up], fc=TABLE, ec=GREY, lw=1.1, zorder=0.5))
 
 
 def ball(ax: Axes, ruler: Ruler, at: Array, radius: float) -> None:
@@ -128,9 +126,7 @@ def turn_sign(ax: Axes, at: tuple[float, float], size: tuple[float, float], top:
     ax.plot(x, y, transform=ax.transAxes, color=GREY, lw=1.6, zorder=7, solid_capstyle="butt")
     turn = math.degrees(angle[-1]) + math.copysign(90.0, sense) - 90.0
     marker = MarkerStyle(_ARROWHEAD).rotated(deg=turn)
-    ax.plot(
-        x[-1], y[-1], transform=ax.transAxes, marker=marker, ms=9, color=GREY, mec="white", mew=0.5, zorder=7
-    )
+    ax.plot(x[-1], y[-1], transform=ax.transAxes, marker=marker, ms=9, color=GREY, mec="white", mew=0.5, zorder=7)
 
 
 def _beside_name(

@@ -89,7 +89,7 @@ def panels_of(run: Trajectory, facts: Facts) -> list[Panel]:
     names = ["support"] + ["world"] * facts.tilted + ["corotating"] * facts.turning
     time = np.asarray(run.data["time"].values, dtype=float)
     panels = [_panel(run, facts, name, time) for name in names]
-    return [_viewed(panel, facts) for panel in _windowed(panels)]
+    return [_viewed(panel, facts) for panel in _windowed(panels, facts)]
 
 
 def _panel(run: Trajectory, facts: Facts, name: str, time: Array) -> Panel:
@@ -137,15 +137,13 @@ def _guide(run: Trajectory, facts: Facts, name: str, time: Array) -> Array | Non
     return np.column_stack([guide[:, 0] * c + facts.radius * s, guide[:, 1]])
 
 
-def _windowed(panels: list[Panel]) -> list[Panel]:
+def _windowed(panels: list[Panel], facts: Facts) -> list[Panel]:
     """Show only the first turns of what would be a hairline or a blot; the world map always shows all."""
     first, *others = panels
     extent = np.sort(np.ptp(first.line[:, :2], axis=0))
-    if others and first.turns > 3 and extent[1] > ELONGATED * extent[0]:
+    if facts.rim is None and others and first.turns > 3 and extent[1] > ELONGATED * extent[0]:
         turns = min(max(2.1, 5 * extent[0] / extent[1] * first.turns), 8.0)
-        first = replace(
-            first, until=float(first.time[0] + turns / first.turns * (first.time[-1] - first.time[0]))
-        )
+        first = replace(first, until=float(first.time[0] + turns / first.turns * (first.time[-1] - first.time[0])))
     return [first] + [_uncrowded(panel, first.until) for panel in others]
 
 

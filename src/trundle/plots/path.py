@@ -37,9 +37,7 @@ class _Drawing:
         self.facts, self.panels = facts, panels
         self.units = _units(panels)
         self.step, self.instants, self.of_what = _instants(panels)
-        self.events = [
-            event for event in run.events if panels[0].time[0] <= event.time <= panels[0].time[-1]
-        ][:20]
+        self.events = [event for event in run.events if panels[0].time[0] <= event.time <= panels[0].time[-1]][:20]
         self.legend: dict[str, str] = {}
 
     def sheet(self) -> Sheet:
@@ -155,9 +153,7 @@ class _Drawing:
         speed = float(np.hypot(*(panel.guide[-1] - panel.guide[0]))) / float(panel.time[-1] - panel.time[0])
         self.legend["guide"] = f"guiding centre, {with_unit(speed, 'speed')}"
         inset = 0.03 * max(panel.span)
-        seen = guide[
-            np.all((guide >= np.array(panel.low) + inset) & (guide <= np.array(panel.high) - inset), axis=1)
-        ]
+        seen = guide[np.all((guide >= np.array(panel.low) + inset) & (guide <= np.array(panel.high) - inset), axis=1)]
         if len(seen) > 1:
             step = (seen[-1] - seen[0]) * (panel.page.across_sign, panel.page.up_sign)
             marks.arrowhead(ax, ruler(seen[-1]), (float(step[0]), float(step[1])), VERMILION, 11)
@@ -207,20 +203,20 @@ class _Drawing:
             self.legend["end"] = f"end, {with_unit(float(time[-1]), 'time')}"
         ax.plot(*ruler(path[0]), **STYLES["start"])
         self.legend["start"] = "start"
-        if panel.at_rest:
-            ax.annotate(
-                "at rest", tuple(ruler(path[0])), (0, 9), textcoords="offset points", ha="center", va="bottom"
-            )
+        if panel.at_rest and len(time) > 1:
+            ax.annotate("at rest", tuple(ruler(path[0])), (0, 9), textcoords="offset points", ha="center", va="bottom")
         for event in self.events:
             at = [float(np.interp(event.time, time, path[:, i])) for i in range(2)]
             ax.plot(*ruler(np.array(at)), **STYLES["event"])
-            self.legend["event"] = f"{event.text}, {with_unit(float(event.time), 'time')}"
+            what = event.text.split(" (")[0].split(" at ")[0]  # the text has its place and time too
+            self.legend["event"] = f"{what}, {with_unit(float(event.time), 'time')}"
 
     def _strip(self, ax: Axes, panel: Panel, width: float) -> None:
         """Draw the height of the centre above its start, against the level coordinate of the map above it."""
         page, ruler = panel.page, self.units[panel.name]
         height = panel.line[:, 2] - panel.line[0, 2]
-        unit = unit_for(max(float(np.max(np.abs(height))), NOTHING * self.facts.radius), "length")
+        level = float(np.max(np.abs(height))) <= NOTHING * self.facts.radius
+        unit = unit_for(self.facts.radius if level else float(np.max(np.abs(height))), "length")
         scale = np.array([ruler.scale, unit.scale])
         line = np.column_stack([panel.line[:, page.across], height]) / scale
         ax.axhline(0.0, color=GREY, lw=0.9, ls=(0, (1, 1.5)), zorder=2)
@@ -235,13 +231,13 @@ class _Drawing:
             *thin_path(line, 1e-4 * float(np.max(np.ptp(line, axis=0)))).T,
             **STYLES[kind] | ({"lw": 0.5} if many else {}),
         )
-        ax.plot(
-            *line[-1], **STYLES["event" if "event" in self.legend and "end" not in self.legend else "end"]
-        )
+        ax.plot(*line[-1], **STYLES["event" if "event" in self.legend and "end" not in self.legend else "end"])
         ax.plot(*line[0], **STYLES["start"])
         ax.set_xlabel(f"{panel.labels[page.across]} ({ruler.symbol})", labelpad=2)
         ax.set_ylabel(f"height above\nstart ({unit.symbol})")
         ax.yaxis.set_label_coords(-0.48 / width, 0.5)
+        if level:
+            ax.set_ylim(-self.facts.radius / unit.scale, self.facts.radius / unit.scale)
         ax.margins(y=0.15)
         ax.locator_params(axis="y", nbins=4)
 
@@ -264,6 +260,8 @@ def _instants(panels: list[Panel]) -> tuple[float, Array, str]:
     panel = next((panel for panel in panels if not panel.at_rest), panels[0])
     start = float(panel.time[0])
     duration = (panel.until or float(panel.time[-1])) - start
+    if duration <= 0.0:
+        return 0.0, np.zeros(0), ""
     if panel.repeats:
         duration /= panel.turns
     unit = unit_for(duration, "time")

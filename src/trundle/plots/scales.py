@@ -37,7 +37,7 @@ _TIMES: _Units = (
     (86400, "d", 3),
     (3600, "h", 3),
     (60, "min", 5),
-    (1, "s", 1),
+    (1, "s", 0.1),
     (1e-3, "ms", 1),
     (1e-6, "µs", 1),
 )
@@ -165,9 +165,7 @@ def round_step(span: float, most: int) -> float:
     """
     least = span / most
     power = 10.0 ** math.floor(math.log10(least))
-    return next(
-        float(f"{count * power:.3g}") for count in (1, 2, 5, 10) if count * power >= least * (1 - 1e-9)
-    )
+    return next(float(f"{count * power:.3g}") for count in (1, 2, 5, 10) if count * power >= least * (1 - 1e-9))
 
 
 def refined(time: Array, points: Array, velocity: Array, parts: int) -> Array:
@@ -231,9 +229,7 @@ def thin_path(points: Array, tolerance: float, longest: int = LONG_LINE) -> Arra
     return points if stride == 1 else points[_kept(len(points), stride)]
 
 
-def thin_series(
-    time: Array, values: Array, longest: int = LONG_LINE, buckets: int = 8000
-) -> tuple[Array, Array]:
+def thin_series(time: Array, values: Array, longest: int = LONG_LINE, buckets: int = 8000) -> tuple[Array, Array]:
     """Keep the least and the greatest value in each slice of a long series: more slices than a page has dots.
 
     Parameters

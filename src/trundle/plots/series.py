@@ -162,7 +162,7 @@ def _position(r: Array, length: float) -> Series:
 def _columns(time: Array, turns: float) -> list[Column]:
     """All of the run, or, when its turns run together, the first of them and then all."""
     width = WIDTH - LEFT - RIGHT
-    marked: dict[str, Any] = {"marker": ".", "ms": 4} if turns * 24 > len(time) else {}
+    marked: dict[str, Any] = {"marker": ".", "ms": 4} if max(turns, 0.5) * 24 > len(time) else {}
     marked |= {"ls": "none"} if turns * FEWEST_A_TURN > len(time) else {}
     if turns <= MANY_TURNS:
         return [Column(LEFT, width, slice(None), "", many=False, marked=marked)]
@@ -264,7 +264,7 @@ def _time_axis(foot: Axes, time: Array, others: list[Axes]) -> None:
     clock = _clock(time)
     start, end = float(time[0]) / clock.scale, float(time[-1]) / clock.scale
     foot.set_xlabel(f"time ({clock.symbol})", labelpad=2)
-    foot.set_xlim(start, end)
+    foot.set_xlim(start, end) if end > start else foot.set_xlim(start - 0.5, end + 0.5)
     foot.locator_params(axis="x", nbins=8)
     ticks = [tick for tick in foot.get_xticks() if start <= tick <= end]
     for ax in others:

@@ -106,9 +106,7 @@ class Sheet(Figure):
     def savefig(self, fname: Any, **kwargs: Any) -> None:
         """Save as matplotlib does, with the figures' own settings."""
         if "png" in (kwargs.get("format"), Path(fname).suffix[1:] if isinstance(fname, (str, Path)) else ""):
-            kwargs.setdefault(
-                "pil_kwargs", {"compress_level": 3}
-            )  # as small as the default's 6, in less time
+            kwargs.setdefault("pil_kwargs", {"compress_level": 3})  # as small as the default's 6, in less time
         with look():
             super().savefig(fname, **kwargs)
 

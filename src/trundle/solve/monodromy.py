@@ -38,7 +38,7 @@ class Monodromy:
     A ball whose Ω = (0, 0, 1) never changes has turned by 2π after 2π seconds, as after a million times that:
 
     >>> steady = Monodromy.of_turning_vector(constant=0, turning=0, along=1.0, rate=1.0)
-    >>> [round(abs(c), 9) for c in steady.power(np.array([1e6])).ravel()]
+    >>> [round(abs(c), 9) for c in steady.power(np.array([1e6])).ravel().tolist()]
     [1.0, 0.0, 0.0, 0.0]
     """
 

@@ -55,7 +55,7 @@ def orientation(angular_velocity: AngularVelocity, times: Array, start: Any, sta
     Half a turn about the third axis:
 
     >>> q = orientation(lambda t: np.outer([0.0, 0.0, 1.0], np.ones_like(t)), np.array([np.pi]), (1, 0, 0, 0))
-    >>> [round(c, 12) + 0.0 for c in q[0]]
+    >>> [round(c, 12) + 0.0 for c in q[0].tolist()]
     [0.0, 0.0, 0.0, 1.0]
     """
     times = np.asarray(times, dtype=float)

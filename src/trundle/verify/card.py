@@ -30,7 +30,7 @@ class CardFigure:
     Examples
     --------
     >>> print(CardFigure("no slip", 3e-16, "", 1e-13, True, "share of the speed"))
-    ok    no slip                                     3e-16        at most 1e-13   share of the speed
+    ok    no slip                                   3e-16            at most 1e-13    share of the speed
     """
 
     name: str

@@ -104,11 +104,12 @@ def residuals(system: RollingSystem, windows: Samples, times: Array) -> Residual
 
     V_rate, Omega_rate = slope(windows.velocity), slope(windows.angular_velocity)
     p_rate, r_rate = slope(windows.contact), slope(windows.position)
+    rho_rate = slope(windows.contact - windows.position)
     middle = windows.part(np.arange(_HALF_NODES, times.size, shape[1]))
     m, V, Omega = float(system.body.mass), middle.velocity, middle.angular_velocity
     rho = middle.contact - middle.position
     F, K, J, gyroscopic, u_rate = _applied(system, middle, p_rate)
-    solved = _newton_euler(m, J, rho, F, K - gyroscopic, u_rate - np.cross(Omega, p_rate - V))
+    solved = _newton_euler(m, J, rho, F, K - gyroscopic, u_rate - np.cross(Omega, rho_rate))
 
     rate = np.linalg.norm(Omega, axis=1).max() + np.abs(V_rate).max() / max(np.abs(V).max(), 1e-300)
     a_size = max(np.abs(F).max() / m, np.abs(V_rate).max(), np.abs(V).max() * rate, 1e-300)
