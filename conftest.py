@@ -70,9 +70,7 @@ def check(command: str, status: int, shown: list[str]) -> str | None:
     words = shlex.split(command, comments=True)
     if words[0] == "make":
         makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
-        unknown = [
-            word for word in words[1:] if not re.search(rf"^{re.escape(word)}:", makefile, re.MULTILINE)
-        ]
+        unknown = [word for word in words[1:] if not re.search(rf"^{re.escape(word)}:", makefile, re.MULTILINE)]
         return f"the Makefile has no target {unknown}" if unknown else None
     if words[0] in NOT_RUN:
         return None

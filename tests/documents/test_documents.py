@@ -113,8 +113,6 @@ def test_every_direct_dependency_is_pinned_exactly_and_nothing_says_where_from()
 
 def test_the_version_stands_in_one_place() -> None:
     version = tomllib.loads(text_of(ROOT / "pyproject.toml"))["project"]["version"]
-    holders = [
-        path for path in [*SOURCES, ROOT / "CITATION.cff", ROOT / "README.md"] if version in text_of(path)
-    ]
+    holders = [path for path in [*SOURCES, ROOT / "CITATION.cff", ROOT / "README.md"] if version in text_of(path)]
     assert holders == []
     assert f"## [{version}]" in text_of(ROOT / "CHANGELOG.md")
