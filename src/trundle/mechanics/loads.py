@@ -55,7 +55,7 @@ def at_rest(mass: Scalar) -> BodyMotion:
 
 
 class Load:
-    """A force and a torque on the body; by default neither, and a potential of zero."""
+    """A force and a torque on the body; by default neither, and no potential."""
 
     constant = False  # the same force and torque always and everywhere
 
@@ -184,6 +184,11 @@ class Torque(Load):
     def torque(self, motion: BodyMotion) -> Vector:  # noqa: ARG002
         """Return K."""
         return self.value
+
+    @property
+    def symmetric(self) -> bool:
+        """True where the torque points along the axis."""
+        return is_zero(self.value.x) and is_zero(self.value.y)
 
 
 @dataclass(frozen=True)
