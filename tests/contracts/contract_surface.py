@@ -1,0 +1,72 @@
+"""What every surface must obey: inherit `SurfaceContract`, say the surface and some points on it."""
+
+from __future__ import annotations
+
+import mpmath
+from tests.precise import across, numbers, precisely, size_of, slope, unit
+from tests.tolerances import EXACT
+
+from trundle.mechanics.algebra import Matrix, Vector
+from trundle.mechanics.surfaces import Surface
+
+
+class SurfaceContract:
+    """Set `surface`, and write `points`: points on it, without use of its level function."""
+
+    surface: Surface
+    length = 1.0  # over which the surface changes, m
+
+    def points(self) -> list[Vector]:
+        raise NotImplementedError
+
+    def _gradient(self, p: Vector) -> Vector:
+        level = self.surface.level
+        return Vector(
+            slope(lambda h: level(Vector(p.x + h, p.y, p.z))),
+            slope(lambda h: level(Vector(p.x, p.y + h, p.z))),
+            slope(lambda h: level(Vector(p.x, p.y, p.z + h))),
+        )
+
+    @precisely
+    def test_the_level_is_zero_on_the_surface(self) -> None:
+        assert self.points()
+        for p in self.points():
+            assert abs(self.surface.level(p)) <= EXACT(16, self.length)
+
+    @precisely
+    def test_the_level_is_positive_on_the_side_of_the_body(self) -> None:
+        for p in self.points():
+            n, step = self.surface.normal(p), mpmath.mpf(self.length) / 1000
+            assert self.surface.level(p + n * step) > 0 > self.surface.level(p - n * step)
+
+    @precisely
+    def test_the_normal_is_the_direction_in_which_the_level_grows(self) -> None:
+        for p in self.points():
+            n = self.surface.normal(p)
+            assert abs(n.norm() - 1) <= EXACT(16, 1)
+            assert size_of(n - unit(self._gradient(p))) <= EXACT(16, 1)
+
+    @precisely
+    def test_the_shape_operator_is_how_the_normal_leans(self) -> None:
+        # The normals are taken from the level function, so that this test leans on nothing else.
+        for p in self.points()[:6]:
+            n, S = unit(self._gradient(p)), self.surface.shape_operator(p)
+            for t in across(n):
+                leans = slope(lambda h, p=p, t=t: unit(self._gradient(p + t * (h * self.length)))) * (1 / self.length)
+                assert size_of(S @ t - leans) <= EXACT(16, 1 / self.length)
+
+    @precisely
+    def test_the_shape_operator_is_symmetric_and_tangential(self) -> None:
+        for p in self.points():
+            S, n = self.surface.shape_operator(p), self.surface.normal(p)
+            assert size_of(S - S.transpose) <= EXACT(16, 1 / self.length)
+            assert size_of(S @ n) <= EXACT(16, 1 / self.length)
+
+    @precisely
+    def test_it_says_truly_whether_it_looks_the_same_from_all_sides(self) -> None:
+        turned = []
+        for p, angle in zip(self.points(), numbers("around", len(self.points()), 3.0), strict=True):
+            c, s = mpmath.cos(angle), mpmath.sin(angle)
+            about_axis = Matrix(Vector(c, -s, 0), Vector(s, c, 0), Vector(0, 0, 1))
+            turned.append(abs(self.surface.level(about_axis @ p)) <= EXACT(16, self.length))
+        assert all(turned) == self.surface.axisymmetric
