@@ -72,7 +72,7 @@ def test_the_saved_scenario_has_the_users_words(here: Command, folder: Path) -> 
         "runge-kutta",
     )
     saved = tr.Trajectory.load(folder / "tilted-turntable" / "run.nc")
-    tables = tomllib.loads(saved.data.attrs["scenario"])
+    tables = tomllib.loads(saved.scenario)
     assert tables["run"] == {"duration": "2 s", "every": "50 ms", "method": "runge-kutta"}
     assert tables["support"]["motion"]["rate"] == "33.3 rpm"
     assert saved.method == "runge-kutta"

@@ -11,7 +11,7 @@ import numpy as np
 from trundle.mechanics.loads import Drag, Force, Torque
 from trundle.solve.exact import closed_form
 
-from .scales import Array, as_ratio, with_unit
+from .scales import Array, as_ratio, short, with_unit
 
 if TYPE_CHECKING:
     from trundle.mechanics.system import RollingSystem
@@ -123,7 +123,7 @@ def _key_numbers(system: RollingSystem) -> str:
     if rate:
         parts.append(f"table {_rate(rate)}")
     if support.tilt:
-        parts.append(f"tilt {math.degrees(support.tilt):.4g}°".replace("-", "−"))
+        parts.append(f"tilt {short(math.degrees(support.tilt), 4)}°")
     if body.is_isotropic_sphere:
         parts.append(f"inertia ratio k = {as_ratio(float(body.inertia_ratio))}")
         radius = float(getattr(body.shape, "radius", 0.0))
@@ -141,8 +141,8 @@ def _key_numbers(system: RollingSystem) -> str:
 
 def _rate(rate: float) -> str:
     per_minute = rate * 30 / math.pi
-    text = f"{rate:.4g} rad/s".replace("-", "−")
-    return f"{text} ({per_minute:.4g} rpm)".replace("-", "−") if 0.1 <= abs(per_minute) < 1e5 else text
+    text = f"{short(rate, 4)} rad/s"
+    return f"{text} ({short(per_minute, 4)} rpm)" if 0.1 <= abs(per_minute) < 1e5 else text
 
 
 def _pushes(system: RollingSystem) -> tuple[tuple[str, float, float], ...]:

@@ -59,6 +59,15 @@ class Panel:
         return self.page.order(self.line[self.shown])
 
     @property
+    def track(self) -> Array | None:
+        """First and last place of the guiding centre as (across, up), if any of the way between is in the view."""
+        if self.guide is None:
+            return None
+        ends = self.page.order(self.guide[[0, -1]])
+        along = ends[0] + np.linspace(0.0, 1.0, 2001)[:, None] * (ends[1] - ends[0])
+        return ends if np.any(np.all((along >= self.low) & (along <= self.high), axis=1)) else None
+
+    @property
     def repeats(self) -> bool:
         """Whether the last turn lies upon the first."""
         if self.turns <= 1.2:

@@ -140,20 +140,21 @@ class _Drawing:
                 marks.turn_sign(ax, at, (place.width, place.height), top, facts.rate)
 
     def _guide(self, ax: Axes, panel: Panel, ruler: Ruler) -> None:
-        if panel.guide is None:
+        track = panel.track
+        if track is None:
             return
-        guide = panel.page.order(panel.guide)
-        if np.all(np.ptp(guide, axis=0) <= 1e-6 * max(panel.span)):
-            ax.plot(*ruler(guide[0]), **STYLES["centre"])
+        if np.all(np.ptp(track, axis=0) <= 1e-6 * max(panel.span)):
+            ax.plot(*ruler(track[0]), **STYLES["centre"])
             self.legend["centre"] = "guiding centre, at rest"
             return
         above = {"zorder": 4.5} if panel.turns > MANY_TURNS and panel.until is None else {}
-        drawn = thin_path(guide, 1e-4 * max(panel.span))
-        ax.plot(*ruler(drawn).T, **STYLES["guide"] | above)
-        speed = float(np.hypot(*(panel.guide[-1] - panel.guide[0]))) / float(panel.time[-1] - panel.time[0])
+        ax.plot(*ruler(track).T, **STYLES["guide"] | above)
+        speed = float(np.hypot(*(track[-1] - track[0]))) / float(panel.time[-1] - panel.time[0])
         self.legend["guide"] = f"guiding centre, {with_unit(speed, 'speed')}"
+        # The arrowhead sits at the last place that is well within the view.
+        along = track[0] + np.linspace(0.0, 1.0, 2001)[:, None] * (track[-1] - track[0])
         inset = 0.03 * max(panel.span)
-        seen = guide[np.all((guide >= np.array(panel.low) + inset) & (guide <= np.array(panel.high) - inset), axis=1)]
+        seen = along[np.all((along >= np.array(panel.low) + inset) & (along <= np.array(panel.high) - inset), axis=1)]
         if len(seen) > 1:
             step = (seen[-1] - seen[0]) * (panel.page.across_sign, panel.page.up_sign)
             marks.arrowhead(ax, ruler(seen[-1]), (float(step[0]), float(step[1])), VERMILION, 11)
@@ -221,7 +222,7 @@ class _Drawing:
         line = np.column_stack([panel.line[:, page.across], height]) / scale
         ax.axhline(0.0, color=GREY, lw=0.9, ls=(0, (1, 1.5)), zorder=2)
         many = panel.turns > MANY_TURNS
-        if panel.guide is not None:
+        if panel.guide is not None and panel.track is not None:
             # It lies in the plane of the ball's centre: its place downhill gives its height.
             fall = (panel.guide[:, 0] - panel.line[0, 0]) * -math.tan(self.facts.tilt)
             track = np.column_stack([panel.guide[:, page.across], fall]) / scale

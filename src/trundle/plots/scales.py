@@ -118,7 +118,7 @@ def with_unit(value: float, kind: str, digits: int = 3) -> str:
     ('36.8 cm/s', '2.5 cm')
     """
     unit = unit_for(abs(value), kind)
-    return f"{_short(value / unit.scale, digits)} {unit.symbol}".strip()
+    return f"{short(value / unit.scale, digits)} {unit.symbol}".strip()
 
 
 def as_ratio(value: float) -> str:
@@ -140,7 +140,7 @@ def as_ratio(value: float) -> str:
     ('2/5', '2/3', '0.37')
     """
     near = Fraction(value).limit_denominator(12)
-    return str(near) if abs(float(near) - value) <= 1e-12 * abs(value) else _short(value, 4)
+    return str(near) if abs(float(near) - value) <= 1e-12 * abs(value) else short(value, 4)
 
 
 def round_step(span: float, most: int) -> float:
@@ -285,11 +285,32 @@ def _moves(points: Array, stride: int) -> float:
     return float(np.max(np.hypot(across, up)))
 
 
-def _short(value: float, digits: int) -> str:
+def short(value: float, digits: int) -> str:
+    """Write a number with so many significant digits, in typographer's signs.
+
+    Parameters
+    ----------
+    value : float
+        The number.
+    digits : int
+        Significant digits.
+
+    Returns
+    -------
+    str
+        Such as ``"−1.5·10⁻⁹"``.
+
+    Examples
+    --------
+    >>> short(-1.5e-9, 3), short(1283.4, 3), short(33.3, 4)
+    ('−1.5·10⁻⁹', '1283', '33.3')
+    """
     text = f"{value:.{digits}g}"
     if "e" in text:
         mantissa, power = text.split("e")
-        if -4 <= int(power) <= 4:
-            return f"{value:.0f}"
-        return f"{mantissa}·10{str(int(power)).translate(_SUPERSCRIPT)}"
+        if 0 <= int(power) <= 4:
+            text = f"{value:.0f}"
+        else:
+            exponent = f"10{str(int(power)).translate(_SUPERSCRIPT)}"
+            text = exponent if mantissa == "1" else f"{mantissa}·{exponent}"
     return text.replace("-", "−")

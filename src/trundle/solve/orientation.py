@@ -24,6 +24,9 @@ _NODES = 8  # of the polynomial for Ω on a step
 _LARGEST_TURN = 1.0  # rad a step
 _STEPS_AT_ONCE = 100_000
 _EPSILON = 2.0**-53
+# The last coefficient of Ω's polynomial on a step, rad: rounding alone makes it some 1e-14; what comes after it is a
+# hundredth of it at most, divided by nine when integrated.
+_TAIL = 1e-13
 
 
 def orientation(angular_velocity: AngularVelocity, times: Array, start: Any, start_time: float = 0.0) -> Array:
@@ -92,7 +95,7 @@ def _turns(angular_velocity: AngularVelocity, edges: Array, steps: NDArray[np.in
 def _resolved_turns(angular_velocity: AngularVelocity, middle: Array, half: Array, depth: int) -> Array:
     coefficients = _polynomials(angular_velocity, middle, half)
     size = np.abs(coefficients).max(axis=1)  # (nodes, total), each already times the half step
-    rough = size[-2:].max(axis=0) > 64 * _EPSILON * np.maximum(size[0], 1.0)
+    rough = size[-2:].max(axis=0) > _TAIL * np.maximum(size[0], 1.0)
     result = _taylor(coefficients)
     if rough.any():
         if depth > 30:
