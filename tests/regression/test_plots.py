@@ -331,6 +331,13 @@ def test_there_is_no_guiding_centre_where_nothing_turns() -> None:
             assert not [line for line in ax.lines if line.get_color() == "#D55E00"]
 
 
+def test_a_guiding_centre_far_away_is_not_claimed() -> None:
+    figure = sheet_of("barely turning")
+    texts = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+    assert not [text for text in texts if "guiding" in text]
+    assert figure.texts[1].get_text().startswith("table 10⁻⁹ rad/s")
+
+
 def test_a_real_run_is_drawn_in_the_frames_of_its_trajectory() -> None:
     run = tr.Scenario.load("tilted-turntable-put-down").run()
     ax = panel(path_figure(run), "World")
