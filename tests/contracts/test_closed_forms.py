@@ -1,0 +1,83 @@
+"""Closed forms."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pytest
+from tests.additions import Ball, Ellipsoid, Tumble
+from tests.contracts.contract_closed_form import ClosedFormContract
+
+import trundle as tr
+from trundle.errors import OutOfDomainError
+from trundle.mechanics.algebra import Vector
+from trundle.mechanics.loads import BodyMotion, Load
+from trundle.mechanics.shapes import Sphere
+from trundle.solve.exact import SphereOnPlane
+
+BALL = tr.Body.solid_sphere(radius=0.025, mass=0.065)
+SHELL = tr.Body.hollow_sphere(radius=0.02, mass=0.0027)
+TUMBLE = Tumble(1.0, 0.0, 0.0, Vector(0.1, 0.0, 0.0), 1.0)
+PUSHED = (tr.Force((0.01, -0.02, 0.05)), tr.Torque((1e-4, 3e-4, -2e-5)))
+
+
+@dataclass(frozen=True)
+class Spring(Load):
+    stiffness: float
+
+    def force(self, motion: BodyMotion) -> Vector:
+        return motion.position * -self.stiffness
+
+
+def on_plane(
+    body: tr.Body = BALL, rate: float = 0.0, tilt: float = 0.0, loads: Any = (), **start: Any
+) -> tuple[tr.RollingSystem, tr.State]:
+    motion = tr.Spin(rate) if rate else tr.Fixed()
+    system = tr.RollingSystem(body, tr.Support(tr.Plane(), motion=motion, tilt=tilt), loads=loads)
+    return system, system.place(**{"position": (0.1, -0.05), "velocity": (0.03, 0.2), "spin": 1.5} | start)
+
+
+class TestSphereOnPlane(ClosedFormContract):
+    form = SphereOnPlane
+
+    def cases(self) -> list[tuple[tr.RollingSystem, tr.State]]:
+        return [
+            on_plane(rate=3.5),
+            on_plane(SHELL, rate=-8.0, velocity="co-rotating", spin=None),
+            on_plane(tr.Body.sphere(0.5, 1.0, 0.1), rate=2.0, velocity=None),
+            on_plane(rate=3.5, tilt=0.05),
+            on_plane(rate=1e-12, tilt=0.05),
+            on_plane(tilt=-0.3),
+            on_plane(),
+            on_plane(rate=3.5, tilt=0.05, loads=(*PUSHED, tr.Drag(0.01))),
+            on_plane(SHELL, loads=(tr.Drag(1e-9), *PUSHED)),
+            on_plane(loads=(tr.Drag(1.0), tr.Drag(0.5))),
+        ]
+
+    def outside(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
+        inside, _ = on_plane(rate=3.5)
+        body, support = inside.body, inside.support
+        top = tr.State((0.0, 0.0, 0.525), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+        ball = replace(inside, support=replace(support, surface=Ball(0.5, 1.0), motion=tr.Fixed()))
+        others = [
+            (replace(inside, body=tr.Body(0.065, tr.Principal(1e-5, 2e-5, 2.5e-5), body.shape)), "isotropic inertia"),
+            (replace(inside, body=replace(body, shape=Sphere(0.025, Vector(0.0, 0.0, 0.001)))), "about its centre"),
+            (replace(inside, body=tr.Body(0.065, tr.Isotropic(1e-5), Ellipsoid(0.02, 0.02, 0.025))), "no sphere"),
+            (replace(inside, support=replace(support, motion=TUMBLE)), "Tumble"),
+            (replace(inside, loads=(Spring(1.0),)), "Spring"),
+        ]
+        return [(ball, top, "Ball"), *((system, system.place((0.1, -0.05)), word) for system, word in others)]
+
+    def test_a_compiled_path_is_of_one_ball(self) -> None:
+        one = SphereOnPlane.of(*on_plane(rate=3.5))
+        with pytest.raises(OutOfDomainError, match="one ball"):
+            replace(one, rate=np.array([1.0, 2.0])).compiled()
+
+    @pytest.mark.parametrize(("rate", "loads"), [(0.0, ()), (3.5, (tr.Drag(0.1),))])
+    def test_no_guiding_centre_without_a_circle(self, rate: float, loads: Any) -> None:
+        motion = SphereOnPlane.of(*on_plane(rate=rate, loads=loads))
+        for ask in ("guiding_centre", "drift_velocity", "circle_radius"):
+            with pytest.raises(OutOfDomainError, match="guiding centre"):
+                getattr(motion, ask)(0.0) if ask == "guiding_centre" else getattr(motion, ask)
