@@ -86,7 +86,7 @@ def leaves(values: tuple[Any, ...]) -> Iterator[Any]:
 class _Python:
     """Python floats: the math module under the names that the arrays' namespaces use."""
 
-    sqrt, sin, cos, exp, expm1 = math.sqrt, math.sin, math.cos, math.exp, math.expm1
+    sqrt, sin, cos, exp, expm1, round = math.sqrt, math.sin, math.cos, math.exp, math.expm1, round
 
     @staticmethod
     def where(condition: Any, yes: Any, no: Any) -> Any:

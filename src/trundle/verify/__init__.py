@@ -27,6 +27,7 @@ Array = NDArray[np.float64]
 EXACT, SOLVER = 1e-12, 1e3
 _MOST_SAMPLES = 20_000  # looked at for integrals
 _CROSS_CHECKED = 200  # instants
+_FITTED, _CIRCLES_FITTED = 2000, 20  # points and, where they are taken anew, circles
 _MOST_RADIANS = 50_000.0  # of turning that a cross-check follows
 
 
@@ -67,7 +68,7 @@ def card(system: RollingSystem, start: State, samples: Samples, method: str, tit
         *_integrals(system, some, method),
         *_guiding_centre(motion, start, some, method),
         *_cross_check(system, start, some, method, motion),
-        *_circle(motion, start, samples, method),
+        *_circle(system, motion, start, samples, method),
         *_contact_force(system, samples),
     ]
     return Card(title, _described(method, motion), tuple(figures))
@@ -81,7 +82,7 @@ def _described(method: str, motion: SphereOnPlane | None) -> str:
 
 
 def _bound(method: str, turned: float = 1.0) -> float:
-    return max(EXACT, SOLVER * tolerance_of(method)) * max(1.0, turned / SOLVER)
+    return max(EXACT, SOLVER * tolerance_of(method) * max(1.0, turned / SOLVER))
 
 
 def _turned(samples: Samples) -> float:
@@ -175,11 +176,9 @@ def _cross_check(
     numerical = other if method == "exact" else method
     span = float(at.time[-1] - start.time)
     speed = float(np.linalg.norm(at.angular_velocity, axis=1).max())
-    reach = start.time + min(span, _MOST_RADIANS / max(speed, 1e-300))
-    chosen = np.unique(np.linspace(0, np.searchsorted(at.time, reach, side="right") - 1, _CROSS_CHECKED).astype(int))
-    ours = at.part(chosen)
-    theirs = solver(other)(system, start, ours.time, tolerance_of(other))
-    count = min(theirs.time.size, ours.time.size)
+    times = start.time + np.linspace(0.0, min(span, _MOST_RADIANS / max(speed, 1e-300)), _CROSS_CHECKED)
+    ours, theirs = (solver(name)(system, start, times, tolerance_of(name)) for name in (method, other))
+    count = min(theirs.time.size, ours.time.size)  # one may reach the rim first, by a rounding
     ours, theirs = ours.part(slice(0, count)), theirs.part(slice(0, count))
     turned = speed * float(ours.time[-1] - start.time)
     bound = _bound(numerical, turned)
@@ -202,15 +201,14 @@ def _largest(array: Array) -> float:
     return float(np.linalg.norm(array, axis=-1).max())
 
 
-def _circle(motion: SphereOnPlane | None, start: State, samples: Samples, method: str) -> Iterator[CardFigure]:
+def _circle(
+    system: RollingSystem, motion: SphereOnPlane | None, start: State, samples: Samples, method: str
+) -> Iterator[CardFigure]:
     """Measure rate, centre and drift from the positions alone, beside the formula's."""
     if motion is None or not motion.has_guiding_centre:
         return
-    t = samples.time - start.time
-    path = samples.position[:, 0] + 1j * samples.position[:, 1]
-    even = np.isclose(np.diff(t), t[1] - t[0], rtol=1e-6)
-    whole = t.size if even.all() else int(np.argmin(even)) + 1
-    found = measure(t[:whole], path[:whole]) if motion.circle_radius > 0 else None
+    t, path = _even_path(system, start, samples, method, abs(float(motion.kappa)))
+    found = measure(t, path) if motion.circle_radius > 0 else None
     turns = abs(motion.kappa) * float(t[-1]) / (2 * math.pi)
     yield CardFigure("circle rate by the formula", motion.kappa, "rad/s", note="κ = ω k/(1 + k)")
     if motion.circle_radius == 0:
@@ -239,16 +237,32 @@ def _circle(motion: SphereOnPlane | None, start: State, samples: Samples, method
             yield _checked(f"{name}, off the formula's", abs(value - formula) / scale, bound, note)
 
 
+def _even_path(
+    system: RollingSystem, start: State, samples: Samples, method: str, kappa: float
+) -> tuple[Array, NDArray[np.complex128]]:
+    """Return times and path for a fit: the samples at an even step, or new ones where they are too far apart."""
+    t = samples.time - start.time
+    even = np.allclose(np.diff(t[:-1]), t[1] - t[0], rtol=1e-6)  # the last may be the run's end
+    if t.size > 2 and t[-1] - t[-2] < 0.999 * (t[1] - t[0]):
+        t = t[:-1]
+    if t.size < 32 or not even or (t[1] - t[0]) * kappa > 1:
+        t = np.linspace(0.0, min(float(samples.time[-1] - start.time), _CIRCLES_FITTED * 2 * math.pi / kappa), _FITTED)
+        samples = solver(method)(system, start, start.time + t, tolerance_of(method))
+        t = samples.time - start.time
+    stride = max(1, int(0.5 / (kappa * (t[1] - t[0]))), t.size // _FITTED // 100)
+    keep = slice(0, stride * _FITTED, stride)
+    return t[keep], samples.position[keep, 0] + 1j * samples.position[keep, 1]
+
+
 def _pair(value: complex, unit: str) -> str:
     return f"({value.real:.9g}, {value.imag:.9g}) {unit}".rstrip()
 
 
 def _contact_force(system: RollingSystem, samples: Samples) -> Iterator[CardFigure]:
     """Say what friction the motion needs, and whether the support pushes rather than pulls."""
-    contact = samples.part(slice(None))
-    normal = _normals(system, contact)
-    N = np.einsum("ni,ni->n", contact.contact_force, normal)
-    f = np.linalg.norm(contact.contact_force - N[:, None] * normal, axis=1)
+    normal = _normals(system, samples)
+    N = np.einsum("ni,ni->n", samples.contact_force, normal)
+    f = np.linalg.norm(samples.contact_force - N[:, None] * normal, axis=1)
     least = int(np.argmin(N))
     yield CardFigure(
         "normal force", float(N[least]), "N", None, bool(N[least] > 0), f"least, at t = {samples.time[least]:.6g} s"

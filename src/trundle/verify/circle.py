@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-_MOST_POINTS = 4000
-
 
 @dataclass(frozen=True)
 class MeasuredCircle:
@@ -64,8 +62,7 @@ def measure(times: Array, path: NDArray[np.complex128]) -> MeasuredCircle | None
     --------
     See `MeasuredCircle`.
     """
-    keep = np.unique(np.linspace(0, times.size - 1, min(times.size, _MOST_POINTS)).astype(int))
-    t, z = times[keep], path[keep]
+    t, z = times, path
     if t.size < 8:
         return None
     rate = _first_guess(times, path)

@@ -61,16 +61,17 @@ def window_times(begin: float, end: float, fastest: float) -> Array:
 
 
 def _slope_at_middle(times: Array, values: Array) -> Array:
-    """Return dy/dt at the middle node of each window; values (windows, nodes, ...)."""
-    middle = times[:, _HALF_NODES]
+    """Return dy/dt at the middle node of each window, for the polynomial through its nodes; values (windows, nodes, ...).
+
+    Barycentric weights (Berrut and Trefethen 2004) from the nodes as they are, which far from t = 0 are rounded.
+    """
     half = (times[:, -1:] - times[:, :1]) / 2
-    x = (times - middle[:, None]) / half
-    # Barycentric weights of Chebyshev points: alternating signs, half at the ends (Berrut and Trefethen 2004).
-    weights = (-1.0) ** np.arange(x.shape[1])
-    weights[[0, -1]] /= 2
-    weights /= weights[_HALF_NODES]
+    x = (times - times[:, _HALF_NODES : _HALF_NODES + 1]) / half
+    apart = x[:, :, None] - x[:, None, :] + np.eye(x.shape[1])
+    weights = 1 / apart.prod(axis=2)
+    weights /= weights[:, _HALF_NODES : _HALF_NODES + 1]
     x[:, _HALF_NODES] = 1.0
-    row = weights / -x
+    row = -weights / x
     row[:, _HALF_NODES] = 0.0
     change = values - values[:, _HALF_NODES : _HALF_NODES + 1]
     return np.einsum("wn,wn...->w...", row / half, change)

@@ -12,7 +12,7 @@ from ...mechanics.loads import constant_part
 from ...mechanics.scalars import Scalar, is_number, is_zero, leaves, namespace
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
-from .phi import Complex, exponentials, quotient_times
+from .phi import Complex, exponentials, phase, quotient_times
 
 _BLOCK = 2048  # samples: its table stays in the processor's cache
 
@@ -250,11 +250,10 @@ class SphereOnPlane:
     # The motion
 
     def _terms(self, t: Any) -> tuple[Complex, Complex, Complex]:
-        """Return e^{λt}, t φ₁(λt) and t² φ₂(λt); the phase κt carries its remainder, so it is off by 1 ulp at most."""
-        high, low = self._kappa_pair
-        y = 0.0 if is_zero(self.rate) else high * t if is_zero(low) else high * t + low * t
+        """Return e^{λt}, t φ₁(λt) and t² φ₂(λt)."""
+        y, turned = (0.0, 0.0) if is_zero(self.rate) else phase(self._kappa_pair, t)
         x = 0.0 if is_zero(self.drag) else -(self.gamma * t)
-        exponential, phi1, phi2 = exponentials(x, y)
+        exponential, phi1, phi2 = exponentials(x, y, turned)
         return exponential, phi1.scaled(t), phi2.scaled(t).scaled(t)
 
     def position_at(self, t: Any) -> Vector:
