@@ -459,14 +459,18 @@ def test_friction_offered_is_a_line_or_a_sentence() -> None:
 
 
 def test_the_users_settings_are_neither_used_nor_changed() -> None:
+    def pixels(figure: Any) -> np.ndarray:
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+        return np.array(canvas.buffer_rgba())
+
     run = CASES["off the rim"]
-    plain = rendered(path_figure(run))
-    with mpl.rc_context(
-        {"font.size": 30.0, "axes.facecolor": "red", "lines.linewidth": 9.0, "savefig.transparent": True}
-    ):
+    saved, shown = rendered(path_figure(run)), pixels(path_figure(run))
+    theirs = {"font.size": 30.0, "axes.facecolor": "red", "lines.linewidth": 9.0, "axes.unicode_minus": False}
+    with mpl.rc_context(theirs | {"savefig.transparent": True}):
         before = dict(mpl.rcParams)
-        figure = path_figure(run)
-        assert rendered(figure) == plain
+        assert rendered(path_figure(run)) == saved
+        assert np.array_equal(pixels(path_figure(run)), shown)
         assert dict(mpl.rcParams) == before
 
 
