@@ -1,0 +1,150 @@
+"""The one rolling law gives the same numbers whatever it is traced with: floats, arrays, mpmath, heyoka, SymPy."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+from tests.additions import Ball, Ellipsoid, Pipe, Torus, Tumble
+from tests.precise import DIGITS
+from tests.tolerances import EXACT
+
+import trundle as tr
+from trundle.mechanics.algebra import Quaternion, Vector
+from trundle.mechanics.contact import roll
+from trundle.mechanics.parameters import numbers, with_numbers
+from trundle.mechanics.shapes import Sphere
+
+PUSHED = (tr.Force((0.25, -0.5, 0.125)), tr.Torque((0.01, 0.02, -0.03)), tr.Drag(0.3))
+TUMBLE = Tumble(1.5, 0.25, -0.75, Vector(0.5, -0.25, 0.125), 2.0)
+
+
+def system(body: tr.Body, surface: Any, motion: Any) -> tr.RollingSystem:
+    return tr.RollingSystem(body, tr.Support(surface, motion=motion, tilt=0.2), loads=PUSHED)
+
+
+BALL = tr.Body.solid_sphere(radius=0.125, mass=0.75)
+EGG = tr.Body(0.75, tr.Principal(0.003, 0.004, 0.005), Ellipsoid(0.15, 0.125, 0.1))
+WHEEL = tr.Body(0.75, tr.Principal(0.003, 0.003, 0.005), Torus(0.1, 0.02))
+WEIGHTED = tr.Body(0.75, tr.Isotropic(0.004), Sphere(0.125, Vector(0.01, -0.02, 0.03)))
+SYSTEMS = {
+    "ball on a turntable": system(BALL, tr.Plane(), tr.Spin(3.5)),
+    "ball on a slope": system(BALL, tr.Plane(rim=2.0), tr.Fixed()),
+    "ellipsoid on a tumbling ball": system(EGG, Ball(0.5, 1.0), TUMBLE),
+    "torus in a tumbling bowl": system(WHEEL, Ball(0.8, -1.0), TUMBLE),
+    "weighted ball in a spinning pipe": system(WEIGHTED, Pipe(0.5), tr.Spin(-2.0)),
+}
+NAMES = ["t", *(f"p{i}" for i in range(3)), *(f"q{i}" for i in range(4)), *(f"Omega{i}" for i in range(3))]
+COUNT = 6
+
+
+def rates(of: tr.RollingSystem, state: Any) -> list[Any]:
+    """Return V, ṗ, q̇, Ω̇ and R from t, p, q and Ω."""
+    t, *rest = state
+    now = roll(of, t, Vector(*rest[:3]), Quaternion(*rest[3:7]), Vector(*rest[7:]))
+    return [*now.velocity, *now.point_rate, *now.orientation_rate, *now.angular_acceleration, *now.reaction]
+
+
+PARTS = {
+    "V": slice(0, 3),
+    "p rate": slice(3, 6),
+    "q rate": slice(6, 10),
+    "Omega rate": slice(10, 13),
+    "R": slice(13, 16),
+}
+
+
+@pytest.fixture(scope="module")
+def states() -> Any:
+    """Return states (COUNT, 11) with p off the axis; the law can be evaluated wherever the normal is defined."""
+    draw = np.random.default_rng(seed=1)
+    q = draw.normal(size=(COUNT, 4))
+    q /= np.linalg.norm(q, axis=1, keepdims=True)
+    p = draw.uniform(0.3, 0.7, size=(COUNT, 3))
+    return np.hstack([draw.uniform(0.1, 2.0, (COUNT, 1)), p, q, draw.normal(size=(COUNT, 3))])
+
+
+@pytest.fixture(params=SYSTEMS, scope="module")
+def traced(request: pytest.FixtureRequest) -> tr.RollingSystem:
+    return SYSTEMS[request.param]
+
+
+@pytest.fixture(scope="module")
+def reference(traced: tr.RollingSystem, states: Any) -> Any:
+    """Return the rates (COUNT, 16) rounded from `DIGITS` digits, the system's own numbers included."""
+    with mpmath.workdps(DIGITS):
+        precise = with_numbers(traced, [mpmath.mpf(x) for x in numbers(traced)])
+        return np.array([[float(x) for x in rates(precise, [mpmath.mpf(float(x)) for x in s])] for s in states])
+
+
+def same(found: Any, reference: Any) -> None:
+    """Compare by parts: rounding in a vector is measured by its largest component."""
+    assert found.shape == reference.shape
+    for name, part in PARTS.items():
+        size = np.abs(reference[:, part]).max()
+        off = np.abs(found[:, part] - reference[:, part]).max()
+        assert off <= EXACT(100, size), f"{name}: off by {off / EXACT(1, size):.3g} ulps"
+
+
+def test_floats(traced: tr.RollingSystem, states: Any, reference: Any) -> None:
+    same(np.array([[float(x) for x in rates(traced, s.tolist())] for s in states]), reference)
+
+
+def test_a_batch_of_arrays_is_one_call(traced: tr.RollingSystem, states: Any, reference: Any) -> None:
+    same(np.stack(np.broadcast_arrays(*rates(traced, states.T)), axis=1), reference)
+
+
+def test_a_batch_of_systems_is_one_call(traced: tr.RollingSystem, states: Any) -> None:
+    # Every number of the system an array too: each member differs from the next by a tenth.
+    growth = 1 + 0.1 * np.arange(COUNT)
+    members = with_numbers(traced, [np.asarray(x) * growth for x in numbers(traced)])
+    together = np.stack(np.broadcast_arrays(*rates(members, states.T)), axis=1)
+    for i, (state, factor) in enumerate(zip(states, growth, strict=True)):
+        one = with_numbers(traced, [x * float(factor) for x in numbers(traced)])
+        same(together[i : i + 1], np.array([rates(one, state.tolist())], dtype=float))
+
+
+def test_heyoka_expressions_compiled(traced: tr.RollingSystem, states: Any, reference: Any) -> None:
+    heyoka = pytest.importorskip("heyoka")
+    symbolic = with_numbers(traced, [heyoka.par[i] for i in range(len(numbers(traced)))])
+    variables = heyoka.make_vars(*NAMES)
+    law = [heyoka.expression(x) if isinstance(x, float) else x for x in rates(symbolic, variables)]
+    compiled = heyoka.cfunc(law, list(variables), compact_mode=True)
+    pars = np.repeat(np.array(numbers(traced))[:, None], COUNT, axis=1)
+    same(np.asarray(compiled(np.ascontiguousarray(states.T), pars=pars)).T, reference)
+
+
+def test_sympy_symbols(traced: tr.RollingSystem, states: Any, reference: Any) -> None:
+    import sympy
+
+    variables = sympy.symbols(NAMES, real=True)
+    parameters = sympy.symbols(f"par0:{len(numbers(traced))}", real=True)
+    law = rates(with_numbers(traced, parameters), variables)
+    with mpmath.workdps(DIGITS):
+        values = [dict(zip(parameters, map(mpmath.mpf, numbers(traced)), strict=True)) for _ in states]
+        for known, state in zip(values, states, strict=True):
+            known.update(zip(variables, map(mpmath.mpf, state.tolist()), strict=True))
+        found = [[float(_value(sympy.sympify(part), known)) for part in law] for known in values]
+    same(np.array(found), reference)
+
+
+def _value(expression: Any, known: dict[Any, Any]) -> Any:
+    """Evaluate a SymPy expression, each part of it once however often it occurs."""
+    if expression not in known:
+        operations = {
+            "Add": lambda *terms: mpmath.fsum(terms),
+            "Mul": lambda *factors: mpmath.fprod(factors),
+            "Pow": lambda base, exponent: base**exponent,
+            "sin": mpmath.sin,
+            "cos": mpmath.cos,
+        }
+        if expression.is_Number:
+            known[expression] = (
+                mpmath.mpf(expression.p) / expression.q if expression.is_Rational else mpmath.mpf(float(expression))
+            )
+        else:
+            parts = [_value(part, known) for part in expression.args]
+            known[expression] = operations[expression.func.__name__](*parts)
+    return known[expression]
