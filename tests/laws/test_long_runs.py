@@ -1,0 +1,171 @@
+"""What must stay constant does, through Taylor's method, for bodies and supports that only the tests have."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from tests.additions import Ellipsoid, Pipe, Torus
+from tests.tolerances import EXACT, SOLVER
+
+import trundle as tr
+from trundle.mechanics.algebra import Quaternion, Vector
+from trundle.mechanics.shapes import Sphere
+from trundle.solve import runge_kutta, taylor
+from trundle.solve.samples import Samples
+
+pytest.importorskip("heyoka")
+
+G = 9.80665
+TIMES = np.linspace(0.0, 10.0, 201)
+
+
+def thin_disc(mass: float, a: float) -> tr.Body:
+    """A homogeneous disc: m a²/4 about a diameter, m a²/2 about its axis."""
+    return tr.Body(mass, tr.Principal(mass * a * a / 4, mass * a * a / 4, mass * a * a / 2), Torus(a, 0.0))
+
+
+def ellipsoid(mass: float, a: float, b: float, c: float) -> tr.Body:
+    """A homogeneous ellipsoid."""
+    moments = [mass * (b * b + c * c) / 5, mass * (c * c + a * a) / 5, mass * (a * a + b * b) / 5]
+    return tr.Body(mass, tr.Principal(*moments), Ellipsoid(a, b, c))
+
+
+def space_inertia(body: tr.Body, at: Samples) -> Any:
+    """Return J in space (n, 3, 3) from the principal moments, the rotations made by SciPy."""
+    from scipy.spatial.transform import Rotation
+
+    Q = Rotation.from_quat(at.orientation, scalar_first=True).as_matrix()
+    moments = np.array([body.inertia.x, body.inertia.y, body.inertia.z])
+    return np.einsum("nij,j,nkj->nik", Q, moments, Q)
+
+
+def energies(system: tr.RollingSystem, at: Samples) -> tuple[Any, Any, Any]:
+    """Return ½mV², ½Ω·JΩ and the potential energy of weight on a level support."""
+    m, V, Omega = system.body.mass, at.velocity, at.angular_velocity
+    turning = 0.5 * np.einsum("ni,nij,nj->n", Omega, space_inertia(system.body, at), Omega)
+    return 0.5 * m * (V * V).sum(axis=1), turning, m * G * at.position[:, 2]
+
+
+def radians(at: Samples) -> float:
+    return float(np.linalg.norm(at.angular_velocity, axis=1).max() * at.time[-1])
+
+
+def drift(terms: Any) -> float:
+    total = sum(terms)
+    return float(np.abs(total - total[0]).max() / max(np.abs(term).max() for term in terms))
+
+
+def tilted(axis: tuple[float, float, float], angle: float) -> tuple[float, ...]:
+    return (math.cos(angle / 2), *(math.sin(angle / 2) * part for part in axis))
+
+
+LEVEL = {
+    "thin disc": (thin_disc(2.0, 0.3), tilted((1.0, 0.0, 0.0), math.pi / 2 - 0.3), (1.5, 0.2), 4.0),
+    "triaxial ellipsoid": (ellipsoid(1.5, 0.3, 0.25, 0.2), tilted((0.6, 0.8, 0.0), 1.0), (0.5, -0.3), 6.0),
+}
+
+
+@pytest.mark.parametrize("name", LEVEL)
+def test_energy_of_a_body_on_a_level_plane(name: str) -> None:
+    body, orientation, velocity, spin = LEVEL[name]
+    system = tr.RollingSystem(body, tr.Support(tr.Plane()))
+    start = system.place(velocity=velocity, spin=spin, orientation=orientation)
+    at = taylor.solve(system, start, TIMES)
+    kinetic, turning, potential = energies(system, at)
+    assert np.ptp(potential) > 0.05 * kinetic.max()  # it does rise and fall
+    assert drift((kinetic, turning, potential)) <= SOLVER(1 + radians(at), 1e-15)
+    assert np.abs(at.contact[:, 2]).max() <= SOLVER(1 + radians(at), 1e-15)
+
+
+def test_moving_energy_of_an_ellipsoid_on_a_turntable() -> None:
+    rate, body = 2.0, ellipsoid(1.5, 0.3, 0.25, 0.2)
+    system = tr.RollingSystem(body, tr.Support(tr.Plane(), motion=tr.Spin(rate)))
+    start = system.place((0.5, 0.0), (0.3, 0.6), spin=3.0, orientation=tilted((0.6, 0.8, 0.0), 1.0))
+    at = taylor.solve(system, start, TIMES)
+    energy = energies(system, at)
+    orbital = body.mass * (at.position[:, 0] * at.velocity[:, 1] - at.position[:, 1] * at.velocity[:, 0])
+    own = np.einsum("nj,nj->n", space_inertia(body, at)[:, 2], at.angular_velocity)
+    assert np.ptp(sum(energy)) > 0.2  # J: the table gives and takes
+    assert drift((*energy, -rate * orbital, -rate * own)) <= SOLVER(2 * (1 + radians(at)), 1e-15)
+
+
+def test_angular_momentum_of_chaplygins_ball_about_the_contact() -> None:
+    body = tr.Body(1.5, tr.Principal(0.02, 0.03, 0.04), Sphere(0.25))
+    system = tr.RollingSystem(body, tr.Support(tr.Plane()))
+    start = system.place(velocity=(0.5, -0.3), spin=6.0, orientation=tilted((0.6, 0.8, 0.0), 1.0))
+    at = taylor.solve(system, start, TIMES)
+    own = np.einsum("nij,nj->ni", space_inertia(body, at), at.angular_velocity)
+    rho = np.array([0.0, 0.0, -0.25])
+    orbital = body.mass * np.cross(rho, np.cross(at.angular_velocity, rho))
+    assert np.ptp(own, axis=0)[:2].min() > 0.01
+    assert drift((own, orbital)) <= SOLVER(1 + radians(at), 1e-15)
+    assert drift(energies(system, at)) <= SOLVER(1 + radians(at), 1e-15)
+
+
+def pipe_start(a: float, b: float, around: float, up: float, radial: float) -> tr.State:
+    """A ball at (b − a, 0, 0) in a pipe: V = −Ω×ρ with ρ = a e_r, so V_φ = −a Ω_z and V_z = a Ω_φ."""
+    V = (0.0, (b - a) * around, up)
+    return tr.State((b - a, 0.0, 0.0), V, (radial, up / a, -(b - a) * around / a))
+
+
+@pytest.mark.parametrize("k", [2 / 5, 2 / 3, 0.1])
+def test_a_ball_in_a_vertical_pipe_bobs(k: float) -> None:
+    """Euler along e_r and e_φ: Ω_r' = φ̇ Ω_φ, (1 + k) a Ω_φ' = −k a φ̇ Ω_r − g, and φ̇ is constant (the golfer's dilemma).
+
+    So z swings at ν = φ̇ √(k/(1 + k)), √(2/7) of the turning for a solid ball, about a level set by gravity and Ω_r.
+    """
+    a, b, around, up, radial = 0.05, 0.3, 12.0, 0.4, -3.0
+    body = tr.Body.sphere(a, 0.5, k)
+    system = tr.RollingSystem(body, tr.Support(Pipe(b)))
+    at = taylor.solve(system, pipe_start(a, b, around, up, radial), TIMES)
+    nu = around * math.sqrt(k / (1 + k))
+    pull = (k * around * a * radial + G) / (1 + k)
+    z = up / nu * np.sin(nu * TIMES) - pull / nu**2 * (1 - np.cos(nu * TIMES))
+    path = np.stack([(b - a) * np.cos(around * TIMES), (b - a) * np.sin(around * TIMES), z], axis=1)
+    size = np.abs(path).max()
+    assert np.abs(at.position - path).max() <= SOLVER(1 + radians(at), 1e-15, size)
+    # The wall carries m φ̇² (b − a) and pushes along e_φ with nothing, since φ̈ = 0.
+    inwards = -path * [1, 1, 0] / (b - a)
+    N = np.einsum("ni,ni->n", at.contact_force, inwards)
+    f = at.contact_force - N[:, None] * inwards
+    assert np.abs(N - body.mass * around**2 * (b - a)).max() <= SOLVER(1 + radians(at), 1e-15, N.max())
+    assert np.abs(f[:, :2]).max() <= SOLVER(1 + radians(at), 1e-15, N.max())
+
+
+def test_the_weighted_ball_swings_like_a_pendulum() -> None:
+    """Rocking about its lowest place in a plane: ½[I + m(a² + c² − 2ac cos θ)]θ̇² − mgc cos θ is the energy."""
+    a, c, m, I = 0.25, 0.1, 1.5, 0.03
+    body = tr.Body(m, tr.Isotropic(I), Sphere(a, Vector(0.0, 0.0, c)))
+    system = tr.RollingSystem(body, tr.Support(tr.Plane()))
+    at = taylor.solve(system, system.place(orientation=tilted((0.0, 1.0, 0.0), 2.5)), TIMES)
+    theta = 2 * np.unwrap(np.arctan2(at.orientation[:, 2], at.orientation[:, 0]))
+    # c points up in the body frame at θ = 0; the centre of mass hangs c cos θ below the sphere's centre.
+    assert np.abs(at.position[:, 2] - (a - c * np.cos(theta))).max() <= SOLVER(1 + radians(at), 1e-15, a)
+    turning = 0.5 * (I + m * (a * a + c * c - 2 * a * c * np.cos(theta))) * at.angular_velocity[:, 1] ** 2
+    assert drift((turning, -m * G * c * np.cos(theta))) <= SOLVER(1 + radians(at), 1e-15)
+    assert np.ptp(np.cos(theta)) > 0.05
+
+
+@pytest.mark.parametrize("name", LEVEL)
+def test_runge_kutta_agrees(name: str) -> None:
+    body, orientation, velocity, spin = LEVEL[name]
+    system = tr.RollingSystem(body, tr.Support(tr.Plane()))
+    start = system.place(velocity=velocity, spin=spin, orientation=orientation)
+    times = TIMES[:41]
+    ours, theirs = taylor.solve(system, start, times), runge_kutta.solve(system, start, times)
+    bound = SOLVER(20 * (1 + radians(ours)), runge_kutta.TOLERANCE)
+    for field in ("position", "velocity", "angular_velocity", "orientation", "contact_force"):
+        one, other = getattr(ours, field), getattr(theirs, field)
+        assert np.abs(one - other).max() <= bound * np.abs(one).max(), field
+
+
+def test_a_quaternion_means_the_same_rotation_as_scipys() -> None:
+    from scipy.spatial.transform import Rotation
+
+    q = np.array([0.5, -0.1, 0.7, 0.5]) / np.linalg.norm([0.5, -0.1, 0.7, 0.5])
+    ours = Quaternion(*q).matrix()
+    theirs = Rotation.from_quat(q, scalar_first=True).as_matrix()
+    assert np.allclose([list(row) for row in ours.rows], theirs, rtol=0, atol=EXACT(4, 1))
