@@ -37,9 +37,7 @@ ROWS = [  # (what stands in the file, what comes instead, the key, the value tha
 
 
 @pytest.mark.parametrize(("there", "instead", "key", "value", "remedy"), ROWS)
-def test_a_bad_file(
-    here: Command, folder: Path, there: str, instead: str, key: str, value: str, remedy: str
-) -> None:
+def test_a_bad_file(here: Command, folder: Path, there: str, instead: str, key: str, value: str, remedy: str) -> None:
     assert TEXT.count(there) == 1
     (folder / "bad.toml").write_text(TEXT.replace(there, instead), encoding="utf-8")
     done = here("run", "bad.toml")

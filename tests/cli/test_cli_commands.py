@@ -66,9 +66,7 @@ def test_quick_commands_load_nothing_heavy(words: list[str], folder: Path) -> No
     assert done.stdout.splitlines()[-1] == "[]"
 
 
-@pytest.mark.parametrize(
-    "words", [["list"], ["show", "tilted-turntable"], ["--help"], ["run", "--help"], ["lst"]]
-)
+@pytest.mark.parametrize("words", [["list"], ["show", "tilted-turntable"], ["--help"], ["run", "--help"], ["lst"]])
 def test_no_colours_and_no_boxes_in_a_pipe(trundle: Command, words: list[str]) -> None:
     done = trundle(*words, env={"TERM": "xterm-256color"})
     assert "\x1b" not in done.out + done.err

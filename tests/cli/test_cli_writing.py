@@ -23,9 +23,7 @@ def everything_below(folder: Path) -> set[str]:
 
 def test_files_appear_together_in_a_new_folder(tmp_path: Path) -> None:
     out = tmp_path / "new" / "folder"
-    written = write_together(
-        out, {"a": lambda path: path.write_text("A"), "b": lambda path: path.write_text("B")}
-    )
+    written = write_together(out, {"a": lambda path: path.write_text("A"), "b": lambda path: path.write_text("B")})
     assert written == [out / "a", out / "b"]
     assert [path.read_text() for path in written] == ["A", "B"]
     assert everything_below(tmp_path) == {"new", "new/folder", "new/folder/a", "new/folder/b"}
@@ -45,9 +43,7 @@ def test_a_written_file_may_be_read_by_those_who_may_read_others(tmp_path: Path)
     assert written.stat().st_mode == (tmp_path / "plain").stat().st_mode
 
 
-@pytest.mark.parametrize(
-    "failure", [OSError(28, "No space left on device"), KeyboardInterrupt(), ZeroDivisionError()]
-)
+@pytest.mark.parametrize("failure", [OSError(28, "No space left on device"), KeyboardInterrupt(), ZeroDivisionError()])
 def test_a_failure_leaves_everything_as_it_was(tmp_path: Path, failure: BaseException) -> None:
     (tmp_path / "a").write_text("old")
 
@@ -65,9 +61,7 @@ def test_a_failure_leaves_everything_as_it_was(tmp_path: Path, failure: BaseExce
         assert "the disk is full. Nothing was written." in str(caught.value)
 
 
-def test_a_target_that_cannot_be_replaced_leaves_no_new_folder(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_target_that_cannot_be_replaced_leaves_no_new_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*_: Path) -> None:
         raise PermissionError(13, "Permission denied")
 

@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import contextlib
 import os
-import signal
 import sys
 import traceback
 from collections.abc import Sequence
 from typing import Any
 
-OTHER, BAD_INPUT, CARD_FAILED, INTERRUPTED = 1, 2, 3, 130
+from .signals import INTERRUPTED, ending
+
+OTHER, BAD_INPUT, CARD_FAILED = 1, 2, 3
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -33,7 +34,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
     >>> "tilted-turntable" in printed.getvalue()
     True
     """
-    sys.exit(run(arguments))
+    status = run(arguments)
+    if status == INTERRUPTED:  # Python may die of the signal instead of leaving with the status
+        for stream in (sys.stdout, sys.stderr):
+            with contextlib.suppress(OSError, ValueError):
+                stream.flush()
+        os._exit(status)
+    sys.exit(status)
 
 
 def run(arguments: Sequence[str] | None = None) -> int:
@@ -54,18 +61,15 @@ def run(arguments: Sequence[str] | None = None) -> int:
     >>> run(["list", "--quiet"])
     2
     """
-    with contextlib.suppress(ValueError):  # not in the main thread: signals stay as they are
-        for name in ("SIGTERM", "SIGHUP"):
-            if hasattr(signal, name):
-                signal.signal(getattr(signal, name), _end)
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")  # a terminal that has no Greek letters
     try:
-        from .app import command
+        with ending():
+            from .app import command
 
-        status = command().main(arguments, prog_name="trundle", standalone_mode=False)
-        sys.stdout.flush()
+            status = command().main(arguments, prog_name="trundle", standalone_mode=False)
+            sys.stdout.flush()
     except KeyboardInterrupt:
         status = INTERRUPTED
     except BrokenPipeError:  # the reader of our output has had enough
@@ -127,8 +131,3 @@ def _hush() -> int:
     with contextlib.suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return OTHER
-
-
-def _end(number: int, frame: object) -> None:  # noqa: ARG001
-    """Leave through every `finally` when told to end, so that no half-written file stays behind."""
-    raise SystemExit(128 + number)

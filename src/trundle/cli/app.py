@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ..errors import ScenarioError
 from ..scenario import files
-from . import CARD_FAILED, screen
+from . import CARD_FAILED, screen, signals
+
+if TYPE_CHECKING:
+    from ..trajectory import Trajectory
+    from ..verify import Card
 
 FILES = ("run.nc", "path.png", "series.png")
 
@@ -54,9 +58,7 @@ def _print_version(asked: bool) -> None:
 
 Name = Annotated[
     str,
-    typer.Argument(
-        metavar="SCENARIO", help="The name of a shipped one, or a TOML file.", autocompletion=_complete
-    ),
+    typer.Argument(metavar="SCENARIO", help="The name of a shipped one, or a TOML file.", autocompletion=_complete),
 ]
 
 
@@ -79,9 +81,7 @@ def run(
     ] = None,
     method: Annotated[
         str | None,
-        typer.Option(
-            metavar="METHOD", help="auto, exact, taylor or runge-kutta.", autocompletion=lambda: METHODS
-        ),
+        typer.Option(metavar="METHOD", help="auto, exact, taylor or runge-kutta.", autocompletion=lambda: METHODS),
     ] = None,
     duration: Annotated[
         str | None,
@@ -93,9 +93,7 @@ def run(
     ] = None,
     no_figure: Annotated[bool, typer.Option("--no-figure", help="Draw no figures.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print the card as JSON, and nothing else.")
-    ] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the card as JSON, and nothing else.")] = False,
 ) -> None:
     """Run a scenario, print its verification card, and write run.nc, path.png and series.png.
 
@@ -108,24 +106,33 @@ def run(
     folder = Path(Path(scenario).stem) if output is None else output.expanduser()
     check_folder(folder, names)
     with screen.ProgressBar(wanted=not quiet) as bar:
-        trajectory = loaded.run(progress=bar if bar.wanted else None)
+        trajectory = loaded.run(progress=bar)
     card = trajectory.card()
     write = {"run.nc": trajectory.save}
     if not no_figure:
         write["path.png"] = lambda path: trajectory.plot("path").savefig(path)
         write["series.png"] = lambda path: trajectory.plot("series").savefig(path)
+    signals.check()
     written = write_together(folder, write)
-    if as_json:
-        screen.out(card.as_json())
-    elif not quiet:
-        screen.show_card(card)
-        for event in trajectory.events:
-            screen.out(event.text)
-        screen.out(f"Wrote {', '.join(str(path) for path in written)}")
+    try:
+        if as_json:
+            screen.out(card.as_json())
+        elif not quiet:
+            _tell(trajectory, card, written)
+    except KeyboardInterrupt:
+        screen.note("trundle: interrupted; the files are written")
+        raise SystemExit(signals.INTERRUPTED) from None
     if not card.passed:
         failed = ", ".join(figure.name for figure in card.failures)
         screen.note(f"trundle: the card fails: {failed}")
         raise typer.Exit(CARD_FAILED)
+
+
+def _tell(trajectory: Trajectory, card: Card, written: list[Path]) -> None:
+    screen.show_card(card)
+    for event in trajectory.events:
+        screen.out(event.text)
+    screen.out(f"Wrote {', '.join(str(path) for path in written)}")
 
 
 METHODS = ["auto", "exact", "taylor", "runge-kutta"]

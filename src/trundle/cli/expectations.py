@@ -30,7 +30,7 @@ def expectations(scenario: ScenarioFile) -> list[tuple[str, str]]:
     ...     print(*row, sep=": ")
     one round: 6.30631 s, at 0.996334 rad/s
     its radius: 0.100368 m
-    about the point: (0.0996321, 0) m
+    about the point: (0.099632, 0) m
     """
     motion = closed_form(scenario.system(), scenario.start_state())
     if motion is None:

@@ -7,6 +7,8 @@ import time
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
+from . import signals
+
 if TYPE_CHECKING:
     from ..verify import Card
 
@@ -144,7 +146,8 @@ class ProgressBar:
             self._bar.stop()
 
     def __call__(self, fraction: float) -> None:
-        """Take note of how much of the run is done, 0 to 1."""
+        """Take note of how much of the run is done, 0 to 1; leave here if a signal said so."""
+        signals.check()
         if self.wanted and self._bar is None and time.monotonic() - self._began > PATIENCE:
             self._begin()
         if self._bar is not None:

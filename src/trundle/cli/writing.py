@@ -49,9 +49,7 @@ def check_folder(folder: Path, names: tuple[str, ...]) -> None:
     if not above.is_dir():
         raise InvalidValueError("--output", "must be a folder", str(folder), f"'{above}' is a file.")
     if taken:
-        raise InvalidValueError(
-            "--output", "must leave room for files", str(folder), f"'{taken}' is a folder there."
-        )
+        raise InvalidValueError("--output", "must leave room for files", str(folder), f"'{taken}' is a folder there.")
     if not allowed:
         raise CannotWriteError(
             f"'{above}' may not be written to: name another folder with --output. Nothing was written."
@@ -131,16 +129,18 @@ def _move(stage: Path, folder: Path, above: Path, names: list[str]) -> None:
 
 @contextlib.contextmanager
 def _uninterrupted() -> Iterator[None]:
-    """Hold Ctrl-C back for the moment that the renaming takes."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    held = {signal.SIGINT, signal.SIGTERM, signal.SIGHUP}
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, held)
+    """Do not hear Ctrl-C for the moment that the renaming takes, lest some files be new and some old."""
+    before = {}
+    with contextlib.suppress(ValueError):  # only the main thread hears signals
+        for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+            if hasattr(signal, name):
+                number = getattr(signal, name)
+                before[number] = signal.signal(number, signal.SIG_IGN)
     try:
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def _failure(folder: Path, error: Exception) -> CannotWriteError:
