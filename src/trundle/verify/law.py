@@ -61,7 +61,7 @@ def window_times(begin: float, end: float, fastest: float) -> Array:
 
 
 def _slope_at_middle(times: Array, values: Array) -> Array:
-    """Return dy/dt at the middle node of each window, for the polynomial through its nodes; values (windows, nodes, ...).
+    """Return dy/dt at the middle of each window, for the polynomial through its nodes; values (windows, nodes, ...).
 
     Barycentric weights (Berrut and Trefethen 2004) from the nodes as they are, which far from t = 0 are rounded.
     """
