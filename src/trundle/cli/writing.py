@@ -96,9 +96,8 @@ def write_together(folder: Path, files: Mapping[str, Callable[[Path], object]]) 
         if isinstance(error, RuntimeError) and "HDF5" not in str(error) and "H5" not in str(error):
             raise
         raise _failure(folder, error) from None
-    except TrundleError as error:  # a writer that explains itself knows only the folder of our own
-        message = str(error).replace(str(stage), str(folder))
-        raise CannotWriteError(f"{message} Nothing was written.") from None
+    except TrundleError as error:  # a writer that explains itself
+        raise _failure(folder, error) from None
     finally:
         shutil.rmtree(stage, ignore_errors=True)
     return [folder / name for name in files]
@@ -148,15 +147,18 @@ def _failure(folder: Path, error: Exception) -> CannotWriteError:
 
 
 def _reason(error: Exception) -> str:
-    known = {
-        errno.ENOSPC: "the disk is full",
-        errno.EDQUOT: "the disk quota is used up",
-        errno.EFBIG: "a file would be larger than is allowed",
-        errno.EACCES: "permission denied",
-        errno.EROFS: "it is read-only",
-    }
-    number = getattr(error, "errno", None)
-    if number in known:
-        return known[number]
-    text = getattr(error, "strerror", None) or str(error).partition("\n")[0] or type(error).__name__
-    return text.rstrip(".")
+    text = str(error)
+    for number, words in _REASONS.items():  # HDF5 has the system's words in its own message
+        if getattr(error, "errno", None) == number or os.strerror(number) in text:
+            return words
+    first = getattr(error, "strerror", None) or text.partition("\n")[0] or type(error).__name__
+    return first.rstrip(".")
+
+
+_REASONS = {
+    errno.ENOSPC: "the disk is full",
+    errno.EDQUOT: "the disk quota is used up",
+    errno.EFBIG: "a file would be larger than is allowed",
+    errno.EACCES: "permission denied",
+    errno.EROFS: "it is read-only",
+}

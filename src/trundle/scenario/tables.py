@@ -25,7 +25,7 @@ Method = Literal["auto", "exact", "taylor", "runge-kutta"]
 class Table(BaseModel):
     """A table of the file: frozen, and no key but those named."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, defer_build=True)
 
 
 # --- numbers with a rule of their own -------------------------------------------------------------------
