@@ -205,12 +205,17 @@ def periodic_orientation(
     """
     elapsed = np.asarray(times, dtype=float) - start_time
     turns = np.floor(elapsed / monodromy.period)
-    whole, rounding = two_product(turns, monodromy.period)
-    rest = (elapsed - whole) - rounding - turns * monodromy.period_remainder
-    rest = np.clip(rest, 0.0, None)
+    turns -= _rest(elapsed, turns, monodromy) < 0  # the quotient was rounded up to a whole turn
+    rest = np.clip(_rest(elapsed, turns, monodromy), 0.0, None)
     order = np.argsort(rest, kind="stable")
     within = np.empty((4, rest.size))
     within[:, order] = orientation(angular_velocity, rest[order], (1.0, 0.0, 0.0, 0.0)).T
     q0 = np.asarray(start, dtype=float).reshape(4, 1)
     result = _product(within, _product(monodromy.power(turns), q0))
     return (result / np.sqrt((result * result).sum(axis=0))).T
+
+
+def _rest(elapsed: Array, turns: Array, monodromy: Monodromy) -> Array:
+    """Return the time left after whole periods, to the last digit of the time itself."""
+    whole, rounding = two_product(turns, monodromy.period)
+    return (elapsed - whole) - rounding - turns * monodromy.period_remainder
