@@ -41,6 +41,8 @@ def written_whole(target: Path) -> Iterator[Path]:
     ...     (Path(folder) / "a.txt").read_text()
     'whole'
     """
+    if not target.parent.is_dir():
+        raise TrundleError(f"{target} cannot be written: there is no folder {target.parent}. Make it first.")
     temporary = target.with_name(f".{target.stem}.{os.getpid()}{target.suffix}")
     try:
         yield temporary

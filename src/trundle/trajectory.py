@@ -83,9 +83,7 @@ class Trajectory:
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
             raise AttributeError(name)
-        raise UnknownNameError(
-            "attribute of a Trajectory", name, [n for n in dir(type(self)) if n[0] != "_"] + ["data"]
-        )
+        raise UnknownNameError("attribute of a Trajectory", name, _public_names())
 
     @property
     def frame(self) -> str:
@@ -299,8 +297,10 @@ class Trajectory:
 
         try:
             data = xarray.load_dataset(Path(path), engine="h5netcdf")
+        except FileNotFoundError:
+            raise TrundleError(f"{path} does not exist.") from None
         except (OSError, ValueError) as error:
-            raise TrundleError(f"{path} cannot be read as NetCDF4: {error}") from None
+            raise TrundleError(f"{path} cannot be read as a NetCDF4 file ({error}).") from None
         missing = [key for key in ("scenario", "start", "events", "card", "method", "frame") if key not in data.attrs]
         if missing:
             raise TrundleError(f"{path} is no trajectory of trundle's: it lacks the attributes {', '.join(missing)}.")
@@ -314,6 +314,11 @@ class Trajectory:
             scenario,
             {"card": verify.Card.from_json(card)},
         )
+
+
+def _public_names() -> list[str]:
+    names = {part.name for part in fields(Trajectory)} | set(dir(Trajectory))
+    return sorted(name for name in names if not name.startswith("_"))
 
 
 def _tuples(values: dict[str, Any]) -> dict[str, Any]:

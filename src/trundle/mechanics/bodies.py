@@ -123,7 +123,7 @@ class Principal:
         return Omega.cross(self.in_space(Q, body) @ Omega)
 
 
-Inertia = Isotropic | RatioInertia | Principal
+Inertia = (Isotropic, RatioInertia, Principal)
 
 
 @dataclass(frozen=True)
@@ -146,10 +146,12 @@ class Body:
     """
 
     mass: Scalar
-    inertia: Inertia
+    inertia: Isotropic | RatioInertia | Principal
     shape: Shape
 
     def __post_init__(self) -> None:
+        checks.instance(self.inertia, Inertia, "inertia", "Give for instance tr.Isotropic(1e-5).")
+        checks.instance(self.shape, Shape, "shape", "Give for instance tr.Sphere(0.025).")
         object.__setattr__(self, "mass", checks.positive(self.mass, "mass", "mass"))
 
     @staticmethod

@@ -92,6 +92,41 @@ def non_negative(value: Any, kind: str, key: str) -> Any:
     return number
 
 
+def instance(value: Any, kind: type | tuple[type, ...], key: str, remedy: str) -> Any:
+    """Return a part of a system if it is of the right kind.
+
+    Parameters
+    ----------
+    value : object
+        What the user gave.
+    kind : type or tuple of type
+        What it must be.
+    key : str
+        The name that an error message uses.
+    remedy : str
+        An example of what to give.
+
+    Returns
+    -------
+    object
+        The same value.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is of another kind.
+
+    Examples
+    --------
+    >>> instance(3.0, float, "rate", "Give for instance 3.5.")
+    3.0
+    """
+    if not isinstance(value, kind):
+        kinds = kind if isinstance(kind, tuple) else (kind,)
+        raise InvalidValueError(key, f"must be a {' or '.join(k.__name__ for k in kinds)}", value, remedy)
+    return value
+
+
 def components(value: Any, kind: str, key: str, count: int = 3) -> tuple[Any, ...]:
     """Return the components of a vector in SI.
 

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..errors import InvalidValueError
+from ..errors import InvalidValueError, did_you_mean
 from . import checks
 from .algebra import E_Z, ZERO, Quaternion, Vector
 from .bodies import Body
@@ -48,6 +48,8 @@ class Support:
     friction: Scalar | None = None
 
     def __post_init__(self) -> None:
+        checks.instance(self.surface, Surface, "surface", "Give for instance tr.Plane(rim=0.5).")
+        checks.instance(self.motion, Motion, "motion", "Give for instance tr.Spin(3.5).")
         tilt = checks.real(self.tilt, "angle", "tilt")
         if is_number(tilt) and not abs(tilt) < math.pi / 2:
             remedy = (
@@ -120,7 +122,13 @@ class RollingSystem:
     gravity: Scalar = STANDARD_GRAVITY
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "loads", tuple(self.loads))
+        checks.instance(self.body, Body, "body", "Give for instance tr.Body.solid_sphere(radius=0.025, mass=0.065).")
+        checks.instance(self.support, Support, "support", "Give for instance tr.Support(tr.Plane()).")
+        example = "Give for instance [tr.Drag(0.01)]."
+        loads = self.loads if isinstance(self.loads, (list, tuple)) else (self.loads,)
+        for i, load in enumerate(loads):
+            checks.instance(load, Load, f"loads[{i}]", example)
+        object.__setattr__(self, "loads", tuple(loads))
         object.__setattr__(self, "gravity", checks.non_negative(self.gravity, "acceleration", "gravity"))
 
     @property
@@ -193,7 +201,12 @@ class RollingSystem:
         co_rotating = isinstance(velocity, str)
         if co_rotating:
             if velocity != "co-rotating":
-                raise InvalidValueError("velocity", 'must be two components or "co-rotating"', velocity)
+                raise InvalidValueError(
+                    "velocity",
+                    'must be two components or "co-rotating"',
+                    velocity,
+                    did_you_mean(velocity, ["co-rotating"]).strip(),
+                )
             vx, vy = (
                 (contact.support.material_velocity(contact.centre)).x,
                 contact.support.material_velocity(contact.centre).y,
