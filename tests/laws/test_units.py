@@ -52,9 +52,7 @@ def test_common_units_agree_with_pint(unit: str) -> None:
     assert exact is not None
     registry = unit_registry()
     base = dict(zip(("meter", "kilogram", "second", "radian"), exact[1], strict=True))
-    product = math.prod(
-        (registry.Unit(name) ** power for name, power in base.items()), start=registry.Unit("")
-    )
+    product = math.prod((registry.Unit(name) ** power for name, power in base.items()), start=registry.Unit(""))
     assert registry.Quantity(1.0, unit).to(product).magnitude == pytest.approx(float(exact[0]), rel=8 * ULP)
 
 
@@ -150,9 +148,7 @@ def test_quantities_of_any_pint_registry() -> None:
     assert to_si(25 * other.mm, "length", "x") == pytest.approx(0.025, rel=4 * ULP)
     assert to_si(3 * unit_registry().deg, "angle", "x") == pytest.approx(math.radians(3), rel=4 * ULP)
     assert to_si(other.Quantity(0.1, ""), "angle", "x") == 0.1
-    np.testing.assert_allclose(
-        to_si(np.array([1.0, 2.0]) * other.cm, "length", "x"), [0.01, 0.02], rtol=4 * ULP
-    )
+    np.testing.assert_allclose(to_si(np.array([1.0, 2.0]) * other.cm, "length", "x"), [0.01, 0.02], rtol=4 * ULP)
     with pytest.raises(InvalidValueError, match="must be a length"):
         to_si(25 * other.gram, "length", "x")
     with pytest.raises(InvalidValueError, match="finite"):
@@ -184,9 +180,7 @@ SCRAPS = st.sampled_from(
 
 
 @settings(deadline=None, max_examples=300)
-@given(
-    st.one_of(st.text(max_size=30), st.lists(SCRAPS, max_size=8).map("".join)), st.sampled_from(list(UNITS))
-)
+@given(st.one_of(st.text(max_size=30), st.lists(SCRAPS, max_size=8).map("".join)), st.sampled_from(list(UNITS)))
 def test_any_text_is_a_finite_float_or_refused(text: str, kind: str) -> None:
     try:
         number = to_si(text, kind, "x")

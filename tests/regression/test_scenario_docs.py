@@ -41,10 +41,7 @@ def test_every_key_is_listed_and_no_other() -> None:
     assert set(rows("At the top")) == top
     assert set(rows("`[body]`")) == keys_of(*KINDS["body"].values())
     motion = {f"motion.{key}" for key in keys_of(*KINDS["support.motion"].values())}
-    assert (
-        set(rows("`[support]` and `[support.motion]`"))
-        == keys_of(*KINDS["support"].values()) - {"motion"} | motion
-    )
+    assert set(rows("`[support]` and `[support.motion]`")) == keys_of(*KINDS["support"].values()) - {"motion"} | motion
     assert set(rows("`[start]`")) == keys_of(ScenarioFile.model_fields["start"].annotation)
     assert set(rows("`[run]`")) == keys_of(ScenarioFile.model_fields["timing"].annotation)
     assert rows("`[[loads]]`")[1:] == list(KINDS["loads"])

@@ -119,9 +119,7 @@ def test_the_text_keeps_the_users_own_words() -> None:
     assert "gravity" not in ScenarioFile.loads(LEAST).to_toml()
 
 
-@pytest.mark.parametrize(
-    "notes", ["one line", "two\nlines", 'quotes """ and \\ in\nit', "\ttab", "a\n", "\n", "é°"]
-)
+@pytest.mark.parametrize("notes", ["one line", "two\nlines", 'quotes """ and \\ in\nit', "\ttab", "a\n", "\n", "é°"])
 def test_notes_survive_writing(notes: str) -> None:
     scenario = ScenarioFile.read({**tomllib.loads(LEAST), "notes": notes})
     assert ScenarioFile.loads(scenario.to_toml()).notes == notes
@@ -161,9 +159,7 @@ STARTS: list[dict[str, Any]] = [
 @pytest.mark.parametrize("body", BODIES)
 @pytest.mark.parametrize("support", SUPPORTS)
 @pytest.mark.parametrize("start", STARTS)
-def test_a_described_system_reads_back_to_the_last_digit(
-    body: Body, support: Support, start: dict[str, Any]
-) -> None:
+def test_a_described_system_reads_back_to_the_last_digit(body: Body, support: Support, start: dict[str, Any]) -> None:
     loads = (Force((THIRD, 0.0, -0.1)), Torque((0.0, 2e-3 * THIRD, 0.0)), Drag(THIRD))
     system = RollingSystem(body, support, loads, gravity=9.81)
     state = system.place(**start)
@@ -298,9 +294,7 @@ BAD = [  # (what stands in the file, what comes instead, the key, the value, the
 
 
 @pytest.mark.parametrize(("there", "instead", "key", "value", "said"), BAD)
-def test_one_message_names_key_value_and_remedy(
-    there: str, instead: str, key: str, value: str, said: str
-) -> None:
+def test_one_message_names_key_value_and_remedy(there: str, instead: str, key: str, value: str, said: str) -> None:
     assert WHOLE.count(there) == 1
     with pytest.raises(ScenarioError) as caught:
         ScenarioFile.loads(WHOLE.replace(there, instead), "my.toml")
@@ -378,9 +372,7 @@ def fits(value: Any, schema: dict[str, Any], whole: dict[str, Any]) -> bool:
             and all(fits(value[key], known[key], whole) for key in value)
         )
     if schema["type"] == "array":
-        right_size = isinstance(value, list) and schema.get("minItems", 0) <= len(value) <= schema.get(
-            "maxItems", 99
-        )
+        right_size = isinstance(value, list) and schema.get("minItems", 0) <= len(value) <= schema.get("maxItems", 99)
         return right_size and all(fits(each, schema["items"], whole) for each in value)
     if schema["type"] == "number":
         return isinstance(value, (int, float)) and value > schema.get("exclusiveMinimum", -math.inf)

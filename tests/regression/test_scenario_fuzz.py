@@ -26,12 +26,8 @@ numbers = st.one_of(
     st.integers(-(10**400), 10**400),
     st.sampled_from([0, -0.0, 1e-308, 5e-324, 1e308, 1e30, 1e-30, 1e12, 2 / 3, 90, True]),
 )
-units = st.sampled_from(
-    [unit for unit, _ in UNITS.values()] + ["mm", "deg", "rpm", "Hz", "in", "x", "m^9", "%"]
-)
-words = st.sampled_from(
-    ["co-rotating", "spin", "fixed", "plane", "sphere", "solid-sphere", "drag", "torque", "exact"]
-)
+units = st.sampled_from([unit for unit, _ in UNITS.values()] + ["mm", "deg", "rpm", "Hz", "in", "x", "m^9", "%"])
+words = st.sampled_from(["co-rotating", "spin", "fixed", "plane", "sphere", "solid-sphere", "drag", "torque", "exact"])
 scalars = st.one_of(
     numbers,
     st.builds("{} {}".format, st.floats(-1e6, 1e6), units),

@@ -134,9 +134,7 @@ def test_level_turntable_nudged() -> None:
     period = first_return(path, 6.3)
     radius, centre = radius_of(path, period)
     assert period == pytest.approx(3.5 * 60 / 33.3, rel=1e-6)
-    says(
-        "level-turntable-nudged", f"{period:.3f} s", f"is 0.1 m/s / (2/7 * 33.3 rpm) = {100 * radius:.1f} cm"
-    )
+    says("level-turntable-nudged", f"{period:.3f} s", f"is 0.1 m/s / (2/7 * 33.3 rpm) = {100 * radius:.1f} cm")
     says("level-turntable-nudged", f"{100 * abs(centre):.1f} cm from the axis")
 
 
@@ -146,9 +144,7 @@ def test_level_turntable_corotating() -> None:
     radius, centre = radius_of(path, 3.5 * 60 / 33.3)
     furthest = np.hypot(*path(np.linspace(0, 20, 20001))[:2]).max()
     says(name, f"{100 * radius:.1f} cm", f"{100 * abs(centre):.1f} cm away", f"{100 * furthest:.0f} cm")
-    np.testing.assert_allclose(
-        path(7 * 60 / 33.3), path(0.0), atol=1e-9
-    )  # and the table has turned seven times
+    np.testing.assert_allclose(path(7 * 60 / 33.3), path(0.0), atol=1e-9)  # and the table has turned seven times
 
 
 def test_hollow_ball() -> None:

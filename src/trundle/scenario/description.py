@@ -133,6 +133,4 @@ def _numbers(values: Any, key: str) -> list[float]:
 
 def _wordless(key: str, thing: Any) -> ScenarioError:
     kind = type(thing).__name__
-    return ScenarioError(
-        key, "must be of a kind that the scenario format has words for", kind, "Keep it in Python."
-    )
+    return ScenarioError(key, "must be of a kind that the scenario format has words for", kind, "Keep it in Python.")

@@ -48,9 +48,7 @@ class ScenarioFile(Table):
     support: Supports
     start: Start
     # Two keys have other names in Python, where `loads` reads a text, as in `json`, and `run` runs it.
-    applied_loads: tuple[Annotated[Loads, Field(discriminator="kind")], ...] = Field(
-        default=(), alias="loads"
-    )
+    applied_loads: tuple[Annotated[Loads, Field(discriminator="kind")], ...] = Field(default=(), alias="loads")
     timing: Run = Field(alias="run")
 
     # --- reading -----------------------------------------------------------------------------------------
@@ -152,9 +150,7 @@ class ScenarioFile(Table):
         except ValidationError as error:
             raise complain(error, cls, source) from None
         except RecursionError:
-            raise ScenarioError(
-                "scenario", "must not nest this deep", "tables within tables", "", source
-            ) from None
+            raise ScenarioError("scenario", "must not nest this deep", "tables within tables", "", source) from None
 
     @classmethod
     def names(cls) -> list[str]:
@@ -232,9 +228,7 @@ class ScenarioFile(Table):
         allowed = "\n\t" if info.field_name == "notes" else ""
         if any(unicodedata.category(letter) in ("Cc", "Cs") and letter not in allowed for letter in text):
             lines = "" if allowed else " on one line"
-            raise InvalidValueError(
-                "", f"must be text{lines} without control characters", text, "Leave them out."
-            )
+            raise InvalidValueError("", f"must be text{lines} without control characters", text, "Leave them out.")
         return text
 
     @model_validator(mode="after")
@@ -273,9 +267,7 @@ class ScenarioFile(Table):
 
         with _named_in(""):
             body, support = self.body.build(), self.support.build()
-            return RollingSystem(
-                body, support, tuple(load.build() for load in self.applied_loads), float(self.gravity)
-            )
+            return RollingSystem(body, support, tuple(load.build() for load in self.applied_loads), float(self.gravity))
 
     def start_state(self) -> State:
         """Return the state at time 0.

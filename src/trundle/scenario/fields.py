@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import date, time
@@ -118,9 +119,7 @@ class Measure:
             raise InvalidValueError(key, "must not be negative", value, f"Write for instance {self.offer}.")
         if abs(number) > LARGEST or (self.sign == "positive" and number < SMALLEST_DIVISOR):
             low = f"{SMALLEST_DIVISOR:g}" if self.sign == "positive" else "0"
-            raise InvalidValueError(
-                key, f"must be {low} to {LARGEST:g} in size, in SI", value, "Check the unit."
-            )
+            raise InvalidValueError(key, f"must be {low} to {LARGEST:g} in size, in SI", value, "Check the unit.")
         return Quantity(number + 0.0, value if isinstance(value, str) else None)
 
     @property
@@ -131,9 +130,7 @@ class Measure:
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(self.__call__)
 
-    def __get_pydantic_json_schema__(
-        self, schema: CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         """Return what an editor may know of it: a number in SI, or a text with a unit."""
         number: dict[str, Any] = {"type": "number"}
         if self.sign != "any":
@@ -175,23 +172,17 @@ class Measures:
         if self.word is not None and isinstance(value, str):
             if value == self.word:
                 return value
-            raise InvalidValueError(
-                "", self._rule, value, (did_you_mean(value, [self.word]) or self._remedy).strip()
-            )
+            raise InvalidValueError("", self._rule, value, (did_you_mean(value, [self.word]) or self._remedy).strip())
         if not isinstance(value, (list, tuple)) or len(value) != self.size:
             raise InvalidValueError("", self._rule, value, self._remedy)
         return tuple(self.each(part, f"[{index}]") for index, part in enumerate(value))
 
     @property
     def offer(self) -> str:
-        """An example of the value as it stands in a file."""
-        return (
-            "["
-            + ", ".join(
-                [self.each.offer] + ['"0' + self.each.offer[self.each.offer.find(" ") :]] * (self.size - 1)
-            )
-            + "]"
-        )
+        """An example of the value as it stands in a file: the first component something, the others 0."""
+        first = self.each.offer
+        zero = re.sub(r"[\d.]+(e-?\d+)?", "0", first, count=1)
+        return f"[{', '.join([first] + [zero] * (self.size - 1))}]"
 
     @property
     def _rule(self) -> str:
@@ -204,9 +195,7 @@ class Measures:
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(self.__call__)
 
-    def __get_pydantic_json_schema__(
-        self, schema: CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         """Return what an editor may know of it: a list of so many numbers, or the word."""
         each = self.each.__get_pydantic_json_schema__(schema, handler)
         numbers = {"type": "array", "items": each, "minItems": self.size, "maxItems": self.size}

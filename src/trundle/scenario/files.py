@@ -107,9 +107,7 @@ def read(name_or_path: str | os.PathLike[str]) -> str:
     except (FileNotFoundError, NotADirectoryError, ValueError):  # ValueError: a null character in the path
         raise _no_such(str(shown)) from None
     except IsADirectoryError:
-        raise ScenarioError(
-            "scenario", "must be a file", shown, "This is a folder; name a file in it."
-        ) from None
+        raise ScenarioError("scenario", "must be a file", shown, "This is a folder; name a file in it.") from None
     except OSError as error:
         remedy = f"The system says: {error.strerror or error}."
         raise ScenarioError("scenario", "must be a file that can be read", shown, remedy) from None
@@ -175,14 +173,10 @@ def parse(text: str, source: str) -> dict[str, Any]:
         raise ScenarioError("scenario", "must not nest this deep", text[:60], "", source) from None
     except ValueError:  # Python reads no integer of more than 4300 digits
         remedy = "Is there an integer of thousands of digits?"
-        raise ScenarioError(
-            "scenario", "must hold numbers that can be read", text[:60], remedy, source
-        ) from None
+        raise ScenarioError("scenario", "must hold numbers that can be read", text[:60], remedy, source) from None
 
 
-_STATEMENT = re.compile(
-    r"\s*([\w.-]+)\s*=\s*([+-]?[\d.]+(?:[eE][+-]?\d+)?\s*[A-Za-z°µμ%][^#\"']*?)\s*(?:#.*)?"
-)
+_STATEMENT = re.compile(r"\s*([\w.-]+)\s*=\s*([+-]?[\d.]+(?:[eE][+-]?\d+)?\s*[A-Za-z°µμ%][^#\"']*?)\s*(?:#.*)?")
 
 
 def _no_toml(text: str, message: str, source: str) -> ScenarioError:

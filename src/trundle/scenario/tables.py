@@ -39,9 +39,7 @@ def _check_tilt(tilt: float, received: Any) -> None:
         remedy = f'Did you mean "{bare} deg"?' if abs(float(bare)) < 90 else ""
     except ValueError:
         remedy = ""
-    raise InvalidValueError(
-        "", "must lie in (-90 deg, 90 deg)", received, remedy or "At 90 deg the plane is a wall."
-    )
+    raise InvalidValueError("", "must lie in (-90 deg, 90 deg)", received, remedy or "At 90 deg the plane is a wall.")
 
 
 def _check_inertia_ratio(ratio: float, received: Any) -> None:
@@ -106,9 +104,7 @@ class AnySphere(Table):
     kind: Literal["sphere"]
     radius: Radius
     mass: Mass
-    inertia_ratio: Ratio = Field(
-        description="k = I/(m a²), above 0 and at most a shell's 2/3.", examples=[0.4]
-    )
+    inertia_ratio: Ratio = Field(description="k = I/(m a²), above 0 and at most a shell's 2/3.", examples=[0.4])
 
     def build(self) -> Body:
         """Return the body."""
@@ -155,9 +151,7 @@ class PlaneSupport(Table):
     """A plane, bounded by a circular rim or unbounded."""
 
     kind: Literal["plane"]
-    tilt: Tilt = Field(
-        default=0.0, description="Angle of the plane's normal to the vertical; down the first axis."
-    )
+    tilt: Tilt = Field(default=0.0, description="Angle of the plane's normal to the vertical; down the first axis.")
     rim: Rim | None = Field(default=None, description="Radius of the rim; absent: unbounded.")
     friction: Friction | None = Field(default=None, description="Coulomb coefficient; absent: never slips.")
     motion: Annotated[Motions, Field(discriminator="kind")] = FixedMotion(kind="fixed")
@@ -228,9 +222,7 @@ class Start(Table):
 
     position: Place2 = Field(description="Of the centre over the support, in the support frame.")
     velocity: Velocity2 = Field(default=(0.0, 0.0), description="Of the centre, support frame.")
-    spin: Rate | None = Field(
-        default=None, description="Angular velocity about the normal; the rest follows."
-    )
+    spin: Rate | None = Field(default=None, description="Angular velocity about the normal; the rest follows.")
     angular_velocity: Rate3 | None = Field(default=None, description="All of it, instead of spin.")
     orientation: Turn4 = Field(default=(1.0, 0.0, 0.0, 0.0), description="Quaternion w, x, y, z.")
 
