@@ -146,6 +146,7 @@ CASES = {
     "straight": Run(rate=0.0, position=0.0, force=0.05 + 0.02j, duration=10.0),
     "torque": Run(rate=0.0, position=0.0, torque=0.0005j, velocity=0.2j, duration=5.0),
     "force on a turntable": Run(force=0.02 + 0.01j, duration=30.0),
+    "force across a turntable": Run(force=0.05j, duration=30.0),
     "slope": Run(rate=0.0, tilt=math.radians(10.0), velocity=0.3j, duration=3.0),
     "straight down": Run(rate=0.0, tilt=math.radians(10.0), duration=3.0),
     "200 turns": Run(velocity=0.1j, duration=1260.0, samples=6001),

@@ -95,12 +95,13 @@ def _stack(names: list[str]) -> Plan:
     side = WIDEST - main - 2 * LEFT - GAP - EDGE
     rows = len(names) - 1
     each = 1.75 if strip else 2.9
-    foot = FOOT + (STRIP + STRIP_GAP if strip else 0.0)
+    foot = FOOT + (STRIP + STRIP_GAP if strip else 2 * KEY_LINE + 0.22)
     bottoms = [foot + (each + TITLE + (FOOT if strip else 0.0)) * (rows - 1 - i) for i in range(rows)]
     top = bottoms[0] + each
     maps = [Place(LEFT, bottom, main, each) for bottom in bottoms]
     right = LEFT + main + GAP + LEFT
-    tall = min(side, top - FOOT)
+    tall = min(side, top - foot) if not strip else min(side, top - FOOT)
     maps.append(Place(right, top - tall, side, tall))
     below = Place(LEFT, FOOT, main, STRIP) if strip else None
-    return Plan(WIDEST, top + TITLE + HEADER, maps, below, [Key(right - 0.1, top - tall - FOOT - 0.2, 20)])
+    key = Key(right - 0.1, top - tall - FOOT - 0.2, 20) if strip else Key(LEFT - 0.1, 0.12 + 2 * KEY_LINE, 2)
+    return Plan(WIDEST, top + TITLE + HEADER, maps, below, [key])

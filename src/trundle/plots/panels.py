@@ -150,7 +150,8 @@ def _windowed(panels: list[Panel], facts: Facts) -> list[Panel]:
     """Show only the first turns of what would be a hairline or a blot; the world map always shows all."""
     first, *others = panels
     extent = np.sort(np.ptp(first.line[:, :2], axis=0))
-    if facts.rim is None and others and first.turns > 3 and extent[1] > ELONGATED * extent[0]:
+    longest = ELONGATED if any(panel.name == "world" for panel in others) else 5 * ELONGATED
+    if facts.rim is None and others and first.turns > 3 and extent[1] > longest * extent[0]:
         turns = min(max(2.1, 5 * extent[0] / extent[1] * first.turns), 8.0)
         first = replace(first, until=float(first.time[0] + turns / first.turns * (first.time[-1] - first.time[0])))
     return [first] + [_uncrowded(panel, first.until) for panel in others]

@@ -90,7 +90,7 @@ class _Drawing:
         start = panel.path[0]
         zero, names = [0.0, 0.0], [panel.labels[page.across], panel.labels[page.up]]
         for i in range(2):
-            if abs(panel.low[i] + panel.high[i]) / 2 > 100 * max(panel.span):
+            if abs(panel.low[i] + panel.high[i]) / 2 > 20 * max(panel.span):
                 zero[i] = float(start[i])
                 sign = "+" if zero[i] < 0 else "−"
                 names[i] = f"{names[i][0]} {sign} {with_unit(abs(zero[i]), 'length', 6)}"
@@ -253,7 +253,7 @@ def _units(panels: list[Panel]) -> dict[str, Unit]:
 
 def _size(panel: Panel) -> float:
     largest = max(abs(edge) for edge in (*panel.low, *panel.high))
-    return largest if largest < 100 * max(panel.span) else max(panel.span)
+    return largest if largest < 20 * max(panel.span) else max(panel.span)
 
 
 def _instants(panels: list[Panel]) -> tuple[float, Array, str]:
