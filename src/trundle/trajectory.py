@@ -198,6 +198,28 @@ class Trajectory:
             self._kept["card"] = verify.card(self.system, self.start, self.samples, self.method, self.title)
         return self._kept["card"]
 
+    def with_card(self, card: Card) -> Trajectory:
+        """Return the same trajectory with a card that was made elsewhere.
+
+        Parameters
+        ----------
+        card : Card
+            Of this trajectory.
+
+        Returns
+        -------
+        Trajectory
+            Its `card()` returns the given one.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> run = tr.Scenario.load("level-turntable-nudged").run()
+        >>> run.with_card(run.card()).card() is run.card()
+        True
+        """
+        return replace(self, _kept={"card": card})
+
     def plot(self, kind: str = "path") -> Figure:
         """Draw the motion.
 
@@ -265,7 +287,8 @@ class Trajectory:
             "card": self.card().as_json(),
         }
         with written_whole(target) as temporary:
-            self.data.assign_attrs(extra).to_netcdf(temporary, engine="h5netcdf")
+            # Made in memory first: HDF5 brings the process down where a disk fills while it writes.
+            temporary.write_bytes(self.data.assign_attrs(extra).to_netcdf(engine="h5netcdf"))
         return target
 
     @staticmethod

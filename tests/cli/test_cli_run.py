@@ -220,7 +220,6 @@ def test_no_permission(here: Command, folder: Path, monkeypatch: pytest.MonkeyPa
     assert done.err == f"trundle: '{folder}' {said}\n"
 
 
-@pytest.mark.xfail(strict=False, reason="HDF5 dies where a file that it writes finds no room")
 def test_no_room_on_the_disk(folder: Path) -> None:
     resource = pytest.importorskip("resource")
 

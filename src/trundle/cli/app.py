@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -99,7 +100,7 @@ def run(
 
     Exit status: 0, all is well; 2, bad input; 3, a figure of the card failed; 130, interrupted; 1, all else.
     """
-    from .writing import check_folder, write_together
+    from .writing import check_folder
 
     names = FILES[:1] if no_figure else FILES
     loaded = load(scenario, duration=duration, every=every, method=method)
@@ -107,13 +108,8 @@ def run(
     check_folder(folder, names)
     with screen.ProgressBar(wanted=not quiet) as bar:
         trajectory = loaded.run(progress=bar)
-    card = trajectory.card()
-    write = {"run.nc": trajectory.save}
-    if not no_figure:
-        write["path.png"] = lambda path: trajectory.plot("path").savefig(path)
-        write["series.png"] = lambda path: trajectory.plot("series").savefig(path)
     signals.check()
-    written = write_together(folder, write)
+    card, written = _finish(trajectory, folder, names)
     try:
         if as_json:
             screen.out(card.as_json())
@@ -126,6 +122,32 @@ def run(
         failed = ", ".join(figure.name for figure in card.failures)
         screen.note(f"trundle: the card fails: {failed}")
         raise typer.Exit(CARD_FAILED)
+
+
+def _finish(trajectory: Trajectory, folder: Path, names: tuple[str, ...]) -> tuple[Card, list[Path]]:
+    """Make card, figures and file, on two processors where there are two, and let the files appear together."""
+    from .apart import Apart
+    from .writing import write_together
+
+    with Apart(trajectory.card) as checked, ExitStack() as drawing:  # checking imports heyoka meanwhile
+
+        def save(path: Path) -> None:
+            trajectory.with_card(checked.result()).save(path)
+
+        def draw_path(path: Path) -> None:
+            import matplotlib.backends.backend_agg  # before the copy is made, which then has them too
+            import matplotlib.figure  # noqa: F401
+
+            def draw_series() -> None:
+                trajectory.plot("series").savefig(path.with_name("series.png"))
+
+            series.append(drawing.enter_context(Apart(draw_series)))
+            trajectory.plot("path").savefig(path)
+
+        series: list[Apart[None]] = []
+        writers = {"path.png": draw_path, "series.png": lambda _: series[0].result(), "run.nc": save}
+        write_together(folder, {name: write for name, write in writers.items() if name in names})
+        return checked.result(), [folder / name for name in names]
 
 
 def _tell(trajectory: Trajectory, card: Card, written: list[Path]) -> None:

@@ -248,6 +248,8 @@ def _unit_quaternion(orientation: Any) -> Quaternion:
     length = math.hypot(*parts)
     if not 0 < length < math.inf:
         raise InvalidValueError("orientation", "must be a quaternion other than zero", orientation)
+    if abs(length - 1) < 4e-16:  # it is one already: keep it to the last digit
+        return Quaternion(*parts)
     return Quaternion(*(part / length for part in parts))
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from .facts import NOTHING, Facts, guiding_centre, turns_in
 from .marks import Page
-from .scales import Array, refined, with_unit
+from .scales import LONG_LINE, Array, refined, with_unit
 
 if TYPE_CHECKING:
     from trundle.trajectory import Trajectory
@@ -31,6 +31,7 @@ class Panel:
     labels: tuple[str, str]  # of x and of y
     page: Page
     samples: Array  # (n, 3)
+    velocity: Array  # (n, 3), m/s
     time: Array  # (m,), of the line's vertices
     line: Array  # (m, 3)
     guide: Array | None  # (n, 2)
@@ -70,7 +71,7 @@ class Panel:
     @property
     def repeats(self) -> bool:
         """Whether the last turn lies upon the first."""
-        if self.turns <= 1.2:
+        if self.turns <= 1.2 or self.until is not None:
             return False
         count = self._turn
         first, last = self.line[:count, :2], self.line[-count:, :2]
@@ -98,7 +99,7 @@ def panels_of(run: Trajectory, facts: Facts) -> list[Panel]:
     names = ["support"] + ["world"] * facts.tilted + ["corotating"] * facts.turning
     time = np.asarray(run.data["time"].values, dtype=float)
     panels = [_panel(run, facts, name, time) for name in names]
-    return [_viewed(panel, facts) for panel in _windowed(panels, facts)]
+    return [_viewed(_rounded(panel), facts) for panel in _windowed(panels, facts)]
 
 
 def _panel(run: Trajectory, facts: Facts, name: str, time: Array) -> Panel:
@@ -119,22 +120,19 @@ def _panel(run: Trajectory, facts: Facts, name: str, time: Array) -> Panel:
     turns = 0.0 if at_rest else turns_in(time, velocity[:, :2])
     if name == "corotating" and not at_rest:
         turns = max(turns, abs(facts.rate) * float(time[-1] - time[0]) / (2 * math.pi) - 1.0)
-    parts = min(12, max(1, math.ceil(turns * SMOOTH_A_TURN / len(samples))))
-    sparse = turns * FEWEST_A_TURN > len(samples)
-    fine = 1 if sparse else parts
-    steps = np.interp(np.arange((len(time) - 1) * fine + 1) / fine, np.arange(len(time)), time)
     return Panel(
         name,
         titles[name],
         labels[name],
         Page.downhill_down(facts.tilt),
         samples,
-        steps,
-        samples if fine == 1 else refined(time, samples, velocity, fine),
+        velocity,
+        time,
+        samples,
         _guide(run, facts, name, time),
         turns,
         at_rest,
-        sparse,
+        sparse=turns * FEWEST_A_TURN > len(samples),
     )
 
 
@@ -167,6 +165,18 @@ def _uncrowded(panel: Panel, until: float | None) -> Panel:
     duration = float(panel.time[-1] - panel.time[0])
     twelve = float(panel.time[0]) + 12 / panel.turns * duration
     return replace(panel, until=twelve if until is None else min(until, twelve))
+
+
+def _rounded(panel: Panel) -> Panel:
+    """Round off the line, in what is shown of it, where few samples make a turn."""
+    parts = min(12, math.ceil(panel.turns * SMOOTH_A_TURN / len(panel.samples)))
+    shown = panel.shown
+    time = panel.time[shown]
+    if panel.sparse or parts < 2 or len(time) * parts > 2 * LONG_LINE:
+        return panel
+    line = refined(time, panel.samples[shown], panel.velocity[shown], parts)
+    fine = np.interp(np.arange(len(line)) / parts, np.arange(len(time)), time)
+    return replace(panel, time=fine, line=line)
 
 
 def _viewed(panel: Panel, facts: Facts) -> Panel:

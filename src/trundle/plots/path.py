@@ -206,7 +206,7 @@ class _Drawing:
         self.legend["start"] = "start"
         if panel.at_rest and len(time) > 1:
             ax.annotate("at rest", tuple(ruler(path[0])), (0, 9), textcoords="offset points", ha="center", va="bottom")
-        for event in self.events:
+        for event in self.events if panel.until is None else ():
             at = [float(np.interp(event.time, time, path[:, i])) for i in range(2)]
             ax.plot(*ruler(np.array(at)), **STYLES["event"])
             what = event.text.split(" (")[0].split(" at ")[0]  # the text has its place and time too
@@ -224,14 +224,16 @@ class _Drawing:
         many = panel.turns > MANY_TURNS
         if panel.guide is not None and panel.track is not None:
             # It lies in the plane of the ball's centre: its place downhill gives its height.
-            fall = (panel.guide[:, 0] - panel.line[0, 0]) * -math.tan(self.facts.tilt)
-            track = np.column_stack([panel.guide[:, page.across], fall]) / scale
+            ends = panel.guide[[0, -1]]
+            fall = (ends[:, 0] - panel.line[0, 0]) * -math.tan(self.facts.tilt)
+            track = np.column_stack([ends[:, page.across], fall]) / scale
             ax.plot(*track.T, **STYLES["guide"] | ({"zorder": 4.5} if many else {}))
         kind = "samples" if panel.sparse else "path"
-        ax.plot(
-            *thin_path(line, 1e-4 * float(np.max(np.ptp(line, axis=0)))).T,
-            **STYLES[kind] | ({"lw": 0.5} if many else {}),
-        )
+        extent = np.where(
+            np.ptp(line, axis=0) > 0.0, np.ptp(line, axis=0), 1.0
+        )  # the two axes have scales of their own
+        drawn = thin_path(line / extent, 1e-4) * extent
+        ax.plot(*drawn.T, **STYLES[kind] | ({"lw": 0.5} if many else {}))
         ax.plot(*line[-1], **STYLES["event" if "event" in self.legend and "end" not in self.legend else "end"])
         ax.plot(*line[0], **STYLES["start"])
         ax.set_xlabel(f"{panel.labels[page.across]} ({ruler.symbol})", labelpad=2)

@@ -224,8 +224,10 @@ def thin_path(points: Array, tolerance: float, longest: int = LONG_LINE) -> Arra
     True
     """
     stride = 1
-    while len(points) > longest and 2 * stride < len(points) and _moves(points, 2 * stride) <= tolerance:
+    while len(points) > longest and 2 * stride < len(points) and _moves(points, 2 * stride, sure=False) <= tolerance:
         stride *= 2
+    while stride > 1 and _moves(points, stride, sure=True) > tolerance:
+        stride //= 2
     return points if stride == 1 else points[_kept(len(points), stride)]
 
 
@@ -277,11 +279,12 @@ def _kept(count: int, stride: int) -> NDArray[np.int_]:
     return kept if kept[-1] == count - 1 else np.append(kept, count - 1)
 
 
-def _moves(points: Array, stride: int) -> float:
+def _moves(points: Array, stride: int, sure: bool) -> float:
+    """Return how far the line moves: at all points that it loses, or just half-way between those that it keeps."""
     kept = _kept(len(points), stride)
-    index = np.arange(len(points))
-    across = np.interp(index, kept, points[kept, 0]) - points[:, 0]
-    up = np.interp(index, kept, points[kept, 1]) - points[:, 1]
+    index = np.arange(len(points)) if sure else np.arange(stride // 2, len(points), stride)
+    across = np.interp(index, kept, points[kept, 0]) - points[index, 0]
+    up = np.interp(index, kept, points[kept, 1]) - points[index, 1]
     return float(np.max(np.hypot(across, up)))
 
 

@@ -6,7 +6,6 @@ import math
 import os
 import unicodedata
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Self
 
@@ -290,11 +289,7 @@ class ScenarioFile(Table):
         """
         system = self.system()
         with _named_in("start"):
-            state = system.place(**self.start.arguments())
-        w, x, y, z = map(float, self.start.orientation)
-        if abs(math.hypot(w, x, y, z) - 1) < 4e-16:  # a unit quaternion stays as it is, to the last digit
-            state = replace(state, orientation=(w, x, y, z))
-        return state
+            return system.place(**self.start.arguments())
 
     # --- writing -----------------------------------------------------------------------------------------
 
