@@ -262,6 +262,10 @@ def test_maps_have_equal_aspect(name: str) -> None:
     ("name", "titles"),
     [
         ("tilted", ["Support frame, first 13 s", "World frame, from above", "Corotating frame"]),
+        (
+            "200 turns, drifting far",
+            ["Support frame, first 13 s", "World frame, from above", "Corotating frame, first 13 s"],
+        ),
         ("off the rim", ["Support frame", "World frame, from above", "Corotating frame"]),
         ("nudged", ["Support and world frame", "Corotating frame"]),
         ("slope", ["Support frame", "World frame, from above"]),

@@ -158,7 +158,8 @@ def _windowed(panels: list[Panel], facts: Facts) -> list[Panel]:
 def _uncrowded(panel: Panel, until: float | None) -> Panel:
     if panel.name == "world" or panel.turns < 15 or panel.sparse:
         return panel
-    path = panel.line[:: max(1, len(panel.line) // 200_000), :2]
+    line = _rounded(panel).line
+    path = line[:: max(1, len(line) // 200_000), :2]
     cells = np.floor(90 * (path - np.min(path, axis=0)) / np.max(np.ptp(path, axis=0))).astype(int)
     if len(np.unique(cells @ [1000, 1])) < CROWDED * math.pi / 4 * 90 * 90:
         return panel

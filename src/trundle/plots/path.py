@@ -176,7 +176,8 @@ class _Drawing:
             self.legend["first turn"] = "its first turn"
         elif not many and (panel.until is not None or self.panels[0].until is None):
             self._dots(ax, panel, ruler)
-        self._arrows(ax, panel, ruler, path if first is None else first)
+        if first is not None or not (many and panel.turns > 60):
+            self._arrows(ax, panel, ruler, path if first is None else first)
 
     def _dots(self, ax: Axes, panel: Panel, ruler: Ruler) -> None:
         path = panel.path
