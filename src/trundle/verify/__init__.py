@@ -96,13 +96,21 @@ def _checked(name: str, value: float, bound: float, note: str, unit: str = "") -
     return CardFigure(name, value, unit, bound, bool(value <= bound), note)
 
 
-def _no_slip(system: RollingSystem, at: Samples, method: str) -> CardFigure:
+def _speeds(system: RollingSystem, at: Samples) -> tuple[Vector, Vector, Vector]:
+    """Return V, Ω×ρ and u."""
     u = system.support.motion.at(at.time).material_velocity(Vector.of(at.contact))
-    turning = Vector.of(at.angular_velocity).cross(Vector.of(at.contact - at.position))
-    V = Vector.of(at.velocity)
-    slip = (V + turning - u).norm()
-    size = max(float(np.max(speed.norm())) for speed in (V, turning, u))
-    return _checked("no slip", float(np.max(slip)) / max(size, 1e-300), _bound(method), "|V + Ω×ρ − u| over the speed")
+    return Vector.of(at.velocity), Vector.of(at.angular_velocity).cross(Vector.of(at.contact - at.position)), u
+
+
+def _speed(system: RollingSystem, at: Samples) -> float:
+    """Return the largest of V, Ω×ρ and u: any of them may be the small difference of two large ones."""
+    return max(float(np.max(speed.norm())) for speed in _speeds(system, at))
+
+
+def _no_slip(system: RollingSystem, at: Samples, method: str) -> CardFigure:
+    V, turning, u = _speeds(system, at)
+    slip, size = (V + turning - u).norm(), max(_speed(system, at), 1e-300)
+    return _checked("no slip", float(np.max(slip)) / size, _bound(method), "|V + Ω×ρ − u| over the speed")
 
 
 def _law(system: RollingSystem, start: State, at: Samples, method: str) -> Iterator[CardFigure]:
@@ -185,10 +193,11 @@ def _cross_check(
     bound = _bound(numerical, turned)
     over = f"over {ours.time[-1] - start.time:g} s, {count} instants"
     name = f"closed form against {'Taylor' if numerical == 'taylor' else 'Runge-Kutta'}"
+    arm, turning = _largest(ours.contact - ours.position), _largest(ours.angular_velocity)
+    fastest = max(_speed(system, ours), arm * turning)
+    sizes = {"position": _largest(ours.position), "velocity": fastest, "angular_velocity": fastest / arm}
     difference = max(
-        _largest(getattr(ours, field) - getattr(theirs, field)) / max(_largest(getattr(ours, field)), 1e-300)
-        for field in ("position", "velocity", "angular_velocity")
-        if _largest(getattr(ours, field)) > 0
+        _largest(getattr(ours, field) - getattr(theirs, field)) / max(size, 1e-300) for field, size in sizes.items()
     )
     yield _checked(name, difference, bound, f"position, velocity, Ω; {over}")
     turn = Quaternion.of(ours.orientation) * Quaternion.of(theirs.orientation).conjugate

@@ -114,14 +114,16 @@ def residuals(system: RollingSystem, windows: Samples, times: Array) -> Residual
 
     rate = np.linalg.norm(Omega, axis=1).max() + np.abs(V_rate).max() / max(np.abs(V).max(), 1e-300)
     a_size = max(np.abs(F).max() / m, np.abs(V_rate).max(), np.abs(V).max() * rate, 1e-300)
-    turn_size = max(np.abs(Omega_rate).max(), np.abs(Omega).max() * rate, np.abs(solved[1]).max(), 1e-300)
+    lever = m * a_size * np.linalg.norm(rho, axis=1).max() / np.trace(J, axis1=1, axis2=2).min()  # what R may turn
+    turn_size = max(np.abs(Omega_rate).max(), np.abs(Omega).max() * rate, lever)
     R = middle.contact_force
     law = max(
         np.abs(solved[0] - V_rate).max() / a_size,
         np.abs(solved[1] - Omega_rate).max() / turn_size,
         np.abs(solved[2] - R).max() / (m * a_size),
     )
-    path = np.abs(r_rate - V).max() / max(np.abs(V).max(), np.abs(middle.position).max() * rate, 1e-300)
+    half = (times[:, -1] - times[:, 0]).max() / 2
+    path = np.abs(r_rate - V).max() / max(np.abs(V).max(), np.abs(middle.position).max() / half)
 
     force = m * V_rate - F  # the reaction and its torque as the motion shows them
     torque = np.einsum("nij,nj->ni", J, Omega_rate) + gyroscopic - K
