@@ -46,20 +46,26 @@ bench: .venv/installed-bench
 .venv/installed: pyproject.toml constraints.txt
 	@$(PREPARE)
 	@$(INSTALL) -e '.'
+	@$(COMPILE)
 	@touch $@
 
 .venv/installed-test: pyproject.toml constraints.txt
 	@$(PREPARE)
 	@$(INSTALL) -e '.[test]'
+	@$(COMPILE)
 	@touch .venv/installed $@
 
 .venv/installed-bench: pyproject.toml constraints.txt
 	@$(PREPARE)
 	@$(INSTALL) -e '.[test,bench]'
+	@$(COMPILE)
 	@touch .venv/installed .venv/installed-test $@
 
 INSTALL = echo 'Installing trundle and its pinned dependencies into .venv (a minute or two the first time) ...' && \
 	$(PINNED) $(BIN)/python -m pip install --quiet --progress-bar off -c constraints.txt
+
+# What pip does for other packages: without it, and where Python may not write beside the sources, each start compiles.
+COMPILE = $(BIN)/python -m compileall -q src
 
 # Keep a .venv that works; otherwise make one with the first Python that is new enough.
 PREPARE = \

@@ -174,7 +174,8 @@ class Trajectory:
         inside = wanted.size and np.isfinite(wanted).all() and wanted[0] >= first and wanted[-1] <= last
         if not inside or (np.diff(wanted) < 0).any():
             raise InvalidValueError("times", f"must ascend within the run, {first:g} to {last:g} s", times)
-        samples = solver(self.method)(self.system, self.start, wanted, self.tolerance)
+        once, places = np.unique(wanted, return_inverse=True)
+        samples = solver(self.method)(self.system, self.start, once, self.tolerance).part(places)
         data = dataset(self.system, samples, {**self.data.attrs, "frame": "support"})
         return replace(self, data=data).in_frame(self.frame)
 

@@ -23,6 +23,7 @@ AngularVelocity = Callable[[Array], Array]  # times (n,) -> Ω (3, n) in the sup
 _NODES = 8  # of the polynomial for Ω on a step
 _LARGEST_TURN = 1.0  # rad a step
 _STEPS_AT_ONCE = 100_000
+_MOST_STEPS = 3e8  # some twenty minutes
 _EPSILON = 2.0**-53
 # The last coefficient of Ω's polynomial on a step, rad: rounding alone makes it some 1e-14; what comes after it is a
 # hundredth of it at most, divided by nine when integrated.
@@ -51,7 +52,7 @@ def orientation(angular_velocity: AngularVelocity, times: Array, start: Any, sta
     Raises
     ------
     SolverError
-        If Ω is not smooth enough to be followed.
+        If Ω is not smooth enough to be followed, or the body turns too often.
 
     Examples
     --------
@@ -62,11 +63,17 @@ def orientation(angular_velocity: AngularVelocity, times: Array, start: Any, sta
     [0.0, 0.0, 0.0, 1.0]
     """
     times = np.asarray(times, dtype=float)
+    pieces = _pieces(angular_velocity, np.concatenate([[start_time], times]))
+    if pieces.max(initial=1) > 1:  # far between: go there by way of instants in between
+        between = np.repeat(np.diff(times, prepend=start_time) / pieces, pieces)
+        index = np.arange(pieces.sum()) - np.repeat(np.cumsum(pieces), pieces) + 1
+        finer = np.repeat(times, pieces) + index * between
+        return orientation(angular_velocity, finer, start, start_time)[np.cumsum(pieces) - 1]
     result = np.empty((4, times.size))
     q, now, done = np.asarray(start, dtype=float).reshape(4, 1), float(start_time), 0
     while done < times.size:
         edges = np.concatenate([[now], times[done : done + _STEPS_AT_ONCE // 4]])
-        steps = _steps_needed(angular_velocity, edges)
+        steps = _steps_needed(angular_velocity, edges).astype(np.int64)
         take = max(1, int(np.searchsorted(np.cumsum(steps), _STEPS_AT_ONCE)))
         edges, steps = edges[: take + 1], steps[:take]
         turned = _running_product(_turns(angular_velocity, edges, steps))[:, np.cumsum(steps) - 1]
@@ -76,12 +83,24 @@ def orientation(angular_velocity: AngularVelocity, times: Array, start: Any, sta
     return (result / np.sqrt((result * result).sum(axis=0))).T
 
 
-def _steps_needed(angular_velocity: AngularVelocity, edges: Array) -> NDArray[np.int64]:
+def _pieces(angular_velocity: AngularVelocity, edges: Array) -> NDArray[np.int64]:
+    """Return into how many parts to cut each interval so that none asks for too many steps at once."""
+    steps = _steps_needed(angular_velocity, edges)
+    total = float(steps.sum())
+    if not total < _MOST_STEPS:
+        raise SolverError(
+            f"The body turns by some {total:.3g} rad in this run, more than the {_MOST_STEPS:.3g} rad that its "
+            "orientation is followed over. Ask for a shorter run, or look for a load that drives it too hard."
+        )
+    return np.maximum(1, np.ceil(steps / (_STEPS_AT_ONCE // 4))).astype(np.int64)
+
+
+def _steps_needed(angular_velocity: AngularVelocity, edges: Array) -> Array:
     """Count the steps in each interval so that none turns by more than `_LARGEST_TURN`."""
     speeds = np.sqrt((angular_velocity(edges) ** 2).sum(axis=0))
     middles = np.sqrt((angular_velocity(0.5 * (edges[1:] + edges[:-1])) ** 2).sum(axis=0))
     fastest = np.maximum(np.maximum(speeds[1:], speeds[:-1]), middles)
-    return np.maximum(1, np.ceil(fastest * np.diff(edges) / _LARGEST_TURN)).astype(np.int64)
+    return np.maximum(1.0, np.ceil(fastest * np.diff(edges) / _LARGEST_TURN))
 
 
 def _turns(angular_velocity: AngularVelocity, edges: Array, steps: NDArray[np.int64]) -> Array:
