@@ -94,6 +94,7 @@ def _has_moving_energy(system: RollingSystem) -> bool:
 
 def _has_spin(system: RollingSystem) -> bool:
     on_plane = system.body.is_isotropic_sphere and isinstance(system.support.surface, Plane)
+    on_plane = on_plane and system.support.motion.steady_rate is not None  # the normal stays the third axis
     return on_plane and all(_no_normal_torque(load) for load in system.all_loads)
 
 

@@ -121,7 +121,9 @@ class Card:
             Equal to the one written.
         """
         data = json.loads(text)
-        figures = [CardFigure(**{**figure, "value": float(figure["value"])}) for figure in data["figures"]]
+        for figure in data["figures"]:
+            figure.update({key: float(figure[key]) for key in ("value", "bound") if figure[key] is not None})
+        figures = [CardFigure(**figure) for figure in data["figures"]]
         return Card(data["title"], data["method"], tuple(figures))
 
 

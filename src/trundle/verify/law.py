@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 
 WINDOWS = 24
 _HALF_NODES = 6  # a polynomial of degree 12
-_PHASE_A_WINDOW = 1.0  # rad of the fastest rotation
+_PHASE_A_WINDOW = 0.3  # rad of the fastest rotation: what a polynomial leaves of a body that is no sphere is rounding
 
 
 @dataclass(frozen=True)
@@ -131,8 +131,9 @@ def residuals(system: RollingSystem, windows: Samples, times: Array) -> Residual
         np.abs((force * np.cross(rho, turn)).sum(axis=1) + torque @ turn).max()  # δV = −δΩ×ρ = ρ×δΩ
         for turn in np.eye(3)
     ]
-    torque_size = m * a_size * np.linalg.norm(rho, axis=1).max()
-    return Residuals(float(path), float(law), float(max(power) / max(torque_size, 1e-300)))
+    turning = np.abs(J).max() * np.abs(Omega).max() * rate
+    torque_size = max(m * a_size * np.linalg.norm(rho, axis=1).max(), turning)
+    return Residuals(float(path), float(law), float(max(power) / torque_size))
 
 
 def _applied(system: RollingSystem, at: Samples, p_rate: Array) -> tuple[Array, ...]:
