@@ -1,0 +1,340 @@
+"""The card passes what is right, catches what is planted, and lists each integral that holds and no other."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from tests.additions import Ellipsoid, Tumble
+from tests.draws import runs
+
+import trundle as tr
+from trundle import verify
+from trundle.mechanics.algebra import Vector
+from trundle.mechanics.contact import roll
+from trundle.mechanics.shapes import Sphere
+from trundle.mechanics.system import RollingSystem, State
+from trundle.solve import methods, samples, tracing
+from trundle.solve.exact import SphereOnPlane
+from trundle.solve.samples import Samples
+from trundle.verify import Card, CardFigure
+
+BALL = tr.Body.solid_sphere(radius=0.025, mass=0.065)
+TABLE = tr.Support(tr.Plane(), motion=tr.Spin(3.5), tilt=0.05)
+SYSTEM = tr.RollingSystem(BALL, TABLE)
+START = SYSTEM.place((0.1, 0.03), (0.05, 0.2), spin=2.0)
+TIMES = np.linspace(0.0, 3.0, 151)
+Fault = Callable[..., Samples]
+
+
+def solved(system: RollingSystem = SYSTEM, start: State = START, method: str = "exact") -> Samples:
+    return methods.solver(method)(system, start, TIMES, methods.tolerance_of(method), None)
+
+
+def failures(card: Card) -> set[str]:
+    assert card.passed == (not card.failures)
+    return {figure.name for figure in card.failures}
+
+
+# --- what is right passes -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("method", ["exact", "taylor", "runge-kutta"])
+def test_a_right_run_passes(method: str) -> None:
+    if method == "taylor":
+        pytest.importorskip("heyoka")
+    card = verify.card(SYSTEM, START, solved(method=method), method, "a run")
+    assert card.passed, str(card)
+    assert card.title == "a run"
+
+
+@settings(max_examples=25)
+@given(runs(), st.sampled_from([1e-3, 0.1, 1.0, 60.0]), st.integers(1, 50))
+def test_every_honest_run_passes(run: tuple[RollingSystem, State], duration: float, steps: int) -> None:
+    card = tr.simulate(*run, duration=duration, every=duration / steps).card()
+    assert failures(card) <= {"normal force"}, str(card)  # a drawn push may lift a light ball
+
+
+@settings(max_examples=6)
+@given(runs(), st.sampled_from(["taylor", "runge-kutta"]))
+def test_every_honest_numerical_run_passes(run: tuple[RollingSystem, State], method: str) -> None:
+    if method == "taylor":
+        pytest.importorskip("heyoka")
+    card = tr.simulate(*run, duration=1.0, every=0.1, method=method).card()
+    assert failures(card) <= {"normal force"}, str(card)
+
+
+# --- a method that is wrong is caught -------------------------------------------------------------------
+
+
+def scaled(field: str, by: float) -> Fault:
+    def fault(solve: Any, system: RollingSystem, start: State, times: Any) -> Samples:
+        right = solve(system, start, times)
+        return replace(right, **{field: getattr(right, field) * by})
+
+    return fault
+
+
+def shifted(solve: Any, system: RollingSystem, start: State, times: Any) -> Samples:
+    right, by = solve(system, start, times), np.array([1e-9, 0.0, 0.0])
+    return replace(right, position=right.position + by, contact=right.contact + by)
+
+
+def swapped(solve: Any, system: RollingSystem, start: State, times: Any) -> Samples:
+    """Take the body's turning for that of the frame: the inverse rotation."""
+    right = solve(system, start, times)
+    return replace(right, orientation=right.orientation * np.array([1.0, -1.0, -1.0, -1.0]))
+
+
+def late(solve: Any, system: RollingSystem, start: State, times: Any) -> Samples:
+    right = solve(system, start, times)
+    return replace(right, orientation=solve(system, start, times + 1e-9).orientation)
+
+
+def of(wrong: Callable[[RollingSystem], RollingSystem]) -> Fault:
+    """Solve another system from the same start."""
+    return lambda solve, system, start, times: solve(wrong(system), start, times)
+
+
+def with_support(**changes: Any) -> Fault:
+    return of(lambda system: replace(system, support=replace(system.support, **changes)))
+
+
+AGAINST = "closed form against Taylor"
+FAULTS: dict[str, tuple[Fault, set[str]]] = {
+    "velocity, 1e-9 too fast": (scaled("velocity", 1 + 1e-9), {"no slip", AGAINST}),
+    "angular velocity, 1e-9 too fast": (scaled("angular_velocity", 1 + 1e-9), {"no slip", AGAINST}),
+    "contact force, 1e-9 too large": (scaled("contact_force", 1 + 1e-9), {"law of motion"}),
+    "contact force backwards": (scaled("contact_force", -1.0), {"law of motion", "normal force"}),
+    "another inertia ratio": (
+        of(lambda system: replace(system, body=tr.Body.sphere(0.025, 0.065, 0.4 * (1 + 1e-8)))),
+        {"law of motion", "virtual power of the reaction", AGAINST},
+    ),
+    "the table turning the other way": (with_support(motion=tr.Spin(-3.5)), {"no slip", "law of motion", AGAINST}),
+    "the table turning a little faster": (with_support(motion=tr.Spin(3.5 * (1 + 1e-9))), {"no slip", AGAINST}),
+    "another slope": (with_support(tilt=0.05 * (1 + 1e-8)), {"law of motion", AGAINST}),
+    "another gravity": (of(lambda system: replace(system, gravity=9.81)), {"law of motion", AGAINST}),
+    "an extra push": (of(lambda system: replace(system, loads=(tr.Force((1e-8, 0, 0)),))), {"law of motion", AGAINST}),
+    "a little drag": (of(lambda system: replace(system, loads=(tr.Drag(1e-7),))), {"law of motion", AGAINST}),
+    "path shifted by a nanometre": (shifted, {"no slip", AGAINST}),
+    "orientation inverted": (swapped, {f"{AGAINST}, orientation"}),
+}
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_planted_fault_of_the_method_fails_its_figure(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("heyoka")
+    fault, wanted = FAULTS[name]
+    honest = methods.solver
+
+    def solver(method: str) -> Any:
+        if method != "exact":
+            return honest(method)
+        return lambda system, start, times, *_: fault(honest("exact"), system, start, times)
+
+    monkeypatch.setattr(verify, "solver", solver)
+    card = verify.card(SYSTEM, START, solver("exact")(SYSTEM, START, TIMES), "exact")
+    assert wanted <= failures(card), str(card)
+
+
+def test_a_wrong_rate_of_the_circle_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("heyoka")
+    right = SphereOnPlane._kappa_pair.fget
+    monkeypatch.setattr(SphereOnPlane, "_kappa_pair", property(lambda form: (right(form)[0] * (1 + 1e-7), 0.0)))
+    card = verify.card(SYSTEM, START, solved(), "exact")
+    assert {"law of motion", AGAINST} <= failures(card), str(card)
+
+
+def test_a_wrong_law_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    # With T2 itself wrong, the independent route notices: it does not use T2.
+    def wrong(*arguments: Any) -> Any:
+        now = roll(*arguments)
+        return replace(now, angular_acceleration=now.angular_acceleration * (1 + 1e-4))
+
+    system = replace(SYSTEM, body=tr.Body(0.065, tr.Principal(1.6e-5, 1.7e-5, 1.8e-5), Sphere(0.025)))
+    for module in (tracing, samples):
+        monkeypatch.setattr(module, "roll", wrong)
+    card = verify.card(system, START, solved(system, method="runge-kutta"), "runge-kutta")
+    assert {"law of motion"} <= failures(card), str(card)
+
+
+# --- numbers that are not the solution's are caught -----------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "field", ["position", "contact", "velocity", "angular_velocity", "orientation", "contact_force", "time"]
+)
+def test_altered_numbers_fail(field: str) -> None:
+    pytest.importorskip("heyoka")
+    right = solved()
+    factor = np.array([1.0, -1.0, -1.0, -1.0]) if field == "orientation" else 1 + 1e-6
+    card = verify.card(SYSTEM, START, replace(right, **{field: getattr(right, field) * factor}), "exact")
+    assert not card.passed, str(card)
+
+
+def test_one_altered_sample_fails() -> None:
+    pytest.importorskip("heyoka")
+    right = solved()
+    bumped = right.velocity.copy()
+    bumped[123] += 1e-9
+    assert "no slip" in failures(verify.card(SYSTEM, START, replace(right, velocity=bumped), "exact"))
+
+
+OTHERS = {
+    "gravity": replace(SYSTEM, gravity=9.81),
+    "tilt": replace(SYSTEM, support=replace(TABLE, tilt=0.0501)),
+    "rate": replace(SYSTEM, support=replace(TABLE, motion=tr.Spin(-3.5))),
+    "inertia": replace(SYSTEM, body=tr.Body.hollow_sphere(0.025, 0.065)),
+    "radius": replace(SYSTEM, body=tr.Body.solid_sphere(0.0251, 0.065)),
+    "mass": replace(SYSTEM, body=tr.Body.solid_sphere(0.025, 0.066)),
+    "load": replace(SYSTEM, loads=(tr.Force((1e-6, 0.0, 0.0)),)),
+}
+
+
+@pytest.mark.parametrize("name", OTHERS)
+@pytest.mark.parametrize("method", ["exact", "runge-kutta"])
+def test_the_samples_of_another_system_fail(name: str, method: str) -> None:
+    card = verify.card(OTHERS[name], START, solved(method=method), method)
+    assert not card.passed, str(card)
+
+
+def test_the_samples_of_another_body_fail_where_nothing_is_conserved() -> None:
+    # No closed form, no energy, no moving energy: only the law itself can tell.
+    def egg(moment: float) -> RollingSystem:
+        body = tr.Body(0.065, tr.Principal(1.6e-5, 1.7e-5, moment), Sphere(0.025))
+        return replace(SYSTEM, body=body)
+
+    mine = solved(egg(1.8e-5), method="runge-kutta")
+    assert verify.card(egg(1.8e-5), START, mine, "runge-kutta").passed
+    assert not verify.card(egg(1.9e-5), START, mine, "runge-kutta").passed
+
+
+# --- friction and the normal force ----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("friction", "passes"), [(None, True), (0.2, True), (0.05, False), (0.0, False)])
+def test_friction(friction: float | None, passes: bool) -> None:
+    system = replace(SYSTEM, support=replace(TABLE, friction=friction))
+    card = tr.simulate(system, START, duration=10.0, every=0.01).card()
+    figure = card["friction coefficient needed"]
+    assert figure.bound == friction
+    assert figure.passed is (None if friction is None else passes)
+    assert card.passed is passes
+    assert card.as_dict()["passed"] is passes
+    assert ("slip" in figure.note) is not passes
+    # A full turn on a tilted table asks for tan α + κ²ϱ/(g cos α).
+    kappa, drift = 1.0, 9.80665 * math.sin(0.05) / (3.5 * 0.4)
+    radius = abs(complex(0.05, 0.2) - 1j * drift) / kappa
+    needed = math.tan(0.05) + kappa**2 * radius / (9.80665 * math.cos(0.05))
+    assert figure.value == pytest.approx(needed, rel=1e-4)  # of samples 0.01 s apart
+
+
+def test_the_support_cannot_pull() -> None:
+    lifted = replace(SYSTEM, loads=(tr.Force((0.0, 0.0, 1.0)),))
+    card = tr.simulate(lifted, lifted.place((0.1, 0.0)), duration=1.0, every=0.1).card()
+    assert "normal force" in failures(card)
+    assert card["normal force"].value == pytest.approx(0.065 * 9.80665 * math.cos(0.05) - 1.0)
+    assert card["friction coefficient needed"].value == math.inf
+
+
+# --- integrals ------------------------------------------------------------------------------------------
+
+LEVEL, SLOPE = tr.Support(tr.Plane()), tr.Support(tr.Plane(), tilt=0.1)
+TURNING = tr.Support(tr.Plane(), motion=tr.Spin(2.0))
+CHAPLYGIN = tr.Body(0.065, tr.Principal(1.6e-5, 1.7e-5, 1.8e-5), Sphere(0.025))
+WEIGHTED = tr.Body(0.065, tr.Isotropic(1.7e-5), Sphere(0.025, Vector(0.001, 0.0, 0.0)))
+EGG = tr.Body(0.065, tr.Principal(1.6e-5, 1.7e-5, 1.8e-5), Ellipsoid(0.02, 0.025, 0.03))
+TUMBLING = tr.Support(tr.Plane(), motion=Tumble(1.0, 0.5, 0.25, Vector(0.1, 0.0, 0.0), 2.0))
+ENERGY, MOVING, SPIN, ABOUT = (
+    "energy",
+    "moving energy",
+    "spin about the normal",
+    "angular momentum about the contact",
+)
+HOLD: dict[str, tuple[tr.Body, tr.Support, tuple[Any, ...], set[str]]] = {
+    "ball, level": (BALL, LEVEL, (), {ENERGY, SPIN, ABOUT}),
+    "ball, slope": (BALL, SLOPE, (), {ENERGY, SPIN}),
+    "ball, turning": (BALL, TURNING, (), {MOVING, SPIN}),
+    "ball, tilted and turning": (BALL, TABLE, (), {SPIN}),
+    "ball, pushed": (BALL, LEVEL, (tr.Force((0.1, 0.0, 0.0)),), {ENERGY, SPIN}),
+    "ball, pressed": (BALL, LEVEL, (tr.Force((0.0, 0.0, -0.1)),), {ENERGY, SPIN, ABOUT}),
+    "ball, twisted": (BALL, LEVEL, (tr.Torque((1e-4, 0.0, 0.0)),), {SPIN}),
+    "ball, spun up": (BALL, LEVEL, (tr.Torque((0.0, 0.0, 1e-5)),), set()),
+    "ball, in air": (BALL, LEVEL, (tr.Drag(0.01),), {SPIN}),
+    "ball, in air, turning": (BALL, TURNING, (tr.Drag(0.01),), {SPIN}),
+    "Chaplygin's ball, level": (CHAPLYGIN, LEVEL, (), {ENERGY, ABOUT}),
+    "Chaplygin's ball, slope": (CHAPLYGIN, SLOPE, (), {ENERGY}),
+    "Chaplygin's ball, turning": (CHAPLYGIN, TURNING, (), {MOVING}),
+    "Chaplygin's ball, tilted and turning": (CHAPLYGIN, TABLE, (), set()),
+    "weighted ball, level": (WEIGHTED, LEVEL, (), {ENERGY}),
+    "ellipsoid, level": (EGG, LEVEL, (), {ENERGY}),
+    "ellipsoid, turning": (EGG, TURNING, (), {MOVING}),
+    "ball, tumbling": (BALL, TUMBLING, (), set()),
+}
+
+
+def drifts(card: Card) -> set[str]:
+    found = {figure.name.removeprefix("drift of the ") for figure in card.figures if "drift of the" in figure.name}
+    return {name for name in found if not name.startswith("circle")}
+
+
+@pytest.mark.parametrize("name", HOLD)
+def test_each_integral_that_holds_is_there_and_no_other(name: str) -> None:
+    body, support, loads, wanted = HOLD[name]
+    system = tr.RollingSystem(body, support, loads)
+    start = system.place((0.1, 0.03), (0.05, 0.2), spin=2.0)
+    method = methods.choose("auto", system, start)
+    method = "runge-kutta" if method != "exact" and body is not EGG and support is not TUMBLING else method
+    times = np.linspace(0.0, 0.5, 51)
+    card = verify.card(
+        system, start, methods.solver(method)(system, start, times, methods.tolerance_of(method)), method
+    )
+    assert drifts(card) == wanted
+    assert card.passed, str(card)
+
+
+@pytest.mark.parametrize(("support", "circles"), [(TABLE, True), (TURNING, True), (LEVEL, False), (SLOPE, False)])
+def test_a_circle_is_measured_where_there_is_one(support: tr.Support, circles: bool) -> None:
+    system = tr.RollingSystem(BALL, support)
+    card = tr.simulate(system, system.place((0.1, 0.03), (0.05, 0.2)), duration=10.0, every=0.01).card()
+    names = {figure.name for figure in card.figures}
+    assert any(name.startswith("circle rate measured") for name in names) is circles
+    assert any(name.startswith("drift of the circle's") for name in names) is circles
+
+
+# --- the card as a thing --------------------------------------------------------------------------------
+
+
+def test_json_brings_back_every_number() -> None:
+    figures = (
+        CardFigure("a", 1 / 3, "N", 0.1, True, "as µ ≤ 0.1"),
+        CardFigure("b", math.inf, "", 0.3, False, "it would slip"),
+        CardFigure("c", -math.inf),
+        CardFigure("d", 5e-324, "m", math.inf, None),
+    )
+    card = Card('a "title"', "Taylor's", figures)
+    text = card.as_json()
+    assert Card.from_json(text) == card
+    assert json.loads(text, parse_constant=pytest.fail)["figures"][1]["value"] == "inf"
+    assert json.loads(text)["passed"] is False
+    assert Card.from_json(text).failures == (figures[1],)
+
+
+def test_a_mistyped_figure_lists_the_names() -> None:
+    card = verify.card(SYSTEM, START, solved(), "exact")
+    with pytest.raises(tr.UnknownNameError, match=r"Did you mean 'no slip'.*law of motion"):
+        card["no slp"]
+
+
+def test_the_text_says_what_failed() -> None:
+    card = Card("a run", "Taylor", (CardFigure("x", 1.0, "m", 0.5, False), CardFigure("y", 1.0, "m", 2.0, True)))
+    assert "FAIL" in str(card)
+    assert "1 of the checks FAILED" in str(card)
+    assert "every check held" in str(Card("a run", "Taylor", card.figures[1:]))
