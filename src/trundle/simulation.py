@@ -96,11 +96,13 @@ def _check_start(system: RollingSystem, start: State) -> None:
     q, centre = Quaternion(*start.orientation), Vector(*start.position)
     contact = touch(system, start.time, centre, q)
     point = centre + contact.offset
-    gap, size = system.support.surface.level(point - contact.support.origin), contact.offset.norm()
+    own = contact.support.rotation.transpose @ (point - contact.support.origin)
+    gap, size = system.support.surface.level(own), contact.offset.norm()
     if abs(gap) > SLIP_TOLERANCE * size:
         raise InvalidValueError(
             "start.position", "must put the body on the support", start.position, f"Gap: {gap:g} m."
         )
+    system._check_rim(point, start.position)
     V, Omega = Vector(*start.velocity), Vector(*start.angular_velocity)
     contact = touch(system, start.time, point, q)
     slip = contact.slip_velocity(V, Omega).norm()

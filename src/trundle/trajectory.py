@@ -175,7 +175,8 @@ class Trajectory:
         if not inside or (np.diff(wanted) < 0).any():
             raise InvalidValueError("times", f"must ascend within the run, {first:g} to {last:g} s", times)
         once, places = np.unique(wanted, return_inverse=True)
-        samples = solver(self.method)(self.system, self.start, once, self.tolerance).part(places)
+        samples = solver(self.method)(self.system, self.start, once, self.tolerance)
+        samples = replace(samples, time=once).part(places)  # at the rim an integrator may stop a rounding earlier
         data = dataset(self.system, samples, {**self.data.attrs, "frame": "support"})
         return replace(self, data=data).in_frame(self.frame)
 

@@ -6,6 +6,7 @@ Exit status: 0, all is well; 2, bad input; 3, a figure of the card failed; 130, 
 from __future__ import annotations
 
 import contextlib
+import gc
 import os
 import sys
 import traceback
@@ -34,7 +35,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     >>> "tilted-turntable" in printed.getvalue()
     True
     """
-    status = run(arguments)
+    gc.disable()  # a command is over before it finds anything, and its passes over fresh imports take half a second
+    try:
+        status = run(arguments)
+    finally:
+        gc.enable()
     if status == INTERRUPTED:  # Python may die of the signal instead of leaving with the status
         for stream in (sys.stdout, sys.stderr):
             with contextlib.suppress(OSError, ValueError):

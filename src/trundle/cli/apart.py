@@ -33,7 +33,7 @@ class Apart(Generic[T]):
     def __init__(self, call: Callable[[], T]) -> None:
         self._call, self._process = call, 0
         self._answer: bytes | None = None
-        if sys.platform != "linux" or (os.cpu_count() or 1) < 2:  # elsewhere a copied process is not safe to use
+        if sys.platform != "linux" or len(os.sched_getaffinity(0)) < 2:  # elsewhere a copied process is not safe to use
             return
         sys.stdout.flush()
         sys.stderr.flush()

@@ -100,7 +100,7 @@ def _has_spin(system: RollingSystem) -> bool:
 
 def _has_contact_momentum(system: RollingSystem) -> bool:
     sphere = concentric_sphere(system.body.shape) and isinstance(system.support.surface, Plane)
-    pressed = all(_conservative(load) and load.symmetric for load in system.all_loads)
+    pressed = all(_conservative(load) and load.constant and load.symmetric for load in system.all_loads)
     return sphere and _is_fixed(system) and pressed
 
 

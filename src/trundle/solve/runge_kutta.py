@@ -62,14 +62,14 @@ def solve(
         t_eval=times,
         rtol=tolerance,
         atol=tolerance * scale,
-        events=_exits(system),
+        events=_exits(system, rates),
+        dense_output=system.support.surface.rim is not None,
     )
     if result.status < 0:
         raise SolverError(f"The Runge-Kutta method broke down on the way to t = {end:g} s: {result.message}")
-    times, states, reached = result.t, result.y.T, None
-    if result.status == 1 and result.t_events and result.y_events:
-        reached = float(result.t_events[0][0])
-        times, states = cut(times, states, reached, result.y_events[0][0])
+    times, states, reached = result.t, result.y.T, _first_exit(system, result)
+    if reached is not None and result.sol is not None:
+        times, states = cut(times, states, reached, result.sol(reached))
     samples = Samples.of_contact(system, times, states[:, :3], states[:, 3:7], states[:, 7:])
     return samples if reached is None else samples.ended(ran_off(reached, system.support.surface.rim))
 
@@ -78,13 +78,42 @@ def _size(part: Array) -> float:
     return max(float(np.abs(part).max()), 1e-3)
 
 
-def _exits(system: RollingSystem) -> list[Any] | None:
-    rim = system.support.surface.rim
-    if rim is None:
+def _excess(system: RollingSystem) -> Any:
+    """Return the function of the state that rises through 0 at the rim."""
+    rim = float(system.support.surface.rim or 0.0)
+    return lambda y: float(y[0] * y[0] + y[1] * y[1] - rim * rim)
+
+
+def _exits(system: RollingSystem, rates: Any) -> list[Any] | None:
+    """Return what SciPy looks for at the ends of each step: the rim, and where the distance from the axis is largest.
+
+    Without the second a ball could leave and come back within one step unseen.
+    """
+    if system.support.surface.rim is None:
         return None
+    excess = _excess(system)
 
-    def inside(_: float, y: Array) -> float:
-        return float(rim * rim - y[0] * y[0] - y[1] * y[1])
+    def outside(_: float, y: Array) -> float:
+        return excess(y)
 
-    inside.terminal, inside.direction = True, -1  # type: ignore[attr-defined]
-    return [inside]
+    def leaving(t: float, y: Array) -> float:
+        p_rate = rates(t, y.tolist())
+        return float(y[0] * p_rate[0] + y[1] * p_rate[1])
+
+    outside.terminal, outside.direction = True, 1  # type: ignore[attr-defined]
+    leaving.direction = -1  # type: ignore[attr-defined]
+    return [outside, leaving]
+
+
+def _first_exit(system: RollingSystem, result: Any) -> float | None:
+    """Return the first instant at the rim: at an event of its own, or just before a largest distance beyond it."""
+    from scipy.optimize import brentq
+
+    if not result.t_events:
+        return None
+    excess, (ends, peaks) = _excess(system), result.t_events
+    for peak in peaks:
+        if excess(result.sol(peak)) >= 0:
+            inside = float(result.sol.ts[np.searchsorted(result.sol.ts, peak) - 1])
+            return float(brentq(lambda t: excess(result.sol(t)), inside, peak, xtol=1e-300, rtol=1e-15))
+    return float(ends[0]) if ends.size else None

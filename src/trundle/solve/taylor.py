@@ -23,7 +23,8 @@ from .samples import Array, Progress, Samples, cut, ran_off
 from .tracing import contact_state, heyoka_system
 
 TOLERANCE = 1e-15
-_CHUNKS = 100  # of a run, between which progress is told and Ctrl-C is heard
+_CHUNKS = 100  # of a run at most, between which progress is told and Ctrl-C is heard
+_LEAST_CHUNK = 60  # instants
 
 
 def available() -> bool:
@@ -98,7 +99,7 @@ def _propagate(integrator: Any, times: Array, progress: Progress | None) -> tupl
     import heyoka
 
     parts: list[Array] = []
-    for chunk in np.array_split(times, min(_CHUNKS, max(1, times.size // 8))):
+    for chunk in np.array_split(times, min(_CHUNKS, max(1, times.size // _LEAST_CHUNK))):
         if integrator.time < chunk[0]:
             outcome = integrator.propagate_until(float(chunk[0]))[0]
             if outcome != heyoka.taylor_outcome.time_limit:
