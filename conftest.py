@@ -13,6 +13,7 @@ import os
 import re
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -33,6 +34,8 @@ NOT_RUN = {"cd", "git", "pip", "python3"}
 TIME_LIMIT = 120  # s, for one command of a document
 
 os.environ["MPLBACKEND"] = "Agg"  # no window, here and in every command that a document runs
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in what a script starts with `&`: tests of Ctrl-C would wait
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def run_toml(example: Example) -> None:
