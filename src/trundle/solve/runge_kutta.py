@@ -45,7 +45,7 @@ def solve(
     from scipy.integrate import solve_ivp
 
     rates = python_rates(system)
-    begin, end = start.time, float(times[-1])
+    begin, end = start.time, max(float(times[-1]), float(np.nextafter(start.time, np.inf)))  # some way to go
     y0 = np.asarray(contact_state(system, start))
 
     def law(t: float, y: Array) -> list[float]:
