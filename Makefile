@@ -27,7 +27,7 @@ demo: .venv/installed
 
 test: .venv/installed-test
 	$(PYTEST)
-	@$(MAKE) lint
+	@$(MAKE) --no-print-directory lint
 
 lint: .venv/installed-test
 	$(PLAIN) $(BIN)/ruff check .
