@@ -371,6 +371,7 @@ def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any])
     --------
     See `Trajectory.data`.
     """
+    import pandas
     import xarray
 
     arrays = {name: getattr(samples, name, None) for name in _VECTORS}
@@ -393,9 +394,10 @@ def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any])
             "phase": (("time",), np.zeros(samples.time.size, dtype=np.int8), phase),
         },
         coords={
-            "time": (("time",), samples.time, {"long_name": "time", "units": "s", "axis": "T"}),
-            "axis": ["x", "y", "z"],
-            "quaternion": ["w", "x", "y", "z"],
+            # As pandas indexes: to make them, xarray would first import every package of arrays that it knows of.
+            "time": (("time",), pandas.Index(samples.time), {"long_name": "time", "units": "s", "axis": "T"}),
+            "axis": pandas.Index(["x", "y", "z"], dtype=object),
+            "quaternion": pandas.Index(["w", "x", "y", "z"], dtype=object),
         },
         attrs={"Conventions": "CF-1.11", **attributes},
     )
