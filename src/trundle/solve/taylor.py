@@ -170,8 +170,9 @@ def _key(equations: list[Any], exits: list[Any], tolerance: float, parameters: i
     """Name what a compiled integrator depends on: the equations, the tolerance, heyoka and the processor."""
     import heyoka
 
-    parts = [repr(equations), repr(exits), repr(tolerance), str(parameters), heyoka.__version__, _processor()]
-    return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:32]
+    parts = [repr(tolerance), str(parameters), heyoka.__version__, _processor()]
+    whole = pickle.dumps((equations, exits))  # the repr of a long expression ends in "..."
+    return hashlib.sha256("\n".join(parts).encode() + whole).hexdigest()[:32]
 
 
 @cache
@@ -226,4 +227,5 @@ def _store(key: str, integrator: Any) -> None:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         body = pickle.dumps(integrator)
         with written_whole(folder / f"taylor-{key}.pickle") as temporary:
+            temporary.touch(mode=0o600)  # whatever the umask, or `_load` would not trust it
             temporary.write_bytes(hashlib.sha256(body).hexdigest().encode() + b"\n" + body)
