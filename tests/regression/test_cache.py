@@ -1,0 +1,284 @@
+"""The cache of compiled integrators saves the compiling, never decides a result, and never gets in the way."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import stat
+import subprocess
+import sys
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from tests.additions import Ball, Ellipsoid, Tumble
+
+import trundle as tr
+from trundle.mechanics.algebra import Vector
+from trundle.mechanics.loads import BodyMotion, Load
+from trundle.mechanics.parameters import numbers
+from trundle.solve import taylor
+from trundle.solve.tracing import heyoka_system
+
+pytest.importorskip("heyoka")
+
+BALL = tr.Body.solid_sphere(radius=0.025, mass=0.065)
+SYSTEM = tr.RollingSystem(BALL, tr.Support(tr.Plane(), motion=tr.Spin(3.5), tilt=0.05))
+TIMES = np.linspace(0.0, 1.0, 5)
+
+
+class Machine:
+    """A machine with a cache of its own; `compiled` counts, and `restart` is a new process in this one."""
+
+    def __init__(self, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.folder, self.compiled, self.patch = folder, 0, monkeypatch
+        compile_ = taylor._compile
+
+        def counted(*arguments: Any) -> Any:
+            self.compiled += 1
+            return compile_(*arguments)
+
+        monkeypatch.setattr(taylor, "_compile", counted)
+        monkeypatch.setattr(taylor, "cache_folder", lambda: folder)
+        self.restart()
+
+    def restart(self) -> None:
+        memory = taylor._Memory()
+        self.patch.setattr(taylor, "_memory", lambda: memory)
+
+    def run(self, system: tr.RollingSystem = SYSTEM) -> Any:
+        return taylor.solve(system, system.place((0.1, 0.0), (0.0, 0.2)), TIMES)
+
+    @property
+    def file(self) -> Path:
+        (path,) = self.folder.glob("taylor-*.pickle")
+        return path
+
+
+@pytest.fixture
+def machine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Machine:
+    return Machine(tmp_path / "cache" / "trundle", monkeypatch)
+
+
+def test_a_second_run_does_not_compile(machine: Machine) -> None:
+    first, second = machine.run(), machine.run()
+    assert machine.compiled == 1
+    assert np.array_equal(first.position, second.position)
+
+
+def test_a_second_process_does_not_compile(machine: Machine) -> None:
+    first = machine.run()
+    machine.restart()
+    second = machine.run()
+    assert machine.compiled == 1
+    assert np.array_equal(first.position, second.position)
+    assert np.array_equal(first.orientation, second.orientation)
+
+
+def test_all_numbers_are_parameters(machine: Machine) -> None:
+    others = [
+        replace(SYSTEM, body=tr.Body.hollow_sphere(0.1, 2.0)),
+        replace(SYSTEM, gravity=1.62),
+        replace(SYSTEM, support=replace(SYSTEM.support, motion=tr.Spin(-1e-3), tilt=0.0, friction=None)),
+    ]
+    for system in (SYSTEM, *others):
+        found, wanted = (
+            machine.run(system),
+            tr.simulate(system, system.place((0.1, 0.0), (0.0, 0.2)), 1.0, 0.25).samples,
+        )
+        assert np.abs(found.position - wanted.position).max() < 1e-12
+    assert machine.compiled == 1
+
+
+def test_another_structure_is_another_integrator(machine: Machine) -> None:
+    machine.run()
+    for system in (
+        replace(SYSTEM, loads=(tr.Drag(0.01),)),
+        replace(SYSTEM, loads=(tr.Force((0.1, 0.0, 0.0)),)),
+        replace(SYSTEM, support=tr.Support(tr.Plane(rim=5.0))),
+    ):
+        found, wanted = (
+            machine.run(system),
+            tr.simulate(system, system.place((0.1, 0.0), (0.0, 0.2)), 1.0, 0.25).samples,
+        )
+        assert np.abs(found.position - wanted.position).max() < 1e-12
+    assert machine.compiled == 4
+
+
+@dataclass(frozen=True)
+class Twist(Load):
+    """A torque that differs from a constant one deep inside a long expression only."""
+
+    value: Vector
+    place: bool
+
+    def torque(self, motion: BodyMotion) -> Vector:
+        return Vector(self.value.x, self.value.y, self.value.z * motion.position.x if self.place else self.value.z)
+
+
+def test_long_equations_that_differ_at_their_end_are_not_taken_for_one_another() -> None:
+    body = tr.Body(0.75, tr.Principal(0.003, 0.004, 0.005), Ellipsoid(0.15, 0.125, 0.1))
+    motion = Tumble(1.5, 0.25, -0.75, Vector(0.5, -0.25, 0.125), 2.0)
+    support = tr.Support(Ball(0.5, 1.0), motion=motion, tilt=0.2)
+
+    def key(place: bool) -> str:
+        system = tr.RollingSystem(body, support, (Twist(Vector(0.1, 0.2, 0.3), place),))
+        return taylor._key(*heyoka_system(system), 1e-15, len(numbers(system)))
+
+    assert key(True) == key(True)
+    assert key(True) != key(False)
+
+
+def test_the_key_depends_on_tolerance_heyoka_and_processor(monkeypatch: pytest.MonkeyPatch) -> None:
+    import heyoka
+
+    traced = heyoka_system(SYSTEM)
+    keys = {taylor._key(*traced, 1e-15, 7), taylor._key(*traced, 1e-9, 7)}
+    monkeypatch.setattr(taylor, "_processor", lambda: "another")
+    keys.add(taylor._key(*traced, 1e-15, 7))
+    monkeypatch.setattr(heyoka, "__version__", "0.0.0")
+    keys.add(taylor._key(*traced, 1e-15, 7))
+    assert len(keys) == 4
+
+
+def test_the_key_is_the_same_in_every_process() -> None:
+    code = """
+import trundle as tr
+from trundle.mechanics.parameters import numbers
+from trundle.solve import taylor
+from trundle.solve.tracing import heyoka_system
+ball = tr.Body.solid_sphere(radius=0.025, mass=0.065)
+system = tr.RollingSystem(ball, tr.Support(tr.Plane(), motion=tr.Spin(3.5), tilt=0.05))
+print(taylor._key(*heyoka_system(system), 1e-15, len(numbers(system))))
+"""
+    found = set()
+    for seed in ("1", "2"):
+        env = dict(os.environ, PYTHONHASHSEED=seed)
+        found.add(subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, check=True).stdout)  # noqa: S603
+    assert len(found) == 1
+    assert found.pop().decode().strip() == taylor._key(*heyoka_system(SYSTEM), 1e-15, len(numbers(SYSTEM)))
+
+
+@pytest.mark.parametrize("spoil", ["empty", "cut", "bit", "garbage", "other pickle", "folder in its place"])
+def test_a_spoilt_file_is_compiled_again(machine: Machine, spoil: str) -> None:
+    right = machine.run()
+    path = machine.file
+    whole = path.read_bytes()
+    path.unlink()
+    if spoil == "folder in its place":
+        path.mkdir()
+    else:
+        flipped = bytes([whole[-1] ^ 1])
+        path.write_bytes(
+            {
+                "empty": b"",
+                "cut": whole[: len(whole) // 2],
+                "bit": whole[:-1] + flipped,
+                "garbage": b"\x80\x04nonsense",
+                "other pickle": pickle.dumps({"not": "an integrator"}),
+            }[spoil]
+        )
+        path.chmod(0o600)
+    machine.restart()
+    again = machine.run()
+    assert machine.compiled == 2
+    assert np.array_equal(again.position, right.position)
+    if spoil != "folder in its place":
+        machine.restart()
+        machine.run()
+        assert machine.compiled == 2  # and it was mended
+
+
+class Trap:
+    """A pickle that does something when it is read."""
+
+    def __reduce__(self) -> Any:
+        return pytest.fail, ("a file that others may write was read",)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="permissions")
+@pytest.mark.parametrize(("of", "mode"), [("file", 0o620), ("file", 0o602), ("folder", 0o770), ("folder", 0o707)])
+def test_what_others_may_write_is_not_trusted(machine: Machine, of: str, mode: int) -> None:
+    import hashlib
+
+    machine.run()
+    body = pickle.dumps(Trap())
+    machine.file.write_bytes(hashlib.sha256(body).hexdigest().encode() + b"\n" + body)
+    (machine.file if of == "file" else machine.folder).chmod(mode)
+    machine.restart()
+    machine.run()
+    assert machine.compiled == 2
+
+
+@pytest.mark.skipif(os.name != "posix", reason="owners")
+def test_what_belongs_to_another_user_is_not_trusted(machine: Machine, monkeypatch: pytest.MonkeyPatch) -> None:
+    machine.run()
+    monkeypatch.setattr(os, "getuid", lambda: 12345)
+    machine.restart()
+    machine.run()
+    assert machine.compiled == 2
+
+
+@pytest.mark.skipif(os.name != "posix", reason="permissions")
+@pytest.mark.parametrize("umask", [0o022, 0o002, 0o000])
+def test_it_works_whatever_the_umask(machine: Machine, umask: int) -> None:
+    before = os.umask(umask)
+    try:
+        machine.run()
+        machine.restart()
+        machine.run()
+    finally:
+        os.umask(before)
+    assert machine.compiled == 1
+    assert stat.S_IMODE(machine.file.stat().st_mode) == 0o600
+    assert stat.S_IMODE(machine.folder.stat().st_mode) == 0o700
+
+
+def test_without_a_folder_it_works(machine: Machine, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("in the way")
+    machine.folder = tmp_path / "file" / "trundle"  # cannot be made, not even by root
+    machine.patch.setattr(taylor, "cache_folder", lambda: machine.folder)
+    assert machine.run().position.shape == (5, 3)
+    assert machine.compiled == 1
+
+
+def test_a_full_disk_does_not_get_in_the_way(machine: Machine) -> None:
+    def full(path: Path, data: bytes) -> int:  # noqa: ARG001
+        path.touch()
+        raise OSError(28, "No space left on device")
+
+    machine.patch.setattr(Path, "write_bytes", full)
+    assert machine.run().position.shape == (5, 3)
+    assert list(machine.folder.iterdir()) == []
+
+
+def test_a_copy_is_used_so_that_runs_do_not_see_each_other(machine: Machine) -> None:
+    short = tr.RollingSystem(BALL, tr.Support(tr.Plane(rim=0.12), motion=tr.Spin(3.5)))
+    start = short.place((0.1, 0.0), (0.0, 0.2))
+    first = taylor.solve(short, start, TIMES)
+    long = replace(short, support=replace(short.support, surface=tr.Plane(rim=5.0)))
+    taylor.solve(long, start, TIMES)
+    again = taylor.solve(short, start, TIMES)
+    assert machine.compiled == 1
+    assert first.events == again.events != ()
+    assert np.array_equal(first.position, again.position)
+
+
+def test_the_cache_is_the_users(tmp_path: Path) -> None:
+    code = """
+import trundle as tr
+from trundle.solve import taylor
+compile_, count = taylor._compile, []
+taylor._compile = lambda *arguments: (count.append(1), compile_(*arguments))[1]
+table = tr.RollingSystem(tr.Body.solid_sphere(0.025, 0.065), tr.Support(tr.Plane()))
+tr.simulate(table, table.place(), duration=1.0, every=0.5, method="taylor")
+print(len(count))
+"""
+    env = dict(os.environ, XDG_CACHE_HOME=str(tmp_path), HOME=str(tmp_path))
+    counts = [
+        subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True, check=True).stdout  # noqa: S603
+        for _ in range(2)
+    ]
+    assert counts == ["1\n", "0\n"]
