@@ -239,7 +239,7 @@ def test_a_run_that_ended_at_the_rim(method: str) -> None:
 
 def same(one: tr.Trajectory, other: tr.Trajectory) -> None:
     assert other.data.identical(one.data)
-    for name, variable in one.data.variables.items():
+    for name, variable in one.data.data_vars.items():
         assert other.data[name].dtype == variable.dtype
     assert other.system == one.system
     assert other.start == one.start
