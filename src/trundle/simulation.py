@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from . import trajectory
-from .errors import InvalidValueError
+from .errors import InvalidValueError, ScenarioError
 from .mechanics.algebra import Quaternion, Vector
 from .mechanics.contact import touch
 from .mechanics.system import SLIP_TOLERANCE, RollingSystem, State
@@ -79,14 +79,22 @@ def simulate(
     chosen = methods.choose(method, system, start)
     samples = methods.solver(chosen)(system, start, times, methods.tolerance_of(chosen), progress)
     if scenario is None:
-        length = float(times[-1] - start.time)
-        step = float(times[1] - times[0]) if times.size > 2 else length
+        title, scenario = _described(system, start, times, method, title)
+    data = trajectory.dataset(system, samples, trajectory.attributes(title, chosen))
+    return Trajectory(data, system, start, chosen, samples.events, scenario)
+
+
+def _described(system: RollingSystem, start: State, times: Any, method: str, title: str) -> tuple[str, str]:
+    """Return title and TOML text of a system; no text where the scenario format has no words for a part of it."""
+    length = float(times[-1] - start.time)
+    step = float(times[1] - times[0]) if times.size > 2 else length
+    try:
         described = ScenarioFile.describe(
             system, replace(start, time=0.0), duration=length, every=step, method=method, title=title
         )
-        title, scenario = described.title, described.to_toml()
-    data = trajectory.dataset(system, samples, trajectory.attributes(title, chosen))
-    return Trajectory(data, system, start, chosen, samples.events, scenario)
+    except ScenarioError:
+        return title, ""
+    return described.title, described.to_toml()
 
 
 def _check_start(system: RollingSystem, start: State) -> None:

@@ -282,6 +282,11 @@ class Trajectory:
         True
         """
         target = Path(path)
+        if not self.scenario:
+            raise TrundleError(
+                f"{target} is not written: a file holds the scenario, and the scenario format has no words for a part "
+                "of this system. Keep `run.data` with its own `to_netcdf`, or teach the format the new part."
+            )
         extra = {
             "scenario": self.scenario,
             "start": json.dumps(asdict(self.start)),
@@ -371,7 +376,7 @@ def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any])
     --------
     See `Trajectory.data`.
     """
-    import pandas
+    import pandas as pd
     import xarray
 
     arrays = {name: getattr(samples, name, None) for name in _VECTORS}
@@ -395,9 +400,9 @@ def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any])
         },
         coords={
             # As pandas indexes: to make them, xarray would first import every package of arrays that it knows of.
-            "time": (("time",), pandas.Index(samples.time), {"long_name": "time", "units": "s", "axis": "T"}),
-            "axis": pandas.Index(["x", "y", "z"], dtype=object),
-            "quaternion": pandas.Index(["w", "x", "y", "z"], dtype=object),
+            "time": (("time",), pd.Index(samples.time), {"long_name": "time", "units": "s", "axis": "T"}),
+            "axis": pd.Index(["x", "y", "z"], dtype=object),
+            "quaternion": pd.Index(["w", "x", "y", "z"], dtype=object),
         },
         attrs={"Conventions": "CF-1.11", **attributes},
     )

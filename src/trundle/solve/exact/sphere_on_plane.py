@@ -65,7 +65,7 @@ class SphereOnPlane:
 
     name = "sphere on a plane"
     equation = "T5"
-    source = "Milne, Vectorial Mechanics (1948); Weltner, Am. J. Phys. 55, 937 (1987); theory page, section 5"
+    source = "Milne, Vectorial Mechanics (1948); Weltner, Am. J. Phys. 47, 984 (1979); theory page, section 5"
     domain = (
         "a sphere about its centre of mass with the same inertia about every axis, on a plane that is fixed or "
         "turns steadily about its normal, under gravity, constant force, constant torque and linear drag in still air"
