@@ -27,7 +27,9 @@ numbers = st.one_of(
     st.sampled_from([0, -0.0, 1e-308, 5e-324, 1e308, 1e30, 1e-30, 1e12, 2 / 3, 90, True]),
 )
 units = st.sampled_from([unit for unit, _ in UNITS.values()] + ["mm", "deg", "rpm", "Hz", "in", "x", "m^9", "%"])
-words = st.sampled_from(["co-rotating", "spin", "fixed", "plane", "sphere", "solid-sphere", "drag", "torque", "exact"])
+words = st.sampled_from(
+    ["co-rotating", "spin", "fixed", "plane", "sphere", "sphere-with-moment", "solid-sphere", "drag", "torque", "exact"]
+)
 scalars = st.one_of(
     numbers,
     st.builds("{} {}".format, st.floats(-1e6, 1e6), units),
@@ -39,7 +41,7 @@ scalars = st.one_of(
     st.just(dt.datetime(1979, 5, 27, tzinfo=dt.UTC)),
 )
 KEYS = (
-    "title,notes,gravity,body,support,start,loads,run,kind,radius,mass,inertia_ratio,tilt,rim,friction,motion,rate,"
+    "title,notes,gravity,body,support,start,loads,run,kind,radius,mass,inertia_ratio,moment_of_inertia,tilt,rim,friction,motion,rate,"
     "position,velocity,spin,angular_velocity,orientation,value,every"
 )
 keys = st.one_of(st.sampled_from(KEYS.split(",")), st.text(max_size=5))

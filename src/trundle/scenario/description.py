@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from ..errors import InvalidValueError, ScenarioError
-from ..mechanics.bodies import HOLLOW_SPHERE, SOLID_SPHERE, Body
+from ..mechanics.bodies import HOLLOW_SPHERE, SOLID_SPHERE, Body, Isotropic
 from ..mechanics.loads import Drag, Force, Torque
 from ..mechanics.motions import Fixed, Spin
 from ..mechanics.surfaces import Plane
@@ -61,6 +61,9 @@ def _body(body: Body) -> Words:
     ratio = _number(body.inertia_ratio, "body.inertia_ratio")
     radius = getattr(body.shape, "radius", None)
     size = {"radius": _number(radius, "body.radius"), "mass": _number(body.mass, "body.mass")}
+    if isinstance(body.inertia, Isotropic):  # its ratio would be rounded once more
+        moment = _number(body.inertia.moment, "body.inertia.moment")
+        return {"kind": "sphere-with-moment", **size, "moment_of_inertia": moment}
     if ratio == SOLID_SPHERE:
         return {"kind": "solid-sphere", **size}
     if ratio == HOLLOW_SPHERE:

@@ -52,6 +52,7 @@ def _check_inertia_ratio(ratio: float, received: Any) -> None:
 Radius = Annotated[float, Measure("length", "positive")]
 Mass = Annotated[float, Measure("mass", "positive")]
 Ratio = Annotated[float, Measure("number", "positive", _check_inertia_ratio, "0.4")]
+Moment = Annotated[float, Measure("inertia", "positive")]
 Tilt = Annotated[float, Measure("angle", check=_check_tilt)]
 Rim = Annotated[float, Measure("length", "positive", example='"0.5 m"')]
 Friction = Annotated[float, Measure("number", "not negative", example="0.3")]
@@ -113,7 +114,32 @@ class AnySphere(Table):
         return Body.sphere(float(self.radius), float(self.mass), float(self.inertia_ratio))
 
 
-Bodies = SolidSphere | HollowSphere | AnySphere
+class MomentSphere(Table):
+    """A sphere of a given moment of inertia, the same about every axis through its centre."""
+
+    kind: Literal["sphere-with-moment"]
+    radius: Radius
+    mass: Mass
+    moment_of_inertia: Moment = Field(description="I, at most a shell's (2/3) m a².", examples=["1.6e-5 kg*m^2"])
+
+    @model_validator(mode="after")
+    def _check(self) -> MomentSphere:
+        most = 2 / 3 * self.mass * self.radius * self.radius
+        if not self.moment_of_inertia <= most * (1 + 1e-12):
+            remedy = f"2/3 m a² = {most:g} kg m² is a thin shell, all its mass at the surface; no sphere has more."
+            shown = written(self.moment_of_inertia)
+            raise InvalidValueError("moment_of_inertia", "must be at most that of a shell", shown, remedy)
+        return self
+
+    def build(self) -> Body:
+        """Return the body."""
+        from ..mechanics.bodies import Body, Isotropic
+        from ..mechanics.shapes import Sphere
+
+        return Body(float(self.mass), Isotropic(float(self.moment_of_inertia)), Sphere(float(self.radius)))
+
+
+Bodies = SolidSphere | HollowSphere | AnySphere | MomentSphere
 
 
 # --- supports and how they move -------------------------------------------------------------------------
@@ -269,7 +295,12 @@ class Run(Table):
 
 # Which class stands for which table, so that an error can list the keys that a table has.
 KINDS: dict[str, dict[str, type[Table]]] = {
-    "body": {"solid-sphere": SolidSphere, "hollow-sphere": HollowSphere, "sphere": AnySphere},
+    "body": {
+        "solid-sphere": SolidSphere,
+        "hollow-sphere": HollowSphere,
+        "sphere": AnySphere,
+        "sphere-with-moment": MomentSphere,
+    },
     "support": {"plane": PlaneSupport},
     "support.motion": {"fixed": FixedMotion, "spin": SpinMotion},
     "loads": {"force": ForceLoad, "torque": TorqueLoad, "drag": DragLoad},
