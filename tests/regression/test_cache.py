@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 from tests.additions import Ball, Ellipsoid, Tumble
+from tests.tolerances import SOLVER
 
 import trundle as tr
 from trundle.mechanics.algebra import Vector
@@ -88,7 +89,7 @@ def test_all_numbers_are_parameters(machine: Machine) -> None:
             machine.run(system),
             tr.simulate(system, system.place((0.1, 0.0), (0.0, 0.2)), 1.0, 0.25).samples,
         )
-        assert np.abs(found.position - wanted.position).max() < 1e-12
+        assert np.abs(found.position - wanted.position).max() <= SOLVER(1000, taylor.TOLERANCE)
     assert machine.compiled == 1
 
 
@@ -103,7 +104,7 @@ def test_another_structure_is_another_integrator(machine: Machine) -> None:
             machine.run(system),
             tr.simulate(system, system.place((0.1, 0.0), (0.0, 0.2)), 1.0, 0.25).samples,
         )
-        assert np.abs(found.position - wanted.position).max() < 1e-12
+        assert np.abs(found.position - wanted.position).max() <= SOLVER(1000, taylor.TOLERANCE)
     assert machine.compiled == 4
 
 
@@ -254,15 +255,22 @@ def test_a_full_disk_does_not_get_in_the_way(machine: Machine) -> None:
     assert list(machine.folder.iterdir()) == []
 
 
-def test_a_copy_is_used_so_that_runs_do_not_see_each_other(machine: Machine) -> None:
-    short = tr.RollingSystem(BALL, tr.Support(tr.Plane(rim=0.12), motion=tr.Spin(3.5)))
-    start = short.place((0.1, 0.0), (0.0, 0.2))
-    first = taylor.solve(short, start, TIMES)
-    long = replace(short, support=replace(short.support, surface=tr.Plane(rim=5.0)))
-    taylor.solve(long, start, TIMES)
-    again = taylor.solve(short, start, TIMES)
+def test_runs_do_not_see_each_other(machine: Machine) -> None:
+    # Between its chunks a run tells its progress, and here another run of the same structure begins and ends there.
+    other = replace(SYSTEM, support=replace(SYSTEM.support, tilt=-0.2))
+    times, start = np.linspace(0.0, 2.0, 400), SYSTEM.place((0.1, 0.0), (0.0, 0.2))
+    quiet = taylor.solve(SYSTEM, start, times)
+    disturbed = taylor.solve(SYSTEM, start, times, progress=lambda _: machine.run(other))
     assert machine.compiled == 1
-    assert first.events == again.events != ()
+    assert np.array_equal(quiet.position, disturbed.position)
+
+
+def test_an_end_at_the_rim_leaves_nothing_behind(machine: Machine) -> None:
+    short = tr.RollingSystem(BALL, tr.Support(tr.Plane(rim=0.12), motion=tr.Spin(3.5)))
+    wide = replace(short, support=replace(short.support, surface=tr.Plane(rim=5.0)))
+    first, between, again = (machine.run(system) for system in (short, wide, short))
+    assert machine.compiled == 1
+    assert first.events == again.events != () == between.events
     assert np.array_equal(first.position, again.position)
 
 
