@@ -110,7 +110,7 @@ def _check_start(system: RollingSystem, start: State) -> None:
         raise InvalidValueError(
             "start.position", "must put the body on the support", start.position, f"Gap: {gap:g} m."
         )
-    system._check_rim(point, start.position)
+    system.check_rim(point, start.position)
     V, Omega = Vector(*start.velocity), Vector(*start.angular_velocity)
     contact = touch(system, start.time, point, q)
     slip = contact.slip_velocity(V, Omega).norm()

@@ -12,7 +12,6 @@ import numpy as np
 from . import frames
 from .errors import InvalidValueError, TrundleError, UnknownNameError
 from .files import written_whole
-from .mechanics.algebra import Vector
 from .mechanics.system import RollingSystem, State
 from .scenario import ScenarioFile
 from .solve.methods import solver, tolerance_of
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
 
 PHASES = {0: "rolling", 1: "slipping", 2: "flight"}
 
-# Dataset variable -> (field of Samples, long name, unit)
+# Dataset variable -> (long name, unit)
 _VECTORS = {
     "position": ("centre of mass", "m"),
     "contact": ("contact point on the support", "m"),
@@ -380,7 +379,8 @@ def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any])
     import xarray
 
     arrays = {name: getattr(samples, name, None) for name in _VECTORS}
-    arrays["slip_velocity"] = slip(system, samples)
+    V, carried, u = samples.speeds(system)
+    arrays["slip_velocity"] = np.broadcast_to((V + carried - u).array(), samples.position.shape).copy()
     variables = {
         name: (("time", "axis"), arrays[name], {"long_name": long_name, "units": unit})
         for name, (long_name, unit) in _VECTORS.items()
@@ -406,31 +406,6 @@ def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any])
         },
         attrs={"Conventions": "CF-1.11", **attributes},
     )
-
-
-def slip(system: RollingSystem, samples: Samples) -> Any:
-    """Return s = V + Ω×ρ − u(p) from a trajectory's own numbers.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Gives u.
-    samples : Samples
-        In the inertial support frame.
-
-    Returns
-    -------
-    array (n, 3)
-        m/s; zero where it rolls.
-
-    Examples
-    --------
-    See `Trajectory.data`.
-    """
-    u = system.support.motion.at(samples.time).material_velocity(Vector.of(samples.contact))
-    rho = Vector.of(samples.contact - samples.position)
-    s = Vector.of(samples.velocity) + Vector.of(samples.angular_velocity).cross(rho) - u
-    return np.broadcast_to(s.array(), samples.position.shape).copy()
 
 
 def attributes(title: str, method: str) -> dict[str, Any]:

@@ -196,7 +196,7 @@ class RollingSystem:
         q = _unit_quaternion(orientation)
         contact = touch(self, 0.0, Vector(x, y, 0.0), q)
         contact = touch(self, 0.0, Vector(x + contact.offset.x, y + contact.offset.y, 0.0), q)
-        self._check_rim(contact.point, position)
+        self.check_rim(contact.point, position)
         u, rho = contact.support.material_velocity(contact.point), contact.offset
         co_rotating = isinstance(velocity, str)
         if co_rotating:
@@ -227,7 +227,8 @@ class RollingSystem:
             _check_no_slip(contact.slip_velocity(V, Omega), V, Omega.cross(rho), u)
         return State(_triple(contact.centre), _triple(V), _triple(Omega), tuple(q))
 
-    def _check_rim(self, point: Vector, position: Any) -> None:
+    def check_rim(self, point: Vector, position: Any) -> None:
+        """Refuse a contact point at or beyond the rim, naming the position as the user gave it."""
         rim = self.support.surface.rim
         if rim is not None and math.hypot(point.x, point.y) >= rim:
             distance = math.hypot(point.x, point.y)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import roll
+from ..mechanics.loads import BodyMotion
 from ..mechanics.system import RollingSystem, State
 
 Array = NDArray[np.float64]
@@ -78,6 +79,23 @@ class Samples:
         return Samples(
             time, array(now.contact.centre), point, array(now.velocity), angular_velocity, q, array(now.reaction) + 0.0
         )
+
+    def motion(self, system: RollingSystem) -> BodyMotion:
+        """Return the motion that loads and integrals take, with arrays as components."""
+        return BodyMotion(
+            self.time,
+            system.body.mass,
+            Vector.of(self.position),
+            Vector.of(self.velocity),
+            Quaternion.of(self.orientation),
+            Vector.of(self.angular_velocity),
+        )
+
+    def speeds(self, system: RollingSystem) -> tuple[Vector, Vector, Vector]:
+        """Return V, Ω×ρ and u, m/s, from the samples' own numbers; the slip is s = V + Ω×ρ − u."""
+        u = system.support.motion.at(self.time).material_velocity(Vector.of(self.contact))
+        rho = Vector.of(self.contact - self.position)
+        return Vector.of(self.velocity), Vector.of(self.angular_velocity).cross(rho), u
 
     def ended(self, event: Event) -> Samples:
         """Return the same samples with the event that ended them."""

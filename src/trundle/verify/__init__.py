@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.invariants import Record, invariants_of
-from ..mechanics.loads import BodyMotion
 from ..mechanics.system import RollingSystem, State
 from ..solve.exact import SphereOnPlane, closed_form
 from ..solve.methods import solver, tolerance_of
@@ -97,19 +96,13 @@ def _checked(name: str, value: float, bound: float, note: str, unit: str = "") -
     return CardFigure(name, value, unit, bound, bool(value <= bound), note)
 
 
-def _speeds(system: RollingSystem, at: Samples) -> tuple[Vector, Vector, Vector]:
-    """Return V, Ω×ρ and u."""
-    u = system.support.motion.at(at.time).material_velocity(Vector.of(at.contact))
-    return Vector.of(at.velocity), Vector.of(at.angular_velocity).cross(Vector.of(at.contact - at.position)), u
-
-
 def _speed(system: RollingSystem, at: Samples) -> float:
     """Return the largest of V, Ω×ρ and u: any of them may be the small difference of two large ones."""
-    return max(float(np.max(speed.norm())) for speed in _speeds(system, at))
+    return max(float(np.max(speed.norm())) for speed in at.speeds(system))
 
 
 def _no_slip(system: RollingSystem, at: Samples, method: str) -> CardFigure:
-    V, turning, u = _speeds(system, at)
+    V, turning, u = at.speeds(system)
     slip, size = (V + turning - u).norm(), max(_speed(system, at), 1e-300)
     return _checked("no slip", float(np.max(slip)) / size, _bound(method), "|V + Ω×ρ − u| over the speed")
 
@@ -125,7 +118,7 @@ def _law(system: RollingSystem, start: State, at: Samples, method: str) -> Itera
     yield _same(system, sampled, again, method)
     windows = again.part(np.searchsorted(again.time, times.ravel()))
     found = residuals(system, windows, times)
-    # A slope taken over one radian of turning multiplies a method's own error by some tens.
+    # A slope taken over a third of a radian of turning multiplies a method's own error by some tens.
     bound = max(EXACT * 10, 100 * SOLVER * tolerance_of(method))
     yield _checked("velocity is the slope of the path", found.path, bound, "at 24 instants, share of the speed")
     yield _checked("law of motion", found.law, bound, "Newton, Euler and the constraint as one 9×9 system; T2 not used")
@@ -162,15 +155,7 @@ def _sizes(system: RollingSystem, at: Samples) -> dict[str, float]:
 
 
 def _integrals(system: RollingSystem, at: Samples, method: str) -> Iterator[CardFigure]:
-    motion = BodyMotion(
-        at.time,
-        system.body.mass,
-        Vector.of(at.position),
-        Vector.of(at.velocity),
-        Quaternion.of(at.orientation),
-        Vector.of(at.angular_velocity),
-    )
-    record, bound = Record(motion, Vector.of(at.contact)), _bound(method, _turned(at))
+    record, bound = Record(at.motion(system), Vector.of(at.contact)), _bound(method, _turned(at))
     for integral in invariants_of(system):
         terms = [_as_array(term, at.time.size) for term in integral.terms(system, record)]
         drift = _drift(sum(terms), max(float(np.abs(term).max()) for term in terms))

@@ -20,8 +20,6 @@ class MeasuredCircle:
         κ, rad/s.
     centre, drift, arm : complex
         x + iy: m, m/s and m, at t = 0.
-    residual : float
-        Largest distance of the path from the fit, m.
     rate_error, centre_error, drift_error : float
         What one rounding of the path's coordinates can do to each, rad/s, m, m/s.
 
@@ -37,7 +35,6 @@ class MeasuredCircle:
     centre: complex
     drift: complex
     arm: complex
-    residual: float
     rate_error: float
     centre_error: float
     drift_error: float
@@ -62,32 +59,30 @@ def measure(times: Array, path: NDArray[np.complex128]) -> MeasuredCircle | None
     --------
     See `MeasuredCircle`.
     """
-    t, z = times, path
-    if t.size < 8:
+    if times.size < 8:
         return None
     rate = _first_guess(times, path)
     if rate is None:
         return None
-    length, size = float(t[-1]), float(np.abs(z - z.mean()).max())
+    length, size = float(times[-1]), float(np.abs(path - path.mean()).max())
     for _ in range(12):
-        turning = np.exp(1j * rate * t)
-        design = np.stack([np.ones_like(turning), t / length, turning], axis=1)
-        fit = np.linalg.lstsq(design, z, rcond=None)[0]
-        slope = 1j * (t / length) * fit[2] * turning
-        step = _real_step(np.column_stack([design, slope]), z - design @ fit)
+        turning = np.exp(1j * rate * times)
+        design = np.stack([np.ones_like(turning), times / length, turning], axis=1)
+        fit = np.linalg.lstsq(design, path, rcond=None)[0]
+        slope = 1j * (times / length) * fit[2] * turning
+        step = _real_step(np.column_stack([design, slope]), path - design @ fit)
         rate += step / length
         if abs(step) < 1e-15 * (1 + abs(rate) * length):
             break
     if not np.isfinite(rate):
         return None
-    rounding = np.finfo(float).eps * (size + float(np.abs(z).max()))
+    rounding = np.finfo(float).eps * (size + float(np.abs(path).max()))
     errors = _errors(np.column_stack([design, slope]), rounding)
     return MeasuredCircle(
         float(rate),
         complex(fit[0]),
         complex(fit[1] / length),
         complex(fit[2]),
-        float(np.abs(z - design @ fit).max()),
         errors[3] / length,
         errors[0],
         errors[1] / length,

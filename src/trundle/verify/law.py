@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import touch
-from ..mechanics.loads import BodyMotion
 from ..mechanics.system import RollingSystem
 from ..solve.samples import Samples
 
@@ -28,7 +27,7 @@ _PHASE_A_WINDOW = 0.3  # rad of the fastest rotation: what a polynomial leaves o
 class Residuals:
     """How far a trajectory is from the law, each as a share of the terms that it is made of."""
 
-    path: float  # |ṗ − u − ...|: the slope of the position against the velocity
+    path: float  # the slope of the position against the velocity
     law: float  # accelerations and reaction against the 9 × 9 system
     virtual_power: float  # of the reaction over the admissible velocities
 
@@ -139,10 +138,7 @@ def residuals(system: RollingSystem, windows: Samples, times: Array) -> Residual
 def _applied(system: RollingSystem, at: Samples, p_rate: Array) -> tuple[Array, ...]:
     """Return F, K, J, Ω×JΩ and u̇ at each instant, as arrays."""
     q, shape = Quaternion.of(at.orientation), at.position.shape
-    motion = BodyMotion(
-        at.time, system.body.mass, Vector.of(at.position), Vector.of(at.velocity), q, Vector.of(at.angular_velocity)
-    )
-    force, torque = system.loads_on(motion)
+    force, torque = system.loads_on(at.motion(system))
     tensor = system.body.inertia_in_space(q.matrix())
     J = np.stack([np.broadcast_to(row.array(), shape) for row in tensor.rows], axis=1)
     JOmega = np.einsum("nij,nj->ni", J, at.angular_velocity)
