@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     )
     from .mechanics.bodies import Body, Isotropic, Principal, RatioInertia
     from .mechanics.loads import Drag, Force, Torque
-    from .mechanics.motions import Fixed, Spin
-    from .mechanics.shapes import Sphere
-    from .mechanics.surfaces import Plane
+    from .mechanics.motions import Fixed, Spin, UnevenSpin, Wobble
+    from .mechanics.shapes import Roller, Sphere
+    from .mechanics.surfaces import Cylinder, Plane
     from .mechanics.system import RollingSystem, State, Support
     from .simulation import Scenario, simulate
     from .trajectory import Event, Trajectory
@@ -36,9 +36,9 @@ _HOMES = {
         "UnknownNameError",
     ),
     "mechanics.bodies": ("Body", "Isotropic", "Principal", "RatioInertia"),
-    "mechanics.shapes": ("Sphere",),
-    "mechanics.surfaces": ("Plane",),
-    "mechanics.motions": ("Fixed", "Spin"),
+    "mechanics.shapes": ("Roller", "Sphere"),
+    "mechanics.surfaces": ("Cylinder", "Plane"),
+    "mechanics.motions": ("Fixed", "Spin", "UnevenSpin", "Wobble"),
     "mechanics.loads": ("Force", "Torque", "Drag"),
     "mechanics.system": ("RollingSystem", "State", "Support"),
     "simulation": ("simulate", "Scenario"),
@@ -50,6 +50,7 @@ _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 __all__ = [
     "Body",
     "Card",
+    "Cylinder",
     "Drag",
     "Event",
     "Fixed",
@@ -60,6 +61,7 @@ __all__ = [
     "Plane",
     "Principal",
     "RatioInertia",
+    "Roller",
     "RollingSystem",
     "Scenario",
     "ScenarioError",
@@ -71,7 +73,9 @@ __all__ = [
     "Torque",
     "Trajectory",
     "TrundleError",
+    "UnevenSpin",
     "UnknownNameError",
+    "Wobble",
     "__version__",
     "simulate",
     "units",

@@ -7,8 +7,9 @@ from typing import Any
 
 from . import trajectory
 from .errors import InvalidValueError, ScenarioError
+from .mechanics import straight
 from .mechanics.algebra import Quaternion, Vector
-from .mechanics.contact import touch
+from .mechanics.contact import settle, touch
 from .mechanics.system import SLIP_TOLERANCE, RollingSystem, State
 from .scenario import ScenarioFile
 from .solve import methods
@@ -102,7 +103,7 @@ def _check_start(system: RollingSystem, start: State) -> None:
     if not isinstance(start, State):
         raise InvalidValueError("start", "must be a State, as system.place(...) makes it", start)
     q, centre = Quaternion(*start.orientation), Vector(*start.position)
-    contact = touch(system, start.time, centre, q)
+    contact = settle(system, start.time, centre, q)
     point = centre + contact.offset
     own = contact.support.rotation.transpose @ (point - contact.support.origin)
     gap, size = system.support.surface.level(own), contact.offset.norm()
@@ -122,6 +123,7 @@ def _check_start(system: RollingSystem, start: State) -> None:
             f"a slip of {slip:.6g} m/s",
             "Let system.place(...) find Ω from no slip.",
         )
+    straight.check_start(system, start)
 
 
 class Scenario(ScenarioFile):

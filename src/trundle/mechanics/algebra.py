@@ -214,6 +214,38 @@ class Quaternion:
         w, x, y, z = components
         return Quaternion(w, x, y, z)
 
+    @staticmethod
+    def of_matrix(Q: Matrix) -> Quaternion:
+        """Return the unit quaternion of a rotation matrix of numbers, w not negative.
+
+        Parameters
+        ----------
+        Q : Matrix
+            Orthogonal, determinant 1.
+
+        Returns
+        -------
+        Quaternion
+            By way of its largest component, so that no digits are lost near half a turn (Shepperd 1978).
+
+        Examples
+        --------
+        >>> Quaternion.of_matrix(Matrix(E_Y, E_Z, E_X))
+        Quaternion(w=0.5, x=-0.5, y=-0.5, z=-0.5)
+        """
+        (a, b, c), (d, e, f), (g, h, i) = (tuple(row) for row in Q.rows)
+        # Row j of 4 q qᵀ is 4 q_j q.
+        rows = (
+            (1.0 + a + e + i, h - f, c - g, d - b),
+            (h - f, 1.0 + a - e - i, b + d, c + g),
+            (c - g, b + d, 1.0 - a + e - i, f + h),
+            (d - b, c + g, f + h, 1.0 - a - e + i),
+        )
+        j = max(range(4), key=lambda j: rows[j][j])
+        length = namespace(*rows[j]).sqrt(sum(part * part for part in rows[j]))
+        sign = -1.0 if rows[j][0] < 0 else 1.0
+        return Quaternion(*(sign * part / length + 0.0 for part in rows[j]))
+
     def __mul__(self, other: Quaternion) -> Quaternion:
         a, b, c, d = self
         w, x, y, z = other

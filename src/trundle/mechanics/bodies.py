@@ -9,9 +9,10 @@ from ..errors import InvalidValueError
 from . import checks
 from .algebra import ZERO, Matrix, Vector
 from .scalars import Scalar, is_number
-from .shapes import Shape, Sphere, concentric_sphere
+from .shapes import Roller, Shape, Sphere, concentric_sphere
 
 SOLID_SPHERE, HOLLOW_SPHERE = 2 / 5, 2 / 3  # k = I/(m a²)
+SOLID_CYLINDER, HOOP = 1 / 2, 1.0
 
 
 @dataclass(frozen=True)
@@ -49,12 +50,13 @@ class Isotropic:
 
 @dataclass(frozen=True)
 class RatioInertia:
-    """The inertia I = k m a² of a sphere, given by its ratio k, which is kept to the last digit.
+    """The inertia I = k m a² of a round body, given by its ratio k, which is kept to the last digit.
 
     Parameters
     ----------
     ratio : float
-        k = I/(m a²): 2/5 for a solid sphere, 2/3 for a shell, never more for a sphere.
+        k = I/(m a²): 2/5 for a solid sphere, 2/3 for a shell, never more for a sphere; 1/2 for a solid cylinder about
+        its axis, 1 for a hoop, never more.
 
     Examples
     --------
@@ -65,12 +67,7 @@ class RatioInertia:
     ratio: Scalar
 
     def __post_init__(self) -> None:
-        k = checks.positive(self.ratio, "number", "inertia_ratio")
-        if is_number(k) and k > HOLLOW_SPHERE * (1 + 1e-12):
-            raise InvalidValueError(
-                "inertia_ratio", "must lie in (0, 2/3]", self.ratio, "A thin shell has 2/3; no sphere has more."
-            )
-        object.__setattr__(self, "ratio", k)
+        object.__setattr__(self, "ratio", checks.positive(self.ratio, "number", "inertia_ratio"))
 
     def in_space(self, Q: Matrix, body: Body) -> Matrix:  # noqa: ARG002  the same from every side
         """Return the inertia tensor in the support frame, kg m²."""
@@ -153,6 +150,16 @@ class Body:
         checks.instance(self.inertia, Inertia, "inertia", "Give for instance tr.Isotropic(1e-5).")
         checks.instance(self.shape, Shape, "shape", "Give for instance tr.Sphere(0.025).")
         object.__setattr__(self, "mass", checks.positive(self.mass, "mass", "mass"))
+        if isinstance(self.inertia, RatioInertia):
+            self._check_ratio(self.inertia.ratio)
+
+    def _check_ratio(self, k: Scalar) -> None:
+        """Refuse an inertia ratio for which mass would have to lie outside the body."""
+        most, said, remedy = HOLLOW_SPHERE, "2/3", "A thin shell has 2/3; no sphere has more."
+        if self.shape.axis is not None:
+            most, said, remedy = HOOP, "1", "A hoop has 1; no cylinder has more."
+        if is_number(k) and k > most * (1 + 1e-12):
+            raise InvalidValueError("inertia_ratio", f"must lie in (0, {said}]", k, remedy)
 
     @staticmethod
     def sphere(radius: Any, mass: Any, inertia_ratio: Any) -> Body:
@@ -227,6 +234,91 @@ class Body:
         """
         return Body.sphere(radius, mass, HOLLOW_SPHERE)
 
+    @staticmethod
+    def cylinder(radius: Any, mass: Any, inertia_ratio: Any = SOLID_CYLINDER) -> Body:
+        """Make a cylinder that rolls straight on its round side.
+
+        Parameters
+        ----------
+        radius, mass : float or quantity
+            a in m, m in kg.
+        inertia_ratio : float
+            k = I/(m a²) about its axis: 1/2 where it is solid, at most a hoop's 1.
+
+        Returns
+        -------
+        Body
+            The cylinder; its axis is the third of the body frame.
+
+        Examples
+        --------
+        >>> Body.cylinder("3 cm", "200 g").inertia_ratio
+        0.5
+        """
+        return Body(mass, RatioInertia(inertia_ratio), Roller(radius))
+
+    @staticmethod
+    def hoop(radius: Any, mass: Any) -> Body:
+        """Make a hoop or a thin pipe that rolls straight, I = m a².
+
+        Parameters
+        ----------
+        radius, mass : float or quantity
+            a in m, m in kg.
+
+        Returns
+        -------
+        Body
+            The hoop.
+
+        Examples
+        --------
+        >>> Body.hoop("30 cm", "1 kg").inertia_ratio
+        1.0
+        """
+        return Body.cylinder(radius, mass, HOOP)
+
+    @staticmethod
+    def weighted_cylinder(
+        radius: Any, mass: Any, weight: Any, distance: Any, inertia_ratio: Any = SOLID_CYLINDER
+    ) -> Body:
+        """Make a cylinder with a small weight fixed off its axis, on the first axis of the body frame.
+
+        Parameters
+        ----------
+        radius, mass, inertia_ratio : see cylinder
+            Of the cylinder without the weight.
+        weight : float or quantity
+            Mass of the weight, kg.
+        distance : float or quantity
+            Of the weight from the axis, m, at most the radius.
+
+        Returns
+        -------
+        Body
+            Its mass is that of both, its inertia that about their common centre of mass.
+
+        Raises
+        ------
+        InvalidValueError
+            If a value is not positive, or the weight would stick out.
+
+        Examples
+        --------
+        >>> Body.weighted_cylinder(0.05, 0.3, 0.1, 0.04).shape.centre.x
+        -0.01
+        """
+        bare = Body.cylinder(radius, mass, inertia_ratio)
+        m, d = checks.positive(weight, "mass", "weight"), checks.positive(distance, "length", "distance")
+        if is_number(d) and is_number(bare.radius) and d > bare.radius:
+            raise InvalidValueError(
+                "distance", "must be at most the radius", distance, f"The cylinder ends at {bare.radius:g} m."
+            )
+        total = bare.mass + m
+        centre = m * d / total
+        moment = bare.inertia_ratio * bare.mass * bare.radius**2 + bare.mass * centre**2 + m * (d - centre) ** 2
+        return Body(total, Isotropic(moment), Roller(bare.radius, Vector(-centre, 0.0, 0.0)))
+
     def inertia_in_space(self, Q: Matrix) -> Matrix:
         """Return J in the support frame, kg m², for the rotation matrix Q from the body frame to that frame."""
         return self.inertia.in_space(Q, self)
@@ -244,7 +336,7 @@ class Body:
 
     @property
     def is_isotropic_sphere(self) -> bool:
-        """Whether this is a sphere about its centre of mass with the same inertia about every axis."""
+        """Whether it rolls as a sphere about its centre of mass with the same inertia about every axis."""
         return concentric_sphere(self.shape) and not isinstance(self.inertia, Principal)
 
     @property

@@ -17,6 +17,8 @@ from .scalars import Scalar
 if TYPE_CHECKING:
     from .system import RollingSystem
 
+_MOST_STEPS = 60  # of Newton's method, which needs five
+
 
 @dataclass(frozen=True, slots=True)
 class Contact:
@@ -104,6 +106,45 @@ def touch(system: RollingSystem, time: Scalar, point: Vector, orientation: Quate
     S = turn @ surface.shape_operator(own) @ turn.transpose
     rho, C = system.body.shape.contact(orientation.matrix(), n)
     return Contact(support, point, n, rho, C, S)
+
+
+def settle(system: RollingSystem, time: float, centre: Vector, orientation: Quaternion) -> Contact:
+    """Return the geometry of touch for a body whose centre of mass is known: the p with p = r + ρ(n(p)).
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Body and support, in numbers.
+    time : float
+        t, s.
+    centre : Vector
+        r in the inertial support frame, m.
+    orientation : Quaternion
+        Body frame to support frame.
+
+    Returns
+    -------
+    Contact
+        Where the body touches, or would if it were pushed on along the normal.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Cylinder(0.5), tilt="90 deg"))
+    >>> settle(system, 0.0, Vector(0.4, 0.0, 0.0), Quaternion(1.0, 0.0, 0.0, 0.0)).point
+    Vector(x=0.5, y=0.0, z=0.0)
+    """
+    point = centre  # the normal there is already that at the contact for a sphere over a surface of constant curvature
+    for _ in range(_MOST_STEPS):
+        contact = touch(system, time, point, orientation)
+        aside = centre + contact.offset - point
+        if (centre + contact.offset - point).norm() <= 1e-15 * (point.norm() + contact.offset.norm()):
+            break
+        step = aside
+        if point is not centre:  # Newton's, by how ρ follows the normal
+            step = (Matrix.identity() + contact.inverse_curvature @ contact.shape_operator).solve(aside)
+        point = point + step
+    return touch(system, time, point, orientation)
 
 
 def roll(

@@ -73,10 +73,6 @@ def _conservative(load: Load) -> bool:
     return load.potential(at_rest(1.0)) is not None
 
 
-def _no_normal_torque(load: Load) -> bool:
-    return load.linear_drag is not None or (load.constant and is_zero(load.torque(at_rest(1.0)).z))
-
-
 def _is_fixed(system: RollingSystem) -> bool:
     rate = system.support.motion.steady_rate
     return rate is not None and is_zero(rate)
@@ -95,7 +91,7 @@ def _has_moving_energy(system: RollingSystem) -> bool:
 def _has_spin(system: RollingSystem) -> bool:
     on_plane = system.body.is_isotropic_sphere and isinstance(system.support.surface, Plane)
     on_plane = on_plane and system.support.motion.steady_rate is not None  # the normal stays the third axis
-    return on_plane and all(_no_normal_torque(load) for load in system.all_loads)
+    return on_plane and all(load.leaves_spin for load in system.all_loads)
 
 
 def _has_contact_momentum(system: RollingSystem) -> bool:

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from . import checks
-from .algebra import ZERO, Quaternion, Vector
+from .algebra import E_Z, ZERO, Quaternion, Vector
+from .expressions import Expression, is_formula
 from .scalars import Scalar, is_zero
 
 
@@ -57,7 +58,7 @@ def at_rest(mass: Scalar) -> BodyMotion:
 class Load:
     """A force and a torque on the body; by default neither, and no potential."""
 
-    constant = False  # the same force and torque always and everywhere
+    constant: bool = False  # the same force and torque always and everywhere
 
     @property
     def linear_drag(self) -> Scalar | None:
@@ -79,6 +80,11 @@ class Load:
     @property
     def symmetric(self) -> bool:
         """Whether turning everything about the support's third axis leaves the load unchanged."""
+        return False
+
+    @property
+    def leaves_spin(self) -> bool:
+        """Whether the load never has a torque along the support's third axis."""
         return False
 
 
@@ -120,53 +126,94 @@ class Gravity(Load):
         """True where gravity points along the axis."""
         return is_zero(self.x) and is_zero(self.y)
 
-
-def _store(load: Any, value: Any, kind: str) -> None:
-    object.__setattr__(load, "value", Vector(*checks.components(value, kind, "value")))
+    @property
+    def leaves_spin(self) -> bool:
+        """True: it acts at the centre of mass."""
+        return True
 
 
 @dataclass(frozen=True)
-class Force(Load):
-    """A constant force on the centre of mass.
+class _Given(Load):
+    """Three components that are numbers or formulas in the time t, in the inertial support frame."""
+
+    value: Any
+    _kind = "number"
+
+    def __post_init__(self) -> None:
+        parts = self.value
+        formulas = isinstance(parts, (list, tuple)) and any(map(_is_formula, parts))
+        plain = tuple(0.0 if _is_formula(part) else part for part in parts) if formulas else parts
+        components = checks.components(plain, self._kind, "value")
+        if formulas:
+            pairs = zip(parts, components, strict=True)
+            components = tuple(
+                _formula(part, f"value[{i}]") if _is_formula(part) else number for i, (part, number) in enumerate(pairs)
+            )
+        object.__setattr__(self, "value", Vector(*components))
+
+    @property
+    def constant(self) -> bool:  # type: ignore[override]
+        """Whether no component is a formula."""
+        return not any(isinstance(part, Expression) for part in self.value)
+
+    @property
+    def symmetric(self) -> bool:
+        """True where it points along the axis."""
+        return is_zero(self.value.x) and is_zero(self.value.y)
+
+    def at(self, time: Scalar) -> Vector:
+        """Return the components at a time in s."""
+        return Vector(*(part.at(t=time) if isinstance(part, Expression) else part for part in self.value))
+
+
+def _is_formula(part: Any) -> bool:
+    return isinstance(part, Expression) or is_formula(part)
+
+
+def _formula(part: Any, key: str) -> Expression:
+    return part if isinstance(part, Expression) else Expression.parse(part, ("t",), key)
+
+
+@dataclass(frozen=True)
+class Force(_Given):
+    """A force on the centre of mass, constant or given as formulas in the time.
 
     Parameters
     ----------
-    value : sequence of 3 floats or quantities
-        F in the inertial support frame, N.
+    value : sequence of 3 floats, quantities or formulas
+        F in the inertial support frame, N; a formula such as ``"0.1*sin(3*t)"`` is in SI, t in s.
 
     Examples
     --------
     >>> Force((0.1, 0.0, 0.0)).value.x
     0.1
+    >>> Force(("0.1*t", 0.0, 0.0)).at(2.0).x
+    0.2
     """
 
-    value: Any
-    constant = True
-
-    def __post_init__(self) -> None:
-        _store(self, self.value, "force")
-
-    def force(self, motion: BodyMotion) -> Vector:  # noqa: ARG002
-        """Return F."""
-        return self.value
-
-    def potential(self, motion: BodyMotion) -> Scalar:
-        """Return −F·r."""
-        return -(self.value.dot(motion.position))
+    _kind = "force"
 
     @property
-    def symmetric(self) -> bool:
-        """True where the force points along the axis."""
-        return is_zero(self.value.x) and is_zero(self.value.y)
+    def leaves_spin(self) -> bool:
+        """True: it acts at the centre of mass."""
+        return True
+
+    def force(self, motion: BodyMotion) -> Vector:
+        """Return F."""
+        return self.at(motion.time)
+
+    def potential(self, motion: BodyMotion) -> Scalar | None:
+        """Return −F·r of a constant force."""
+        return -(self.value.dot(motion.position)) if self.constant else None
 
 
 @dataclass(frozen=True)
-class Torque(Load):
-    """A constant torque about the centre of mass.
+class Torque(_Given):
+    """A torque about the centre of mass, constant or given as formulas in the time.
 
     Parameters
     ----------
-    value : sequence of 3 floats or quantities
+    value : sequence of 3 floats, quantities or formulas
         K in the inertial support frame, N m; K along the second axis drives the ball along the first.
 
     Examples
@@ -175,30 +222,28 @@ class Torque(Load):
     0.002
     """
 
-    value: Any
-    constant = True
-
-    def __post_init__(self) -> None:
-        _store(self, self.value, "torque")
-
-    def torque(self, motion: BodyMotion) -> Vector:  # noqa: ARG002
-        """Return K."""
-        return self.value
+    _kind = "torque"
 
     @property
-    def symmetric(self) -> bool:
-        """True where the torque points along the axis."""
-        return is_zero(self.value.x) and is_zero(self.value.y)
+    def leaves_spin(self) -> bool:
+        """True where it has no third component."""
+        return is_zero(self.value.z)
+
+    def torque(self, motion: BodyMotion) -> Vector:
+        """Return K."""
+        return self.at(motion.time)
 
 
 @dataclass(frozen=True)
 class Drag(Load):
-    """Linear drag −c V in still air, V the velocity of the centre of mass in the inertial support frame.
+    """Linear drag −c(V − ω_a×r) in air that is still or turns about the support's third axis.
 
     Parameters
     ----------
     coefficient : float or quantity
         c, kg/s.
+    air_rate : float or quantity
+        ω_a, at which the air turns, rad/s; the support's own rate for air that it carries along.
 
     Examples
     --------
@@ -207,23 +252,33 @@ class Drag(Load):
     """
 
     coefficient: Scalar
+    air_rate: Scalar = 0.0
 
     def __post_init__(self) -> None:
         value = checks.non_negative(self.coefficient, "damping", "coefficient")
         object.__setattr__(self, "coefficient", value)
+        object.__setattr__(self, "air_rate", checks.real(self.air_rate, "angular velocity", "air_rate"))
 
     @property
-    def linear_drag(self) -> Scalar:
-        """c, kg/s."""
-        return self.coefficient
+    def linear_drag(self) -> Scalar | None:
+        """C in still air, kg/s."""
+        return self.coefficient if is_zero(self.air_rate) else None
 
     def force(self, motion: BodyMotion) -> Vector:
-        """Return −c V."""
-        return motion.velocity * -self.coefficient
+        """Return −c(V − ω_a×r)."""
+        if is_zero(self.air_rate):
+            return motion.velocity * -self.coefficient
+        air = (E_Z * self.air_rate).cross(motion.position)
+        return (motion.velocity - air) * -self.coefficient
 
     @property
     def symmetric(self) -> bool:
-        """True: still air looks the same from every side."""
+        """True: the air looks the same from every side of the axis."""
+        return True
+
+    @property
+    def leaves_spin(self) -> bool:
+        """True: it acts at the centre of mass."""
         return True
 
 

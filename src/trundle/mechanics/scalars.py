@@ -87,6 +87,7 @@ class _Python:
     """Python floats: the math module under the names that the arrays' namespaces use."""
 
     sqrt, sin, cos, exp, expm1, round = math.sqrt, math.sin, math.cos, math.exp, math.expm1, round
+    tan, log, abs, hypot, atan2 = math.tan, math.log, abs, math.hypot, math.atan2
 
     @staticmethod
     def where(condition: Any, yes: Any, no: Any) -> Any:
@@ -100,8 +101,15 @@ class _Heyoka:
         import heyoka
 
         self.sqrt, self.sin, self.cos = heyoka.sqrt, heyoka.sin, heyoka.cos
-        self.exp, self.expm1 = heyoka.exp, heyoka.expm1
+        self.exp, self.expm1, self.tan, self.log = heyoka.exp, heyoka.expm1, heyoka.tan, heyoka.log
+        self.atan2 = heyoka.atan2
         self._heyoka = heyoka
+
+    def abs(self, x: Any) -> Any:
+        return self.where(self._heyoka.lt(x, 0.0), -x, x)
+
+    def hypot(self, x: Any, y: Any) -> Any:
+        return self.sqrt(x * x + y * y)
 
     def where(self, condition: Any, yes: Any, no: Any) -> Any:
         expression = self._heyoka.expression
@@ -118,7 +126,11 @@ class _SymPy:
         import sympy
 
         self.sqrt, self.sin, self.cos, self.exp = sympy.sqrt, sympy.sin, sympy.cos, sympy.exp
+        self.tan, self.log, self.abs, self.atan2 = sympy.tan, sympy.log, sympy.Abs, sympy.atan2
         self._sympy = sympy
+
+    def hypot(self, x: Any, y: Any) -> Any:
+        return self._sympy.sqrt(x**2 + y**2)
 
     def expm1(self, x: Any) -> Any:
         return self._sympy.exp(x) - 1
@@ -136,7 +148,8 @@ class _Mpmath:
         import mpmath
 
         self.sqrt, self.sin, self.cos = mpmath.sqrt, mpmath.sin, mpmath.cos
-        self.exp, self.expm1 = mpmath.exp, mpmath.expm1
+        self.exp, self.expm1, self.tan, self.log = mpmath.exp, mpmath.expm1, mpmath.tan, mpmath.log
+        self.abs, self.hypot, self.atan2 = abs, mpmath.hypot, mpmath.atan2
 
     @staticmethod
     def where(condition: Any, yes: Any, no: Any) -> Any:
@@ -144,7 +157,7 @@ class _Mpmath:
 
 
 def namespace(*values: Any) -> Any:
-    """Return the functions (sqrt, sin, cos, exp, expm1, where) that fit the given scalars.
+    """Return the functions (sqrt, sin, cos, tan, exp, expm1, log, where) that fit the given scalars.
 
     Parameters
     ----------

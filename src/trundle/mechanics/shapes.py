@@ -8,13 +8,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from ..errors import InvalidValueError
 from . import checks
-from .algebra import Matrix, Vector
-from .scalars import Scalar
+from .algebra import E_Z, Matrix, Vector
+from .scalars import Scalar, is_number
 
 
 class Shape:
     """A convex body's surface, known by the point where its outward normal is ν (theory page, section 2)."""
+
+    axis: Vector | None = None  # of a body that touches along a line, in the body frame: it rolls across it, straight
 
     def support_map(self, nu: Vector) -> Vector:
         """Return X(ν), the body-frame point with outward unit normal ν, in m from the centre of mass."""
@@ -80,6 +83,34 @@ class Sphere(Shape):
         """Return ρ = Q c − a n and C = a(1 − n nᵀ): a sphere looks the same from every side, so Q Qᵀ drops out."""
         rho = self.radius * -n
         return rho if self.centre is None else Q @ self.centre + rho, self.support_gradient(n)
+
+
+@dataclass(frozen=True)
+class Roller(Sphere):
+    """A cylinder or hoop that rolls straight, on its round side; its axis is the third of the body frame.
+
+    It touches along a line, which keeps it upright, and moves as a sphere of the same radius would in the plane across
+    that line; so it is one to the rolling law (theory page, section 2). What would turn it out of its line is refused.
+
+    Parameters
+    ----------
+    radius, centre : see Sphere
+        The centre of mass may sit off the axis: c then lies across the third axis.
+
+    Examples
+    --------
+    >>> Roller(0.05).axis
+    Vector(x=0.0, y=0.0, z=1.0)
+    """
+
+    axis = E_Z
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.centre is not None and is_number(self.centre.z) and self.centre.z != 0:
+            raise InvalidValueError(
+                "centre", "must lie across the cylinder's axis", tuple(self.centre), "Let its third component be 0."
+            )
 
 
 def concentric_sphere(shape: Any) -> bool:

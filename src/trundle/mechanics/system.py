@@ -7,13 +7,13 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ..errors import InvalidValueError, did_you_mean
-from . import checks
+from . import checks, straight
 from .algebra import E_Z, ZERO, Quaternion, Vector
 from .bodies import Body
-from .contact import touch
+from .contact import Contact, touch
 from .loads import BodyMotion, Gravity, Load
 from .motions import Fixed, Motion
-from .scalars import Scalar, is_number, namespace
+from .scalars import Scalar, is_number, is_zero, namespace
 from .surfaces import Surface
 
 STANDARD_GRAVITY = 9.80665  # m/s², exact by definition (3rd CGPM, 1901)
@@ -51,11 +51,8 @@ class Support:
         checks.instance(self.surface, Surface, "surface", "Give for instance tr.Plane(rim=0.5).")
         checks.instance(self.motion, Motion, "motion", "Give for instance tr.Spin(3.5).")
         tilt = checks.real(self.tilt, "angle", "tilt")
-        if is_number(tilt) and not abs(tilt) < math.pi / 2:
-            remedy = (
-                "Did you mean degrees? Write 'deg' behind the number." if isinstance(self.tilt, (int, float)) else ""
-            )
-            raise InvalidValueError("tilt", "must lie in (−90°, 90°)", self.tilt, remedy)
+        if is_number(tilt):
+            self.surface.check_tilt(tilt, self.tilt)
         object.__setattr__(self, "tilt", tilt)
         if self.friction is not None:
             object.__setattr__(self, "friction", checks.non_negative(self.friction, "number", "friction"))
@@ -134,8 +131,11 @@ class RollingSystem:
     @property
     def weight(self) -> Gravity:
         """Gravity in the support frame: g(sin α, 0, −cos α)."""
-        xp = namespace(self.support.tilt)
-        slope, normal = xp.sin(self.support.tilt), xp.cos(self.support.tilt)
+        tilt = self.support.tilt
+        xp = namespace(tilt)
+        # The float nearest to a right angle means one: an axis that lies level then has no gravity along it.
+        upright = is_number(tilt) and abs(tilt) == math.pi / 2
+        slope, normal = xp.sin(tilt), 0.0 if upright else xp.cos(tilt)
         return Gravity(self.gravity * slope, 0.0, -(self.gravity * normal))
 
     @property
@@ -156,23 +156,28 @@ class RollingSystem:
         velocity: Any = None,
         spin: Any = None,
         angular_velocity: Any = None,
-        orientation: Any = (1.0, 0.0, 0.0, 0.0),
+        orientation: Any = None,
+        roll: Any = 0.0,
     ) -> State:
         """Put the body down so that it rolls from the first instant.
 
         Parameters
         ----------
         position : sequence of 2 floats or quantities
-            Centre of the body over the support, support frame, m.
+            On a plane, the centre of the body over it, m. On a curved support, the coordinates of the contact: on a
+            cylinder the angle from its first axis towards the second, rad, and the height along its axis, m.
         velocity : sequence of 2 floats or quantities, or "co-rotating", optional
-            Of the centre, in the inertial support frame, m/s; absent: at rest. "co-rotating" releases the body
-            from rest relative to the support's material under it.
+            Of the centre, in the inertial support frame, along the directions in which the two coordinates grow, m/s;
+            absent: at rest. "co-rotating" releases the body from rest relative to the support's material under it.
         spin : float or quantity, optional
             Ω·n, rad/s; the rest of Ω follows from no slip. Absent: 0, or the support's rate when co-rotating.
         angular_velocity : sequence of 3 floats or quantities, optional
             Ω instead of `spin`; it must agree with rolling.
-        orientation : sequence of 4 floats
-            Quaternion (w, x, y, z), body frame to support frame; it is normalised.
+        orientation : sequence of 4 floats, optional
+            Quaternion (w, x, y, z), body frame to support frame; it is normalised. Absent: not turned; a cylinder is
+            laid across its way, the first axis of the body frame along the normal.
+        roll : float or quantity
+            Of a cylinder laid down so: the angle by which it has rolled on since, rad.
 
         Returns
         -------
@@ -192,14 +197,34 @@ class RollingSystem:
         >>> system.place(position=(1.0, 0.0), velocity="co-rotating").velocity
         (0.0, 2.0, 0.0)
         """
-        x, y = checks.components(position, "length", "position", 2)
-        q = _unit_quaternion(orientation)
-        contact = touch(self, 0.0, Vector(x, y, 0.0), q)
-        contact = touch(self, 0.0, Vector(x + contact.offset.x, y + contact.offset.y, 0.0), q)
+        surface = self.support.surface
+        u, v = (
+            checks.real(part, kind, f"position[{i}]")
+            for i, (part, kind) in enumerate(zip(_pair(position, "position"), surface.coordinates, strict=True))
+        )
+        begin = self.support.motion.at(0.0)
+        turning = self.body.shape.axis is not None and orientation is None
+        q = _unit_quaternion((1.0, 0.0, 0.0, 0.0) if orientation is None else orientation)
+        contact = touch(self, 0.0, begin.carried(surface.point(u, v)), q)
+        if turning:
+            q = straight.facing(contact, begin, surface, velocity, checks.real(roll, "angle", "roll"))
+            contact = touch(self, 0.0, contact.point, q)
+        elif not is_zero(roll):
+            raise InvalidValueError("roll", "belongs to a cylinder put down without `orientation`", roll)
+        own = begin.rotation.transpose @ contact.offset
+        contact = touch(self, 0.0, begin.carried(surface.under(u, v, own)), q)
         self.check_rim(contact.point, position)
-        u, rho = contact.support.material_velocity(contact.point), contact.offset
-        co_rotating = isinstance(velocity, str)
-        if co_rotating:
+        V = self._velocity(contact, velocity, begin.rotation.transpose @ (contact.point - begin.origin))
+        Omega = self._angular_velocity(contact, V, spin, angular_velocity, isinstance(velocity, str))
+        start = State(_triple(contact.centre), _triple(V), _triple(Omega), tuple(q))
+        straight.check_start(self, start)
+        return start
+
+    def _velocity(self, contact: Contact, velocity: Any, own: Vector) -> Vector:
+        """Return V from its components along the surface; the one along n follows from V·ρ = u·ρ."""
+        begin, rho, n = contact.support, contact.offset, contact.normal
+        first, second = (begin.rotation @ e for e in self.support.surface.directions(own))
+        if isinstance(velocity, str):
             if velocity != "co-rotating":
                 raise InvalidValueError(
                     "velocity",
@@ -207,31 +232,34 @@ class RollingSystem:
                     velocity,
                     did_you_mean(velocity, ["co-rotating"]).strip(),
                 )
-            vx, vy = (
-                (contact.support.material_velocity(contact.centre)).x,
-                contact.support.material_velocity(contact.centre).y,
-            )
+            carried = begin.material_velocity(contact.centre)
+            along = (carried.dot(first), carried.dot(second))
         else:
-            vx, vy = checks.components((0.0, 0.0) if velocity is None else velocity, "velocity", "velocity", 2)
-        V = Vector(vx, vy, (u.dot(rho) - vx * rho.x - vy * rho.y) / rho.z)
+            along = checks.components((0.0, 0.0) if velocity is None else velocity, "velocity", "velocity", 2)
+        V = first * along[0] + second * along[1]
+        u = begin.material_velocity(contact.point)
+        return V + n * ((u - V).dot(rho) / n.dot(rho))
+
+    def _angular_velocity(
+        self, contact: Contact, V: Vector, spin: Any, angular_velocity: Any, co_rotating: bool
+    ) -> Vector:
+        u, rho = contact.support.material_velocity(contact.point), contact.offset
         if angular_velocity is None:
             turning = contact.support.angular_velocity.dot(contact.normal) if co_rotating else 0.0
             about_normal = turning if spin is None else checks.real(spin, "angular velocity", "spin")
-            Omega = _rolling_rate(V - u, rho, contact.normal, about_normal)
-        elif spin is not None:
+            return _rolling_rate(V - u, rho, contact.normal, about_normal)
+        if spin is not None:
             raise InvalidValueError(
                 "angular_velocity", "must not stand beside `spin`", angular_velocity, "Give one of the two."
             )
-        else:
-            Omega = Vector(*checks.components(angular_velocity, "angular velocity", "angular_velocity"))
-            _check_no_slip(contact.slip_velocity(V, Omega), V, Omega.cross(rho), u)
-        return State(_triple(contact.centre), _triple(V), _triple(Omega), tuple(q))
+        Omega = Vector(*checks.components(angular_velocity, "angular velocity", "angular_velocity"))
+        _check_no_slip(contact.slip_velocity(V, Omega), V, Omega.cross(rho), u)
+        return Omega
 
     def check_rim(self, point: Vector, position: Any) -> None:
         """Refuse a contact point at or beyond the rim, naming the position as the user gave it."""
-        rim = self.support.surface.rim
-        if rim is not None and math.hypot(point.x, point.y) >= rim:
-            distance = math.hypot(point.x, point.y)
+        rim, distance = self.support.surface.rim, (point - self.support.motion.at(0.0).origin).norm()
+        if rim is not None and distance >= rim:
             raise InvalidValueError(
                 "position",
                 f"must lie inside the rim at {rim:g} m",
@@ -242,6 +270,14 @@ class RollingSystem:
 
 def _triple(v: Vector) -> tuple[float, float, float]:
     return v.x + 0.0, v.y + 0.0, v.z + 0.0  # + 0.0 turns -0.0 into 0.0
+
+
+def _pair(value: Any, key: str) -> tuple[Any, Any]:
+    """Return two parts of whatever kinds; `checks.components` is for parts of one kind."""
+    parts = None if isinstance(value, (str, bytes)) or not hasattr(value, "__len__") else tuple(value)
+    if parts is None or len(parts) != 2:
+        raise InvalidValueError(key, "must be a list of 2 components", value)
+    return parts
 
 
 def _unit_quaternion(orientation: Any) -> Quaternion:

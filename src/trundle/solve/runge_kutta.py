@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import SolverError
+from ..mechanics.algebra import Vector
 from ..mechanics.system import RollingSystem, State
 from .samples import Array, Progress, Samples, cut, ran_off
 from .tracing import contact_state, python_rates
@@ -78,10 +79,20 @@ def _size(part: Array) -> float:
     return max(float(np.abs(part).max()), 1e-3)
 
 
+def _arm(system: RollingSystem, t: float, y: Array) -> Vector:
+    """Return p − X, from the support's origin to the contact, m."""
+    return Vector(*y[:3]) - system.support.motion.at(t).origin
+
+
 def _excess(system: RollingSystem) -> Any:
-    """Return the function of the state that rises through 0 at the rim."""
+    """Return the function of time and state that rises through 0 at the rim."""
     rim = float(system.support.surface.rim or 0.0)
-    return lambda y: float(y[0] * y[0] + y[1] * y[1] - rim * rim)
+
+    def excess(t: float, y: Array) -> float:
+        arm = _arm(system, t, y)
+        return float(arm.dot(arm) - rim * rim)
+
+    return excess
 
 
 def _exits(system: RollingSystem, rates: Any) -> list[Any] | None:
@@ -93,12 +104,12 @@ def _exits(system: RollingSystem, rates: Any) -> list[Any] | None:
         return None
     excess = _excess(system)
 
-    def outside(_: float, y: Array) -> float:
-        return excess(y)
+    def outside(t: float, y: Array) -> float:
+        return excess(t, y)
 
     def leaving(t: float, y: Array) -> float:
-        p_rate = rates(t, y.tolist())
-        return float(y[0] * p_rate[0] + y[1] * p_rate[1])
+        away = Vector(*rates(t, y.tolist())[:3]) - system.support.motion.at(t).velocity
+        return float(_arm(system, t, y).dot(away))
 
     outside.terminal, outside.direction = True, 1  # type: ignore[attr-defined]
     leaving.direction = -1  # type: ignore[attr-defined]
@@ -113,7 +124,7 @@ def _first_exit(system: RollingSystem, result: Any) -> float | None:
         return None
     excess, (ends, peaks) = _excess(system), result.t_events
     for peak in peaks:
-        if excess(result.sol(peak)) >= 0:
+        if excess(peak, result.sol(peak)) >= 0:
             inside = float(result.sol.ts[np.searchsorted(result.sol.ts, peak) - 1])
-            return float(brentq(lambda t: excess(result.sol(t)), inside, peak, xtol=1e-300, rtol=1e-15))
+            return float(brentq(lambda t: excess(t, result.sol(t)), inside, peak, xtol=1e-300, rtol=1e-15))
     return float(ends[0]) if ends.size else None

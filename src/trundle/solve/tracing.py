@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import roll, touch
+from ..mechanics.contact import roll, settle
 from ..mechanics.parameters import numbers, with_numbers
 from ..mechanics.scalars import Scalar
 from ..mechanics.system import RollingSystem, State
@@ -68,7 +68,7 @@ def contact_state(system: RollingSystem, start: State) -> list[float]:
     [0.5, 0.0, 0.0]
     """
     centre, q = Vector(*start.position), Quaternion(*start.orientation)
-    offset = touch(system, start.time, centre, q).offset
+    offset = settle(system, start.time, centre, q).offset
     return [*(centre + offset), *q, *start.angular_velocity]
 
 
@@ -85,7 +85,7 @@ def heyoka_system(system: RollingSystem) -> tuple[list[tuple[Any, Any]], list[An
     equations : list of (variable, rate)
         As `heyoka.taylor_adaptive` takes them.
     exits : list of expressions
-        One, rim² − p_x² − p_y², where the surface has a rim; it falls to 0 where the run ends.
+        One, rim² − |p − X|², where the surface has a rim; it falls to 0 where the run ends.
     """
     import heyoka
 
@@ -94,7 +94,8 @@ def heyoka_system(system: RollingSystem) -> tuple[list[tuple[Any, Any]], list[An
     rates = state_rates(symbolic, heyoka.time, variables)
     expressions = [r if isinstance(r, heyoka.expression) else heyoka.expression(float(r)) for r in rates]
     rim = symbolic.support.surface.rim
-    exits = [] if rim is None else [rim * rim - variables[0] * variables[0] - variables[1] * variables[1]]
+    arm = Vector(*variables[:3]) - symbolic.support.motion.at(heyoka.time).origin
+    exits = [] if rim is None else [rim * rim - arm.dot(arm)]
     return list(zip(variables, expressions, strict=True)), exits
 
 

@@ -1,0 +1,196 @@
+"""Formulas in the time, written as text: read by a short list of what is allowed, never run as code.
+
+A formula is kept as nested tuples, so that its numbers are parameters of a compiled integrator like all others.
+"""
+
+from __future__ import annotations
+
+import ast
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from ..errors import InvalidValueError
+from .scalars import Scalar, namespace
+
+FUNCTIONS = ("sin", "cos", "tan", "sqrt", "exp", "log", "abs", "hypot")
+_TWO_ARGUMENTS = ("hypot",)
+_CONSTANTS = {"pi": math.pi}
+_OPERATORS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
+_LONGEST, _DEEPEST = 500, 60
+_LARGEST_POWER = 20
+
+
+@dataclass(frozen=True)
+class Expression:
+    """A formula in named variables, SI throughout.
+
+    Parameters
+    ----------
+    tree : nested tuple
+        As `Expression.parse` makes it.
+    text : str
+        As it was written.
+
+    Examples
+    --------
+    >>> push = Expression.parse("0.1*sin(2*t)", ("t",), "value[0]")
+    >>> push.at(t=0.0), round(push.at(t=1.0), 6)
+    (0.0, 0.09093)
+    """
+
+    tree: Any
+    text: str
+
+    @staticmethod
+    def parse(text: str, variables: tuple[str, ...], key: str) -> Expression:
+        """Read a formula.
+
+        Parameters
+        ----------
+        text : str
+            Numbers, the variables, ``pi``, ``+ - * / **`` and the functions of `FUNCTIONS`.
+        variables : tuple of str
+            The names that may stand in it.
+        key : str
+            The name that an error message uses.
+
+        Returns
+        -------
+        Expression
+            The formula.
+
+        Raises
+        ------
+        InvalidValueError
+            If anything else stands in it, or it is no formula.
+
+        Examples
+        --------
+        >>> Expression.parse("2*t + __import__('os')", ("t",), "rate")
+        Traceback (most recent call last):
+        ...
+        trundle.errors.InvalidValueError: `rate` must be a formula in t; got "2*t + __import__('os')". Not allowed: __import__('os').
+        """
+        rule = f"must be a formula in {', '.join(variables)}"
+        if len(text) > _LONGEST:
+            raise InvalidValueError(key, rule, text, f"It may have {_LONGEST} characters at most.")
+        try:
+            parsed = ast.parse(text.strip(), mode="eval").body
+            return Expression(_Reader(text.strip(), variables).read(parsed), text)
+        except _RefusedError as error:
+            raise InvalidValueError(key, rule, text, str(error)) from None
+        except (SyntaxError, ValueError, MemoryError, RecursionError):
+            example = f"0.1*sin(2*pi*0.5*{variables[0]})"
+            raise InvalidValueError(key, rule, text, f"Write for instance '{example}', in SI units.") from None
+
+    def at(self, **values: Scalar) -> Scalar:
+        """Return the value where the variables have the given values: numbers, arrays or symbols."""
+        return _value(self.tree, values, namespace(tuple(values.values()), _numbers(self.tree)))
+
+    def __str__(self) -> str:
+        return self.text
+
+
+def is_formula(text: Any, variables: tuple[str, ...] = ("t",)) -> bool:
+    """Tell whether a text is a formula that one of the variables stands in, rather than a number with a unit.
+
+    Parameters
+    ----------
+    text : object
+        What the user wrote.
+    variables : tuple of str
+        The names looked for.
+
+    Returns
+    -------
+    bool
+        False for what is not even a text.
+
+    Examples
+    --------
+    >>> is_formula("0.1*sin(t)"), is_formula("0.1 N"), is_formula("3 t")
+    (True, False, False)
+    """
+    if not isinstance(text, str) or len(text) > _LONGEST:
+        return False
+    try:
+        names = [node.id for node in ast.walk(ast.parse(text.strip(), mode="eval")) if isinstance(node, ast.Name)]
+    except (SyntaxError, ValueError, MemoryError, RecursionError):
+        return False
+    return any(name in variables or name in FUNCTIONS for name in names)
+
+
+class _RefusedError(Exception):
+    """Something in a formula that is not allowed."""
+
+
+class _Reader:
+    """From Python's syntax tree to nested tuples, by a list of what is allowed."""
+
+    def __init__(self, text: str, variables: tuple[str, ...]) -> None:
+        self.text, self.variables = text, variables
+
+    def read(self, node: ast.expr, depth: int = 0) -> Any:
+        if depth > _DEEPEST:
+            raise _RefusedError("It is nested too deep.")
+        match node:
+            case ast.Constant(value=value) if type(value) in (int, float):
+                return self._number(value, node)
+            case ast.Name(id=name) if name in self.variables:
+                return name
+            case ast.Name(id=name) if name in _CONSTANTS:
+                return _CONSTANTS[name]
+            case ast.UnaryOp(op=ast.USub(), operand=inner):
+                return ("neg", self.read(inner, depth + 1))
+            case ast.UnaryOp(op=ast.UAdd(), operand=inner):
+                return self.read(inner, depth + 1)
+            case ast.BinOp(op=ast.Pow(), left=base, right=exponent):
+                return ("**", self.read(base, depth + 1), self._power(exponent))
+            case ast.BinOp(op=operator, left=left, right=right) if type(operator) in _OPERATORS:
+                return (_OPERATORS[type(operator)], self.read(left, depth + 1), self.read(right, depth + 1))
+            case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]) if name in FUNCTIONS:
+                wanted = 2 if name in _TWO_ARGUMENTS else 1
+                if len(arguments) != wanted:
+                    raise _RefusedError(f"{name} takes {wanted} argument{'s' * (wanted > 1)}.")
+                return (name, *(self.read(argument, depth + 1) for argument in arguments))
+        raise _RefusedError(f"Not allowed: {ast.get_source_segment(self.text, node) or self.text}.")
+
+    def _number(self, value: float, node: ast.expr) -> float:
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.inf
+        if not math.isfinite(number):
+            raise _RefusedError(f"{ast.get_source_segment(self.text, node)} is too large.")
+        return number
+
+    def _power(self, node: ast.expr) -> str:
+        """Return a whole power as text: it belongs to the formula's structure, not to its numbers."""
+        sign, inner = (-1, node.operand) if isinstance(node, ast.UnaryOp) else (1, node)
+        if isinstance(inner, ast.Constant) and type(inner.value) is int and inner.value <= _LARGEST_POWER:
+            return str(sign * inner.value)
+        raise _RefusedError(f"A power must be a whole number up to {_LARGEST_POWER}; use sqrt and exp for others.")
+
+
+def _numbers(tree: Any) -> tuple[Any, ...]:
+    if isinstance(tree, tuple):
+        return tuple(_numbers(part) for part in tree[1:])
+    return () if isinstance(tree, str) else (tree,)
+
+
+def _value(tree: Any, values: dict[str, Scalar], xp: Any) -> Scalar:
+    if isinstance(tree, str):
+        return values[tree]
+    if not isinstance(tree, tuple):
+        return tree
+    operator, *rest = tree
+    if operator == "**":
+        return _value(rest[0], values, xp) ** int(rest[1])
+    parts = [_value(part, values, xp) for part in rest]
+    if operator in FUNCTIONS:
+        return getattr(xp, operator)(*parts)
+    if operator == "neg":
+        return -parts[0]
+    a, b = parts
+    return a + b if operator == "+" else a - b if operator == "-" else a * b if operator == "*" else a / b
