@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, get_args
+from typing import Any, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from ..errors import InvalidValueError, ScenarioError, did_you_mean
-from .tables import KINDS, Method
+from .tables import Method
+
+# Which class stands for which table, by path and kind.
+Kinds = Mapping[str, Mapping[str, type[BaseModel]]]
 
 
 class _Nothing:
@@ -39,7 +42,7 @@ def complain(error: ValidationError, model: type[BaseModel], source: str = "") -
     error : pydantic.ValidationError
         What pydantic found.
     model : type
-        The model of the whole file.
+        The model of the whole file, a `Document`.
     source : str
         The name of the file.
 
@@ -78,20 +81,20 @@ def _translate(detail: Any, model: type[BaseModel]) -> Complaint:
         told = detail["ctx"]["error"]
         return Complaint(_join(path, told.key), told.rule, told.received, told.remedy)
     if kind == "missing":
-        return Complaint(path, "must be given", _Nothing(), _how_to_add(_keys(table)[key], key), missing=True)
+        return Complaint(path, "must be given", _Nothing(), _how_to_add(_keys(table)[key], key, model), missing=True)
     if kind == "extra_forbidden":
         known = list(_keys(table))
         place = f"[{path.rpartition('.')[0]}]" if "." in path else "the file"
         remedy = f"{did_you_mean(key, known)} {_there_are(known)}".strip()
         return Complaint(path, f"is no key of {place}", received, remedy, unknown=True)
     if kind == "union_tag_not_found":
-        known = list(_kinds(path))
+        known = list(_kinds(path, model))
         remedy = f'Say which, for instance: kind = "{known[0]}". {_there_are(known)}'
         return Complaint(_join(path, "kind"), "must be given", _Nothing(), remedy, missing=True)
     if kind == "union_tag_invalid":
-        return _not_one_of(_join(path, "kind"), received.get("kind"), _kinds(path))
+        return _not_one_of(_join(path, "kind"), received.get("kind"), _kinds(path, model))
     if kind == "literal_error":
-        known = list(get_args(Method)) if path == "run.method" else list(_kinds(path.rpartition(".")[0]))
+        known = list(get_args(Method)) if path == "run.method" else list(_kinds(path.rpartition(".")[0], model))
         return _not_one_of(path, received, known)
     rule, remedy = _SHAPES.get(kind, (f"is not as it should be ({detail['msg']})", ""))
     return Complaint(path, rule, received, remedy.format(path=path))
@@ -116,8 +119,8 @@ def _there_are(known: Iterable[str]) -> str:
     return f"There are: {', '.join(known)}."
 
 
-def _kinds(path: str) -> dict[str, Any]:
-    return KINDS[re.sub(r"\[\d+\]", "", path)]
+def _kinds(path: str, model: Any) -> Mapping[str, type[BaseModel]]:
+    return model.kinds[re.sub(r"\[\d+\]", "", path)]
 
 
 def _locate(loc: tuple[int | str, ...], model: type[BaseModel]) -> tuple[str, type[BaseModel], str]:
@@ -131,15 +134,15 @@ def _locate(loc: tuple[int | str, ...], model: type[BaseModel]) -> tuple[str, ty
         if isinstance(part, int):
             path = f"{path}[{part}]"
         elif inside is None:
-            inside = _kinds(path)[part]
+            inside = _kinds(path, model)[part]
         else:
             table, key, path = inside, part, _join(path, _quoted(part))
-            inside = _table_of(table, key, path)
+            inside = _table_of(table, key, path, model)
     return path, table, key
 
 
-def _table_of(table: type[BaseModel], key: str, path: str) -> type[BaseModel] | None:
-    kinds = list(KINDS.get(path, {}).values())
+def _table_of(table: type[BaseModel], key: str, path: str, model: Any) -> type[BaseModel] | None:
+    kinds = list(model.kinds.get(path, {}).values())
     if kinds:
         return kinds[0] if len(kinds) == 1 else None
     return _plain_table(_keys(table)[key]) if key in _keys(table) else None
@@ -163,14 +166,15 @@ def _quoted(key: str) -> str:
     return key if re.fullmatch(r"[A-Za-z0-9_-]{1,60}", key) else repr(key[:60])
 
 
-def _how_to_add(field: FieldInfo, key: str) -> str:
+def _how_to_add(field: FieldInfo, key: str, model: Any) -> str:
     table = _plain_table(field)
-    if key in KINDS:
-        table = next(iter(KINDS[key].values()))
+    if key in model.kinds:
+        table = next(iter(model.kinds[key].values()))
     if table is None:
         return f"Add for instance: {_example(field, key)}"
     lines = [_example(inner, name) for name, inner in _keys(table).items() if inner.is_required()]
-    return f"Add for instance, each on a line of its own: [{key}] {' ; '.join(lines)}"
+    head = f"[[{key}]]" if get_origin(field.annotation) is tuple else f"[{key}]"
+    return f"Add for instance, each on a line of its own: {head} {' ; '.join(lines)}"
 
 
 def _example(field: FieldInfo, key: str) -> str:

@@ -3,20 +3,15 @@
 from __future__ import annotations
 
 import math
-import os
-import unicodedata
-from collections.abc import Mapping
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
-from pydantic import Field, ValidationError, field_validator, model_validator
+from pydantic import Field, model_validator
 
 from ..errors import InvalidValueError, ScenarioError
-from . import files
-from .complaints import complain
+from .complaints import Kinds
 from .fields import Measure, written
-from .layout import layout
-from .tables import Bodies, Loads, Run, Start, Supports, Table
+from .tables import KINDS, Bodies, Loads, Run, Start, Supports
+from .whole import Document
 
 if TYPE_CHECKING:
     from ..mechanics.system import RollingSystem, State
@@ -25,7 +20,7 @@ Gravity = Annotated[float, Measure("acceleration", "not negative")]
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
-class ScenarioFile(Table):
+class ScenarioFile(Document):
     """A body, a support, loads, a start and a run, as a scenario file says them.
 
     Every number is a float in SI; it remembers the text that it was written as, and `to_toml` writes that.
@@ -40,8 +35,8 @@ class ScenarioFile(Table):
     True
     """
 
-    title: str = ""
-    notes: str = Field(default="", description="What a lecturer says about it.")
+    kinds: ClassVar[Kinds] = KINDS
+
     gravity: Gravity = Field(default=9.80665, description="g; 0 turns it off.")
     body: Annotated[Bodies, Field(discriminator="kind")]
     support: Supports
@@ -50,123 +45,7 @@ class ScenarioFile(Table):
     applied_loads: tuple[Annotated[Loads, Field(discriminator="kind")], ...] = Field(default=(), alias="loads")
     timing: Run = Field(alias="run")
 
-    # --- reading -----------------------------------------------------------------------------------------
-
-    @classmethod
-    def load(cls, name_or_path: str | os.PathLike[str]) -> Self:
-        """Read a scenario that ships with the package, or a file.
-
-        Parameters
-        ----------
-        name_or_path : str or path
-            One of `names()`, or the path of a TOML file.
-
-        Returns
-        -------
-        ScenarioFile
-            The validated scenario.
-
-        Raises
-        ------
-        ScenarioError
-            If there is no such file, or it is not as the format asks.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> tr.Scenario.load("level-turntable-nudged").body.kind
-        'solid-sphere'
-        """
-        return cls.loads(files.read(name_or_path), os.fspath(name_or_path))
-
-    @classmethod
-    def loads(cls, text: str, source: str = "scenario") -> Self:
-        """Read a scenario from TOML text.
-
-        Parameters
-        ----------
-        text : str
-            The whole file.
-        source : str
-            Its name, for error messages and, without its suffix, as the title of a scenario that has none.
-
-        Returns
-        -------
-        ScenarioFile
-            The validated scenario.
-
-        Raises
-        ------
-        ScenarioError
-            If the text is not as the format asks.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> text = tr.Scenario.load("ball-under-force").to_toml()
-        >>> tr.Scenario.loads(text).title
-        'Ball on a level plane under a constant force'
-        """
-        return cls.read(files.parse(text, source), source)
-
-    @classmethod
-    def read(cls, data: Mapping[str, Any], source: str = "scenario") -> Self:
-        """Read a scenario from nested dictionaries, as a TOML file holds them.
-
-        Parameters
-        ----------
-        data : mapping
-            The tables of the file.
-        source : str
-            As for `loads`.
-
-        Returns
-        -------
-        ScenarioFile
-            The validated scenario.
-
-        Raises
-        ------
-        ScenarioError
-            If the data are not as the format asks.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> scenario = tr.Scenario.read(
-        ...     {
-        ...         "body": {"kind": "solid-sphere", "radius": "25 mm", "mass": "65 g"},
-        ...         "support": {"kind": "plane"},
-        ...         "start": {"position": [0, 0], "velocity": ["0.1 m/s", 0]},
-        ...         "run": {"duration": "1 s", "every": "10 ms"},
-        ...     }
-        ... )
-        >>> scenario.start_state().angular_velocity
-        (0.0, 4.0, 0.0)
-        """
-        try:
-            return cls.model_validate({"title": _title_from(source), **data})
-        except ValidationError as error:
-            raise complain(error, cls, source) from None
-        except RecursionError:
-            raise ScenarioError("scenario", "must not nest this deep", "tables within tables", "", source) from None
-
-    @classmethod
-    def names(cls) -> list[str]:
-        """Return the names of the scenarios that ship with the package.
-
-        Returns
-        -------
-        list of str
-            In alphabetical order.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> tr.Scenario.names()[0]
-        'ball-under-force'
-        """
-        return files.names()
+    # --- from Python ---------------------------------------------------------------------------------------
 
     @classmethod
     def describe(
@@ -220,15 +99,6 @@ class ScenarioFile(Table):
         return cls.read({"title": title, **data}, title or "scenario")
 
     # --- checks that look at the whole -------------------------------------------------------------------
-
-    @field_validator("title", "notes")
-    @classmethod
-    def _printable(cls, text: str, info: Any) -> str:
-        allowed = "\n\t" if info.field_name == "notes" else ""
-        if any(unicodedata.category(letter) in ("Cc", "Cs") and letter not in allowed for letter in text):
-            lines = "" if allowed else " on one line"
-            raise InvalidValueError("", f"must be text{lines} without control characters", text, "Leave them out.")
-        return text
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -291,24 +161,7 @@ class ScenarioFile(Table):
         with _named_in("start"):
             return system.place(**self.start.arguments())
 
-    # --- writing -----------------------------------------------------------------------------------------
-
-    def to_toml(self) -> str:
-        """Write the scenario as TOML: the keys that were given, as they were given.
-
-        Returns
-        -------
-        str
-            TOML that `loads` reads back to an equal scenario.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> text = tr.Scenario.load("tilted-turntable").to_toml()
-        >>> text[text.index("rate =") :].splitlines()[0]
-        'rate = "33.3 rpm"'
-        """
-        return layout(self.model_dump(exclude_unset=True, by_alias=True))
+    # --- for editors ----------------------------------------------------------------------------------------
 
     @classmethod
     def schema(cls) -> dict[str, Any]:  # type: ignore[override]
@@ -342,8 +195,3 @@ class _named_in:  # noqa: N801  a context manager reads as a phrase
         if isinstance(error, InvalidValueError):
             key = f"{self.table}.{error.key}" if self.table else error.key
             raise ScenarioError(key, error.rule, error.received, error.remedy) from None
-
-
-def _title_from(source: str) -> str:
-    stem = Path(source).name.removesuffix(".toml")
-    return "".join(letter for letter in stem if unicodedata.category(letter) not in ("Cc", "Cs"))

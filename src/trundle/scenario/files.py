@@ -8,6 +8,8 @@ from __future__ import annotations
 import os
 import re
 import tomllib
+from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -52,6 +54,49 @@ def title_of(name: str) -> str:
     'Steel ball on a tilted turntable'
     """
     return str(parse(read(name), name)["title"])
+
+
+def rolls_along_path(tables: Mapping[str, Any]) -> bool:
+    """Whether the tables of a file are those of a path to roll along, not of a motion under forces.
+
+    Parameters
+    ----------
+    tables : mapping
+        As `parse` returns them.
+
+    Returns
+    -------
+    bool
+        Whether there are `path` tables among them.
+
+    Examples
+    --------
+    >>> rolls_along_path({"path": [{"kind": "straight"}]})
+    True
+    """
+    return "path" in tables
+
+
+@cache
+def is_shipped_path(name: str) -> bool:
+    """Whether a shipped scenario rolls a ball along a path, without forces.
+
+    Parameters
+    ----------
+    name : str
+        One of `names()`.
+
+    Returns
+    -------
+    bool
+        As `rolls_along_path`.
+
+    Examples
+    --------
+    >>> is_shipped_path("tilted-turntable")
+    False
+    """
+    return rolls_along_path(parse(read(name), name))
 
 
 def locate(name_or_path: str | os.PathLike[str]) -> Path:

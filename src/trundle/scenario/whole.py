@@ -1,0 +1,184 @@
+"""What every kind of scenario file shares: title and notes, reading from TOML and writing back."""
+
+from __future__ import annotations
+
+import os
+import unicodedata
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, ClassVar, Self
+
+from pydantic import Field, ValidationError, field_validator
+
+from ..errors import InvalidValueError, ScenarioError
+from . import files
+from .complaints import Kinds, complain
+from .layout import layout
+from .tables import Table
+
+
+class Document(Table):
+    """A scenario file of some kind.
+
+    Every number is a float in SI; it remembers the text that it was written as, and `to_toml` writes that.
+    """
+
+    kinds: ClassVar[Kinds]  # which class stands for which table, so that an error can list the keys that it has
+    rolls_along_path: ClassVar[bool] = False  # whether it has [[path]] tables: they tell the kinds of file apart
+
+    title: str = ""
+    notes: str = Field(default="", description="What a lecturer says about it.")
+
+    # --- reading -----------------------------------------------------------------------------------------
+
+    @classmethod
+    def load(cls, name_or_path: str | os.PathLike[str]) -> Self:
+        """Read a scenario that ships with the package, or a file.
+
+        Parameters
+        ----------
+        name_or_path : str or path
+            One of `names()`, or the path of a TOML file.
+
+        Returns
+        -------
+        The same class
+            The validated scenario.
+
+        Raises
+        ------
+        ScenarioError
+            If there is no such file, or it is not as the format asks.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> tr.Scenario.load("level-turntable-nudged").body.kind
+        'solid-sphere'
+        """
+        return cls.loads(files.read(name_or_path), os.fspath(name_or_path))
+
+    @classmethod
+    def loads(cls, text: str, source: str = "scenario") -> Self:
+        """Read a scenario from TOML text.
+
+        Parameters
+        ----------
+        text : str
+            The whole file.
+        source : str
+            Its name, for error messages and, without its suffix, as the title of a scenario that has none.
+
+        Returns
+        -------
+        The same class
+            The validated scenario.
+
+        Raises
+        ------
+        ScenarioError
+            If the text is not as the format asks.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> text = tr.Scenario.load("ball-under-force").to_toml()
+        >>> tr.Scenario.loads(text).title
+        'Ball on a level plane under a constant force'
+        """
+        return cls.read(files.parse(text, source), source)
+
+    @classmethod
+    def read(cls, data: Mapping[str, Any], source: str = "scenario") -> Self:
+        """Read a scenario from nested dictionaries, as a TOML file holds them.
+
+        Parameters
+        ----------
+        data : mapping
+            The tables of the file.
+        source : str
+            As for `loads`.
+
+        Returns
+        -------
+        The same class
+            The validated scenario.
+
+        Raises
+        ------
+        ScenarioError
+            If the data are not as the format asks.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> scenario = tr.Scenario.read(
+        ...     {
+        ...         "body": {"kind": "solid-sphere", "radius": "25 mm", "mass": "65 g"},
+        ...         "support": {"kind": "plane"},
+        ...         "start": {"position": [0, 0], "velocity": ["0.1 m/s", 0]},
+        ...         "run": {"duration": "1 s", "every": "10 ms"},
+        ...     }
+        ... )
+        >>> scenario.start_state().angular_velocity
+        (0.0, 4.0, 0.0)
+        """
+        if files.rolls_along_path(data) and not cls.rolls_along_path:
+            remedy = "It rolls a ball along a path, without forces: load it with `tr.PathScenario`."
+            raise ScenarioError("path", "has no place in a file with forces and a start", data["path"], remedy, source)
+        try:
+            return cls.model_validate({"title": _title_from(source), **data})
+        except ValidationError as error:
+            raise complain(error, cls, source) from None
+        except RecursionError:
+            raise ScenarioError("scenario", "must not nest this deep", "tables within tables", "", source) from None
+
+    @classmethod
+    def names(cls) -> list[str]:
+        """Return the names of the scenarios of this kind that ship with the package.
+
+        Returns
+        -------
+        list of str
+            In alphabetical order.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> tr.Scenario.names()[0]
+        'ball-under-force'
+        """
+        return [name for name in files.names() if files.is_shipped_path(name) == cls.rolls_along_path]
+
+    @field_validator("title", "notes")
+    @classmethod
+    def _printable(cls, text: str, info: Any) -> str:
+        allowed = "\n\t" if info.field_name == "notes" else ""
+        if any(unicodedata.category(letter) in ("Cc", "Cs") and letter not in allowed for letter in text):
+            lines = "" if allowed else " on one line"
+            raise InvalidValueError("", f"must be text{lines} without control characters", text, "Leave them out.")
+        return text
+
+    # --- writing -----------------------------------------------------------------------------------------
+
+    def to_toml(self) -> str:
+        """Write the scenario as TOML: the keys that were given, as they were given.
+
+        Returns
+        -------
+        str
+            TOML that `loads` reads back to an equal scenario.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> text = tr.Scenario.load("tilted-turntable").to_toml()
+        >>> text[text.index("rate =") :].splitlines()[0]
+        'rate = "33.3 rpm"'
+        """
+        return layout(self.model_dump(exclude_unset=True, by_alias=True))
+
+
+def _title_from(source: str) -> str:
+    stem = Path(source).name.removesuffix(".toml")
+    return "".join(letter for letter in stem if unicodedata.category(letter) not in ("Cc", "Cs"))
