@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from ..scenario import ScenarioFile
-from ..solve.exact import closed_form
+from ..solve.exact import CylinderOnCylinder, SphereOnPlane, closed_form
 
 SLOWEST = 1e-12  # rad/s; a slower circle is a straight line to anyone
 
@@ -36,8 +36,19 @@ def expectations(scenario: ScenarioFile) -> list[tuple[str, str]]:
     if motion is None:
         return [("closed form", "none covers this scenario; it is computed numerically")]
     rows = [("closed form", f"{motion.equation}, {motion.name}")]
-    circles = motion.has_guiding_centre and abs(motion.kappa) > SLOWEST
+    if isinstance(motion, CylinderOnCylinder):
+        return rows + _pendulum(motion)
+    circles = isinstance(motion, SphereOnPlane) and motion.has_guiding_centre and abs(motion.kappa) > SLOWEST
     return rows + (_circle(motion, scenario) if circles else _push(motion))
+
+
+def _pendulum(motion: CylinderOnCylinder) -> list[tuple[str, str]]:
+    kind = "goes round" if motion.goes_round else "swings"
+    small = math.sqrt(motion.length * motion.mass * (1 + motion.inertia_ratio) / max(math.hypot(*motion.force), 1e-300))
+    return [
+        (f"it {kind}", "for ever" if math.isinf(motion.period) else f"once in {motion.period:.6g} s"),
+        ("a small swing", f"{2 * math.pi * small:.6g} s"),
+    ]
 
 
 def _circle(motion: Any, scenario: ScenarioFile) -> list[tuple[str, str]]:

@@ -67,10 +67,10 @@ class Expression:
 
         Examples
         --------
-        >>> Expression.parse("2*t + __import__('os')", ("t",), "rate")
+        >>> Expression.parse("2*t + open('f')", ("t",), "rate")
         Traceback (most recent call last):
         ...
-        trundle.errors.InvalidValueError: `rate` must be a formula in t; got "2*t + __import__('os')". Not allowed: __import__('os').
+        trundle.errors.InvalidValueError: `rate` must be a formula in t; got "2*t + open('f')". Not allowed: open('f').
         """
         rule = f"must be a formula in {', '.join(variables)}"
         if len(text) > _LONGEST:
@@ -135,7 +135,7 @@ class _Reader:
         if depth > _DEEPEST:
             raise _RefusedError("It is nested too deep.")
         match node:
-            case ast.Constant(value=value) if type(value) in (int, float):
+            case ast.Constant(value=int() | float() as value) if not isinstance(value, bool):
                 return self._number(value, node)
             case ast.Name(id=name) if name in self.variables:
                 return name

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trundle.mechanics.loads import Drag, Force, Torque
-from trundle.solve.exact import closed_form
+from trundle.mechanics.surfaces import Cylinder
+from trundle.solve.exact import SphereOnPlane, closed_form
 
 from .scales import Array, as_ratio, short, with_unit
 
@@ -32,6 +33,8 @@ class Facts:
     rate: float
     rim: float | None
     friction: float | None
+    noun: str  # of the body
+    wall: float | None  # radius of the cylinder that is rolled on, seen along its axis
     pushes: tuple[tuple[str, float, float], ...]  # name and direction, in the plane, of what acts on the body
 
     @property
@@ -55,9 +58,11 @@ def facts_of(run: Trajectory) -> Facts:
         numbers=_key_numbers(system),
         radius=float(getattr(system.body.shape, "radius", 0.0)),
         tilt=float(support.tilt),
-        rate=float(support.motion.steady_rate or 0.0),
+        rate=float(support.motion.mean_rate),
         rim=None if surface.rim is None else float(surface.rim),
         friction=None if support.friction is None else float(support.friction),
+        noun="ball" if system.body.shape.axis is None else "cylinder",
+        wall=float(surface.radius) if isinstance(surface, Cylinder) else None,
         pushes=_pushes(system),
     )
 
@@ -65,7 +70,7 @@ def facts_of(run: Trajectory) -> Facts:
 def guiding_centre(run: Trajectory, times: Array) -> Array | None:
     """Return the point about which the ball circles, (n, 2), m, support frame, where a closed form has it."""
     form = closed_form(run.system, run.start)
-    if form is None or not form.has_guiding_centre:
+    if not isinstance(form, SphereOnPlane) or not form.has_guiding_centre:
         return None
     x, y = form.guiding_centre(times - run.start.time)
     return np.column_stack([x, y])
@@ -111,18 +116,23 @@ def _title(run: Trajectory) -> str:
     given = run.data.attrs.get("title")
     if given:
         return "".join(letter if letter.isprintable() else " " for letter in str(given))
-    support = run.system.support
-    turning = "turning" if support.motion.steady_rate else "fixed"
-    return f"Ball on a {turning}{', tilted' if support.tilt else ''} plane"
+    system = run.system
+    turning = "turning" if system.support.motion.mean_rate else "fixed"
+    body = "Ball" if system.body.shape.axis is None else "Cylinder"
+    if isinstance(system.support.surface, Cylinder):
+        return f"{body} {system.support.surface.side} a {turning} cylinder"
+    return f"{body} on a {turning}{', tilted' if system.support.tilt else ''} plane"
 
 
 def _key_numbers(system: RollingSystem) -> str:
     body, support = system.body, system.support
     parts = []
-    rate = support.motion.steady_rate
+    rate, wall = float(support.motion.mean_rate), isinstance(support.surface, Cylinder)
     if rate:
-        parts.append(f"table {_rate(rate)}")
-    if support.tilt:
+        parts.append(f"{'wall' if wall else 'table'} {_rate(rate)}")
+    if wall:
+        parts.append(f"wall of radius {with_unit(float(support.surface.radius), 'length')}")  # type: ignore[attr-defined]
+    elif support.tilt:
         parts.append(f"tilt {short(math.degrees(support.tilt), 4)}°")
     if body.is_isotropic_sphere:
         parts.append(f"inertia ratio k = {as_ratio(float(body.inertia_ratio))}")
@@ -131,12 +141,16 @@ def _key_numbers(system: RollingSystem) -> str:
         parts.append(f"radius {f'{radius * 1e3:.4g} mm' if millimetres else with_unit(radius, 'length')}")
     for load in system.loads:
         if isinstance(load, Force):
-            parts.append(f"force {with_unit(math.hypot(*load.value), 'force')}")
+            parts.append(f"force {_size(load, 'force')}")
         elif isinstance(load, Torque):
-            parts.append(f"torque {with_unit(math.hypot(*load.value), 'torque')}")
+            parts.append(f"torque {_size(load, 'torque')}")
         elif isinstance(load, Drag):
             parts.append(f"drag {with_unit(float(load.coefficient), 'damping')}")
     return "  ·  ".join(parts)
+
+
+def _size(load: Force | Torque, kind: str) -> str:
+    return with_unit(math.hypot(*load.value), kind) if load.constant else "that varies"
 
 
 def _rate(rate: float) -> str:
@@ -148,7 +162,7 @@ def _rate(rate: float) -> str:
 def _pushes(system: RollingSystem) -> tuple[tuple[str, float, float], ...]:
     pushes = []
     for kind, name in ((Force, "force"), (Torque, "torque")):
-        of_kind = [load.value for load in system.loads if isinstance(load, kind)]
+        of_kind = [load.value for load in system.loads if isinstance(load, kind) and load.constant]
         x, y = sum(float(value.x) for value in of_kind), sum(float(value.y) for value in of_kind)
         if math.hypot(x, y) > 0.0:
             pushes.append((name, x / math.hypot(x, y), y / math.hypot(x, y)))

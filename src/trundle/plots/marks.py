@@ -118,9 +118,9 @@ def signpost(
     ax.annotate("", head, tail, "axes fraction", "axes fraction", arrowprops=style, zorder=7)
 
 
-def turn_sign(ax: Axes, at: tuple[float, float], size: tuple[float, float], top: bool, sense: float) -> None:
-    """Draw a small arc arrow named "table", where the axis itself is not the place for it."""
-    x0, y0 = _beside_name(ax, at, size, top, "table", 0.32)
+def turn_sign(ax: Axes, at: tuple[float, float], size: tuple[float, float], top: bool, sense: float, name: str) -> None:
+    """Draw a small arc arrow with the name of what turns, where the axis itself is not the place for it."""
+    x0, y0 = _beside_name(ax, at, size, top, name, 0.32)
     angle = math.copysign(1.0, sense) * np.linspace(-2.2, 2.2, 40) + math.pi / 2
     x, y = (x0 + 0.13 * np.cos(angle)) / size[0], (y0 + 0.13 * np.sin(angle)) / size[1]
     ax.plot(x, y, transform=ax.transAxes, color=GREY, lw=1.6, zorder=7, solid_capstyle="butt")

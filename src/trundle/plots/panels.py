@@ -96,7 +96,9 @@ class Panel:
 
 def panels_of(run: Trajectory, facts: Facts) -> list[Panel]:
     """Return the maps that tell something about a run, with their views chosen."""
-    names = ["support"] + ["world"] * facts.tilted + ["corotating"] * facts.turning
+    steady = facts.turning and run.system.support.motion.steady_rate is not None
+    walled = facts.wall is not None
+    names = ["support"] + ["world"] * (facts.tilted and not walled) + ["corotating"] * (steady and not walled)
     time = np.asarray(run.data["time"].values, dtype=float)
     panels = [_panel(run, facts, name, time) for name in names]
     return [_viewed(_rounded(panel), facts) for panel in _windowed(panels, facts)]
@@ -104,12 +106,16 @@ def panels_of(run: Trajectory, facts: Facts) -> list[Panel]:
 
 def _panel(run: Trajectory, facts: Facts, name: str, time: Array) -> Panel:
     titles = {
-        "support": "Support frame" if facts.tilted else "Support and world frame",
+        "support": "Along the cylinder's axis"
+        if facts.wall is not None
+        else "Support frame"
+        if facts.tilted
+        else "Support and world frame",
         "world": "World frame, from above",
         "corotating": "Corotating frame",
     }
     labels = {
-        "support": ("x, down the slope", "y, level") if facts.tilted else ("x", "y"),
+        "support": ("x, down" if facts.wall else "x, down the slope", "y, level") if facts.tilted else ("x", "y"),
         "world": ("X, level, downhill", "Y, level"),
         "corotating": ("x′, on the table", "y′, on the table"),
     }
@@ -187,7 +193,10 @@ def _viewed(panel: Panel, facts: Facts) -> Panel:
     span = float(np.max(high - low))
     shown = [low, high]
     reach = float(np.max(np.hypot(path[:, 0], path[:, 1])))
-    if facts.rim is not None and (panel.at_rest or span > facts.rim / 5 or reach > 0.8 * facts.rim):
+    if facts.wall is not None:
+        shown += [np.full(2, -facts.wall), np.full(2, facts.wall)]
+        shown += [low - 1.2 * facts.radius, high + 1.2 * facts.radius]
+    elif facts.rim is not None and (panel.at_rest or span > facts.rim / 5 or reach > 0.8 * facts.rim):
         shown += [np.full(2, -facts.rim), np.full(2, facts.rim)]
     elif panel.at_rest:
         shown += [low - 2.0 * facts.radius, high + 2.0 * facts.radius]

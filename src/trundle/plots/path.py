@@ -112,17 +112,21 @@ class _Drawing:
         if facts.rim is not None and _crosses(panel, facts.rim):
             marks.rim(ax, panel.page, ruler, facts.rim, facts.tilt if panel.name == "world" else 0.0)
             self.legend["rim"] = "rim"
-        if facts.turning and _crosses(panel, 0.0):
+        if facts.wall is not None:
+            marks.rim(ax, panel.page, ruler, facts.wall, 0.0)
+            self.legend["rim"] = "wall"
+        elif facts.turning and _crosses(panel, 0.0):
             ax.plot(*ruler(np.zeros(2)), **STYLES["axis"])
             self.legend["axis"] = "axis of the table"
-        if 0.035 * max(panel.span) < facts.radius < 0.35 * min(panel.span) and panel.until is None:
+        smallest = 0.035 if facts.wall is None else 0.012
+        if smallest * max(panel.span) < facts.radius < 0.35 * min(panel.span) and panel.until is None:
             marks.ball(ax, ruler, panel.path[-1], facts.radius)
-            self.legend["ball"] = "ball at the end, to scale"
+            self.legend["ball"] = f"{facts.noun} at the end, to scale"
 
     def _signs(self, ax: Axes, panel: Panel, ruler: Ruler, place: Place) -> None:
         """Say which way is down and which way the table turns, where the map is emptiest."""
         facts = self.facts
-        signs = [("downhill", (0.0, -1.0))] if facts.tilted else []
+        signs = [("down" if facts.wall else "downhill", (0.0, -1.0))] if facts.tilted else []
         signs += [(name, panel.page.direction(x, y)) for name, x, y in facts.pushes]
         arc = facts.turning
         whole = facts.rim is not None and max(panel.low) < -facts.rim and min(panel.high) > facts.rim
@@ -137,7 +141,7 @@ class _Drawing:
             if i < len(signs):
                 marks.signpost(ax, at, (place.width, place.height), top, *signs[i])
             else:
-                marks.turn_sign(ax, at, (place.width, place.height), top, facts.rate)
+                marks.turn_sign(ax, at, (place.width, place.height), top, facts.rate, "wall" if facts.wall else "table")
 
     def _guide(self, ax: Axes, panel: Panel, ruler: Ruler) -> None:
         track = panel.track
@@ -161,7 +165,7 @@ class _Drawing:
 
     def _path(self, ax: Axes, panel: Panel, ruler: Ruler) -> None:
         path, first = panel.path, panel.first_turn
-        self.legend["path"] = "path of the ball's centre"
+        self.legend["path"] = f"path of the {self.facts.noun}'s centre"
         if panel.sparse:
             ax.plot(*ruler(path).T, **STYLES["samples"], label="path")
             self.legend["samples"] = "samples, too far apart for a line"

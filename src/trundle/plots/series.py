@@ -115,7 +115,9 @@ def _panels(run: Trajectory, facts: Facts, time: Array, support: Any) -> list[Se
     duration = float(time[-1] - time[0])
     length = max(float(np.max(np.abs(r))), facts.radius, 1e-300)
     frequency = max(abs(facts.rate), 1.0 / duration if duration > 0.0 else 1.0)
-    N, f = R[:, 2], np.hypot(R[:, 0], R[:, 1])
+    normal = run.samples.normals(run.system)
+    N = np.einsum("ni,ni->n", R, normal)
+    f = np.linalg.norm(R - N[:, None] * normal, axis=1)
     force = float(np.max(np.abs(R)))
     panels = [
         _position(r, length),
@@ -124,7 +126,7 @@ def _panels(run: Trajectory, facts: Facts, time: Array, support: Any) -> list[Se
             "angular\nvelocity",
             "angular velocity",
             max(frequency, float(np.max(np.abs(Omega)))),
-            {"Ωx": Omega[:, 0], "Ωy": Omega[:, 1], "Ωn, normal": Omega[:, 2]},
+            _turning(Omega, facts),
         ),
         Series("contact\nforce", "force", force or 1.0, {"N, normal": N, "|f|, friction": f}, from_zero=True),
     ]
@@ -148,6 +150,15 @@ def _panels(run: Trajectory, facts: Facts, time: Array, support: Any) -> list[Se
             lines = {"ball": lines[""], "guiding\ncentre": (guide[:, 0] - r[0, 0]) * -math.sin(facts.tilt)}
         panels.append(Series("height\nabove start", "length", length, lines))
     return panels
+
+
+def _turning(Omega: Array, facts: Facts) -> dict[str, Array]:
+    if facts.wall is None:
+        return {"Ωx": Omega[:, 0], "Ωy": Omega[:, 1], "Ωn, normal": Omega[:, 2]}
+    size = NOTHING * max(float(np.max(np.abs(Omega))), 1e-300)
+    across = {"Ωx": Omega[:, 0], "Ωy": Omega[:, 1]}
+    seen = {name: values for name, values in across.items() if float(np.max(np.abs(values))) > size}
+    return {"Ωz, along\nthe axis": Omega[:, 2], **seen}
 
 
 def _position(r: Array, length: float) -> Series:

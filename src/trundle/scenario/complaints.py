@@ -11,13 +11,14 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from ..errors import InvalidValueError, ScenarioError, did_you_mean
-from .tables import Method
 
 # Which class stands for which table, by path and kind.
 Kinds = Mapping[str, Mapping[str, type[BaseModel]]]
 
 
-class _Nothing:
+class Nothing:
+    """What came, where nothing did."""
+
     def __repr__(self) -> str:
         return "nothing"
 
@@ -81,7 +82,7 @@ def _translate(detail: Any, model: type[BaseModel]) -> Complaint:
         told = detail["ctx"]["error"]
         return Complaint(_join(path, told.key), told.rule, told.received, told.remedy)
     if kind == "missing":
-        return Complaint(path, "must be given", _Nothing(), _how_to_add(_keys(table)[key], key, model), missing=True)
+        return Complaint(path, "must be given", Nothing(), _how_to_add(_keys(table)[key], key, model), missing=True)
     if kind == "extra_forbidden":
         known = list(_keys(table))
         place = f"[{path.rpartition('.')[0]}]" if "." in path else "the file"
@@ -90,11 +91,12 @@ def _translate(detail: Any, model: type[BaseModel]) -> Complaint:
     if kind == "union_tag_not_found":
         known = list(_kinds(path, model))
         remedy = f'Say which, for instance: kind = "{known[0]}". {_there_are(known)}'
-        return Complaint(_join(path, "kind"), "must be given", _Nothing(), remedy, missing=True)
+        return Complaint(_join(path, "kind"), "must be given", Nothing(), remedy, missing=True)
     if kind == "union_tag_invalid":
         return _not_one_of(_join(path, "kind"), received.get("kind"), _kinds(path, model))
     if kind == "literal_error":
-        known = list(get_args(Method)) if path == "run.method" else list(_kinds(path.rpartition(".")[0], model))
+        offered = get_args(_keys(table)[key].annotation)
+        known = list(offered) if key != "kind" else list(_kinds(path.rpartition(".")[0], model))
         return _not_one_of(path, received, known)
     rule, remedy = _SHAPES.get(kind, (f"is not as it should be ({detail['msg']})", ""))
     return Complaint(path, rule, received, remedy.format(path=path))

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any
 
 from ..errors import InvalidValueError, ScenarioError
+from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.bodies import HOLLOW_SPHERE, SOLID_SPHERE, Body, Isotropic
+from ..mechanics.contact import settle
+from ..mechanics.expressions import Expression
 from ..mechanics.loads import Drag, Force, Torque
-from ..mechanics.motions import Fixed, Spin
-from ..mechanics.surfaces import Plane
+from ..mechanics.motions import Fixed, Spin, UnevenSpin, Wobble
+from ..mechanics.surfaces import Cylinder, Plane
 from ..mechanics.system import RollingSystem, State, Support
 
 Words = dict[str, Any]
@@ -56,7 +59,7 @@ def describe(system: RollingSystem, start: State) -> Words:
 
 
 def _body(body: Body) -> Words:
-    if not body.is_isotropic_sphere:
+    if not body.is_isotropic_sphere or (body.shape.axis is not None and isinstance(body.inertia, Isotropic)):
         raise _wordless("body", body)
     ratio = _number(body.inertia_ratio, "body.inertia_ratio")
     radius = getattr(body.shape, "radius", None)
@@ -64,6 +67,8 @@ def _body(body: Body) -> Words:
     if isinstance(body.inertia, Isotropic):  # its ratio would be rounded once more
         moment = _number(body.inertia.moment, "body.inertia.moment")
         return {"kind": "sphere-with-moment", **size, "moment_of_inertia": moment}
+    if body.shape.axis is not None:
+        return {"kind": "cylinder", **size, "inertia_ratio": ratio}
     if ratio == SOLID_SPHERE:
         return {"kind": "solid-sphere", **size}
     if ratio == HOLLOW_SPHERE:
@@ -72,45 +77,76 @@ def _body(body: Body) -> Words:
 
 
 def _support(support: Support) -> Words:
-    if type(support.surface) is not Plane:
-        raise _wordless("support", support.surface)
-    words: Words = {"kind": "plane", "tilt": _number(support.tilt, "support.tilt")}
-    if support.surface.rim is not None:
-        words["rim"] = _number(support.surface.rim, "support.rim")
+    words = _one_of(_SURFACES, support.surface, "support")
+    words["tilt"] = _number(support.tilt, "support.tilt")
     if support.friction is not None:
         words["friction"] = _number(support.friction, "support.friction")
     return {**words, "motion": _one_of(_MOTIONS, support.motion, "support.motion")}
 
 
+def _plane(plane: Plane, key: str) -> Words:
+    rim = {} if plane.rim is None else {"rim": _number(plane.rim, f"{key}.rim")}
+    return {"kind": "plane", **rim}
+
+
+def _cylinder(cylinder: Cylinder, key: str) -> Words:
+    return {"kind": "cylinder", "radius": _number(cylinder.radius, f"{key}.radius"), "side": cylinder.side}
+
+
+def _moving(kind: str, motion: Any, key: str) -> Words:
+    """Return the words of a motion that is its numbers."""
+    numbers = {part.name: _number(getattr(motion, part.name), f"{key}.{part.name}") for part in fields(motion)}
+    return {"kind": kind, **numbers}
+
+
+def _drag(load: Drag, key: str) -> Words:
+    air = {} if load.air_rate == 0 else {"air": _number(load.air_rate, f"{key}.air")}
+    return {"kind": "drag", "coefficient": _number(load.coefficient, f"{key}.coefficient"), **air}
+
+
+_SURFACES: dict[type, Callable[[Any, str], Words]] = {Plane: _plane, Cylinder: _cylinder}
 _MOTIONS: dict[type, Callable[[Any, str], Words]] = {
     Fixed: lambda motion, key: {"kind": "fixed"},  # noqa: ARG005
-    Spin: lambda motion, key: {"kind": "spin", "rate": _number(motion.rate, f"{key}.rate")},
+    Spin: lambda motion, key: _moving("spin", motion, key),
+    UnevenSpin: lambda motion, key: _moving("uneven-spin", motion, key),
+    Wobble: lambda motion, key: _moving("wobble", motion, key),
 }
 _LOADS: dict[type, Callable[[Any, str], Words]] = {
     Force: lambda load, key: {"kind": "force", "value": _numbers(load.value, f"{key}.value")},
     Torque: lambda load, key: {"kind": "torque", "value": _numbers(load.value, f"{key}.value")},
-    Drag: lambda load, key: {"kind": "drag", "coefficient": _number(load.coefficient, f"{key}.coefficient")},
+    Drag: _drag,
 }
 
 
 def _start(system: RollingSystem, start: State) -> Words:
     if start.time != 0:
         raise ScenarioError("start.time", "must be 0: a scenario starts its clock", start.time)
-    words: Words = {
-        "position": _numbers(start.position[:2], "start.position"),
-        "velocity": _numbers(start.velocity[:2], "start.velocity"),
-    }
-    if tuple(start.orientation) != (1.0, 0.0, 0.0, 0.0):
+    words = _place(system, start)
+    if tuple(start.orientation) != (1.0, 0.0, 0.0, 0.0) or system.body.shape.axis is not None:
         words["orientation"] = _numbers(start.orientation, "start.orientation")
     turning = _numbers(start.angular_velocity, "start.angular_velocity")
+    normal = settle(system, 0.0, Vector(*start.position), Quaternion(*start.orientation)).normal
+    spin = _number(normal.dot(Vector(*start.angular_velocity)), "start.spin")
     # The spin says it all where the rest of the angular velocity follows from it to the last digit.
     try:
-        follows = system.place(**words, spin=turning[2])
+        follows = system.place(**words, spin=spin)
     except InvalidValueError as error:
         raise ScenarioError(f"start.{error.key}", error.rule, error.received, error.remedy) from None
     if replace(follows, orientation=start.orientation) == replace(start, time=0.0):
-        return {**words, "spin": turning[2]}
+        return {**words, "spin": spin}
     return {**words, "angular_velocity": turning}
+
+
+def _place(system: RollingSystem, start: State) -> Words:
+    """Return where the body is and how fast, in the surface's own coordinates."""
+    surface, begin = system.support.surface, system.support.motion.at(0.0)
+    centre = begin.rotation.transpose @ (Vector(*start.position) - begin.origin)
+    V = begin.rotation.transpose @ Vector(*start.velocity)
+    along = [V.dot(direction) for direction in surface.directions(centre)]
+    return {
+        "position": _numbers(surface.coordinates_of(centre), "start.position"),
+        "velocity": _numbers(along, "start.velocity"),
+    }
 
 
 def _one_of(words: dict[type, Callable[[Any, str], Words]], thing: Any, key: str) -> Words:
@@ -130,8 +166,10 @@ def _number(value: Any, key: str) -> float:
     return number
 
 
-def _numbers(values: Any, key: str) -> list[float]:
-    return [_number(value, f"{key}[{i}]") for i, value in enumerate(values)]
+def _numbers(values: Any, key: str) -> list[Any]:
+    return [
+        value.text if isinstance(value, Expression) else _number(value, f"{key}[{i}]") for i, value in enumerate(values)
+    ]
 
 
 def _wordless(key: str, thing: Any) -> ScenarioError:

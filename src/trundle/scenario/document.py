@@ -39,7 +39,7 @@ class ScenarioFile(Document):
 
     gravity: Gravity = Field(default=9.80665, description="g; 0 turns it off.")
     body: Annotated[Bodies, Field(discriminator="kind")]
-    support: Supports
+    support: Annotated[Supports, Field(discriminator="kind")]
     start: Start
     # Two keys have other names in Python, where `loads` reads a text, as in `json`, and `run` runs it.
     applied_loads: tuple[Annotated[Loads, Field(discriminator="kind")], ...] = Field(default=(), alias="loads")
@@ -107,7 +107,10 @@ class ScenarioFile(Document):
             remedy = f"It is {distance:g} m from the axis and the rim is at {float(rim):g} m."
             received = written(self.start.position)
             raise InvalidValueError("start.position", "must lie inside the rim", received, remedy)
-        if self.start.angular_velocity is not None:
+        kinds = self.support.build().surface.coordinates
+        for i, (part, kind) in enumerate(zip(self.start.position, kinds, strict=True)):
+            Measure(kind)(part, f"start.position[{i}]")
+        if self.start.angular_velocity is not None or self.body.build().shape.axis is not None:
             self.start_state()  # it knows whether the start rolls
         return self
 
@@ -136,7 +139,8 @@ class ScenarioFile(Document):
 
         with _named_in(""):
             body, support = self.body.build(), self.support.build()
-            return RollingSystem(body, support, tuple(load.build() for load in self.applied_loads), float(self.gravity))
+            loads = tuple(load.build(support.motion.mean_rate) for load in self.applied_loads)
+            return RollingSystem(body, support, loads, float(self.gravity))
 
     def start_state(self) -> State:
         """Return the state at time 0.

@@ -12,6 +12,7 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from ..errors import InvalidValueError, did_you_mean
+from ..mechanics.expressions import Expression, is_formula
 from ..units import UNITS, to_si
 
 
@@ -142,6 +143,51 @@ class Measure:
             "anyOf": [number, text],
             "description": described + (", or a text with a unit." if unit else "."),
         }
+
+
+@dataclass(frozen=True)
+class Coordinate(Measure):
+    """The type of a coordinate of a surface, a length or an angle; which, the surface says later.
+
+    Examples
+    --------
+    >>> Coordinate("length")("10 cm"), round(Coordinate("length")("180 deg"), 6)
+    (0.1, 3.141593)
+    """
+
+    def __call__(self, value: Any, key: str = "") -> Quantity:
+        """Return the checked number."""
+        try:
+            return super().__call__(value, key)
+        except InvalidValueError:
+            try:
+                return Measure("angle")(value, key)
+            except InvalidValueError:
+                pass
+            raise
+
+
+@dataclass(frozen=True)
+class Varying(Measure):
+    """The type of a number that may also be a formula in the time, in SI.
+
+    Examples
+    --------
+    >>> Varying("force")("0.1*sin(3*t)"), Varying("force")("0.1 N")
+    ('0.1*sin(3*t)', 0.1)
+    """
+
+    def __call__(self, value: Any, key: str = "") -> Any:
+        """Return the checked number, or the text of the checked formula."""
+        if not is_formula(value):
+            return super().__call__(value, key)
+        return Expression.parse(value, ("t",), key).text
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        """Return what an editor may know of it: a number, or any text."""
+        described = super().__get_pydantic_json_schema__(schema, handler)
+        formula = {"type": "string", "description": "A formula in the time t in s, SI.", "examples": ["0.1*sin(3*t)"]}
+        return {**described, "anyOf": [*described["anyOf"], formula]}
 
 
 @dataclass(frozen=True)

@@ -6,12 +6,13 @@ A new body, surface, motion or load is one class here with `kind` and `build`, i
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from ..errors import InvalidValueError
-from .fields import Measure, Measures, written
+from .fields import Coordinate, Measure, Measures, Varying, written
 
 if TYPE_CHECKING:
     from ..mechanics.bodies import Body
@@ -42,6 +43,11 @@ def _check_tilt(tilt: float, received: Any) -> None:
     raise InvalidValueError("", "must lie in (-90 deg, 90 deg)", received, remedy or "At 90 deg the plane is a wall.")
 
 
+def _check_any_tilt(tilt: float, received: Any) -> None:
+    if not abs(tilt) <= math.pi:
+        raise InvalidValueError("", "must lie in [-180 deg, 180 deg]", received, "90 deg lays the axis level.")
+
+
 def _check_inertia_ratio(ratio: float, received: Any) -> None:
     # I ≤ (2/3) m a² for any mass inside a sphere: I is a third of the trace, (2/3) Σ m r² with r ≤ a.
     if not 0 < ratio <= 2 / 3 * (1 + 1e-12):
@@ -49,10 +55,33 @@ def _check_inertia_ratio(ratio: float, received: Any) -> None:
         raise InvalidValueError("", "must lie in (0, 2/3]", received, remedy)
 
 
+def _check_cylinder_ratio(ratio: float, received: Any) -> None:
+    if not 0 < ratio <= 1 + 1e-12:
+        raise InvalidValueError("", "must lie in (0, 1]", received, "1 is a hoop; no cylinder has more.")
+
+
+@dataclass(frozen=True)
+class Air(Measure):
+    """How the air turns: a rate, or one of two words."""
+
+    def __call__(self, value: Any, key: str = "") -> Any:
+        """Return the checked rate or word."""
+        return value if value in AIRS else super().__call__(value, key)
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
+        """Return what an editor may know of it."""
+        described = super().__get_pydantic_json_schema__(schema, handler)
+        return {**described, "anyOf": [{"enum": list(AIRS)}, *described["anyOf"]]}
+
+
+AIRS = ("still", "turning")
+
 Radius = Annotated[float, Measure("length", "positive")]
 Mass = Annotated[float, Measure("mass", "positive")]
+CylinderRatio = Annotated[float, Measure("number", "positive", _check_cylinder_ratio, "0.5")]
 Ratio = Annotated[float, Measure("number", "positive", _check_inertia_ratio, "0.4")]
 Moment = Annotated[float, Measure("inertia", "positive")]
+AnyTilt = Annotated[float, Measure("angle", check=_check_any_tilt)]
 Tilt = Annotated[float, Measure("angle", check=_check_tilt)]
 Rim = Annotated[float, Measure("length", "positive", example='"0.5 m"')]
 Friction = Annotated[float, Measure("number", "not negative", example="0.3")]
@@ -60,11 +89,15 @@ Rate = Annotated[float, Measure("angular velocity")]
 Coefficient = Annotated[float, Measure("damping", "not negative")]
 Duration = Annotated[float, Measure("time", "positive")]
 Step = Annotated[float, Measure("time", "positive", example='"10 ms"')]
-Force3 = Annotated[tuple[float, float, float], Measures(Measure("force"), 3)]
-Torque3 = Annotated[tuple[float, float, float], Measures(Measure("torque"), 3)]
+Force3 = Annotated[tuple[float | str, float | str, float | str], Measures(Varying("force"), 3)]
+Torque3 = Annotated[tuple[float | str, float | str, float | str], Measures(Varying("torque"), 3)]
 Rate3 = Annotated[tuple[float, float, float], Measures(Measure("angular velocity", example='"2 rad/s"'), 3)]
-Place2 = Annotated[tuple[float, float], Measures(Measure("length", example='"10 cm"'), 2)]
+Place2 = Annotated[tuple[float, float], Measures(Coordinate("length", example='"10 cm"'), 2)]
 Velocity2 = Annotated[tuple[float, float] | str, Measures(Measure("velocity"), 2, "co-rotating")]
+Angle = Annotated[float, Measure("angle")]
+Share = Annotated[float, Measure("number", example="0.01")]
+PositiveRate = Annotated[float, Measure("angular velocity", "positive")]
+AirRate = Annotated[float | str, Air("angular velocity")]
 Turn4 = Annotated[tuple[float, float, float, float], Measures(Measure("number", example="1.0"), 4)]
 
 
@@ -139,7 +172,54 @@ class MomentSphere(Table):
         return Body(float(self.mass), Isotropic(float(self.moment_of_inertia)), Sphere(float(self.radius)))
 
 
-Bodies = SolidSphere | HollowSphere | AnySphere | MomentSphere
+class CylinderBody(Table):
+    """A cylinder that rolls straight on its round side, k = 1/2 where it is solid."""
+
+    kind: Literal["cylinder"]
+    radius: Radius
+    mass: Mass
+    inertia_ratio: CylinderRatio = Field(default=0.5, description="k = I/(m a²) about its axis, at most a hoop's 1.")
+
+    def build(self) -> Body:
+        """Return the body."""
+        from ..mechanics.bodies import Body
+
+        return Body.cylinder(float(self.radius), float(self.mass), float(self.inertia_ratio))
+
+
+class Hoop(Table):
+    """A hoop or thin pipe that rolls straight, k = 1."""
+
+    kind: Literal["hoop"]
+    radius: Radius
+    mass: Mass
+
+    def build(self) -> Body:
+        """Return the body."""
+        from ..mechanics.bodies import Body
+
+        return Body.hoop(float(self.radius), float(self.mass))
+
+
+class WeightedCylinder(Table):
+    """A cylinder with a small weight fixed off its axis; with roll 0 the weight is on top."""
+
+    kind: Literal["weighted-cylinder"]
+    radius: Radius
+    mass: Mass = Field(description="Without the weight.")
+    inertia_ratio: CylinderRatio = Field(default=0.5, description="k of the cylinder without the weight.")
+    weight: Mass = Field(description="Mass of the weight.", examples=["50 g"])
+    distance: Radius = Field(description="Of the weight from the axis.", examples=["30 mm"])
+
+    def build(self) -> Body:
+        """Return the body."""
+        from ..mechanics.bodies import Body
+
+        numbers = (self.radius, self.mass, self.weight, self.distance, self.inertia_ratio)
+        return Body.weighted_cylinder(*map(float, numbers))
+
+
+Bodies = SolidSphere | HollowSphere | AnySphere | MomentSphere | CylinderBody | Hoop | WeightedCylinder
 
 
 # --- supports and how they move -------------------------------------------------------------------------
@@ -170,7 +250,36 @@ class SpinMotion(Table):
         return Spin(float(self.rate))
 
 
-Motions = FixedMotion | SpinMotion
+class UnevenSpinMotion(Table):
+    """A turn about the axis whose rate varies a little, rate (1 + variation sin(variation_rate t))."""
+
+    kind: Literal["uneven-spin"]
+    rate: Rate = Field(description="On the whole.", examples=["33.3 rpm"])
+    variation: Share = Field(description="As a share of the rate.", examples=[0.01])
+    variation_rate: PositiveRate = Field(description="Of the variation; the rate itself: once a turn.")
+
+    def build(self) -> Motion:
+        """Return the motion."""
+        from ..mechanics.motions import UnevenSpin
+
+        return UnevenSpin(float(self.rate), float(self.variation), float(self.variation_rate))
+
+
+class WobbleMotion(Table):
+    """A steady turn of a support that sits askew on its axle."""
+
+    kind: Literal["wobble"]
+    rate: Rate = Field(description="About the axle.", examples=["33.3 rpm"])
+    angle: Angle = Field(description="Between the axle and the support's own axis.", examples=["0.1 deg"])
+
+    def build(self) -> Motion:
+        """Return the motion."""
+        from ..mechanics.motions import Wobble
+
+        return Wobble(float(self.rate), float(self.angle))
+
+
+Motions = FixedMotion | SpinMotion | UnevenSpinMotion | WobbleMotion
 
 
 class PlaneSupport(Table):
@@ -192,49 +301,76 @@ class PlaneSupport(Table):
         return Support(surface, motion=self.motion.build(), tilt=float(self.tilt), friction=friction)
 
 
-Supports = PlaneSupport
+class CylinderSupport(Table):
+    """A circular cylinder about the third axis, rolled on from inside or outside; a tilt of 90 deg lays it down."""
+
+    kind: Literal["cylinder"]
+    radius: Radius
+    side: Literal["inside", "outside"] = "inside"
+    tilt: AnyTilt = Field(default=0.0, description="Angle of the axis to the vertical; 90 deg: a trough or a log.")
+    friction: Friction | None = Field(default=None, description="Coulomb coefficient; absent: never slips.")
+    motion: Annotated[Motions, Field(discriminator="kind")] = FixedMotion(kind="fixed")
+    rim: ClassVar[None] = None
+
+    def build(self) -> Support:
+        """Return the support."""
+        from ..mechanics.surfaces import Cylinder
+        from ..mechanics.system import Support
+
+        surface = Cylinder(float(self.radius), self.side)
+        friction = None if self.friction is None else float(self.friction)
+        return Support(surface, motion=self.motion.build(), tilt=float(self.tilt), friction=friction)
+
+
+Supports = PlaneSupport | CylinderSupport
 
 
 # --- loads ----------------------------------------------------------------------------------------------
 
 
+def _values(value: tuple[float | str, ...]) -> tuple[Any, ...]:
+    return tuple(part if isinstance(part, str) else float(part) for part in value)
+
+
 class ForceLoad(Table):
-    """A constant force on the centre of mass."""
+    """A force on the centre of mass, constant or given by formulas in the time t."""
 
     kind: Literal["force"]
     value: Force3 = Field(description="In the support frame, which does not turn with the support.")
 
-    def build(self) -> Load:
+    def build(self, support_rate: float = 0.0) -> Load:  # noqa: ARG002  only the air knows of it
         """Return the load."""
         from ..mechanics.loads import Force
 
-        return Force(tuple(map(float, self.value)))
+        return Force(_values(self.value))
 
 
 class TorqueLoad(Table):
-    """A constant torque about the centre of mass."""
+    """A torque about the centre of mass, constant or given by formulas in the time t."""
 
     kind: Literal["torque"]
     value: Torque3 = Field(description="In the support frame, which does not turn with the support.")
 
-    def build(self) -> Load:
+    def build(self, support_rate: float = 0.0) -> Load:  # noqa: ARG002  only the air knows of it
         """Return the load."""
         from ..mechanics.loads import Torque
 
-        return Torque(tuple(map(float, self.value)))
+        return Torque(_values(self.value))
 
 
 class DragLoad(Table):
-    """Linear drag in still air, the force -c V."""
+    """Linear drag, the force -c (V - that of the air)."""
 
     kind: Literal["drag"]
     coefficient: Coefficient
+    air: AirRate = Field(default="still", description='"still", "turning" with the support, or a rate of its own.')
 
-    def build(self) -> Load:
-        """Return the load."""
+    def build(self, support_rate: float = 0.0) -> Load:
+        """Return the load; air that turns with the support has its rate on the whole."""
         from ..mechanics.loads import Drag
 
-        return Drag(float(self.coefficient))
+        rates = {"still": 0.0, "turning": support_rate}
+        return Drag(float(self.coefficient), rates[self.air] if isinstance(self.air, str) else float(self.air))
 
 
 Loads = ForceLoad | TorqueLoad | DragLoad
@@ -246,11 +382,12 @@ Loads = ForceLoad | TorqueLoad | DragLoad
 class Start(Table):
     """Where the body is put down, and how it moves then."""
 
-    position: Place2 = Field(description="Of the centre over the support, in the support frame.")
-    velocity: Velocity2 = Field(default=(0.0, 0.0), description="Of the centre, support frame.")
+    position: Place2 = Field(description="Of the centre over a plane, x and y; on a cylinder its angle and height.")
+    velocity: Velocity2 = Field(default=(0.0, 0.0), description="Of the centre, along the two coordinates.")
     spin: Rate | None = Field(default=None, description="Angular velocity about the normal; the rest follows.")
     angular_velocity: Rate3 | None = Field(default=None, description="All of it, instead of spin.")
-    orientation: Turn4 = Field(default=(1.0, 0.0, 0.0, 0.0), description="Quaternion w, x, y, z.")
+    orientation: Turn4 | None = Field(default=None, description="Quaternion w, x, y, z; absent: not turned.")
+    roll: Angle = Field(default=0.0, description="Of a cylinder: how far it has rolled on since its mark was on top.")
 
     @model_validator(mode="after")
     def _check(self) -> Start:
@@ -258,7 +395,7 @@ class Start(Table):
             remedy = "Give `spin` and the rest follows from no slip, or all three components and no `spin`."
             shown = written(self.angular_velocity)
             raise InvalidValueError("angular_velocity", "must not stand beside `spin`", shown, remedy)
-        length = math.hypot(*self.orientation)
+        length = 1.0 if self.orientation is None else math.hypot(*self.orientation)
         if not 1e-150 < length < 1e150:
             shown = written(self.orientation)
             remedy = "Write [1, 0, 0, 0] for a body that is not turned."
@@ -274,7 +411,8 @@ class Start(Table):
             "velocity": velocity,
             "spin": None if self.spin is None else float(self.spin),
             "angular_velocity": turning,
-            "orientation": tuple(map(float, self.orientation)),
+            "orientation": None if self.orientation is None else tuple(map(float, self.orientation)),
+            "roll": float(self.roll),
         }
 
 
@@ -300,8 +438,16 @@ KINDS: dict[str, dict[str, type[Table]]] = {
         "hollow-sphere": HollowSphere,
         "sphere": AnySphere,
         "sphere-with-moment": MomentSphere,
+        "cylinder": CylinderBody,
+        "hoop": Hoop,
+        "weighted-cylinder": WeightedCylinder,
     },
-    "support": {"plane": PlaneSupport},
-    "support.motion": {"fixed": FixedMotion, "spin": SpinMotion},
+    "support": {"plane": PlaneSupport, "cylinder": CylinderSupport},
+    "support.motion": {
+        "fixed": FixedMotion,
+        "spin": SpinMotion,
+        "uneven-spin": UnevenSpinMotion,
+        "wobble": WobbleMotion,
+    },
     "loads": {"force": ForceLoad, "torque": TorqueLoad, "drag": DragLoad},
 }

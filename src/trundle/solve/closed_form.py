@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from ..errors import OutOfDomainError
-from ..mechanics.algebra import Vector
+from ..mechanics.algebra import Quaternion, Vector
+from ..mechanics.contact import touch
 from ..mechanics.system import RollingSystem, State
-from .exact import CLOSED_FORMS, SphereOnPlane, closed_form
+from .exact import CLOSED_FORMS, ClosedForm, SphereOnPlane, closed_form
 from .monodromy import Monodromy
 from .orientation import orientation, periodic_orientation
 from .samples import Array, Progress, Samples, ran_off
@@ -53,22 +54,18 @@ def solve(
     del tolerance
     motion = closed_form(system, start)
     if motion is None:
-        raise OutOfDomainError(
-            " ".join(
-                f"The closed form {form.equation} ({form.name}) covers {form.domain}. Outside it: "
-                f"{'; '.join(form.outside(system))}."
-                for form in CLOSED_FORMS
-            )
-            + ' Use method="taylor" or method="runge-kutta".'
-        )
+        refusals = " ".join(form.refusal(system, start) for form in CLOSED_FORMS)
+        raise OutOfDomainError(f'{refusals} Use method="taylor" or method="runge-kutta".')
     end = _first_exit(motion, system.support.surface.rim, float(times[-1]) - start.time)
     if end is not None:
         times = np.append(times[times < start.time + end], start.time + end)
-    samples = _evaluate(motion, start, times, progress)
+    samples = _evaluate(system, motion, start, times, progress)
     return samples if end is None else samples.ended(ran_off(start.time + end, system.support.surface.rim))
 
 
-def _evaluate(motion: SphereOnPlane, start: State, times: Array, progress: Progress | None) -> Samples:
+def _evaluate(
+    system: RollingSystem, motion: ClosedForm, start: State, times: Array, progress: Progress | None
+) -> Samples:
     shape = (times.size, 3)
     position, velocity, turning, force = (np.empty(shape) for _ in range(4))
     for first in range(0, times.size, _LOOKS_AT_ONCE):
@@ -78,20 +75,20 @@ def _evaluate(motion: SphereOnPlane, start: State, times: Array, progress: Progr
             array[part] = vector.array()
         if progress is not None:
             progress(0.5 * min(1.0, (first + _LOOKS_AT_ONCE) / times.size))
-    contact = position - np.array([0.0, 0.0, float(motion.radius)])
     q = orientations(motion, start, times)
+    contact = position + touch(system, times, Vector.of(position), Quaternion.of(q)).offset.array()
     if progress is not None:
         progress(1.0)
     return Samples(times, position, contact, velocity, turning, q, force)
 
 
-def orientations(motion: SphereOnPlane, start: State, times: Array) -> Array:
+def orientations(motion: ClosedForm, start: State, times: Array) -> Array:
     """Return the orientation at given times; where the motion repeats, any time costs what one circle costs.
 
     Parameters
     ----------
-    motion : SphereOnPlane
-        The closed form.
+    motion : ClosedForm
+        The motion.
     start : State
         Where it starts.
     times : array (n,)
@@ -111,6 +108,12 @@ def orientations(motion: SphereOnPlane, start: State, times: Array) -> Array:
     >>> orientations(SphereOnPlane.of(system, start), start, np.array([0.0]))[0].tolist()
     [1.0, 0.0, 0.0, 0.0]
     """
+    straight = motion.straight_turn(times - start.time)
+    if straight is not None:
+        axis, angle = straight
+        half = 0.5 * np.asarray(angle)
+        turn = Quaternion(np.cos(half), *(axis * np.sin(half)))
+        return (turn * Quaternion(*start.orientation)).array()
 
     def angular_velocity(t: Array) -> Array:
         Omega = motion.motion_at(t)[2]
@@ -119,7 +122,8 @@ def orientations(motion: SphereOnPlane, start: State, times: Array) -> Array:
     def absolute(t: Array) -> Array:
         return angular_velocity(t - start.time)
 
-    if times[-1] - start.time > _PERIODS_WORTH_A_MONODROMY * motion.period and motion.torque[2] == 0:
+    long = times[-1] - start.time > _PERIODS_WORTH_A_MONODROMY * motion.period
+    if long and isinstance(motion, SphereOnPlane) and motion.torque[2] == 0:
         return periodic_orientation(angular_velocity, _monodromy(motion), times, start.orientation, start.time)
     return orientation(absolute, times, start.orientation, start.time)
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.invariants import Record, invariants_of
 from ..mechanics.system import RollingSystem, State
-from ..solve.exact import SphereOnPlane, closed_form
+from ..solve.exact import ClosedForm, SphereOnPlane, closed_form
 from ..solve.methods import solver, tolerance_of
 from ..solve.samples import Samples
 from .card import Card, CardFigure
@@ -74,7 +74,7 @@ def card(system: RollingSystem, start: State, samples: Samples, method: str, tit
     return Card(title, _described(method, motion), tuple(figures))
 
 
-def _described(method: str, motion: SphereOnPlane | None) -> str:
+def _described(method: str, motion: ClosedForm | None) -> str:
     if method == "exact" and motion is not None:
         return f"closed form {motion.equation}, {motion.name} ({motion.source})"
     name = {"taylor": "Taylor series (heyoka)", "runge-kutta": "Runge-Kutta DOP853 (SciPy)"}[method]
@@ -172,9 +172,9 @@ def _drift(values: Any, size: float) -> float:
     return 0.0 if change == 0 else float(change / max(size, 1e-300))
 
 
-def _guiding_centre(motion: SphereOnPlane | None, start: State, at: Samples, method: str) -> Iterator[CardFigure]:
+def _guiding_centre(motion: ClosedForm | None, start: State, at: Samples, method: str) -> Iterator[CardFigure]:
     """Check centre and radius of the circle from positions and velocities: integrals on a turning plane."""
-    if motion is None or not motion.has_guiding_centre:
+    if not isinstance(motion, SphereOnPlane) or not motion.has_guiding_centre:
         return
     t = at.time - start.time
     kappa, drift = motion.kappa, complex(*motion.drift_velocity)
@@ -190,7 +190,7 @@ def _guiding_centre(motion: SphereOnPlane | None, start: State, at: Samples, met
 
 
 def _cross_check(
-    system: RollingSystem, start: State, at: Samples, method: str, motion: SphereOnPlane | None
+    system: RollingSystem, start: State, at: Samples, method: str, motion: ClosedForm | None
 ) -> Iterator[CardFigure]:
     """Compare a closed form with a numerical method, whichever of the two made the run."""
     if motion is None:
@@ -226,10 +226,10 @@ def _largest(array: Array) -> float:
 
 
 def _circle(
-    system: RollingSystem, motion: SphereOnPlane | None, start: State, samples: Samples, method: str
+    system: RollingSystem, motion: ClosedForm | None, start: State, samples: Samples, method: str
 ) -> Iterator[CardFigure]:
     """Measure rate, centre and drift from the positions alone, beside the formula's."""
-    if motion is None or not motion.has_guiding_centre:
+    if not isinstance(motion, SphereOnPlane) or not motion.has_guiding_centre:
         return
     t, path = _even_path(system, start, samples, method, abs(float(motion.kappa)))
     found = measure(t, path) if motion.circle_radius > 0 else None
@@ -284,12 +284,14 @@ def _pair(value: complex, unit: str) -> str:
 
 def _contact_force(system: RollingSystem, samples: Samples) -> Iterator[CardFigure]:
     """Say what friction the motion needs, and whether the support pushes rather than pulls."""
-    normal = _normals(system, samples)
+    normal = samples.normals(system)
     N = np.einsum("ni,ni->n", samples.contact_force, normal)
     f = np.linalg.norm(samples.contact_force - N[:, None] * normal, axis=1)
     least = int(np.argmin(N))
+    pushed = bool(N[least] > 0)
+    held = "" if pushed else "; a support cannot pull: it would come off"
     yield CardFigure(
-        "normal force", float(N[least]), "N", None, bool(N[least] > 0), f"least, at t = {samples.time[least]:.6g} s"
+        "normal force", float(N[least]), "N", None, pushed, f"least, at t = {samples.time[least]:.6g} s{held}"
     )
     needed = np.where(N > 0, f / np.where(N > 0, N, 1.0), np.where(f > 0, np.inf, 0.0))
     worst = int(np.argmax(needed))
@@ -300,13 +302,6 @@ def _contact_force(system: RollingSystem, samples: Samples) -> Iterator[CardFigu
     else:
         remedy = "" if needed[worst] <= mu else "; it would slip"
         yield _checked("friction coefficient needed", float(needed[worst]), float(mu), note + remedy)
-
-
-def _normals(system: RollingSystem, at: Samples) -> Array:
-    from ..mechanics.contact import touch
-
-    normal = touch(system, at.time, Vector.of(at.contact), Quaternion.of(at.orientation)).normal
-    return np.broadcast_to(normal.array(), at.position.shape)
 
 
 __all__ = ["Card", "CardFigure", "card"]

@@ -1,18 +1,20 @@
 """Closed forms, one file each, with domain, source and equation number.
 
-A new closed form is one class with `of`, `outside`, `motion_at`, `period` and the facts `name`, `equation`,
-`source`, `domain`; add it to `CLOSED_FORMS`, and inherit the contract test in `tests/contracts`.
+A new closed form is one class derived from `ClosedForm`; add it to `CLOSED_FORMS`, and inherit the contract test in
+`tests/contracts`.
 """
 
 from __future__ import annotations
 
 from ...mechanics.system import RollingSystem, State
+from .base import ClosedForm
+from .cylinder_on_cylinder import CylinderOnCylinder
 from .sphere_on_plane import SphereOnPlane
 
-CLOSED_FORMS = (SphereOnPlane,)
+CLOSED_FORMS: tuple[type[ClosedForm], ...] = (SphereOnPlane, CylinderOnCylinder)
 
 
-def closed_form(system: RollingSystem, start: State) -> SphereOnPlane | None:
+def closed_form(system: RollingSystem, start: State) -> ClosedForm | None:
     """Return the closed form that covers a system, if there is one.
 
     Parameters
@@ -24,7 +26,7 @@ def closed_form(system: RollingSystem, start: State) -> SphereOnPlane | None:
 
     Returns
     -------
-    SphereOnPlane or None
+    ClosedForm or None
         The motion, or None where no closed form applies.
 
     Examples
@@ -35,9 +37,9 @@ def closed_form(system: RollingSystem, start: State) -> SphereOnPlane | None:
     'T5'
     """
     for form in CLOSED_FORMS:
-        if not form.outside(system):
+        if not form.outside(system, start):
             return form.of(system, start)
     return None
 
 
-__all__ = ["CLOSED_FORMS", "SphereOnPlane", "closed_form"]
+__all__ = ["CLOSED_FORMS", "ClosedForm", "CylinderOnCylinder", "SphereOnPlane", "closed_form"]

@@ -12,13 +12,14 @@ from ...mechanics.loads import constant_part
 from ...mechanics.scalars import Scalar, is_number, is_zero, leaves, namespace
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
+from .base import ClosedForm
 from .phi import Complex, exponentials, phase, quotient_times
 
 _BLOCK, _BLOCKS_AT_ONCE = 2048, 16  # samples: a block's table stays in the processor's cache
 
 
 @dataclass(frozen=True)
-class SphereOnPlane:
+class SphereOnPlane(ClosedForm):
     """The motion ζ(t) = ζ₀ + t φ₁(λt) ζ̇₀ + t² φ₂(λt) φ with λ = iκ − γ, where ζ = x + iy is the centre (T5).
 
     Every number may be a float, or an array of members that broadcasts against the times: a thousand balls are
@@ -101,12 +102,7 @@ class SphereOnPlane:
         >>> round(motion.position_at(1.0).x / (9.80665 * 0.5 / 2), 12)  # a shell gains (3/5) g sin α
         0.6
         """
-        outside = list(cls.outside(system))
-        if outside:
-            raise OutOfDomainError(
-                f"The closed form {cls.equation} ({cls.name}) covers {cls.domain}. Outside it: {'; '.join(outside)}. "
-                'Use method="taylor" or method="runge-kutta".'
-            )
+        cls.check_domain(system, start)
         x, y, _ = start.position
         vx, vy, _ = start.velocity
         force, torque, drag = constant_part(system.all_loads, system.body.mass)
@@ -123,14 +119,16 @@ class SphereOnPlane:
             drag=drag,
         )
 
-    @staticmethod
-    def outside(system: RollingSystem) -> list[str]:
+    @classmethod
+    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
         """Name what of a system lies outside the domain.
 
         Parameters
         ----------
         system : RollingSystem
             Any system.
+        start : State, optional
+            Its start; every one that rolls lies in the domain.
 
         Returns
         -------
@@ -322,6 +320,18 @@ class SphereOnPlane:
             Vector(Omega.re, Omega.im, spin),
             Vector(R.re, R.im, 0.0 if is_zero(fz) else -fz),
         )
+
+    def straight_turn(self, t: Any) -> tuple[Vector, Any] | None:
+        """Return the axis and the angle x/a by which the ball has turned, where it rolls straight on a fixed plane."""
+        (vx, vy), phi = self.velocity, self.phi
+        fixed = is_zero(self.rate) and is_zero(self.spin) and is_zero(self.torque[2])
+        if not (fixed and all(map(is_number, (vx, vy, phi.re, phi.im))) and vx * phi.im == vy * phi.re):
+            return None
+        x, y = (vx, vy) if vx or vy else (phi.re, phi.im)
+        size = math.hypot(x, y) or 1.0
+        along = Vector(x / size, y / size, 0.0)
+        gone = self.position_at(t) - Vector(*self.position, self.radius)
+        return Vector(-along.y, along.x, 0.0), gone.dot(along) / self.radius
 
     def path_on_grid(self, step: float, count: int, out: Any = None) -> Any:
         """Return the path of this one ball at 0, h, 2h, ...: the fastest way to many samples.

@@ -1,0 +1,67 @@
+"""What every closed form is: facts about itself, a domain, a motion."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Self
+
+from ...errors import OutOfDomainError
+from ...mechanics.algebra import Vector
+from ...mechanics.system import RollingSystem, State
+
+
+class ClosedForm:
+    """A motion known as a formula of the time since the start."""
+
+    name: ClassVar[str]
+    equation: ClassVar[str]
+    source: ClassVar[str]
+    domain: ClassVar[str]
+
+    @classmethod
+    def of(cls, system: RollingSystem, start: State) -> Self:
+        """Read the closed form's numbers from a system and a start; raise OutOfDomainError outside its domain."""
+        raise NotImplementedError
+
+    @classmethod
+    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:
+        """Name what of a system, and of a start where one is given, lies outside the domain."""
+        raise NotImplementedError
+
+    @classmethod
+    def refusal(cls, system: RollingSystem, start: State | None = None) -> str:
+        """Say what the closed form covers and what lies outside; nothing where the system lies in the domain."""
+        outside = cls.outside(system, start)
+        if not outside:
+            return ""
+        return f"The closed form {cls.equation} ({cls.name}) covers {cls.domain}. Outside it: {'; '.join(outside)}."
+
+    @classmethod
+    def check_domain(cls, system: RollingSystem, start: State) -> None:
+        """Refuse a system outside the domain by name."""
+        refusal = cls.refusal(system, start)
+        if refusal:
+            raise OutOfDomainError(f'{refusal} Use method="taylor" or method="runge-kutta".')
+
+    def motion_at(self, t: Any) -> tuple[Vector, Vector, Vector, Vector]:
+        """Return position, velocity, angular velocity and contact force at a time since the start, s."""
+        raise NotImplementedError
+
+    @property
+    def period(self) -> Any:
+        """Time after which the motion repeats, s; infinite where it does not."""
+        raise NotImplementedError
+
+    @property
+    def has_guiding_centre(self) -> bool:
+        """Whether the body circles steadily about a point."""
+        return False
+
+    @property
+    def sensitivity(self) -> float:
+        """How many times more than it shows a rounding of the start may show later; above 1 near a separatrix."""
+        return 1.0
+
+    def straight_turn(self, t: Any) -> tuple[Vector, Any] | None:
+        """Return the fixed axis about which the body has turned and the angle, rad, where the position gives them."""
+        del t
+        return None  # noqa: RET501

@@ -1,0 +1,355 @@
+"""T6: a cylinder or ball that rolls round inside or outside a cylinder, across its axis: the pendulum."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from ...mechanics.algebra import E_Z, Vector
+from ...mechanics.loads import constant_part
+from ...mechanics.scalars import Scalar, is_number, less, namespace
+from ...mechanics.surfaces import Cylinder
+from ...mechanics.system import RollingSystem, State
+from .base import ClosedForm
+from .jacobi import elliptic
+from .phi import phase
+
+_DIGITS = 60  # for the few constants: near the separatrix they are small differences
+_ASIDE = 1e-12  # share of the start's speed, or of the load, that may point along the axis by rounding
+
+
+@dataclass(frozen=True)
+class CylinderOnCylinder(ClosedForm):
+    """The motion (1 + k) ℓ θ̈ = −(G/m) sin θ of the centre at ℓ from the axis, θ from the direction of the pull G (T6).
+
+    Swinging, going round and the separatrix between them are one formula each of Jacobi's functions of time. The
+    steady turning of the larger cylinder changes Ω, not the path. Every number may be a float or an array of members.
+
+    Parameters
+    ----------
+    radius, mass, inertia_ratio : float or array
+        a in m, m in kg, k = I/(m a²), of the body that rolls.
+    track_radius : float or array
+        b of the cylinder that it rolls on, m.
+    side : float or array
+        +1 outside, −1 inside: ℓ = b + side·a.
+    rate : float or array
+        ω of that cylinder about its axis, rad/s.
+    angle, angular_rate : float or array
+        θ and θ̇ at t = 0, rad and rad/s, positive from the first axis towards the second.
+    height : float or array
+        Of the centre along the axis, m.
+    force : pair of float or array
+        The pull across the axis, weight included, N; its size is G.
+
+    Examples
+    --------
+    A hoop swings more slowly than a solid ball, here by little enough to be a harmonic oscillator:
+
+    >>> swing = CylinderOnCylinder(0.1, 1.0, 1.0, 1.1, -1.0, 0.0, 1e-6, 0.0, 0.0, (9.80665, 0.0))
+    >>> round(swing.period / (2 * math.pi * math.sqrt(2 / 9.80665)), 9)
+    1.0
+    """
+
+    radius: Scalar
+    mass: Scalar
+    inertia_ratio: Scalar
+    track_radius: Scalar
+    side: Scalar
+    rate: Scalar
+    angle: Scalar
+    angular_rate: Scalar
+    height: Scalar = 0.0
+    force: tuple[Scalar, Scalar] = (0.0, 0.0)
+
+    name = "cylinder or ball on a cylinder"
+    equation = "T6"
+    source = "Abramowitz and Stegun, Handbook of Mathematical Functions (1964), chapter 16; theory page, section 5"
+    domain = (
+        "a cylinder, hoop or ball with the same inertia about every axis that rolls inside or outside a cylinder, in "
+        "the plane across its axis, the cylinder fixed or turning steadily, under gravity and constant force in that "
+        "plane"
+    )
+
+    @classmethod
+    def of(cls, system: RollingSystem, start: State) -> CylinderOnCylinder:
+        """Read the closed form's numbers from a system and a start.
+
+        Parameters
+        ----------
+        system : RollingSystem
+            Must lie in the domain.
+        start : State
+            A start that rolls, in the plane across the axis.
+
+        Returns
+        -------
+        CylinderOnCylinder
+            The motion; its t = 0 is the start's time.
+
+        Raises
+        ------
+        OutOfDomainError
+            If the system or the start lies outside the domain.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> trough = tr.Support(tr.Cylinder("50 cm"), tilt="90 deg")
+        >>> system = tr.RollingSystem(tr.Body.cylinder("5 cm", "1 kg"), trough)
+        >>> round(CylinderOnCylinder.of(system, system.place(("60 deg", 0.0))).period, 6)
+        1.768982
+        """
+        cls.check_domain(system, start)
+        surface: Any = system.support.surface
+        (fx, fy, _), _, _ = constant_part(system.all_loads, system.body.mass)
+        r, V = Vector(*start.position), Vector(*start.velocity)
+        length = surface.radius + surface.sign * system.body.radius
+        pull = (fx, fy) if (fx, fy) != (0, 0) else (1.0, 0.0)
+        return cls(
+            radius=system.body.radius,
+            mass=system.body.mass,
+            inertia_ratio=system.body.inertia_ratio,
+            track_radius=surface.radius,
+            side=surface.sign,
+            rate=system.support.motion.steady_rate,
+            angle=math.atan2(pull[0] * r.y - pull[1] * r.x, pull[0] * r.x + pull[1] * r.y),
+            angular_rate=(r.x * V.y - r.y * V.x) / (math.hypot(r.x, r.y) * length),
+            height=r.z,
+            force=(fx, fy),
+        )
+
+    @classmethod
+    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:
+        """Name what of a system, and of a start where one is given, lies outside the domain.
+
+        Parameters
+        ----------
+        system : RollingSystem
+            Any system.
+        start : State, optional
+            Its start.
+
+        Returns
+        -------
+        list of str
+            Empty where the closed form applies.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> CylinderOnCylinder.outside(tr.RollingSystem(tr.Body.hoop(1.0, 1.0), tr.Support(tr.Plane())))
+        ['the surface is a Plane, not a Cylinder']
+        """
+        reasons = []
+        if not system.body.is_isotropic_sphere:
+            reasons.append("the body is no cylinder or sphere with isotropic inertia about its centre")
+        if not isinstance(system.support.surface, Cylinder):
+            reasons.append(f"the surface is a {type(system.support.surface).__name__}, not a Cylinder")
+        if system.support.motion.steady_rate is None:
+            reasons.append(f"the support's motion {type(system.support.motion).__name__} is no steady turn")
+        varying = [load for load in system.loads if not load.constant]
+        reasons += [f"the load {type(load).__name__} is not constant" for load in varying]
+        if not varying:
+            (fx, fy, fz), torque, _ = constant_part(system.all_loads, system.body.mass)
+            if abs(fz) > _ASIDE * math.hypot(fx, fy):
+                reasons.append("gravity or a force pulls along the cylinder's axis")
+            if tuple(torque) != (0, 0, 0):
+                reasons.append("a torque acts on the body")
+        if start is not None and not reasons:
+            (*_, vz), (wx, wy, _) = start.velocity, start.angular_velocity
+            speed = max(map(abs, (*start.velocity, *(system.body.radius * w for w in start.angular_velocity))))
+            if max(abs(vz), system.body.radius * math.hypot(wx, wy)) > _ASIDE * speed:
+                reasons.append("the start moves along the cylinder's axis or spins across it")
+        return reasons
+
+    # The constants of the motion
+
+    @property
+    def length(self) -> Scalar:
+        """ℓ = b + side·a, of the centre from the axis, m."""
+        return self.track_radius + self.side * self.radius
+
+    @cached_property
+    def _constants(self) -> _Constants:
+        """Worked out with many digits; for arrays of members, one by one."""
+        given = (self.mass, self.inertia_ratio, self.length, self.angle, self.angular_rate, *self.force)
+        if all(is_number(value) for value in given):
+            return _Constants(*map(float, _constants(*given)))
+        if any(type(value).__module__.partition(".")[0] == "mpmath" for value in given):
+            return _Constants(*_constants(*given))
+        import numpy as np
+
+        arrays = np.broadcast_arrays(*given)
+        members = zip(*map(np.ravel, arrays), strict=True)
+        rows = np.array([[float(c) for c in _constants(*map(float, one))] for one in members])
+        return _Constants(*(column.reshape(arrays[0].shape) for column in rows.T))
+
+    @property
+    def goes_round(self) -> Any:
+        """Whether it goes round rather than swings."""
+        return self._constants.rotates > 0
+
+    @property
+    def period(self) -> Any:
+        """Of the motion, s; infinite at rest and on the separatrix."""
+        return self._constants.period
+
+    @property
+    def sensitivity(self) -> float:
+        """1/m₁: near the separatrix, how many times a rounding of the energy shows as time spent near the top."""
+        return float(1 / max(float(self._constants.complement), 1e-16))
+
+    # The motion
+
+    def _halves(self, t: Any) -> tuple[Scalar, Scalar, Scalar, Scalar]:
+        """Return sin(θ/2), cos(θ/2), θ̇/2 and how far the half angle has gone since t = 0, rad.
+
+        The functions of λt and of the start are put together by the addition theorems, with denominators that are
+        sums of squares; so the start enters by its own sine and cosine and nothing has to be inverted.
+        """
+        c = self._constants
+        y, turned = phase((c.phase_rate, c.phase_rate_rest), t)
+        xp = namespace(turned, c.rotates)
+        aperiodic = c.period == math.inf
+        u = xp.where(aperiodic, c.scale * t, turned * c.argument)
+        s1, c1, d1 = elliptic(u, c.complement)
+        sign, round_ = c.sense, c.rotates > 0
+        s2, k2, d2 = sign * c.sine, c.sn_rate, c.cosine  # swinging: κ sn, κ cn, dn of the start
+        swing_den = c1 * c1 + s1 * s1 * d2 * d2
+        swing_sine = (s1 * k2 * d2 + s2 * c1 * d1) / swing_den
+        swing_cosine = (d1 * d2 - s1 * c1 * s2 * k2) / swing_den
+        swing_rate = c.scale * (c1 * k2 - s1 * s2 * d1 * d2) / swing_den
+        den = c1 * c1 + s1 * s1 * k2 * k2  # going round: sn, cn and dn = k2 of the start
+        sine = (s1 * d2 * k2 + s2 * c1 * d1) / den
+        cosine = (c1 * d2 - s1 * s2 * d1 * k2) / den
+        rate = c.scale * (d1 * k2 - c.parameter * s1 * s2 * c1 * d2) / den
+        sine, cosine = xp.where(round_, sine, swing_sine), xp.where(round_, cosine, swing_cosine)
+        rate = xp.where(round_, rate, swing_rate)
+        return sign * sine, cosine, sign * rate, (y - turned) * xp.where(round_, sign, 0 * sign)
+
+    def motion_at(self, t: Any) -> tuple[Vector, Vector, Vector, Vector]:
+        """Return position, velocity, angular velocity and contact force together.
+
+        Parameters
+        ----------
+        t : float or array
+            Time since the start, s.
+
+        Returns
+        -------
+        position, velocity, angular_velocity, contact_force : Vector
+            In the inertial support frame, m, m/s, rad/s, N.
+
+        Examples
+        --------
+        >>> rest = CylinderOnCylinder(0.1, 1.0, 0.5, 0.5, -1.0, 0.0, 0.0, 0.0, 0.0, (9.80665, 0.0))
+        >>> rest.motion_at(3.0)[3].x
+        -9.80665
+        """
+        half_sine, half_cosine, half_rate, _ = self._halves(t)
+        sine, cosine = 2 * half_sine * half_cosine, 1 - 2 * half_sine * half_sine
+        c, length = self._constants, self.length
+        out = Vector(c.pull_x * cosine - c.pull_y * sine, c.pull_y * cosine + c.pull_x * sine, 0.0)
+        around = Vector(-out.y, out.x, 0.0)
+        speed = 2 * half_rate * length
+        Omega = (speed - self.track_radius * self.rate) * self.side / self.radius
+        acceleration = around * (-(c.pendulum * sine) * length) - out * (speed * speed / length)
+        fx, fy = self.force
+        R = acceleration * self.mass - Vector(fx, fy, 0.0)
+        zero = 0 * half_sine
+        return (
+            Vector(out.x * length, out.y * length, self.height + zero),
+            around * speed,
+            Vector(zero, zero, Omega + zero),
+            R,
+        )
+
+    def position_at(self, t: Any) -> Vector:
+        """Return the centre in the inertial support frame, m, at a time since the start, s."""
+        return self.motion_at(t)[0]
+
+    def angle_at(self, t: Any) -> Any:
+        """Return θ at a time since the start, rad, counted on over whole rounds.
+
+        Parameters
+        ----------
+        t : float or array
+            Time since the start, s.
+
+        Returns
+        -------
+        float or array
+            From the direction of the pull.
+
+        Examples
+        --------
+        >>> CylinderOnCylinder(0.1, 1.0, 0.5, 0.5, -1.0, 0.0, 0.0, 2.0).angle_at(10.0)  # no pull
+        20.0
+        """
+        half_sine, half_cosine, _, gone = self._halves(t)
+        xp, tau = namespace(half_sine), 2 * math.pi
+        since = xp.atan2(half_sine, half_cosine) - self.angle / 2
+        since = since - tau * xp.round(since / tau)
+        # Half a period from where `gone` counts, the half angle is half a turn on: on the side of its own motion.
+        c = self._constants
+        _, turned = phase((c.phase_rate, c.phase_rate_rest), t)
+        ahead = turned * c.sense
+        flip = (c.rotates > 0) & (abs(since) > 3.0) & (since * ahead < 0)
+        since = since + xp.where(flip, xp.where(less(ahead, 0), -tau, tau), 0.0)
+        return self.angle + 2 * (since + gone)
+
+    def straight_turn(self, t: Any) -> tuple[Vector, Any]:
+        """Return the axis and the angle by which the body has turned: from its place alone, as x = aφ on a plane."""
+        gone = self.length * (self.angle_at(t) - self.angle) - self.track_radius * self.rate * t
+        return E_Z, gone * self.side / self.radius
+
+
+@dataclass(frozen=True)
+class _Constants:
+    """What follows from the start once and for all."""
+
+    rotates: Any  # 1 or 0
+    sense: Any  # of going round, ±1
+    complement: Any  # m₁
+    parameter: Any  # m
+    scale: Any  # λ, 1/s
+    argument: Any  # 2K/π
+    phase_rate: Any  # 2π over the period of the half angle, rad/s, and what the float leaves
+    phase_rate_rest: Any
+    period: Any  # s
+    sine: Any  # sin(θ₀/2)
+    cosine: Any
+    sn_rate: Any  # |θ̇₀|/(2λ) with its sign where it swings
+    pendulum: Any  # G/(m (1 + k) ℓ), 1/s²
+    pull_x: Any
+    pull_y: Any
+
+
+def _constants(m: Any, k: Any, length: Any, angle: Any, angular_rate: Any, fx: Any, fy: Any) -> tuple[Any, ...]:
+    """Return the fields of `_Constants` as mpmath numbers."""
+    import mpmath
+
+    with mpmath.workdps(max(_DIGITS, mpmath.mp.dps)):
+        m, k, length, angle, angular_rate, fx, fy = map(mpmath.mpf, (m, k, length, angle, angular_rate, fx, fy))
+        G, sine, cosine, v = mpmath.hypot(fx, fy), mpmath.sin(angle / 2), mpmath.cos(angle / 2), angular_rate / 2
+        pull = (fx / G, fy / G) if G else (mpmath.mpf(1), mpmath.mpf(0))
+        pendulum = G / (m * (1 + k) * length)
+        energy, short = v * v + pendulum * sine**2, pendulum * cosine**2 - v * v  # of the height at the top
+        rotates = short < 0
+        square = energy if rotates else pendulum
+        scale = mpmath.sqrt(square)
+        complement = (abs(short) / square) if square else mpmath.mpf(1)
+        sense = mpmath.mpf(-1 if rotates and v < 0 else 1)
+        sn_rate = v * sense / scale if scale else mpmath.mpf(1)
+        still = energy == 0 or complement == 0 or scale == 0
+        quarter = mpmath.pi / (2 * mpmath.agm(1, mpmath.sqrt(complement))) if complement else mpmath.mpf(1)
+        phase_rate = mpmath.mpf(0) if complement == 0 else mpmath.pi * scale / (2 * quarter)
+        period = mpmath.inf if still else (2 if rotates else 4) * quarter / scale
+        high = mpmath.mpf(float(phase_rate)) if mpmath.isfinite(phase_rate) else phase_rate
+        return (
+            mpmath.mpf(int(rotates)), sense, complement, 1 - complement, scale, 2 * quarter / mpmath.pi,
+            high, phase_rate - high, period, sine, cosine, sn_rate, pendulum, *pull,
+        )  # fmt: skip
