@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from . import units
+    from .checking import Check, Mistake, check
     from .errors import (
         InvalidValueError,
         OutOfDomainError,
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
         TrundleError,
         UnknownNameError,
     )
+    from .geometry import Arc, Curve, PathScenario, RolledPath, Rotation, Straight, roll_along
+    from .holonomy import ConstraintAnalysis, PfaffianSystem
     from .mechanics.bodies import Body, Isotropic, Principal, RatioInertia
     from .mechanics.loads import Drag, Force, Torque
     from .mechanics.motions import Fixed, Spin, UnevenSpin, Wobble
@@ -35,6 +38,8 @@ _HOMES = {
         "SolverError",
         "UnknownNameError",
     ),
+    "geometry": ("roll_along", "Straight", "Arc", "Curve", "RolledPath", "Rotation", "PathScenario"),
+    "holonomy": ("PfaffianSystem", "ConstraintAnalysis"),
     "mechanics.bodies": ("Body", "Isotropic", "Principal", "RatioInertia"),
     "mechanics.shapes": ("Roller", "Sphere"),
     "mechanics.surfaces": ("Cylinder", "Plane"),
@@ -44,12 +49,16 @@ _HOMES = {
     "simulation": ("simulate", "Scenario"),
     "trajectory": ("Trajectory", "Event"),
     "verify": ("Card",),
+    "checking": ("check", "Check", "Mistake"),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 
 __all__ = [
+    "Arc",
     "Body",
     "Card",
+    "ConstraintAnalysis",
+    "Curve",
     "Cylinder",
     "Drag",
     "Event",
@@ -58,17 +67,22 @@ __all__ = [
     "InvalidValueError",
     "Isotropic",
     "OutOfDomainError",
+    "PathScenario",
+    "PfaffianSystem",
     "Plane",
     "Principal",
     "RatioInertia",
+    "RolledPath",
     "Roller",
     "RollingSystem",
+    "Rotation",
     "Scenario",
     "ScenarioError",
     "SolverError",
     "Sphere",
     "Spin",
     "State",
+    "Straight",
     "Support",
     "Torque",
     "Trajectory",
@@ -77,6 +91,7 @@ __all__ = [
     "UnknownNameError",
     "Wobble",
     "__version__",
+    "roll_along",
     "simulate",
     "units",
 ]

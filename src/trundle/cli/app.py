@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,7 +13,7 @@ import typer
 
 from ..errors import ScenarioError
 from ..scenario import files
-from . import CARD_FAILED, screen, signals
+from . import CARD_FAILED, constraints, screen, signals
 
 if TYPE_CHECKING:
     from ..trajectory import Trajectory
@@ -32,6 +34,7 @@ def command() -> Any:
     app.command("list", short_help="Name the scenarios that ship with trundle.")(list_scenarios)
     app.command("show", short_help="Print a scenario file, and what to expect of it.")(show)
     app.command("schema", short_help="Print the JSON schema of scenario files, for editors.")(schema)
+    app.command("constraints", short_help="Holonomic or not: decide it, and show why.")(constraints.constraints)
     return typer.main.get_command(app)
 
 
@@ -98,30 +101,28 @@ def run(
 ) -> None:
     """Run a scenario, print its verification card, and write run.nc, path.png and series.png.
 
+    A path to roll along, without forces, gives run.nc and stages.png.
+
     Exit status: 0, all is well; 2, bad input; 3, a figure of the card failed; 130, interrupted; 1, all else.
     """
     from .writing import check_folder
 
+    folder = Path(Path(scenario).stem) if output is None else output.expanduser()
+    tables = files.parse(files.read(scenario), scenario)
+    if files.rolls_along_path(tables):
+        from . import along_path
+
+        options = {"duration": duration, "every": every, "method": method}
+        told = along_path.run(tables, scenario, folder, figure=not no_figure, **options)
+        return _report(*told, quiet=quiet, as_json=as_json)
     names = FILES[:1] if no_figure else FILES
     loaded = load(scenario, duration=duration, every=every, method=method)
-    folder = Path(Path(scenario).stem) if output is None else output.expanduser()
     check_folder(folder, names)
     with screen.ProgressBar(wanted=not quiet) as bar:
         trajectory = loaded.run(progress=bar)
     signals.check()
     card, written = _finish(trajectory, folder, names)
-    try:
-        if as_json:
-            screen.out(card.as_json())
-        elif not quiet:
-            _tell(trajectory, card, written)
-    except KeyboardInterrupt:
-        screen.note("trundle: interrupted; the files are written")
-        raise SystemExit(signals.INTERRUPTED) from None
-    if not card.passed:
-        failed = ", ".join(figure.name for figure in card.failures)
-        screen.note(f"trundle: the card fails: {failed}")
-        raise typer.Exit(CARD_FAILED)
+    return _report(card, [event.text for event in trajectory.events], written, quiet=quiet, as_json=as_json)
 
 
 def _finish(trajectory: Trajectory, folder: Path, names: tuple[str, ...]) -> tuple[Card, list[Path]]:
@@ -150,11 +151,23 @@ def _finish(trajectory: Trajectory, folder: Path, names: tuple[str, ...]) -> tup
         return checked.result(), [folder / name for name in names]
 
 
-def _tell(trajectory: Trajectory, card: Card, written: list[Path]) -> None:
-    screen.show_card(card)
-    for event in trajectory.events:
-        screen.out(event.text)
-    screen.out(f"Wrote {', '.join(str(path) for path in written)}")
+def _report(card: Card, lines: list[str], written: list[Path], *, quiet: bool, as_json: bool) -> None:
+    """Print the card, what else there is to say and the files' names; leave with a status if a check failed."""
+    try:
+        if as_json:
+            screen.out(card.as_json())
+        elif not quiet:
+            screen.show_card(card)
+            for line in lines:
+                screen.out(line)
+            screen.out(f"Wrote {', '.join(str(path) for path in written)}")
+    except KeyboardInterrupt:
+        screen.note("trundle: interrupted; the files are written")
+        raise SystemExit(signals.INTERRUPTED) from None
+    if not card.passed:
+        failed = ", ".join(figure.name for figure in card.failures)
+        screen.note(f"trundle: the card fails: {failed}")
+        raise typer.Exit(CARD_FAILED)
 
 
 METHODS = ["auto", "exact", "taylor", "runge-kutta"]
@@ -184,15 +197,20 @@ def list_scenarios() -> None:
 
 def show(scenario: Name) -> None:
     """Print a scenario file as it is, to read or to copy; on a terminal also the numbers to expect of it."""
-    from ..scenario import ScenarioFile
-
     text = files.read(scenario)
-    loaded = ScenarioFile.loads(text, scenario)
-    screen.show_source(text)
-    if screen.on_terminal():
+    rows: Callable[[], list[tuple[str, str]]]
+    if files.rolls_along_path(files.parse(text, scenario)):
+        from . import along_path
+
+        rows = along_path.expected(text, scenario)
+    else:
+        from ..scenario import ScenarioFile
         from .expectations import expectations
 
-        screen.show_pairs("To expect", expectations(loaded))
+        rows = partial(expectations, ScenarioFile.loads(text, scenario))
+    screen.show_source(text)
+    if screen.on_terminal():
+        screen.show_pairs("To expect", rows())
 
 
 def schema() -> None:

@@ -1,0 +1,160 @@
+"""`trundle run` for a ball rolled along a path: what it prints, and the files that it writes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..errors import InvalidValueError, ScenarioError
+
+if TYPE_CHECKING:
+    from ..geometry import PathScenario, RolledPath
+    from ..verify import Card
+
+FILES = ("run.nc", "stages.png")
+MOST_STAGES = 24  # of a long path's stages are printed
+
+
+def run(
+    tables: dict[str, Any], source: str, folder: Path, *, figure: bool, **options: str | None
+) -> tuple[Card, list[str], list[Path]]:
+    """Roll the ball, and write the files whole or not at all.
+
+    Parameters
+    ----------
+    tables : dict
+        Of the scenario file.
+    source : str
+        Its name.
+    folder : pathlib.Path
+        Where the files go.
+    figure : bool
+        Whether there shall be a figure.
+    **options : str, optional
+        Of the command line, in place of keys of the file's [run] table.
+
+    Returns
+    -------
+    card : Card
+        What was checked, and the facts.
+    lines : list of str
+        The stages, for the screen.
+    written : list of pathlib.Path
+        The files.
+
+    Raises
+    ------
+    TrundleError
+        If the file or an option is not as the format asks, or the files cannot be written.
+
+    Examples
+    --------
+    >>> from trundle.scenario import files
+    >>> tables = files.parse(files.read("roll-x-then-y"), "roll-x-then-y")
+    >>> card, lines, written = run(tables, "roll-x-then-y", Path("out"), figure=False)
+    >>> lines[-1]
+    'stage 2  (3.927, 3.927) cm, north pole along +x'
+    """
+    from .writing import check_folder, write_together
+
+    names = FILES if figure else FILES[:1]
+    scenario = _load(tables, source, {key: value for key, value in options.items() if value is not None})
+    check_folder(folder, names)
+    rolled = scenario.run()
+    spacing = scenario.sampling.every
+    every = None if spacing is None else float(spacing)
+    writers = {
+        "run.nc": lambda path: rolled.save(path, every),
+        "stages.png": lambda path: rolled.plot().savefig(path),
+    }
+    written = write_together(folder, {name: writers[name] for name in names})
+    return rolled.card(), [f"{name:<8} {what}".rstrip() for name, what in stages_of(rolled)], written
+
+
+def _load(tables: dict[str, Any], source: str, given: dict[str, str]) -> PathScenario:
+    from ..geometry import PathScenario
+
+    for option in ("duration", "method"):
+        if option in given:
+            remedy = "A path knows no time and no forces; leave the option out."
+            raise InvalidValueError(f"--{option}", "is for motions under forces", given[option], remedy)
+    if given and isinstance(tables.get("run", {}), dict):
+        tables = {**tables, "run": {**tables.get("run", {}), **given}}
+    try:
+        return PathScenario.read(tables, source)
+    except ScenarioError as error:
+        key = error.key.removeprefix("run.")
+        if key in given:
+            raise ScenarioError(f"--{key}", error.rule, error.received, error.remedy) from None
+        raise
+
+
+def stages_of(rolled: RolledPath) -> list[tuple[str, str]]:
+    """Say where the ball is at each stage, and where its north pole points.
+
+    Parameters
+    ----------
+    rolled : RolledPath
+        Any.
+
+    Returns
+    -------
+    list of (name, what)
+        The stages in between are left out of a long path.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> stages_of(tr.roll_along(tr.Straight(turn="90 deg"), radius="2 cm"))[0]
+    ('start', '(0, 0) cm, north pole up')
+    """
+    from ..geometry.evidence import direction
+    from ..plots.scales import unit_for
+
+    at = rolled.stages
+    unit = unit_for(max(float(abs(at.contact).max()), rolled.radius), "length")
+    rows = []
+    for i, (place, pole) in enumerate(zip(at.contact / unit.scale, at.north_pole, strict=True)):
+        x, y = (float(f"{round(float(part), 9):.4g}") + 0.0 for part in place)
+        rows.append((f"stage {i}" if i else "start", f"({x:g}, {y:g}) {unit.symbol}, north pole {direction(pole)}"))
+    half = MOST_STAGES // 2
+    return rows if len(rows) <= MOST_STAGES else [*rows[:half], ("...", ""), *rows[-half:]]
+
+
+def expected(text: str, source: str) -> Callable[[], list[tuple[str, str]]]:
+    """Check the text of a scenario, and return what tells what to expect of it.
+
+    Parameters
+    ----------
+    text : str
+        The whole file.
+    source : str
+        Its name, for messages.
+
+    Returns
+    -------
+    callable
+        It rolls the ball and returns each fact with its name.
+
+    Raises
+    ------
+    ScenarioError
+        If the text is not as the format asks.
+
+    Examples
+    --------
+    >>> from trundle.scenario import files
+    >>> expected(files.read("roll-home-turned"), "roll-home-turned")()[-1]
+    ('came home turned by', '120 deg about (0.57735, 0.57735, -0.57735)')
+    """
+    from ..geometry import PathScenario
+
+    scenario = PathScenario.loads(text, source)
+
+    def rows() -> list[tuple[str, str]]:
+        rolled = scenario.run()
+        home = "came home turned by" if rolled.is_closed else "turned in the end by"
+        return [*stages_of(rolled), (home, str(rolled.rotation))]
+
+    return rows

@@ -1,0 +1,26 @@
+"""Rolling as geometry: a ball rolled along a path on a plane, without forces, slipping or pivoting."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from .pieces import Arc, Curve, Straight
+from .rolled import RolledPath, Stages, roll_along
+from .rotation import Rotation
+
+if TYPE_CHECKING:
+    from .scenario import PathScenario as PathScenario
+
+__all__ = ["Arc", "Curve", "PathScenario", "RolledPath", "Rotation", "Stages", "Straight", "roll_along"]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "PathScenario":  # pydantic takes its time
+        from .scenario import PathScenario
+
+        return PathScenario
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *__all__])
