@@ -1,0 +1,86 @@
+"""Which derivation belongs to which closed form.
+
+The closed form of `solve/exact/<name>.py` brings its derivation in `derivation/<name>.py`: a class `Setting` with
+`of(system)`, which says what is there; `derive_system(setting)`, which yields the steps up to the proof of the form;
+and `numbers_of(motion, system)`, which yields its constants in numbers.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+from ..solve.exact import CLOSED_FORMS
+
+if TYPE_CHECKING:
+    from ..mechanics.system import RollingSystem, State
+
+
+def module_named(name: str) -> ModuleType:
+    """Return the module that derives a closed form.
+
+    Parameters
+    ----------
+    name : str
+        Of the closed form's own module.
+
+    Returns
+    -------
+    module
+        With `Setting`, `derive_system` and `numbers_of`.
+
+    Examples
+    --------
+    >>> module_named("sphere_on_plane").Setting().turning
+    False
+    """
+    return import_module(f".{name}", __package__)
+
+
+def module_of(form: type) -> ModuleType:
+    """Return the module that derives a closed form.
+
+    Parameters
+    ----------
+    form : type
+        One of `CLOSED_FORMS`.
+
+    Returns
+    -------
+    module
+        As `module_named` returns.
+
+    Examples
+    --------
+    >>> [module_of(form).__name__.rpartition(".")[2] for form in CLOSED_FORMS][0]
+    'sphere_on_plane'
+    """
+    return module_named(form.__module__.rpartition(".")[2])
+
+
+def form_of(system: RollingSystem, start: State | None) -> tuple[Any, Any]:
+    """Return the closed form that covers a system, and the module that derives it.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        With its numbers.
+    start : State or None
+        Where it starts.
+
+    Returns
+    -------
+    form, module
+        None and None where no closed form covers the system.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> form_of(tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), tr.Support(tr.Plane())), None)[0].equation
+    'T5'
+    """
+    for form in CLOSED_FORMS:
+        if not form.outside(system, start):
+            return form, module_of(form)
+    return None, None
