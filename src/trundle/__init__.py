@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from . import units
     from .checking import Check, Mistake, check
+    from .derivation import derive
     from .errors import (
         InvalidValueError,
         OutOfDomainError,
@@ -46,6 +47,7 @@ _HOMES = {
     "mechanics.motions": ("Fixed", "Spin", "UnevenSpin", "Wobble"),
     "mechanics.loads": ("Force", "Torque", "Drag"),
     "mechanics.system": ("RollingSystem", "State", "Support"),
+    "derivation": ("derive",),
     "simulation": ("simulate", "Scenario"),
     "trajectory": ("Trajectory", "Event"),
     "verify": ("Card",),
@@ -92,6 +94,7 @@ __all__ = [
     "Wobble",
     "__version__",
     "roll_along",
+    "derive",
     "simulate",
     "units",
 ]

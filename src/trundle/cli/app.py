@@ -14,6 +14,7 @@ import typer
 from ..errors import ScenarioError
 from ..scenario import files
 from . import CARD_FAILED, constraints, screen, signals
+from .check import check
 
 if TYPE_CHECKING:
     from ..trajectory import Trajectory
@@ -33,6 +34,7 @@ def command() -> Any:
     app.command("run", short_help="Run a scenario; write its trajectory and figures.")(run)
     app.command("list", short_help="Name the scenarios that ship with trundle.")(list_scenarios)
     app.command("show", short_help="Print a scenario file, and what to expect of it.")(show)
+    app.command("check", short_help="Check somebody else's trajectory, and name the likely mistake.")(check)
     app.command("schema", short_help="Print the JSON schema of scenario files, for editors.")(schema)
     app.command("constraints", short_help="Holonomic or not: decide it, and show why.")(constraints.constraints)
     return typer.main.get_command(app)

@@ -1,0 +1,273 @@
+"""Somebody else's trajectory as labelled arrays, and what can be worked out of it where a part is missing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InvalidValueError
+from ..mechanics.algebra import Quaternion, Vector
+from ..mechanics.contact import Contact, touch
+from ..mechanics.shapes import concentric_sphere
+from ..mechanics.surfaces import Plane
+from ..mechanics.system import RollingSystem
+from .slopes import Estimate, derivative
+
+Array = NDArray[np.float64]
+
+FEWEST = 12  # samples that a slope and its error can be taken from
+_SEARCH = 50  # steps at most to the place of contact; spheres on planes and cylinders need two
+
+
+@dataclass(frozen=True)
+class Theirs:
+    """A trajectory to be checked, in the inertial support frame; what was not given is None.
+
+    Parameters
+    ----------
+    time : array (n,)
+        Ascending, s.
+    position : array (n, 3)
+        Centre of mass, m.
+    velocity : array (n, 3), optional
+        m/s.
+    angular_velocity : array (n, 3), optional
+        Ω, rad/s.
+    orientation : array (n, 4), optional
+        Quaternions (w, x, y, z), body frame to support frame.
+    height_given : bool
+        Whether the third component of the position is theirs, or follows from touching the plane.
+    doubt : array (n,), optional
+        What an Ω that was worked out may be off by, rad/s.
+    source : str
+        Where it comes from, for titles.
+
+    Examples
+    --------
+    >>> t = np.linspace(0.0, 1.0, 20)
+    >>> Theirs(t, np.zeros((20, 3))).parts
+    'position'
+    """
+
+    time: Array
+    position: Array
+    velocity: Array | None = None
+    angular_velocity: Array | None = None
+    orientation: Array | None = None
+    height_given: bool = True
+    doubt: Array | None = None
+    source: str = ""
+    _kept: dict[Any, Estimate] = field(default_factory=dict, init=False, compare=False, repr=False)
+
+    def slope(self, name: str, index: NDArray[np.int_], order: int = 1) -> Estimate:
+        """Return a derivative of one of the arrays at some samples; it is worked out once."""
+        key = (name, order, index.size)
+        if key not in self._kept:
+            self._kept[key] = derivative(self.time, getattr(self, name), index, order)
+        return self._kept[key]
+
+    @property
+    def parts(self) -> str:
+        """What was given, in words."""
+        names = {
+            "position": self.position,
+            "velocity": self.velocity,
+            "Ω": self.angular_velocity,
+            "orientation": self.orientation,
+        }
+        given = [name for name, array in names.items() if array is not None]
+        return given[0] if len(given) == 1 else f"{', '.join(given[:-1])} and {given[-1]}"
+
+    def thinned(self, index: Any) -> Theirs:
+        """Return some of the samples, chosen as an array is indexed."""
+        arrays = ("time", "position", "velocity", "angular_velocity", "orientation", "doubt")
+        kept = {name: getattr(self, name)[index] for name in arrays if getattr(self, name) is not None}
+        return replace(self, **kept)
+
+
+def checked(theirs: Theirs, system: RollingSystem) -> Theirs:
+    """Refuse what cannot be checked, and give quaternions unit length and a sign that is continuous in time.
+
+    Parameters
+    ----------
+    theirs : Theirs
+        As it was read.
+    system : RollingSystem
+        Gives the height of the centre over a plane where only two components came.
+
+    Returns
+    -------
+    Theirs
+        Ready to be examined.
+
+    Raises
+    ------
+    InvalidValueError
+        If the samples are too few, out of order or not finite, or the body's orientation is needed and not known.
+
+    Examples
+    --------
+    See `trundle.check`.
+    """
+    t = theirs.time
+    if t.size < FEWEST:
+        raise InvalidValueError("time", f"must hold {FEWEST} samples or more", f"{t.size}", "Write more of the run.")
+    _check_finite(theirs)
+    backwards = np.flatnonzero(np.diff(t) <= 0)
+    if backwards.size:
+        i = int(backwards[0])
+        raise InvalidValueError(
+            "time", "must ascend", f"{t[i]:g} s, then {t[i + 1]:g} s (samples {i + 1} and {i + 2})", "Sort the rows."
+        )
+    if not theirs.height_given:
+        theirs = replace(theirs, position=_with_height(theirs.position, system))
+    if theirs.orientation is not None:
+        theirs = replace(theirs, orientation=_unit_quaternions(theirs.orientation))
+    if theirs.orientation is None and theirs.angular_velocity is None and not _same_from_every_side(system):
+        raise InvalidValueError(
+            "columns",
+            "must hold Ω or the orientation for a body that is not the same from every side",
+            theirs.parts,
+            "Add wx, wy, wz or qw, qx, qy, qz.",
+        )
+    return theirs
+
+
+def _check_finite(theirs: Theirs) -> None:
+    for name in ("time", "position", "velocity", "angular_velocity", "orientation"):
+        array = getattr(theirs, name)
+        if array is None:
+            continue
+        bad = np.flatnonzero(~np.isfinite(array.reshape(array.shape[0], -1)).all(axis=1))
+        if bad.size and not (name == "position" and not theirs.height_given):
+            row = array[bad[0]].tolist()
+            raise InvalidValueError(name, "must be finite numbers", f"{row} in sample {bad[0] + 1}", "Leave it out.")
+
+
+def _with_height(position: Array, system: RollingSystem) -> Array:
+    if not (isinstance(system.support.surface, Plane) and concentric_sphere(system.body.shape)):
+        raise InvalidValueError(
+            "columns", "must hold all of x, y, z unless a ball rolls on a plane", "x and y", "Add the third component."
+        )
+    return np.column_stack([position[:, :2], np.full(position.shape[0], float(system.body.radius))])
+
+
+def _unit_quaternions(q: Array) -> Array:
+    length = np.linalg.norm(q, axis=1)
+    worst = int(np.argmax(np.abs(length - 1)))
+    if abs(length[worst] - 1) > 0.02:
+        raise InvalidValueError(
+            "orientation",
+            "must be unit quaternions",
+            f"length {length[worst]:.6g} in sample {worst + 1}",
+            "Normalise them, or map the columns that hold them.",
+        )
+    q = q / length[:, None]
+    flips = np.cumprod(np.where((q[1:] * q[:-1]).sum(axis=1) < 0, -1.0, 1.0))
+    return q * np.concatenate([[1.0], flips])[:, None]
+
+
+def _same_from_every_side(system: RollingSystem) -> bool:
+    return bool(system.body.is_isotropic_sphere)
+
+
+def contact_of(system: RollingSystem, time: Array, centre: Array, orientation: Array) -> Contact:
+    """Return the contact of a body whose centre is known: p = r + ρ(n(p)), found by going back and forth.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Body and support.
+    time : array (n,)
+        s.
+    centre : array (n, 3)
+        Centre of mass in the inertial support frame, m.
+    orientation : array (n, 4)
+        Quaternions, body frame to support frame.
+
+    Returns
+    -------
+    Contact
+        With arrays as components; its point is r + ρ, on the support or not.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.5, 1.0), tr.Support(tr.Plane()))
+    >>> contact = contact_of(system, np.zeros(1), np.array([[1.0, 2.0, 0.5]]), np.array([[1.0, 0, 0, 0]]))
+    >>> contact.point.array().tolist()
+    [[1.0, 2.0, 0.0]]
+    """
+    q, r = Quaternion.of(orientation), Vector.of(centre)
+    point, moved = r, np.inf
+    contact = touch(system, time, point, q)
+    size = max(float(np.max(contact.offset.norm())), 1e-300)
+    for _ in range(_SEARCH):
+        before, point = point, r + contact.offset
+        contact = touch(system, time, point, q)
+        moved = float(np.max((point - before).norm()))
+        if moved <= 1e-14 * size:
+            break
+    return contact
+
+
+def gap_of(system: RollingSystem, contact: Contact) -> Array:
+    """Return the signed distance of the body's lowest point from the support, to first order, m."""
+    own = contact.support.rotation.transpose @ (contact.point - contact.support.origin)
+    gap = np.asarray(system.support.surface.level(own), dtype=float)
+    return np.broadcast_to(gap, np.shape(np.asarray(contact.point.x))).astype(float)
+
+
+def orientation_from(
+    time: Array, angular_velocity: Array, start: tuple[float, ...], *, body_axes: bool = False
+) -> tuple[Array, Array]:
+    """Add up Ω to an orientation, and say by how much it may be off.
+
+    Parameters
+    ----------
+    time : array (n,)
+        s.
+    angular_velocity : array (n, 3)
+        Ω, rad/s.
+    start : tuple of 4 floats
+        Quaternion at the first instant.
+    body_axes : bool
+        Whether Ω has its components along the body's axes instead of the support frame's.
+
+    Returns
+    -------
+    orientation : array (n, 4)
+        Unit quaternions.
+    doubt : array (n,)
+        Angle by which they may be off, rad: what changes when every other sample is left out.
+
+    Examples
+    --------
+    >>> t = np.linspace(0.0, np.pi, 31)
+    >>> q, doubt = orientation_from(t, np.outer(np.ones(31), [0.0, 0.0, 1.0]), (1.0, 0.0, 0.0, 0.0))
+    >>> [round(c, 9) + 0.0 for c in q[-1].tolist()], bool(doubt.max() < 1e-9)
+    ([0.0, 0.0, 0.0, 1.0], True)
+    """
+    from scipy.interpolate import make_interp_spline
+
+    from ..solve.orientation import orientation
+
+    sign = -1.0 if body_axes else 1.0  # the inverse rotation turns by −Ω, in the body's axes
+    q0 = np.asarray(start) * [1.0, sign, sign, sign]
+    found = []
+    for stride in (1, 2):
+        kept = np.unique(np.append(np.arange(0, time.size, stride), time.size - 1))
+        spline = make_interp_spline(time[kept], sign * angular_velocity[kept], k=3)
+        found.append(orientation(_columns_of(spline), time, q0, float(time[0])))
+    q, coarse = found
+    side = np.sign((q * coarse).sum(axis=1, keepdims=True))
+    doubt = 2 * np.linalg.norm(q - side * coarse, axis=1)
+    return q * [1.0, sign, sign, sign], np.asarray(np.maximum.accumulate(doubt), dtype=float)
+
+
+def _columns_of(spline: Callable[[Array], Array]) -> Callable[[Array], Array]:
+    return lambda t: spline(t).T

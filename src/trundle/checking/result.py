@@ -1,0 +1,145 @@
+"""What a check found: a card like that of trundle's own runs, the first time it goes wrong, and the likely mistake."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from ..verify import Card
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """A mistake that explains what was found.
+
+    Parameters
+    ----------
+    name : str
+        Short, for programs: "wrong-inertia-ratio".
+    says : str
+        What the mistake is, with the numbers that fit.
+    check : str
+        The figure of the card that it explains.
+    before, after, bound : float
+        That figure as it is, as it is once the mistake is allowed for, and the most that is then allowed.
+    numbers : dict
+        What was fitted, by name, in SI.
+    named : bool
+        Whether what was fitted is a number with a reason, such as k = 2/3; a free number explains more easily.
+
+    Examples
+    --------
+    >>> print(Mistake("angles-in-degrees", "Ω is in deg/s.", "no slip", 0.9, 1e-9, 1e-5))
+    Ω is in deg/s. (no slip: 0.9 as it is, 1e-09 with that undone)
+    """
+
+    name: str
+    says: str
+    check: str
+    before: float
+    after: float
+    bound: float
+    numbers: dict[str, float] = field(default_factory=dict)
+    named: bool = True
+
+    def __str__(self) -> str:
+        return f"{self.says} ({self.check}: {self.before:.2g} as it is, {self.after:.1g} with that undone)"
+
+
+@dataclass(frozen=True)
+class Check(Card):
+    """The card of somebody else's motion or equations.
+
+    Parameters
+    ----------
+    title, method, figures
+        As of a `Card`.
+    first_failure : float or None
+        The first instant at which a figure is beyond its bound, s; None where all hold, or there is no time.
+    likely : tuple of Mistake
+        Each explains all that was found; more than one where the data cannot tell them apart.
+    remark : str
+        What to make of it where no mistake explains it.
+    worst_state : dict or None
+        Of a check of equations: the state at which they are furthest from the law.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> run = tr.Scenario.load("level-turntable-nudged").run()
+    >>> checked = tr.check(run, "level-turntable-nudged")
+    >>> checked.passed, checked.first_failure, checked.likely
+    (True, None, ())
+    """
+
+    first_failure: float | None = None
+    likely: tuple[Mistake, ...] = ()
+    remark: str = ""
+    worst_state: dict[str, Any] | None = None
+    _drawn: Any = field(default=None, compare=False, repr=False)
+
+    @property
+    def verdict(self) -> str:
+        """What was found beyond the figures, in lines."""
+        lines = [] if self.first_failure is None else [f"first goes wrong at t = {self.first_failure:.6g} s"]
+        if len(self.likely) == 1:
+            lines.append(f"likely: {self.likely[0]}")
+        elif self.likely:
+            lines.append("each of these explains it, and the data cannot tell them apart:")
+            lines += [f"  - {mistake}" for mistake in self.likely]
+        if self.remark:
+            lines.append(self.remark)
+        if self.worst_state is not None and not self.passed:
+            lines.append("furthest off in this state:")
+            lines += [f"  {name} = {value}" for name, value in self.worst_state.items()]
+        return "\n".join(lines)
+
+    def __str__(self) -> str:
+        return "\n".join(filter(None, [super().__str__(), self.verdict]))
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the card, the first failure and the mistakes as plain dictionaries."""
+        mistakes = [
+            {
+                "name": mistake.name,
+                "says": mistake.says,
+                "check": mistake.check,
+                "before": mistake.before,
+                "after": mistake.after,
+                "bound": mistake.bound,
+                "numbers": mistake.numbers,
+            }
+            for mistake in self.likely
+        ]
+        found = {"first_failure": self.first_failure, "likely": mistakes, "remark": self.remark}
+        return super().as_dict() | found
+
+    def plot(self) -> Figure:
+        """Draw the residuals over time beside their bounds, and their path over ours.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            Needs neither a display nor pyplot.
+
+        Raises
+        ------
+        TrundleError
+            For a check of equations, which has no path.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> run = tr.Scenario.load("level-turntable-nudged").run()
+        >>> len(tr.check(run, "level-turntable-nudged").plot().axes)
+        2
+        """
+        from ..errors import TrundleError
+        from .figure import draw
+
+        if self._drawn is None:
+            raise TrundleError("A check of equations has no path to draw: print it instead.")
+        return draw(self, self._drawn)

@@ -1,0 +1,215 @@
+"""`check`: somebody else's trajectory against contact, constraint, law, integrals and trundle's own run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..errors import InvalidValueError
+from ..mechanics.system import RollingSystem, State
+from ..scenario import ScenarioFile
+from ..verify import CardFigure
+from .comparing import OWN_RUN, OwnRun, integrals, own_run
+from .diagnosing import Case, diagnose
+from .examining import ACCELERATION, Motion, Series, examine, with_orientation
+from .misread import READINGS
+from .reading import Conventions, read
+from .record import Theirs, checked
+from .result import Check
+from .slipping import CRUDE
+from .wrong_laws import LAWS
+
+TOLERANCE = 1e-5  # a share; what good methods leave is far below, and what a wrong law leaves far above
+_TELLS = 0.2  # a bound, as a share, beyond which the data say nothing of a check
+_CRUDE = 0.02  # a residual, as a share, that is more likely a matter of steps than of mechanics
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """What the figure shows.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        For the title's numbers.
+    motion : Motion
+        Theirs, at the instants looked at.
+    series : tuple of Series
+        All residuals.
+    ours : OwnRun
+        Our run.
+    """
+
+    system: RollingSystem
+    motion: Motion
+    series: tuple[Series, ...]
+    ours: OwnRun
+
+
+def check(
+    data: Any,
+    scenario: Any,
+    *,
+    start: State | None = None,
+    columns: Mapping[str, str] | None = None,
+    axes: str = "space",
+    angles: str = "rad",
+    quaternion: str = "wxyz",
+    orientation: str = "body-to-space",
+    euler: str = "xyz",
+    frame: str = "support",
+    time: str = "s",
+    length: str = "m",
+    tolerance: float = TOLERANCE,
+) -> Check:
+    """Say whether somebody else's trajectory rolls without slipping and obeys the law, and if not, why.
+
+    Parameters
+    ----------
+    data : path, pandas.DataFrame, xarray.Dataset, Trajectory or mapping of arrays
+        Time and position of the centre at least; velocity, Ω and orientation where they are known. Columns are found
+        by common names: t, x, y, z, vx, ..., wx, ..., qw, ...; vectors may come as arrays (n, 3): position, velocity,
+        angular_velocity, orientation. A heading may carry a unit: "x [mm]".
+    scenario : RollingSystem, Scenario, or the name or path of one
+        What is said to move. Its start gives what the data leave open, such as the spin.
+    start : State, optional
+        Instead of the scenario's.
+    columns : mapping, optional
+        Trundle's name -> the heading in the file, where the name does not tell.
+    axes : str
+        "space" or "body": along which Ω has its components.
+    angles : str
+        "rad" or "deg", also of rates.
+    quaternion : str
+        "wxyz" or "xyzw", for numbered columns and arrays.
+    orientation : str
+        "body-to-space" or "space-to-body".
+    euler : str
+        Axes of the angles e1, e2, e3, as SciPy has them.
+    frame : str
+        "support", "world" or "corotating".
+    time, length : str
+        Units where the headings have none.
+    tolerance : float
+        To which they are held, as a share of the speed; ten times that for accelerations. Where noise or spacing of
+        the samples leave more open, the bound is larger, and the card says so.
+
+    Returns
+    -------
+    Check
+        A card, with `first_failure`, `likely` and `plot()`.
+
+    Raises
+    ------
+    InvalidValueError
+        If the data cannot be read, or are no motion that could be checked.
+    UnknownNameError
+        If an option has no such value.
+
+    Examples
+    --------
+    A ball that somebody integrated with the moment of inertia of a shell:
+
+    >>> import numpy as np
+    >>> import trundle as tr
+    >>> table = tr.Support(tr.Plane(), motion=tr.Spin(3.5))
+    >>> system = tr.RollingSystem(tr.Body.solid_sphere(radius=0.025, mass=0.065), table)
+    >>> t, kappa = np.arange(0.0, 5.0, 0.01), 0.4 * 3.5  # 2/5 of ω: k/(1 + k) of a shell
+    >>> theirs = {"t": t, "x": 0.1 * np.cos(kappa * t), "y": 0.1 * np.sin(kappa * t)}
+    >>> found = tr.check(theirs, system)
+    >>> found.passed, [(mistake.name, round(mistake.numbers.get("inertia_ratio", 0.0), 4)) for mistake in found.likely]
+    (False, [('wrong-inertia-ratio', 0.6667), ('wrong-table-rate', 0.0)])
+    """
+    tolerance = _positive(tolerance)
+    system, start, title = _system_of(scenario, start)
+    conventions = Conventions(columns or {}, axes, angles, quaternion, orientation, euler, frame, time, length)
+    theirs = checked(read(data, system, conventions), system)
+    given = theirs.parts
+    theirs = with_orientation(system, theirs, start)
+    series, at = examine(system, theirs, tolerance, start)
+    series |= {one.name: one for one in integrals(system, at, tolerance)}
+    compared, ours = own_run(system, theirs, at, tolerance)
+    series |= {} if compared is None else {compared.name: compared}
+    figures = [*_told(theirs, at), *map(_figure, series.values())]
+    if compared is None:
+        figures.append(CardFigure(OWN_RUN, float("nan"), note=f"not compared: {ours.remark}"))
+    case = Case(system, theirs, tolerance, start, series, at)
+    likely = diagnose(case, (*READINGS, *LAWS, *CRUDE)) if case.failing else ()
+    span = float(theirs.time[-1] - theirs.time[0])
+    return Check(
+        f"{theirs.source or 'Their motion'} against {title or 'the system given'}",
+        f"their {given}, {theirs.time.size} samples over {span:g} s, rates by local polynomials",
+        tuple(figures),
+        _first_failure(case),
+        likely,
+        _remark(case, bool(likely)),
+        _drawn=Drawn(system, at, tuple(series.values()), ours),
+    )
+
+
+def _positive(tolerance: Any) -> float:
+    try:
+        value = float(tolerance)
+    except (TypeError, ValueError):
+        value = -1.0
+    if not 0 < value < 1:
+        raise InvalidValueError("tolerance", "must be a share, above 0 and below 1", tolerance, "1e-5 is the default.")
+    return value
+
+
+def _system_of(scenario: Any, start: State | None) -> tuple[RollingSystem, State | None, str]:
+    if isinstance(scenario, RollingSystem):
+        return scenario, start, ""
+    if not isinstance(scenario, ScenarioFile):
+        scenario = ScenarioFile.load(scenario)
+    return scenario.system(), start or scenario.start_state(), scenario.title
+
+
+def _told(theirs: Theirs, at: Motion) -> list[CardFigure]:
+    step = np.diff(theirs.time)
+    even = np.ptp(step) <= 1e-3 * step.mean()
+    noise = float(np.median(theirs.slope("position", at.index, 0).noise))
+    return [
+        CardFigure("time between samples", float(np.median(step)), "s", note="even" if even else "the median; uneven"),
+        CardFigure("scatter of the positions", noise, "m", note="about a smooth path: noise, or digits cut off"),
+    ]
+
+
+def _figure(series: Series) -> CardFigure:
+    share, allowed = series.share, series.allowed
+    holds = share <= allowed
+    room = float(series.bound[np.argmax(series.ratio)])
+    note = series.note
+    if room > 2 * series.asked:
+        note += "; noise and spacing of the data leave that much open"
+    if holds and allowed > _TELLS:
+        return CardFigure(series.name, share, "", allowed, None, f"{note}: too much to tell")
+    return CardFigure(series.name, share, "", allowed, holds, note)
+
+
+def _first_failure(case: Case) -> float | None:
+    """Return when a residual first exceeds its bound; from the first sample on, where it does so at once."""
+    times = [one.first_failure for one in case.failing]
+    found = [time for time in times if time is not None]
+    return min(found) if found else None
+
+
+def _remark(case: Case, explained: bool) -> str:
+    if not case.failing or explained:
+        return ""
+    failing = {series.name for series in case.failing}
+    if failing == {OWN_RUN}:
+        return (
+            "At each instant the law holds as closely as the data can show, and yet the path departs from ours: "
+            "small errors add up. Shorter steps, or a smaller tolerance of the integrator, would tell."
+        )
+    law = case.series[ACCELERATION]
+    if all(series.share < _CRUDE for series in case.failing if series.name != OWN_RUN):
+        return (
+            f"Nothing tried here explains it. The law is off by {law.share:.2g} at most: so little is more often a "
+            "matter of steps and tolerances than of mechanics. Halve the step and see whether it falls."
+        )
+    return "Nothing tried here explains it: no single change of units, axes, numbers or terms leaves nothing over."

@@ -1,0 +1,117 @@
+"""`trundle check`: somebody else's trajectory against the law of rolling."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ..errors import InvalidValueError
+from . import CARD_FAILED, screen
+
+if TYPE_CHECKING:
+    from ..checking import Check
+
+FIGURE = "check.png"
+
+
+def check(
+    theirs: Annotated[Path, typer.Argument(metavar="FILE", help="Their trajectory: .csv, .txt, .parquet or .nc.")],
+    scenario: Annotated[
+        str | None,
+        typer.Option("--scenario", "-s", metavar="SCENARIO", help="What moves: a shipped scenario or a TOML file."),
+    ] = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", metavar="FOLDER", help="Default: a folder of the file's name.")
+    ] = None,
+    columns: Annotated[
+        str | None, typer.Option(metavar="LIST", help="Names that do not tell: 't=frame_time, x=u, y=v'.")
+    ] = None,
+    axes: Annotated[str, typer.Option(metavar="AXES", help="Along which Ω is given: space or body.")] = "space",
+    angles: Annotated[str, typer.Option(metavar="UNIT", help="rad or deg, also of rates.")] = "rad",
+    quaternion: Annotated[str, typer.Option(metavar="ORDER", help="wxyz or xyzw, where numbered.")] = "wxyz",
+    orientation: Annotated[
+        str, typer.Option(metavar="SENSE", help="body-to-space or space-to-body.")
+    ] = "body-to-space",
+    euler: Annotated[str, typer.Option(metavar="AXES", help="Of e1, e2, e3: xyz fixed, ZXZ of the body.")] = "xyz",
+    frame: Annotated[str, typer.Option(metavar="FRAME", help="support, world or corotating.")] = "support",
+    time: Annotated[str, typer.Option(metavar="UNIT", help="Of time, such as ms.")] = "s",
+    length: Annotated[str, typer.Option(metavar="UNIT", help="Of positions, such as mm; speeds per second.")] = "m",
+    tolerance: Annotated[
+        float, typer.Option(metavar="SHARE", help="To which it is held, as a share of the speed.")
+    ] = 1e-5,
+    no_figure: Annotated[bool, typer.Option("--no-figure", help="Draw no figure.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the card as JSON, and nothing else.")] = False,
+) -> None:
+    """Say whether somebody else's trajectory rolls without slipping and obeys the law, and if not, why.
+
+    Exit status: 0, it holds; 2, bad input; 3, it does not hold; 130, interrupted; 1, all else.
+    """
+    from ..checking import check as check_trajectory
+    from .writing import check_folder, write_together
+
+    folder = Path(theirs.stem) if output is None else output.expanduser()
+    if not no_figure:
+        check_folder(folder, (FIGURE,))
+    found = check_trajectory(
+        theirs,
+        _scenario(theirs, scenario),
+        columns=_columns(columns),
+        axes=axes,
+        angles=angles,
+        quaternion=quaternion,
+        orientation=orientation,
+        euler=euler,
+        frame=frame,
+        time=time,
+        length=length,
+        tolerance=tolerance,
+    )
+    written = [] if no_figure else write_together(folder, {FIGURE: lambda path: found.plot().savefig(path)})
+    if as_json:
+        screen.out(found.as_json())
+    elif not quiet:
+        _tell(found, written)
+    if not found.passed:
+        failed = ", ".join(figure.name for figure in found.failures)
+        screen.note(f"trundle: it does not hold: {failed}")
+        raise typer.Exit(CARD_FAILED)
+
+
+def _tell(found: Check, written: list[Path]) -> None:
+    screen.show_card(found)
+    if screen.on_terminal() and found.verdict:  # in a pipe the card's own text has it
+        screen.out(found.verdict)
+    if written:
+        screen.out(f"Wrote {written[0]}")
+
+
+def _scenario(theirs: Path, scenario: str | None) -> object:
+    """Return the scenario that was named, or the one in a file of trundle's own."""
+    if scenario is not None:
+        return scenario
+    if theirs.suffix == ".nc" and theirs.is_file():
+        from ..errors import TrundleError
+        from ..scenario import ScenarioFile
+        from ..trajectory import Trajectory
+
+        try:
+            return ScenarioFile.loads(Trajectory.load(theirs).scenario, str(theirs))
+        except TrundleError:
+            pass
+    raise InvalidValueError(
+        "--scenario", "must say what moves", "none", "Name a shipped one (`trundle list`) or a TOML file."
+    )
+
+
+def _columns(text: str | None) -> dict[str, str]:
+    """Read 't=frame_time, x=u'."""
+    if text is None:
+        return {}
+    pairs = [pair.partition("=") for pair in text.split(",") if pair.strip()]
+    wrong = next((f"{name}{sign}{heading}" for name, sign, heading in pairs if not (sign and heading.strip())), None)
+    if wrong is not None:
+        raise InvalidValueError("--columns", "must be pairs NAME=HEADING", wrong.strip(), "Write 't=time, x=u, y=v'.")
+    return {name.strip(): heading.strip() for name, _, heading in pairs}
