@@ -30,13 +30,15 @@ def on_terminal() -> bool:
     return sys.stdout.isatty()
 
 
-def show_names(rows: list[tuple[str, str]]) -> None:
+def show_names(rows: list[tuple[str, str]], heading: str = "scenario") -> None:
     """Print names and titles.
 
     Parameters
     ----------
     rows : list of (name, title)
-        The scenarios.
+        The scenarios, for one.
+    heading : str
+        What they are, for a table on a terminal.
 
     Examples
     --------
@@ -53,7 +55,7 @@ def show_names(rows: list[tuple[str, str]]) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    table = Table("scenario", "what it is", box=SIMPLE_HEAD)
+    table = Table(heading, "what it is", box=SIMPLE_HEAD)
     for name, title in rows:
         table.add_row(Text(name, style="bold", no_wrap=True), Text(title))
     _console().print(table)
