@@ -91,38 +91,6 @@ def on_circles(expression: sp.Expr) -> sp.Expr:
     return e
 
 
-@lru_cache(maxsize=512)
-def tidy(expression: sp.Expr) -> sp.Expr:
-    """Write an expression shorter where SymPy can, in functions that the field knows; the same function always.
-
-    Parameters
-    ----------
-    expression : sympy.Expr
-        Anything that a tower knows.
-
-    Returns
-    -------
-    sympy.Expr
-        A form to read.
-
-    Examples
-    --------
-    >>> x = sp.Symbol("x")
-    >>> tidy(sp.sin(x) ** 2 + sp.cos(x) ** 2 + x / x**2)
-    (x + 1)/x
-    """
-    longer = on_circles(expression)
-    plain = not longer.has(sp.sin, sp.cos)
-    short = sp.factor_terms(sp.cancel(longer if plain else sp.trigsimp(longer)))
-    if plain or short == longer:
-        return short
-    try:
-        tower = Tower([short, longer], [])
-        return short if tower.is_zero(tower(short) - tower(longer)) else longer
-    except InvalidValueError:
-        return longer
-
-
 def _check_made_of(e: sp.Expr) -> None:
     for part in sp.preorder_traversal(e):
         if part in (sp.zoo, sp.oo, -sp.oo, sp.nan):
@@ -173,10 +141,12 @@ def kernels(prepared: list[sp.Expr]) -> tuple[dict[sp.Expr, int], dict[sp.Expr, 
 
 
 def constants(e: sp.Expr) -> set[sp.Expr]:
+    """Return the symbols of an expression, and π if it holds it."""
     return set(e.free_symbols) | ({sp.pi} if e.has(sp.pi) else set())
 
 
 def refusal(part: Any) -> InvalidValueError:
+    """Return what is raised for a part that cannot be decided exactly."""
     if isinstance(part, AppliedUndef):
         return InvalidValueError("constraints", "must hold known functions only", str(part), WHAT_MAY_STAND)
     return InvalidValueError("constraints", "must be of a kind that can be decided exactly", str(part), WHAT_MAY_STAND)

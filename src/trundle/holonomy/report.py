@@ -161,8 +161,10 @@ def _meaning(found: ConstraintAnalysis) -> str:
         which = "The constraint can" if found.rank == 1 else "All constraints can"
         return f"{which} be integrated, and {_count(left, 'coordinate')} eliminated."
     if found.verdict == "nonholonomic":
-        return "No function of the coordinates stays constant: none of them can be eliminated, and "
-        "from a generic place every place around it can be reached (theorem of Chow and Rashevskii)."
+        return (
+            "No function of the coordinates stays constant: none of them can be eliminated, and from a generic place "
+            "every place around it can be reached (theorem of Chow and Rashevskii)."
+        )
     return (
         f"Of {found.rank} constraints {left} can be integrated, in combination; the other {found.rank - left} cannot, "
         "and eliminate nothing."

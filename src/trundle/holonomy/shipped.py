@@ -270,7 +270,7 @@ def _car() -> PfaffianSystem:
     rear = Vector(x, y, sp.Integer(0))
     front = rear + _ahead(theta) * length
     sideways = [_velocity(rear, rates).dot(_aside(theta)), _velocity(front, rates).dot(_aside(theta + delta))]
-    system = q, pfaffian(q, sideways, rates)
+    system = q, [[tidy(e) for e in row] for row in pfaffian(q, sideways, rates)]
     heading = sp.cos(delta)
     motions = {
         "drive": [heading * sp.cos(theta), heading * sp.sin(theta), sp.sin(delta) / length, 0],

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from itertools import combinations
 from typing import Any
 
@@ -17,7 +18,7 @@ import sympy as sp
 from sympy.polys.fields import FracField
 
 from ..errors import InvalidValueError
-from .functions import constants, kernels, prepare, refusal, terms
+from .functions import constants, kernels, on_circles, prepare, refusal, terms
 
 PRIME = (1 << 61) - 1  # probes are taken modulo this prime: what is not zero there is not zero at all
 
@@ -320,3 +321,35 @@ def _at(polynomial: Any, values: list[int]) -> int:
                 term = term * pow(value, power, PRIME) % PRIME
         total += term
     return total % PRIME
+
+
+@lru_cache(maxsize=512)
+def tidy(expression: sp.Expr) -> sp.Expr:
+    """Write an expression shorter where SymPy can, in functions that the field knows; the same function always.
+
+    Parameters
+    ----------
+    expression : sympy.Expr
+        Anything that a tower knows.
+
+    Returns
+    -------
+    sympy.Expr
+        A form to read.
+
+    Examples
+    --------
+    >>> x = sp.Symbol("x")
+    >>> tidy(sp.sin(x) ** 2 + sp.cos(x) ** 2 + x / x**2)
+    (x + 1)/x
+    """
+    longer = on_circles(expression)
+    plain = not longer.has(sp.sin, sp.cos)
+    short = sp.factor_terms(sp.cancel(longer if plain else sp.trigsimp(longer)))
+    if plain or short == longer:
+        return short
+    try:
+        tower = Tower([short, longer], [])
+        return short if tower.is_zero(tower(short) - tower(longer)) else longer
+    except InvalidValueError:
+        return longer
