@@ -15,6 +15,7 @@ class SurfaceContract:
 
     surface: Surface
     length = 1.0  # over which the surface changes, m
+    mapped = True  # it has coordinates
 
     def points(self) -> list[Vector]:
         raise NotImplementedError
@@ -61,6 +62,31 @@ class SurfaceContract:
             S, n = self.surface.shape_operator(p), self.surface.normal(p)
             assert size_of(S - S.transpose) <= EXACT(16, 1 / self.length)
             assert size_of(S @ n) <= EXACT(16, 1 / self.length)
+
+    @precisely
+    def test_coordinates_find_the_point_again(self) -> None:
+        for p in self.points() if self.mapped else []:
+            assert size_of(self.surface.point(*self.surface.coordinates_of(p)) - p) <= EXACT(16, self.length)
+
+    @precisely
+    def test_the_directions_are_those_in_which_the_coordinates_grow(self) -> None:
+        for p in self.points() if self.mapped else []:
+            u, v = self.surface.coordinates_of(p)
+            grown = (
+                unit(slope(lambda h, v=v: self.surface.point(h, v), u)),
+                unit(slope(lambda h, u=u: self.surface.point(u, h), v)),
+            )
+            for direction, wanted in zip(self.surface.directions(p), grown, strict=True):
+                assert size_of(direction - wanted) <= EXACT(16, 1)
+            first, second = self.surface.directions(p)
+            assert abs(first.dot(second)) + abs(first.dot(self.surface.normal(p))) <= EXACT(16, 1)
+
+    @precisely
+    def test_a_point_over_the_surface_has_the_coordinates_of_its_foot(self) -> None:
+        for p in self.points() if self.mapped else []:
+            over = p + self.surface.normal(p) * (self.length / 8)
+            for a, b in zip(self.surface.coordinates_of(over), self.surface.coordinates_of(p), strict=True):
+                assert abs(a - b) <= EXACT(16, 1)
 
     @precisely
     def test_it_says_truly_whether_it_looks_the_same_from_all_sides(self) -> None:

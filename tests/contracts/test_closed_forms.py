@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
+import mpmath
 import numpy as np
 import pytest
 from tests.additions import Ball, Ellipsoid, Tumble
@@ -15,7 +16,7 @@ from trundle.errors import OutOfDomainError
 from trundle.mechanics.algebra import Vector
 from trundle.mechanics.loads import BodyMotion, Load
 from trundle.mechanics.shapes import Sphere
-from trundle.solve.exact import SphereOnPlane
+from trundle.solve.exact import CylinderOnCylinder, SphereOnPlane
 
 BALL = tr.Body.solid_sphere(radius=0.025, mass=0.065)
 SHELL = tr.Body.hollow_sphere(radius=0.02, mass=0.0027)
@@ -81,3 +82,68 @@ class TestSphereOnPlane(ClosedFormContract):
         for ask in ("guiding_centre", "drift_velocity", "circle_radius"):
             with pytest.raises(OutOfDomainError, match="guiding centre"):
                 getattr(motion, ask)(0.0) if ask == "guiding_centre" else getattr(motion, ask)
+
+
+def in_pipe(
+    body: tr.Body,
+    rate: float = 0.0,
+    side: str = "inside",
+    loads: Any = (),
+    gravity: float = 9.80665,
+    tilt: Any = "90 deg",
+    **start: Any,
+) -> tuple[tr.RollingSystem, tr.State]:
+    support = tr.Support(tr.Cylinder(0.5, side), motion=tr.Spin(rate) if rate else tr.Fixed(), tilt=tilt)
+    system = tr.RollingSystem(body, support, loads=loads, gravity=gravity)
+    return system, system.place(**{"position": (0.7, 0.25)} | start)
+
+
+class TestCylinderOnCylinder(ClosedFormContract):
+    form = CylinderOnCylinder
+    span = 3.0
+
+    def cases(self) -> list[tuple[tr.RollingSystem, tr.State]]:
+        log = tr.Body.cylinder(0.05, 0.75)
+        hoop = tr.Body.hoop(0.2, 0.3)
+        return [
+            in_pipe(log),
+            in_pipe(hoop, rate=3.0),
+            in_pipe(BALL, velocity=(0.5, 0.0)),
+            in_pipe(BALL, velocity=(-0.5, 0.0), rate=-1.5),
+            in_pipe(log, velocity=(6.0, 0.0)),
+            in_pipe(log, velocity=(-6.0, 0.0), rate=2.0),
+            in_pipe(hoop, position=(0.0, 0.0)),  # at rest at the lowest line
+            in_pipe(hoop, position=(1e-7, 0.0)),
+            in_pipe(tr.Body.cylinder(0.05, 0.75, 1e-3), position=(3.1, 0.0)),
+            in_pipe(BALL, position=(3.0, 0.0), side="outside", velocity=(0.1, 0.0)),
+            in_pipe(log, gravity=0.0, velocity=(1.0, 0.0)),
+            in_pipe(log, gravity=0.0),
+            in_pipe(log, loads=(tr.Force((2.0, -3.0, 0.0)),), velocity=(0.5, 0.0)),
+            in_pipe(log, tilt="-90 deg"),
+        ]
+
+    def outside(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
+        inside, start = in_pipe(BALL)
+        leaning = in_pipe(BALL, tilt="80 deg")
+        along = in_pipe(BALL, velocity=(0.2, 0.1))
+        spun = in_pipe(BALL, velocity=(0.2, 0.0), spin=1.0)
+        swung = replace(inside, support=replace(inside.support, motion=tr.UnevenSpin(1.0, 0.1, 2.0)))
+        top = tr.State((0.0, 0.0, 0.525), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+        eccentric = replace(BALL, shape=Sphere(0.025, Vector(0.0, 0.0, 0.001)))
+        still = replace(start, position=(0.475, 0.0, 0.25), velocity=(0.0, 0.0, 0.0), angular_velocity=(0.0, 0.0, 0.0))
+        return [
+            (*leaning, "along the cylinder's axis"),
+            (*along, "start moves along"),
+            (*spun, "spins across"),
+            (swung, swung.place((0.7, 0.25)), "UnevenSpin"),
+            (replace(inside, support=replace(inside.support, surface=Ball(0.5, 1.0))), top, "Ball"),
+            (replace(inside, body=eccentric), still, "about its centre"),
+            (replace(inside, loads=(Spring(1.0),)), start, "Spring"),
+            (replace(inside, loads=(tr.Drag(0.1),)), start, "Drag"),
+            (replace(inside, loads=(tr.Torque((0.0, 0.0, 0.1)),)), start, "torque"),
+            (replace(inside, loads=(tr.Force(("t", 0.0, 0.0)),)), start, "Force"),
+        ]
+
+    def offset(self, system: tr.RollingSystem, at: Vector) -> Vector:
+        sign, distance = (1 if system.support.surface.side == "outside" else -1), mpmath.hypot(at.x, at.y)
+        return Vector(at.x / distance, at.y / distance, mpmath.mpf(0)) * (-sign * mpmath.mpf(system.body.shape.radius))

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import mpmath
 import pytest
-from tests.additions import Ball, Pipe
+from tests.additions import Ball
 from tests.contracts.contract_surface import SurfaceContract
 from tests.precise import directions, vectors
 
-from trundle.errors import InvalidValueError
+from trundle.errors import InvalidValueError, UnknownNameError
 from trundle.mechanics.algebra import Vector
-from trundle.mechanics.surfaces import Plane
+from trundle.mechanics.surfaces import Cylinder, Plane
+from trundle.mechanics.system import Support
 
 
 class TestPlane(SurfaceContract):
@@ -28,6 +29,7 @@ class TestPlane(SurfaceContract):
 class TestOutsideOfBall(SurfaceContract):
     surface = Ball(0.5, side=1.0)
     length = 0.5
+    mapped = False
 
     def points(self) -> list[Vector]:
         return [n * mpmath.mpf(0.5) for n in directions("ball", 6)]
@@ -37,10 +39,24 @@ class TestInsideOfBall(TestOutsideOfBall):
     surface = Ball(0.5, side=-1.0)
 
 
-class TestInsideOfPipe(SurfaceContract):
-    surface = Pipe(0.5)
+class TestInsideOfCylinder(SurfaceContract):
+    surface = Cylinder(0.5)
     length = 0.5
 
     def points(self) -> list[Vector]:
         around = [mpmath.mpf(i) for i in range(6)]
         return [Vector(mpmath.cos(i) / 2, mpmath.sin(i) / 2, i - 3) for i in around]
+
+    @pytest.mark.parametrize("side", ["in", "", None])
+    def test_a_side_is_inside_or_outside(self, side: object) -> None:
+        with pytest.raises(UnknownNameError, match="inside, outside"):
+            Cylinder(0.5, side)
+
+    def test_it_may_lie_level_or_hang_over(self) -> None:
+        assert Support(self.surface, tilt="90 deg").tilt == pytest.approx(1.5707963267948966)
+        with pytest.raises(InvalidValueError, match="tilt"):
+            Support(self.surface, tilt=181.0)
+
+
+class TestOutsideOfCylinder(TestInsideOfCylinder):
+    surface = Cylinder(0.5, "outside")

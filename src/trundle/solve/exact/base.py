@@ -64,4 +64,4 @@ class ClosedForm:
     def straight_turn(self, t: Any) -> tuple[Vector, Any] | None:
         """Return the fixed axis about which the body has turned and the angle, rad, where the position gives them."""
         del t
-        return None  # noqa: RET501
+        return None

@@ -99,8 +99,8 @@ class CylinderOnCylinder(ClosedForm):
         >>> import trundle as tr
         >>> trough = tr.Support(tr.Cylinder("50 cm"), tilt="90 deg")
         >>> system = tr.RollingSystem(tr.Body.cylinder("5 cm", "1 kg"), trough)
-        >>> round(CylinderOnCylinder.of(system, system.place(("60 deg", 0.0))).period, 6)
-        1.768982
+        >>> round(CylinderOnCylinder.of(system, system.place(("60 deg", 0.0))).period, 6)  # 4 K(sin 30°)/√(g/(1.5 ℓ))
+        1.769069
         """
         cls.check_domain(system, start)
         surface: Any = system.support.surface
@@ -152,7 +152,7 @@ class CylinderOnCylinder(ClosedForm):
             reasons.append(f"the support's motion {type(system.support.motion).__name__} is no steady turn")
         varying = [load for load in system.loads if not load.constant]
         reasons += [f"the load {type(load).__name__} is not constant" for load in varying]
-        if not varying:
+        if not reasons:
             (fx, fy, fz), torque, _ = constant_part(system.all_loads, system.body.mass)
             if abs(fz) > _ASIDE * math.hypot(fx, fy):
                 reasons.append("gravity or a force pulls along the cylinder's axis")
@@ -175,7 +175,8 @@ class CylinderOnCylinder(ClosedForm):
     @cached_property
     def _constants(self) -> _Constants:
         """Worked out with many digits; for arrays of members, one by one."""
-        given = (self.mass, self.inertia_ratio, self.length, self.angle, self.angular_rate, *self.force)
+        sizes = (self.track_radius, self.side, self.radius)
+        given = (self.mass, self.inertia_ratio, *sizes, self.angle, self.angular_rate, *self.force)
         if all(is_number(value) for value in given):
             return _Constants(*map(float, _constants(*given)))
         if any(type(value).__module__.partition(".")[0] == "mpmath" for value in given):
@@ -328,12 +329,13 @@ class _Constants:
     pull_y: Any
 
 
-def _constants(m: Any, k: Any, length: Any, angle: Any, angular_rate: Any, fx: Any, fy: Any) -> tuple[Any, ...]:
+def _constants(*given: Any) -> tuple[Any, ...]:
     """Return the fields of `_Constants` as mpmath numbers."""
     import mpmath
 
     with mpmath.workdps(max(_DIGITS, mpmath.mp.dps)):
-        m, k, length, angle, angular_rate, fx, fy = map(mpmath.mpf, (m, k, length, angle, angular_rate, fx, fy))
+        m, k, track, side, radius, angle, angular_rate, fx, fy = map(mpmath.mpf, given)
+        length = track + side * radius
         G, sine, cosine, v = mpmath.hypot(fx, fy), mpmath.sin(angle / 2), mpmath.cos(angle / 2), angular_rate / 2
         pull = (fx / G, fy / G) if G else (mpmath.mpf(1), mpmath.mpf(0))
         pendulum = G / (m * (1 + k) * length)
