@@ -17,7 +17,7 @@ from trundle.mechanics.system import RollingSystem, State
 from trundle.scenario import ScenarioFile, files
 from trundle.units import UNITS
 
-SHIPPED = {name: files.parse(files.read(name), name) for name in files.names()}
+SHIPPED = {name: files.parse(files.read(name), name) for name in ScenarioFile.names()}
 TEXTS = {name: files.read(name) for name in SHIPPED}
 
 numbers = st.one_of(

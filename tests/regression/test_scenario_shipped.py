@@ -13,6 +13,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from trundle.scenario import ScenarioFile, files
+from trundle.scenario.path_file import PathFile
 
 STEEL, TABLE = 7.8e3, 33.3 * np.pi / 30  # kg/m³; rad/s
 Path = Callable[[object], np.ndarray]
@@ -67,13 +68,13 @@ def says(name: str, *numbers: str) -> None:
 
 
 def test_the_titles_and_names_are_those_of_the_files() -> None:
-    assert ScenarioFile.names() == sorted(files.names())
-    titles = [ScenarioFile.load(name).title for name in ScenarioFile.names()]
-    assert titles == [files.title_of(name) for name in ScenarioFile.names()]
+    assert sorted([*ScenarioFile.names(), *PathFile.names()]) == files.names()
+    titles = [kind.load(name).title for kind in (ScenarioFile, PathFile) for name in kind.names()]
+    assert titles == [files.title_of(name) for kind in (ScenarioFile, PathFile) for name in kind.names()]
     assert len(set(titles)) == len(titles)
 
 
-@pytest.mark.parametrize("name", files.names())
+@pytest.mark.parametrize("name", ScenarioFile.names())
 def test_each_has_notes_and_a_realistic_ball(name: str) -> None:
     scenario = ScenarioFile.load(name)
     assert len(scenario.notes) > 200

@@ -16,10 +16,12 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-# The northern half is orange, the southern blue (Okabe and Ito's); sectors of 60 degrees are lighter and darker in turn.
+# The northern half is orange, the southern blue (Okabe and Ito's), in sectors of 60 degrees, lighter and darker.
 _NORTH, _SOUTH = ((0.96, 0.76, 0.50), (0.90, 0.56, 0.22)), ((0.66, 0.82, 0.93), (0.36, 0.60, 0.80))
 _LINE = (0.16, 0.16, 0.18)
 _PIXELS, _FINER = 150, 2
+_DOTS = 200  # pixels to the inch
+_SHORT = 0.45  # of the radius: an axis that appears shorter is shown as a dot
 _ROD, _STUB = 1.55, 1.3  # of the radius: how far the axis sticks out at the north pole, and at the south
 _LIGHT = np.array([-0.45, 0.55, 0.75]) / np.linalg.norm([-0.45, 0.55, 0.75])  # right, up, towards the viewer
 
@@ -137,7 +139,7 @@ def _band(distance: Array, half: float) -> Array:
     return np.clip((half - distance) / (0.4 * half) + 0.5, 0.0, 1.0)
 
 
-def place(ax: Axes, at: Any, radius: float, orientation: Any, view: View, zorder: float = 5.0) -> None:
+def place(ax: Axes, at: Any, radius: float, inches: float, orientation: Any, view: View, zorder: float = 5.0) -> None:
     """Put a ball with its axis into a picture.
 
     Parameters
@@ -146,8 +148,8 @@ def place(ax: Axes, at: Any, radius: float, orientation: Any, view: View, zorder
         With equal aspect.
     at : pair of float
         Where its centre appears, axis numbers.
-    radius : float
-        Axis numbers.
+    radius, inches : float
+        Its size in axis numbers, and on the page.
     orientation : sequence of 4 floats
         Quaternion (w, x, y, z), body frame to support frame.
     view : View
@@ -160,48 +162,46 @@ def place(ax: Axes, at: Any, radius: float, orientation: Any, view: View, zorder
     See `trundle.geometry.figure.draw`.
     """
     x, y = float(at[0]), float(at[1])
-    pole = np.array(tuple(Quaternion(*map(float, orientation)).matrix() @ E_Z))
-    extent = (x - radius, x + radius, y - radius, y + radius)
+    pixels = int(np.clip(2 * inches * _DOTS, 40, 300))
     ax.imshow(
-        picture(orientation, view),
-        extent=extent,
-        origin="upper",
+        picture(orientation, view, pixels),
+        extent=(x - radius, x + radius, y - radius, y + radius),
         interpolation="antialiased",
         zorder=zorder,
-        aspect="equal",
     )
-    flat, depth = view.flat(pole), float(pole @ view.towards)
-    _axis(ax, np.array([x, y]), radius, flat, depth, zorder)
+    pole = np.array(tuple(Quaternion(*map(float, orientation)).matrix() @ E_Z))
+    _axis(ax, np.array([x, y]), radius, inches, view.flat(pole), float(pole @ view.towards), zorder)
 
 
-def _axis(ax: Axes, centre: Array, radius: float, flat: Array, depth: float, zorder: float) -> None:
-    """Draw the axis where it sticks out of the ball: an arrow and N at the north pole, a stub at the south."""
-    from matplotlib.patheffects import Normal, Stroke
+def _axis(ax: Axes, centre: Array, radius: float, inches: float, flat: Array, depth: float, zorder: float) -> None:
+    """Draw the axis where it comes out of the ball: an arrow and N at the north pole, a stub at the south.
 
+    An axis seen from one end is a dot, with the letter of the pole that is on this side.
+    """
     from ..plots.sheet import GREY, INK
 
-    white = [Stroke(linewidth=3.2, foreground="white"), Normal()]
-    tip, root = centre + _ROD * radius * flat, centre + radius * flat
-    end = centre - _STUB * radius * flat
-    south = zorder + (0.2 if depth < -0.02 else -0.2)
-    ax.plot(*np.array([centre - radius * flat, end]).T, color=GREY, lw=2.2, zorder=south, solid_capstyle="butt")
-    north = zorder + (0.3 if depth > -0.02 else -0.3)
-    long = math.hypot(*flat)
-    if long > 0.2:
-        begin = root if depth > -0.02 else centre
-        arrow = {
-            "arrowstyle": "-|>,head_length=0.55,head_width=0.28",
-            "color": INK,
-            "lw": 1.9,
-            "shrinkA": 0,
-            "shrinkB": 0,
-        }
-        ax.annotate("", tip, begin, arrowprops=arrow, zorder=north)
-        at = tip + 0.24 * radius * flat / long
-    elif depth > 0:
-        ax.plot(*centre + radius * flat, marker="o", ms=5.5, mfc=INK, mec="white", mew=1.0, zorder=north, ls="none")
-        at = root + 0.32 * radius * np.array([0.75, 0.75])
-    else:
+    long, size = math.hypot(*flat), float(np.clip(inches / 0.35, 0.75, 1.0))
+    if long < _SHORT:
+        side = 1.0 if depth > 0 else -1.0
+        dot = centre + side * radius * flat
+        colour = INK if depth > 0 else GREY
+        ax.plot(*dot, marker="o", ms=5.5 * size, mfc=colour, mec="white", mew=1.0, zorder=zorder + 0.3, ls="none")
+        beside = side * flat / long if long > 0.1 else np.array([0.7, 0.7])
+        _letter(ax, dot + 0.32 * radius * beside, "N" if depth > 0 else "S", colour, size, zorder + 0.4)
         return
-    style: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 9, "fontweight": "bold"}
-    ax.text(*at, "N", color=INK, zorder=zorder + 0.4, path_effects=white, **style)
+    near, far = zorder + 0.3, zorder - 0.3
+    stub = np.array([centre - radius * flat, centre - _STUB * radius * flat])
+    ax.plot(*stub.T, color=GREY, lw=2.2 * size, zorder=far if depth > 0.02 else near, solid_capstyle="butt")
+    tip, root = centre + _ROD * radius * flat, centre + (radius * flat if depth > -0.02 else 0.0)
+    head = f"-|>,head_length={0.55 * size},head_width={0.28 * size}"
+    arrow = {"arrowstyle": head, "color": INK, "lw": 1.9 * size, "shrinkA": 0, "shrinkB": 0}
+    ax.annotate("", tuple(tip), tuple(root), arrowprops=arrow, zorder=near if depth > -0.02 else far)
+    _letter(ax, tip + 0.25 * radius * flat / long, "N", INK, size, zorder + 0.4)
+
+
+def _letter(ax: Axes, at: Array, letter: str, colour: str, size: float, zorder: float) -> None:
+    from matplotlib.patheffects import Normal, Stroke
+
+    white = [Stroke(linewidth=3.0 * size, foreground="white"), Normal()]
+    text = ax.text(float(at[0]), float(at[1]), letter, color=colour, zorder=zorder, path_effects=white)
+    text.set(ha="center", va="center", fontsize=9 * size, fontweight="bold")

@@ -272,7 +272,7 @@ class RolledPath:
         laid = self._laid
         bend = float(np.abs(laid.curvatures * laid.lengths).sum())
         steps = len(self.pieces) + self.length / self.radius + bend + sum(c.steps for c in laid.curves.values())
-        return _ROUNDING * _EPSILON * steps + sum(curve.error_bound for curve in laid.curves.values())
+        return float(_ROUNDING * _EPSILON * steps + sum(curve.error_bound for curve in laid.curves.values()))
 
     # --- what it leaves --------------------------------------------------------------------------------------
 

@@ -104,6 +104,7 @@ def _translate(detail: Any, model: type[BaseModel]) -> Complaint:
 
 _SHAPES = {
     "string_type": ("must be text", "Put it in quotes."),
+    "bool_type": ("must be true or false", "Write it without quotes."),
     "tuple_type": ("must be a list of tables", "Head each with [[{path}]]."),
     "model_type": ("must be a table", "Head it with [{path}] and give its keys below."),
     "model_attributes_type": ("must be a table", "Head it with [{path}] and give its keys below."),
