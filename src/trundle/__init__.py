@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from . import units
+    from .analogy import ChargedParticle, Twin, to_turntable, twin
     from .checking import Check, Mistake, check
     from .derivation import derive
     from .errors import (
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 
 # Public name -> module that holds it: `import trundle` loads nothing until a name is used.
 _HOMES = {
+    "analogy": ("ChargedParticle", "Twin", "twin", "to_turntable"),
     "errors": (
         "TrundleError",
         "InvalidValueError",
@@ -59,6 +61,7 @@ __all__ = [
     "Arc",
     "Body",
     "Card",
+    "ChargedParticle",
     "ConstraintAnalysis",
     "Curve",
     "Cylinder",
@@ -89,6 +92,7 @@ __all__ = [
     "Torque",
     "Trajectory",
     "TrundleError",
+    "Twin",
     "UnevenSpin",
     "UnknownNameError",
     "Wobble",
@@ -96,6 +100,8 @@ __all__ = [
     "roll_along",
     "derive",
     "simulate",
+    "to_turntable",
+    "twin",
     "units",
 ]
 

@@ -1,0 +1,127 @@
+"""The correspondence as a table: each quantity of the ball beside the one of the charge that it is."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from ..plots.scales import short, with_unit
+
+if TYPE_CHECKING:
+    from .correspondence import Twin
+
+Row = tuple[str, str, str, str, str]  # what it is, of the ball, its value, of the charge, its value
+
+
+def rows(pair: Twin) -> list[Row]:
+    """Return the rows; values of the charge that depend on time are in the time of the ball.
+
+    Parameters
+    ----------
+    pair : Twin
+        Ball and charge.
+
+    Returns
+    -------
+    list of rows
+        Each: what both are, and for the ball and the charge a formula and a value.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> rows(tr.twin(tr.Scenario.load("tilted-turntable")))[1][2:]
+    ('0.996334 rad/s', '−QB/M', '0.996334 rad/s')
+    """
+    ball, charge, pace = pair.ball, pair.particle, pair.slow_motion
+    push = math.hypot(ball.phi.re, ball.phi.im)
+    E = math.hypot(*charge.electric_field)
+    told: list[Row] = [
+        ("mass", "m", f"{ball.mass:.6g} kg", "M", f"{charge.mass:.6g} kg"),
+        (
+            "rate of turning",
+            "κ = ω k/(1 + k)",
+            f"{ball.kappa:.6g} rad/s",
+            "−QB/M",
+            f"{charge.gyration_rate / pace + 0.0:.6g} rad/s",
+        ),
+        ("push", "|φ|", f"{push:.6g} m/s²", "|QE|/M", f"{abs(charge.charge) * E / charge.mass / pace**2:.6g} m/s²"),
+    ]
+    if ball.gamma:
+        told.append(
+            ("slowing", "γ", f"{ball.gamma:.6g} 1/s", "C/M", f"{charge.resistance / charge.mass / pace:.6g} 1/s")
+        )
+    if ball.kappa:
+        period = 2 * math.pi / abs(ball.kappa)
+        told.append(("one turn", "2π/|κ|", f"{period:.6g} s", "2πM/|QB|", f"{charge.period * pace:.6g} s"))
+    if ball.has_guiding_centre:
+        told += [
+            (
+                "radius",
+                "|V − v|/|κ|",
+                f"{ball.circle_radius:.6g} m",
+                "M|v − v_d|/|QB|",
+                f"{charge.larmor_radius:.6g} m",
+            ),
+            (
+                "drift",
+                "−φ/(iκ)",
+                _pair(ball.drift_velocity, "m/s"),
+                "E×B/B²",
+                _pair(tuple(c / pace for c in charge.drift_velocity), "m/s"),
+            ),
+        ]
+    return told
+
+
+def settings(pair: Twin) -> list[tuple[str, str]]:
+    """Return what to set on either side.
+
+    Parameters
+    ----------
+    pair : Twin
+        Ball and charge.
+
+    Returns
+    -------
+    list of (name, value)
+        Of the table, then of the fields.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> settings(tr.twin(tr.Scenario.load("tilted-turntable")))[2]
+    ('magnetic field B', '−0.50813 T along n, into the table')
+    """
+    charge = pair.particle
+    b, (ex, ey) = charge.magnetic_field, charge.electric_field
+    way = "out of the table" if b > 0 else "into the table"
+    told = [
+        ("table", f"{_turning(pair)}, tilt {short(math.degrees(pair.tilt), 6)}°"),
+        ("charge Q", f"{short(charge.charge, 6)} C"),
+        ("magnetic field B", f"{short(b, 6)} T along n, {way}" if b else "0: the plane does not turn"),
+        ("electric field E", f"{_pair((ex, ey), 'V/m')}{_against(pair)}" if ex or ey else "0: nothing pushes"),
+    ]
+    if charge.resistance:
+        told.append(("resistance C", f"{short(charge.resistance, 6)} kg/s"))
+    if pair.slow_motion != 1.0:
+        told.append(("slow motion", f"1 s of the ball is {with_unit(1 / pair.slow_motion, 'time', 6)} of the charge"))
+    return told
+
+
+def _turning(pair: Twin) -> str:
+    rate = float(pair.ball.rate)
+    return f"turns at {short(rate, 6)} rad/s" if rate else "at rest"
+
+
+def _against(pair: Twin) -> str:
+    """Say where E points on the slope."""
+    ex, ey = pair.particle.electric_field
+    if not pair.tilt or abs(ey) > 1e-12 * abs(ex):
+        return ""
+    return ", down the slope" if ex * pair.tilt > 0 else ", up the slope"
+
+
+def _pair(values: tuple[float, ...], unit: str) -> str:
+    size = max(abs(value) for value in values)
+    shown = [short(0.0 if abs(value) < 1e-12 * size else value, 6) for value in values]
+    return f"({shown[0]}, {shown[1]}) {unit}"

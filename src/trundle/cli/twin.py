@@ -1,0 +1,93 @@
+"""`trundle twin`: the charge in crossed fields that moves as the ball of a scenario does."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ..errors import InvalidValueError
+from . import CARD_FAILED, screen
+
+if TYPE_CHECKING:
+    from ..analogy import Twin
+
+FILE = "twin.png"
+
+
+def twin(
+    scenario: Annotated[str, typer.Argument(metavar="SCENARIO", help="The name of a shipped one, or a TOML file.")],
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", metavar="FOLDER", help="Default: a folder of the scenario's name."),
+    ] = None,
+    electron: Annotated[
+        bool, typer.Option("--electron", help="An electron, a million times as fast as the ball.")
+    ] = False,
+    mass: Annotated[str | None, typer.Option(metavar="MASS", help="Of the charge, such as '1 g'; the ball's.")] = None,
+    charge: Annotated[float, typer.Option(metavar="COULOMB", help="The charge, C.")] = 1.0,
+    slow_motion: Annotated[
+        float | None, typer.Option(metavar="TIMES", help="Seconds of the ball for one of the charge.")
+    ] = None,
+    no_figure: Annotated[bool, typer.Option("--no-figure", help="Draw no figure.")] = False,
+) -> None:
+    """Find the charge in crossed electric and magnetic fields that moves as a ball on a turntable does.
+
+    Prints what corresponds to what, compares the two paths, and writes twin.png.
+
+    Exit status: 0, all is well; 2, bad input; 3, the two paths differ by more than rounding; 1, all else.
+    """
+    from .app import load
+    from .writing import check_folder, write_together
+
+    folder = Path(Path(scenario).stem) if output is None else output.expanduser()
+    pair = _found(load(scenario), mass=mass, charge=charge, electron=electron, slow_motion=slow_motion)
+    if not no_figure:
+        check_folder(folder, (FILE,))
+    agree = _tell(pair)
+    if not no_figure:
+        written = write_together(folder, {FILE: lambda path: pair.plot().savefig(path)})
+        screen.out(f"Wrote {written[0]}")
+    if not agree:
+        screen.note("trundle: the two paths differ by more than rounding")
+        raise typer.Exit(CARD_FAILED)
+
+
+def _found(scenario: Any, **options: Any) -> Twin:
+    from ..analogy import twin as find
+
+    try:
+        return find(scenario, **options)
+    except InvalidValueError as error:
+        if error.key in options:  # as the command line calls it
+            key = f"--{error.key.replace('_', '-')}"
+            raise InvalidValueError(key, error.rule, error.received, error.remedy) from None
+        raise
+
+
+def _tell(pair: Twin) -> bool:
+    """Print the correspondence, and tell whether the paths agree."""
+    from ..analogy.table import settings
+
+    if pair.title:
+        screen.out(pair.title)
+        screen.out()
+    for line in _columns([("", "ball", "", "charge", ""), *pair.table()]):
+        screen.out(line)
+    screen.out()
+    for line in _columns(settings(pair)):
+        screen.out(line)
+    duration = pair.shown_duration
+    apart, allowed = pair.largest_difference(duration), pair.rounding(duration)
+    screen.out()
+    screen.out(
+        f"Over {duration:g} s the two paths, each by its own formulas, are at most {apart:.2g} m apart; "
+        f"rounding may make {allowed:.2g} m."
+    )
+    return apart <= allowed
+
+
+def _columns(rows: list[Any]) -> list[str]:
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
