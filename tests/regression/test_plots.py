@@ -106,6 +106,7 @@ class Run:
         normal = np.full_like(self.time, self.mass * 9.80665 * math.cos(self.tilt))
         arrays = {
             "position": _columns(zeta, self.radius),
+            "contact": _columns(zeta, 0.0),
             "velocity": _columns(dot, 0.0),
             "angular_velocity": _columns(Omega, 0.5),
             "contact_force": np.column_stack([R.real, R.imag, normal]),

@@ -100,12 +100,44 @@ def touch(system: RollingSystem, time: Scalar, point: Vector, orientation: Quate
         n, ρ, C and S.
     """
     surface, support = system.support.surface, system.support.motion.at(time)
-    turn = support.rotation
-    own = turn.transpose @ (point - support.origin)
+    turn, own = support.rotation, _own(support, point)
     n = turn @ surface.normal(own)
     S = turn @ surface.shape_operator(own) @ turn.transpose
     rho, C = system.body.shape.contact(orientation.matrix(), n)
     return Contact(support, point, n, rho, C, S)
+
+
+def normal_at(system: RollingSystem, time: Scalar, point: Vector) -> Vector:
+    """Return n at a point of the support, from the support into the body, in the inertial support frame.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Its support.
+    time : Scalar
+        t, s.
+    point : Vector
+        p in the inertial support frame, m.
+
+    Returns
+    -------
+    Vector
+        Of length 1.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> level = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane()))
+    >>> normal_at(level, 0.0, Vector(0.4, 0.0, 0.0))
+    Vector(x=0.0, y=0.0, z=1.0)
+    """
+    support = system.support.motion.at(time)
+    return support.rotation @ system.support.surface.normal(_own(support, point))
+
+
+def _own(support: SupportState, point: Vector) -> Vector:
+    """Return a point in the support's own coordinates."""
+    return support.rotation.transpose @ (point - support.origin)
 
 
 def settle(system: RollingSystem, time: float, centre: Vector, orientation: Quaternion) -> Contact:

@@ -11,6 +11,9 @@ import numpy as np
 from matplotlib import rcParams
 from matplotlib.axes import Axes
 
+from trundle.mechanics.algebra import Vector
+from trundle.mechanics.contact import normal_at
+
 from .facts import NOTHING, Facts, facts_of, guiding_centre, turns_in
 from .scales import Array, Unit, thin_series, unit_for
 from .sheet import BLUE, GREEN, GREY, INK, VERMILION, Sheet, look
@@ -115,7 +118,7 @@ def _panels(run: Trajectory, facts: Facts, time: Array, support: Any) -> list[Se
     duration = float(time[-1] - time[0])
     length = max(float(np.max(np.abs(r))), facts.radius, 1e-300)
     frequency = max(abs(facts.rate), 1.0 / duration if duration > 0.0 else 1.0)
-    normal = run.samples.normals(run.system)
+    normal = np.broadcast_to(normal_at(run.system, time, Vector.of(_array(support, "contact"))).array(), R.shape)
     N = np.einsum("ni,ni->n", R, normal)
     f = np.linalg.norm(R - N[:, None] * normal, axis=1)
     force = float(np.max(np.abs(R)))

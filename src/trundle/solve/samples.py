@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import roll, touch
+from ..mechanics.contact import normal_at, roll
 from ..mechanics.loads import BodyMotion
 from ..mechanics.system import RollingSystem, State
 
@@ -99,8 +99,8 @@ class Samples:
 
     def normals(self, system: RollingSystem) -> Array:
         """Return the support's unit normal at each contact (n, 3), from the support into the body."""
-        contact = touch(system, self.time, Vector.of(self.contact), Quaternion.of(self.orientation))
-        return np.broadcast_to(contact.normal.array(), self.position.shape)
+        normal = normal_at(system, self.time, Vector.of(self.contact))
+        return np.broadcast_to(normal.array(), self.position.shape)
 
     def ended(self, event: Event) -> Samples:
         """Return the same samples with the event that ended them."""

@@ -49,6 +49,28 @@ class CardFigure:
         return f"{verdict:<5} {self.name:<40}  {value.strip():<16} {limit:<15}  {self.note}".rstrip()
 
 
+def checked(name: str, value: float, bound: float, note: str, unit: str = "") -> CardFigure:
+    """Return a figure that passes where its value is at most its bound.
+
+    Parameters
+    ----------
+    name, value, bound, note, unit
+        As of `CardFigure`.
+
+    Returns
+    -------
+    CardFigure
+        With its verdict.
+
+    Examples
+    --------
+    >>> checked("no slip", 3e-16, 1e-12, "").passed
+    True
+    """
+    value = float(value)
+    return CardFigure(name, value, unit, bound, bool(value <= bound), note)
+
+
 @dataclass(frozen=True)
 class Card:
     """What was checked of a run, and how well it held.
