@@ -185,3 +185,57 @@ def test_off_the_rim() -> None:
         f"{100 * radius:.0f} cm",
         f"{100 * abs(centre):.0f} cm on the other side",
     )
+
+
+def swing(name: str) -> tuple[Callable[[float], np.ndarray], float, float]:
+    """Return θ and θ̇ over time of (1 + k)(b − a)θ̈ = −g sin θ, with its period and that of a small swing."""
+    scenario = ScenarioFile.load(name)
+    k = {"cylinder": 0.5, "solid-sphere": 0.4}[scenario.body.kind]
+    length = scenario.support.radius - scenario.body.radius
+    first = [scenario.start.position[0], scenario.start.velocity[0] / length]
+
+    def law(_: float, y: np.ndarray) -> list[float]:
+        return [y[1], -9.80665 * np.sin(y[0]) / ((1 + k) * length)]
+
+    solved = solve_ivp(law, (0, scenario.timing.duration), first, "DOP853", rtol=1e-12, atol=1e-13, dense_output=True)
+    times = np.linspace(0, scenario.timing.duration, 200_001)
+    angle, rate = solved.sol(times)
+    if angle.max() - angle.min() > 2 * np.pi:  # one round
+        period = float(np.interp(angle[0] + 2 * np.pi, angle, times))
+    else:  # two crossings of the lowest line upwards
+        up = np.flatnonzero((angle[:-1] < 0) & (angle[1:] >= 0))
+        period = float(times[up[1]] - times[up[0]])
+    return solved.sol, period, float(2 * np.pi * np.sqrt((1 + k) * length / 9.80665))
+
+
+def test_cylinder_on_incline() -> None:
+    gained = 2 / 3 * 9.80665 * np.sin(np.radians(10))
+    come = gained * 1.5**2 / 2
+    says(
+        "cylinder-on-incline",
+        f"{gained:.3f} m/s each second",
+        f"{come:.2f} m",
+        f"{come / 0.03 / (2 * np.pi):.2f} times",
+    )
+
+
+@pytest.mark.parametrize("name", ["cylinder-in-cylinder", "cylinder-in-turning-cylinder"])
+def test_cylinder_in_cylinder(name: str) -> None:
+    _, period, small = swing(name)
+    says(name, f"{period:.2f} s")
+    if name == "cylinder-in-cylinder":
+        # At rest at the end of the swing f = m g sin θ k/(1 + k) and N = m g cos θ.
+        says(name, f"{small:.2f} s", f"{np.tan(np.radians(60)) / 3:.3f}")
+    else:
+        says(name, f"{10 * np.pi / 30 * 0.5 / 0.03:.1f} rad/s")
+
+
+def test_loop_the_loop() -> None:
+    path, period, _ = swing("loop-the-loop")
+    length = 0.19
+    over = np.sqrt(4 * 9.80665 * length / 1.4)
+    pressed = np.sqrt(9.80665 * length + 4 * 9.80665 * length / 1.4)
+    says("loop-the-loop", f"{period:.3f} s", f"{over:.2f} m/s", f"{pressed:.2f} m/s")
+    # From that speed on the ring pushes all the way: N = m(ℓ θ̇² + g cos θ).
+    angle, rate = path(np.linspace(0, 3, 3001))
+    assert np.all(length * rate**2 + 9.80665 * np.cos(angle) > 0)
