@@ -240,7 +240,7 @@ def test_curves_by_function_keep_their_error_bound(name: str) -> None:
 
 
 def test_two_paths_near_each_other_turn_the_ball_nearly_alike() -> None:
-    """G4 on its own: a path bent by ε, however fast it wiggles, turns the ball within (2ε/a)(1 + L/a)."""
+    """G3 on its own: a path bent by ε, however fast it wiggles, turns the ball within (2ε/a)(1 + L/a)."""
     for wiggles in (1, 10, 100):
         epsilon = 1e-3 / wiggles
         straight = tr.roll_along(tr.Curve(function=lambda u: (u, 0.2 * u * u), stop=3.0), radius=0.4)

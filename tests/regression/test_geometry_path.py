@@ -206,6 +206,8 @@ def test_all_of_a_ball_lies_within_the_map() -> None:
 
 
 def test_a_path_is_frozen() -> None:
+    path = rolled(tr.Straight(length=0.5))
     with pytest.raises(AttributeError):
-        rolled().radius = 1.0  # type: ignore[misc]
-    assert replace(rolled(), radius=1.0).stages.orientation[-1][0] > math.cos(math.pi / 4)
+        path.radius = 1.0  # type: ignore[misc]
+    assert path.rotation.angle == pytest.approx(1.0, rel=1e-14)
+    assert replace(path, radius=1.0).rotation.angle == pytest.approx(0.5, rel=1e-14)

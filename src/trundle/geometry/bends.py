@@ -71,7 +71,7 @@ def turn(heading: Any, curvature: Any, distance: Any, radius: float) -> Array:
     >>> turn(0.0, 0.0, np.pi / 2, 1.0).round(6) + 0.0
     array([0.707107, 0.      , 0.707107, 0.      ])
     """
-    heading, curvature, distance = np.broadcast_arrays(*np.atleast_1d(heading, curvature, distance))
+    heading, curvature, distance = np.broadcast_arrays(heading, curvature, distance)
     scaled = radius * curvature
     size = np.hypot(1.0, scaled)
     half, spin = 0.5 * size * (distance / radius), 0.5 * curvature * distance
@@ -79,7 +79,7 @@ def turn(heading: Any, curvature: Any, distance: Any, radius: float) -> Array:
     x, y, z = -np.sin(heading) * s, np.cos(heading) * s, -scaled * s
     cosine, sine = np.cos(spin), np.sin(spin)
     product = [cosine * c - sine * z, cosine * x - sine * y, cosine * y + sine * x, cosine * z + sine * c]
-    return np.stack(product, axis=-1).reshape(*heading.shape, 4)
+    return np.stack(product, axis=-1)
 
 
 def segment_area(curvature: Any, distance: Any) -> Any:

@@ -262,7 +262,7 @@ class RolledPath:
 
     @property
     def small_loop_angle(self) -> float | None:
-        """The angle about the normal by which a small loop turns the ball, −A/a² (G3), rad; None if not closed."""
+        """The angle about the normal by which a small loop turns the ball, −A/a² (G4), rad; None if not closed."""
         area = self.enclosed_area
         return None if area is None else -area / self.radius / self.radius
 
