@@ -113,6 +113,7 @@ def _map(ax: Axes, pair: Twin, page: Page, ruler: Ruler, paths: tuple[Array, Arr
     told = [_line(name, style) for name, style in styles.items()]
     if float(np.max(np.ptp(ball, axis=0))) < 1e-9 * float(pair.ball.radius):
         ax.annotate("both at rest", tuple(ruler(ball[0])), (0, 11), textcoords="offset points", ha="center")
+        told = []
     else:
         for line, style in zip((ball, charge), styles.values(), strict=True):
             ax.plot(*ruler(thin_path(line, tolerance)).T, zorder=4, **style)
@@ -146,7 +147,8 @@ def _potential(ax: Axes, pair: Twin, page: Page, ruler: Ruler, ball: Array) -> l
         ax.plot(*ruler(ends).T, zorder=2.2, **(style if step == 0 else faint))
     ax.set_xlim(left, right)
     ax.set_ylim(bottom, top)
-    return [_line("equal height = equal potential" if pair.tilt else "equal potential", style)]
+    level = pair.tilt != 0.0 and abs(push[1]) <= 1e-12 * abs(push[0])
+    return [_line("equal height = equal potential" if level else "equal potential", style)]
 
 
 def _guide(ax: Axes, pair: Twin, page: Page, ruler: Ruler, duration: float) -> list[Line2D]:
