@@ -29,6 +29,7 @@ from sybil.parsers.markdown import CodeBlockParser
 
 ROOT = Path(__file__).parent
 WHOLE_SCENARIO = {"body", "support", "start", "run"}
+WHOLE_PATH = {"body", "path"}
 # What a reader types to install or change trundle; a test must not.
 NOT_RUN = {"cd", "git", "pip", "python3"}
 TIME_LIMIT = 120  # s, for one command of a document
@@ -45,6 +46,10 @@ def run_toml(example: Example) -> None:
         from trundle.scenario import ScenarioFile
 
         ScenarioFile.read(tables).start_state()
+    elif tables.keys() >= WHOLE_PATH:
+        from trundle.geometry import PathScenario
+
+        PathScenario.read(tables).run()
 
 
 def run_console(example: Example) -> str | None:

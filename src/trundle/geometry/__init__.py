@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from .along import roll_along
 from .pieces import Arc, Curve, Straight
-from .rolled import RolledPath, Stages, roll_along
+from .rolled import RolledPath
 from .rotation import Rotation
+from .stages import Stages
 
 if TYPE_CHECKING:
     from .scenario import PathScenario as PathScenario

@@ -15,7 +15,8 @@ from ..plots.sheet import BLUE, FAINT, GREY, INK, TABLE, Sheet, look
 from .ball import ABOVE, ASIDE, View, place
 from .evidence import direction
 from .pieces import Straight
-from .rolled import RolledPath, Stages
+from .rolled import RolledPath
+from .stages import Stages
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

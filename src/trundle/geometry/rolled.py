@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
@@ -13,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidValueError, UnknownNameError
-from ..mechanics.algebra import E_Z, Quaternion
+from ..mechanics.algebra import Quaternion
 from ..mechanics.checks import positive
 from . import bends
-from .curves import first_place
 from .laying import Laid, lay
-from .pieces import Curve, Piece, point
+from .pieces import Piece
 from .rotation import Rotation
+from .stages import Stages
 
 if TYPE_CHECKING:
     import xarray
@@ -33,46 +32,6 @@ _MOST_SAMPLES = 10_000_000
 _CLOSED = 1e-9  # how near to its beginning a path must end to be closed, as a share of its length
 _EPSILON = 2.0**-52
 _ROUNDING = 8.0  # units in the last place lost for each radian, piece and step
-
-
-@dataclass(frozen=True)
-class Stages:
-    """The ball at some places of its path.
-
-    Parameters
-    ----------
-    distance : array (n,)
-        Along the path, m.
-    contact : array (n, 2)
-        Contact point on the plane, m.
-    heading : array (n,)
-        Direction of travel, from the first axis towards the second, rad.
-    orientation : array (n, 4)
-        Unit quaternion (w, x, y, z), body frame to support frame.
-    radius : float
-        Of the ball, m.
-    """
-
-    distance: Array
-    contact: Array
-    heading: Array
-    orientation: Array
-    radius: float
-
-    @property
-    def position(self) -> Array:
-        """The centre of the ball, (n, 3), m."""
-        return np.column_stack([self.contact, np.full(len(self.contact), self.radius)])
-
-    @property
-    def north_pole(self) -> Array:
-        """The direction from the centre to the north pole, where the body's third axis comes out: (n, 3)."""
-        return (Quaternion.of(self.orientation).matrix() @ E_Z).array()
-
-    @property
-    def trace(self) -> Array:
-        """The point of the ball that touches the plane, in the body frame: (n, 3), m."""
-        return (Quaternion.of(self.orientation).conjugate.matrix() @ (E_Z * -self.radius)).array()
 
 
 @dataclass(frozen=True, eq=False)
@@ -371,81 +330,3 @@ class RolledPath:
         from .figure import draw
 
         return draw((self, *others))
-
-
-def roll_along(
-    path: Piece | Iterable[Piece],
-    radius: Any,
-    *,
-    start: Sequence[Any] | None = None,
-    orientation: Sequence[float] = (1.0, 0.0, 0.0, 0.0),
-    title: str = "",
-    scenario: str = "",
-) -> RolledPath:
-    """Roll a ball along a path on a plane, without slipping and without pivoting.
-
-    Parameters
-    ----------
-    path : Straight, Arc or Curve, or several
-        Each piece begins where the one before it ends; at a corner the ball stops, and starts in the new direction.
-    radius : float or quantity
-        Of the ball, m.
-    start : pair of float or quantity, optional
-        Where the contact point begins, m; absent: where a first `Curve` begins, else the origin.
-    orientation : sequence of 4 floats
-        Quaternion (w, x, y, z) at the beginning, body frame to support frame; it is normalised.
-    title, scenario : str
-        For figures, card and file.
-
-    Returns
-    -------
-    RolledPath
-        The ball at every stage and at any place of the path.
-
-    Raises
-    ------
-    InvalidValueError
-        If a value is refused, or a `Curve` begins elsewhere than the piece before it ends.
-
-    Examples
-    --------
-    Round a square whose sides are half turns of the ball, and it comes home as it was:
-
-    >>> import trundle as tr
-    >>> side = [tr.Straight(heading=f"{angle} deg", turn="180 deg") for angle in (0, 90, 180, 270)]
-    >>> round(tr.roll_along(side, radius="25 mm").rotation.angle, 9)
-    0.0
-    """
-    pieces = (path,) if isinstance(path, Piece) else _pieces(path)
-    size = float(positive(radius, "length", "radius"))
-    beginning = None if start is None else point(start, "start")
-    if beginning is None:
-        first = pieces[0]
-        beginning = first_place(first) if isinstance(first, Curve) else (0.0, 0.0)
-    return RolledPath(pieces, size, beginning, _unit(orientation), title, scenario)
-
-
-def _pieces(path: Any) -> tuple[Piece, ...]:
-    remedy = "Give a Straight, an Arc or a Curve, or several in a list."
-    try:
-        pieces = tuple(path)
-    except TypeError:
-        raise InvalidValueError("path", "must be pieces of path", path, remedy) from None
-    if not pieces:
-        raise InvalidValueError("path", "must have at least one piece", pieces, remedy)
-    for i, piece in enumerate(pieces):
-        if not isinstance(piece, Piece):
-            raise InvalidValueError(f"path[{i}]", "must be a piece of path", piece, remedy)
-    return pieces
-
-
-def _unit(orientation: Any) -> tuple[float, float, float, float]:
-    remedy = "Write (1, 0, 0, 0) for a ball that is not turned."
-    try:
-        w, x, y, z = (float(part) for part in orientation)
-    except (TypeError, ValueError):
-        raise InvalidValueError("orientation", "must be a quaternion w, x, y, z", orientation, remedy) from None
-    size = math.hypot(w, x, y, z)
-    if not 1e-150 < size < 1e150:
-        raise InvalidValueError("orientation", "must be a quaternion of unit length", orientation, remedy)
-    return w / size, x / size, y / size, z / size

@@ -6,8 +6,9 @@ from typing import Any
 
 from ..errors import InvalidValueError, ScenarioError
 from ..scenario.path_file import ArcPiece, CurvePiece, PathFile, StraightPiece
+from .along import roll_along
 from .pieces import Arc, Curve, Piece, Straight
-from .rolled import RolledPath, roll_along
+from .rolled import RolledPath
 
 
 class PathScenario(PathFile):
