@@ -106,7 +106,7 @@ class Twin:
         Parameters
         ----------
         duration : float or quantity, optional
-            s; absent: the scenario's, or three turns.
+            s; absent: the scenario's; where there is none, three turns or a minute.
 
         Returns
         -------
@@ -125,10 +125,10 @@ class Twin:
 
     @property
     def shown_duration(self) -> float:
-        """The scenario's duration; where there is none, three turns, or 5 s."""
+        """The scenario's duration; where there is none, three turns, but at most a minute, s."""
         if self.duration:
             return self.duration
-        return 3 * 2 * math.pi / abs(self.ball.kappa) if self.ball.kappa else 5.0
+        return min(3 * 2 * math.pi / abs(self.ball.kappa), 60.0) if self.ball.kappa else 5.0
 
 
 def twin(
