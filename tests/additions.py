@@ -73,30 +73,6 @@ class Ball(Surface):
 
 
 @dataclass(frozen=True)
-class Pipe(Surface):
-    """The inside of a circular cylinder of radius b about the third axis."""
-
-    b: Scalar
-    rim = None
-    axisymmetric = True
-
-    def _outwards(self, p: Vector) -> tuple[Vector, Scalar]:
-        distance = Vector(p.x, p.y, 0.0).norm()
-        return Vector(p.x / distance, p.y / distance, 0.0), distance
-
-    def level(self, p: Vector) -> Scalar:
-        return self.b - self._outwards(p)[1]
-
-    def normal(self, p: Vector) -> Vector:
-        return -self._outwards(p)[0]
-
-    def shape_operator(self, p: Vector) -> Matrix:
-        e, distance = self._outwards(p)
-        around = Vector(-e.y, e.x, 0.0)
-        return Matrix.outer(around, around) * (-1 / distance)
-
-
-@dataclass(frozen=True)
 class Tumble(Motion):
     """R = R₃(ωt + ½βt²) R₁(γt) about an origin that swings, X = A sin νt: every term of u̇ is there."""
 

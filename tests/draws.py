@@ -33,3 +33,28 @@ def runs(draw: st.DrawFn, tilts: Any = TILTS, pushes: Any = loads) -> tuple[tr.R
     q = draw(st.sampled_from([(1.0, 0.0, 0.0, 0.0), (0.5, -0.5, 0.5, 0.5), (1e-9, 0.6, 0.8, 0.0)]))
     velocity = draw(st.one_of(st.none(), st.just("co-rotating"), pairs))
     return system, system.place(draw(pairs), velocity, spin=draw(st.one_of(st.none(), numbers(10.0))), orientation=q)
+
+
+@st.composite
+def rollers(draw: st.DrawFn) -> tuple[tr.RollingSystem, tr.State]:
+    """A cylinder that rolls straight, down a slope, inside a pipe or over a log, with a start."""
+    body = draw(st.builds(tr.Body.cylinder, st.floats(0.02, 0.2), st.floats(0.1, 3.0), st.floats(0.05, 1.0)))
+    roll, speed = draw(numbers(6.0)), draw(numbers(3.0))
+    if draw(st.booleans()):
+        system = tr.RollingSystem(body, tr.Support(tr.Plane(), tilt=draw(TILTS)))
+        return system, system.place((draw(numbers(0.5)), draw(numbers(0.5))), (speed, 0.0), roll=roll)
+    wall = tr.Cylinder(draw(st.floats(0.3, 1.0)), draw(st.sampled_from(["inside", "outside"])))
+    support = tr.Support(wall, motion=tr.Spin(draw(numbers(6.0))), tilt="90 deg")
+    system = tr.RollingSystem(body, support)
+    return system, system.place((draw(numbers(3.0)), draw(numbers(0.5))), (speed, 0.0), roll=roll)
+
+
+@st.composite
+def imperfect(draw: st.DrawFn) -> tuple[tr.RollingSystem, tr.State]:
+    """A sphere on a table that wobbles or turns unevenly, in moving air, under a force that varies."""
+    rate = draw(st.floats(0.5, 8.0))
+    uneven = tr.UnevenSpin(rate, draw(numbers(0.1)), draw(st.floats(0.5, 8.0)))
+    motion = draw(st.sampled_from([uneven, tr.Wobble(rate, draw(numbers(0.05)))]))
+    pushed = (tr.Drag(draw(st.floats(0.0, 0.05)), air_rate=rate), tr.Force(("0.01*sin(2*t)", 0.0, "0.02*t")))
+    system = tr.RollingSystem(draw(bodies), tr.Support(tr.Plane(), motion=motion, tilt=draw(TILTS)), loads=pushed)
+    return system, system.place(draw(pairs), draw(pairs), spin=draw(numbers(5.0)))

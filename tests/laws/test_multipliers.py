@@ -15,7 +15,7 @@ from typing import Any
 
 import mpmath
 import pytest
-from tests.additions import Ball, Ellipsoid, Pipe, Torus, Tumble
+from tests.additions import Ball, Ellipsoid, Torus, Tumble
 from tests.precise import directions, numbers, precisely, quaternions, size_of, slope, turn, unit, vectors
 from tests.tolerances import EXACT
 
@@ -34,16 +34,24 @@ BODIES = {
     "torus": tr.Body(0.75, PRINCIPAL, Torus(0.1, 0.03)),
     "thin disc": tr.Body(0.75, PRINCIPAL, Torus(0.12, 0.0)),
 }
-SURFACES = {"plane": tr.Plane(), "hill": Ball(0.5, 1.0), "bowl": Ball(0.75, -1.0), "pipe": Pipe(0.5)}
+SURFACES = {
+    "plane": tr.Plane(),
+    "hill": Ball(0.5, 1.0),
+    "bowl": Ball(0.75, -1.0),
+    "pipe": tr.Cylinder(0.5),
+    "log": tr.Cylinder(0.5, "outside"),
+}
 MOTIONS = {
     "fixed": tr.Fixed(),
     "spinning": tr.Spin(-2.5),
     "tumbling": Tumble(1.5, 0.25, -0.75, Vector(0.5, -0.25, 0.125), 2.0),
+    "uneven": tr.UnevenSpin(2.5, 0.3, 4.0),
+    "wobbling": tr.Wobble(-1.5, 0.2),
 }
-LOADS = (tr.Force((0.25, -0.5, 0.125)), tr.Torque((0.01, 0.02, -0.03)), tr.Drag(0.3))
+LOADS = (tr.Force((0.25, -0.5, 0.125)), tr.Torque(("0.01*cos(2*t)", 0.02, "-0.03*t")), tr.Drag(0.3, air_rate=1.5))
 # Every body on every surface, the motions by turns; each motion meets every body and every surface.
 CASES = [
-    (body, surface, list(MOTIONS)[(i + j) % 3])
+    (body, surface, list(MOTIONS)[(i + j) % len(MOTIONS)])
     for (i, body), (j, surface) in itertools.product(enumerate(BODIES), enumerate(SURFACES))
 ]
 SOME, NAMED = CASES[::5], [" ".join(case) for case in CASES]
@@ -69,6 +77,7 @@ def on_surface(name: str, seed: Any) -> Vector:
         "hill": e * mpmath.mpf(0.5),
         "bowl": e * mpmath.mpf(0.75),
         "pipe": around * mpmath.mpf(0.5) + Vector(0, 0, x),
+        "log": around * mpmath.mpf(0.5) + Vector(0, 0, y),
     }[name]
 
 
@@ -127,9 +136,9 @@ def accelerations(case: Case, velocity: Vector, rho: Vector, p_at: Callable[[Any
     F = (
         Vector(weight * mpmath.sin(tilt), 0, -weight * mpmath.cos(tilt))
         + LOADS[0].value
-        - velocity * LOADS[2].coefficient
+        - (velocity - Vector(0, 0, mpmath.mpf(1.5)).cross(case.point - rho)) * LOADS[2].coefficient
     )
-    K = LOADS[1].value
+    K = Vector(mpmath.mpf(0.01) * mpmath.cos(2 * case.time), 0.02, mpmath.mpf(-0.03) * case.time)
     assert size_of(F - case.system.loads_on(now)[0]) <= EXACT(16, weight)
     constraint = u_rate - Omega.cross(rho_rate)  # V̇ + Ω̇×ρ
     A, b = mpmath.zeros(9, 9), mpmath.matrix([*F, *(K - Omega.cross(J @ Omega)), *constraint])

@@ -7,7 +7,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
-from tests.additions import Ball, Ellipsoid, Pipe, Torus, Tumble
+from tests.additions import Ball, Ellipsoid, Torus, Tumble
 from tests.precise import DIGITS
 from tests.tolerances import EXACT
 
@@ -34,7 +34,13 @@ SYSTEMS = {
     "ball on a slope": system(BALL, tr.Plane(rim=2.0), tr.Fixed()),
     "ellipsoid on a tumbling ball": system(EGG, Ball(0.5, 1.0), TUMBLE),
     "torus in a tumbling bowl": system(WHEEL, Ball(0.8, -1.0), TUMBLE),
-    "weighted ball in a spinning pipe": system(WEIGHTED, Pipe(0.5), tr.Spin(-2.0)),
+    "weighted ball in a spinning pipe": system(WEIGHTED, tr.Cylinder(0.5), tr.Spin(-2.0)),
+    "cylinder on an unevenly turning log": system(
+        tr.Body.cylinder(0.1, 0.75), tr.Cylinder(0.5, "outside"), tr.UnevenSpin(1.5, 0.2, 2.0)
+    ),
+    "ball on a wobbling table, pushed to and fro": tr.RollingSystem(
+        BALL, tr.Support(tr.Plane(), motion=tr.Wobble(3.5, 0.1)), loads=(tr.Force(("0.2*sin(3*t)", 0.1, "t**2")),)
+    ),
 }
 NAMES = ["t", *(f"p{i}" for i in range(3)), *(f"q{i}" for i in range(4)), *(f"Omega{i}" for i in range(3))]
 COUNT = 6

@@ -99,6 +99,8 @@ def check_start(system: RollingSystem, start: State) -> None:
         raise InvalidValueError(
             "orientation", "must lay a cylinder's axis along the support", start.orientation, remedy
         )
+    if (contact.shape_operator @ axis).norm() * contact.offset.norm() > TOLERANCE:
+        raise _crooked(system, "its axis along a straight line of the surface", "Leave `orientation` out, or turn it.")
     if _across(Omega, axis) > TOLERANCE * Omega.norm():
         raise _crooked(system, "its Ω along its axis", "A sphere rolls in every direction.")
     now = roll(system, start.time, contact.point, q, Omega)

@@ -133,10 +133,9 @@ class RollingSystem:
         """Gravity in the support frame: g(sin α, 0, −cos α)."""
         tilt = self.support.tilt
         xp = namespace(tilt)
-        # The float nearest to a right angle means one: an axis that lies level then has no gravity along it.
-        upright = is_number(tilt) and abs(tilt) == math.pi / 2
-        slope, normal = xp.sin(tilt), 0.0 if upright else xp.cos(tilt)
-        return Gravity(self.gravity * slope, 0.0, -(self.gravity * normal))
+        # The float nearest to a right angle means one: cos α as sin(π/2 − α) leaves no gravity along a level axis.
+        normal = xp.cos(tilt) if getattr(xp, "exact", False) else xp.sin(0.5 * math.pi - xp.abs(tilt))
+        return Gravity(self.gravity * xp.sin(tilt), 0.0, -(self.gravity * normal))
 
     @property
     def all_loads(self) -> tuple[Load, ...]:

@@ -111,7 +111,7 @@ def orientations(motion: ClosedForm, start: State, times: Array) -> Array:
     straight = motion.straight_turn(times - start.time)
     if straight is not None:
         axis, angle = straight
-        half = 0.5 * np.asarray(angle)
+        half = np.broadcast_to(0.5 * np.asarray(angle), times.shape)
         turn = Quaternion(np.cos(half), *(axis * np.sin(half)))
         return (turn * Quaternion(*start.orientation)).array()
 

@@ -1,0 +1,160 @@
+"""Cylinders and hoops roll straight: what they do then, and what is refused because it would turn them aside."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from scipy.spatial.transform import Rotation
+from tests.draws import imperfect, rollers
+from tests.tolerances import EXACT, SOLVER
+
+import trundle as tr
+from trundle.errors import InvalidValueError
+from trundle.mechanics.algebra import Vector
+from trundle.solve.methods import tolerance_of
+
+G = 9.80665
+LOG = tr.Body.cylinder(0.1, 0.75)
+SLOPE = tr.Support(tr.Plane(), tilt=0.2)
+PIPE = tr.Support(tr.Cylinder(0.5), tilt="90 deg")
+
+
+def agree(system: tr.RollingSystem, start: tr.State, one: str, other: str, multiple: float) -> None:
+    a, b = (tr.simulate(system, start, duration=1.0, every=0.125, method=name) for name in (one, other))
+    turned = float(np.linalg.norm(a.data.angular_velocity.values, axis=1).max())
+    bound = SOLVER(multiple * (1 + turned), max(tolerance_of(one), tolerance_of(other), 1e-15))
+    arm = float(system.body.shape.radius)
+    fastest = max(float(np.abs(a.data.velocity).max()), arm * turned)
+    sizes = {
+        "position": float(np.abs(a.data.position).max()) + fastest + G,
+        "velocity": fastest + G,  # of the weight, in a second
+        "angular_velocity": (fastest + G) / arm,
+        "contact_force": float(system.body.mass) * (2 * G + fastest**2 / 0.1),
+        "orientation": 1.0,
+    }
+    for name, size in sizes.items():
+        assert float(np.abs(a.data[name] - b.data[name]).max()) <= bound * size, name
+
+
+@settings(max_examples=25)
+@given(rollers())
+def test_the_closed_form_is_the_general_law(run: tuple[tr.RollingSystem, tr.State]) -> None:
+    agree(*run, "exact", "taylor", 300)
+
+
+@settings(max_examples=12)
+@given(imperfect())
+def test_two_methods_agree_on_an_imperfect_table(run: tuple[tr.RollingSystem, tr.State]) -> None:
+    agree(*run, "taylor", "runge-kutta", 30)
+
+
+@pytest.mark.parametrize(("k", "share"), [(1 / 2, 2 / 3), (1.0, 1 / 2), (1e-9, 1.0)])
+def test_down_a_slope_a_cylinder_gains_its_share(k: float, share: float) -> None:
+    system = tr.RollingSystem(tr.Body.cylinder(0.1, 0.75, k), SLOPE)
+    run = tr.simulate(system, system.place(), 2.0, 2.0)
+    assert run.data.position[-1, 0].item() == pytest.approx(share * G * math.sin(0.2) * 2.0, rel=2e-9)
+
+
+def test_laid_down_its_axis_lies_across_its_way_and_its_mark_is_on_top() -> None:
+    for system, place, way, normal in [
+        (tr.RollingSystem(LOG, SLOPE), {"position": (0.3, 0.1)}, [1, 0, 0], [0, 0, 1]),
+        (tr.RollingSystem(LOG, SLOPE), {"velocity": (-0.3, 0.0)}, [1, 0, 0], [0, 0, 1]),
+        (tr.RollingSystem(LOG, tr.Support(tr.Plane())), {"velocity": (3.0, 4.0)}, [0.6, 0.8, 0], [0, 0, 1]),
+        (tr.RollingSystem(LOG, PIPE), {"position": ("90 deg", 0.0)}, [-1, 0, 0], [0, -1, 0]),
+    ]:
+        for roll in (0.0, 0.7):
+            start = system.place(**place, roll=roll)
+            Q = Rotation.from_quat(start.orientation, scalar_first=True).as_matrix()
+            axis = np.cross(normal, way)
+            assert np.allclose(Q[:, 2], axis, atol=1e-15)
+            mark = Rotation.from_rotvec(roll * axis).apply(normal)
+            assert np.allclose(Q[:, 0], mark, atol=1e-15)
+
+
+def test_on_a_level_plane_a_cylinder_may_roll_any_way() -> None:
+    system = tr.RollingSystem(LOG, tr.Support(tr.Plane()))
+    run = tr.simulate(system, system.place(velocity=(0.3, -0.4)), 2.0, 0.5)
+    assert np.allclose(run.data.position[-1], [0.6, -0.8, 0.1], atol=1e-15)
+    assert run.card().passed
+
+
+@pytest.mark.parametrize(
+    ("support", "arguments", "loads", "key"),
+    [
+        (tr.Support(tr.Plane(), motion=tr.Spin(1.0)), {"position": (0.3, 0.0)}, (), "body"),
+        (SLOPE, {"velocity": (0.2, 0.3)}, (), "body"),
+        (SLOPE, {"spin": 1.0}, (), "body"),
+        (SLOPE, {}, (tr.Force((0.0, 0.1, 0.0)),), "body"),
+        (SLOPE, {}, (tr.Torque((0.0, 0.0, 0.1)),), "body"),
+        (SLOPE, {"orientation": (1.0, 0.0, 0.0, 0.0)}, (), "orientation"),
+        (SLOPE, {"orientation": (0.5, -0.5, -0.5, -0.5), "roll": 0.1}, (), "roll"),
+        (PIPE, {"velocity": (0.2, 0.3)}, (), "body"),
+        (tr.Support(tr.Cylinder(0.5), tilt=1.0), {}, (), "body"),
+    ],
+)
+def test_what_would_turn_it_aside_is_refused(support: Any, arguments: Any, loads: Any, key: str) -> None:
+    system = tr.RollingSystem(LOG, support, loads=loads)
+    with pytest.raises(InvalidValueError) as caught:
+        system.place(**arguments)
+    assert caught.value.key == key
+
+
+def test_a_hand_made_start_that_lies_askew_is_refused_by_the_run() -> None:
+    system = tr.RollingSystem(LOG, SLOPE)
+    askew = tr.State((0.0, 0.0, 0.1), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0))
+    with pytest.raises(InvalidValueError, match="axis along the support"):
+        tr.simulate(system, askew, 1.0, 0.5)
+
+
+def test_a_load_that_turns_it_aside_later_fails_the_card() -> None:
+    system = tr.RollingSystem(LOG, SLOPE, loads=(tr.Force((0.0, "0.1*t", 0.0)),))
+    card = tr.simulate(system, system.place(), 1.0, 0.01).card()
+    assert "rolls straight" in [figure.name for figure in card.failures]
+
+
+@pytest.mark.parametrize("ratio", [0.0, -0.5, 1.01, float("nan")])
+def test_no_cylinder_has_more_inertia_than_a_hoop(ratio: float) -> None:
+    with pytest.raises(InvalidValueError, match="inertia_ratio"):
+        tr.Body.cylinder(0.1, 1.0, ratio)
+
+
+def test_a_weight_moves_centre_of_mass_and_inertia_as_steiner_says() -> None:
+    M, m, a, d = 0.3, 0.1, 0.05, 0.04
+    body = tr.Body.weighted_cylinder(a, M, m, d)
+    # About the cylinder's axis the moments add: M a²/2 + m d².
+    centre = m * d / (M + m)
+    assert body.mass == pytest.approx(M + m)
+    assert tuple(body.shape.centre) == pytest.approx((-centre, 0.0, 0.0))
+    assert body.inertia.moment + body.mass * centre**2 == pytest.approx(M * a * a / 2 + m * d * d, rel=1e-14)
+    with pytest.raises(InvalidValueError, match="distance"):
+        tr.Body.weighted_cylinder(a, M, m, 0.06)
+    with pytest.raises(InvalidValueError, match="centre"):
+        tr.Roller(a, Vector(0.0, 0.0, 0.01))
+
+
+def test_a_weighted_hoop_keeps_its_energy_and_passes() -> None:
+    body = tr.Body.weighted_cylinder(0.05, 0.3, 0.1, 0.04)
+    system = tr.RollingSystem(body, tr.Support(tr.Plane()))
+    card = tr.simulate(system, system.place(roll="90 deg"), 5.0, 0.01).card()
+    assert card.passed
+    assert "drift of the energy" in [figure.name for figure in card.figures]
+
+
+def test_a_ball_put_down_in_a_pipe_touches_its_wall_and_rolls() -> None:
+    ball = tr.Body.solid_sphere(0.05, 0.5)
+    system = tr.RollingSystem(ball, tr.Support(tr.Cylinder(0.4), motion=tr.Spin(2.0), tilt=0.3))
+    start = system.place((1.0, 0.2), (0.3, -0.1), spin=4.0)
+    r, V, Omega = (np.array(getattr(start, name)) for name in ("position", "velocity", "angular_velocity"))
+    n = -np.array([math.cos(1.0), math.sin(1.0), 0.0])
+    around = np.array([-math.sin(1.0), math.cos(1.0), 0.0])
+    assert np.allclose(r, -0.35 * n + [0, 0, 0.2], atol=1e-15)
+    assert np.allclose(V, 0.3 * around + [0, 0, -0.1], atol=1e-15)
+    assert Omega @ n == pytest.approx(4.0)
+    assert np.allclose(V + np.cross(Omega, -0.05 * n), 2.0 * 0.4 * around, atol=EXACT(16, 1))
+    riding = system.place((1.0, 0.2), "co-rotating")
+    assert np.allclose(riding.velocity, 2.0 * 0.35 * around, atol=1e-15)
+    assert np.allclose(riding.angular_velocity, [0.0, 0.0, 2.0], atol=EXACT(32, 1))
