@@ -15,6 +15,7 @@ from ..errors import ScenarioError
 from ..scenario import files
 from . import CARD_FAILED, constraints, screen, signals
 from .check import check
+from .derive import derive
 from .twin import twin
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ def command() -> Any:
     app.command("list", short_help="Name the scenarios that ship with trundle.")(list_scenarios)
     app.command("show", short_help="Print a scenario file, and what to expect of it.")(show)
     app.command("check", short_help="Check somebody else's trajectory, and name the likely mistake.")(check)
+    app.command("derive", short_help="Derive a motion, each equation proved by the code.")(derive)
     app.command("schema", short_help="Print the JSON schema of scenario files, for editors.")(schema)
     app.command("twin", short_help="Find the charge in crossed fields that moves as the ball does.")(twin)
     app.command("constraints", short_help="Holonomic or not: decide it, and show why.")(constraints.constraints)

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import sympy as sp
 
 from ..mechanics.algebra import Matrix, Quaternion, Vector
-from ..mechanics.contact import roll
+from ..mechanics.contact import roll, touch
 from ..mechanics.loads import BodyMotion
 from ..mechanics.system import RollingSystem
 from .steps import Proof
 from .symbols import OMEGA_XYZ, TIME
 from .vectors import vector
-from .zero import exact
+from .zero import exact, normal_form, with_plain_roots
 
 QUATERNION = sp.symbols("q_w q_x q_y q_z", real=True)
 UNIT_QUATERNION = {QUATERNION[0]: 1 - QUATERNION[1] ** 2 - QUATERNION[2] ** 2 - QUATERNION[3] ** 2}
@@ -37,10 +38,10 @@ def column(v: Vector) -> Any:
     >>> column(Vector(1.0, 0.0, sp.Symbol("a"))).T
     Matrix([[1, 0, a]])
     """
-    return sp.Matrix([exact(part) for part in v])
+    return sp.Matrix([with_plain_roots(exact(part)) for part in v])
 
 
-def at_one_instant(system: RollingSystem, point: Vector) -> dict[Any, Any]:
+def at_one_instant(system: RollingSystem, point: Vector, here: Mapping[Any, Any] | None = None) -> dict[Any, Any]:
     """Return the values of all vectors of a body that rolls, at any instant of any motion.
 
     V̇ is not taken from the law but worked out: the rate of V(t, p, q, Ω) as the law moves t, p, q and Ω.
@@ -51,6 +52,8 @@ def at_one_instant(system: RollingSystem, point: Vector) -> dict[Any, Any]:
         Of symbols.
     point : Vector
         p, of symbols.
+    here : mapping, optional
+        What to put for the symbols of p and Ω, where not every place and every Ω is meant.
 
     Returns
     -------
@@ -65,36 +68,37 @@ def at_one_instant(system: RollingSystem, point: Vector) -> dict[Any, Any]:
     >>> at_one_instant(level, Vector(x, y, sp.Integer(0)))[vector("V")].T
     Matrix([[Omega_y*a, -Omega_x*a, 0]])
     """
-    q, Omega = Quaternion(*QUATERNION), Vector(*OMEGA_XYZ)
-    now = roll(system, TIME, point, q, Omega)
+    chosen = dict(here or {})
+    q, names = Quaternion(*QUATERNION), Vector(*OMEGA_XYZ)
+    anywhere = column(touch(system, TIME, point, q).rolling_velocity(names))
+    place, Omega = (Vector(*(sp.sympify(part).xreplace(chosen) for part in v)) for v in (point, names))
+    now = roll(system, TIME, place, q, Omega)
     contact = now.contact
-    V, p_rate = now.velocity, now.point_rate
-    offset_rate = contact.rates(Vector(0.0, 0.0, 0.0), Omega, V)[1]
-    F, K = system.loads_on(BodyMotion(TIME, system.body.mass, contact.centre, V, q, Omega))
-    flow = {TIME: sp.Integer(1)}
-    for names, rates in ((point, p_rate), (q, now.orientation_rate), (Omega, now.angular_acceleration)):
-        flow |= {name: exact(rate) for name, rate in zip(names, rates, strict=True) if getattr(name, "is_Symbol", 0)}
-
-    def rate_of(v: Vector) -> Any:
-        return column(v).applyfunc(lambda part: sum(part.diff(name) * rate for name, rate in flow.items()))
-
+    offset_rate = contact.rates(Vector(0.0, 0.0, 0.0), Omega, now.velocity)[1]
+    F, K = system.loads_on(BodyMotion(TIME, system.body.mass, contact.centre, now.velocity, q, Omega))
     columns = {
         "nhat": contact.normal,
         "rho": contact.offset,
         "rhodot": offset_rate,
-        "p": point,
+        "p": place,
         "r": contact.centre,
-        "u": contact.support.material_velocity(point),
-        "udot": contact.support.material_acceleration(point, p_rate),
-        "V": V,
+        "u": contact.support.material_velocity(place),
+        "udot": contact.support.material_acceleration(place, now.point_rate),
+        "V": now.velocity,
         "Omega": Omega,
         "Omegadot": now.angular_acceleration,
         "R": now.reaction,
         "F": F,
         "K": K,
+        "pdot": now.point_rate,
     }
-    values = {vector(name): column(v) for name, v in columns.items()}
-    values[vector("Vdot")] = rate_of(V)
+    values = {vector(name): column(v).applyfunc(normal_form) for name, v in columns.items()}
+    flow = {TIME: sp.Integer(1)} | dict(zip(q, (exact(rate) for rate in now.orientation_rate), strict=True))
+    for symbols, rate in ((point, "pdot"), (names, "Omegadot")):
+        flow |= {s: r for s, r in zip(symbols, values[vector(rate)], strict=True) if s.is_Symbol}
+    values[vector("Vdot")] = anywhere.applyfunc(
+        lambda part: normal_form(sum(part.diff(s).xreplace(chosen) * rate for s, rate in flow.items()))
+    )
     return values
 
 

@@ -27,12 +27,14 @@ def derivable() -> list[tuple[str, str]]:
     ('ball-on-plane', 'Ball on a level plane under a force and a torque')
     """
     scenarios = [name for name in files.names() if name not in TOPICS and _rolls(name)]
-    return [(name, topic.title) for name, topic in TOPICS.items()] + [(name, files.title_of(name)) for name in scenarios]
+    return [(name, topic.title) for name, topic in TOPICS.items()] + [
+        (name, files.title_of(name)) for name in scenarios
+    ]
 
 
 def _rolls(name: str) -> bool:
-    """Whether a shipped file has a body that forces act on, and not a path alone."""
-    return "body" in files.parse(files.read(name), name)
+    """Whether forces act on the body of a shipped file, and it does not merely follow a path."""
+    return "path" not in files.parse(files.read(name), name)
 
 
 def derive(name_or_scenario: Any, *, with_numbers: bool = False) -> Derivation:
@@ -84,7 +86,8 @@ def _of_topic(name: str, *, with_numbers: bool) -> Derivation:
             raise InvalidValueError("with_numbers", "needs a scenario", name, "A topic has symbols only.")
         numbers = derive_scenario_numbers(name)
     module = module_named(topic.form)
-    steps = tuple(module.derive_system(module.Setting(**topic.setting)))
+    general = topic.form == "general"
+    steps = module.law_steps() if general else tuple(module.derive_system(module.Setting(**topic.setting)))
     return Derivation(name, topic.title, topic.introduction, steps, numbers)
 
 
@@ -119,9 +122,7 @@ def _numbers(system: RollingSystem, start: State | None) -> tuple[Any, ...]:
     return tuple(module.numbers_of(form.of(system, start), system))
 
 
-def _of_system(
-    system: RollingSystem, start: State | None, name: str, title: str, *, with_numbers: bool
-) -> Derivation:
+def _of_system(system: RollingSystem, start: State | None, name: str, title: str, *, with_numbers: bool) -> Derivation:
     from .forms import form_of
     from .steps import Derivation
 
@@ -133,7 +134,9 @@ def _of_system(
 
         return Derivation(name, title, introduction(system), tuple(derive_system(system)))
     steps = tuple(module.derive_system(module.Setting.of(system)))
-    said = f"How the motion follows from Newton's and Euler's laws, up to the closed form {form.equation} ({form.name})."
+    said = (
+        f"How the motion follows from Newton's and Euler's laws, up to the closed form {form.equation} ({form.name})."
+    )
     return Derivation(name, title, said, steps, _numbers(system, start) if with_numbers else ())
 
 

@@ -1,4 +1,4 @@
-"""Quotients of polynomials in many symbols, some of whose squares are known: quick, where SymPy's own forms are slow."""
+"""Quotients of polynomials in many symbols, some with known squares: quick, where SymPy's own forms are slow."""
 
 from __future__ import annotations
 
@@ -53,6 +53,21 @@ class Quotients:
         """What stands over the common denominator; 0 where the expression is 0."""
         return self._above.as_expr()
 
+    @property
+    def expression(self) -> Any:
+        """The quotient in lowest terms."""
+        above, below = self._above, self._ring.one
+        for factor, times in self._below.items():
+            for _ in range(times):
+                common = above.gcd(factor)
+                above, below = above.exquo(common), below * factor.exquo(common)
+        return above.as_expr() / below.as_expr()
+
+    @property
+    def is_polynomial(self) -> bool:
+        """Whether there is no common denominator."""
+        return not self._below
+
     def _quotient(self, expression: Any) -> tuple[PolyElement, Factors]:
         if expression not in self._memory:
             self._memory[expression] = self._worked_out(expression)
@@ -66,7 +81,8 @@ class Quotients:
         if expression.is_Add:
             return self._sum([self._quotient(term) for term in expression.args])
         if expression.is_Mul:
-            above, below = self._ring.one, {}
+            above = self._ring.one
+            below: Factors = {}
             for factor in expression.args:
                 value, under = self._quotient(factor)
                 above = self._reduced(above * value)

@@ -6,20 +6,21 @@ Signs are taken from the numerical factor alone, so that what is printed is term
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from typing import Any
 
 import sympy as sp
 from sympy.printing.latex import LatexPrinter
 from sympy.printing.pretty.pretty import PrettyPrinter
 from sympy.printing.pretty.pretty_symbology import greek_unicode
-from sympy.printing.pretty.stringpict import prettyForm
+from sympy.printing.pretty.stringpict import prettyForm, stringPict
 
 _NAME = re.compile(r"(?P<base>[A-Za-z]+?)(?P<accent>ddot|dot|hat)?(?:_(?P<sub>\w+))?")
 _ACCENT_MARK = {"dot": "\u0307", "ddot": "\u0308", "hat": "\u0302", None: ""}
-_GREEK = greek_unicode | {"varphi": "φ", "varrho": "ϱ", "varpi": "ϖ", "oo": "∞"}
+_GREEK = greek_unicode | {"varphi": "φ", "varrho": "ϱ", "varpi": "ϖ", "oo": "∞", "ell": "ℓ", "phi": "ϕ"}
 _LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 # What stands before what in a product: numbers, mass, inertia, lengths, rates, gravity, then all else.
-_FIRST = "k I m J a b ell c gamma omega lambda kappa g".split()
+_FIRST = ("k", "I", "m", "J", "a", "b", "ell", "c", "gamma", "omega", "lambda", "lambda_0", "kappa", "g")
 
 
 def _parts(name: str) -> tuple[str, str | None, str]:
@@ -86,8 +87,19 @@ def _place(factor: Any) -> tuple[int, int]:
     base = factor.base if factor.is_Pow else factor
     if base.is_Number or base is sp.I:
         return (0, 0) if base.is_Number else (1, 0)
+    if isinstance(factor, sp.exp) or base.is_Add:
+        return (2, 99) if base.is_Add else (4, 0)
     name = base.name if base.is_Symbol else ""
     return (2, _FIRST.index(name)) if name in _FIRST else (3, 0)
+
+
+def _flat(expression: Any) -> Iterator[Any]:
+    """Yield the factors of a product, those of products in it too."""
+    for factor in sp.Mul.make_args(expression):
+        if factor.is_Mul:
+            yield from _flat(factor)
+        else:
+            yield factor
 
 
 def split(expression: Any) -> tuple[bool, list[Any], list[Any]]:
@@ -112,7 +124,7 @@ def split(expression: Any) -> tuple[bool, list[Any], list[Any]]:
     (True, [2, g], [3, a])
     """
     number, above, below = sp.Integer(1), [], []
-    for factor in sp.Mul.make_args(expression):
+    for factor in _flat(expression):
         if factor.is_Rational:
             number *= factor
         elif factor.is_Pow and factor.exp.is_Rational and factor.exp < 0:
@@ -152,7 +164,8 @@ class TextPrinter(PrettyPrinter):
     def _print_Symbol(self, symbol: Any, **_: Any) -> Any:
         return prettyForm(unicode_name(symbol.name))
 
-    _print_MatrixSymbol = _print_Symbol
+    def _print_MatrixSymbol(self, symbol: Any) -> Any:
+        return self._print_Symbol(symbol)
 
     def _print_ImaginaryUnit(self, _: Any) -> Any:
         return prettyForm("i")
@@ -180,11 +193,8 @@ class TextPrinter(PrettyPrinter):
         form = self._factors(above)
         if not below:
             return form
-        return prettyForm(*form.below(*self._bar(form, self._factors(below))), baseline=form.height())
-
-    @staticmethod
-    def _bar(above: Any, below: Any) -> tuple[Any, Any]:
-        return "─" * max(above.width(), below.width()), below
+        stacked, _ = stringPict.stack(form, stringPict.LINE, self._factors(below))
+        return prettyForm(stacked, baseline=form.height(), binding=prettyForm.DIV)
 
     def _print_Mul(self, expression: Any) -> Any:
         negative, above, below = split(expression)
@@ -310,4 +320,5 @@ class FormulaPrinter(LatexPrinter):
         rows = r" \\ ".join(" & ".join(self._print(part) for part in matrix.row(i)) for i in range(matrix.rows))
         return rf"\begin{{pmatrix}} {rows} \end{{pmatrix}}"
 
-    _print_ImmutableDenseMatrix = _print_MutableDenseMatrix = _print_MatrixBase
+    def _print_ImmutableDenseMatrix(self, matrix: Any) -> str:
+        return self._print_MatrixBase(matrix)

@@ -7,7 +7,7 @@ import textwrap
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from .printers import FormulaPrinter, TextPrinter
+from .printers import FormulaPrinter, TextPrinter, split
 from .symbols import MEANINGS
 
 if TYPE_CHECKING:
@@ -43,7 +43,10 @@ def text(derivation: Derivation, width: int) -> str:
     """
     printer = TextPrinter(width - 2 * len(_MARGIN))
     lines = [derivation.title, "─" * len(derivation.title), *_wrapped(derivation.introduction, width, ""), ""]
-    rows = [(_in_line(symbol), f"{meaning}, {unit}") for symbol, meaning, unit in _symbols_of(derivation)]
+    rows = [
+        (_in_line(symbol), f"{meaning}, {unit}" if unit != "1" else meaning)
+        for symbol, meaning, unit in _symbols_of(derivation)
+    ]
     broad = max((_columns(name) for name, _ in rows), default=0)
     lines += [f"{_MARGIN}{name}{' ' * (broad - _columns(name))}  {meaning}" for name, meaning in rows]
     for number, step in enumerate(derivation.steps, 1):
@@ -52,7 +55,9 @@ def text(derivation: Derivation, width: int) -> str:
             lines += ["", *(f"{_MARGIN * 2}{line}".rstrip() for line in printer.doprint(equation.formula).split("\n"))]
     if derivation.numbers:
         lines += ["", "With the scenario's numbers", ""]
-        lines += [f"{_MARGIN * 2}{_in_line(n.symbol)} = {_value(n.value)} {n.unit}".rstrip() for n in derivation.numbers]
+        lines += [
+            f"{_MARGIN * 2}{_in_line(n.symbol)} = {_value(n.value)} {n.unit}".rstrip() for n in derivation.numbers
+        ]
     lines += ["", *_wrapped(_PROVED.format(count=_count(derivation)), width, "")]
     return "\n".join(lines) + "\n"
 
@@ -81,7 +86,14 @@ def markdown(derivation: Derivation) -> str:
     def inline(expression: Any) -> str:
         return f"${printer.doprint(expression)}$"
 
-    lines = [f"# {derivation.title}", "", derivation.introduction, "", "| symbol | meaning | unit |", "| --- | --- | --- |"]
+    lines = [
+        f"# {derivation.title}",
+        "",
+        derivation.introduction,
+        "",
+        "| symbol | meaning | unit |",
+        "| --- | --- | --- |",
+    ]
     lines += [f"| {inline(symbol)} | {meaning} | {unit} |" for symbol, meaning, unit in _symbols_of(derivation)]
     for number, step in enumerate(derivation.steps, 1):
         lines += ["", f"## {number}. {step.title}", "", _said(step, inline)]
@@ -202,7 +214,7 @@ def _symbols_of(derivation: Derivation) -> list[tuple[Any, str, str]]:
     return [(symbol, meaning, unit) for symbol, (meaning, unit) in MEANINGS.items() if symbol in used]
 
 
-_POWERS = {"**2": "²", "**3": "³", "**": "^", "*": " "}
+_RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
 def _in_line(expression: Any) -> str:
@@ -210,11 +222,15 @@ def _in_line(expression: Any) -> str:
     if getattr(expression, "is_Relational", False):
         return f"{_in_line(expression.lhs)} = {_in_line(expression.rhs)}"
     shown = TextPrinter(1000).doprint(expression)
-    if "\n" in shown:
-        shown = str(expression)
-        for written, wanted in _POWERS.items():
-            shown = shown.replace(written, wanted)
-    return shown
+    if "\n" not in shown:
+        return shown
+    if expression.is_Pow and expression.exp.is_Integer:
+        return _in_line(expression.base) + str(expression.exp).translate(_RAISED)
+    if expression.is_Mul or expression.is_Rational:
+        negative, above, below = split(expression)
+        over = "⋅".join(map(_in_line, above)) + ("/" + "/".join(map(_in_line, below)) if below else "")
+        return "-" + over if negative else over
+    return str(expression)
 
 
 def _columns(shown: str) -> int:

@@ -3,25 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import sympy as sp
 
-from ..mechanics.algebra import Vector
-from ..mechanics.bodies import Body
-from ..mechanics.loads import Drag, Force, Load, Torque, constant_part
-from ..mechanics.motions import Fixed, Spin
-from ..mechanics.scalars import is_zero
-from ..mechanics.surfaces import Plane
-from ..mechanics.system import RollingSystem, Support
-from .law import at_one_instant
+from ..mechanics.system import RollingSystem
+from .ratios import named_ratio
 from .sphere_path import path_steps
+from .sphere_setting import Setting, along, constants_of, proof_of
 from .steps import Number, Proof, Step
 from .symbols import (
-    F_XYZ,
-    K_XYZ,
     R_XYZ,
     V_XY,
     VDOT_XY,
@@ -58,161 +49,6 @@ from .symbols import (
 from .vectors import Cross, Dot, times, total
 
 
-
-@dataclass(frozen=True)
-class Setting:
-    """Which of the things that T5 covers are there; those that are not drop out of every equation.
-
-    Examples
-    --------
-    >>> Setting(turning=True).system.support.motion
-    Spin(rate=omega)
-    """
-
-    turning: bool = False
-    tilted: bool = False
-    force: tuple[bool, bool, bool] = (False, False, False)
-    torque: tuple[bool, bool, bool] = (False, False, False)
-    drag: bool = False
-    weight: bool = True
-
-    @classmethod
-    def of(cls, system: RollingSystem) -> Setting:
-        """Read off a system which of its numbers are not zero."""
-        force, torque, drag = constant_part(system.loads, system.body.mass)
-        weight = not is_zero(system.gravity)
-        return cls(
-            turning=not is_zero(system.support.motion.steady_rate),
-            tilted=weight and not is_zero(system.support.tilt),
-            force=tuple(not is_zero(part) for part in force),
-            torque=tuple(not is_zero(part) for part in torque),
-            drag=not is_zero(drag),
-            weight=weight,
-        )
-
-    @cached_property
-    def system(self) -> RollingSystem:
-        """The system with symbols for its numbers."""
-        return self.system_with(omega, c)
-
-    def system_with(self, rate: Any, drag: Any) -> RollingSystem:
-        """Return the system with symbols for its numbers, and ω and c as given."""
-        loads: list[Load] = []
-        if any(self.force):
-            loads.append(Force(self._kept(F_XYZ, self.force)))
-        if any(self.torque):
-            loads.append(Torque(self._kept(K_XYZ, self.torque)))
-        if self.drag:
-            loads.append(Drag(drag))
-        support = Support(Plane(), Spin(rate) if self.turning else Fixed(), alpha if self.tilted else 0.0)
-        return RollingSystem(Body.sphere(a, m, k), support, tuple(loads), g if self.weight else 0.0)
-
-    @staticmethod
-    def _kept(names: tuple[Any, ...], there: tuple[bool, ...]) -> tuple[Any, ...]:
-        return tuple(name if kept else sp.Integer(0) for name, kept in zip(names, there, strict=True))
-
-    @property
-    def force_xyz(self) -> tuple[Any, ...]:
-        """The applied force other than weight and drag."""
-        return self._kept(F_XYZ, self.force)
-
-    @property
-    def torque_xyz(self) -> tuple[Any, ...]:
-        """The applied torque."""
-        return self._kept(K_XYZ, self.torque)
-
-    @property
-    def pushed(self) -> bool:
-        """Whether something pushes along the plane."""
-        return self.tilted or any(self.force[:2]) or any(self.torque[:2])
-
-    @property
-    def up(self) -> Any:
-        """The vertical: the normal itself where the plane is level."""
-        return Z if self.tilted else n
-
-    @property
-    def applied(self) -> tuple[Any, ...]:
-        """The applied forces as vectors, in the order weight, force, drag."""
-        return tuple(
-            term
-            for there, term in (
-                (self.weight, times(-m * g, self.up)),
-                (any(self.force), F),
-                (self.drag, -c * V),
-            )
-            if there
-        )
-
-
-def proof_of(setting: Setting) -> Proof:
-    """Return the proof by the rolling law for a sphere on a plane.
-
-    Parameters
-    ----------
-    setting : Setting
-        What is there.
-
-    Returns
-    -------
-    Proof
-        With the values of all symbols of the derivation.
-
-    Examples
-    --------
-    >>> proof_of(Setting()).values[n].T
-    Matrix([[0, 0, 1]])
-    """
-    values = at_one_instant(setting.system, Vector(x, y, sp.Integer(0)))
-    values[F], values[K] = sp.Matrix(setting.force_xyz), sp.Matrix(setting.torque_xyz)
-    # The lecture takes r in the plane of the centre, from the point of the axis there.
-    values[r] = values[r] - sp.Matrix([0, 0, a])
-    values[Z] = sp.Matrix([-sp.sin(alpha), 0, sp.cos(alpha)])
-    values[e_x] = sp.Matrix([1, 0, 0])
-    values |= dict(zip(VDOT_XY, values[Vdot][:2], strict=True)) | dict(zip(V_XY, values[V][:2], strict=True))
-    values |= dict(zip(R_XYZ, values[R], strict=True))
-    values |= {I: k * m * a**2, zeta: x + sp.I * y}
-    values |= {zetadot: values[V][0] + sp.I * values[V][1], zetaddot: values[Vdot][0] + sp.I * values[Vdot][1]}
-    constants = constants_of(setting)
-    values |= {kappa: constants[kappa], gamma: constants[gamma], varphi: constants[varphi]}
-    return Proof(values)
-
-
-def constants_of(setting: Setting) -> dict[Any, Any]:
-    """Return κ, γ and φ of T5 by the numbers of a system.
-
-    Parameters
-    ----------
-    setting : Setting
-        What is there.
-
-    Returns
-    -------
-    dict
-        From the symbol to what it stands for.
-
-    Examples
-    --------
-    >>> constants_of(Setting(turning=True))[kappa]
-    k*omega/(k + 1)
-    """
-    (fx, fy, _), (kx, ky, _) = setting.force_xyz, setting.torque_xyz
-    push = total(*_along(setting, 0), sp.I * fy if fy != 0 else 0, -sp.I * kx / a)
-    del fx, ky
-    return {
-        kappa: omega * k / (1 + k) if setting.turning else sp.Integer(0),
-        gamma: c / (m * (1 + k)) if setting.drag else sp.Integer(0),
-        varphi: push / (m * (1 + k)) if push != 0 else sp.Integer(0),
-    }
-
-
-def _along(setting: Setting, axis: int) -> tuple[Any, ...]:
-    """Return what pushes along the first or the second axis of the plane: weight, force, torque over radius."""
-    (kx, ky, _), weight = setting.torque_xyz, m * g * sp.sin(alpha)
-    slope = weight if setting.tilted and axis == 0 else sp.Integer(0)
-    return slope, setting.force_xyz[axis], (ky / a, -kx / a)[axis]
-
-
 def derive_system(setting: Setting) -> Iterator[Step]:
     """Yield the steps for a sphere on a plane.
 
@@ -239,7 +75,7 @@ def derive_system(setting: Setting) -> Iterator[Step]:
     yield _without_turning(setting, proof)
     yield _accelerations(setting, proof)
     yield _reaction(setting, proof)
-    yield _named_body(setting, proof)
+    yield from _named_body(setting, proof)
     yield _one_equation(setting, proof)
     yield from path_steps(setting, proof)
 
@@ -279,7 +115,7 @@ def numbers_of(motion: Any, system: RollingSystem) -> Iterator[Number]:
 
 def _newton(s: Setting, proof: Proof) -> Step:
     equations = [proof.equation(times(m, Vdot), total(R, *s.applied))]
-    sentence = "Mass times the acceleration of the centre is the force of the plane on the ball, {R}"
+    sentence = f"Mass times the acceleration of the centre is the force of the plane on the {s.noun}, " + "{R}"
     parts = []
     if s.weight:
         parts.append("its weight")
@@ -287,6 +123,8 @@ def _newton(s: Setting, proof: Proof) -> Step:
         parts.append("the applied force {F}")
     if s.drag:
         parts.append("the drag of still air")
+    if len(parts) > 1:
+        parts = [", ".join(parts[:-1]), parts[-1]]
     sentence += (", and " if len(parts) == 1 else ", ") + " and ".join(parts) + "." if parts else "."
     if s.tilted:
         sentence += " The vertical {up} leans from the normal {n}; the first axis points down the slope."
@@ -300,18 +138,23 @@ def _euler(s: Setting, proof: Proof) -> Step:
         "; {K} is the applied torque." if any(s.torque) else "; nothing else has a moment about the centre."
     )
     moment = proof.equation(I, k * m * a**2)
-    return Step("Euler's law", sentence, (proof.equation(times(I, Omegadot), turning), moment), {"arm": times(-a, n), "K": K})
+    return Step(
+        "Euler's law", sentence, (proof.equation(times(I, Omegadot), turning), moment), {"arm": times(-a, n), "K": K}
+    )
 
 
 def _rolling(s: Setting, proof: Proof) -> Iterator[Step]:
     moved = times(omega, Cross(n, r)) if s.turning else sp.ZeroMatrix(3, 1)
-    sentence = "The point of the ball at the contact moves " + (
+    sentence = f"The point of the {s.noun} at the contact moves " + (
         "as the plane under it does." if s.turning else "not at all."
     )
     yield Step("The rolling condition", sentence, (proof.equation(total(V, times(-a, Cross(Omega, n))), moved),))
     moved = times(omega, Cross(n, V)) if s.turning else sp.ZeroMatrix(3, 1)
-    sentence = "It cannot be integrated, but it can be differentiated: {n} is constant" + (
-        ", and so is {omega}." if s.turning else "."
+    first = "It can be integrated, as the path will show; here it is differentiated"
+    sentence = (
+        (first if s.straight else "It cannot be integrated, but it can be differentiated")
+        + ": {n} is constant"
+        + (", and so is {omega}." if s.turning else ".")
     )
     equation = proof.equation(total(Vdot, times(-a, Cross(Omegadot, n))), moved)
     yield Step("The rolling condition, differentiated", sentence, (equation,), {"n": n, "omega": omega})
@@ -345,7 +188,9 @@ def _without_turning(s: Setting, proof: Proof) -> Step:
     moved = [times(omega, Cross(n, V))] if s.turning else []
     right = total(*moved, *push) if moved or push else sp.ZeroMatrix(3, 1)
     equations.append(proof.equation(times(1 + m * a**2 / I, Vdot), right))
-    sentence = "Take this times {n} from the right; the rolling condition turns {turned} into accelerations of the centre."
+    sentence = (
+        "Take this times {n} from the right; the rolling condition turns {turned} into accelerations of the centre."
+    )
     return Step(
         "Elimination of the angular velocity", sentence, tuple(equations), {"n": n, "turned": Cross(Omegadot, n)}
     )
@@ -355,7 +200,7 @@ def _accelerations(s: Setting, proof: Proof) -> Step:
     share = 1 / (m * (1 + k))
     rows = []
     for axis in (0, 1):
-        push = total(*_along(s, axis))
+        push = total(*along(s, axis))
         rows.append(
             proof.equation(
                 VDOT_XY[axis],
@@ -389,12 +234,15 @@ def _reaction(s: Setting, proof: Proof) -> Step:
     rows.append(proof.equation(R_XYZ[2], total(lifted, -s.force_xyz[2])))
     sentence = "Put back into Newton's law, the acceleration gives the force that the plane must supply."
     if any(s.torque):
-        sentence += " A torque about the normal does not appear: it only spins the ball about its contact."
+        sentence += " A torque about the normal does not appear: it only spins the body about its contact."
     return Step("The reaction", sentence, tuple(rows))
 
 
-def _named_body(s: Setting, proof: Proof) -> Step:
-    ratio = sp.Rational(2, 5)
+def _named_body(s: Setting, proof: Proof) -> Iterator[Step]:
+    named = named_ratio(s.inertia_ratio)
+    if named is None:
+        return
+    ratio, name = named
     solid = proof.at({k: ratio})
     rows = []
     for left, equation in zip(
@@ -402,7 +250,7 @@ def _named_body(s: Setting, proof: Proof) -> Step:
     ):
         terms = sp.Add.make_args(equation.formula.rhs)
         rows.append(solid.equation(left, total(*(term.subs(k, ratio) for term in terms))))
-    return Step("A solid ball", "For a homogeneous ball {k}:", tuple(rows), {"k": sp.Eq(k, ratio, evaluate=False)})
+    yield Step(f"A {name}", f"For a {name}" + " {k}:", tuple(rows), {"k": sp.Eq(k, ratio, evaluate=False)})
 
 
 def _one_equation(s: Setting, proof: Proof) -> Step:
@@ -410,10 +258,10 @@ def _one_equation(s: Setting, proof: Proof) -> Step:
     factor = total(sp.I * kappa if s.turning else 0, -gamma if s.drag else 0)
     rows = [proof.equation(zetaddot, total(factor * zetadot, varphi if s.pushed else 0))]
     rows += [proof.equation(name, value) for name, value in constants.items() if value != 0]
-    sentence = "Write the centre as one complex number, {zeta}, so that {n}× becomes a factor i."
+    sentence = "Write the centre as one complex number, {zeta}, so that a cross product with {n} becomes a factor {i}."
     return Step(
         "The equation of the path",
         sentence,
         tuple(rows),
-        {"zeta": sp.Eq(zeta, total(x, sp.I * y), evaluate=False), "n": n},
+        {"zeta": sp.Eq(zeta, total(x, sp.I * y), evaluate=False), "n": n, "i": sp.I},
     )

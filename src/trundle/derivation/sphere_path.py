@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
@@ -38,13 +38,16 @@ from .symbols import (
     m,
     n,
     omega,
+    phi,
     r,
     rdot,
     v_d,
     v_infinity,
     varphi,
     varrho,
+    x,
     x_0,
+    y,
     y_0,
     zeta,
     zeta_0,
@@ -55,7 +58,7 @@ from .symbols import (
 from .vectors import Cross, times, total
 
 if TYPE_CHECKING:
-    from .sphere_on_plane import Setting
+    from .sphere_setting import Setting
 
 
 # A one-to-one change of symbols that keeps the closed form short: ω and c by κ and γ.
@@ -77,7 +80,7 @@ def closed_form_of(setting: Setting) -> SphereOnPlane:
 
     Examples
     --------
-    >>> from trundle.derivation.sphere_on_plane import Setting
+    >>> from trundle.derivation.sphere_setting import Setting
     >>> closed_form_of(Setting(turning=True)).kappa
     kappa
     """
@@ -103,7 +106,7 @@ def proof_of_path(setting: Setting, proof: Proof) -> Proof:
 
     Examples
     --------
-    >>> from trundle.derivation.sphere_on_plane import Setting, proof_of
+    >>> from trundle.derivation.sphere_setting import Setting, proof_of
     >>> level = Setting()
     >>> proof_of_path(level, proof_of(level)).values[zeta_0]
     x_0 + I*y_0
@@ -111,7 +114,7 @@ def proof_of_path(setting: Setting, proof: Proof) -> Proof:
     form = closed_form_of(setting)
     position, velocity, turning, force = (column(v) for v in form.motion_at(TIME))
     still = Quaternion(*map(sp.Integer, (1, 0, 0, 0)))  # no load of this form feels how the sphere is turned
-    now = BodyMotion(TIME, m, *(Vector(*v) for v in (position, velocity)), still, Vector(*turning))
+    now = BodyMotion(TIME, m, Vector(*position), Vector(*velocity), still, Vector(*turning))
     applied, torque = (column(v) for v in setting.system_with(*BY_RATES.values()).loads_on(now))
     place = column(form.position_at(TIME))
     values = proof.at(BY_RATES).values | {kappa: kappa if setting.turning else 0, gamma: gamma if setting.drag else 0}
@@ -144,7 +147,7 @@ def path_steps(setting: Setting, proof: Proof) -> Iterator[Step]:
 
     Examples
     --------
-    >>> from trundle.derivation.sphere_on_plane import Setting, proof_of
+    >>> from trundle.derivation.sphere_setting import Setting, proof_of
     >>> level = Setting()
     >>> [step.title for step in path_steps(level, proof_of(level))][0]
     'Its integral'
@@ -156,6 +159,8 @@ def path_steps(setting: Setting, proof: Proof) -> Iterator[Step]:
         yield from _circling(setting, path)
     else:
         yield from _straight(setting, path)
+    if setting.straight and not (setting.drag or setting.turning or any(setting.torque)):
+        yield _integrated(setting, path)
     yield _turning(setting, path)
     yield _closed_form(setting, path)
 
@@ -165,10 +170,10 @@ def _straight(s: Setting, path: Proof) -> Iterator[Step]:
         once = path.equation(zetadot, total(zetadot_0, varphi * TIME))
         twice = path.equation(zeta, total(zeta_0, zetadot_0 * TIME, varphi * TIME**2 / 2))
         yield Step("Its integral", "The acceleration is constant:", (once,))
-        yield Step("The path", "and the path is a parabola, or a straight line from rest.", (twice,))
+        yield Step("The path", "Once more: a parabola, or from rest a straight line.", (twice,))
     else:
         yield Step("Its integral", "Nothing pushes along the plane:", (path.equation(zetadot, zetadot_0),))
-        yield Step("The path", "a straight line.", (path.equation(zeta, total(zeta_0, zetadot_0 * TIME)),))
+        yield Step("The path", "Once more: a straight line.", (path.equation(zeta, total(zeta_0, zetadot_0 * TIME)),))
 
 
 def _circling(s: Setting, path: Proof) -> Iterator[Step]:
@@ -181,7 +186,7 @@ def _circling(s: Setting, path: Proof) -> Iterator[Step]:
     )
     rows += [once, path.equation(zeta_c, centre)]
     yield Step("Its integral", sentence, tuple(rows), {"zeta_c": zeta_c, "v_d": v_d})
-    arm = total(zetadot_0, -drift) / (sp.I * kappa)
+    arm = total(zetadot_0, -drift) / (sp.I * kappa) if s.pushed else total(zeta_0, -zeta_c)
     sentence = "Once more, and the path is there: a circle" + (" whose centre drifts." if s.pushed else ".")
     turned = sp.Mul(sp.exp(sp.I * kappa * TIME), arm, evaluate=False)
     yield Step("The path", sentence, (path.equation(zeta, total(zeta_c, turned)),))
@@ -189,8 +194,7 @@ def _circling(s: Setting, path: Proof) -> Iterator[Step]:
 
 
 def _circle(s: Setting, path: Proof) -> Step:
-    drift = v_d if s.pushed else sp.Integer(0)
-    (x, y), (cx, cy) = (sp.symbols(names, real=True) for names in ("x y", "x_c y_c"))
+    cx, cy = sp.symbols("x_c y_c", real=True)
     (ux, uy) = (part if s.pushed else sp.Integer(0) for part in closed_form_of(s).drift_velocity)
     centre = closed_form_of(s).guiding_centre(TIME)
     place = path.values[r]
@@ -207,20 +211,17 @@ def _circle(s: Setting, path: Proof) -> Step:
         sentence += " The centre drifts at a right angle to the push."
     else:
         sentence += " It may be any circle: put down at rest, the ball stays where it is."
-    del drift
     return Step("Circle and drift" if s.pushed else "The circle", sentence, tuple(rows))
 
 
 def _slowed(s: Setting, path: Proof) -> Iterator[Step]:
     rows = [path.equation(lam, total(sp.I * kappa if s.turning else 0, -gamma))]
-    rows.append(
-        path.equation(zetadot, total(zetadot_0, lam * total(zeta, -zeta_0), varphi * TIME if s.pushed else 0))
-    )
+    rows.append(path.equation(zetadot, total(zetadot_0, lam * total(zeta, -zeta_0), varphi * TIME if s.pushed else 0)))
     yield Step("Its integral", "With {lam} for both factors, it integrates once:", tuple(rows), {"lam": lam})
     growth = sp.exp(lam * TIME)
     free = total(growth, -1) / lam * zetadot_0
     pushed = total(growth, -1, -lam * TIME) / lam**2 * varphi if s.pushed else 0
-    yield Step("The path", "and once more.", (path.equation(zeta, total(zeta_0, free, pushed)),))
+    yield Step("The path", "Once more, and the path is there.", (path.equation(zeta, total(zeta_0, free, pushed)),))
     if s.pushed:
         end = path.at({v_infinity: -path.values[varphi] / path.values[lam]})
         rest = end.equation(zetadot - v_infinity, growth * total(zetadot_0, -v_infinity))
@@ -231,10 +232,20 @@ def _slowed(s: Setting, path: Proof) -> Iterator[Step]:
         yield Step("Where it ends", sentence, tuple(rows), {"gamma": gamma})
 
 
+def _integrated(s: Setting, path: Proof) -> Step:
+    angle = sp.integrate(path.values[OMEGA_XYZ[1]], (TIME, 0, TIME))
+    here = path.at({phi: angle, x: path.values[r][0]})
+    sentence = (
+        "Held to its line, the cylinder turns about {axis} alone, and the rolling condition integrates: counted from "
+        "the start, the angle {phi} is given by the position, and so is the orientation."
+    )
+    rows = (here.equation(total(x, -x_0), a * phi),)
+    del s
+    return Step("The rolling condition, integrated", sentence, rows, {"axis": OMEGA_XYZ[1], "phi": phi})
+
+
 def _turning(s: Setting, path: Proof) -> Step:
     moved = omega * zeta if s.turning else 0
-    plane = sp.Eq
-    del plane
     rows = [path.equation(total(OMEGA_XYZ[0], sp.I * OMEGA_XYZ[1]), total(sp.I * zetadot, moved) / a)]
     driven = sp.Symbol("K_z", real=True) * TIME / I if s.torque[2] else 0
     rows.append(path.equation(OMEGA_XYZ[2], total(Omega_z0, driven)))

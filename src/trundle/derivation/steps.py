@@ -203,6 +203,28 @@ class Proof:
             proved = numerator(residual, self.squares)
         return Equation(sp.Eq(left, right, evaluate=False), proved)
 
+    def constant(self, left: Any, right: Any, rates: Mapping[Any, Any]) -> Equation:
+        """Return an equation between two integrals; its residual is the rate at which they part.
+
+        Parameters
+        ----------
+        left, right : sympy.Expr
+            Equal at one instant, by the choice of a constant.
+        rates : mapping
+            How fast each symbol in them changes; those not named are constant.
+
+        Returns
+        -------
+        Equation
+            With the rate of left − right as its residual.
+        """
+        import sympy as sp
+
+        from .zero import numerator
+
+        parting = sum((left - right).diff(symbol) * rate for symbol, rate in rates.items())
+        return Equation(sp.Eq(left, right, evaluate=False), numerator(parting.xreplace(self.values), self.squares))
+
     def at(self, values: Mapping[Any, Any]) -> Proof:
         """Return the proof for chosen values of some symbols, such as k = 2/5."""
         put_in = {

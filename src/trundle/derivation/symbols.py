@@ -24,20 +24,32 @@ TIME = sp.Symbol("t", real=True)
 n, r, V, Vdot, Omega, Omegadot, R, F, K, Z, e_x = map(
     vector, ("nhat", "r", "V", "Vdot", "Omega", "Omegadot", "R", "F", "K", "zhat", "ehat_x")
 )
-p, rho, rhodot, u, udot, rdot = map(vector, ("p", "rho", "rhodot", "u", "udot", "rdot"))
+p, pdot, rho, rhodot, u, udot, rdot = map(vector, ("p", "pdot", "rho", "rhodot", "u", "udot", "rdot"))
+
+b, ell, G, lam_0 = sp.symbols("b ell G lambda_0", positive=True)
+theta, thetadot, thetaddot, phi = sp.symbols("theta thetadot thetaddot phi", real=True)
+N, R_theta, par = sp.symbols("N R_theta mu", real=True)
+e_z, e_r, e_theta = map(vector, ("ehat_z", "ehat_r", "ehat_theta"))
 
 MEANINGS = {
     m: ("mass of the body", "kg"),
     a: ("radius of the body", "m"),
     I: ("its moment of inertia about the centre", "kg m²"),
-    k: ("I/(m a²): 2/5 for a solid ball, 2/3 for a thin shell", "1"),
+    k: ("I/(m a²), 2/5 solid ball, 2/3 thin shell, 1/2 solid cylinder, 1 hoop", "1"),
+    b: ("radius of the cylinder that it rolls on", "m"),
+    ell: ("distance of its centre from that cylinder's axis", "m"),
+    theta: ("angle of its centre about that axis, from the lowest line", "rad"),
+    phi: ("angle by which the body has turned", "rad"),
     g: ("acceleration of free fall", "m/s²"),
     alpha: ("tilt: the angle between the normal and the vertical", "rad"),
     omega: ("rate at which the support turns about its axis", "rad/s"),
     c: ("coefficient of linear drag", "kg/s"),
     n: ("unit normal, from the support into the body", "1"),
     Z: ("unit vector vertically up", "1"),
-    e_x: ("unit vector down the slope", "1"),
+    e_x: ("unit vector along the first axis", "1"),
+    e_z: ("unit vector along the third axis", "1"),
+    e_r: ("unit vector from the axis to the centre", "1"),
+    e_theta: ("unit vector along the track", "1"),
     r: ("centre of the body, from the axis", "m"),
     p: ("contact point", "m"),
     rho: ("from the centre of mass to the contact", "m"),
@@ -46,6 +58,9 @@ MEANINGS = {
     Omega: ("angular velocity of the body", "rad/s"),
     R: ("force of the support on the body, at the contact", "N"),
     F: ("applied force", "N"),
+    G: ("pull across the axis, weight included", "N"),
+    N: ("force that presses body and support together", "N"),
+    R_theta: ("force along the track, that rolling takes", "N"),
     K: ("applied torque about the centre", "N m"),
     kappa: ("rate of the circle", "rad/s"),
     gamma: ("rate at which drag slows the body", "1/s"),

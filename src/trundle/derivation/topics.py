@@ -68,6 +68,24 @@ TOPICS = {
         "sphere_on_plane",
         {"turning": True, "tilted": True, "drag": True},
     ),
+    "cylinder-on-incline": Topic(
+        "Cylinder on an inclined plane",
+        "A cylinder rolls straight down a slope. Its constraint can be integrated: the place gives the turn.",
+        "sphere_on_plane",
+        {"tilted": True, "straight": True, "inertia_ratio": 0.5},
+    ),
+    "cylinder-in-cylinder": Topic(
+        "Cylinder inside a larger cylinder",
+        "A cylinder rolls inside a larger one that lies level, at any amplitude: a pendulum, in Jacobi's functions.",
+        "cylinder_on_cylinder",
+        {},
+    ),
+    "rolling-law": Topic(
+        "Any body on any support",
+        "The rolling law T1 to T3 for every convex body, every support and motion of it, and every load.",
+        "general",
+        {},
+    ),
     "sphere-on-plane": Topic(
         "Sphere on a plane, everything at once",
         "The whole of the closed form T5: the plane leans and turns, a force, a torque and drag act.",

@@ -50,7 +50,7 @@ class Cross(sp.MatrixExpr):
 
     def _factors(self, printer: Any) -> Any:
         for factor in self.args:
-            yield isinstance(factor, (sp.MatAdd, sp.MatMul, Cross)), printer._print(factor)
+            yield isinstance(factor, (sp.MatAdd, sp.MatMul)) or type(factor) is Cross, printer._print(factor)
 
     def _latex(self, printer: Any) -> str:
         parts = [rf"\left({text}\right)" if bracket else text for bracket, text in self._factors(printer)]
@@ -69,8 +69,8 @@ class Dot(sp.Expr):
 
     Examples
     --------
-    >>> sp.latex(Dot(vector("n"), vector("R")))
-    '\\\\left(n \\\\cdot R\\\\right)'
+    >>> sp.pretty(Dot(vector("n"), vector("R")), use_unicode=True)
+    '(n·R)'
     """
 
     is_commutative = True
@@ -88,6 +88,27 @@ class Dot(sp.Expr):
 
     def _sympystr(self, printer: Any) -> str:
         return f"dot({', '.join(printer._print(factor) for factor in self.args)})"
+
+
+class Times(Cross):
+    """A matrix times a vector, left as it is written.
+
+    Examples
+    --------
+    >>> sp.pretty(Times(sp.MatrixSymbol("J", 3, 3), vector("Omega")), use_unicode=True)
+    'J⋅Ω'
+    """
+
+    def _latex(self, printer: Any) -> str:
+        parts = [rf"\left({text}\right)" if bracket else text for bracket, text in self._factors(printer)]
+        return r" \, ".join(parts)
+
+    def _pretty(self, printer: Any) -> Any:
+        parts = [prettyForm(*form.parens()) if bracket else form for bracket, form in self._factors(printer)]
+        return prettyForm(*prettyForm(*parts[0].right("⋅")).right(parts[1]), binding=prettyForm.MUL)
+
+    def _sympystr(self, printer: Any) -> str:
+        return "*".join(printer._print(factor) for factor in self.args)
 
 
 def total(*terms: Any) -> Any:
@@ -166,6 +187,9 @@ def evaluate(expression: Any, values: Mapping[Any, Any]) -> Any:
     """
     if isinstance(expression, sp.MatrixSymbol):
         return values[expression]
+    if isinstance(expression, Times):
+        left, right = (evaluate(factor, values) for factor in expression.args)
+        return left * right
     if isinstance(expression, Cross):
         left, right = (evaluate(factor, values) for factor in expression.args)
         return left.cross(right)

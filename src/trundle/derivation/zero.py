@@ -7,7 +7,7 @@ as a polynomial is zero. The test can miss a zero that needs another relation; i
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 
@@ -32,8 +32,21 @@ def exact(expression: Any) -> Any:
     """
     import sympy as sp
 
-    expression = sp.sympify(expression)
-    return expression.xreplace({number: sp.Rational(float(number)) for number in expression.atoms(sp.Float)})
+    return _rebuilt(sp.sympify(expression), lambda part: sp.Rational(float(part)) if part.is_Float else part)
+
+
+def _rebuilt(expression: Any, change: Callable[[Any], Any]) -> Any:
+    """Change an expression from its leaves up, what occurs many times only once."""
+    memory: dict[Any, Any] = {}
+
+    def visit(part: Any) -> Any:
+        if part not in memory:
+            arguments = [visit(argument) for argument in part.args]
+            same = all(new is old for new, old in zip(arguments, part.args, strict=True))
+            memory[part] = change(part if same else part.func(*arguments))
+        return memory[part]
+
+    return visit(expression)
 
 
 def numerator(expression: Any, squares: Mapping[Any, Any] | None = None) -> Any:
@@ -99,6 +112,70 @@ def is_zero(expression: Any, squares: Mapping[Any, Any] | None = None) -> bool:
     return bool(numerator(expression, squares) == 0)
 
 
+def normal_form(expression: Any, squares: Mapping[Any, Any] | None = None) -> Any:
+    """Return an expression as one quotient in lowest terms, with the relations known here put in.
+
+    Parameters
+    ----------
+    expression, squares
+        As for `numerator`.
+
+    Returns
+    -------
+    sympy.Expr
+        The same value.
+
+    Examples
+    --------
+    >>> import sympy
+    >>> x, y = sympy.symbols("x y")
+    >>> normal_form((sympy.sin(y) ** 2 + sympy.cos(y) ** 2) * (x**2 - 1) / (x - 1))
+    x + 1
+    """
+    from .polynomials import Quotients
+
+    plain, known, names = _unknowns(with_plain_roots(exact(expression)), dict(squares or {}))
+    return Quotients(plain, known).expression.xreplace(names)
+
+
+def with_plain_roots(expression: Any) -> Any:
+    """Return an expression with each square root of a polynomial taken of its normal form, so that equal roots meet.
+
+    Parameters
+    ----------
+    expression : sympy.Expr
+        Exact.
+
+    Returns
+    -------
+    sympy.Expr
+        The same value.
+
+    Examples
+    --------
+    >>> import sympy
+    >>> x, y, t = sympy.symbols("x y t", real=True)
+    >>> c, s = sympy.cos(t), sympy.sin(t)
+    >>> with_plain_roots(1 / sympy.sqrt((c * x - s * y) ** 2 + (s * x + c * y) ** 2))
+    1/sqrt(x**2 + y**2)
+    """
+    import sympy as sp
+
+    from .polynomials import Quotients
+
+    def plain(base: Any) -> Any:
+        rational, known, names = _unknowns(base, {})
+        quotients = Quotients(rational, known)
+        return quotients.numerator.xreplace(names) if quotients.is_polynomial else base
+
+    def change(part: Any) -> Any:
+        if part.is_Pow and part.exp.is_Rational and not part.exp.is_Integer:
+            return sp.Pow(plain(part.base), part.exp)
+        return part
+
+    return _rebuilt(expression, change)
+
+
 def _unknowns(expression: Any, squares: dict[Any, Any]) -> tuple[Any, dict[Any, Any], dict[Any, Any]]:
     """Put symbols in the place of functions and roots; return also their squares, and the way back."""
     import sympy as sp
@@ -112,7 +189,14 @@ def _unknowns(expression: Any, squares: dict[Any, Any]) -> tuple[Any, dict[Any, 
     def unknown(thing: Any) -> Any:
         return names.setdefault(thing, sp.Dummy(real=True))
 
+    memory: dict[Any, Any] = {}
+
     def visit(part: Any) -> Any:
+        if part not in memory:
+            memory[part] = visited(part)
+        return memory[part]
+
+    def visited(part: Any) -> Any:
         if part is sp.I:
             known[unknown(part)] = sp.Integer(-1)
             return unknown(part)
