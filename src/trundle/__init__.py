@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     )
     from .geometry import Arc, Curve, PathScenario, RolledPath, Rotation, Straight, roll_along
     from .holonomy import ConstraintAnalysis, PfaffianSystem
+    from .imperfections import Sensitivity, air_drag, sensitivity
     from .mechanics.bodies import Body, Isotropic, Principal, RatioInertia
     from .mechanics.loads import Drag, Force, Torque
     from .mechanics.motions import Fixed, Spin, UnevenSpin, Wobble
@@ -43,6 +44,7 @@ _HOMES = {
     ),
     "geometry": ("roll_along", "Straight", "Arc", "Curve", "RolledPath", "Rotation", "PathScenario"),
     "holonomy": ("PfaffianSystem", "ConstraintAnalysis"),
+    "imperfections": ("sensitivity", "Sensitivity", "air_drag"),
     "mechanics.bodies": ("Body", "Isotropic", "Principal", "RatioInertia"),
     "mechanics.shapes": ("Roller", "Sphere"),
     "mechanics.surfaces": ("Cylinder", "Plane"),
@@ -83,6 +85,7 @@ __all__ = [
     "Rotation",
     "Scenario",
     "ScenarioError",
+    "Sensitivity",
     "SolverError",
     "Sphere",
     "Spin",
@@ -97,8 +100,10 @@ __all__ = [
     "UnknownNameError",
     "Wobble",
     "__version__",
+    "air_drag",
     "roll_along",
     "derive",
+    "sensitivity",
     "simulate",
     "to_turntable",
     "twin",

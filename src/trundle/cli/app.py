@@ -16,6 +16,7 @@ from ..scenario import files
 from . import CARD_FAILED, constraints, screen, signals
 from .check import check
 from .derive import derive
+from .sensitivity import sensitivity
 from .twin import twin
 
 if TYPE_CHECKING:
@@ -41,6 +42,7 @@ def command() -> Any:
     app.command("schema", short_help="Print the JSON schema of scenario files, for editors.")(schema)
     app.command("twin", short_help="Find the charge in crossed fields that moves as the ball does.")(twin)
     app.command("constraints", short_help="Holonomic or not: decide it, and show why.")(constraints.constraints)
+    app.command("sensitivity", short_help="Rank the shortcomings of a turntable by what they do.")(sensitivity)
     return typer.main.get_command(app)
 
 
@@ -219,10 +221,13 @@ def show(scenario: Name) -> None:
         screen.show_pairs("To expect", rows())
 
 
-def schema() -> None:
+def schema(
+    path: Annotated[bool, typer.Option("--path", help="That of paths to roll along, without forces.")] = False,
+) -> None:
     """Print the JSON schema of scenario files, for editors that check and complete TOML."""
     import json
 
     from ..scenario import ScenarioFile
+    from ..scenario.path_file import PathFile
 
-    screen.out(json.dumps(ScenarioFile.schema(), indent=2))
+    screen.out(json.dumps((PathFile if path else ScenarioFile).schema(), indent=2))

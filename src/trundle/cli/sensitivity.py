@@ -1,0 +1,107 @@
+"""`trundle sensitivity`: which shortcoming of a turntable demonstration matters most."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ..errors import InvalidValueError
+from . import screen, signals
+
+if TYPE_CHECKING:
+    from ..imperfections import Sensitivity
+
+FILE = "sensitivity.png"
+OPTIONS = {"variation": "--uneven", "variation_rate": "--uneven-rate"}  # where they differ from Python's names
+
+
+def sensitivity(
+    scenario: Annotated[str, typer.Argument(metavar="SCENARIO", help="The name of a shipped one, or a TOML file.")],
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", metavar="FOLDER", help="Default: a folder of the scenario's name."),
+    ] = None,
+    tilt: Annotated[str | None, typer.Option(metavar="ANGLE", help="Of the table, such as '0.1 deg'.")] = None,
+    drag: Annotated[
+        str | None, typer.Option(metavar="C", help="Of the air, at rest and turning, such as '0.1 g/s'.")
+    ] = None,
+    wobble: Annotated[
+        str | None, typer.Option(metavar="ANGLE", help="Between table and axle, such as '0.1 deg'.")
+    ] = None,
+    uneven: Annotated[
+        str | None, typer.Option(metavar="SHARE", help="By which the table's rate varies, such as 0.01.")
+    ] = None,
+    uneven_rate: Annotated[
+        str | None, typer.Option(metavar="RATE", help="At which it varies, such as '33.3 rpm'; else once a turn.")
+    ] = None,
+    horizon: Annotated[str, typer.Option(metavar="TIME", help="How long to wait for the ball.")] = "1 h",
+    no_figure: Annotated[bool, typer.Option("--no-figure", help="Draw no figure.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the table as JSON, and nothing else.")] = False,
+) -> None:
+    """Vary one shortcoming of a turntable at a time, and rank them by how soon the ball is off; write sensitivity.png.
+
+    A size that is not given is the scenario's own where it has that shortcoming; else 0.1 deg of tilt, 0.1 deg of
+    wobble, a rate uneven by 1 % once a turn, and the drag of room air on the ball.
+    """
+    from ..imperfections import sensitivity as vary
+    from .writing import check_folder, write_together
+
+    folder = Path(Path(scenario).stem) if output is None else output.expanduser()
+    names = () if no_figure else (FILE,)
+    check_folder(folder, names)
+    loaded = _load(scenario)
+    sizes: dict[str, Any] = {
+        "tilt": tilt,
+        "drag": drag,
+        "wobble": wobble,
+        "variation": uneven,
+        "variation_rate": uneven_rate,
+    }
+    try:
+        with screen.ProgressBar(wanted=not quiet) as bar:
+            table = vary(loaded, **sizes, horizon=horizon, progress=bar)
+    except InvalidValueError as error:
+        option = OPTIONS.get(error.key, f"--{error.key}")
+        if error.key in sizes or error.key == "horizon":
+            raise InvalidValueError(option, error.rule, error.received, error.remedy) from None
+        raise
+    signals.check()
+    written = write_together(folder, {name: lambda path: table.plot().savefig(path) for name in names})
+    if as_json:
+        screen.out(table.as_json())
+    elif not quiet:
+        _show(table)
+        if written:
+            screen.out(f"Wrote {', '.join(str(path) for path in written)}")
+
+
+def _load(scenario: str) -> object:
+    from ..scenario import files
+    from ..simulation import Scenario
+
+    return Scenario.read(files.parse(files.read(scenario), scenario), scenario)
+
+
+def _show(table: Sensitivity) -> None:
+    """Print the table: ruled on a terminal, its own plain text anywhere else."""
+    if not screen.on_terminal():
+        screen.out(str(table))
+        return
+    from rich.box import SIMPLE_HEAD
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    from ..imperfections.report import HEADINGS
+
+    ruled = Table(*HEADINGS, box=SIMPLE_HEAD)
+    for row, cells in zip((*table.rows, table.given), table.cells, strict=True):
+        style = "bold" if row.leaves is not None else ""
+        ruled.add_row(*(Text(cell, style=style if i == 2 else "") for i, cell in enumerate(cells)))
+    console = Console(highlight=False)
+    console.print(Text(table.title, style="bold"))
+    console.print(Text(table.heading))
+    console.print(ruled)
