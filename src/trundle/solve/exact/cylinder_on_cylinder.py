@@ -66,7 +66,7 @@ class CylinderOnCylinder(ClosedForm):
 
     name = "cylinder or ball on a cylinder"
     equation = "T6"
-    source = "Abramowitz and Stegun, Handbook of Mathematical Functions (1964), chapter 16; theory page, section 5"
+    source = "Abramowitz and Stegun, Handbook of Mathematical Functions (1964), ch. 16; theory page, round a cylinder"
     domain = (
         "a cylinder, hoop or ball with the same inertia about every axis that rolls inside or outside a cylinder, in "
         "the plane across its axis, the cylinder fixed or turning steadily, under gravity and constant force in that "
