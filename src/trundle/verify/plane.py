@@ -1,0 +1,113 @@
+"""The lecture's own formulas beside a run: reaction and acceleration of a ball on a fixed plane; straight rolling."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..mechanics.algebra import E_Z, Quaternion, Vector
+from ..mechanics.scalars import is_zero
+from ..mechanics.surfaces import Plane
+from ..mechanics.system import RollingSystem
+from ..solve.samples import Samples
+from .card import CardFigure, checked
+
+Array = NDArray[np.float64]
+
+
+def reactions(system: RollingSystem, at: Samples, bound: float) -> Iterator[CardFigure]:
+    """Compare contact force and acceleration with R = (K×n/a − kF)/(1 + k), m V̇ = (F + K×n/a)/(1 + k) in the plane.
+
+    They come from the lecture's elimination for a sphere on a fixed plane (Landau and Lifshitz, Mechanics, § 38,
+    problem 1), which the rolling law does not use. F is all applied force, K all applied torque, at each sample.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Other systems have no such figures.
+    at : Samples
+        Of the run.
+    bound : float
+        The share of the force that they may be off.
+
+    Yields
+    ------
+    CardFigure
+        Two, with the values at the start in their notes.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> card = tr.Scenario.load("ball-under-torque").run().card()
+    >>> card["reaction in the plane"].passed, card["reaction in the plane"].note[:46]
+    (True, '(K×n/a − kF)/(1 + k); at the start (0.0714286,')
+    """
+    if not (system.body.is_isotropic_sphere and isinstance(system.support.surface, Plane)) or not _is_fixed(system):
+        return
+    k, a, m = (float(number) for number in (system.body.inertia_ratio, system.body.radius, system.body.mass))
+    force, torque = system.loads_on(at.motion(system))
+    F, driven = (_in_plane(v, at) for v in (force, torque.cross(E_Z) * (1 / a)))
+    R = at.contact_force[:, :2]
+    size = max(_largest(F), _largest(driven), 1e-300)
+    if max(_largest(F), _largest(driven)) == 0:  # nothing pushes: nothing to compare with
+        return
+    wanted = (driven - k * F) / (1 + k)
+    off = _largest(R - wanted) / size
+    yield checked("reaction in the plane", off, bound, f"(K×n/a − kF)/(1 + k); at the start {_pair(R[0])} N")
+    gained = (F + driven) / (m * (1 + k))
+    off = _largest((F + R) / m - gained) * m / size
+    note = f"(F + K×n/a)/(m(1 + k)); at the start {_pair(gained[0])} m/s²"
+    yield checked("acceleration in the plane", off, bound, note)
+
+
+def straightness(system: RollingSystem, at: Samples, bound: float) -> Iterator[CardFigure]:
+    """Check that a cylinder kept to its line: Ω along its axis, and the axis along the support.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Bodies that touch at a point have no such figure.
+    at : Samples
+        Of the run.
+    bound : float
+        The share of Ω that may lie across the axis.
+
+    Yields
+    ------
+    CardFigure
+        One.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> tr.Scenario.load("cylinder-on-incline").run().card()["rolls straight"].passed
+    True
+    """
+    if system.body.shape.axis is None:
+        return
+    axis = (Quaternion.of(at.orientation).matrix() @ system.body.shape.axis).array()
+    along = np.einsum("ni,ni->n", at.angular_velocity, axis)
+    across = _largest(at.angular_velocity - along[:, None] * axis) / max(_largest(at.angular_velocity), 1e-300)
+    askew = float(np.abs(np.einsum("ni,ni->n", axis, at.normals(system))).max())
+    yield checked(
+        "rolls straight", max(across, askew), bound, "share of Ω across the axis, and of the axis off the wall"
+    )
+
+
+def _is_fixed(system: RollingSystem) -> bool:
+    rate = system.support.motion.steady_rate
+    return rate is not None and is_zero(rate)
+
+
+def _in_plane(v: Vector, at: Samples) -> Array:
+    return np.broadcast_to(v.array(), at.position.shape)[:, :2]
+
+
+def _largest(array: Array) -> float:
+    return float(np.linalg.norm(array, axis=-1).max())
+
+
+def _pair(pair: Array) -> str:
+    return f"({pair[0] + 0.0:.6g}, {pair[1] + 0.0:.6g})"
