@@ -68,7 +68,7 @@ class Table:
         solved = np.linalg.solve(matrix, right)
         return np.concatenate([V, solved[:3], solved[3:6]])
 
-    def run(self, position: Any, velocity: Any, duration: float, spin: float = 0.0) -> Any:
+    def run(self, position: Any, velocity: Any, duration: float, spin: float = 0.0, rtol: float = 1e-11) -> Any:
         """Start with the centre over a place at a velocity along the table, and return SciPy's solution."""
         n, _ = self.normal(0.0)
         lean = self.askew
@@ -85,10 +85,10 @@ class Table:
 
         at_rim.terminal = True  # type: ignore[attr-defined]
         events = at_rim if np.isfinite(self.rim) else None
-        tight = {"rtol": 1e-11, "atol": 1e-13, "dense_output": True}
+        tight = {"rtol": rtol, "atol": 0.01 * rtol, "dense_output": True}
         return solve_ivp(self.motion, (0.0, duration), first, "DOP853", events=events, **tight)
 
-    def path(self, position: Any, velocity: Any, duration: float) -> Callable[[Any], Any]:
+    def path(self, position: Any, velocity: Any, duration: float, rtol: float = 1e-11) -> Callable[[Any], Any]:
         """Return the centre as x + iy of the time."""
-        solved = self.run(position, velocity, duration)
+        solved = self.run(position, velocity, duration, rtol=rtol)
         return lambda t: solved.sol(t)[0] + 1j * solved.sol(t)[1]

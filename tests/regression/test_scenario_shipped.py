@@ -11,6 +11,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from tests.reference.imperfect import Table
 
 from trundle.scenario import ScenarioFile, files
 from trundle.scenario.path_file import PathFile
@@ -239,3 +240,43 @@ def test_loop_the_loop() -> None:
     # From that speed on the ring pushes all the way: N = m(ℓ θ̇² + g cos θ).
     angle, rate = path(np.linspace(0, 3, 3001))
     assert np.all(length * rate**2 + 9.80665 * np.cos(angle) > 0)
+
+
+def test_real_demonstration() -> None:
+    name, a, lean, askew = "real-demonstration", 0.025, np.radians(0.03), np.radians(0.1)
+    table = Table(a, 0.51, 0.4, TABLE, rim=0.5, tilt=lean, drag=8e-5, askew=askew)
+    (leaves,) = table.run((0.1, 0.0), (0.0, 0.1), 300.0, rtol=1e-8).t_events[0]
+    one_round = 3.5 * 60 / 33.3
+    says(name, f"{leaves:.1f} s, in its {int(leaves / one_round) + 1}th round", f"{one_round:.3f} s")
+    says(name, f"{1000 * 9.80665 * np.sin(lean) / (0.4 * TABLE):.2f} mm/s")
+    says(
+        name, f"{1000 * 0.5 * np.sin(askew):.1f} mm up and down", f"sways by {1000 * 9.80665 * askew / TABLE**2:.1f} mm"
+    )
+    says(name, f"{np.log(2) * 0.51 * 1.4 / 8e-5 / 60:.0f} min")
+    assert 1000 * np.tan(lean) == pytest.approx(0.5, abs=0.05)  # mm in a metre
+    # the sway, from the path: with and without
+    straight = Table(a, 0.51, 0.4, TABLE, askew=askew).path((0.1, 0.0), (0.0, 0.1), 12.61, 1e-8)(
+        np.linspace(0, 12.61, 4001)
+    )
+    sway = abs(np.mean(straight * np.exp(-1j * TABLE * np.linspace(0, 12.61, 4001))))
+    assert 1000 * sway == pytest.approx(1.4, abs=0.05)
+
+
+def test_real_demonstration_light_ball() -> None:
+    name, k, drag = "real-demonstration-light-ball", 2 / 3, 1.1e-4
+    table = Table(0.02, 0.0027, k, TABLE, rim=0.5, drag=drag, air_rate=TABLE, variation=0.01, variation_rate=TABLE)
+    (leaves,) = table.run((0.2, 0.0), (0.0, 0.1), 120.0, rtol=1e-8).t_events[0]
+    says(name, f"{leaves:.2f} s, in its {int(leaves * 0.4 * 33.3 / 60) + 1}th round")
+    gamma = drag / (0.0027 * (1 + k))
+    circle, centre = np.roots([1, gamma - 1j * TABLE * k / (1 + k), -1j * gamma * TABLE])
+    says(name, f"in to the axis, e-fold in {-1 / centre.real:.1f} s", f"grows, e-fold in {1 / circle.real:.1f} s")
+    steel = 4 / 3 * np.pi * 0.02**3 * STEEL  # growth at γ/k = c/(m k (1 + k))
+    says(name, f"would take {steel * 0.4 * 1.4 / (0.0027 * k * (1 + k)):.0f} times as long")
+    still = Table(0.02, 0.0027, k, TABLE, rim=0.5, drag=drag).run((0.2, 0.0), (0.0, 0.1), 60.0, rtol=1e-6)
+    assert still.t_events[0].size == 0
+    # the furthest from a motion at a steady rate, while it lasts
+    steady = Table(0.02, 0.0027, k, TABLE, drag=drag, air_rate=TABLE).path((0.2, 0.0), (0.0, 0.1), 50.0, 1e-6)
+    uneven = Table(0.02, 0.0027, k, TABLE, drag=drag, air_rate=TABLE, variation=0.01, variation_rate=TABLE)
+    times = np.linspace(0, 50, 501)
+    apart = abs(uneven.path((0.2, 0.0), (0.0, 0.1), 50.0, 1e-6)(times)) - abs(steady(times))
+    assert abs(apart).max() < 5e-3

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from .air import air_drag
-from .measuring import Motion
+from .measuring import CircleMotion
 from .report import Sensitivity
 from .rows import Row
 from .varying import sensitivity
 
-__all__ = ["Motion", "Row", "Sensitivity", "air_drag", "sensitivity"]
+__all__ = ["CircleMotion", "Row", "Sensitivity", "air_drag", "sensitivity"]

@@ -105,9 +105,10 @@ class Demonstration:
         support, motion = system.support, system.support.motion
         n = motion.at(start.time).rotation @ support.surface.normal(Vector(0.0, 0.0, 0.0))
         level = replace(support, tilt=0.0, motion=Spin(motion.mean_rate))
+        over = Vector(*start.position) - n * system.body.radius  # the place that it was put down on
         return cls(
             replace(system, support=level, loads=()),
-            complex(*start.position[:2]),
+            complex(over.x, over.y),
             complex(*start.velocity[:2]),
             float(Vector(*start.angular_velocity).dot(n)),
         )
@@ -196,7 +197,8 @@ class Demonstration:
         body, omega = self.system.body, self.rate
         lift = float(body.inertia_ratio) * float(body.radius) * omega * (omega - self.spin)
         sway = 1j * angle * (float(self.system.gravity) + lift) / omega**2
-        at, velocity = self.position - sway, self.velocity - 1j * omega * sway
+        lean = -1j * angle * float(body.radius)  # the ball stands on the table, its centre beside the place below it
+        at, velocity = self.position + lean - sway, self.velocity - 1j * omega * sway
         return self._circle(0j, at, velocity, abs(sway), f"sways by {abs(sway) * 1e3:.2g} mm, never leaves")
 
     def uneven(self, variation: float, variation_rate: float) -> Fate:
@@ -215,13 +217,15 @@ class Demonstration:
         quick = [n for n in rates if n not in slow]
         arm = self.position - constant * sum((parts[n] / (1j * rates[n]) for n in quick), 0j)
         centre = constant * sum((abs(parts[n]) ** 2 / (1j * rates[n]) for n in quick), 0j)
-        around = abs(constant) * sum(abs(parts[n] / rates[n]) for n in quick if n) + abs(constant / kappa) * abs(delta)
+        shares = [abs(parts[n] / rates[n]) for n in quick if n]
+        around = abs(constant) * (sum(shares) + abs(delta / kappa))
 
-        def beat(t: float) -> complex:
-            return constant * sum((parts[n] * _integral(1j * rates[n], t) for n in slow), 0j)
+        def growing(t: float) -> float:
+            beat = sum((parts[n] * _integral(1j * rates[n], t) for n in slow), 0j)
+            return abs(complex(arm + constant * beat))
 
         saying = "in step with the circle, which grows" if slow and abs(constant) else "sways, never leaves"
-        return Fate(lambda t: centre, lambda t: abs(complex(arm + beat(t))), around, saying)  # noqa: ARG005
+        return Fate(lambda t: centre, growing, around, saying)  # noqa: ARG005
 
 
 def _integral(rate: complex, time: float) -> complex:

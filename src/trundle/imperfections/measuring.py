@@ -14,7 +14,7 @@ MOST_ROUNDS = 3  # in each of the two windows, at the beginning and at the end
 
 
 @dataclass(frozen=True)
-class Motion:
+class CircleMotion:
     """How a circle moved on the whole.
 
     Parameters
@@ -38,7 +38,7 @@ class Motion:
         return self.centre_rate + abs(self.radius_rate)
 
 
-def measure(run: Trajectory, kappa: float, rate: float) -> Motion | None:
+def measure(run: Trajectory, kappa: float, rate: float) -> CircleMotion | None:
     """Measure how the circle of a run moved, from circles fitted to its beginning and to its end.
 
     Parameters
@@ -50,7 +50,7 @@ def measure(run: Trajectory, kappa: float, rate: float) -> Motion | None:
 
     Returns
     -------
-    Motion or None
+    CircleMotion or None
         None where the ball left within two rounds.
 
     Examples
@@ -73,7 +73,7 @@ def measure(run: Trajectory, kappa: float, rate: float) -> Motion | None:
         _fit(t[part], path[part], kappa, rate) for part in (slice(count), slice(-count, None))
     )
     elapsed = float(t[-count:].mean() - t[:count].mean())
-    return Motion(abs(last - first) / elapsed, (end - begin) / elapsed)
+    return CircleMotion(abs(last - first) / elapsed, (end - begin) / elapsed)
 
 
 def _fit(t: NDArray[np.float64], path: NDArray[np.complex128], kappa: float, rate: float) -> tuple[complex, float]:

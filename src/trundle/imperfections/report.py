@@ -36,7 +36,7 @@ class Sensitivity:
     >>> import trundle as tr
     >>> table = tr.sensitivity("level-turntable-nudged", tilt="0.2 deg", horizon="60 s")
     >>> print(table.rows[0].label, table.rows[0].size_text, table.rows[0].outcome, sep=", ")
-    table not level, 0.2°, leaves after 17.4 s
+    table not level, 0.2°, leaves after 18.9 s
     >>> table["wobble"].leaves is None
     True
     """

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..plots.scales import short, with_unit
 from ..trajectory import Trajectory
-from .measuring import Motion
+from .measuring import CircleMotion
 
 LEAST = 1e-5 / 60  # m/s: a circle that moves by less than a hundredth of a millimetre in a minute
 
@@ -31,14 +31,14 @@ class Row:
         Whether the size is the scenario's own.
     leaves : float or None
         When the ball ran off the rim, s after the start; None where it stayed.
-    motion : Motion or None
+    motion : CircleMotion or None
         How its circle moved; None where it left within two rounds.
     run : Trajectory
         The motion itself.
     theory_leaves : float or None
         From when on theory lets the ball reach the rim, s; infinite where not within the horizon, None where there
         is no formula.
-    theory_motion : Motion or None
+    theory_motion : CircleMotion or None
         How theory moves the circle over the same time.
     theory : str
         What theory says, in words.
@@ -54,10 +54,10 @@ class Row:
     size_text: str
     own: bool
     leaves: float | None
-    motion: Motion | None
+    motion: CircleMotion | None
     run: Trajectory = field(compare=False, repr=False)
     theory_leaves: float | None = None
-    theory_motion: Motion | None = None
+    theory_motion: CircleMotion | None = None
     theory: str = ""
 
     @property
@@ -113,7 +113,7 @@ class Row:
         }
 
 
-def _rates(prefix: str, motion: Motion | None) -> dict[str, float | None]:
+def _rates(prefix: str, motion: CircleMotion | None) -> dict[str, float | None]:
     return {
         f"{prefix}centre_rate": motion.centre_rate if motion else None,
         f"{prefix}radius_rate": motion.radius_rate if motion else None,

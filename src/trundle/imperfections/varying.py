@@ -18,7 +18,7 @@ from ..trajectory import Trajectory
 from .air import air_drag
 from .circle import Demonstration, Fate
 from .kinds import Askew, Shortcoming, StillAir, Tilt, TurningAir, Uneven
-from .measuring import Motion, measure
+from .measuring import CircleMotion, measure
 from .report import Sensitivity
 from .rows import Row
 
@@ -84,7 +84,7 @@ def sensitivity(
     >>> import trundle as tr
     >>> table = tr.sensitivity("level-turntable-nudged", horizon="60 s")
     >>> table.rows[0].name, round(table.rows[0].leaves)
-    ('tilt', 31)
+    ('tilt', 33)
     """
     system, first, title = _read(scenario, start)
     show = Demonstration.of(system, first)
@@ -185,6 +185,8 @@ def _row(facts: dict[str, Any], show: Demonstration, run: Trajectory, fate: Fate
     if fate is None:
         return Row(**found)
     span = end - begin
-    moved = Motion(abs(fate.centre(span) - fate.centre(0.0)) / span, (fate.radius(span) - fate.radius(0.0)) / span)
+    moved = CircleMotion(
+        abs(fate.centre(span) - fate.centre(0.0)) / span, (fate.radius(span) - fate.radius(0.0)) / span
+    )
     until = span if leaves is None else 2 * span
     return Row(**found, theory_leaves=fate.leaves(show.rim, until), theory_motion=moved, theory=fate.saying)
