@@ -43,28 +43,35 @@ def _flat(name: str) -> Matrix:
 
 @dataclass(frozen=True)
 class AnyShape(Shape):
-    """Any shape: ρ and C are symbols."""
+    """Any shape: ρ and C are symbols, C with the axes chosen along the normal.
+
+    Where the dynamics is asked for, C is three symbols that let the contact move with any velocity.
+    """
+
+    curved: bool = True
 
     def contact(self, Q: Matrix, n: Vector) -> tuple[Vector, Matrix]:  # noqa: ARG002
         """Return ρ and C."""
-        return _free("rho"), _flat("C")
+        x, y, z = _free("C")
+        wander = Matrix(Vector(x, 0.0, 0.0), Vector(y, 0.0, 0.0), Vector(z, 0.0, 0.0))
+        return _free("rho"), _flat("C") if self.curved else wander
 
 
 @dataclass(frozen=True)
 class AnyInertia(Principal):
-    """Any inertia: J in space is six symbols."""
+    """Any inertia: J in space is three symbols, the axes chosen along the principal ones at this instant."""
 
     def in_space(self, Q: Matrix, body: Body) -> Matrix:  # noqa: ARG002
         """Return J."""
-        xx, yy, zz, xy, xz, yz = sp.symbols("J_xx J_yy J_zz J_xy J_xz J_yz", real=True)
-        return Matrix(Vector(xx, xy, xz), Vector(xy, yy, yz), Vector(xz, yz, zz))
+        return Matrix.diagonal(*_free("J"))
 
 
 @dataclass(frozen=True)
 class AnySurface(Surface):
     """Any surface: the axes are chosen with the third along its normal at the contact, and S is symbols, or 0.
 
-    S decides how the contact moves, and nothing else; with S = 0 the symbols of C still let it move in any way.
+    S decides how the contact moves, and nothing else: the dynamics holds for any velocity of it, and is asked with
+    S = 0.
     """
 
     curved: bool = True
@@ -149,7 +156,7 @@ def proof_of_any(*, curved: bool = False) -> Proof:
     Matrix([[0, 0, 1]])
     """
     one = sp.Integer(1)
-    body = Body(m, AnyInertia(one, one, one), AnyShape())
+    body = Body(m, AnyInertia(one, one, one), AnyShape(curved))
     system = RollingSystem(body, Support(AnySurface(curved), AnyMotion()), (AnyLoad(),), 0.0)
     q, turning, place = Quaternion(*QUATERNION), Vector(*OMEGA_XYZ), _free("p")
     now = roll(system, TIME, place, q, turning)

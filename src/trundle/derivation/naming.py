@@ -77,7 +77,7 @@ def derive(name_or_scenario: Any, *, with_numbers: bool = False) -> Derivation:
 
 def _of_topic(name: str, *, with_numbers: bool) -> Derivation:
     from .forms import module_named
-    from .steps import Derivation
+    from .steps import Derivation, checked
 
     topic = TOPICS[name]
     numbers = ()
@@ -87,7 +87,8 @@ def _of_topic(name: str, *, with_numbers: bool) -> Derivation:
         numbers = derive_scenario_numbers(name)
     module = module_named(topic.form)
     general = topic.form == "general"
-    steps = module.law_steps() if general else tuple(module.derive_system(module.Setting(**topic.setting)))
+    steps = module.law_steps() if general else module.derive_system(module.Setting(**topic.setting))
+    steps = checked(name, steps)
     return Derivation(name, topic.title, topic.introduction, steps, numbers)
 
 
@@ -124,7 +125,7 @@ def _numbers(system: RollingSystem, start: State | None) -> tuple[Any, ...]:
 
 def _of_system(system: RollingSystem, start: State | None, name: str, title: str, *, with_numbers: bool) -> Derivation:
     from .forms import form_of
-    from .steps import Derivation
+    from .steps import Derivation, checked
 
     if with_numbers and start is None:
         raise InvalidValueError("with_numbers", "needs a scenario", name, "A system alone has no start.")
@@ -132,8 +133,8 @@ def _of_system(system: RollingSystem, start: State | None, name: str, title: str
     if form is None:
         from .general import derive_system, introduction
 
-        return Derivation(name, title, introduction(system), tuple(derive_system(system)))
-    steps = tuple(module.derive_system(module.Setting.of(system)))
+        return Derivation(name, title, introduction(system), checked(name, derive_system(system)))
+    steps = checked(name, module.derive_system(module.Setting.of(system)))
     said = (
         f"How the motion follows from Newton's and Euler's laws, up to the closed form {form.equation} ({form.name})."
     )

@@ -60,13 +60,19 @@ def with_symbols(system: RollingSystem) -> RollingSystem:
         if value == 0:
             values.append(0.0)
         elif not name:
-            values.append(sp.Rational(str(value)))
+            values.append(_decimal(value))
         else:
             taken[name] = taken.get(name, 0) + 1
             more = f"{taken[name]}" if taken[name] > 1 else ""
             positive = name not in ("omega", "alpha", "omega_a", "epsilon") and "_" not in name
             values.append(sp.Symbol(name + more, real=True, positive=positive or None))
     return with_numbers(system, values)
+
+
+def _decimal(value: float) -> Any:
+    """Return a number of a formula: a symbol of its digits, since floats in the algebra would round a fraction."""
+    exact = sp.Rational(value)
+    return exact if exact.q <= 8 else sp.Symbol(f"{value:.15g}", positive=True)
 
 
 def _named(thing: Any, name: str, inside: str) -> Iterator[str]:

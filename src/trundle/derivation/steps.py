@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -126,13 +126,7 @@ class Derivation:
     numbers: tuple[Number, ...] = ()
 
     def __post_init__(self) -> None:
-        for step in self.steps:
-            for equation in step.equations:
-                if not equation.holds:
-                    raise DerivationError(
-                        f"The step {step.title!r} of {self.name!r} does not hold for what the rolling law returns: "
-                        f"{equation.formula} leaves the residual {equation.residual}."
-                    )
+        checked(self.name, self.steps)
 
     def text(self, width: int = 100) -> str:
         """Return the derivation for a terminal, in Unicode, at most `width` columns wide where lines can break."""
@@ -163,6 +157,43 @@ class Derivation:
 
     def _repr_markdown_(self) -> str:
         return self.markdown()
+
+
+def checked(name: str, steps: Iterable[Step]) -> tuple[Step, ...]:
+    """Go through the steps of a derivation, up to the first that does not hold.
+
+    Parameters
+    ----------
+    name : str
+        Of the derivation, for the message.
+    steps : iterable of Step
+        In order.
+
+    Returns
+    -------
+    tuple of Step
+        The same.
+
+    Raises
+    ------
+    DerivationError
+        If an equation has a residual other than 0.
+
+    Examples
+    --------
+    >>> checked("nothing", [Step("Newton", "The law of momentum.", ())])[0].title
+    'Newton'
+    """
+    done = []
+    for step in steps:
+        for equation in step.equations:
+            if not equation.holds:
+                raise DerivationError(
+                    f"The step {step.title!r} of {name!r} does not hold for what the rolling law returns: "
+                    f"{equation.formula} leaves the residual {equation.residual}."
+                )
+        done.append(step)
+    return tuple(done)
 
 
 class Proof:
