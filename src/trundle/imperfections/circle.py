@@ -224,7 +224,7 @@ class Demonstration:
             beat = sum((parts[n] * _integral(1j * rates[n], t) for n in slow), 0j)
             return abs(complex(arm + constant * beat))
 
-        saying = "in step with the circle, which grows" if slow and abs(constant) else "sways, never leaves"
+        saying = "in step with the circle, which grows" if slow and constant != 0 else "sways, never leaves"
         return Fate(lambda t: centre, growing, around, saying)  # noqa: ARG005
 
 

@@ -71,7 +71,7 @@ def _path(ax: Axes, row: Row, table: Sensitivity) -> None:
         seen = time - time[0] <= DRAWN * table.round_time
         time, r, V = time[seen], r[seen], V[seen]
     line = thin_path(refined(time, r, V, 3), 1e-3 * rim)
-    ax.plot(*line.T, color=BLUE, lw=0.7 if len(r) < 1500 else 0.35, zorder=4)
+    ax.plot(*line.T, color=BLUE, lw=0.7 if len(r) < 1500 else 0.25, zorder=4, alpha=1.0 if len(r) < 6000 else 0.4)
     ax.plot(0.0, 0.0, marker="+", color=GREY, ms=5, mew=0.9, zorder=3)
     if row.leaves is not None:
         ax.plot(*r[-1], marker="X", color=VERMILION, mec=INK, mew=0.6, ms=7, zorder=8)
