@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from tests.tolerances import EXACT, ULP
 
 import trundle as tr
+from trundle.solve.orientation import orientation
 
 Quaternion = tuple[Any, Any, Any, Any]
 
@@ -350,3 +351,16 @@ def test_the_path_may_be_taken_piece_by_piece() -> None:
     second = tr.roll_along(onward, radius=0.2, start=at.contact[-1], orientation=at.orientation[-1])
     assert angle_between(second.stages.orientation[-1], whole.stages.orientation[-1]) < whole.error_bound
     np.testing.assert_allclose(second.stages.contact[-1], whole.stages.contact[-1], rtol=0, atol=EXACT(32, 1.0))
+
+
+@pytest.mark.parametrize("speed", [1.0, 0.1, 1e-3, 1e-5])
+@pytest.mark.parametrize("bend", [1.0, 10.0, 200.0])
+def test_rotation_products_follow_an_axis_that_turns_faster_than_the_ball(speed: float, bend: float) -> None:
+    """A tight arc turns the axis by far more than the ball; G2, held to chords above, is what comes out."""
+    exact = tr.roll_along(tr.Arc(radius=1 / bend, angle=bend, heading=0.0), radius=1 / speed).stages.orientation[-1]
+
+    def angular_velocity(s: np.ndarray) -> np.ndarray:
+        return speed * np.stack([-np.sin(bend * s), np.cos(bend * s), 0 * s])
+
+    found = orientation(angular_velocity, np.array([1.0]), (1.0, 0.0, 0.0, 0.0))[0]
+    assert angle_between(found, exact) < EXACT(8, 2.0 + speed + bend)

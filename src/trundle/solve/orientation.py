@@ -22,6 +22,7 @@ AngularVelocity = Callable[[Array], Array]  # times (n,) -> Ω (3, n) in the sup
 
 _NODES = 8  # of the polynomial for Ω on a step
 _LARGEST_TURN = 1.0  # rad a step
+_MOST_TERMS = 40  # of q's series on a step
 _STEPS_AT_ONCE = 100_000
 _MOST_STEPS = 3e8  # some twenty minutes
 _EPSILON = 2.0**-53
@@ -146,20 +147,28 @@ def _polynomials(angular_velocity: AngularVelocity, middle: Array, half: Array) 
 
 def _taylor(coefficients: Array) -> Array:
     """Sum the series of q about the middle of each step; return the rotation from its beginning to its end."""
-    largest = float(np.abs(coefficients).sum(axis=(0, 1)).max(initial=0.0)) / 2
     term = [np.zeros((4, coefficients.shape[2]))]
     term[0][0] = 1.0
     even, odd = term[0].copy(), np.zeros_like(term[0])
-    bound, n = 1.0, 0
-    while bound > _EPSILON / 8 and n < 40:
+    for n in range(1, _terms_needed(coefficients) + 1):
         total = np.zeros_like(even)
-        for j in range(min(n, _NODES - 1) + 1):
-            total += _pure_product(coefficients[j], term[n - j])
-        n += 1
+        for j in range(min(n, _NODES)):
+            total += _pure_product(coefficients[j], term[n - 1 - j])
         term.append(total * (0.5 / n))
         (odd if n % 2 else even).__iadd__(term[n])
-        bound *= largest / n
     return _product(even + odd, _conjugate(even - odd))
+
+
+def _terms_needed(coefficients: Array) -> int:
+    """Count the terms of q's series that show, by its own recursion for the sizes of the coefficients.
+
+    Where Ω is small but turns fast, a late coefficient outweighs all products of early ones.
+    """
+    sizes = np.abs(coefficients).sum(axis=1).max(axis=1, initial=0.0).tolist()
+    most = [1.0]
+    for n in range(1, _MOST_TERMS + 1):
+        most.append(sum(sizes[j] * most[n - 1 - j] for j in range(min(n, _NODES))) * 0.5 / n)
+    return max(n for n, bound in enumerate(most) if bound > _EPSILON / 8)
 
 
 def _pure_product(v: Array, q: Array) -> Array:
