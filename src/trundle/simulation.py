@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from . import trajectory
+from . import labels
 from .errors import InvalidValueError, ScenarioError
 from .mechanics import straight
 from .mechanics.algebra import Quaternion, Vector
@@ -81,7 +81,7 @@ def simulate(
     samples = methods.solver(chosen)(system, start, times, methods.tolerance_of(chosen), progress)
     if scenario is None:
         title, scenario = _described(system, start, times, method, title)
-    data = trajectory.dataset(system, samples, trajectory.attributes(title, chosen))
+    data = labels.dataset(system, samples, labels.attributes(title, chosen))
     return Trajectory(data, system, start, chosen, samples.events, scenario)
 
 

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import frames
+from . import frames, labels
 from .errors import InvalidValueError, TrundleError, UnknownNameError
 from .files import written_whole
 from .mechanics.system import RollingSystem, State
 from .scenario import ScenarioFile
-from .solve.methods import solver, tolerance_of
+from .solve.methods import solver
 from .solve.samples import Event, Samples
 
 if TYPE_CHECKING:
@@ -22,18 +22,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from .verify import Card
-
-PHASES = {0: "rolling", 1: "slipping", 2: "flight"}
-
-# Dataset variable -> (long name, unit)
-_VECTORS = {
-    "position": ("centre of mass", "m"),
-    "contact": ("contact point on the support", "m"),
-    "velocity": ("velocity of the centre of mass", "m s-1"),
-    "angular_velocity": ("angular velocity of the body", "rad s-1"),
-    "contact_force": ("contact force on the body", "N"),
-    "slip_velocity": ("velocity of the body's material at the contact relative to the support's", "m s-1"),
-}
 
 
 @dataclass(frozen=True, repr=False)
@@ -176,7 +164,7 @@ class Trajectory:
         once, places = np.unique(wanted, return_inverse=True)
         samples = solver(self.method)(self.system, self.start, once, self.tolerance)
         samples = replace(samples, time=once).part(places)  # at the rim an integrator may stop a rounding earlier
-        data = dataset(self.system, samples, {**self.data.attrs, "frame": "support"})
+        data = labels.dataset(self.system, samples, {**self.data.attrs, "frame": "support"})
         return replace(self, data=data).in_frame(self.frame)
 
     def card(self) -> Card:
@@ -352,89 +340,3 @@ def _public_names() -> list[str]:
 
 def _tuples(values: dict[str, Any]) -> dict[str, Any]:
     return {key: tuple(value) if isinstance(value, list) else value for key, value in values.items()}
-
-
-def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any]) -> xarray.Dataset:
-    """Label the samples of a method.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Gives the slip, from velocity and Ω against the support's material.
-    samples : Samples
-        In the inertial support frame.
-    attributes : dict
-        Of the dataset; `frame` must be "support".
-
-    Returns
-    -------
-    xarray.Dataset
-        The design's variables over `time`.
-
-    Examples
-    --------
-    See `Trajectory.data`.
-    """
-    import pandas as pd
-    import xarray
-
-    arrays = {name: getattr(samples, name, None) for name in _VECTORS}
-    V, carried, u = samples.speeds(system)
-    arrays["slip_velocity"] = np.broadcast_to((V + carried - u).array(), samples.position.shape).copy()
-    variables = {
-        name: (("time", "axis"), arrays[name], {"long_name": long_name, "units": unit})
-        for name, (long_name, unit) in _VECTORS.items()
-    }
-    turning = {"long_name": "orientation, unit quaternion from body frame to this frame", "units": "1"}
-    phase = {
-        "long_name": "phase of the contact",
-        "units": "1",
-        "flag_values": np.array(list(PHASES), dtype=np.int8),
-        "flag_meanings": " ".join(PHASES.values()),
-    }
-    return xarray.Dataset(
-        {
-            **variables,
-            "orientation": (("time", "quaternion"), samples.orientation, turning),
-            "phase": (("time",), np.zeros(samples.time.size, dtype=np.int8), phase),
-        },
-        coords={
-            # As pandas indexes: to make them, xarray would first import every package of arrays that it knows of.
-            "time": (("time",), pd.Index(samples.time), {"long_name": "time", "units": "s", "axis": "T"}),
-            "axis": pd.Index(["x", "y", "z"], dtype=object),
-            "quaternion": pd.Index(["w", "x", "y", "z"], dtype=object),
-        },
-        attrs={"Conventions": "CF-1.11", **attributes},
-    )
-
-
-def attributes(title: str, method: str) -> dict[str, Any]:
-    """Return what a dataset says of itself: title, method, tolerance, frame and versions.
-
-    Parameters
-    ----------
-    title : str
-        Of the scenario.
-    method : str
-        One of `trundle.solve.methods.METHODS`.
-
-    Returns
-    -------
-    dict
-        Of text and numbers.
-
-    Examples
-    --------
-    >>> attributes("A ball", "exact")["frame"]
-    'support'
-    """
-    from importlib.metadata import version
-
-    packages = ["trundle", "numpy", *{"taylor": ["heyoka"], "runge-kutta": ["scipy"]}.get(method, [])]
-    return {
-        "title": title,
-        "method": method,
-        "tolerance": tolerance_of(method),
-        "frame": "support",
-        "source": ", ".join(f"{package} {version(package)}" for package in packages),
-    }

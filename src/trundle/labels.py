@@ -1,0 +1,112 @@
+"""The dataset of a trajectory: which variables it has, in which units, and what it says of itself."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .mechanics.system import RollingSystem
+from .solve.methods import tolerance_of
+from .solve.samples import Samples
+
+if TYPE_CHECKING:
+    import xarray
+
+PHASES = {0: "rolling", 1: "slipping", 2: "flight"}
+
+# Dataset variable -> (long name, unit)
+_VECTORS = {
+    "position": ("centre of mass", "m"),
+    "contact": ("contact point on the support", "m"),
+    "velocity": ("velocity of the centre of mass", "m s-1"),
+    "angular_velocity": ("angular velocity of the body", "rad s-1"),
+    "contact_force": ("contact force on the body", "N"),
+    "slip_velocity": ("velocity of the body's material at the contact relative to the support's", "m s-1"),
+}
+
+
+def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any]) -> xarray.Dataset:
+    """Label the samples of a method.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Gives the slip, from velocity and Ω against the support's material.
+    samples : Samples
+        In the inertial support frame.
+    attributes : dict
+        Of the dataset; `frame` must be "support".
+
+    Returns
+    -------
+    xarray.Dataset
+        The design's variables over `time`.
+
+    Examples
+    --------
+    See `Trajectory.data`.
+    """
+    import pandas as pd
+    import xarray
+
+    arrays = {name: getattr(samples, name, None) for name in _VECTORS}
+    V, carried, u = samples.speeds(system)
+    arrays["slip_velocity"] = np.broadcast_to((V + carried - u).array(), samples.position.shape).copy()
+    variables = {
+        name: (("time", "axis"), arrays[name], {"long_name": long_name, "units": unit})
+        for name, (long_name, unit) in _VECTORS.items()
+    }
+    turning = {"long_name": "orientation, unit quaternion from body frame to this frame", "units": "1"}
+    phase = {
+        "long_name": "phase of the contact",
+        "units": "1",
+        "flag_values": np.array(list(PHASES), dtype=np.int8),
+        "flag_meanings": " ".join(PHASES.values()),
+    }
+    return xarray.Dataset(
+        {
+            **variables,
+            "orientation": (("time", "quaternion"), samples.orientation, turning),
+            "phase": (("time",), np.zeros(samples.time.size, dtype=np.int8), phase),
+        },
+        coords={
+            # As pandas indexes: to make them, xarray would first import every package of arrays that it knows of.
+            "time": (("time",), pd.Index(samples.time), {"long_name": "time", "units": "s", "axis": "T"}),
+            "axis": pd.Index(["x", "y", "z"], dtype=object),
+            "quaternion": pd.Index(["w", "x", "y", "z"], dtype=object),
+        },
+        attrs={"Conventions": "CF-1.11", **attributes},
+    )
+
+
+def attributes(title: str, method: str) -> dict[str, Any]:
+    """Return what a dataset says of itself: title, method, tolerance, frame and versions.
+
+    Parameters
+    ----------
+    title : str
+        Of the scenario.
+    method : str
+        One of `trundle.solve.methods.METHODS`.
+
+    Returns
+    -------
+    dict
+        Of text and numbers.
+
+    Examples
+    --------
+    >>> attributes("A ball", "exact")["frame"]
+    'support'
+    """
+    from importlib.metadata import version
+
+    packages = ["trundle", "numpy", *{"taylor": ["heyoka"], "runge-kutta": ["scipy"]}.get(method, [])]
+    return {
+        "title": title,
+        "method": method,
+        "tolerance": tolerance_of(method),
+        "frame": "support",
+        "source": ", ".join(f"{package} {version(package)}" for package in packages),
+    }
