@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from . import units
     from .analogy import ChargedParticle, Twin, to_turntable, twin
-    from .checking import Check, Mistake, check
+    from .checking import Check, Mistake, check, check_equations
     from .derivation import derive
     from .errors import (
         InvalidValueError,
@@ -55,7 +55,7 @@ _HOMES = {
     "simulation": ("simulate", "Scenario"),
     "trajectory": ("Trajectory", "Event"),
     "verify": ("Card",),
-    "checking": ("check", "Check", "Mistake"),
+    "checking": ("check", "check_equations", "Check", "Mistake"),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 

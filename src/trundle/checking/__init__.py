@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
+from .equations import check_equations
 from .result import Check, Mistake
 from .trajectories import check
 
-__all__ = ["Check", "Mistake", "check"]
+__all__ = ["Check", "Mistake", "check", "check_equations"]

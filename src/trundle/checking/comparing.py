@@ -14,9 +14,12 @@ from ..mechanics.invariants import Invariant, Record, invariants_of
 from ..mechanics.loads import BodyMotion
 from ..mechanics.system import RollingSystem
 from ..solve import methods
+from ..solve.samples import Samples
 from .examining import LAW_SHARE, Motion, Series
 from .record import Array, Theirs
 
+_MOST_RADIANS = 1e4  # of turning that a run of ours follows
+_FIRST = 4  # instants that are tried first
 OWN_RUN = "our own run from the same start"
 
 
@@ -115,14 +118,14 @@ def own_run(system: RollingSystem, theirs: Theirs, at: Motion, tolerance: float)
         Ours.
     """
     try:
-        where, method = _run(system, at, np.zeros(5))
-        tried = [_run(system, at, step)[0] for step in _steps(at)]
+        where, method = _as_far_as_may_be(system, at)
+        tried = [(_run(system, at, step, len(where))[0].position, times) for step, times in _steps(at)]
     except TrundleError as error:
         return None, OwnRun(np.empty((0, 3)), remark=str(error).partition("\n")[0])
-    count = min([len(where), *map(len, tried)])
+    count = min([len(where), *(len(one) for one, _ in tried)])
     if count < 2:
         return None, OwnRun(np.empty((0, 3)), remark="ours leaves the support at once")
-    moved = sum(np.linalg.norm(one[:count] - where[:count], axis=1) for one in tried)
+    moved = sum(times * np.linalg.norm(one[:count] - where[:count], axis=1) for one, times in tried)
     way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(at.position, axis=0), axis=1))])
     distance = (at.position - where[0])[:count] - (where - where[0])[:count]
     size = max(float(np.ptp(at.position, axis=0).max()), float(way[-1]) * 1e-3, 1e-9 * _arm(at))
@@ -137,19 +140,39 @@ def _arm(at: Motion) -> float:
     return float(np.linalg.norm(at.offset, axis=1).max())
 
 
-def _steps(at: Motion) -> list[Array]:
-    """Return how far their first sample may be off in x, y, V_x, V_y and spin, one at a time."""
-    r, v, s = (e[0] for e in (at.position_error, at.velocity_error, at.angular_velocity_error))
-    return [step for step in np.diag([r, r, v, v, s if at.turning_known else 0.0]) if step.any()]
+def _steps(at: Motion) -> list[tuple[Array, float]]:
+    """Return small steps of x, y, V_x, V_y and spin, one at a time, and how many of them their start may be off."""
+    extent = max(float(np.ptp(at.position, axis=0).max()), _arm(at))
+    speed = max(float(np.linalg.norm(at.velocity, axis=1).max()), extent / float(at.time[-1] - at.time[0]))
+    errors = [e[0] for e in (at.position_error, at.velocity_error, at.angular_velocity_error)]
+    found = []
+    for place, error, scale in zip(
+        range(5), np.repeat(errors, [2, 2, 1]), [extent, extent, speed, speed, speed / _arm(at)], strict=True
+    ):
+        size = min(float(error), 1e-3 * scale)
+        if size > 0 and (place < 4 or at.turning_known):
+            found.append((np.eye(5)[place] * size, float(error) / size))
+    return found
 
 
-def _run(system: RollingSystem, at: Motion, step: Array) -> tuple[Array, str]:
+def _as_far_as_may_be(system: RollingSystem, at: Motion) -> tuple[Array, str]:
+    """Run for longer and longer, as long as the body does not turn more often than is worth following."""
+    count = min(_FIRST, at.time.size)
+    while True:
+        samples, method = _run(system, at, np.zeros(5), count)
+        span = float(samples.time[-1] - at.time[0])
+        turned = 4 * span * float(np.linalg.norm(samples.angular_velocity, axis=1).max())
+        if count == at.time.size or samples.time.size < count or turned > _MOST_RADIANS:
+            return samples.position, method
+        count = min(2 * count, at.time.size)
+
+
+def _run(system: RollingSystem, at: Motion, step: Array, count: int) -> tuple[Samples, str]:
     x, y, vx, vy = np.concatenate([at.position[0, :2], at.velocity[0, :2]]) + step[:4]
     normal = np.broadcast_to(at.contact.normal.array(), at.position.shape)[0]
     spin = float(at.angular_velocity[0] @ normal) + step[4]
     state = system.place((float(x), float(y)), (float(vx), float(vy)), spin, orientation=tuple(at.orientation[0]))
     state = replace(state, time=float(at.time[0]))
     method = methods.choose("auto", system, state)
-    samples = methods.solver(method)(system, state, at.time, methods.tolerance_of(method))
-    kept = samples.time.size - len(samples.events)  # the last is the instant at the rim
-    return samples.position[:kept], method
+    samples = methods.solver(method)(system, state, at.time[:count], methods.tolerance_of(method))
+    return samples.part(slice(0, samples.time.size - len(samples.events))), method  # the last is at the rim

@@ -111,7 +111,8 @@ def diagnose(case: Case, hypotheses: tuple[Hypothesis, ...]) -> tuple[Mistake, .
         except (TrundleError, ArithmeticError):  # their numbers, so changed, are no motion at all
             continue
         found += tried
-    return tuple(sorted(found, key=lambda mistake: not mistake.named))
+    once = {mistake.says: mistake for mistake in found}
+    return tuple(sorted(once.values(), key=lambda mistake: not mistake.named))
 
 
 def judged(case: Case, trial: Trial) -> Mistake | None:

@@ -95,9 +95,9 @@ class Series:
 
     Examples
     --------
-    >>> one = Series("no slip", np.zeros(2), np.array([[0.0], [0.3]]), 1.0, np.array([0.1, 0.1]), 0.1, "")
+    >>> one = Series("no slip", np.arange(2.0), np.array([[0.0], [0.5]]), 1.0, np.array([0.25, 0.25]), 0.1, "")
     >>> float(one.worst), one.share, one.first_failure
-    (3.0, 0.3, 0.0)
+    (2.0, 0.5, 1.0)
     """
 
     name: str

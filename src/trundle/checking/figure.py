@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,7 +17,8 @@ if TYPE_CHECKING:
     from .trajectories import Drawn
 
 WIDTH, LEFT, STRIPS, BETWEEN, EDGE = 11.4, 0.72, 5.1, 0.95, 0.2
-FOOT, HEADER, EACH, GAP, LEAST = 0.55, 0.8, 0.66, 0.3, 4.4
+FOOT, HEADER, EACH, GAP, LEAST = 0.55, 1.02, 0.66, 0.3, 4.4
+_KEY = "residuals as shares; dashed: the most allowed"
 _DEEPEST = 1e-9  # of the bound: what lies lower is drawn there
 
 
@@ -39,9 +39,10 @@ def draw(check: Check, drawn: Drawn) -> Sheet:
             ax.tick_params(labelbottom=i == count - 1)
             if i == count - 1:
                 ax.set_xlabel(f"time ({clock.symbol})", labelpad=2)
+        sheet.text(LEFT / WIDTH, 1 - 0.78 / height, _KEY, fontsize=8.8, color=GREY, va="baseline")
         left = LEFT + STRIPS + BETWEEN
         side = min(WIDTH - left - EDGE, height - FOOT - HEADER - 0.1)
-        _paths(sheet.add_box(left, height - HEADER - side, WIDTH - left - EDGE, side), check, drawn)
+        _paths(sheet.add_box(left, height - HEADER - side, side, side), check, drawn)
     return sheet
 
 
@@ -97,8 +98,8 @@ def _paths(ax: Axes, check: Check, drawn: Drawn) -> None:
         )
         mark: dict[str, Any] = {"marker": "X", "color": VERMILION, "mec": INK, "mew": 0.8, "ms": 9.5, "ls": "none"}
         ax.plot(*(theirs[index] / unit.scale), **mark, label=text, zorder=6)
-    ax.set_aspect("equal", adjustable="datalim")
     _window(ax, theirs / unit.scale, ours / unit.scale)
+    ax.set_aspect("equal")
     ax.set_xlabel(f"x ({unit.symbol})", labelpad=2)
     ax.set_ylabel(f"y ({unit.symbol})")
     ax.set_title("Path of the centre, support frame", loc="left")
@@ -113,6 +114,6 @@ def _window(ax: Axes, theirs: Any, ours: Any) -> None:
     if len(ours):
         near = np.all((ours > low - 2 * span) & (ours < high + 2 * span), axis=1)
         low, high = (f([edge, *ours[near]], axis=0) for f, edge in ((np.min, low), (np.max, high)))
-    pad = 0.07 * max(float((high - low).max()), span if math.isfinite(span) else 1.0)
-    ax.set_xlim(low[0] - pad, high[0] + pad)
-    ax.set_ylim(low[1] - pad, high[1] + pad)
+    middle, half = (low + high) / 2, 0.56 * max(float((high - low).max()), span)
+    ax.set_xlim(middle[0] - half, middle[0] + half)
+    ax.set_ylim(middle[1] - half, middle[1] + half)

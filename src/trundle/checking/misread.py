@@ -17,6 +17,8 @@ from .reading import from_frame
 from .record import Array, orientation_from
 from .slopes import SIGMAS
 
+_MOST_RADIANS = 1e4  # of turning that are added up to an orientation
+
 
 def units(case: Case) -> Iterator[Trial]:
     """Try other units of time, length and angle."""
@@ -97,6 +99,9 @@ def body_axes(case: Case) -> Iterator[Trial]:
             "that is q̇ = ½ Ω q."
         )
         yield Trial(name, text, replace(theirs, orientation=None), extra=(match,))
+        return
+    span = float(theirs.time[-1] - theirs.time[0])
+    if span * float(np.linalg.norm(theirs.angular_velocity, axis=1).max()) > _MOST_RADIANS:
         return
     q0 = case.start.orientation if case.start is not None else (1.0, 0.0, 0.0, 0.0)
     q, doubt = orientation_from(theirs.time, theirs.angular_velocity, q0, body_axes=True)

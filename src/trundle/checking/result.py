@@ -134,8 +134,8 @@ class Check(Card):
         --------
         >>> import trundle as tr
         >>> run = tr.Scenario.load("level-turntable-nudged").run()
-        >>> len(tr.check(run, "level-turntable-nudged").plot().axes)
-        2
+        >>> tr.check(run, "level-turntable-nudged").plot().axes[-1].get_title(loc="left")
+        'Path of the centre, support frame'
         """
         from ..errors import TrundleError
         from .figure import draw

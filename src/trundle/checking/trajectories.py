@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,7 @@ from ..scenario import ScenarioFile
 from ..verify import CardFigure
 from .comparing import OWN_RUN, OwnRun, integrals, own_run
 from .diagnosing import Case, diagnose
-from .examining import ACCELERATION, Motion, Series, examine, with_orientation
+from .examining import ACCELERATION, Motion, Series, examine, motion_of, with_orientation
 from .misread import READINGS
 from .reading import Conventions, read
 from .record import Theirs, checked
@@ -24,6 +24,7 @@ from .wrong_laws import LAWS
 
 TOLERANCE = 1e-5  # a share; what good methods leave is far below, and what a wrong law leaves far above
 _TELLS = 0.2  # a bound, as a share, beyond which the data say nothing of a check
+_FOLLOWED = 2.0  # rad between samples
 _CRUDE = 0.02  # a residual, as a share, that is more likely a matter of steps than of mechanics
 
 
@@ -128,12 +129,13 @@ def check(
     conventions = Conventions(columns or {}, axes, angles, quaternion, orientation, euler, frame, time, length)
     theirs = checked(read(data, system, conventions), system)
     given = theirs.parts
+    theirs, coarse = followed(theirs, system)
     theirs = with_orientation(system, theirs, start)
     series, at = examine(system, theirs, tolerance, start)
     series |= {one.name: one for one in integrals(system, at, tolerance)}
     compared, ours = own_run(system, theirs, at, tolerance)
     series |= {} if compared is None else {compared.name: compared}
-    figures = [*_told(theirs, at), *map(_figure, series.values())]
+    figures = [*_told(theirs, at), *coarse, *map(_figure, series.values())]
     if compared is None:
         figures.append(CardFigure(OWN_RUN, float("nan"), note=f"not compared: {ours.remark}"))
     case = Case(system, theirs, tolerance, start, series, at)
@@ -148,6 +150,41 @@ def check(
         _remark(case, bool(likely)),
         _drawn=Drawn(system, at, tuple(series.values()), ours),
     )
+
+
+def followed(theirs: Theirs, system: RollingSystem) -> tuple[Theirs, list[CardFigure]]:
+    """Leave the orientation out where the body turns so far between samples that nobody could tell how often.
+
+    Parameters
+    ----------
+    theirs : Theirs
+        Their samples.
+    system : RollingSystem
+        Gives the arm that V turns about, where they gave no Ω.
+
+    Returns
+    -------
+    theirs : Theirs
+        With the orientation, or without.
+    figures : list of CardFigure
+        That say so.
+    """
+    if theirs.orientation is None:
+        return theirs, []
+    if theirs.angular_velocity is not None:
+        fastest = float(np.linalg.norm(theirs.angular_velocity, axis=1).max())
+    else:
+        at = motion_of(system, theirs)
+        fastest = float(np.linalg.norm((at.velocity - at.carried) / np.linalg.norm(at.offset[0]), axis=1).max())
+    turn = fastest * float(np.median(np.diff(theirs.time)))
+    if turn <= _FOLLOWED:
+        return theirs, []
+    if not system.body.is_isotropic_sphere and theirs.angular_velocity is None:
+        raise InvalidValueError(
+            "time", "must be sampled often enough to follow the orientation", f"{turn:.3g} rad a sample", "Write more."
+        )
+    note = "the body turns too far between samples: the orientation is left out"
+    return replace(theirs, orientation=None), [CardFigure("turn between samples", turn, "rad", note=note)]
 
 
 def _positive(tolerance: Any) -> float:

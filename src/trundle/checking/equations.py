@@ -1,0 +1,349 @@
+"""`check_equations`: somebody else's equations of motion against the law, at random states that roll."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ..errors import InvalidValueError
+from ..mechanics.algebra import Matrix, Quaternion, Vector
+from ..mechanics.contact import roll, touch
+from ..mechanics.loads import BodyMotion
+from ..mechanics.system import RollingSystem
+from ..verify import CardFigure
+from . import laws, wrong_laws
+from .record import Array
+from .result import Check, Mistake
+from .symbols import callable_of
+
+EXACT = 1e-9  # of the largest acceleration: two ways to write one law differ by rounding
+NAMES = ("acceleration", "angular acceleration")
+
+
+@dataclass(frozen=True)
+class States:
+    """Random states that roll; arrays (n,), (n, 3) and (n, 4), inertial support frame, SI."""
+
+    time: Array
+    point: Array
+    position: Array
+    velocity: Array
+    orientation: Array
+    angular_velocity: Array
+
+    def one(self, i: int) -> tuple[float, Array, Array, Array, Array]:
+        """Return t, r, V, q and Ω of one state, as equations take them."""
+        return float(self.time[i]), self.position[i], self.velocity[i], self.orientation[i], self.angular_velocity[i]
+
+
+def states(system: RollingSystem, count: int, seed: int = 0) -> States:
+    """Draw random states that touch and roll.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Body and support.
+    count : int
+        How many.
+    seed : int
+        Of the draw: the same seed gives the same states.
+
+    Returns
+    -------
+    States
+        Places over some ten radii or the rim, Ω of the order of the motion's own rates, orientations anywhere.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.5, 1.0), tr.Support(tr.Plane(), motion=tr.Spin(2.0)))
+    >>> drawn = states(system, 3)
+    >>> slip = drawn.velocity - np.cross([0, 0, 2.0], drawn.point) - 0.5 * np.cross(drawn.angular_velocity, [0, 0, 1])
+    >>> bool(np.abs(slip).max() < 1e-12)
+    True
+    """
+    draw = np.random.default_rng(seed)
+    q = draw.normal(size=(count, 4))
+    q /= np.linalg.norm(q, axis=1, keepdims=True)
+    rim = system.support.surface.rim
+    zero = Vector(0.0, 0.0, 0.0)
+    somewhere = _on_surface(system, 0.0, Vector(1e-3, 2e-3, 3e-3))
+    arm = float(touch(system, 0.0, somewhere, Quaternion(1.0, *zero)).offset.norm())
+    reach = 10 * arm if rim is None else 0.9 * float(rim)
+    quick = math.sqrt(max(float(system.gravity), 1.0) / arm) + abs(float(system.support.motion.steady_rate or 0.0))
+    time, rough = draw.uniform(0.0, 10.0, count), draw.uniform(-reach / 2**0.5, reach / 2**0.5, (count, 3))
+    Omega = draw.normal(size=(count, 3)) * quick / 2
+    found = [_placed(system, *row) for row in zip(time, rough, q, Omega, strict=True)]
+    point, position, velocity = (np.array([row[i] for row in found]) for i in range(3))
+    return States(time, point, position, velocity, q, Omega)
+
+
+def _placed(system: RollingSystem, time: float, rough: Array, q: Array, Omega: Array) -> tuple[list[float], ...]:
+    point = _on_surface(system, time, Vector(*map(float, rough)))
+    contact = touch(system, time, point, Quaternion(*map(float, q)))
+    velocity = contact.rolling_velocity(Vector(*map(float, Omega)))
+    return [*point], [*contact.centre], [*velocity]
+
+
+def _on_surface(system: RollingSystem, time: float, rough: Vector) -> Vector:
+    """Go down to the surface along its normals, from a point near it."""
+    surface, now = system.support.surface, system.support.motion.at(time)
+    own = now.rotation.transpose @ (rough - now.origin)
+    for _ in range(60):
+        n, level = surface.normal(own), float(surface.level(own))
+        step = 1e-6 * max(abs(level), 1e-3)
+        slope = (float(surface.level(own + n * step)) - float(surface.level(own - n * step))) / (2 * step)
+        own = own - n * (level / slope)
+        if abs(level) < 1e-15 * max(float(own.norm()), 1e-3):
+            break
+    return now.origin + now.rotation @ own
+
+
+def accelerations(system: RollingSystem, at: States) -> tuple[Array, Array]:
+    """Return V̇ and Ω̇ by the package's own law.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Body, support and loads.
+    at : States
+        Where.
+
+    Returns
+    -------
+    acceleration, angular_acceleration : array (n, 3)
+        m/s² and rad/s².
+    """
+    q, Omega = Quaternion.of(at.orientation), Vector.of(at.angular_velocity)
+    now = roll(system, at.time, Vector.of(at.point), q, Omega)
+    state = BodyMotion(at.time, system.body.mass, now.contact.centre, now.velocity, q, Omega)
+    V_rate = (now.reaction + system.loads_on(state)[0]) / system.body.mass
+    shape = at.position.shape
+    return np.broadcast_to(V_rate.array(), shape), np.broadcast_to(now.angular_acceleration.array(), shape)
+
+
+def check_equations(
+    equations: Any,
+    system: RollingSystem,
+    *,
+    values: Mapping[Any, float] | None = None,
+    samples: int = 200,
+    seed: int = 0,
+    tolerance: float = EXACT,
+) -> Check:
+    """Compare somebody else's equations of motion with the law, at random states that roll.
+
+    Parameters
+    ----------
+    equations : callable, or sequence or mapping of SymPy expressions
+        A callable takes t, r, V, q, Ω (float and arrays, inertial support frame, SI) and returns V̇, or V̇ and Ω̇;
+        of V̇ two components will do. Expressions are those of V̇, or of V̇ and Ω̇, in the symbols t, x, y, z, vx, vy,
+        vz, qw, qx, qy, qz, wx, wy, wz.
+    system : RollingSystem
+        What is said to move.
+    values : mapping, optional
+        Values of further symbols, such as ``{"k": 0.4}``.
+    samples : int
+        How many states.
+    seed : int
+        Of their draw.
+    tolerance : float
+        Largest difference, as a share of the largest acceleration.
+
+    Returns
+    -------
+    Check
+        Its `worst_state` is the one furthest off; `likely` names wrong laws that the equations agree with.
+
+    Raises
+    ------
+    InvalidValueError
+        If the equations return something else.
+    UnknownNameError
+        If an expression has a symbol without a value.
+
+    Examples
+    --------
+    A ball on a turning table goes round at 2/7 of the table's rate, not at the table's own:
+
+    >>> import trundle as tr
+    >>> table = tr.Support(tr.Plane(), motion=tr.Spin(3.5))
+    >>> system = tr.RollingSystem(tr.Body.solid_sphere(radius=0.025, mass=0.065), table)
+    >>> tr.check_equations(lambda t, r, V, q, Omega: (-3.5 * V[1], 3.5 * V[0]), system).passed
+    False
+    >>> tr.check_equations(lambda t, r, V, q, Omega: (-2 / 7 * 3.5 * V[1], 2 / 7 * 3.5 * V[0]), system).passed
+    True
+    """
+    if not isinstance(system, RollingSystem):
+        raise InvalidValueError("system", "must be a RollingSystem", system)
+    at = states(system, _count(samples), seed)
+    theirs = _evaluated(callable_of(equations, values or {}), at)
+    case = _Case(system, at, theirs, tolerance)
+    shares, worst = case.off(accelerations(system, at))
+    figures = [
+        CardFigure(f"{name} against the law", share, "", tolerance, bool(share <= tolerance), f"at {samples} states")
+        for name, share in zip(NAMES, shares, strict=False)
+    ]
+    failed = max(shares) > tolerance
+    likely = tuple(sorted(_explained(case, shares), key=lambda mistake: not mistake.named)) if failed else ()
+    state = dict(zip(("t", "r", "V", "q", "Ω"), map(_shown, at.one(worst)), strict=True))
+    ours = accelerations(system, at)
+    for i, name in enumerate(("V̇", "Ω̇")[: len(theirs)]):
+        width = theirs[i].shape[1]
+        state |= {f"their {name}": _shown(theirs[i][worst]), f"our {name}": _shown(ours[i][worst][:width])}
+    remark = "" if likely or not failed else "No wrong law that was tried here agrees with these equations."
+    return Check(
+        "Their equations against the law of rolling",
+        f"{samples} random states that roll; ours: T1-T3, every state and rate in the inertial support frame",
+        tuple(figures),
+        likely=likely,
+        remark=remark,
+        worst_state=state if failed else None,
+    )
+
+
+def _count(samples: Any) -> int:
+    if not isinstance(samples, int) or isinstance(samples, bool) or not 8 <= samples <= 1_000_000:
+        raise InvalidValueError("samples", "must be a whole number from 8 to a million", samples)
+    return samples
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    return "(" + ", ".join(f"{float(part):.6g}" for part in value) + ")"
+
+
+def _evaluated(equations: Callable[..., Any], at: States) -> list[Array]:
+    """Ask their equations at every state; return V̇ (n, 2 or 3), and Ω̇ (n, 3) if they give it."""
+    rows = [_one(equations(*at.one(i))) for i in range(at.time.size)]
+    if len({tuple(len(part) for part in row) for row in rows}) != 1:
+        rule = "must return the same number of components at every state"
+        raise InvalidValueError("equations", rule, "different ones")
+    found = [np.array([row[i] for row in rows]) for i in range(len(rows[0]))]
+    if not all(np.isfinite(part).all() for part in found):
+        rule = "must return finite numbers at every state that rolls"
+        raise InvalidValueError("equations", rule, "NaN or infinity")
+    return found
+
+
+def _one(returned: Any) -> list[list[float]]:
+    rule = "must return V̇ (2 or 3 components), or V̇ and Ω̇ (3 and 3, or 6 in a row)"
+    try:
+        parts = [np.asarray(part, dtype=float).ravel() for part in returned]
+    except (TypeError, ValueError):
+        raise InvalidValueError("equations", rule, returned) from None
+    if all(part.size == 1 for part in parts):  # one flat row
+        flat = np.concatenate(parts) if parts else np.empty(0)
+        parts = [flat[:3], flat[3:]] if flat.size == 6 else [flat]
+    sizes = tuple(part.size for part in parts)
+    if sizes not in ((2,), (3,), (2, 3), (3, 3)):
+        raise InvalidValueError("equations", rule, f"sizes {sizes}")
+    return [part.tolist() for part in parts]
+
+
+@dataclass(frozen=True)
+class _Case:
+    system: RollingSystem
+    at: States
+    theirs: list[Array]
+    tolerance: float
+
+    def off(self, ours: tuple[Array, Array]) -> tuple[list[float], int]:
+        """Return the largest difference of each part as a share of the largest acceleration, and where it is worst."""
+        each = self.shares(ours)
+        lengths = [np.linalg.norm(part, axis=1) for part in each]
+        worst = int(np.argmax(np.max(lengths, axis=0)))
+        return [float(length.max()) for length in lengths], worst
+
+    def shares(self, ours: tuple[Array, Array]) -> list[Array]:
+        """Return the differences over the largest acceleration of the right law, or of theirs."""
+        found = []
+        for part, right, true in zip(self.theirs, ours, self.true, strict=False):
+            width = part.shape[1]
+            size = max(float(np.linalg.norm(true[:, :width], axis=1).max()), float(np.linalg.norm(part, axis=1).max()))
+            found.append((part - right[:, :width]) / max(size, 1e-300))
+        return found
+
+    @property
+    def true(self) -> tuple[Array, Array]:
+        return accelerations(self.system, self.at)
+
+
+def _explained(case: _Case, before: list[float]) -> Iterator[Mistake]:
+    """Yield the wrong laws that the equations agree with."""
+    for name, says, law, numbers, named in (*_terms(case), *_axes(case), *_fitted(case)):
+        after = max(case.off(law)[0])
+        if after <= max(case.tolerance, 1e-8 if numbers else 0.0):
+            yield Mistake(name, says, f"{NAMES[0]} against the law", max(before), after, case.tolerance, numbers, named)
+
+
+_Wrong = tuple[str, str, tuple[Array, Array], dict[str, float], bool]
+
+
+def _terms(case: _Case) -> Iterator[_Wrong]:
+    system, at = case.system, case.at
+    yield (
+        "missing-gyroscopic-term",
+        "Ω×JΩ was left out of Euler's equation.",
+        accelerations(laws.without_gyroscopic(system), at),
+        {},
+        True,
+    )
+    bare = accelerations(laws.without_carrying(system), at)
+    text = "u̇, the table's motion under the moving contact, was left out of the law"
+    yield "missing-carrying-term", f"{text}.", bare, {}, True
+    full, half = accelerations(system, at)
+    carried = full + np.cross(half, _offset(case)) - (bare[0] + np.cross(bare[1], _offset(case)))
+    yield "missing-carrying-term", f"{text} of Ω, and kept in V = u − Ω×ρ.", (bare[0] + carried, bare[1]), {}, True
+    for load in system.loads:
+        law = accelerations(laws.without_load(system, load), at)
+        yield "load-left-out", f"A load was left out: {type(load).__name__}.", law, {}, True
+
+
+def _offset(case: _Case) -> Array:
+    return case.at.point - case.at.position
+
+
+def _axes(case: _Case) -> Iterator[_Wrong]:
+    """Take their Ω, or their Ω̇, for one along the axes of the body."""
+    at, Q = case.at, Quaternion.of(case.at.orientation).matrix()
+    name = "body-axes-for-space-axes"
+    V_rate, Omega_rate = accelerations(case.system, at)
+    yield name, "Ω̇ has its components along the axes of the body.", (V_rate, _turned(Q.transpose, Omega_rate)), {}, True
+    spun = replace(at, angular_velocity=_turned(Q, at.angular_velocity))
+    V_rate, Omega_rate = accelerations(case.system, spun)
+    text = "Ω is taken for one along the axes of the body; it comes along space axes."
+    yield name, text, (V_rate, Omega_rate), {}, True
+    yield name, text, (V_rate, _turned(Q.transpose, Omega_rate)), {}, True
+    degrees = replace(at, angular_velocity=np.degrees(at.angular_velocity))
+    yield "degrees-for-radians", "Ω is taken for deg/s.", accelerations(case.system, degrees), {}, True
+
+
+def _turned(Q: Matrix, vectors: Array) -> Array:
+    return np.asarray((Q @ Vector.of(vectors)).array(), dtype=float)
+
+
+def _fitted(case: _Case) -> Iterator[_Wrong]:
+    """Fit the numbers of the system to the equations, as for a trajectory."""
+    for family in wrong_laws.FAMILIES:
+        if not family.applies(case.system):
+            continue
+        found = _fit(case, family)
+        if found is None:
+            continue
+        for trial in family.named(case.system, found[0], found[1]):
+            if trial.system is not None:
+                yield trial.name, trial.says, accelerations(trial.system, case.at), trial.numbers, trial.named
+
+
+def _fit(case: _Case, family: wrong_laws.Family) -> tuple[Array, Array] | None:
+    def residual(numbers: Array) -> Array:
+        parts = case.shares(accelerations(family.system(case.system, numbers), case.at))
+        return np.concatenate([part.ravel() for part in parts]) / case.tolerance
+
+    return wrong_laws.least_squares(residual, family.guess(case.system))
