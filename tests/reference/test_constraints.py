@@ -85,6 +85,25 @@ def test_a_leaning_disc_in_the_coordinates_of_its_contact() -> None:
     assert found("disc").growth == by_hand.growth == (3, 4, 5)
 
 
+def test_a_ball_on_a_ball_is_held_to_it_only_if_they_are_equal() -> None:
+    # [agrachev2004], chapter 24: rolling without pivoting is integrable on isometric surfaces, else (2, 3, 5).
+    # Latitudes and longitudes of the contact on both, and the angle between the two grids there.
+    q = a1, _, a2, _, psi = sp.symbols("alpha_1 beta_1 alpha_2 beta_2 psi")
+    r1, r2 = sp.symbols("R_1 R_2")
+
+    def rows(first: sp.Expr, second: sp.Expr) -> list[list[sp.Expr]]:
+        c, s = sp.cos(psi), sp.sin(psi)
+        return [
+            [-c * first, s * first * sp.sin(a1), second, 0, 0],
+            [-s * first, -c * first * sp.sin(a1), 0, second * sp.sin(a2), 0],
+            [0, -sp.cos(a1), 0, sp.cos(a2), 1],
+        ]
+
+    unequal, equal = (tr.PfaffianSystem(q, rows(r1, second)).analyse() for second in (r2, r1))
+    assert (unequal.growth, unequal.verdict) == ((2, 3, 5), "nonholonomic")
+    assert (equal.growth, equal.verdict, equal.integrable) == ((2,), "holonomic", 3)
+
+
 def test_the_lectures_cylinders() -> None:
     x, phi = found("cylinder").system.coordinates
     a, b = sp.symbols("a b", positive=True)

@@ -9,12 +9,14 @@ from typing import Any
 import sympy as sp
 
 from ..errors import InvalidValueError
-from .flag import Span, Step, Vector, bracket, flag, independent_rows, kernel, vanishes
+from .flag import Span, Vector, bracket, flag, independent_rows, kernel, vanishes
 from .functions import prepare
 from .integrals import integrals, is_constant
 from .system import PfaffianSystem
 from .tower import Tower, tidy
 
+MOST_OPERATIONS = 250  # in brackets that are searched for special places
+MOST_TO_TIDY = 250  # in a component of a bracket that is written short
 HOLONOMIC, NONHOLONOMIC, PARTLY, FREE = "holonomic", "nonholonomic", "partly holonomic", "unconstrained"
 
 
@@ -43,7 +45,7 @@ class ConstraintAnalysis:
     rank: int  # generic rank of A
     kept: tuple[int, ...]  # rows that the others follow from
     fields: tuple[Field, ...]  # they span what is allowed
-    brackets: tuple[Field, ...]  # those that lead to something new
+    pairs: tuple[tuple[int, int, int], ...]  # brackets that lead to something new: level, and positions of the two
     growth: tuple[int, ...]  # generic ranks of the flag
     integrals: tuple[sp.Expr, ...]  # functions that stay constant, each proved
 
@@ -67,6 +69,16 @@ class ConstraintAnalysis:
         return PARTLY if self.integrable else NONHOLONOMIC
 
     @cached_property
+    def brackets(self) -> tuple[Field, ...]:
+        """The brackets that lead to something new, level by level, written to be read."""
+        told = list(self.fields)
+        for level, i, j in self.pairs:
+            name = f"[{told[i].name}, {told[j].name}]"
+            components = lie_bracket(told[i].components, told[j].components, self.system.coordinates)
+            told.append(Field(name, components, level, self.system.telling.brackets.get(name, "")))
+        return tuple(told[len(self.fields) :])
+
+    @cached_property
     def also(self) -> tuple[Field, ...]:
         """Brackets that a shipped system shows besides, though they lead to nothing new."""
         named = {field.name: field for field in self.fields}
@@ -82,11 +94,16 @@ class ConstraintAnalysis:
         """Where the growth vector differs: values of a coordinate, and the growth vector there.
 
         Only surfaces of one dimension less are looked for, those where a determinant of the flag has a factor that
-        vanishes and that can be solved for one coordinate.
+        vanishes and that can be solved for one coordinate; and none where the brackets are too long for that.
         """
         from .special import special_places
 
-        return tuple(special_places(self))
+        return tuple(special_places(self)) if self.looks_for_special else ()
+
+    @property
+    def looks_for_special(self) -> bool:
+        """Whether the brackets are short enough for `special` to look for places."""
+        return sum(sp.count_ops(e) for field in self.brackets for e in field.components) <= MOST_OPERATIONS
 
     def growth_at(self, values: dict[Any, Any], levels: int | None = None) -> tuple[int, ...]:
         """Return the growth vector where some coordinates have given values, and the others are generic.
@@ -213,15 +230,16 @@ def analyse(system: PfaffianSystem) -> ConstraintAnalysis:
     if system.motions:
         _check_motions(tower, system, vectors, len(q) - len(kept))
     steps, growth = flag(tower, vectors)
-    fields = _tell(steps, list(motions.items()), system)
+    fields = tuple(Field(name, tuple(components)) for name, components in motions.items())
+    pairs = tuple((step.level, *step.pair) for step in steps if step.pair)
     closed = [step.vector for step in steps]
     constant = integrals(tower, closed, [rows[i] for i in kept]) if growth[-1] < len(q) else []
     return ConstraintAnalysis(
         system,
         len(kept),
         tuple(kept),
-        tuple(fields[: growth[0]]),
-        tuple(fields[growth[0] :]),
+        fields,
+        pairs,
         tuple(growth),
         tuple(constant),
     )
@@ -241,22 +259,6 @@ def _check_motions(tower: Tower, system: PfaffianSystem, vectors: list[Vector], 
     if len(vectors) != free or not all(span.add(vector) for vector in vectors):
         rule = f"must be {free} independent fields, as many as the constraints leave free"
         raise InvalidValueError("motions", rule, ", ".join(names))
-
-
-def _tell(steps: list[Step], motions: list[tuple[str, Any]], system: PfaffianSystem) -> list[Field]:
-    """Name the fields and write their components to be read."""
-    told: list[Field] = []
-    q = system.coordinates
-    for i, step in enumerate(steps):
-        if step.pair is None:
-            name, components = motions[i]
-            told.append(Field(name, tuple(components)))
-            continue
-        first, second = (told[k] for k in step.pair)
-        name = f"[{first.name}, {second.name}]"
-        components = lie_bracket(first.components, second.components, q)
-        told.append(Field(name, components, step.level, system.telling.brackets.get(name, "")))
-    return told
 
 
 def lie_bracket(first: tuple[sp.Expr, ...], second: tuple[sp.Expr, ...], q: tuple[sp.Symbol, ...]) -> tuple[Any, ...]:
@@ -283,7 +285,7 @@ def lie_bracket(first: tuple[sp.Expr, ...], second: tuple[sp.Expr, ...], q: tupl
     parts = []
     for a, b in zip(first, second, strict=True):
         total = sp.Add(*(sp.diff(b, c) * u - sp.diff(a, c) * v for c, u, v in zip(q, first, second, strict=True)))
-        parts.append(tidy(total))
+        parts.append(tidy(total) if total.count_ops() <= MOST_TO_TIDY else total)
     return tuple(parts)
 
 

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from .analysis import ConstraintAnalysis, Field
 
 WIDTH = 96
+LONGEST = 300  # operations in a field that is printed
 _POWERS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -63,6 +64,8 @@ def form_of(row: list[sp.Expr], q: tuple[sp.Symbol, ...]) -> str:
 
 def field_of(field: Field, q: tuple[sp.Symbol, ...]) -> str:
     """Write a field by its rates, as a list of those that are not zero."""
+    if sum(sp.count_ops(entry) for entry in field.components) > LONGEST:
+        return "too long to print; see its components"
     dotted = [(entry, f"{text_of(c)}\u0307") for entry, c in zip(field.components, q, strict=True)]
     shown = [f"{name} = {text_of(entry)}" for entry, name in dotted if entry != 0]
     return ",  ".join(shown) or "nothing"
@@ -180,6 +183,8 @@ def _special(found: ConstraintAnalysis) -> list[str]:
     for place, growth in found.special:
         where = ", ".join(f"{text_of(k)} = {text_of(v)}" for k, v in place.items())
         lines += _entry("but" if not lines else "", f"({', '.join(map(str, growth))}) where {where}")
+    if not found.looks_for_special:
+        lines += _entry("", "Places where the growth vector differs were not looked for: the brackets are too long.")
     if found.special and found.system.telling.chart:
         lines += _entry("", found.system.telling.chart)
     return lines

@@ -20,6 +20,7 @@ from sympy.polys.fields import FracField
 from ..errors import InvalidValueError
 from .functions import constants, kernels, on_circles, prepare, refusal, terms
 
+LONGEST = 120  # operations; to make longer expressions short takes longer than to decide with them
 PRIME = (1 << 61) - 1  # probes are taken modulo this prime: what is not zero there is not zero at all
 
 
@@ -345,6 +346,8 @@ def tidy(expression: sp.Expr) -> sp.Expr:
     """
     longer = on_circles(expression)
     plain = not longer.has(sp.sin, sp.cos)
+    if not plain and longer.count_ops() > LONGEST:
+        return sp.factor_terms(longer)
     short = sp.factor_terms(sp.cancel(longer if plain else sp.trigsimp(longer)))
     if plain or short == longer:
         return short
