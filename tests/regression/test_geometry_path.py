@@ -108,6 +108,14 @@ def test_the_card_of_a_path_with_every_kind_of_piece_holds() -> None:
     assert card["rotation products against Runge-Kutta"].passed
 
 
+def test_the_card_of_odd_but_right_paths_holds() -> None:
+    """A hand that trembles, a ball a thousand times larger than its arc, and a speck of a path far from the origin."""
+    trembling = np.cumsum(np.random.default_rng(0).normal(size=(200, 2)), axis=0) * 0.01
+    assert rolled(tr.Curve(points=trembling)).card().passed
+    assert rolled(tr.Arc(radius=5e-4, angle=-50)).card().passed
+    assert tr.roll_along(tr.Straight(length=1e-6), radius=0.3, start=(10.0, 20.0)).card().passed
+
+
 @pytest.mark.parametrize("share", [1e-6, 1e-9])
 def test_the_card_sees_a_ball_that_slips(monkeypatch: pytest.MonkeyPatch, share: float) -> None:
     honest = bends.turn

@@ -21,13 +21,14 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 _EXACT = 1e-12  # what rounding may do, for each radian of turning
-_MEASURED = 1e-10  # what rounding leaves in a rate that is measured from samples
+_DIFFERENCED = 4000.0  # units in the last place that a rate measured from samples may be off
+_EPSILON = 2.0**-52
 _TOLERANCE, _SOLVER = 1e-12, 1e3  # asked of Runge-Kutta, and how many times it may be missed
 _PIECES, _WINDOWS = 60, 3  # looked at, and places looked at in each
 _NODES, _WINDOW = 12, 0.5  # samples in a place, and how far the ball turns there at most, rad
 _SMALL = 3.0  # radii of the ball; loops of a shorter way round are small
 _NAMES = ("along +x", "along +y", "up", "along −x", "along −y", "down")
-_MOST_RADIANS = 500.0  # of a curve that Runge-Kutta follows
+_MOST_RADIANS, _MOST_POLYNOMIALS = 500.0, 60  # of a curve that Runge-Kutta follows
 
 
 def card(rolled: RolledPath) -> Card:
@@ -65,20 +66,27 @@ def _checked(name: str, value: float, bound: float, note: str, unit: str = "") -
 
 def _rolls(rolled: RolledPath) -> Iterator[CardFigure]:
     """Measure V and Ω from places and orientations alone, and hold them to V = a Ω × n and Ω·n = 0."""
-    slip = pivot = norm = 0.0
-    for contact, turned, half in _windows(rolled):
+    slips, pivots, bounds, norm = [], [], [], 0.0
+    for contact, turned, half, along in _windows(rolled):
         norm = max(norm, float(np.abs(np.linalg.norm(turned, axis=-1) - 1).max()))
         V = np.einsum("mn,npi->mpi", _differentiation(), contact) / half[:, None]
         rate = Quaternion.of(np.einsum("mn,npi->mpi", _differentiation(), turned) / half[:, None])
-        q = Quaternion.of(turned)
-        _, *parts = rate * q.conjugate
+        _, *parts = rate * Quaternion.of(turned).conjugate
         Omega = Vector(*(2.0 * part for part in parts))
         rolling = (Omega.cross(E_Z) * rolled.radius).array()[..., :2]
         fastest = np.maximum(np.linalg.norm(V, axis=-1).max(axis=0), 1e-300)
-        slip = max(slip, float((np.linalg.norm(V - rolling, axis=-1) / fastest).max()))
-        pivot = max(pivot, float((np.abs(Omega.dot(E_Z)) * rolled.radius / fastest).max()))
-    yield _checked("no slip", slip, _MEASURED, "|V − a Ω×n| over the speed, Ω measured from the orientations")
-    yield _checked("no pivoting", pivot, _MEASURED, "|Ω·n| over |Ω|")
+        slips.append(np.linalg.norm(V - rolling, axis=-1).max(axis=0) / fastest)
+        pivots.append(np.abs(Omega.dot(E_Z)).max(axis=0) * rolled.radius / fastest)
+        size = rolled.radius + np.linalg.norm(contact, axis=-1).max(axis=0)
+        bounds.append(_DIFFERENCED * _EPSILON * (size / (half * fastest) + along / half))
+    bound = np.concatenate(bounds)
+    for name, found, note in (
+        ("no slip", slips, "|V − a Ω×n| over the speed, Ω measured from the orientations"),
+        ("no pivoting", pivots, "|Ω·n| over |Ω|, the same Ω"),
+    ):
+        values = np.concatenate(found)
+        worst = int(np.argmax(values / bound))  # of short pieces, rounding leaves less to measure
+        yield _checked(name, values[worst], bound[worst], note)
     yield _checked("length of the quaternions", norm, _EXACT, "off 1")
 
 
@@ -90,8 +98,8 @@ def _differentiation() -> Array:
     return values @ np.linalg.inv(np.polynomial.chebyshev.chebvander(nodes, _NODES - 1))
 
 
-def _windows(rolled: RolledPath) -> Iterator[tuple[Array, Array, Array]]:
-    """Give places (nodes, windows, 2), orientations and half widths, of short windows all along the path."""
+def _windows(rolled: RolledPath) -> Iterator[tuple[Array, Array, Array, Array]]:
+    """Give places (nodes, windows, 2), orientations, half widths and middles of short windows all along the path."""
     nodes = np.polynomial.chebyshev.chebpts1(_NODES)[:, None]
     laid, q = rolled._laid, rolled.stages.orientation
     straight = [i for i in range(len(rolled.pieces)) if i not in laid.curves]
@@ -104,7 +112,7 @@ def _windows(rolled: RolledPath) -> Iterator[tuple[Array, Array, Array]]:
         middle = half + share * (laid.lengths[chosen] - 2 * half)
         distance = laid.distances[chosen] + middle + nodes * half
         at = rolled.at(np.clip(distance, 0.0, rolled.length).ravel())
-        yield at.contact.reshape(*distance.shape, 2), at.orientation.reshape(*distance.shape, 4), half
+        yield at.contact.reshape(*distance.shape, 2), at.orientation.reshape(*distance.shape, 4), half, distance[0]
     for i in _some(list(laid.curves)):
         yield _curve_windows(laid.curves[i], q[i], nodes)
 
@@ -113,18 +121,21 @@ def _some(items: list[int]) -> list[int]:
     return items[:: max(1, len(items) // _PIECES)]
 
 
-def _curve_windows(curve: RolledCurve, q: Array, nodes: Array) -> tuple[Array, Array, Array]:
+def _curve_windows(curve: RolledCurve, q: Array, nodes: Array) -> tuple[Array, Array, Array, Array]:
     edges = curve.breaks
     low, high = (np.array(_some(list(side))) for side in (edges[:-1], edges[1:]))
     grid = low + 0.5 * (1 + nodes) * (high - low)
     speed = np.linalg.norm(curve.angular_velocity(grid.ravel()), axis=0).reshape(grid.shape).max(axis=0)
     half = 0.5 * np.minimum(high - low, _WINDOW / np.maximum(speed, 1e-300))
+    heading = curve.places((low + half * (1 + nodes)).ravel())[1].reshape(grid.shape)
+    bend = np.abs(np.diff(np.unwrap(heading, axis=0), axis=0)).sum(axis=0)
+    half = half * np.minimum(1.0, _WINDOW / np.maximum(bend, 1e-300))  # nor may the axis turn by more
     u = low + half + nodes * half
     order = np.argsort(u.ravel(), kind="stable")
     turned = np.empty((u.size, 4))
     turned[order] = curve.orientations(u.ravel()[order], q)
     contact = curve.places(u.ravel())[0]
-    return contact.reshape(*u.shape, 2), turned.reshape(*u.shape, 4), half
+    return contact.reshape(*u.shape, 2), turned.reshape(*u.shape, 4), half, np.abs(u).max(axis=0)
 
 
 # --- the same by another route -----------------------------------------------------------------------------
@@ -142,7 +153,7 @@ def _second_opinions(rolled: RolledPath) -> Iterator[CardFigure]:
         followed = [_runge_kutta(rolled, i) for i in _some(list(laid.curves))]
         angle = max(apart for apart, _ in followed)
         bound = _SOLVER * _TOLERANCE * max(1.0, max(turned for _, turned in followed))
-        note = f"DOP853 at {_TOLERANCE:g}; angle between the two"
+        note = f"DOP853 at {_TOLERANCE:g}; angle between the two, over {_MOST_POLYNOMIALS} polynomials at most"
         yield _checked("rotation products against Runge-Kutta", angle, bound, note, "rad")
     bound = rolled.error_bound
     yield CardFigure(
@@ -170,9 +181,10 @@ def _runge_kutta(rolled: RolledPath, i: int) -> tuple[float, float]:
     from scipy.integrate import solve_ivp
 
     curve, q = rolled._laid.curves[i], rolled.stages.orientation[i]
-    turned = curve.length / rolled.radius
-    first, last = curve.ends
-    end = last if turned <= _MOST_RADIANS else float(curve.parameter(np.array([_MOST_RADIANS * rolled.radius]))[0])
+    first, _ = curve.ends
+    far = curve.parameter(np.array([min(curve.length, _MOST_RADIANS * rolled.radius)]))
+    end = float(min(curve.breaks[: _MOST_POLYNOMIALS + 1][-1], far[0]))
+    turned = min(curve.length / rolled.radius, _MOST_RADIANS)
 
     def rate(u: float, q: Array) -> list[float]:
         Omega = curve.angular_velocity(np.asarray(u))
@@ -180,7 +192,7 @@ def _runge_kutta(rolled: RolledPath, i: int) -> tuple[float, float]:
 
     solved = solve_ivp(rate, (first, end), q, "DOP853", rtol=_TOLERANCE, atol=_TOLERANCE)
     theirs = solved.y[:, -1] / np.linalg.norm(solved.y[:, -1])
-    return _apart(curve.orientations(np.array([end]), q)[0], theirs), min(turned, _MOST_RADIANS)
+    return _apart(curve.orientations(np.array([end]), q)[0], theirs), turned
 
 
 # --- the facts ---------------------------------------------------------------------------------------------

@@ -160,7 +160,10 @@ def _head(paths: tuple[RolledPath, ...], size: float) -> tuple[str, str]:
     radius = max(radii)
     ball = f"ball of radius {with_unit(radius, 'length')}" if len(radii) == 1 else "balls of different sizes"
     if len(radii) == 1 and size != radius:
-        ball += f", drawn at {short(size / radius, 2)} of its size on the map"
+        ratio = short(size / radius, 2)
+        ball += (
+            f", drawn at {ratio} of its size on the map" if size < radius else f", {ratio} times its size on the map"
+        )
     if len(paths) == 1:
         title, length = paths[0].title or "A ball rolled along a path", with_unit(paths[0].length, "length")
         return title, f"{ball}; path of {length}, without slipping or pivoting"
@@ -180,12 +183,13 @@ def _map(ax: Axes, one: _Shown, where: Array, size: float, scale: float, inch: f
     on_the_way = one.rolled.at((distance[1:] + distance[:-1]) / 2)
     for spot, heading in zip(on_the_way.contact / scale, on_the_way.heading, strict=True):
         arrowhead(ax, spot, (math.cos(heading), math.sin(heading)), BLUE, 10)
-    for i, spot in enumerate(where):
+    for i in _uncrowded(where, size):
+        spot = where[i]
         if np.hypot(*(spot - one.at.contact[i])) > 0:
             ax.plot(*np.array([one.at.contact[i], spot]).T / scale, color=GREY, lw=1.0, ls=(0, (2, 2)), zorder=1.5)
         place(ax, spot / scale, size / scale, size / inch, one.at.orientation[i], ABOVE, zorder=10 + i)
         if one.names[i]:
-            side = _free_side(one, where, i)
+            side = _free_side(one, where, i, size)
             x, y = (spot + 1.12 * size * side) / scale
             text = ax.text(float(x), float(y), one.names[i], zorder=40)
             text.set(
@@ -194,12 +198,21 @@ def _map(ax: Axes, one: _Shown, where: Array, size: float, scale: float, inch: f
     ax.set_aspect("equal")
 
 
-def _free_side(one: _Shown, where: Array, i: int) -> Array:
-    """Return the diagonal direction that is farthest from path, ball's axis and a ball moved aside."""
+def _uncrowded(where: Array, size: float) -> list[int]:
+    """Return the balls that can be told apart on the map: the first, the last, and those that cover no other."""
+    last = len(where) - 1
+    kept = [0]
+    for i in range(1, last):
+        if np.linalg.norm(where[[*kept, last]] - where[i], axis=1).min() > 1.5 * size:
+            kept.append(i)
+    return [*kept, last]
+
+
+def _free_side(one: _Shown, where: Array, i: int, size: float) -> Array:
+    """Return the diagonal direction that is farthest from the path, the ball's axis and the balls near by."""
     heading, pole, here = one.at.heading[i], one.at.north_pole[i, :2], one.at.contact[i]
-    same = _SAME * float(np.ptp(one.line, axis=0).max())
-    aside = where[np.linalg.norm(one.at.contact - here, axis=1) <= same] - where[i]
-    ways = [*aside, one.at.contact[i - 1] - here] if i else list(aside)
+    near = where - where[i]
+    ways = [*near[np.linalg.norm(near, axis=1) < 4 * size], *((one.at.contact[i - 1] - here)[None] if i else ())]
     busy = [np.array([math.cos(heading), math.sin(heading)]), pole, -pole]
     busy += [way / np.hypot(*way) for way in ways if np.hypot(*way) > 0]
     sides = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) / math.sqrt(2)
