@@ -28,7 +28,11 @@ numbers = st.one_of(
 )
 units = st.sampled_from([unit for unit, _ in UNITS.values()] + ["mm", "deg", "rpm", "Hz", "in", "x", "m^9", "%"])
 words = st.sampled_from(
-    ["co-rotating", "spin", "fixed", "plane", "sphere", "sphere-with-moment", "solid-sphere", "drag", "torque", "exact"]
+    [
+        *("co-rotating", "spin", "fixed", "plane", "sphere", "sphere-with-moment", "solid-sphere", "drag", "torque"),
+        *("exact", "cylinder", "hoop", "weighted-cylinder", "wobble", "uneven-spin", "turning", "inside", "outside"),
+        *("0.1*sin(3*t)", "t", "t**2/0", "sqrt(-t)", "log(t)", "(t", "t.real", "10**9*t", "1e999*t", "90 deg"),
+    ]
 )
 scalars = st.one_of(
     numbers,
@@ -42,7 +46,7 @@ scalars = st.one_of(
 )
 KEYS = (
     "title,notes,gravity,body,support,start,loads,run,kind,radius,mass,inertia_ratio,moment_of_inertia,tilt,rim,friction,motion,rate,"
-    "position,velocity,spin,angular_velocity,orientation,value,every"
+    "position,velocity,spin,angular_velocity,orientation,value,every,roll,side,air,weight,distance,variation,angle"
 )
 keys = st.one_of(st.sampled_from(KEYS.split(",")), st.text(max_size=5))
 anything = st.recursive(

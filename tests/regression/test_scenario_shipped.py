@@ -200,7 +200,7 @@ def swing(name: str) -> tuple[Callable[[float], np.ndarray], float, float]:
 
     solved = solve_ivp(law, (0, scenario.timing.duration), first, "DOP853", rtol=1e-12, atol=1e-13, dense_output=True)
     times = np.linspace(0, scenario.timing.duration, 200_001)
-    angle, rate = solved.sol(times)
+    angle, _ = solved.sol(times)
     if angle.max() - angle.min() > 2 * np.pi:  # one round
         period = float(np.interp(angle[0] + 2 * np.pi, angle, times))
     else:  # two crossings of the lowest line upwards

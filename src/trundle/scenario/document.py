@@ -110,7 +110,7 @@ class ScenarioFile(Document):
         kinds = self.support.build().surface.coordinates
         for i, (part, kind) in enumerate(zip(self.start.position, kinds, strict=True)):
             Measure(kind)(part, f"start.position[{i}]")
-        if self.start.angular_velocity is not None or self.body.build().shape.axis is not None:
+        if self.start.angular_velocity is not None or self.start.roll or self.body.build().shape.axis is not None:
             self.start_state()  # it knows whether the start rolls
         return self
 

@@ -211,6 +211,13 @@ class WeightedCylinder(Table):
     weight: Mass = Field(description="Mass of the weight.", examples=["50 g"])
     distance: Radius = Field(description="Of the weight from the axis.", examples=["30 mm"])
 
+    @model_validator(mode="after")
+    def _check(self) -> WeightedCylinder:
+        if not self.distance <= self.radius:
+            remedy = f"The cylinder ends at {float(self.radius):g} m."
+            raise InvalidValueError("distance", "must be at most the radius", written(self.distance), remedy)
+        return self
+
     def build(self) -> Body:
         """Return the body."""
         from ..mechanics.bodies import Body
