@@ -203,6 +203,21 @@ def test_an_uneven_rate_leaves_the_circle_where_theory_has_it() -> None:
     assert about.uneven(0.05, RATE).reach(0.0) == pytest.approx(abs(ideal.position), rel=1e-12)
 
 
+@pytest.mark.parametrize(("variation", "nu"), [(0.3, 0.7), (0.5, 0.09), (0.2, 9.0)])
+def test_the_ball_stays_within_the_reach_of_theory(variation: float, nu: float) -> None:
+    ideal = show()
+    fate, times = ideal.uneven(variation, nu), [float(t) for t in range(60)]
+    path = uneven_path(ideal, variation, nu, times)
+    assert all(abs(z) <= fate.reach(t) * (1 + 1e-12) for t, z in zip(times, path, strict=True))
+
+
+def test_a_circle_over_the_rim_is_said_to_be_so() -> None:
+    table = tr.sensitivity("off-the-rim", horizon="10 s")
+    assert "over the rim even where all is perfect" in str(table)
+    assert table.given.leaves == pytest.approx(1.959, abs=5e-4)  # what its notes tell
+    assert "from" not in table.given.expected
+
+
 def test_a_rate_that_varies_in_step_with_the_circle_throws_the_ball_off() -> None:
     ideal, kappa = show(), KAPPA[BALL]
     constant = abs(ideal.velocity - 1j * kappa * ideal.position)
@@ -332,7 +347,14 @@ def test_what_is_no_such_demonstration_is_refused(key: str) -> None:
 
 @pytest.mark.parametrize(
     ("key", "given"),
-    [("tilt", "3 kg"), ("drag", -1.0), ("horizon", "0 s"), ("horizon", "1 s"), ("horizon", "1e9 s")],
+    [
+        ("tilt", "3 kg"),
+        ("tilt", "95 deg"),
+        ("drag", -1.0),
+        ("horizon", "0 s"),
+        ("horizon", "1 s"),
+        ("horizon", "1e9 s"),
+    ],
 )
 def test_a_wrong_value_is_named(key: str, given: Any) -> None:
     with pytest.raises(tr.InvalidValueError) as refused:

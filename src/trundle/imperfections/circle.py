@@ -13,6 +13,7 @@ from ..mechanics.loads import Drag
 from ..mechanics.motions import Motion, Spin
 from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem, State
+from ..plots.scales import with_unit
 
 
 @dataclass(frozen=True)
@@ -164,7 +165,9 @@ class Demonstration:
         """Return the circle on a table that leans: its centre drifts at g sin α/(ω k), level (T5e)."""
         k, g = float(self.system.body.inertia_ratio), float(self.system.gravity)
         drift = 1j * g * math.sin(angle) / (self.rate * k)
-        return self._circle(drift, self.position, self.velocity, 0.0, "drifts sideways at g sin α/(ω k)")
+        return self._circle(
+            drift, self.position, self.velocity, 0.0, f"drifts sideways at {with_unit(abs(drift), 'speed')}"
+        )
 
     def in_air(self, coefficient: float, air_rate: float) -> Fate:
         """Return the circle in air that is still or turns: ζ̈ = (iκ − γ) ζ̇ + iγω_a ζ.
@@ -180,9 +183,9 @@ class Demonstration:
         arm = (self.velocity - centre * self.position) / (circle - centre)
         rest = self.position - arm
         if circle.real > 0:
-            saying = f"circle grows e-fold in {_clock(1 / circle.real)}"
+            saying = f"circle grows e-fold in {with_unit(1 / circle.real, 'time')}"
         elif air_rate == 0 and gamma > 0:
-            saying = f"circle halves in {_clock(math.log(2) / gamma)}, never leaves"
+            saying = f"circle halves in {with_unit(math.log(2) / gamma, 'time')}"
         else:
             saying = "circle does not grow"
         return Fate(
@@ -199,7 +202,7 @@ class Demonstration:
         sway = 1j * angle * (float(self.system.gravity) + lift) / omega**2
         lean = -1j * angle * float(body.radius)  # the ball stands on the table, its centre beside the place below it
         at, velocity = self.position + lean - sway, self.velocity - 1j * omega * sway
-        return self._circle(0j, at, velocity, abs(sway), f"sways by {abs(sway) * 1e3:.2g} mm, never leaves")
+        return self._circle(0j, at, velocity, abs(sway), f"sways by {with_unit(abs(sway), 'length', 2)}")
 
     def uneven(self, variation: float, variation_rate: float) -> Fate:
         """Return the circle on a table of rate ω(1 + ε sin νt): ζ̇ − iκ(t)ζ is constant, and so the rest a quadrature.
@@ -211,20 +214,25 @@ class Demonstration:
 
         kappa, delta = self.kappa, variation * self.kappa / variation_rate
         constant = self.velocity - 1j * kappa * self.position
-        rates = {n: n * variation_rate - kappa for n in range(-6, 7)}
+        most = 8 + math.ceil(1.5 * min(abs(delta), 1e3))
+        rates = {n: n * variation_rate - kappa for n in range(-most, most + 1)}
         parts = {n: 1j**n * complex(jv(n, delta)) * cmath.exp(-1j * delta) for n in rates}
         slow = [n for n in rates if abs(rates[n]) < 0.02 * abs(kappa)]
         quick = [n for n in rates if n not in slow]
         arm = self.position - constant * sum((parts[n] / (1j * rates[n]) for n in quick), 0j)
         centre = constant * sum((abs(parts[n]) ** 2 / (1j * rates[n]) for n in quick), 0j)
-        shares = [abs(parts[n] / rates[n]) for n in quick if n]
-        around = abs(constant) * (sum(shares) + abs(delta / kappa))
+        shares = [abs(parts[n] / rates[n]) * (1 + abs(parts[n])) for n in quick if n]
+        around = abs(constant) * (sum(shares) + min(abs(delta) + delta**2, 2.0) / abs(kappa))
 
         def growing(t: float) -> float:
             beat = sum((parts[n] * _integral(1j * rates[n], t) for n in slow), 0j)
             return abs(complex(arm + constant * beat))
 
-        saying = "in step with the circle, which grows" if slow and constant != 0 else "sways, never leaves"
+        saying = (
+            "in step with the circle, which grows"
+            if slow and constant != 0
+            else f"sways by {with_unit(around, 'length', 2)} at most"
+        )
         return Fate(lambda t: centre, growing, around, saying)  # noqa: ARG005
 
 
@@ -232,12 +240,6 @@ def _integral(rate: complex, time: float) -> complex:
     """Return ∫₀ᵗ e^{rate·s} ds."""
     turned = rate * time
     return time * (1 + turned / 2) if abs(turned) < 1e-8 else (cmath.exp(turned) - 1) / rate
-
-
-def _clock(time: float) -> str:
-    from ..plots.scales import with_unit
-
-    return with_unit(time, "time")
 
 
 def _check(system: RollingSystem) -> None:

@@ -20,6 +20,7 @@ NAMES, PICTURE, GAP, EDGE = 2.55, 0.98, 0.22, 0.3
 TICKS = ((10, "10 s"), (30, "30 s"), (60, "1 min"), (180, "3 min"), (600, "10 min"), (1800, "30 min"), (3600, "1 h"))
 LONGER = ((3 * 3600, "3 h"), (10 * 3600, "10 h"), (24 * 3600, "1 d"), (72 * 3600, "3 d"), (10 * 86400, "10 d"))
 SHORTER = ((0.1, "0.1 s"), (0.3, "0.3 s"), (1, "1 s"), (3, "3 s"))
+TINT = "#8FBBD9"  # of BLUE on the table
 DRAWN = 60  # rounds of a path that stays: more would only blacken the picture
 
 
@@ -71,7 +72,10 @@ def _path(ax: Axes, row: Row, table: Sensitivity) -> None:
         seen = time - time[0] <= DRAWN * table.round_time
         time, r, V = time[seen], r[seen], V[seen]
     line = thin_path(refined(time, r, V, 3), 1e-3 * rim)
-    ax.plot(*line.T, color=BLUE, lw=0.7 if len(r) < 1500 else 0.25, zorder=4, alpha=1.0 if len(r) < 6000 else 0.4)
+    dense = time[-1] - time[0] > 2 * DRAWN * table.round_time  # its lines merge into an area
+    ax.plot(
+        *line.T, color=BLUE, lw=0.9 if dense else 0.7 if len(r) < 1500 else 0.3, zorder=4, alpha=0.2 if dense else 1
+    )
     ax.plot(0.0, 0.0, marker="+", color=GREY, ms=5, mew=0.9, zorder=3)
     if row.leaves is not None:
         ax.plot(*r[-1], marker="X", color=VERMILION, mec=INK, mew=0.6, ms=7, zorder=8)
@@ -102,7 +106,7 @@ def _chart(ax: Axes, table: Sensitivity, rows: tuple[Row, ...]) -> None:
     handles = [
         ax.plot([], [], marker="X", color=VERMILION, mec=INK, mew=0.7, ms=9, ls="none", label="ran off the rim")[0],
         ax.plot([], [], marker=">", color=BLUE, mec=INK, mew=0.7, ms=8, ls="none", label="still on the table")[0],
-        ax.plot([], [], marker="|", color=INK, mew=2.0, ms=13, ls="none", label="theory: not before")[0],
+        ax.plot([], [], marker="|", color=INK, mew=2.0, ms=13, ls="none", label="by theory not before")[0],
     ]
     ax.legend(
         handles=handles, loc="lower left", bbox_to_anchor=(-0.01, 1.0), ncols=3, borderaxespad=0.1, handletextpad=0.3
@@ -127,5 +131,5 @@ def _dot(ax: Axes, i: int, row: Row, first: float, last: float) -> None:
     ax.annotate(says, (end, i), textcoords="offset points", va=va, fontsize=10, fontweight="bold", **place)
     if row.moved != "–":
         ax.annotate(
-            f"circle: {row.moved}", (first, i), (4, -5), textcoords="offset points", va="top", fontsize=8, color=GREY
+            f"circle: {row.moved}", (first, i), (4, -12), textcoords="offset points", va="top", fontsize=8, color=GREY
         )

@@ -63,9 +63,10 @@ class Sensitivity:
     def heading(self) -> str:
         """What was done, in a line."""
         where = with_unit(self.offset, "length") if self.offset > 1e-9 * self.rim else "0 cm"
+        over = "; over the rim even where all is perfect" if self.radius + self.offset >= self.rim else ""
         return (
             f"a circle of {with_unit(self.radius, 'length')} in {clock(self.round_time)}, its centre {where} from the "
-            f"axis; rim at {with_unit(self.rim, 'length')}; watched for {clock(self.horizon)}"
+            f"axis; rim at {with_unit(self.rim, 'length')}; watched for {clock(self.horizon)}{over}"
         )
 
     @property

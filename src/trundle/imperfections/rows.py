@@ -82,7 +82,7 @@ class Row:
     @property
     def expected(self) -> str:
         """What theory says, for the reader."""
-        if self.theory_leaves is None or math.isinf(self.theory_leaves):
+        if self.theory_leaves is None or not 0 < self.theory_leaves < math.inf:
             return self.theory
         return f"from {clock(self.theory_leaves)}: {self.theory}"
 

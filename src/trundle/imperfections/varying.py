@@ -162,6 +162,7 @@ def _sizes(
         return lambda: air_drag(radius, show.speed_in_air(rate))
 
     leaning, leans = size("tilt", tilt, support.tilt, lambda: LEANING, checks.real, "angle")
+    support.surface.check_tilt(leaning, tilt)
     calm, is_calm = size("drag", drag, still, usual_drag(0.0), checks.non_negative, "damping")
     carried, is_carried = size("drag", drag, turning, usual_drag(show.rate), checks.non_negative, "damping")
     angle, wobbles = size("wobble", wobble, askew, lambda: ASKEW, checks.real, "angle")
