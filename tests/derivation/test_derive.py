@@ -248,6 +248,16 @@ def test_the_setting_is_read_off_the_system() -> None:
     assert setting.torque == (False, False, False)
 
 
+def test_a_log_under_its_weight_and_a_wind() -> None:
+    log = tr.Support(tr.Cylinder(0.5, "outside"), tilt="90 deg")
+    wind = tr.Force((0.0, 0.3, 0.0))
+    derivation = tr.derive(tr.RollingSystem(tr.Body.hoop(0.1, 0.2), log, (wind,)))
+    path = formulas(derivation, "Elimination: the equation of the path")
+    assert same(path[(1 + k) * ell * thetaddot], -sp.Symbol("G", positive=True) * sp.sin(theta) / m)
+    length = formulas(derivation, "The rolling condition")[ell]
+    assert same(length, a + sp.Symbol("b", positive=True))
+
+
 def test_without_a_closed_form_it_ends_with_the_equations_of_motion() -> None:
     body = tr.Body(0.7, tr.Principal(0.003, 0.004, 0.005), tr.Sphere(0.1))
     ball = tr.RollingSystem(
@@ -363,6 +373,8 @@ def test_names_that_are_none() -> None:
         tr.derive("turntabel")
     with pytest.raises(InvalidValueError, match="needs a scenario"):
         tr.derive("ball-on-plane", with_numbers=True)
+    with pytest.raises(InvalidValueError, match="needs a closed form"):
+        tr.derive("real-demonstration", with_numbers=True)
     with pytest.raises(ScenarioError, match="forces act on"):
         tr.derive("roll-home-turned")
 

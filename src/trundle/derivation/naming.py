@@ -131,6 +131,9 @@ def _of_system(system: RollingSystem, start: State | None, name: str, title: str
         raise InvalidValueError("with_numbers", "needs a scenario", name, "A system alone has no start.")
     form, module = form_of(system, start)
     if form is None:
+        if with_numbers:
+            remedy = "No closed form covers it, so it has no constants to put numbers in; leave this out."
+            raise InvalidValueError("with_numbers", "needs a closed form", name, remedy)
         from .general import derive_system, introduction
 
         return Derivation(name, title, introduction(system), checked(name, derive_system(system)))

@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from typing import Any
+from unicodedata import normalize
 
 import sympy as sp
 from sympy.printing.latex import LatexPrinter
@@ -50,7 +51,7 @@ def unicode_name(name: str) -> str:
     """
     base, accent, sub = _parts(name)
     index = "" if not sub else sub.translate(_LOWERED) if sub.isdigit() else "_" + _GREEK.get(sub, sub)
-    return _GREEK.get(base, base) + _ACCENT_MARK[accent] + index
+    return normalize("NFC", _GREEK.get(base, base) + _ACCENT_MARK[accent]) + index
 
 
 def latex_name(name: str, *, arrow: bool = False) -> str:

@@ -61,6 +61,7 @@ MEANINGS = {
     G: ("pull across the axis, weight included", "N"),
     N: ("force that presses body and support together", "N"),
     R_theta: ("force along the track, that rolling takes", "N"),
+    par: ("parameter of Jacobi's functions", "1"),
     K: ("applied torque about the centre", "N m"),
     kappa: ("rate of the circle", "rad/s"),
     gamma: ("rate at which drag slows the body", "1/s"),
