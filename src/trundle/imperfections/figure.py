@@ -73,9 +73,8 @@ def _path(ax: Axes, row: Row, table: Sensitivity) -> None:
         time, r, V = time[seen], r[seen], V[seen]
     line = thin_path(refined(time, r, V, 3), 1e-3 * rim)
     dense = time[-1] - time[0] > 2 * DRAWN * table.round_time  # its lines merge into an area
-    ax.plot(
-        *line.T, color=BLUE, lw=0.9 if dense else 0.7 if len(r) < 1500 else 0.3, zorder=4, alpha=0.2 if dense else 1
-    )
+    width = 0.9 if dense else 0.7 if len(r) < 1500 else 0.35
+    ax.plot(*line.T, color=TINT if dense else BLUE, lw=width, zorder=2 if dense else 4)
     ax.plot(0.0, 0.0, marker="+", color=GREY, ms=5, mew=0.9, zorder=3)
     if row.leaves is not None:
         ax.plot(*r[-1], marker="X", color=VERMILION, mec=INK, mew=0.6, ms=7, zorder=8)
