@@ -51,7 +51,12 @@ def derive(
     if name is None:
         screen.show_names(derivable())
         return
-    derivation = derivation_of(name, with_numbers=with_numbers)
+    try:
+        derivation = derivation_of(name, with_numbers=with_numbers)
+    except InvalidValueError as error:
+        if error.key != "with_numbers":
+            raise
+        raise InvalidValueError("--with-numbers", error.rule, error.received, error.remedy) from None
     if as_json:
         import json
 
