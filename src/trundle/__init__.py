@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from .mechanics.surfaces import Cylinder, Plane
     from .mechanics.system import RollingSystem, State, Support
     from .simulation import Scenario, simulate
+    from .statics import Equilibria, Equilibrium, equilibria
     from .trajectory import Event, Trajectory
     from .verify import Card
 
@@ -53,6 +54,7 @@ _HOMES = {
     "mechanics.system": ("RollingSystem", "State", "Support"),
     "derivation": ("derive",),
     "simulation": ("simulate", "Scenario"),
+    "statics": ("equilibria", "Equilibria", "Equilibrium"),
     "trajectory": ("Trajectory", "Event"),
     "verify": ("Card",),
     "checking": ("check", "check_equations", "Check", "Mistake"),
@@ -69,6 +71,8 @@ __all__ = [
     "Cylinder",
     "Drag",
     "Event",
+    "Equilibria",
+    "Equilibrium",
     "Fixed",
     "Force",
     "InvalidValueError",
@@ -103,6 +107,7 @@ __all__ = [
     "air_drag",
     "roll_along",
     "derive",
+    "equilibria",
     "sensitivity",
     "simulate",
     "to_turntable",

@@ -16,6 +16,7 @@ from ..scenario import files
 from . import CARD_FAILED, constraints, screen, signals
 from .check import check
 from .derive import derive
+from .equilibria import equilibria
 from .sensitivity import sensitivity
 from .twin import twin
 
@@ -43,6 +44,7 @@ def command() -> Any:
     app.command("twin", short_help="Find the charge in crossed fields that moves as the ball does.")(twin)
     app.command("constraints", short_help="Holonomic or not: decide it, and show why.")(constraints.constraints)
     app.command("sensitivity", short_help="Rank the shortcomings of a turntable by what they do.")(sensitivity)
+    app.command("equilibria", short_help="Where a body stays, put down at rest.")(equilibria)
     return typer.main.get_command(app)
 
 

@@ -1,0 +1,175 @@
+"""The findings in words."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from ..mechanics.system import RollingSystem
+from .stability import Mode
+
+if TYPE_CHECKING:
+    from .result import Equilibria, Equilibrium
+
+
+SPOT = "turning on the spot"
+
+
+def direction_names(system: RollingSystem) -> tuple[str, str]:
+    """Return how the two coordinates of the support are called as directions.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Any.
+
+    Returns
+    -------
+    tuple of 2 str
+        To stand behind "moves" or "rests anywhere".
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> direction_names(tr.RollingSystem(tr.Body.hoop(0.1, 1.0), tr.Support(tr.Cylinder(0.5))))
+    ('around the cylinder', 'along its axis')
+    """
+    if system.support.surface.coordinates == ("angle", "length"):
+        return "around the cylinder", "along its axis"
+    return ("along x, the slope", "along y, level") if system.support.tilt else ("along x", "along y")
+
+
+def report(result: Equilibria) -> str:
+    """Write the findings out, as the command prints them.
+
+    Parameters
+    ----------
+    result : Equilibria
+        Any.
+
+    Returns
+    -------
+    str
+        Several lines.
+    """
+    lines = [result.title] if result.title else []
+    lines.append(_count(result))
+    for i, one in enumerate(result.found, 1):
+        lines += ["", f"{i}. {one.stability}{_detail(one)}", *(f"   {line}" for line in _facts(result, one))]
+    if result.found:
+        lines.append("")
+    elif result.reason:
+        lines.append(result.reason)
+    if result.pulled:
+        lines.append(_pulled(result))
+    if result.repeats is not None and result.found:
+        lines.append(_repeats(result.repeats, result.found))
+    if not result.conservative:
+        lines.append("no energy: some load has no potential, so these are equilibria by virtual work")
+    lines.append(f"searched: {result.searched}")
+    return "\n".join(lines)
+
+
+def _count(result: Equilibria) -> str:
+    if not result.found:
+        return "no equilibrium"
+    families = sum(one.dimension > 0 for one in result.found)
+    if not families:
+        return f"{len(result.found)} {_plural('equilibrium', 'equilibria', len(result.found))}"
+    if families == len(result.found):
+        return f"{families} {_plural('family', 'families', families)} of equilibria"
+    return f"{len(result.found)} equilibria, {families} of them families"
+
+
+def _plural(one: str, more: str, count: int) -> str:
+    return one if count == 1 else more
+
+
+def _detail(one: Equilibrium) -> str:
+    return f", {'' if one.free[0].startswith('in ') else 'anywhere '}{' and '.join(one.free)}" if one.free else ""
+
+
+def _facts(result: Equilibria, one: Equilibrium) -> list[str]:
+    facts = [f"at {_where(result, one)}"]
+    if one.energy is not None and len(result.found) > 1:
+        facts.append("lowest" if one.energy == 0 else f"energy {one.energy:.6g} J over the lowest")
+    facts.append(f"contact force N = {one.normal_force:.6g} N, f = {one.friction_force:.6g} N; {_friction(one)}")
+    motions: dict[str, list[str]] = {}
+    for mode, moves in zip(one.modes, one.moves, strict=True):
+        if not (mode.kind == "indifferent" and moves == SPOT):
+            motions.setdefault(_motion(mode, one), []).append(moves)
+    return facts + [f"{moves[0] if len(moves) == 1 else 'every way'}: {motion}" for motion, moves in motions.items()]
+
+
+def _where(result: Equilibria, one: Equilibrium) -> str:
+    kinds = result.system.support.surface.coordinates
+    u, v = (_tidy(math.degrees(x) if kind == "angle" else x) for x, kind in zip(one.position, kinds, strict=True))
+    where = f"{u:.6g}° round, {v:.6g} m along" if kinds[0] == "angle" else f"x = {u:.6g} m, y = {v:.6g} m"
+    if one.roll is None:
+        return where
+    return f"{where}, mark {_tidy(math.degrees(one.roll)):.6g}° from the normal"
+
+
+def _tidy(value: float) -> float:
+    return round(value, 9) + 0.0
+
+
+def _friction(one: Equilibrium) -> str:
+    needed = f"needs friction of at least {one.friction_needed:.6g}" if one.friction_force else "needs no friction"
+    if one.holds is None:
+        return needed
+    return f"{needed}, the support has {one.friction:g}" + ("" if one.holds else ": it SLIPS")
+
+
+def _motion(mode: Mode, one: Equilibrium) -> str:
+    if mode.kind == "indifferent" and one.stability != "indifferent" and not one.dimension:
+        return f"{one.stability}, but not by its linear law"
+    words = motion_words(mode)
+    if mode.kind == "unstable":
+        return f"{words}, at {mode.growth:.6g} 1/s" + (
+            f", swinging at {mode.frequency:.6g} rad/s" if mode.frequency else ""
+        )
+    dies = f", dying away at {-mode.growth:.6g} 1/s" if mode.growth else ""
+    return f"{words}, at {mode.frequency:.6g} rad/s{dies}" if mode.frequency else f"{words}{dies}"
+
+
+def motion_words(mode: Mode) -> str:
+    """Say in a few words what a nudge leads to.
+
+    Parameters
+    ----------
+    mode : Mode
+        Of an equilibrium.
+
+    Returns
+    -------
+    str
+        With the time that it takes.
+
+    Examples
+    --------
+    >>> motion_words(Mode(2j, (0.0, 1.0, 0.0), (0.1, 0.0, 0.0)))
+    'swings once in 3.14159 s'
+    """
+    if mode.kind == "indifferent":
+        return "indifferent"
+    if mode.kind == "unstable":
+        return f"a nudge grows by e in {1 / mode.growth:.6g} s"
+    return f"swings once in {2 * math.pi / mode.frequency:.6g} s" if mode.frequency else "comes back"
+
+
+def _pulled(result: Equilibria) -> str:
+    one, count = result.pulled[0], len(result.pulled)
+    if count == 1:
+        return f"not one: {_where(result, one)}, where the support would have to pull with {-one.normal_force:.4g} N"
+    return (
+        f"not equilibria: {count} stationary points where the support would have to pull, as at {_where(result, one)}"
+    )
+
+
+def _repeats(repeats: tuple[float, float], found: tuple[Equilibrium, ...]) -> str:
+    distance, energy = repeats
+    if all(one.dimension for one in found):
+        return "and the same on every turn"
+    higher = "as high" if energy == 0 else f"{abs(energy):.6g} J {'higher' if energy > 0 else 'lower'}"
+    return f"and again with every turn, {abs(distance):.6g} m further on and {higher}"
