@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanics.algebra import ZERO, Quaternion, Vector
-from ..mechanics.contact import roll
+from ..mechanics.contact import Contact, roll
 from ..plots.scales import short, unit_for, with_unit
 from ..plots.sheet import BLUE, FAINT, GREEN, GREY, INK, TABLE, VERMILION, Sheet, look
 from . import rest
@@ -26,10 +26,11 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 MOST_DRAWN = 3
+CROWDED = 0.2  # share of the line that the equilibria take up, below which the curve is drawn of their surroundings
 # Inches: the curve's box, each drawing, and the room around them.
-_CURVE, _DRAWING, _LEFT, _FOOT, _HEADER, _GAP = 4.3, 2.65, 0.8, 0.62, 0.95, 0.15
-_VIEW = 1.72  # half the width of a drawing, radii
-_ARROW = 1.15  # length of the applied force's arrow, radii
+_CURVE, _DRAWING, _LEFT, _FOOT, _HEADER, _GAP = 4.3, 2.9, 0.8, 0.62, 1.08, 0.15
+_VIEW = 1.45  # half the width of a drawing, radii
+_ARROW = 1.5  # length of the applied force's arrow, radii
 STYLES: dict[str, dict[str, Any]] = {
     "stable": {"marker": "o", "color": BLUE, "ms": 9},
     "unstable": {"marker": "^", "color": VERMILION, "ms": 9},
@@ -56,15 +57,15 @@ def draw(result: Equilibria) -> Figure:
     drawings: list[Equilibrium | None] = [*shown[:MOST_DRAWN]] or [None]
     with look():
         width = _LEFT + _CURVE + 0.3 + len(drawings) * (_DRAWING + _GAP) + 0.1
-        height = _HEADER + _DRAWING + _FOOT + 0.35
+        height = _HEADER + _DRAWING + _FOOT
         sheet = Sheet(width, height)
         sheet.head(result.title or "Equilibria", _facts(result, len(shown)))
         if result.line is None:
             return sheet
-        _curve(sheet.add_box(_LEFT, _FOOT, _CURVE, _DRAWING + 0.25), result, shown)
+        _curve(sheet.add_box(_LEFT, _FOOT, _CURVE, _DRAWING), result, shown)
         for i, one in enumerate(drawings):
             left = _LEFT + _CURVE + 0.3 + i * (_DRAWING + _GAP)
-            ax = sheet.add_box(left, _FOOT, _DRAWING, _DRAWING + 0.25)
+            ax = sheet.add_box(left, _FOOT, _DRAWING, _DRAWING)
             _drawing(ax, result.line, one)
     return sheet
 
@@ -100,20 +101,27 @@ def _curve(ax: Axes, result: Equilibria, shown: list[Equilibrium]) -> None:
     along = unit_for(float(np.abs(distance).max()), "length")
     scale, name = _joules(float(np.ptp(energy)) or line.scale)
     x, y = distance / along.scale, (energy - zero) / scale
+    handles: dict[str, Any] = {}
     ax.plot(np.where(presses, x, np.nan), y, color=INK, lw=1.8, zorder=3)
     if not presses.all():
-        ax.plot(np.where(presses, np.nan, x), y, color=GREY, lw=1.2, ls=(0, (2, 2)), zorder=2)
-    handles: dict[str, Any] = {}
+        (dashes,) = ax.plot(x, y, color=GREY, lw=1.2, ls=(0, (2, 2)), zorder=2)
+        handles["support would have to pull"] = dashes
     for one in result.marked:
         style = STYLES[one.stability] if one.stands else PULLED
         label = one.stability if one.stands else "support would have to pull"
         at = float(line.distance(one.angle)) / along.scale, (float(line.energy(one.angle)) - zero) / scale
         edge = {"mec": "white", "mew": 1.0} if one.stands else {}
-        (handles[label],) = ax.plot(*at, ls="none", zorder=5, **{**style, **edge})
+        (handle,) = ax.plot(*at, ls="none", zorder=5, **{**style, **edge})
+        handles.setdefault(label, handle)
     if line.flat:
-        ax.set_ylim(-1, 1)
+        ax.set(ylim=(-1, 1), yticks=[0])
         ax.plot(x, y, color=GREEN, lw=5, alpha=0.35, zorder=2)
     ax.margins(x=0.02, y=0.14)
+    places = [float(line.distance(one.angle)) / along.scale for one in shown]
+    if len(places) > 1 and np.ptp(places) < CROWDED * np.ptp(x):  # look closer
+        low, high = min(places) - 1.5 * np.ptp(places), max(places) + 1.5 * np.ptp(places)
+        seen = y[(x > low) & (x < high)]
+        ax.set(xlim=(low, high), ylim=(seen.min() - 0.14 * np.ptp(seen), seen.max() + 0.14 * np.ptp(seen)))
     ax.set_xlabel(f"distance rolled ({along.symbol})", labelpad=2)
     ax.set_ylabel(f"{'energy' if result.conservative else 'work against the loads'} ({name})")
     if handles:
@@ -169,38 +177,59 @@ def _drawing(ax: Axes, line: Line, one: Equilibrium | None) -> None:
     p, q = line.place(angle)
     now = roll(line.system, line.time, p, q, ZERO)
     force, torque = line.system.loads_on(rest.still(line.system, line.time, now.contact, q))
-    page = _page(line, now.contact.normal, p, force, now.contact.offset.norm())
+    page = _page(line, now.contact, q, force)
     _support(ax, page, line, angle)
     _body(ax, page, line, q, now.contact.centre)
     name = "m g" if all(load.linear_drag is not None for load in line.system.loads) else "F"
     _forces(ax, page, (now.contact.centre, p), (name, force), now.reaction, now.contact.normal)
     if torque.norm() > 1e-9 * line.scale:
         ax.text(0.03, 0.03, f"torque {with_unit(torque.norm(), 'torque')}", transform=ax.transAxes, fontsize=8.5)
-    ax.set(xlim=(-_VIEW, _VIEW), ylim=(-0.95, (2 * _VIEW) * (_DRAWING + 0.25) / _DRAWING - 0.95))
+    ax.set(xlim=(-_VIEW, _VIEW), ylim=(-0.75, 2 * _VIEW - 0.75))
     ax.set_aspect("equal")
     ax.axis("off")
-    _title(ax, one)
+    arm = float(np.abs(line.works).min() / force.norm()) if force.norm() > 0 and torque.norm() == 0 else 0.0
+    _title(ax, line, one, name, arm)
 
 
-def _title(ax: Axes, one: Equilibrium | None) -> None:
-    top: dict[str, Any] = {"transform": ax.transAxes, "ha": "center", "va": "top"}
+def _title(ax: Axes, line: Line, one: Equilibrium | None, name: str, arm: float) -> None:
+    top: dict[str, Any] = {"transform": ax.transAxes, "ha": "center", "va": "baseline"}
     if one is None:
-        ax.text(0.5, 1.0, "nearest to rest", fontsize=10.5, fontweight="bold", color=INK, **top)
-        ax.text(0.5, 0.925, "m g passes beside the contact", fontsize=8.5, color=GREY, **top)
+        ax.text(0.5, 1.10, "no rest: nearest to it", fontsize=10.5, fontweight="bold", color=INK, **top)
+        words = f"{name} passes {1e3 * arm:.3g} mm beside the contact" if arm > 0 else "the loads turn it on"
+        ax.text(0.5, 1.035, words, fontsize=8.5, color=GREY, **top)
         return
     style = STYLES[one.stability]
-    ax.text(0.5, 1.0, one.stability, fontsize=10.5, fontweight="bold", color=style["color"], **top)
-    fastest = one.modes[0]
+    where = "" if line.system.body.shape.axis is None or line.flat else f", at {_place(line, one)}"
+    ax.text(0.5, 1.145, f"{one.stability}{where}", fontsize=10.5, fontweight="bold", color=style["color"], **top)
     needs = f"friction {short(one.friction_needed, 3)} needed" if one.friction_force else "no friction needed"
-    slips = ", it slips" if one.holds is False else ""
-    ax.text(0.5, 0.925, f"{motion_words(fastest)}\n{needs}{slips}", fontsize=8.5, color=GREY, **top)
+    slips = ", it SLIPS" if one.holds is False else ""
+    motion = "rests anywhere along the line" if line.flat else motion_words(one.modes[0], 4)
+    ax.text(0.5, 1.085, motion, fontsize=8.5, color=GREY, **top)
+    ax.text(0.5, 1.03, needs + slips, fontsize=8.5, color=GREY, **top)
 
 
-def _page(line: Line, n: Vector, p: Vector, force: Vector, size: float) -> _Page:
+def _place(line: Line, one: Equilibrium) -> str:
+    size = abs(float(line.distance(line.high) - line.distance(line.low)))
+    distance = float(line.distance(one.angle))
+    return "the start" if abs(distance) < 1e-9 * size else with_unit(distance, "length", 3)
+
+
+def _page(line: Line, contact: Contact, q: Quaternion, force: Vector) -> _Page:
+    n = contact.normal
     down = force - line.axis * force.dot(line.axis)
     up = -down if down.norm() > 1e-9 * force.norm() and force.norm() > 0 else n
     up = up / up.norm()
-    return _Page(p, line.axis.cross(up), up, size)
+    right = line.axis.cross(up)
+    outline = _outline(line, q, contact.centre, right, up)
+    across = outline.dot(right)
+    return _Page(contact.point, right, up, float(across.max() - across.min()) / 2)
+
+
+def _outline(line: Line, q: Quaternion, centre: Vector, right: Vector, up: Vector) -> Vector:
+    """Return the points of the body whose outward normals lie in the page."""
+    t, Q = np.linspace(0, 2 * math.pi, 361), q.matrix()
+    outward = right * np.cos(t) + up * np.sin(t)
+    return centre + Q @ line.system.body.shape.support_map(Q.transpose @ outward)
 
 
 def _support(ax: Axes, page: _Page, line: Line, angle: float) -> None:
@@ -226,9 +255,7 @@ def _body(ax: Axes, page: _Page, line: Line, q: Quaternion, centre: Vector) -> N
     from matplotlib.patches import Circle, Polygon, Wedge
 
     shape, Q = line.system.body.shape, q.matrix()
-    t = np.linspace(0, 2 * math.pi, 361)
-    outward = page.right * np.cos(t) + page.up * np.sin(t)
-    outline = page(centre + Q @ shape.support_map(Q.transpose @ outward))
+    outline = page(_outline(line, q, centre, page.right, page.up))
     ax.add_patch(Polygon(outline, fc="white", ec=INK, lw=1.5, alpha=0.92, zorder=2))
     c = getattr(shape, "centre", None)
     at = page(centre)
@@ -274,7 +301,7 @@ def _arrow(ax: Axes, tail: Array, along: Array, colour: str, name: str, width: f
     ax.annotate("", tuple(head), tuple(tail), arrowprops=style, zorder=zorder)
     length = max(float(np.hypot(*along)), 1e-12)
     side = np.array([along[1], -along[0]]) / length
-    place = head + 0.17 * side if length > 0.5 else head + 0.17 * along / length
+    place = head + (0.12 + 0.06 * len(name)) * side if length > 0.5 else head + 0.12 * along / length + [0.0, 0.13]
     ax.text(
         float(place[0]),
         float(place[1]),

@@ -133,13 +133,15 @@ def _motion(mode: Mode, one: Equilibrium) -> str:
     return f"{words}, at {mode.frequency:.6g} rad/s{dies}" if mode.frequency else f"{words}{dies}"
 
 
-def motion_words(mode: Mode) -> str:
+def motion_words(mode: Mode, digits: int = 6) -> str:
     """Say in a few words what a nudge leads to.
 
     Parameters
     ----------
     mode : Mode
         Of an equilibrium.
+    digits : int
+        Of the time.
 
     Returns
     -------
@@ -154,8 +156,8 @@ def motion_words(mode: Mode) -> str:
     if mode.kind == "indifferent":
         return "indifferent"
     if mode.kind == "unstable":
-        return f"a nudge grows by e in {1 / mode.growth:.6g} s"
-    return f"swings once in {2 * math.pi / mode.frequency:.6g} s" if mode.frequency else "comes back"
+        return f"a nudge grows by e in {1 / mode.growth:.{digits}g} s"
+    return f"swings once in {2 * math.pi / mode.frequency:.{digits}g} s" if mode.frequency else "comes back"
 
 
 def _pulled(result: Equilibria) -> str:
