@@ -189,7 +189,8 @@ def check_equations(
         for name, share in zip(NAMES, shares, strict=False)
     ]
     failed = max(shares) > tolerance
-    likely = tuple(sorted(_explained(case, shares), key=lambda mistake: not mistake.named)) if failed else ()
+    explained = {mistake.says: mistake for mistake in _explained(case, shares)} if failed else {}
+    likely = tuple(sorted(explained.values(), key=lambda mistake: not mistake.named))
     state = dict(zip(("t", "r", "V", "q", "Ω"), map(_shown, at.one(worst)), strict=True))
     ours = accelerations(system, at)
     for i, name in enumerate(("V̇", "Ω̇")[: len(theirs)]):
@@ -333,17 +334,26 @@ def _fitted(case: _Case) -> Iterator[_Wrong]:
     for family in wrong_laws.FAMILIES:
         if not family.applies(case.system):
             continue
-        found = _fit(case, family)
-        if found is None:
-            continue
-        for trial in family.named(case.system, found[0], found[1]):
-            if trial.system is not None:
-                yield trial.name, trial.says, accelerations(trial.system, case.at), trial.numbers, trial.named
+        for law in (accelerations, _from_velocity) if family is wrong_laws.RATE else (accelerations,):
+            found = _fit(case, family, law)
+            trials = () if found is None else family.named(case.system, *found)
+            for trial in trials:
+                if trial.system is not None:
+                    yield trial.name, trial.says, law(trial.system, case.at), trial.numbers, trial.named
 
 
-def _fit(case: _Case, family: wrong_laws.Family) -> tuple[Array, Array] | None:
+def _from_velocity(system: RollingSystem, at: States) -> tuple[Array, Array]:
+    """Return the law for equations that use V and no Ω: on a table of another rate the two do not go together."""
+    contact = touch(system, at.time, Vector.of(at.point), Quaternion.of(at.orientation))
+    rho, relative = contact.offset, Vector.of(at.velocity) - contact.support.material_velocity(contact.point)
+    across = relative.cross(rho) / rho.dot(rho)
+    Omega = across + rho * (Vector.of(at.angular_velocity).dot(rho) / rho.dot(rho))
+    return accelerations(system, replace(at, angular_velocity=np.asarray(Omega.array(), dtype=float)))
+
+
+def _fit(case: _Case, family: wrong_laws.Family, law: Callable[..., Any]) -> tuple[Array, Array] | None:
     def residual(numbers: Array) -> Array:
-        parts = case.shares(accelerations(family.system(case.system, numbers), case.at))
+        parts = case.shares(law(family.system(case.system, numbers), case.at))
         return np.concatenate([part.ravel() for part in parts]) / case.tolerance
 
     return wrong_laws.least_squares(residual, family.guess(case.system))

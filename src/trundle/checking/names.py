@@ -114,10 +114,31 @@ def recognise(headings: Iterable[str]) -> dict[str, tuple[str, str]]:
     return found
 
 
+def apart(heading: str) -> tuple[str, str]:
+    """Return a heading and the unit in brackets behind it.
+
+    Parameters
+    ----------
+    heading : str
+        Such as "x [mm]".
+
+    Returns
+    -------
+    name, unit : str
+        The unit empty where there is none.
+
+    Examples
+    --------
+    >>> apart("x [mm]"), apart("x")
+    (('x', 'mm'), ('x', ''))
+    """
+    bracketed = _BRACKETS.match(heading.strip())
+    return (bracketed[1], bracketed[2]) if bracketed else (heading.strip(), "")
+
+
 def _split(heading: str, known: Mapping[str, str]) -> tuple[str, str]:
     """Return the name in small letters, and the unit that stands behind it."""
-    bracketed = _BRACKETS.match(heading.strip())
-    name, unit = (bracketed[1], bracketed[2]) if bracketed else (heading.strip(), "")
+    name, unit = apart(heading)
     for greek in ("Ω", "ω"):
         name = name.replace(greek, "omega")
     name = re.sub(r"[\s.]+", "_", name.strip()).lower()
@@ -162,8 +183,7 @@ def mapped(columns: Mapping[str, str], headings: Iterable[str]) -> dict[str, tup
             raise UnknownNameError("column of trundle's", str(column), list(ALIASES)[:17])
         if heading not in headings:
             raise UnknownNameError("column of the file", str(heading), headings)
-        bracketed = _BRACKETS.match(heading)
-        found[column] = (heading, bracketed[2] if bracketed else _split(heading, {column: column})[1])
+        found[column] = (heading, apart(heading)[1])
     return found
 
 

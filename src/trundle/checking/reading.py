@@ -127,7 +127,6 @@ def read(data: Any, system: RollingSystem, conventions: Conventions) -> Theirs:
         source, data = Path(data).name, open_file(Path(data), conventions.columns)
     elif hasattr(data, "samples") and hasattr(data, "in_frame"):  # a Trajectory
         source, data = data.title, data.data
-    headings = [str(name) for name in (data.columns if hasattr(data, "columns") else data)]
     if hasattr(data, "data_vars"):
         conventions = _told(data, conventions)
         data = _variables(data)
@@ -137,6 +136,7 @@ def read(data: Any, system: RollingSystem, conventions: Conventions) -> Theirs:
         raise InvalidValueError(
             "data", "must be a file, a table, a dataset or a mapping from names to arrays", type(data).__name__
         )
+    headings = [str(name) for name in data]
     table = _flat(data, conventions)
     found = names.recognise(name for name in table if name not in conventions.columns.values())
     found |= names.mapped(conventions.columns, table)
@@ -158,7 +158,7 @@ def _variables(data: Any) -> dict[str, Any]:
             continue
         unit = str(variable.attrs.get("units", ""))
         unit = re.sub(r"\s+([a-z]+)-(\d)", r"/\1^\2", unit).replace("^1", "")  # "m s-1", as CF has it
-        labelled = f"{name} [{unit}]" if unit and variable.ndim == 1 else str(name)
+        labelled = f"{name} [{unit}]" if unit else str(name)
         found[labelled] = variable.values
     return found
 
@@ -175,15 +175,20 @@ def _flat(data: Mapping[str, Any], conventions: Conventions) -> dict[str, Array]
             continue  # a column of text
         if array.ndim == 1:
             table[str(name)] = array
-        elif array.ndim == 2 and str(name) in whole:
-            key = whole[str(name)]
+            continue
+        bare, unit = names.apart(str(name))
+        if bare not in whole:
+            continue
+        key, behind = whole[bare], f" [{unit}]" if unit else ""
+        if array.ndim == 2:
             if array.shape[1] not in ((2, 3) if key == "xyz" else (len(parts[key]),)):
                 raise InvalidValueError(
                     str(name), f"must have the shape (n, {len(parts[key])})", f"the shape {array.shape}"
                 )
             stem = "" if key == "xyz" else key
-            table |= {f"{stem}{part}": array[:, i] for i, part in zip(range(array.shape[1]), parts[key], strict=False)}
-        elif array.ndim == 3 and str(name) in whole and array.shape[1:] == (3, 3):
+            columns = zip(range(array.shape[1]), parts[key], strict=False)
+            table |= {f"{stem}{part}{behind}": array[:, i] for i, part in columns}
+        elif array.ndim == 3 and array.shape[1:] == (3, 3):
             table |= {f"r{i + 1}{j + 1}": array[:, i, j] for i in range(3) for j in range(3)}
     return _numbered(table, conventions)
 

@@ -15,7 +15,7 @@ from ..mechanics.contact import Contact, touch
 from ..mechanics.shapes import concentric_sphere
 from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem
-from .slopes import Estimate, derivative
+from .slopes import Estimate, Known, derivative
 
 Array = NDArray[np.float64]
 
@@ -61,13 +61,14 @@ class Theirs:
     height_given: bool = True
     doubt: Array | None = None
     source: str = ""
+    _windows: Known = field(default_factory=dict, compare=False, repr=False)  # goes on to changed copies
     _kept: dict[Any, Estimate] = field(default_factory=dict, init=False, compare=False, repr=False)
 
     def slope(self, name: str, index: NDArray[np.int_], order: int = 1) -> Estimate:
         """Return a derivative of one of the arrays at some samples; it is worked out once."""
         key = (name, order, index.size)
         if key not in self._kept:
-            self._kept[key] = derivative(self.time, getattr(self, name), index, order)
+            self._kept[key] = derivative(self.time, getattr(self, name), index, order, self._windows)
         return self._kept[key]
 
     @property

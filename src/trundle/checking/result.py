@@ -88,7 +88,7 @@ class Check(Card):
         if len(self.likely) == 1:
             lines.append(f"likely: {self.likely[0]}")
         elif self.likely:
-            lines.append("each of these explains it, and the data cannot tell them apart:")
+            lines.append("each of these explains it, and what was given cannot tell them apart:")
             lines += [f"  - {mistake}" for mistake in self.likely]
         if self.remark:
             lines.append(self.remark)

@@ -26,7 +26,14 @@ def friction(case: Case) -> Iterator[Trial]:
     slipping = slip.ratio > 3
     ahead = at.slip / np.maximum(slip.length, 1e-300)[:, None]
     mu = -(f * ahead).sum(axis=1) / N
-    some = slipping & _away_from_changes(slipping)
+    name = "velocity" if case.theirs.velocity is not None else "position"
+    slopes = [case.theirs.slope(name, at.index, 1 if name == "velocity" else 2)]
+    if case.theirs.angular_velocity is not None:
+        slopes.append(case.theirs.slope("angular_velocity", at.index))
+    away = _away_from_changes(slipping, at.index, max(slope.reach for slope in slopes))
+    some = slipping & away
+    if (case.series[ACCELERATION].ratio[~slipping & away] > 1).any():
+        return
     if some.sum() < 3 or not (N[some] > 0).all():
         return
     typical = float(np.median(mu[some]))
@@ -35,6 +42,7 @@ def friction(case: Case) -> Iterator[Trial]:
     if not typical > 0 or steady > _STEADY * typical + LAW_SHARE * case.tolerance:
         return
     ends = float(at.time[np.flatnonzero(slipping)[-1]])
+    numbers = {"friction": typical, "until": ends}
     until = "all through" if slipping[-1] else f"until t = {ends:.4g} s, and rolls from then on"
     mine = case.series.get(TURNING) or slip
     rest = Series(
@@ -50,15 +58,16 @@ def friction(case: Case) -> Iterator[Trial]:
         until = f"from t = {float(at.time[np.flatnonzero(slipping)[0]]):.4g} s on"
     says = f"It slips {until}: while it does, friction is μN against the slip, with μ = {typical:.4g}."
     excused = _EVERYTHING - {TURNING}
-    yield Trial("slipping", says, excused=excused, extra=(rest,), numbers={"friction": typical}, whole=False)
+    yield Trial("slipping", says, excused=excused, extra=(rest,), numbers=numbers, whole=False)
 
 
-def _away_from_changes(slipping: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _away_from_changes(slipping: NDArray[np.bool_], index: NDArray[np.int_], reach: int) -> NDArray[np.bool_]:
     """Leave out instants beside those where slipping begins or ends: slopes reach across."""
-    reach = max(2, slipping.size // 30)
     near = np.zeros(slipping.size, dtype=bool)
     for change in np.flatnonzero(np.diff(slipping.astype(int))):
-        near[max(0, change - reach) : change + reach + 2] = True
+        near |= (index >= index[change] - reach) & (index <= index[change + 1] + reach)
+    # One-sided slopes at the ends of the samples reach twice as far.
+    near[: int(np.searchsorted(index, index[0] + reach))] |= near[: 1 + int(np.searchsorted(index, 2 * reach))].any()
     return ~near
 
 

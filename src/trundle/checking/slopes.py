@@ -35,6 +35,8 @@ class Estimate:
         What it may be off by, as the length of a vector.
     noise : array (m,)
         Standard deviation of one sample about a smooth curve, as the length of a vector.
+    reach : int
+        How many samples to either side it was taken from.
 
     Examples
     --------
@@ -44,9 +46,27 @@ class Estimate:
     values: Array
     error: Array
     noise: Array
+    reach: int = 0
 
 
-def derivative(time: Array, values: Array, centres: NDArray[np.int_], order: int = 1) -> Estimate:
+@dataclass(frozen=True)
+class _Windows:
+    """What a fit needs of the instants alone, so that all arrays over the same instants share it."""
+
+    time: Array  # kept, so that no other array takes its place in memory, by which windows are found again
+    index: NDArray[np.int_]
+    row: Array  # (m, width), gives the derivative
+    fewer: Array  # what two degrees less take off it
+    basis: Array
+    inverse: Array
+
+
+Known = dict[tuple[int, ...], _Windows]
+
+
+def derivative(
+    time: Array, values: Array, centres: NDArray[np.int_], order: int = 1, known: Known | None = None
+) -> Estimate:
     """Return a derivative of sampled values, with its error.
 
     Parameters
@@ -59,6 +79,8 @@ def derivative(time: Array, values: Array, centres: NDArray[np.int_], order: int
         At which samples.
     order : int
         1 or 2; 0 smooths.
+    known : dict, optional
+        Keeps what was worked out of the instants, for other values at the same ones.
 
     Returns
     -------
@@ -75,41 +97,59 @@ def derivative(time: Array, values: Array, centres: NDArray[np.int_], order: int
     >>> bool(np.all(off < slope.error)), bool(slope.error.max() < 1e-3)
     (True, True)
     """
+    known = {} if known is None else known
     some = centres[:: max(1, centres.size // _TRIED)]
     best, chosen = np.inf, (_DEGREES[0], min(time.size, _DEGREES[0] + 3))
     for degree in _DEGREES:
         width, rising = degree + 3, 0
         while width <= min(time.size, _WIDEST) and rising < 2:
-            error = float(np.median(_fit(time, values, some, order, degree, width).error))
+            error = float(np.median(_fit(time, values, some, order, degree, width, known).error))
             if error < best:
                 best, chosen, rising = error, (degree, width), 0
             else:
                 rising += 1
             width = max(width + 2, int(width * 1.6))
-    return _fit(time, values, centres, order, *chosen)
+    return _fit(time, values, centres, order, *chosen, known)
 
 
-def _fit(time: Array, values: Array, centres: NDArray[np.int_], order: int, degree: int, width: int) -> Estimate:
+def _fit(
+    time: Array,
+    values: Array,
+    centres: NDArray[np.int_],
+    order: int,
+    degree: int,
+    width: int,
+    known: Known,
+) -> Estimate:
+    key = (id(time), centres.size, int(centres[-1]), order, degree, width)
+    if key not in known:
+        known[key] = _windows(time, centres, order, degree, width)
+    at = known[key]
+    about = values[centres]
+    y = values[at.index] - about[:, None, :]
+    estimate = np.einsum("mn,mnc->mc", at.row, y) + (about if order == 0 else 0.0)
+    truncation = np.linalg.norm(np.einsum("mn,mnc->mc", at.fewer, y), axis=1)
+    rest = y - at.basis @ (at.inverse @ y)
+    noise = np.sqrt((rest * rest).sum(axis=(1, 2)) / (width - degree - 1))
+    rounding = np.finfo(float).eps * float(np.abs(values).max())
+    noise = np.maximum(np.maximum(noise, float(np.median(noise))), rounding)
+    error = SIGMAS * noise * np.linalg.norm(at.row, axis=1) + _TRUNCATION * truncation
+    return Estimate(estimate, error, noise, width // 2 + 1)
+
+
+def _windows(time: Array, centres: NDArray[np.int_], order: int, degree: int, width: int) -> _Windows:
     first = np.clip(centres - width // 2, 0, time.size - width)
     index = first[:, None] + np.arange(width)
     half = (time[index[:, -1]] - time[index[:, 0]]) / 2
     middle = (time[index[:, -1]] + time[index[:, 0]]) / 2
     x = (time[index] - middle[:, None]) / half[:, None]
     here = (time[centres] - middle) / half
-    about = values[centres]
-    y = values[index] - about[:, None, :]
     basis = chebyshev.chebvander(x, degree)
     inverse = np.linalg.pinv(basis)
-    row = _row(here, inverse, order) / half[:, None] ** order
-    estimate = np.einsum("mn,mnc->mc", row, y) + (about if order == 0 else 0.0)
-    fewer = _row(here, np.linalg.pinv(basis[..., : degree - 1]), order) / half[:, None] ** order
-    truncation = np.linalg.norm(np.einsum("mn,mnc->mc", row - fewer, y), axis=1)
-    rest = y - basis @ (inverse @ y)
-    noise = np.sqrt((rest * rest).sum(axis=(1, 2)) / (width - degree - 1))
-    rounding = np.finfo(float).eps * float(np.abs(values).max())
-    noise = np.maximum(np.maximum(noise, float(np.median(noise))), rounding)
-    error = SIGMAS * noise * np.linalg.norm(row, axis=1) + _TRUNCATION * truncation
-    return Estimate(estimate, error, noise)
+    unit = half[:, None] ** order
+    row = _row(here, inverse, order) / unit
+    fewer = row - _row(here, np.linalg.pinv(basis[..., : degree - 1]), order) / unit
+    return _Windows(time, index, row, fewer, basis, inverse)
 
 
 def _row(here: Array, inverse: Array, order: int) -> Array:

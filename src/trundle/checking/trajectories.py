@@ -235,7 +235,10 @@ def _first_failure(case: Case) -> float | None:
 
 
 def _remark(case: Case, explained: bool) -> str:
-    if not case.failing or explained:
+    if not case.failing:
+        coarse = [one.name for one in case.series.values() if one.allowed > _TELLS]
+        return f"The data are too few or too noisy to tell: {', '.join(coarse)}." if coarse else ""
+    if explained:
         return ""
     failing = {series.name for series in case.failing}
     if failing == {OWN_RUN}:

@@ -113,6 +113,7 @@ def _rate_of(system: RollingSystem) -> float:
 def _rates(system: RollingSystem, numbers: Array, doubts: Array) -> Iterator[Trial]:
     """Say what the rate of the table means that fits."""
     omega, value, doubt = _rate_of(system), float(numbers[0]), float(doubts[0])
+    value = 0.0 if abs(value) <= 1e-9 * abs(omega) else value
     known = {
         -omega: ("sign-of-table-rate", "The table turns the wrong way: ω has the other sign"),
         0.0: ("table-motion-ignored", "The table's motion was ignored: they have ω = 0"),
