@@ -135,7 +135,7 @@ def check(
     series |= {one.name: one for one in integrals(system, at, tolerance)}
     compared, ours = own_run(system, theirs, at, tolerance)
     series |= {} if compared is None else {compared.name: compared}
-    figures = [*_told(theirs, at), *coarse, *map(_figure, series.values())]
+    figures = [*_told(theirs, at, start), *coarse, *map(_figure, series.values())]
     if compared is None:
         figures.append(CardFigure(OWN_RUN, float("nan"), note=f"not compared: {ours.remark}"))
     case = Case(system, theirs, tolerance, start, series, at)
@@ -205,14 +205,18 @@ def _system_of(scenario: Any, start: State | None) -> tuple[RollingSystem, State
     return scenario.system(), start or scenario.start_state(), scenario.title
 
 
-def _told(theirs: Theirs, at: Motion) -> list[CardFigure]:
+def _told(theirs: Theirs, at: Motion, start: State | None) -> list[CardFigure]:
     step = np.diff(theirs.time)
     even = np.ptp(step) <= 1e-3 * step.mean()
     noise = float(np.median(theirs.slope("position", at.index, 0).noise))
-    return [
+    found = [
         CardFigure("time between samples", float(np.median(step)), "s", note="even" if even else "the median; uneven"),
         CardFigure("scatter of the positions", noise, "m", note="about a smooth path: noise, or digits cut off"),
     ]
+    if start is not None:
+        away = float(np.linalg.norm((at.position[0] - np.asarray(start.position))[:2]))
+        found.append(CardFigure("start, from that of the scenario", away, "m", note="any start may be checked"))
+    return found
 
 
 def _figure(series: Series) -> CardFigure:
