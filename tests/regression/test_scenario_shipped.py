@@ -280,3 +280,80 @@ def test_real_demonstration_light_ball() -> None:
     times = np.linspace(0, 50, 501)
     apart = abs(uneven.path((0.2, 0.0), (0.0, 0.1), 50.0, 1e-6)(times)) - abs(steady(times))
     assert abs(apart).max() < 5e-3
+
+
+def test_ball_in_a_trough() -> None:
+    """(7/5) s̈ = −g sin(s/0.1 m) for the way s of the centre, and twice the angle's sine for the pendulum's period."""
+    from scipy.special import ellipk
+
+    name, g, length = "ball-in-a-trough", 9.80665, 0.125 - 0.025
+    small = np.sqrt(1.4 * length / g)
+    swing = 4 * small * ellipk(np.sin(np.radians(5)) ** 2)
+    says(name, f"once in {swing:.3f} s", f"take {2 * np.pi * small:.3f} s", f"{1 / small:.3f} rad/s")
+    says(name, f"would take {2 * np.pi * np.sqrt(length / g):.3f} s", f"{2 / 7 * np.tan(np.radians(10)):.3f} of the")
+
+
+def weighted(tilt: float, roll: float, until: float) -> tuple[float, float, float, Path]:
+    """Return offset and moment about the centre of mass of the weighted cylinder, its steepest slope, and its motion.
+
+    Lagrange's equation for the angle ψ of the weight from the normal, x = aψ, M(ψ) the moment about the contact:
+    M ψ̈ + ½ M′ ψ̇² = m g (a sin α + δ sin(ψ + α)).
+    """
+    a, bare, extra, at, g = 0.05, 0.3, 0.1, 0.04, 9.80665
+    m = bare + extra
+    d = extra * at / m
+    inertia = 0.5 * bare * a**2 + bare * d**2 + extra * (at - d) ** 2
+
+    def rates(_: float, y: np.ndarray) -> list[float]:
+        about = inertia + m * (a**2 + d**2 + 2 * a * d * np.cos(y[0]))
+        push = m * g * (a * np.sin(tilt) + d * np.sin(y[0] + tilt))
+        return [y[1], (push + m * a * d * np.sin(y[0]) * y[1] ** 2) / about]
+
+    solved = solve_ivp(rates, (0, until), [roll, 0.0], "DOP853", rtol=1e-11, atol=1e-12, dense_output=True)
+    return d, inertia, float(np.degrees(np.arcsin(d / a))), lambda t: solved.sol(t)
+
+
+def test_weighted_cylinder_on_incline() -> None:
+    name, tilt, a, m, g = "weighted-cylinder-on-incline", np.radians(5), 0.05, 0.4, 9.80665
+    start = np.radians(-149)
+    d, inertia, steepest, path = weighted(tilt, start, 3.0)
+    lean = np.arcsin(a * np.sin(tilt) / d)
+    assert d == pytest.approx(0.01)
+    says(
+        name,
+        f"= {1000 * a * np.sin(tilt):.2f} mm",
+        f"{np.degrees(lean):.1f} degrees",
+        f"{steepest:.1f} degrees nothing",
+    )
+    stays, tips = lean - np.pi - tilt, -lean - tilt
+    assert np.degrees(start - stays) == pytest.approx(10, abs=0.5)
+    assert np.degrees(stays) == pytest.approx(-159.2, abs=0.05)
+    times = np.linspace(0.5, 2, 30001)
+    turned = path(times)[1]
+    back = times[1:][(turned[:-1] > 0) & (turned[1:] <= 0)][0]
+    rates = []
+    for psi, sign in ((stays, -1), (tips, 1)):
+        about = inertia + m * (a**2 + d**2 + 2 * a * d * np.cos(psi))
+        rates.append(np.sqrt(sign * m * g * d * np.cos(psi + tilt) / about))
+    says(name, f"{back:.3f} s", f"once in {2 * np.pi / rates[0]:.3f} s", f"e in {1 / rates[1]:.3f} s")
+    says(name, f"tan(5 deg) = {np.tan(tilt):.4f}")
+
+
+def test_weighted_cylinder_too_steep() -> None:
+    name, tilt, a, g = "weighted-cylinder-too-steep", np.radians(12), 0.05, 9.80665
+    d, _, _, path = weighted(tilt, np.pi, 1.2)
+    says(name, f"= {1000 * a * np.sin(tilt):.2f} mm", f"{1000 * (a * np.sin(tilt) - d):.2f} mm")
+    times = np.linspace(0, 1.2, 120001)
+    psi, rate = path(times)
+    slows = np.flatnonzero(np.diff(np.sign(np.diff(rate))))[:2] + 1
+    says(name, f"{times[slows[0]]:.2f} s", f"{a * rate[slows[0]]:.3f} m/s", f"to {a * rate[slows[1]]:.3f} m/s")
+    first = times[(psi - np.pi >= 2 * np.pi).argmax()]
+    plain = np.sqrt(2 * 2 * np.pi * a / (2 / 3 * g * np.sin(tilt)))
+    says(name, f"takes {first:.3f} s", f"cylinder {plain:.3f} s")
+
+
+@pytest.mark.parametrize("name", ["ball-in-a-trough", "weighted-cylinder-on-incline", "weighted-cylinder-too-steep"])
+def test_what_may_rest_also_runs(name: str) -> None:
+    from trundle import Scenario
+
+    assert Scenario.load(name).run().card().passed

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -68,8 +69,12 @@ def examine(
     modes = _modes(system, time, place, turns)
     size = contact.offset.norm()
     stability = stability_of(modes, ignore_pivot=ON_THE_SPOT * size)
-    if line is not None and body_axis is not None and stability == "indifferent" and not line.flat:
-        stability = _by_the_sides(line.sides(angle or 0.0))
+    if line is not None and body_axis is not None and angle is not None and not line.flat:
+        if angle in line.ledges:
+            modes = tuple(replace(mode, rate=0j) for mode in modes)  # what is left of it is rounding
+            stability = "unstable"
+        elif stability == "indifferent":
+            stability = _by_the_sides(line.sides(angle))
     still = (0.0, 0.0, 0.0)
     return Equilibrium(
         state=State(_triple(contact.centre), still, still, (q.w, q.x, q.y, q.z), time),

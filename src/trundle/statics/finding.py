@@ -126,7 +126,7 @@ def _along_line(system: RollingSystem, start: State, place: Place, turns: Any) -
     if line.flat:
         stationary = [at(0.0, free=("along its line",), dimension=1)]
     else:
-        stationary = [at(angle) for angle in line.roots()]
+        stationary = [at(angle) for angle in sorted([*line.roots(), *line.ledges])]
     repeats = None
     if uniform and _straight_support(line):
         stationary = [one for one in stationary if (one.angle or 0.0) > line.low + NEAR] or stationary

@@ -96,37 +96,45 @@ class Line:
         return float(np.abs(self.works).max()) <= ROOT * self.scale
 
     def roots(self) -> list[float]:
-        """Return the angles at which the virtual work vanishes, rad; none where it vanishes everywhere."""
+        """Return the angles at which the virtual work changes sign, rad; none where it vanishes everywhere."""
         from scipy.optimize import brentq
 
         if self.flat:
             return []
-        works, angles, small = self.works, self.angles, ROOT * self.scale
-        found = [float(angle) for angle, work in zip(angles, works, strict=True) if abs(work) <= 1e-3 * small]
+        works, angles = self.works, self.angles
+        found = [float(angle) for angle, work in zip(angles, works, strict=True) if abs(work) <= 1e-3 * self._small]
         found += [
             brentq(lambda x: float(self.work(x)), angles[i], angles[i + 1], xtol=1e-15, rtol=1e-15)
             for i in np.flatnonzero(works[:-1] * works[1:] < 0)
         ]
-        found += self._touching(small)
-        return _apart(sorted(found))
+        return [root for root in _apart(sorted(found)) if all(abs(root - ledge) > NEAR for ledge in self.ledges)]
 
-    def _touching(self, small: float) -> list[float]:
-        """Return the angles at which the virtual work touches zero without crossing it."""
+    @cached_property
+    def ledges(self) -> list[float]:
+        """The angles at which the virtual work touches zero without changing sign, rad."""
         from scipy.optimize import minimize_scalar
 
+        if self.flat:
+            return []
         size = np.abs(self.works)
         lowest = np.flatnonzero((size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:])) + 1
+        # Half a step from a double root the work is of second order in the step.
+        near = min(2 * self.scale * (self.angles[1] - self.angles[0]) ** 2, 1e-3 * float(size.max())) + self._small
         found = []
-        for i in lowest:
-            # Half a step from a double root the work is of second order in the step.
-            if size[i] < 2 * self.scale * (self.angles[1] - self.angles[0]) ** 2 + small:
+        for i in lowest[size[lowest] < near]:
+            if self.works[i - 1] * self.works[i + 1] > 0:
                 bounds = (self.angles[i - 1], self.angles[i + 1])
+                options = {"xatol": 1e-9}
                 best = minimize_scalar(
-                    lambda x: abs(float(self.work(x))), bounds=bounds, method="bounded", options={"xatol": 1e-9}
+                    lambda x: abs(float(self.work(x))), bounds=bounds, method="bounded", options=options
                 )
-                if best.fun <= small:
+                if best.fun <= self._small:
                     found.append(float(best.x))
         return found
+
+    @property
+    def _small(self) -> float:
+        return ROOT * self.scale
 
     def sides(self, angle: float) -> tuple[float, float]:
         """Return the sign of the virtual work a little before an angle and a little after it."""
