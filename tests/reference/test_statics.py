@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from pathlib import Path
 
 import mpmath as mp
 import numpy as np
@@ -15,6 +17,7 @@ import trundle as tr
 from trundle.errors import InvalidValueError
 from trundle.mechanics.algebra import ZERO, Quaternion, Vector
 from trundle.mechanics.contact import roll, touch
+from trundle.mechanics.loads import BodyMotion, Load
 from trundle.solve.tracing import state_rates
 from trundle.statics import rest
 
@@ -263,6 +266,18 @@ def test_a_cylinder_in_a_trough_rests_as_a_ball_does_but_for_its_inertia() -> No
     assert only.dimension == 0
 
 
+def test_a_search_from_under_a_log_finds_the_top() -> None:
+    """Stationary on top: the centre of mass over the contact; it is looked for past the top from both hands."""
+    system = in_trough(WEIGHTED, 0.08, side="outside")
+    found = tr.equilibria(system)  # from the lowest line, under which nothing stays
+    assert len(found) > 0
+    for one in found:
+        away = np.subtract(one.state.position, one.contact)
+        np.testing.assert_allclose(np.cross(away, [1.0, 0.0, 0.0]), 0, atol=1e-12)  # gravity is along the first axis
+        assert one.normal_force > 0
+        assert one.contact[0] < 0
+
+
 # --- loads without a potential ----------------------------------------------------------------------------
 
 
@@ -299,6 +314,45 @@ def test_a_torque_holds_a_cylinder_on_a_slope_where_a_weight_cannot() -> None:
     for one in found:
         assert math.sin(one.roll + tilt) == pytest.approx(-(1 - held) * A * math.sin(tilt) / DELTA, abs=1e-11)
     assert not found.conservative
+
+
+@dataclass(frozen=True)
+class Spring(Load):
+    """A spring to a point of the table, F = −c(x − x₀, y − y₀, 0)."""
+
+    stiffness: float
+    x: float
+    y: float
+
+    def force(self, motion: BodyMotion) -> Vector:
+        return Vector(motion.position.x - self.x, motion.position.y - self.y, 0.0) * -self.stiffness
+
+    def potential(self, motion: BodyMotion) -> object:
+        x, y = motion.position.x - self.x, motion.position.y - self.y
+        return 0.5 * self.stiffness * (x * x + y * y)
+
+
+def test_a_spring_holds_a_ball_and_a_weighted_cylinder() -> None:
+    """On a slope the ball hangs m g sin α/c below the spring's end; c x = m g sin α for the cylinder's axis is bent."""
+    c, tilt = 7.0, 0.1
+    (ball,) = tr.equilibria(on_plane(BALL, tilt=tilt, loads=(Spring(c, 0.3, -0.2),)))
+    assert ball.position == pytest.approx((0.3 + G * math.sin(tilt) / c, -0.2), abs=1e-12)
+    for mode in ball.modes[:2]:
+        assert mode.frequency**2 == pytest.approx(c / 1.4, rel=1e-12)
+    found = tr.equilibria(on_plane(WEIGHTED, tilt=tilt, loads=(Spring(c, 0.0, 0.0),)), turns=2)
+    assert found.repeats is None
+
+    def energy(psi: float, first: float = A) -> float:
+        x = A * psi + DELTA * math.sin(psi)  # of the centre of mass; it starts with the weight on top, at x = 0
+        return M * G * ((first + DELTA * math.cos(psi)) * math.cos(tilt) - x * math.sin(tilt)) + 0.5 * c * x * x
+
+    psi = np.linspace(-4 * np.pi, 4 * np.pi, 200001)
+    U = np.array([energy(angle) for angle in psi])
+    lows = psi[1:-1][(U[1:-1] < U[:-2]) & (U[1:-1] < U[2:])]
+    highs = psi[1:-1][(U[1:-1] > U[:-2]) & (U[1:-1] > U[2:])]
+    for kind, places in (("stable", lows), ("unstable", highs)):
+        ours = sorted(one.distance / A for one in found if one.stability == kind)
+        np.testing.assert_allclose(ours, places, atol=2 * (psi[1] - psi[0]))
 
 
 # --- refusals and limits ----------------------------------------------------------------------------------
@@ -377,3 +431,41 @@ def test_the_work_is_the_slope_of_the_energy() -> None:
             rest.potential(system, 0.0, *there) - first, abs=SOLVER(100, 1e-13)
         )
         assert math.hypot(there[0].x, there[0].y) == pytest.approx(0.5, abs=CLOSE)
+
+
+# --- the figure -------------------------------------------------------------------------------------------
+
+
+def test_the_figure_marks_each_place_and_draws_it() -> None:
+    found = tr.equilibria(on_plane(WEIGHTED, tilt=0.1), title="On a slope")
+    figure = found.plot()
+    curve, *drawings = figure.axes
+    line, marks = curve.lines[0], [line for line in curve.lines if line.get_marker() in "o^"]
+    assert [mark.get_marker() for mark in marks] == ["o", "^"]
+    for mark in marks:  # on the curve, at a place where it is level
+        (x,), (y,) = mark.get_data()
+        places, energies = line.get_data()
+        assert float(np.interp(x, places, energies)) == pytest.approx(float(y), abs=1e-2 * np.ptp(energies))
+    assert len(drawings) == len(found)
+    for ax in drawings:
+        assert ax.get_aspect() == 1.0
+        assert {"m g", "N", "f"} <= {text.get_text() for text in ax.texts}
+    assert figure.texts[0].get_text() == "On a slope"
+
+
+@pytest.mark.parametrize(
+    "system",
+    [
+        on_plane(BALL, tilt=0.1),
+        on_plane(BALL),
+        on_plane(ECCENTRIC),
+        on_plane(WEIGHTED, loads=(tr.Torque((0.0, 0.01, 0.0)),)),
+        on_plane(BALL, loads=(tr.Torque((0.0, 0.0, 0.01)),)),
+        on_plane(WEIGHTED, gravity=0.0),
+    ],
+)
+def test_every_outcome_has_a_figure_and_words(system: tr.RollingSystem, tmp_path: Path) -> None:
+    found = tr.equilibria(system)
+    found.plot().savefig(tmp_path / "figure.png")
+    assert (tmp_path / "figure.png").stat().st_size > 10_000
+    assert str(found).splitlines()[-1].startswith("searched: ")

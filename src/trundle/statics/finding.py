@@ -53,7 +53,7 @@ def equilibria(system: Any, start: State | None = None, *, turns: Any = None, ti
     InvalidValueError
         If the support moves, the loads change with time, or they push a cylinder out of its line.
 
-    Source: d'Alembert's principle [landau1976, section 38], with equations T1-T3 at Ω = 0.
+    Source: d'Alembert's principle [landau1976], section 38, with equations T1-T3 at Ω = 0.
 
     Examples
     --------

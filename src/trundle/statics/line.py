@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ..errors import SolverError
 from ..mechanics.algebra import ZERO, Quaternion, Vector
-from ..mechanics.contact import Contact, touch
+from ..mechanics.contact import Contact, roll, touch
 from ..mechanics.system import RollingSystem
 from . import rest
 
@@ -123,10 +123,11 @@ class Line:
         found = []
         for i in lowest[size[lowest] < near]:
             if self.works[i - 1] * self.works[i + 1] > 0:
-                bounds = (self.angles[i - 1], self.angles[i + 1])
-                options = {"xatol": 1e-9}
                 best = minimize_scalar(
-                    lambda x: abs(float(self.work(x))), bounds=bounds, method="bounded", options=options
+                    lambda x: abs(float(self.work(x))),
+                    bounds=(float(self.angles[i - 1]), float(self.angles[i + 1])),
+                    method="bounded",
+                    options={"xatol": 1e-9},
                 )
                 if best.fun <= self._small:
                     found.append(float(best.x))
@@ -159,7 +160,7 @@ def lay(system: RollingSystem, time: float, p: Vector, q: Quaternion, axis: Vect
         Along the support: positive angles move the body along axis × n.
     most : (float, float)
         How far it turns either way on a support that does not come round, rad, and on one that does: there it ends
-        half way round the support.
+        half way round the support, or three quarters where it starts under it.
 
     Returns
     -------
@@ -199,14 +200,18 @@ def _half(
         against = -rest.virtual_work(system, time, contact, now, axis)
         return [*moves, moves.dot(onward), leans.dot(onward), against]
 
-    def round_half(_: float, y: Array) -> float:
-        return math.pi - abs(y[4])
+    begin = roll(system, time, p, q, ZERO)
+    # From under a support, where nothing stays, look past its other side from either hand.
+    furthest = math.pi if begin.reaction.dot(begin.contact.normal) >= 0 else 1.5 * math.pi
+
+    def far_round(_: float, y: Array) -> float:
+        return furthest - abs(y[4])
 
     def rim(_: float, y: Array) -> float:
         edge = system.support.surface.rim
         return 1.0 if edge is None else float(edge) - math.hypot(*y[:3])
 
-    events: list[Any] = [round_half, rim]
+    events: list[Any] = [far_round, rim]
     for event in events:
         event.terminal = True
     curved = _onward(touch(system, time, p, q), axis)[1].norm() > 0

@@ -65,7 +65,7 @@ def report(result: Equilibria) -> str:
     if result.repeats is not None and result.found:
         lines.append(_repeats(result.repeats, result.found))
     if not result.conservative:
-        lines.append("no energy: some load has no potential, so these are equilibria by virtual work")
+        lines.append("no energy: some load has no potential; searched by virtual work")
     lines.append(f"searched: {result.searched}")
     return "\n".join(lines)
 
@@ -104,6 +104,7 @@ def _facts(result: Equilibria, one: Equilibrium) -> list[str]:
 def _where(result: Equilibria, one: Equilibrium) -> str:
     kinds = result.system.support.surface.coordinates
     u, v = (_tidy(math.degrees(x) if kind == "angle" else x) for x, kind in zip(one.position, kinds, strict=True))
+    u = 180.0 if kinds[0] == "angle" and u == -180 else u
     where = f"{u:.6g}° round, {v:.6g} m along" if kinds[0] == "angle" else f"x = {u:.6g} m, y = {v:.6g} m"
     if one.roll is None:
         return where
