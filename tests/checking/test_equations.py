@@ -81,7 +81,7 @@ def test_a_wrong_term_is_named_and_a_state_shows_it(case: str) -> None:
 
 
 def test_the_ratio_that_fits() -> None:
-    (mistake,) = tr.check_equations(WRONG["shell"][0], system(BALL)).likely
+    (mistake,) = tr.check_equations(WRONG["rate of a shell"][0], system(BALL)).likely
     assert mistake.numbers["inertia_ratio"] == pytest.approx(2 / 3, rel=1e-9)
 
 

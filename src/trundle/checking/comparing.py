@@ -15,7 +15,8 @@ from ..mechanics.loads import BodyMotion
 from ..mechanics.system import RollingSystem
 from ..solve import methods
 from ..solve.samples import Samples
-from .examining import LAW_SHARE, Motion, Series
+from .examining import LAW_SHARE, Series
+from .motion import Motion
 from .record import Array, Theirs
 
 _MOST_RADIANS = 1e4  # of turning that a run of ours follows
@@ -133,6 +134,7 @@ def own_run(system: RollingSystem, theirs: Theirs, at: Motion, tolerance: float)
     bound = asked + LAW_SHARE * tolerance * way[:count] + at.position_error[:count] + np.asarray(moved)
     note = f"distance between the two paths, share of their extent; ours: {method}"
     distance = distance[:, :2] if not theirs.height_given else distance
+    asked += LAW_SHARE * tolerance * float(way[-1])
     return Series(OWN_RUN, at.time[:count], distance, size, bound, asked, note), OwnRun(where, method)
 
 

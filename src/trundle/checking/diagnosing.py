@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 from ..errors import TrundleError
 from ..mechanics.system import RollingSystem, State
 from .comparing import integrals, own_run
-from .examining import Law, Motion, Series, examine, independent_law
+from .examining import Law, Series, examine, independent_law
+from .motion import Motion
 from .record import Theirs
 from .result import Mistake
 

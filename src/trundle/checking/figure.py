@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from .trajectories import Drawn
 
 WIDTH, LEFT, STRIPS, BETWEEN, EDGE = 11.4, 0.72, 5.1, 0.95, 0.2
-FOOT, HEADER, EACH, GAP, LEAST = 0.55, 1.02, 0.66, 0.3, 4.4
+FOOT, HEADER, EACH, GAP, LEAST = 0.55, 1.02, 0.66, 0.3, 4.7
 _KEY = "residuals as shares; dashed: the most allowed"
 _DEEPEST = 1e-9  # of the bound: what lies lower is drawn there
 
@@ -41,7 +41,7 @@ def draw(check: Check, drawn: Drawn) -> Sheet:
                 ax.set_xlabel(f"time ({clock.symbol})", labelpad=2)
         sheet.text(LEFT / WIDTH, 1 - 0.78 / height, _KEY, fontsize=8.8, color=GREY, va="baseline")
         left = LEFT + STRIPS + BETWEEN
-        side = min(WIDTH - left - EDGE, height - FOOT - HEADER - 0.1)
+        side = min(WIDTH - left - EDGE, height - FOOT - HEADER - 0.4)
         _paths(sheet.add_box(left, height - HEADER - side, side, side), check, drawn)
     return sheet
 
@@ -50,8 +50,8 @@ def _says(check: Check) -> str:
     if check.passed:
         return "it rolls without slipping and obeys the law, within the bounds"
     if not check.likely:
-        return "it departs from rolling, and nothing tried here explains it"
-    text = check.likely[0].says if len(check.likely) == 1 else "or: ".join(one.says + " " for one in check.likely)
+        return check.remark.partition(": look")[0].partition(": no single")[0]
+    text = " Or: ".join(one.says for one in check.likely)
     return "likely: " + (text if len(text) < 165 else text[:164] + "…")
 
 

@@ -12,8 +12,8 @@ from ..mechanics.bodies import Body, Isotropic, Principal
 from ..mechanics.loads import Force, Load
 from ..mechanics.motions import Fixed, Motion, Spin, SupportState
 from ..mechanics.system import RollingSystem
-from .examining import Motion as TheirMotion
 from .examining import eliminated_law
+from .motion import Motion as TheirMotion
 from .record import Array
 
 

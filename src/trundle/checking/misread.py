@@ -12,7 +12,8 @@ from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.shapes import concentric_sphere
 from ..mechanics.surfaces import Plane
 from .diagnosing import Case, Trial
-from .examining import GAP, TURN, Series, turning_of
+from .examining import GAP, TURN, Series
+from .motion import turning_of
 from .reading import from_frame
 from .record import Array, orientation_from
 from .slopes import SIGMAS

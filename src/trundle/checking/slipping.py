@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from ..mechanics.system import RollingSystem
 from ..verify.law import _applied as applied
 from .diagnosing import Case, Trial
-from .examining import ACCELERATION, GAP, LAW_SHARE, PATH, SLIP, TURN, TURNING, Motion, Series, independent_law
+from .examining import ACCELERATION, GAP, LAW_SHARE, PATH, SLIP, TURN, TURNING, Series, independent_law
+from .motion import Motion
 from .record import Array, Theirs
 
 _EVERYTHING = frozenset({GAP, PATH, TURN, SLIP, ACCELERATION, TURNING})

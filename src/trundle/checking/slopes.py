@@ -21,6 +21,7 @@ _WIDEST = 768  # samples
 _TRIED = 24  # windows on which degree and width are chosen
 SIGMAS = 6.0  # of the noise; thousands of numbers are looked at, and none of them may fail by chance
 _TRUNCATION = 2.0
+_UNEVEN = 10.0  # times the usual noise: numbers of so many digits are rounded at another place where they are larger
 
 
 @dataclass(frozen=True)
@@ -134,7 +135,8 @@ def _fit(
     rounding = np.finfo(float).eps * float(np.abs(values).max())
     noise = np.maximum(np.maximum(noise, float(np.median(noise))), rounding)
     error = SIGMAS * noise * np.linalg.norm(at.row, axis=1) + _TRUNCATION * truncation
-    return Estimate(estimate, error, noise, width // 2 + 1)
+    # A bend that no polynomial follows is no noise of the samples themselves.
+    return Estimate(estimate, error, np.minimum(noise, _UNEVEN * float(np.median(noise))), width // 2 + 1)
 
 
 def _windows(time: Array, centres: NDArray[np.int_], order: int, degree: int, width: int) -> _Windows:

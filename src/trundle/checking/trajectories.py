@@ -14,8 +14,9 @@ from ..scenario import ScenarioFile
 from ..verify import CardFigure
 from .comparing import OWN_RUN, OwnRun, integrals, own_run
 from .diagnosing import Case, diagnose
-from .examining import ACCELERATION, Motion, Series, examine, motion_of, with_orientation
+from .examining import ACCELERATION, Series, examine
 from .misread import READINGS
+from .motion import Motion, motion_of, with_orientation
 from .reading import Conventions, read
 from .record import Theirs, checked
 from .result import Check
@@ -24,6 +25,7 @@ from .wrong_laws import LAWS
 
 TOLERANCE = 1e-5  # a share; what good methods leave is far below, and what a wrong law leaves far above
 _TELLS = 0.2  # a bound, as a share, beyond which the data say nothing of a check
+_LATER = 0.1  # of the run, that must hold before something can be said to change
 _FOLLOWED = 2.0  # rad between samples
 _CRUDE = 0.02  # a residual, as a share, that is more likely a matter of steps than of mechanics
 
@@ -250,7 +252,9 @@ def _remark(case: Case, explained: bool) -> str:
             "At each instant the law holds as closely as the data can show, and yet the path departs from ours: "
             "small errors add up. Shorter steps, or a smaller tolerance of the integrator, would tell."
         )
-    law = case.series[ACCELERATION]
+    first, law = _first_failure(case), case.series[ACCELERATION]
+    if first is not None and first > float(case.theirs.time[0]) + _LATER * np.ptp(case.theirs.time):
+        return f"Until t = {first:.4g} s all holds. Nothing tried here explains the whole: look for what changes there."
     if all(series.share < _CRUDE for series in case.failing if series.name != OWN_RUN):
         return (
             f"Nothing tried here explains it. The law is off by {law.share:.2g} at most: so little is more often a "
