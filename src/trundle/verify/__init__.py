@@ -9,27 +9,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanics.algebra import Quaternion, Vector
+from ..mechanics.algebra import Vector
 from ..mechanics.invariants import Record, invariants_of
 from ..mechanics.system import RollingSystem, State
 from ..solve.exact import ClosedForm, SphereOnPlane, closed_form
 from ..solve.methods import solver, tolerance_of
 from ..solve.samples import Samples
+from .bounds import EXACT, SOLVER, Array, bound_of, largest, pace_of, speed_of, turned_in
 from .card import Card, CardFigure, checked
 from .circle import measure
+from .compared import cross_check, same_again
 from .law import residuals, window_times
 from .plane import reactions, straightness
 
-Array = NDArray[np.float64]
-
-# The two tolerances of a card, as shares: what rounding may do, and how many times the tolerance asked a method may
-# be off (more after a thousand radians of turning, for what adds up over a run).
-EXACT, SOLVER = 1e-12, 1e3
 _MOST_SAMPLES = 20_000  # looked at for integrals
 _RUN_AGAIN = 2000  # samples
-_CROSS_CHECKED = 200  # instants
 _FITTED, _CIRCLES_FITTED = 2000, 20  # points and, where they are taken anew, circles
-_MOST_RADIANS = 50_000.0  # of turning that a cross-check follows
 
 
 def card(system: RollingSystem, start: State, samples: Samples, method: str, title: str = "") -> Card:
@@ -65,12 +60,12 @@ def card(system: RollingSystem, start: State, samples: Samples, method: str, tit
     some = samples.part(slice(None, None, every)) if every > 1 else samples
     figures = [
         _no_slip(system, some, method),
-        *straightness(system, some, _bound(method, _turned(some))),
+        *straightness(system, some, bound_of(method, turned_in(some))),
         *_law(system, start, some, method),
-        *reactions(system, some, _bound(method, _turned(some))),
+        *reactions(system, some, bound_of(method, turned_in(some))),
         *_integrals(system, some, method),
         *_guiding_centre(motion, start, some, method),
-        *_cross_check(system, start, some, method, motion),
+        *cross_check(system, start, some, method, motion),
         *_circle(system, motion, start, samples, method),
         *_contact_force(system, samples),
     ]
@@ -84,36 +79,20 @@ def _described(method: str, motion: ClosedForm | None) -> str:
     return f"{name}, tolerance {tolerance_of(method):g}"
 
 
-def _bound(method: str, turned: float = 1.0) -> float:
-    return max(EXACT, SOLVER * tolerance_of(method) * max(1.0, turned / SOLVER))
-
-
-def _turned(samples: Samples) -> float:
-    """Return about how many radians the body turned."""
-    span = float(samples.time[-1] - samples.time[0])
-    return float(np.linalg.norm(samples.angular_velocity, axis=1).max()) * span
-
-
-def _speed(system: RollingSystem, at: Samples) -> float:
-    """Return the largest of V, Ω×ρ and u: any of them may be the small difference of two large ones."""
-    return max(float(np.max(speed.norm())) for speed in at.speeds(system))
-
-
 def _no_slip(system: RollingSystem, at: Samples, method: str) -> CardFigure:
     V, turning, u = at.speeds(system)
-    slip, size = (V + turning - u).norm(), max(_speed(system, at), 1e-300)
-    return checked("no slip", float(np.max(slip)) / size, _bound(method), "|V + Ω×ρ − u| over the speed")
+    slip, size = (V + turning - u).norm(), max(speed_of(system, at), 1e-300)
+    return checked("no slip", float(np.max(slip)) / size, bound_of(method), "|V + Ω×ρ − u| over the speed")
 
 
 def _law(system: RollingSystem, start: State, at: Samples, method: str) -> Iterator[CardFigure]:
     begin, end = float(at.time[0]), float(at.time[-1])
-    rates = (float(system.support.motion.fastest_rate), _pace_of_loads(system, at), 1 / (end - begin))
-    fastest = float(np.linalg.norm(at.angular_velocity, axis=1).max()) + sum(rates)
+    fastest = pace_of(system, at) + 1 / (end - begin)
     # Short of a rim by a little, which the method run again may reach a rounding earlier.
     times = window_times(begin, end - (1e-9 * (end - begin) if at.events else 0.0), fastest)
     sampled = at.part(slice(None, None, max(1, at.time.size // _RUN_AGAIN)))
     again = solver(method)(system, start, np.union1d(times, sampled.time), tolerance_of(method))
-    yield _same(system, sampled, again, method)
+    yield same_again(system, start, sampled, again, method)
     windows = again.part(np.searchsorted(again.time, times.ravel()))
     found = residuals(system, windows, times)
     # A slope taken over a third of a radian of turning multiplies a method's own error by some tens.
@@ -125,46 +104,8 @@ def _law(system: RollingSystem, start: State, at: Samples, method: str) -> Itera
     )
 
 
-def _pace_of_loads(system: RollingSystem, at: Samples) -> float:
-    """Return how fast loads that vary with time do so, as the samples show it, 1/s."""
-    varying = [load for load in system.loads if not load.constant and load.linear_drag is None]
-    pace, steps = 0.0, np.diff(at.time)[:, None]
-    for load in varying:
-        for vector in (load.force(at.motion(system)), load.torque(at.motion(system))):
-            values = np.broadcast_to(vector.array(), at.position.shape)
-            pace = max(pace, float(np.abs(np.diff(values, axis=0) / steps).max()) / max(_largest(values), 1e-300))
-    return pace
-
-
-def _same(system: RollingSystem, ours: Samples, again: Samples, method: str) -> CardFigure:
-    """Compare samples with the same method run again: then what is checked of that run holds for them."""
-    theirs = again.part(np.clip(np.searchsorted(again.time, ours.time), 0, again.time.size - 1))
-    known = theirs.time == ours.time
-    ours, theirs = ours.part(known), theirs.part(known)
-    turned, sizes = _turned(ours), _sizes(system, ours)
-    sizes |= {"contact": sizes["position"], "contact_force": _largest(ours.contact_force)}
-    difference = max(
-        _largest(getattr(ours, field) - getattr(theirs, field)) / max(size, 1e-300) for field, size in sizes.items()
-    )
-    side = np.sign((ours.orientation * theirs.orientation).sum(axis=1, keepdims=True))  # q and −q are one rotation
-    angle = _largest(ours.orientation - side * theirs.orientation)
-    rounding = max(EXACT, 1e-15 * turned, 100 * tolerance_of(method) * turned)  # of an angle, which adds up
-    bound = _bound(method, turned)
-    share = max(difference, angle * bound / rounding)
-    return checked(
-        "the method run again", share, bound, f"gives the same motion, force and orientation at {known.sum()} instants"
-    )
-
-
-def _sizes(system: RollingSystem, at: Samples) -> dict[str, float]:
-    """Return against what a difference of each quantity is small or not."""
-    arm, turning = _largest(at.contact - at.position), _largest(at.angular_velocity)
-    fastest = max(_speed(system, at), arm * turning)
-    return {"position": _largest(at.position), "velocity": fastest, "angular_velocity": fastest / arm}
-
-
 def _integrals(system: RollingSystem, at: Samples, method: str) -> Iterator[CardFigure]:
-    record, bound = Record(at.motion(system), Vector.of(at.contact)), _bound(method, _turned(at))
+    record, bound = Record(at.motion(system), Vector.of(at.contact)), bound_of(method, turned_in(at))
     for integral in invariants_of(system):
         terms = [_as_array(term, at.time.size) for term in integral.terms(system, record)]
         drift = _drift(sum(terms), max(float(np.abs(term).max()) for term in terms))
@@ -191,50 +132,11 @@ def _guiding_centre(motion: ClosedForm | None, start: State, at: Samples, method
     arm = -1j * (rate - drift) / kappa
     centre = zeta - arm - drift * t
     size = max(np.abs(zeta).max(), np.abs(arm).max(), np.abs(drift * t).max())
-    bound = _bound(method, _turned(at))
+    bound = bound_of(method, turned_in(at))
     yield checked(
         "drift of the circle's centre", _drift(centre, size), bound, "ζ + i(ζ̇ − v_d)/κ − v_d t stays the same"
     )
     yield checked("drift of the circle's radius", _drift(np.abs(arm), size), bound, "|ζ̇ − v_d|/κ stays the same")
-
-
-def _cross_check(
-    system: RollingSystem, start: State, at: Samples, method: str, motion: ClosedForm | None
-) -> Iterator[CardFigure]:
-    """Compare a closed form with a numerical method, whichever of the two made the run."""
-    if motion is None:
-        return
-    from ..solve.taylor import available
-
-    other = ("taylor" if available() else "runge-kutta") if method == "exact" else "exact"
-    numerical = other if method == "exact" else method
-    span = float(at.time[-1] - start.time)
-    speed = float(np.linalg.norm(at.angular_velocity, axis=1).max())
-    times = start.time + np.linspace(0.0, min(span, _MOST_RADIANS / max(speed, 1e-300)), _CROSS_CHECKED)
-    ours, theirs = (solver(name)(system, start, times, tolerance_of(name)) for name in (method, other))
-    count = min(theirs.time.size, ours.time.size)  # one may reach the rim first, by a rounding
-    ours, theirs = ours.part(slice(0, count)), theirs.part(slice(0, count))
-    turned = speed * float(ours.time[-1] - start.time)
-    # Both start from rounded numbers; near a separatrix that shows as time spent there.
-    bound = _bound(numerical, turned) * motion.sensitivity
-    over = f"over {ours.time[-1] - start.time:g} s, {count} instants"
-    name = f"closed form against {'Taylor' if numerical == 'taylor' else 'Runge-Kutta'}"
-    sizes = _sizes(system, ours)
-    difference = max(
-        _largest(getattr(ours, field) - getattr(theirs, field)) / max(size, 1e-300) for field, size in sizes.items()
-    )
-    yield checked(name, difference, bound, f"position, velocity, Ω; {over}")
-    turn = Quaternion.of(ours.orientation) * Quaternion.of(theirs.orientation).conjugate
-    angle = 2 * np.linalg.norm(turn.array()[:, 1:], axis=1).max()
-    # The angle is the error of Ω added up over the turning.
-    allowed = 100 * tolerance_of(numerical) * max(10.0, turned) * motion.sensitivity
-    alone = "; exact from the place alone" if motion.straight_turn(0.0) is not None else ""
-    note = f"angle between the two, after {turned:.3g} rad{alone}"
-    yield checked(f"{name}, orientation", angle, allowed, note, "rad")
-
-
-def _largest(array: Array) -> float:
-    return float(np.linalg.norm(array, axis=-1).max())
 
 
 def _circle(
@@ -250,7 +152,7 @@ def _circle(
     if motion.circle_radius == 0:
         moved = float(np.abs(path - path[0] - complex(*motion.drift_velocity) * t).max())
         size = max(float(np.abs(path).max()), 1e-300)
-        yield checked("stays where it was put", moved / size, _bound(method), "largest departure over the distance")
+        yield checked("stays where it was put", moved / size, bound_of(method), "largest departure over the distance")
         return
     if found is None or turns < 0.25 or found.rate_error > 1e-6 * abs(motion.kappa):
         yield CardFigure("circle not measured", turns, "turns", note="the run shows too little of the circle")
@@ -300,7 +202,7 @@ def _contact_force(system: RollingSystem, samples: Samples) -> Iterator[CardFigu
     N = np.einsum("ni,ni->n", samples.contact_force, normal)
     f = np.linalg.norm(samples.contact_force - N[:, None] * normal, axis=1)
     least = int(np.argmin(N))
-    weightless = _largest(samples.contact_force) == 0
+    weightless = largest(samples.contact_force) == 0
     pushed = None if weightless else bool(N[least] > 0)
     held = "; a support cannot pull: it would come off" if pushed is False else ""
     yield CardFigure(

@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..mechanics.algebra import E_Z, Quaternion, Vector
 from ..mechanics.scalars import is_zero
 from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem
 from ..solve.samples import Samples
+from .bounds import Array, largest
 from .card import CardFigure, checked
-
-Array = NDArray[np.float64]
 
 
 def reactions(system: RollingSystem, at: Samples, bound: float) -> Iterator[CardFigure]:
@@ -50,14 +48,14 @@ def reactions(system: RollingSystem, at: Samples, bound: float) -> Iterator[Card
     force, torque = system.loads_on(at.motion(system))
     F, driven = (_in_plane(v, at) for v in (force, torque.cross(E_Z) * (1 / a)))
     R = at.contact_force[:, :2]
-    size = max(_largest(F), _largest(driven), 1e-300)
-    if max(_largest(F), _largest(driven)) == 0:  # nothing pushes: nothing to compare with
+    size = max(largest(F), largest(driven), 1e-300)
+    if max(largest(F), largest(driven)) == 0:  # nothing pushes: nothing to compare with
         return
     wanted = (driven - k * F) / (1 + k)
-    off = _largest(R - wanted) / size
+    off = largest(R - wanted) / size
     yield checked("reaction in the plane", off, bound, f"(K×n/a − kF)/(1 + k); at the start {_pair(R[0])} N")
     gained = (F + driven) / (m * (1 + k))
-    off = _largest((F + R) / m - gained) * m / size
+    off = largest((F + R) / m - gained) * m / size
     note = f"(F + K×n/a)/(m(1 + k)); at the start {_pair(gained[0])} m/s²"
     yield checked("acceleration in the plane", off, bound, note)
 
@@ -89,7 +87,11 @@ def straightness(system: RollingSystem, at: Samples, bound: float) -> Iterator[C
         return
     axis = (Quaternion.of(at.orientation).matrix() @ system.body.shape.axis).array()
     along = np.einsum("ni,ni->n", at.angular_velocity, axis)
-    across = _largest(at.angular_velocity - along[:, None] * axis) / max(_largest(at.angular_velocity), 1e-300)
+    # Beside what the contact force could bring about in the run: at rest, Ω itself is nothing but rounding.
+    arm, span = largest(at.contact - at.position), float(at.time[-1] - at.time[0])
+    driven = 1e-3 * largest(at.contact_force) / float(system.body.mass) * span / arm
+    size = max(largest(at.angular_velocity), driven, 1e-300)
+    across = largest(at.angular_velocity - along[:, None] * axis) / size
     askew = float(np.abs(np.einsum("ni,ni->n", axis, at.normals(system))).max())
     yield checked(
         "rolls straight", max(across, askew), bound, "share of Ω across the axis, and of the axis off the wall"
@@ -103,10 +105,6 @@ def _is_fixed(system: RollingSystem) -> bool:
 
 def _in_plane(v: Vector, at: Samples) -> Array:
     return np.broadcast_to(v.array(), at.position.shape)[:, :2]
-
-
-def _largest(array: Array) -> float:
-    return float(np.linalg.norm(array, axis=-1).max())
 
 
 def _pair(pair: Array) -> str:

@@ -56,11 +56,6 @@ class ClosedForm:
         """Whether the body circles steadily about a point."""
         return False
 
-    @property
-    def sensitivity(self) -> float:
-        """How many times more than it shows a rounding of the start may show later; above 1 near a separatrix."""
-        return 1.0
-
     def straight_turn(self, t: Any) -> tuple[Vector, Any] | None:
         """Return the fixed axis about which the body has turned and the angle, rad, where the position gives them."""
         del t

@@ -1,0 +1,69 @@
+"""How much a figure of the card may be: the tolerances, and the sizes against which a difference is small or not."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..mechanics.loads import Load
+from ..mechanics.system import RollingSystem
+from ..solve.methods import tolerance_of
+from ..solve.samples import Samples
+
+Array = NDArray[np.float64]
+
+# The two tolerances of a card, as shares: what rounding may do, and how many times the tolerance asked a method may
+# be off (more after a thousand radians of turning, for what adds up over a run).
+EXACT, SOLVER = 1e-12, 1e3
+
+
+def bound_of(method: str, turned: float = 1.0) -> float:
+    """Return the share that a method may be off after the body has turned by so many radians."""
+    return max(EXACT, SOLVER * tolerance_of(method) * max(1.0, turned / SOLVER))
+
+
+def turned_in(samples: Samples) -> float:
+    """Return about how many radians the body turned."""
+    return largest(samples.angular_velocity) * float(samples.time[-1] - samples.time[0])
+
+
+def largest(array: Array) -> float:
+    """Return the length of the longest of many vectors."""
+    return float(np.linalg.norm(array, axis=-1).max())
+
+
+def speed_of(system: RollingSystem, at: Samples) -> float:
+    """Return the largest of V, Ω×ρ and u: any of them may be the small difference of two large ones."""
+    return max(float(np.max(speed.norm())) for speed in at.speeds(system))
+
+
+def sizes_of(system: RollingSystem, at: Samples) -> dict[str, float]:
+    """Return against what a difference of position, velocity and Ω is small or not."""
+    arm, turning = largest(at.contact - at.position), largest(at.angular_velocity)
+    fastest = max(speed_of(system, at), arm * turning)
+    return {"position": largest(at.position), "velocity": fastest, "angular_velocity": fastest / arm}
+
+
+def pace_of(system: RollingSystem, at: Samples) -> float:
+    """Return the fastest rate in a motion, as its samples show it, 1/s: what a look at its slopes must resolve."""
+    varying = [load for load in system.loads if _varies(load)]
+    motion, shape = at.motion(system), at.position.shape
+    loads = [vector for load in varying for vector in (load.force(motion), load.torque(motion))]
+    changing = [at.velocity, at.angular_velocity, *(np.broadcast_to(load.array(), shape) for load in loads)]
+    paces = [_pace(at.time, values) for values in changing]
+    return largest(at.angular_velocity) + float(system.support.motion.fastest_rate) + max(paces)
+
+
+def _varies(load: Load) -> bool:
+    return not load.constant and load.linear_drag is None
+
+
+def _pace(time: Array, values: Array) -> float:
+    """Return the largest rate of change of a vector over its largest size."""
+    size = largest(values)
+    if size == 0 or time.size < 2:
+        return 0.0
+    steps = np.diff(time)[:, None]
+    # The last step may be a sliver, at the end of which a rounding looks like a jump.
+    real = steps[:, 0] > 1e-6 * steps.max()
+    return largest(np.diff(values, axis=0)[real] / steps[real]) / size
