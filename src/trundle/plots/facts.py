@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trundle.mechanics.loads import Drag, Force, Torque
+from trundle.mechanics.motions import Motion, UnevenSpin, Wobble
+from trundle.mechanics.scalars import is_zero
 from trundle.mechanics.surfaces import Cylinder
 from trundle.solve.exact import SphereOnPlane, closed_form
 
@@ -139,14 +141,24 @@ def _key_numbers(system: RollingSystem) -> str:
         radius = float(getattr(body.shape, "radius", 0.0))
         millimetres = 1e-3 <= radius < 0.1  # as balls are sold
         parts.append(f"radius {f'{radius * 1e3:.4g} mm' if millimetres else with_unit(radius, 'length')}")
+    parts += _shortcomings(support.motion)
     for load in system.loads:
         if isinstance(load, Force):
             parts.append(f"force {_size(load, 'force')}")
         elif isinstance(load, Torque):
             parts.append(f"torque {_size(load, 'torque')}")
         elif isinstance(load, Drag):
-            parts.append(f"drag {with_unit(float(load.coefficient), 'damping')}")
+            air = "" if is_zero(load.air_rate) else ", air turning"
+            parts.append(f"drag {with_unit(float(load.coefficient), 'damping')}{air}")
     return "  ·  ".join(parts)
+
+
+def _shortcomings(motion: Motion) -> list[str]:
+    if isinstance(motion, Wobble):
+        return [f"askew by {short(math.degrees(float(motion.angle)), 3)}°"]
+    if isinstance(motion, UnevenSpin):
+        return [f"uneven by {short(100 * float(motion.variation), 3)} %"]
+    return []
 
 
 def _size(load: Force | Torque, kind: str) -> str:

@@ -48,7 +48,7 @@ _UNITS: dict[str, _Units] = {
     "time": _TIMES,
     "angular velocity": ((1, "rad/s", 0.01),),
     "torque": ((1, "N m", 1), (1e-3, "mN m", 1), (1e-6, "µN m", 1)),
-    "damping": ((1, "kg/s", 0.5), (1e-3, "g/s", 0.5)),
+    "damping": ((1, "kg/s", 0.5), (1e-3, "g/s", 0.5), (1e-6, "mg/s", 0.5)),
     "number": ((1, "", 5e-3),),
 }
 _SI = {
