@@ -167,9 +167,13 @@ def _first_exit(motion: Any, rim: float | None, duration: float) -> float | None
 
     for first in range(0, looks - 1, _LOOKS_AT_ONCE):
         index = np.arange(first, min(first + _LOOKS_AT_ONCE, looks - 1) + 1)
-        t = index * (duration / (looks - 1))
-        out, rising = (np.broadcast_to(test, t.shape) for test in (excess(t) >= 0, growth(t) > 0))
-        peaks = rising[:-1] & ~rising[1:] & ~out[1:]  # a maximum between two looks, both inside
+        step = duration / (looks - 1)
+        t = index * step
+        over, rate = (np.broadcast_to(value, t.shape) for value in (excess(t), growth(t)))
+        out, rising = over >= 0, rate > 0
+        # A maximum between two looks, both inside, that may reach the rim: r² gains 2 r·ṙ, which falls to 0 meanwhile.
+        near = over[:-1] + 4 * step * (np.abs(rate[:-1]) + np.abs(rate[1:])) >= 0
+        peaks = rising[:-1] & ~rising[1:] & ~out[1:] & near
         for j in np.flatnonzero(peaks | out[1:]):
             begin, end = float(t[j]), float(t[j + 1])
             if not out[j + 1]:
