@@ -10,9 +10,10 @@ import numpy as np
 
 from ..errors import TrundleError
 from ..mechanics.algebra import Quaternion, Vector
+from ..mechanics.contact import touch
 from ..mechanics.invariants import Invariant, Record, invariants_of
 from ..mechanics.loads import BodyMotion
-from ..mechanics.system import RollingSystem
+from ..mechanics.system import RollingSystem, State
 from ..solve import methods
 from ..solve.samples import Samples
 from .examining import LAW_SHARE, Series
@@ -120,9 +121,11 @@ def own_run(system: RollingSystem, theirs: Theirs, at: Motion, tolerance: float)
     """
     try:
         where, method = _as_far_as_may_be(system, at)
-        tried = [(_run(system, at, step, len(where))[0].position, times) for step, times in _steps(at)]
+        tried = [(_run(system, at, step, len(where))[0].position, times) for step, times in _steps(system, at)]
     except TrundleError as error:
         return None, OwnRun(np.empty((0, 3)), remark=str(error).partition("\n")[0])
+    except NotImplementedError:  # a surface of somebody's own
+        return None, OwnRun(np.empty((0, 3)), remark="the surface has no coordinates to place a body by")
     count = min([len(where), *(len(one) for one, _ in tried)])
     if count < 2:
         return None, OwnRun(np.empty((0, 3)), remark="ours leaves the support at once")
@@ -142,19 +145,40 @@ def _arm(at: Motion) -> float:
     return float(np.linalg.norm(at.offset, axis=1).max())
 
 
-def _steps(at: Motion) -> list[tuple[Array, float]]:
-    """Return small steps of x, y, V_x, V_y and spin, one at a time, and how many of them their start may be off."""
+def _steps(system: RollingSystem, at: Motion) -> list[tuple[Array, float]]:
+    """Return small steps of place and V along the surface and of the spin, and how many of them they may be off."""
     extent = max(float(np.ptp(at.position, axis=0).max()), _arm(at))
     speed = max(float(np.linalg.norm(at.velocity, axis=1).max()), extent / float(at.time[-1] - at.time[0]))
     errors = [e[0] for e in (at.position_error, at.velocity_error, at.angular_velocity_error)]
+    scales = [extent, extent, speed, speed, speed / _arm(at)]
+    free = [True, True, True, True, at.turning_known]
+    axis = _axis(system, at)
+    if axis is not None:  # a cylinder has but one way to go
+        across = [abs(float(d @ axis)) < 0.5 for d in _directions(system, at)]
+        free = [*across, *across, False]
     found = []
-    for place, error, scale in zip(
-        range(5), np.repeat(errors, [2, 2, 1]), [extent, extent, speed, speed, speed / _arm(at)], strict=True
-    ):
-        size = min(float(error), 1e-3 * scale)
-        if size > 0 and (place < 4 or at.turning_known):
+    for place, error in enumerate(np.repeat(errors, [2, 2, 1])):
+        size = min(float(error), 1e-3 * scales[place])
+        if size > 0 and free[place]:
             found.append((np.eye(5)[place] * size, float(error) / size))
     return found
+
+
+def _axis(system: RollingSystem, at: Motion) -> Array | None:
+    """Return the axis of a cylinder at the first instant, in space; None for a body that touches at a point."""
+    axis = system.body.shape.axis
+    return None if axis is None else np.array([*(Quaternion(*at.orientation[0]).matrix() @ axis)], dtype=float)
+
+
+def _directions(system: RollingSystem, at: Motion) -> list[Array]:
+    """Return the two directions along the surface at the first contact, in space."""
+    now = system.support.motion.at(float(at.time[0]))
+    own = now.rotation.transpose @ (_first(at.contact.point) - now.origin)
+    return [np.array([*(now.rotation @ d)], dtype=float) for d in system.support.surface.directions(own)]
+
+
+def _first(vector: Vector) -> Vector:
+    return Vector(*(float(np.ravel(part)[0]) for part in vector))
 
 
 def _as_far_as_may_be(system: RollingSystem, at: Motion) -> tuple[Array, str]:
@@ -170,11 +194,34 @@ def _as_far_as_may_be(system: RollingSystem, at: Motion) -> tuple[Array, str]:
 
 
 def _run(system: RollingSystem, at: Motion, step: Array, count: int) -> tuple[Samples, str]:
-    x, y, vx, vy = np.concatenate([at.position[0, :2], at.velocity[0, :2]]) + step[:4]
-    normal = np.broadcast_to(at.contact.normal.array(), at.position.shape)[0]
-    spin = float(at.angular_velocity[0] @ normal) + step[4]
-    state = system.place((float(x), float(y)), (float(vx), float(vy)), spin, orientation=tuple(at.orientation[0]))
-    state = replace(state, time=float(at.time[0]))
+    state = _start(system, at, step)
     method = methods.choose("auto", system, state)
     samples = methods.solver(method)(system, state, at.time[:count], methods.tolerance_of(method))
     return samples.part(slice(0, samples.time.size - len(samples.events))), method  # the last is at the rim
+
+
+def _start(system: RollingSystem, at: Motion, step: Array) -> State:
+    """Return the start on the support, rolling, that is nearest to their first sample, a step away."""
+    time, q = float(at.time[0]), Quaternion(*map(float, at.orientation[0]))
+    first, second = (Vector(*d) for d in _directions(system, at))
+    surface, now = system.support.surface, system.support.motion.at(time)
+    point = _first(at.contact.point) + first * step[0] + second * step[1]
+    own = surface.point(*surface.coordinates_of(now.rotation.transpose @ (point - now.origin)))
+    contact = touch(system, time, now.origin + now.rotation @ own, q)
+    system.check_rim(contact.point, at.position[0].tolist())
+    rho, n = contact.offset, contact.normal
+    relative = Vector(*at.velocity[0]) + first * step[2] + second * step[3]
+    relative = relative - contact.support.material_velocity(contact.point)
+    across = relative.cross(rho) / rho.dot(rho)
+    spin = float(Vector(*at.angular_velocity[0]).dot(n)) + step[4]
+    Omega = across + rho * ((spin - across.dot(n)) / rho.dot(n))
+    axis = _axis(system, at)
+    if axis is not None:
+        Omega = Vector(*axis) * Omega.dot(Vector(*axis))
+    V = contact.rolling_velocity(Omega)
+    where, moving, turning = (tuple(float(part) for part in v) for v in (contact.centre, V, Omega))
+    return State(_three(where), _three(moving), _three(turning), (q.w, q.x, q.y, q.z), time)
+
+
+def _three(parts: tuple[float, ...]) -> tuple[float, float, float]:
+    return parts[0], parts[1], parts[2]

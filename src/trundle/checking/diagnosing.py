@@ -150,6 +150,8 @@ def judged(case: Case, trial: Trial) -> Mistake | None:
             return None
         series |= later
     told = [one for one in case.failing if one.name in series and one.name not in trial.excused]
+    if not told and not trial.extra:
+        return None
     worst = told[0] if told else case.failing[0]
     after = series[worst.name] if told else next(iter(trial.extra or series.values()))
     if after.allowed > _MORE_ROOM * max(worst.allowed, case.tolerance) and after.allowed > worst.share / _MORE_ROOM:

@@ -91,11 +91,8 @@ def _paths(ax: Axes, check: Check, drawn: Drawn) -> None:
     ax.plot(*(theirs[0] / unit.scale), **start, label="start", zorder=5)
     if check.first_failure is not None:
         index = int(np.argmin(np.abs(drawn.motion.time - check.first_failure)))
-        text = (
-            f"goes wrong, t = {with_unit(check.first_failure, 'time')}"
-            if check.first_failure
-            else "wrong from t = 0 on"
-        )
+        at_once = check.first_failure == drawn.motion.time[0]
+        text = "wrong from the start on" if at_once else f"goes wrong, t = {with_unit(check.first_failure, 'time')}"
         mark: dict[str, Any] = {"marker": "X", "color": VERMILION, "mec": INK, "mew": 0.8, "ms": 9.5, "ls": "none"}
         ax.plot(*(theirs[index] / unit.scale), **mark, label=text, zorder=6)
     _window(ax, theirs / unit.scale, ours / unit.scale)
