@@ -13,8 +13,7 @@ from ..mechanics.contact import roll
 from ..mechanics.loads import BodyMotion
 from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem, State
-from ..verify.law import _applied as applied
-from ..verify.law import _newton_euler as newton_euler
+from ..verify.law import applied, newton_euler
 from .motion import INSTANTS, Motion, motion_of, rate_of, turning_of
 from .record import Array, Theirs, gap_of
 

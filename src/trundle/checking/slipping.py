@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanics.system import RollingSystem
-from ..verify.law import _applied as applied
+from ..verify.law import applied
 from .diagnosing import Case, Trial
 from .examining import ACCELERATION, GAP, LAW_SHARE, PATH, SLIP, TURN, TURNING, Series, independent_law
 from .motion import Motion

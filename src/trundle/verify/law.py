@@ -108,8 +108,8 @@ def residuals(system: RollingSystem, windows: Samples, times: Array) -> Residual
     middle = windows.part(np.arange(_HALF_NODES, times.size, shape[1]))
     m, V, Omega = float(system.body.mass), middle.velocity, middle.angular_velocity
     rho = middle.contact - middle.position
-    F, K, J, gyroscopic, u_rate = _applied(system, middle, p_rate)
-    solved = _newton_euler(m, J, rho, F, K - gyroscopic, u_rate - np.cross(Omega, rho_rate))
+    F, K, J, gyroscopic, u_rate = applied(system, middle, p_rate)
+    solved = newton_euler(m, J, rho, F, K - gyroscopic, u_rate - np.cross(Omega, rho_rate))
 
     rate = np.linalg.norm(Omega, axis=1).max() + np.abs(V_rate).max() / max(np.abs(V).max(), 1e-300)
     a_size = max(np.abs(F).max() / m, np.abs(V_rate).max(), np.abs(V).max() * rate, 1e-300)
@@ -135,8 +135,23 @@ def residuals(system: RollingSystem, windows: Samples, times: Array) -> Residual
     return Residuals(float(path), float(law), float(max(power) / torque_size))
 
 
-def _applied(system: RollingSystem, at: Samples, p_rate: Array) -> tuple[Array, ...]:
-    """Return F, K, J, Ω×JΩ and u̇ at each instant, as arrays."""
+def applied(system: RollingSystem, at: Samples, p_rate: Array) -> tuple[Array, ...]:
+    """Return F, K, J, Ω×JΩ and u̇ at each instant, as arrays.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Body, support and loads.
+    at : Samples
+        Instants of a motion, n of them.
+    p_rate : array (n, 3)
+        ṗ, m/s.
+
+    Returns
+    -------
+    tuple of array
+        (n, 3) each, J (n, 3, 3); SI, inertial support frame.
+    """
     q, shape = Quaternion.of(at.orientation), at.position.shape
     force, torque = system.loads_on(at.motion(system))
     tensor = system.body.inertia_in_space(q.matrix())
@@ -148,8 +163,23 @@ def _applied(system: RollingSystem, at: Samples, p_rate: Array) -> tuple[Array, 
     return F, K, J, np.cross(at.angular_velocity, JOmega), u
 
 
-def _newton_euler(m: float, J: Array, rho: Array, F: Array, K: Array, constraint: Array) -> tuple[Any, Any, Any]:
-    """Solve m V̇ − R = F, J Ω̇ − ρ×R = K − Ω×JΩ, V̇ − ρ×Ω̇ = u̇ − Ω×ρ̇ for V̇, Ω̇ and R."""
+def newton_euler(m: float, J: Array, rho: Array, F: Array, K: Array, constraint: Array) -> tuple[Any, Any, Any]:
+    """Solve m V̇ − R = F, J Ω̇ − ρ×R = K − Ω×JΩ, V̇ − ρ×Ω̇ = u̇ − Ω×ρ̇ for V̇, Ω̇ and R, one 9×9 system an instant.
+
+    Parameters
+    ----------
+    m : float
+        Mass, kg.
+    J : array (n, 3, 3)
+        kg m².
+    rho, F, K, constraint : array (n, 3)
+        ρ, F, K − Ω×JΩ and u̇ − Ω×ρ̇; SI, inertial support frame.
+
+    Returns
+    -------
+    V_rate, Omega_rate, R : array (n, 3)
+        V̇, Ω̇ and R.
+    """
     n, one = len(F), np.eye(3)
     cross = np.zeros((n, 3, 3))
     cross[:, 0, 1], cross[:, 0, 2], cross[:, 1, 2] = -rho[:, 2], rho[:, 1], -rho[:, 0]
