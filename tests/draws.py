@@ -18,7 +18,8 @@ triples = st.tuples(numbers(0.05), numbers(0.05), numbers(0.05))
 loads = st.tuples(
     st.builds(tr.Force, triples),
     st.builds(tr.Torque, st.tuples(numbers(1e-3), numbers(1e-3), numbers(1e-5))),
-    st.builds(tr.Drag, st.floats(0.0, 0.05)),
+    # Below a trillionth the sixty digits of the references would not tell e^z − 1 from 0.
+    st.builds(tr.Drag, st.floats(0.0, 0.05).map(lambda c: c if c > 1e-12 else 0.0)),
 )
 bodies = st.builds(tr.Body.sphere, st.floats(0.02, 0.3), st.floats(0.01, 3.0), st.floats(0.05, 2 / 3))
 TILTS = numbers(0.4)
