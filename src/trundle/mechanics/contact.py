@@ -170,7 +170,7 @@ def settle(system: RollingSystem, time: float, centre: Vector, orientation: Quat
     for _ in range(_MOST_STEPS):
         contact = touch(system, time, point, orientation)
         aside = centre + contact.offset - point
-        if (centre + contact.offset - point).norm() <= 1e-15 * (point.norm() + contact.offset.norm()):
+        if aside.norm() <= 1e-15 * (point.norm() + contact.offset.norm()):
             break
         step = aside
         if point is not centre:  # Newton's, by how ρ follows the normal
