@@ -174,9 +174,12 @@ def namespace(*values: Any) -> Any:
     >>> namespace(4.0).sqrt(4.0)
     2.0
     """
-    for value in leaves(values):
-        if is_number(value):
-            continue
+    others = [value for value in leaves(values) if not is_number(value)]
+    if any(type(value).__name__ == "Jet" for value in others):
+        from .jets import JetFunctions
+
+        return JetFunctions(namespace(*(getattr(value, "value", value) for value in others)))
+    for value in others:
         if hasattr(value, "__array_namespace__"):
             return value.__array_namespace__()
         package = type(value).__module__.partition(".")[0]

@@ -2,22 +2,13 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
-from dataclasses import fields, replace
-from typing import Any
+from dataclasses import replace
 
 from ..errors import InvalidValueError, ScenarioError
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.bodies import HOLLOW_SPHERE, SOLID_SPHERE, Body, Isotropic
 from ..mechanics.contact import settle
-from ..mechanics.expressions import Expression
-from ..mechanics.loads import Drag, Force, Torque
-from ..mechanics.motions import Fixed, Spin, UnevenSpin, Wobble
-from ..mechanics.surfaces import Cylinder, Plane
 from ..mechanics.system import RollingSystem, State, Support
-
-Words = dict[str, Any]
+from .words import LOADS, MOTIONS, SURFACES, Words, body_words, number_of, numbers_of, one_of
 
 
 def describe(system: RollingSystem, start: State) -> Words:
@@ -48,74 +39,22 @@ def describe(system: RollingSystem, start: State) -> Words:
     {'kind': 'solid-sphere', 'radius': 0.025, 'mass': 0.065}
     """
     words: Words = {
-        "gravity": _number(system.gravity, "gravity"),
-        "body": _body(system.body),
+        "gravity": number_of(system.gravity, "gravity"),
+        "body": body_words(system.body),
         "support": _support(system.support),
         "start": _start(system, start),
     }
     if system.loads:
-        words["loads"] = [_one_of(_LOADS, load, f"loads[{i}]") for i, load in enumerate(system.loads)]
+        words["loads"] = [one_of(LOADS, load, f"loads[{i}]") for i, load in enumerate(system.loads)]
     return words
 
 
-def _body(body: Body) -> Words:
-    if not body.is_isotropic_sphere or (body.shape.axis is not None and isinstance(body.inertia, Isotropic)):
-        raise _wordless("body", body)
-    ratio = _number(body.inertia_ratio, "body.inertia_ratio")
-    radius = getattr(body.shape, "radius", None)
-    size = {"radius": _number(radius, "body.radius"), "mass": _number(body.mass, "body.mass")}
-    if isinstance(body.inertia, Isotropic):  # its ratio would be rounded once more
-        moment = _number(body.inertia.moment, "body.inertia.moment")
-        return {"kind": "sphere-with-moment", **size, "moment_of_inertia": moment}
-    if body.shape.axis is not None:
-        return {"kind": "cylinder", **size, "inertia_ratio": ratio}
-    if ratio == SOLID_SPHERE:
-        return {"kind": "solid-sphere", **size}
-    if ratio == HOLLOW_SPHERE:
-        return {"kind": "hollow-sphere", **size}
-    return {"kind": "sphere", **size, "inertia_ratio": ratio}
-
-
 def _support(support: Support) -> Words:
-    words = _one_of(_SURFACES, support.surface, "support")
-    words["tilt"] = _number(support.tilt, "support.tilt")
+    words = one_of(SURFACES, support.surface, "support")
+    words["tilt"] = number_of(support.tilt, "support.tilt")
     if support.friction is not None:
-        words["friction"] = _number(support.friction, "support.friction")
-    return {**words, "motion": _one_of(_MOTIONS, support.motion, "support.motion")}
-
-
-def _plane(plane: Plane, key: str) -> Words:
-    rim = {} if plane.rim is None else {"rim": _number(plane.rim, f"{key}.rim")}
-    return {"kind": "plane", **rim}
-
-
-def _cylinder(cylinder: Cylinder, key: str) -> Words:
-    return {"kind": "cylinder", "radius": _number(cylinder.radius, f"{key}.radius"), "side": cylinder.side}
-
-
-def _moving(kind: str, motion: Any, key: str) -> Words:
-    """Return the words of a motion that is its numbers."""
-    numbers = {part.name: _number(getattr(motion, part.name), f"{key}.{part.name}") for part in fields(motion)}
-    return {"kind": kind, **numbers}
-
-
-def _drag(load: Drag, key: str) -> Words:
-    air = {} if load.air_rate == 0 else {"air": _number(load.air_rate, f"{key}.air")}
-    return {"kind": "drag", "coefficient": _number(load.coefficient, f"{key}.coefficient"), **air}
-
-
-_SURFACES: dict[type, Callable[[Any, str], Words]] = {Plane: _plane, Cylinder: _cylinder}
-_MOTIONS: dict[type, Callable[[Any, str], Words]] = {
-    Fixed: lambda motion, key: {"kind": "fixed"},  # noqa: ARG005
-    Spin: lambda motion, key: _moving("spin", motion, key),
-    UnevenSpin: lambda motion, key: _moving("uneven-spin", motion, key),
-    Wobble: lambda motion, key: _moving("wobble", motion, key),
-}
-_LOADS: dict[type, Callable[[Any, str], Words]] = {
-    Force: lambda load, key: {"kind": "force", "value": _numbers(load.value, f"{key}.value")},
-    Torque: lambda load, key: {"kind": "torque", "value": _numbers(load.value, f"{key}.value")},
-    Drag: _drag,
-}
+        words["friction"] = number_of(support.friction, "support.friction")
+    return {**words, "motion": one_of(MOTIONS, support.motion, "support.motion")}
 
 
 def _start(system: RollingSystem, start: State) -> Words:
@@ -123,10 +62,10 @@ def _start(system: RollingSystem, start: State) -> Words:
         raise ScenarioError("start.time", "must be 0: a scenario starts its clock", start.time)
     words = _place(system, start)
     if tuple(start.orientation) != (1.0, 0.0, 0.0, 0.0) or system.body.shape.axis is not None:
-        words["orientation"] = _numbers(start.orientation, "start.orientation")
-    turning = _numbers(start.angular_velocity, "start.angular_velocity")
+        words["orientation"] = numbers_of(start.orientation, "start.orientation")
+    turning = numbers_of(start.angular_velocity, "start.angular_velocity")
     normal = settle(system, 0.0, Vector(*start.position), Quaternion(*start.orientation)).normal
-    spin = _number(normal.dot(Vector(*start.angular_velocity)), "start.spin")
+    spin = number_of(normal.dot(Vector(*start.angular_velocity)), "start.spin")
     # The spin says it all where the rest of the angular velocity follows from it to the last digit.
     try:
         follows = system.place(**words, spin=spin)
@@ -144,34 +83,6 @@ def _place(system: RollingSystem, start: State) -> Words:
     V = begin.rotation.transpose @ Vector(*start.velocity)
     along = [V.dot(direction) for direction in surface.directions(centre)]
     return {
-        "position": _numbers(surface.coordinates_of(centre), "start.position"),
-        "velocity": _numbers(along, "start.velocity"),
+        "position": numbers_of(surface.coordinates_of(centre), "start.position"),
+        "velocity": numbers_of(along, "start.velocity"),
     }
-
-
-def _one_of(words: dict[type, Callable[[Any, str], Words]], thing: Any, key: str) -> Words:
-    if type(thing) not in words:
-        raise _wordless(key, thing)
-    return words[type(thing)](thing, key)
-
-
-def _number(value: Any, key: str) -> float:
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        remedy = "Describe one member at a time."
-        raise ScenarioError(key, "must be one number to be written to a file", value, remedy) from None
-    if not math.isfinite(number):
-        raise ScenarioError(key, "must be a finite number", value)
-    return number
-
-
-def _numbers(values: Any, key: str) -> list[Any]:
-    return [
-        value.text if isinstance(value, Expression) else _number(value, f"{key}[{i}]") for i, value in enumerate(values)
-    ]
-
-
-def _wordless(key: str, thing: Any) -> ScenarioError:
-    kind = type(thing).__name__
-    return ScenarioError(key, "must be of a kind that the scenario format has words for", kind, "Keep it in Python.")

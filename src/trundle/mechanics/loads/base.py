@@ -1,0 +1,121 @@
+"""What every load is: a force and a torque about the centre of mass, in the inertial support frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..algebra import ZERO, Quaternion, Vector
+from ..scalars import Scalar
+
+
+@dataclass(frozen=True, slots=True)
+class BodyMotion:
+    """What a load may depend on: the motion of the body at one instant, in the inertial support frame.
+
+    Examples
+    --------
+    >>> from trundle.mechanics.loads import Drag
+    >>> still = BodyMotion(0.0, 0.065, ZERO, ZERO, Quaternion(1.0, 0.0, 0.0, 0.0), ZERO)
+    >>> Drag(0.01).force(still)
+    Vector(x=-0.0, y=-0.0, z=-0.0)
+    """
+
+    time: Scalar  # s
+    mass: Scalar  # kg
+    position: Vector  # of the centre of mass, m
+    velocity: Vector  # of the centre of mass, m/s
+    orientation: Quaternion
+    angular_velocity: Vector  # rad/s
+    normal: Vector | None = None  # n at the contact, from the support into the body; None in flight
+    support_angular_velocity: Vector = ZERO  # ω, rad/s
+
+
+def at_rest(mass: Scalar) -> BodyMotion:
+    """Return a body at rest at the origin, where a load that is constant can be read.
+
+    Parameters
+    ----------
+    mass : Scalar
+        kg.
+
+    Returns
+    -------
+    BodyMotion
+        At t = 0.
+
+    Examples
+    --------
+    >>> from trundle.mechanics.loads import Gravity
+    >>> Gravity(0.0, 0.0, -10.0).force(at_rest(2.0)).z
+    -20.0
+    """
+    return BodyMotion(0.0, mass, ZERO, ZERO, Quaternion(1.0, 0.0, 0.0, 0.0), ZERO)
+
+
+class Load:
+    """A force and a torque on the body; by default neither, and no potential."""
+
+    constant: bool = False  # the same force and torque always and everywhere
+
+    @property
+    def linear_drag(self) -> Scalar | None:
+        """C of a load that is purely −c V, kg/s; None for any other load."""
+        return None
+
+    def force(self, motion: BodyMotion) -> Vector:  # noqa: ARG002
+        """Return the force on the centre of mass, N."""
+        return ZERO
+
+    def torque(self, motion: BodyMotion) -> Vector:  # noqa: ARG002
+        """Return the torque about the centre of mass, N m."""
+        return ZERO
+
+    def torque_per_normal_force(self, motion: BodyMotion) -> Vector:  # noqa: ARG002
+        """Return the torque, m, that goes with each newton of normal force: of a couple of friction at the contact."""
+        return ZERO
+
+    def potential(self, motion: BodyMotion) -> Scalar | None:  # noqa: ARG002
+        """Return the potential energy, J; None for a load that has none."""
+        return None
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether turning everything about the support's third axis leaves the load unchanged."""
+        return False
+
+    @property
+    def leaves_spin(self) -> bool:
+        """Whether the load never has a torque along the support's third axis."""
+        return False
+
+
+def constant_part(loads: tuple[Load, ...], mass: Scalar) -> tuple[Vector, Vector, Scalar]:
+    """Add up loads that are constant or linear drag.
+
+    Parameters
+    ----------
+    loads : tuple of Load
+        Each `constant`, or with a `linear_drag`.
+    mass : Scalar
+        Of the body, kg.
+
+    Returns
+    -------
+    force, torque : Vector
+        N and N m.
+    drag : Scalar
+        c, kg/s.
+
+    Examples
+    --------
+    >>> from trundle.mechanics.loads import Drag, Gravity
+    >>> constant_part((Gravity(0.0, 0.0, -10.0), Drag(0.01), Drag(0.02)), 2.0)[2]
+    0.03
+    """
+    force, torque, drag = ZERO, ZERO, 0.0
+    for load in loads:
+        if load.linear_drag is not None:
+            drag = drag + load.linear_drag
+        else:
+            force, torque = force + load.force(at_rest(mass)), torque + load.torque(at_rest(mass))
+    return force, torque, drag

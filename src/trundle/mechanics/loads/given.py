@@ -1,0 +1,158 @@
+"""Loads that do not ask how the body moves: gravity, and forces and torques given as numbers or in the time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from .. import checks
+from ..algebra import Vector
+from ..expressions import Expression, is_formula
+from ..scalars import Scalar, is_zero
+from .base import BodyMotion, Load
+
+
+@dataclass(frozen=True)
+class Gravity(Load):
+    """Uniform gravity.
+
+    Parameters
+    ----------
+    x, y, z : float
+        The acceleration of free fall in the support frame, m/s².
+
+    Examples
+    --------
+    >>> Gravity(0.0, 0.0, -9.80665).symmetric
+    True
+    """
+
+    x: Scalar
+    y: Scalar
+    z: Scalar
+    constant = True
+
+    @property
+    def acceleration(self) -> Vector:
+        """The acceleration of free fall, m/s²."""
+        return Vector(self.x, self.y, self.z)
+
+    def force(self, motion: BodyMotion) -> Vector:
+        """Return m g."""
+        return self.acceleration * motion.mass
+
+    def potential(self, motion: BodyMotion) -> Scalar:
+        """Return −m g·r."""
+        return -(self.acceleration.dot(motion.position)) * motion.mass
+
+    @property
+    def symmetric(self) -> bool:
+        """True where gravity points along the axis."""
+        return is_zero(self.x) and is_zero(self.y)
+
+    @property
+    def leaves_spin(self) -> bool:
+        """True: it acts at the centre of mass."""
+        return True
+
+
+@dataclass(frozen=True)
+class _Given(Load):
+    """Three components that are numbers or formulas in the time t, in the inertial support frame."""
+
+    value: Any
+    _kind = "number"
+
+    def __post_init__(self) -> None:
+        parts = self.value
+        formulas = isinstance(parts, (list, tuple)) and any(map(_is_formula, parts))
+        plain = tuple(0.0 if _is_formula(part) else part for part in parts) if formulas else parts
+        components = checks.components(plain, self._kind, "value")
+        if formulas:
+            pairs = zip(parts, components, strict=True)
+            components = tuple(
+                _formula(part, f"value[{i}]") if _is_formula(part) else number for i, (part, number) in enumerate(pairs)
+            )
+        object.__setattr__(self, "value", Vector(*components))
+
+    @property
+    def constant(self) -> bool:  # type: ignore[override]
+        """Whether no component is a formula."""
+        return not any(isinstance(part, Expression) for part in self.value)
+
+    @property
+    def symmetric(self) -> bool:
+        """True where it points along the axis."""
+        return is_zero(self.value.x) and is_zero(self.value.y)
+
+    def at(self, time: Scalar) -> Vector:
+        """Return the components at a time in s."""
+        return Vector(*(part.at(t=time) if isinstance(part, Expression) else part for part in self.value))
+
+
+def _is_formula(part: Any) -> bool:
+    return isinstance(part, Expression) or is_formula(part)
+
+
+def _formula(part: Any, key: str) -> Expression:
+    return part if isinstance(part, Expression) else Expression.parse(part, ("t",), key)
+
+
+@dataclass(frozen=True)
+class Force(_Given):
+    """A force on the centre of mass, constant or given as formulas in the time.
+
+    Parameters
+    ----------
+    value : sequence of 3 floats, quantities or formulas
+        F in the inertial support frame, N; a formula such as ``"0.1*sin(3*t)"`` is in SI, t in s.
+
+    Examples
+    --------
+    >>> Force((0.1, 0.0, 0.0)).value.x
+    0.1
+    >>> Force(("0.1*t", 0.0, 0.0)).at(2.0).x
+    0.2
+    """
+
+    _kind = "force"
+
+    @property
+    def leaves_spin(self) -> bool:
+        """True: it acts at the centre of mass."""
+        return True
+
+    def force(self, motion: BodyMotion) -> Vector:
+        """Return F."""
+        return self.at(motion.time)
+
+    def potential(self, motion: BodyMotion) -> Scalar | None:
+        """Return −F·r of a constant force."""
+        return -(self.value.dot(motion.position)) if self.constant else None
+
+
+@dataclass(frozen=True)
+class Torque(_Given):
+    """A torque about the centre of mass, constant or given as formulas in the time.
+
+    Parameters
+    ----------
+    value : sequence of 3 floats, quantities or formulas
+        K in the inertial support frame, N m; K along the second axis drives the ball along the first.
+
+    Examples
+    --------
+    >>> Torque(("0 N*m", "2 mN*m", "0 N*m")).value.y
+    0.002
+    """
+
+    _kind = "torque"
+
+    @property
+    def leaves_spin(self) -> bool:
+        """True where it has no third component."""
+        return is_zero(self.value.z)
+
+    def torque(self, motion: BodyMotion) -> Vector:
+        """Return K."""
+        return self.at(motion.time)

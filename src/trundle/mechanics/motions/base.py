@@ -1,0 +1,76 @@
+"""What every motion of a support is: pose, twist and acceleration as the rolling law needs them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..algebra import Matrix, Vector
+from ..scalars import Scalar
+
+
+@dataclass(frozen=True, slots=True)
+class SupportState:
+    """Pose, twist and acceleration of the support at one instant, in the inertial support frame.
+
+    Examples
+    --------
+    >>> from trundle.mechanics.motions import Spin
+    >>> Spin(2.0).at(0.0).material_velocity(Vector(0.5, 0.0, 0.0))
+    Vector(x=0.0, y=1.0, z=0.0)
+    """
+
+    rotation: Matrix  # support's own frame to the inertial frame
+    origin: Vector  # X, m
+    velocity: Vector  # of X, m/s
+    acceleration: Vector  # of X, m/s²
+    angular_velocity: Vector  # ω, rad/s
+    angular_acceleration: Vector  # rad/s²
+
+    def carried(self, own: Vector) -> Vector:
+        """Return where the point of the support with given own coordinates is, m."""
+        return self.origin + self.rotation @ own
+
+    def material_velocity(self, p: Vector) -> Vector:
+        """Return u(p) = Ẋ + ω×(p − X), the velocity of the support's material at p, m/s."""
+        return self.velocity + self.angular_velocity.cross(p - self.origin)
+
+    def material_acceleration(self, p: Vector, p_rate: Vector) -> Vector:
+        """Return u̇ = Ẍ + ω̇×(p − X) + ω×(ṗ − Ẋ), the rate of u along a moving contact point, m/s²."""
+        return (
+            self.acceleration
+            + self.angular_acceleration.cross(p - self.origin)
+            + self.angular_velocity.cross(p_rate - self.velocity)
+        )
+
+
+class Motion:
+    """How a support moves: as a function of time, and of coordinates of its own that the run carries along."""
+
+    own: tuple[str, ...] = ()  # names of these coordinates: ("angle",) or, of a free axle, ("angle", "rate")
+
+    def at(self, time: Scalar, *own: Scalar) -> SupportState:
+        """Return pose, twist and acceleration at a time in s, the coordinates of its own having the given values."""
+        raise NotImplementedError
+
+    def own_start(self) -> tuple[Scalar, ...]:
+        """Return the coordinates of its own at the start of a run."""
+        return ()
+
+    def own_rates(self, time: Scalar, own: tuple[Scalar, ...], moment: Scalar) -> tuple[Scalar, ...]:  # noqa: ARG002
+        """Return the rates of these coordinates under a moment about the axle that the body exerts, N m."""
+        return ()
+
+    @property
+    def steady_rate(self) -> Scalar | None:
+        """ω of a steady turn about the support's third axis, rad/s; None for any other motion."""
+        return None
+
+    @property
+    def mean_rate(self) -> Scalar:
+        """The rate at which the support turns about its third axis on the whole, rad/s."""
+        return 0.0 if self.steady_rate is None else self.steady_rate
+
+    @property
+    def fastest_rate(self) -> Scalar:
+        """The fastest rate in the motion, rad/s: what a look at it must resolve."""
+        return abs(self.mean_rate)

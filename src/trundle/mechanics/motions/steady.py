@@ -1,0 +1,63 @@
+"""Rest and the steady turn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .. import checks
+from ..algebra import E_Z, ZERO, Matrix, Vector
+from ..scalars import Scalar, namespace
+from .base import Motion, SupportState
+
+
+@dataclass(frozen=True)
+class Fixed(Motion):
+    """A support at rest.
+
+    Examples
+    --------
+    >>> Fixed().at(1.0).angular_velocity
+    Vector(x=0.0, y=0.0, z=0.0)
+    """
+
+    def at(self, time: Scalar) -> SupportState:  # noqa: ARG002  the same always
+        """Return rest at the origin."""
+        return SupportState(Matrix.identity(), ZERO, ZERO, ZERO, ZERO, ZERO)
+
+    @property
+    def steady_rate(self) -> Scalar:
+        """0: at rest."""
+        return 0.0
+
+
+@dataclass(frozen=True)
+class Spin(Motion):
+    """A steady turn about the support's third axis; positive turns the first axis towards the second.
+
+    Parameters
+    ----------
+    rate : float or quantity
+        ω, rad/s.
+
+    Examples
+    --------
+    >>> round(Spin("33.3 rpm").rate, 4)
+    3.4872
+    """
+
+    rate: Scalar
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "rate", checks.real(self.rate, "angular velocity", "rate"))
+
+    @property
+    def steady_rate(self) -> Scalar:
+        """ω, rad/s."""
+        return self.rate
+
+    def at(self, time: Scalar) -> SupportState:
+        """Return the support turned by ωt."""
+        xp = namespace(self.rate, time)
+        c, s = xp.cos(self.rate * time), xp.sin(self.rate * time)
+        rotation = Matrix(Vector(c, -s, 0.0), Vector(s, c, 0.0), E_Z)
+        return SupportState(rotation, ZERO, ZERO, ZERO, E_Z * self.rate, ZERO)

@@ -1,0 +1,108 @@
+"""Turns as real turntables make them: uneven, or askew on the axle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .. import checks
+from ..algebra import E_Z, ZERO, Matrix, Vector
+from ..scalars import Scalar, namespace
+from .base import Motion, SupportState
+
+
+@dataclass(frozen=True)
+class UnevenSpin(Motion):
+    """A turn about the support's third axis whose rate varies a little: ω(t) = ω₀(1 + ε sin νt).
+
+    Parameters
+    ----------
+    rate : float or quantity
+        ω₀, rad/s.
+    variation : float
+        ε, as a share of ω₀.
+    variation_rate : float or quantity
+        ν, rad/s; a belt or a gear gives one period a turn, ν = ω₀.
+
+    Examples
+    --------
+    >>> UnevenSpin(3.5, 0.01, 3.5).at(0.0).angular_velocity.z
+    3.5
+    """
+
+    rate: Scalar
+    variation: Scalar
+    variation_rate: Scalar
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "rate", checks.real(self.rate, "angular velocity", "rate"))
+        object.__setattr__(self, "variation", checks.real(self.variation, "number", "variation"))
+        rate = checks.positive(self.variation_rate, "angular velocity", "variation_rate")
+        object.__setattr__(self, "variation_rate", rate)
+
+    @property
+    def fastest_rate(self) -> Scalar:
+        """The faster of the turn and its variation."""
+        return abs(self.rate) * (1 + abs(self.variation)) + abs(self.variation_rate)
+
+    @property
+    def mean_rate(self) -> Scalar:
+        """ω₀, rad/s."""
+        return self.rate
+
+    def at(self, time: Scalar) -> SupportState:
+        """Return the support turned by ω₀(t + ε(1 − cos νt)/ν)."""
+        phase = self.variation_rate * time
+        xp = namespace(self.rate, self.variation, phase)
+        sine, half = xp.sin(phase), xp.sin(0.5 * phase)
+        angle = self.rate * (time + self.variation * (2 * half * half) / self.variation_rate)
+        c, s = xp.cos(angle), xp.sin(angle)
+        rotation = Matrix(Vector(c, -s, 0.0), Vector(s, c, 0.0), E_Z)
+        omega = E_Z * (self.rate * (1 + self.variation * sine))
+        omega_rate = E_Z * (self.rate * self.variation * self.variation_rate * xp.cos(phase))
+        return SupportState(rotation, ZERO, ZERO, ZERO, omega, omega_rate)
+
+
+@dataclass(frozen=True)
+class Wobble(Motion):
+    """A steady turn about the support's third axis of a support that sits askew on its axle.
+
+    The axle does not move; the support's own axis leans from it, at t = 0 away from the second axis, and goes round
+    with it.
+
+    Parameters
+    ----------
+    rate : float or quantity
+        ω about the axle, rad/s.
+    angle : float or quantity
+        ε between the axle and the support's own axis, rad.
+
+    Examples
+    --------
+    >>> Wobble(3.5, "0.1 deg").at(0.0).angular_velocity
+    Vector(x=0.0, y=0.0, z=3.5)
+    """
+
+    rate: Scalar
+    angle: Scalar
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "rate", checks.real(self.rate, "angular velocity", "rate"))
+        object.__setattr__(self, "angle", checks.real(self.angle, "angle", "angle"))
+
+    @property
+    def fastest_rate(self) -> Scalar:
+        """|ω|."""
+        return abs(self.rate)
+
+    @property
+    def mean_rate(self) -> Scalar:
+        """ω, rad/s."""
+        return self.rate
+
+    def at(self, time: Scalar) -> SupportState:
+        """Return the support leaning by ε about its first axis, then turned by ωt about the axle."""
+        xp = namespace(self.rate, self.angle, time)
+        c, s = xp.cos(self.rate * time), xp.sin(self.rate * time)
+        cl, sl = xp.cos(self.angle), xp.sin(self.angle)
+        rotation = Matrix(Vector(c, -(s * cl), s * sl), Vector(s, c * cl, -(c * sl)), Vector(0.0, sl, cl))
+        return SupportState(rotation, ZERO, ZERO, ZERO, E_Z * self.rate, ZERO)

@@ -1,0 +1,83 @@
+"""The circular cylinder, from inside or outside."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ...errors import UnknownNameError
+from .. import checks
+from ..algebra import E_Z, Matrix, Vector
+from ..scalars import Scalar, namespace
+from .base import Surface
+
+_SIDES = ("inside", "outside")
+
+
+@dataclass(frozen=True)
+class Cylinder(Surface):
+    """A circular cylinder about the support's third axis, rolled on from inside or outside.
+
+    A tilt of 90° lays it down: gravity then acts along the first axis, and the angle is counted from the lowest line.
+
+    Parameters
+    ----------
+    radius : float or quantity
+        b, m.
+    side : str
+        "inside" or "outside", where the body is.
+
+    Examples
+    --------
+    >>> pipe = Cylinder("50 cm")
+    >>> pipe.point(0.0, 2.0), pipe.normal(pipe.point(0.0, 2.0)).x
+    (Vector(x=0.5, y=0.0, z=2.0), -1.0)
+    """
+
+    radius: Scalar
+    side: str = "inside"
+    axisymmetric = True
+    coordinates = ("angle", "length")
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "radius", checks.positive(self.radius, "length", "radius"))
+        if self.side not in _SIDES:
+            raise UnknownNameError("side of a cylinder", str(self.side), _SIDES)
+
+    @property
+    def sign(self) -> float:
+        """+1 where the body is outside, −1 where it is inside."""
+        return 1.0 if self.side == "outside" else -1.0
+
+    def level(self, p: Vector) -> Scalar:
+        """Return the distance from the wall, m."""
+        return (_from_axis(p)[1] - self.radius) * self.sign
+
+    def normal(self, p: Vector) -> Vector:
+        """Return the direction away from the axis outside, towards it inside."""
+        return _from_axis(p)[0] * self.sign
+
+    def shape_operator(self, p: Vector) -> Matrix:
+        """Return ±1/d around and 0 along, d being the distance of p from the axis."""
+        e, distance = _from_axis(p)
+        around = Vector(-e.y, e.x, 0.0)
+        return Matrix.outer(around, around) * (self.sign / distance)
+
+    def point(self, u: Scalar, v: Scalar) -> Vector:
+        """Return the point at an angle from the first axis towards the second, rad, and a height along the axis, m."""
+        xp = namespace(u, self.radius)
+        return Vector(self.radius * xp.cos(u), self.radius * xp.sin(u), v)
+
+    def coordinates_of(self, p: Vector) -> tuple[Scalar, Scalar]:
+        """Return angle and height."""
+        return namespace(p.x, p.y).atan2(p.y, p.x), p.z
+
+    def directions(self, p: Vector) -> tuple[Vector, Vector]:
+        """Return the tangent around, towards growing angle, and the axis."""
+        e, _ = _from_axis(p)
+        return Vector(-e.y, e.x, 0.0), E_Z
+
+
+def _from_axis(p: Vector) -> tuple[Vector, Scalar]:
+    """Return the direction away from the third axis, and the distance from it."""
+    distance = namespace(p.x, p.y).sqrt(p.x * p.x + p.y * p.y)
+    return Vector(p.x / distance, p.y / distance, 0.0), distance

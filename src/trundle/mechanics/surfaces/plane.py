@@ -1,0 +1,70 @@
+"""The plane, bounded by a rim or not."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from ...errors import InvalidValueError
+from .. import checks
+from ..algebra import E_X, E_Y, E_Z, Matrix, Vector
+from ..scalars import Scalar, is_number
+from .base import Surface
+
+
+@dataclass(frozen=True)
+class Plane(Surface):
+    """The plane z = 0 of the support frame, bounded by a circular rim about the axis if one is given.
+
+    Parameters
+    ----------
+    rim : float or quantity, optional
+        Distance of the rim from the axis, m; absent: the plane has no end.
+
+    Examples
+    --------
+    >>> Plane(rim="0.5 m").normal(Vector(0.1, 0.2, 0.0))
+    Vector(x=0.0, y=0.0, z=1.0)
+    """
+
+    rim: Scalar | None = None
+    axisymmetric = True
+
+    def __post_init__(self) -> None:
+        if self.rim is not None:
+            object.__setattr__(self, "rim", checks.positive(self.rim, "length", "rim"))
+
+    def level(self, p: Vector) -> Scalar:
+        """Return the height over the plane, m."""
+        return p.z
+
+    def normal(self, p: Vector) -> Vector:  # noqa: ARG002  the same everywhere
+        """Return the third axis of the support frame."""
+        return E_Z
+
+    def shape_operator(self, p: Vector) -> Matrix:  # noqa: ARG002  the same everywhere
+        """Return 0: a plane does not bend."""
+        return Matrix.zero()
+
+    def point(self, u: Scalar, v: Scalar) -> Vector:
+        """Return (x, y, 0)."""
+        return Vector(u, v, 0.0)
+
+    def coordinates_of(self, p: Vector) -> tuple[Scalar, Scalar]:
+        """Return x and y."""
+        return p.x, p.y
+
+    def directions(self, p: Vector) -> tuple[Vector, Vector]:  # noqa: ARG002  the same everywhere
+        """Return the first two axes."""
+        return E_X, E_Y
+
+    def under(self, u: Scalar, v: Scalar, offset: Vector) -> Vector:
+        """Return the contact of a body whose centre of mass is over (x, y)."""
+        return Vector(u + offset.x, v + offset.y, 0.0)
+
+    def check_tilt(self, tilt: float, received: Any) -> None:
+        """Refuse a plane that stands upright or hangs over."""
+        if not abs(tilt) < math.pi / 2:
+            remedy = "Did you mean degrees? Write 'deg' behind the number." if is_number(received) else ""
+            raise InvalidValueError("tilt", "must lie in (−90°, 90°)", received, remedy)
