@@ -9,12 +9,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from .algebra import Matrix, Quaternion, Vector, point_inertia
-from .loads import BodyMotion
+from .algebra import ZERO, Matrix, Quaternion, Vector, point_inertia
+from .loads import Acting, BodyMotion
 from .motions import SupportState
-from .scalars import Scalar
+from .scalars import Scalar, is_zero
 
 if TYPE_CHECKING:
+    from .surfaces import Surface
     from .system import RollingSystem
 
 _MOST_STEPS = 60  # of Newton's method, which needs five
@@ -36,8 +37,18 @@ class Contact:
         """R = p − ρ, the centre of mass, m."""
         return self.point - self.offset
 
-    def rates(self, slip: Vector, angular_velocity: Vector, velocity: Vector) -> tuple[Vector, Vector]:
+    def across(self, gap: Scalar = 0.0) -> Matrix:
+        """Return 1 + (C + g)S: how the body's nearest point moves over the support when the support's does."""
+        reach = self.inverse_curvature if is_zero(gap) else self.inverse_curvature + Matrix.identity() * gap
+        return Matrix.identity() + reach @ self.shape_operator
+
+    def rates(
+        self, slip: Vector, angular_velocity: Vector, velocity: Vector, gap: Scalar = 0.0
+    ) -> tuple[Vector, Vector]:
         """Return ṗ and ρ̇ by the contact kinematics T1: (1 + C S) w = s + C(Ω − ω)×n, ṗ = u + w, ρ̇ = ṗ − V.
+
+        Across a gap g, p is the support's point nearest to the body, p + g n the body's nearest to the support, and
+        (1 + (C + g)S) w = s − (s·n)n + C(Ω − ω)×n − g ω×n.
 
         Parameters
         ----------
@@ -47,17 +58,32 @@ class Contact:
             Ω of the body, rad/s.
         velocity : Vector
             V of the centre of mass, m/s.
+        gap : Scalar
+            g, m; 0 where they touch.
 
         Returns
         -------
         point_rate, offset_rate : Vector
-            m/s.
+            ṗ, and the rate of ρ, m/s.
         """
-        relative = angular_velocity - self.support.angular_velocity
-        moved = slip + self.inverse_curvature @ relative.cross(self.normal)
-        along = (Matrix.identity() + self.inverse_curvature @ self.shape_operator).solve(moved)
+        n, omega = self.normal, self.support.angular_velocity
+        moved = slip + self.inverse_curvature @ (angular_velocity - omega).cross(n)
+        if not is_zero(gap):
+            moved = moved - n * slip.dot(n) - omega.cross(n) * gap
+        along = self.across(gap).solve(moved)
         point_rate = self.support.material_velocity(self.point) + along
-        return point_rate, point_rate - velocity
+        if is_zero(gap):
+            return point_rate, point_rate - velocity
+        n_rate = omega.cross(n) + self.shape_operator @ along
+        return point_rate, point_rate + n * slip.dot(n) + n_rate * gap - velocity
+
+    def body_motion(
+        self, mass: Scalar, time: Scalar, velocity: Vector, orientation: Quaternion, angular_velocity: Vector
+    ) -> BodyMotion:
+        """Return what loads may depend on, for a body that touches here."""
+        return BodyMotion(
+            time, mass, self.centre, velocity, orientation, angular_velocity, self.normal, self.support.angular_velocity
+        )
 
     def rolling_velocity(self, angular_velocity: Vector) -> Vector:
         """Return V = u(p) − Ω×ρ, the velocity of the centre of mass when nothing slips, m/s."""
@@ -78,9 +104,12 @@ class Rolling:
     orientation_rate: Quaternion  # 1/s
     angular_acceleration: Vector  # Ω̇, rad/s²
     reaction: Vector  # R, contact force on the body, N
+    axle_moment: Scalar  # of the body on the support, about the support's axle, N m
 
 
-def touch(system: RollingSystem, time: Scalar, point: Vector, orientation: Quaternion) -> Contact:
+def touch(
+    system: RollingSystem, time: Scalar, point: Vector, orientation: Quaternion, own: tuple[Scalar, ...] = ()
+) -> Contact:
     """Return the geometry of touch for a contact at a given point of the support.
 
     Parameters
@@ -93,21 +122,23 @@ def touch(system: RollingSystem, time: Scalar, point: Vector, orientation: Quate
         p in the inertial support frame, m.
     orientation : Quaternion
         Body frame to support frame.
+    own : tuple of Scalar
+        The coordinates of the support's own motion, where it has some.
 
     Returns
     -------
     Contact
         n, ρ, C and S.
     """
-    surface, support = system.support.surface, system.support.motion.at(time)
-    turn, own = support.rotation, _own(support, point)
-    n = turn @ surface.normal(own)
-    S = turn @ surface.shape_operator(own) @ turn.transpose
+    surface, support = system.support.surface, system.support.motion.at(time, *own)
+    turn, there = support.rotation, _own(support, point)
+    n = turn @ surface.normal(there)
+    S = turn @ surface.shape_operator(there) @ turn.transpose
     rho, C = system.body.shape.contact(orientation.matrix(), n)
     return Contact(support, point, n, rho, C, S)
 
 
-def normal_at(system: RollingSystem, time: Scalar, point: Vector) -> Vector:
+def normal_at(system: RollingSystem, time: Scalar, point: Vector, own: tuple[Scalar, ...] = ()) -> Vector:
     """Return n at a point of the support, from the support into the body, in the inertial support frame.
 
     Parameters
@@ -118,6 +149,8 @@ def normal_at(system: RollingSystem, time: Scalar, point: Vector) -> Vector:
         t, s.
     point : Vector
         p in the inertial support frame, m.
+    own : tuple of Scalar
+        As for `touch`.
 
     Returns
     -------
@@ -131,7 +164,7 @@ def normal_at(system: RollingSystem, time: Scalar, point: Vector) -> Vector:
     >>> normal_at(level, 0.0, Vector(0.4, 0.0, 0.0))
     Vector(x=0.0, y=0.0, z=1.0)
     """
-    support = system.support.motion.at(time)
+    support = system.support.motion.at(time, *own)
     return support.rotation @ system.support.surface.normal(_own(support, point))
 
 
@@ -140,8 +173,12 @@ def _own(support: SupportState, point: Vector) -> Vector:
     return support.rotation.transpose @ (point - support.origin)
 
 
-def settle(system: RollingSystem, time: float, centre: Vector, orientation: Quaternion) -> Contact:
-    """Return the geometry of touch for a body whose centre of mass is known: the p with p = r + ρ(n(p)).
+def settle(
+    system: RollingSystem, time: float, centre: Vector, orientation: Quaternion, own: tuple[Scalar, ...] = ()
+) -> Contact:
+    """Return the geometry of touch for a body whose centre of mass is known: the p nearest to the body.
+
+    Where body and support touch, p = r + ρ(n(p)); where they do not, r + ρ is straight over p, by the gap.
 
     Parameters
     ----------
@@ -153,6 +190,8 @@ def settle(system: RollingSystem, time: float, centre: Vector, orientation: Quat
         r in the inertial support frame, m.
     orientation : Quaternion
         Body frame to support frame.
+    own : tuple of Scalar
+        As for `touch`.
 
     Returns
     -------
@@ -166,21 +205,37 @@ def settle(system: RollingSystem, time: float, centre: Vector, orientation: Quat
     >>> settle(system, 0.0, Vector(0.4, 0.0, 0.0), Quaternion(1.0, 0.0, 0.0, 0.0)).point
     Vector(x=0.5, y=0.0, z=0.0)
     """
+    surface, support = system.support.surface, system.support.motion.at(time, *own)
     point = centre  # the normal there is already that at the contact for a sphere over a surface of constant curvature
-    for _ in range(_MOST_STEPS):
-        contact = touch(system, time, point, orientation)
-        aside = centre + contact.offset - point
-        if aside.norm() <= 1e-15 * (point.norm() + contact.offset.norm()):
+    contact = touch(system, time, point, orientation, own)
+    for step in range(_MOST_STEPS):
+        apart = centre + contact.offset - point
+        gap = contact.normal.dot(apart)
+        aside = apart - contact.normal * gap
+        down = contact.normal * -_height(surface, _own(support, point), support.rotation.transpose @ contact.normal)
+        size = point.norm() + contact.offset.norm()
+        if step > 0 and aside.norm() <= 1e-15 * size and down.norm() <= 1e-15 * size:
             break
-        step = aside
-        if point is not centre:  # Newton's, by how ρ follows the normal
-            step = (Matrix.identity() + contact.inverse_curvature @ contact.shape_operator).solve(aside)
-        point = point + step
-    return touch(system, time, point, orientation)
+        if step > 0:  # Newton's: the normal leans by S along the support, and ρ follows it by C
+            aside = contact.across(gap).solve(aside)
+        point = point + aside + down
+        contact = touch(system, time, point, orientation, own)
+    return contact
+
+
+def _height(surface: Surface, there: Vector, n: Vector) -> float:
+    """Return about how far a point is over the surface along n, m: φ over its slope."""
+    level, step = surface.level(there), 1e-6 * (there.norm() + 1e-6)
+    return float(2 * step * level / (surface.level(there + n * step) - surface.level(there - n * step)))
 
 
 def roll(
-    system: RollingSystem, time: Scalar, point: Vector, orientation: Quaternion, angular_velocity: Vector
+    system: RollingSystem,
+    time: Scalar,
+    point: Vector,
+    orientation: Quaternion,
+    angular_velocity: Vector,
+    own: tuple[Scalar, ...] = (),
 ) -> Rolling:
     """Return the rates of (p, q, Ω) and the contact force of a body that rolls: T1, T2 and T3.
 
@@ -196,6 +251,8 @@ def roll(
         Body frame to support frame.
     angular_velocity : Vector
         Ω in the inertial support frame, rad/s.
+    own : tuple of Scalar
+        The coordinates of the support's own motion, where it has some.
 
     Returns
     -------
@@ -214,19 +271,60 @@ def roll(
     True
     """
     m, Omega = system.body.mass, angular_velocity
-    contact = touch(system, time, point, orientation)
-    rho = contact.offset
+    contact = touch(system, time, point, orientation, own)
+    rho, n, support = contact.offset, contact.normal, contact.support
     V = contact.rolling_velocity(Omega)
-    zero = Vector(0.0, 0.0, 0.0)
-    p_rate, rho_rate = contact.rates(zero, Omega, V)
-    u_rate = contact.support.material_acceleration(point, p_rate)
-    F, K = system.loads_on(BodyMotion(time, m, contact.centre, V, orientation, Omega))
-    Q = orientation.matrix()
+    p_rate, rho_rate = contact.rates(ZERO, Omega, V)
+    u_rate = support.material_acceleration(point, p_rate)
+    acting = system.acting_on(contact.body_motion(m, time, V, orientation, Omega))
+    F, Q = acting.force, orientation.matrix()
     J = system.body.inertia_in_space(Q)
+    whole = J + point_inertia(m, rho)
     inertial = u_rate - Omega.cross(rho_rate)
     # T2
-    moment = K - system.body.gyroscopic(Q, Omega) - rho.cross(F) + m * rho.cross(inertial)
-    Omega_rate = (J + point_inertia(m, rho)).solve(moment)
+    moment = acting.torque - system.body.gyroscopic(Q, Omega) - rho.cross(F) + m * rho.cross(inertial)
+    Omega_rate = whole.solve(moment)
     # T3
     R = m * (inertial - Omega_rate.cross(rho)) - F
-    return Rolling(contact, V, p_rate, orientation.rate(Omega), Omega_rate, R)
+    lever = support.lever(point)
+    # What grows with an unknown: Ω̇ and R for each newton of N, and for each rad/s² of a free axle.
+    couplings = []
+    if acting.has_couple:
+        turned = whole.solve(acting.couple)
+        couplings.append((turned, turned.cross(rho) * -m))
+    if system.support.motion.free:
+        turned = whole.solve(m * rho.cross(lever))
+        couplings.append((turned, m * (lever - turned.cross(rho))))
+    amounts = _amounts(system, time, own, contact, acting, R, [reaction for _, reaction in couplings])
+    for amount, (turned, reaction) in zip(amounts, couplings, strict=True):
+        Omega_rate, R = Omega_rate + turned * amount, R + reaction * amount
+    moment_on_axle = acting.moment_on_axle(support, n.dot(R)) - lever.dot(R)
+    return Rolling(contact, V, p_rate, orientation.rate(Omega), Omega_rate, R, moment_on_axle)
+
+
+def _amounts(
+    system: RollingSystem,
+    time: Scalar,
+    own: tuple[Scalar, ...],
+    contact: Contact,
+    acting: Acting,
+    R: Vector,
+    reactions: list[Vector],
+) -> list[Scalar]:
+    """Solve for the normal force that drives a couple, N = n·R, and for the axle's ω̇, I ω̇ = τ − e·(p − X)×R."""
+    lever, n, axle = contact.support.lever(contact.point), contact.normal, contact.support.axle
+    rows: list[list[Scalar]] = []
+    if acting.has_couple:
+        rows.append([*(-n.dot(reaction) for reaction in reactions), n.dot(R)])
+        rows[-1][0] = 1.0 + rows[-1][0]
+    if system.support.motion.free:
+        applied = system.support.motion.axle_torque(time, own) + acting.moment_on_axle(contact.support, 0.0)
+        rows.append([*(lever.dot(reaction) for reaction in reactions), applied - lever.dot(R)])
+        rows[-1][-2] = system.support.motion.inertia + rows[-1][-2]
+        if acting.has_couple:
+            rows[-1][0] = rows[-1][0] + axle.dot(acting.couple)
+    if len(rows) < 2:
+        return [row[1] / row[0] for row in rows]
+    (a, b, x), (c, d, y) = rows
+    determinant = a * d - b * c
+    return [(x * d - b * y) / determinant, (a * y - x * c) / determinant]

@@ -11,7 +11,7 @@ from . import checks, straight
 from .algebra import E_Z, ZERO, Quaternion, Vector
 from .bodies import Body
 from .contact import Contact, touch
-from .loads import BodyMotion, Gravity, Load
+from .loads import Acting, BodyMotion, Gravity, Load
 from .motions import Fixed, Motion
 from .scalars import Scalar, is_number, is_zero, namespace
 from .surfaces import Surface
@@ -144,10 +144,18 @@ class RollingSystem:
 
     def loads_on(self, motion: BodyMotion) -> tuple[Vector, Vector]:
         """Return the applied force F, N, and torque K about the centre of mass, N m."""
-        force, torque = ZERO, ZERO
+        acting = self.acting_on(motion)
+        return acting.force, acting.torque
+
+    def acting_on(self, motion: BodyMotion) -> Acting:
+        """Return all that acts on the body besides the contact force."""
+        force, torque, from_support, couple = ZERO, ZERO, ZERO, ZERO
         for load in self.all_loads:
-            force, torque = force + load.force(motion), torque + load.torque(motion)
-        return force, torque
+            exerted = load.torque(motion)
+            force, torque = force + load.force(motion), torque + exerted
+            from_support = from_support + exerted if load.at_contact else from_support
+            couple = couple + load.torque_per_normal_force(motion)
+        return Acting(force, torque, from_support, couple)
 
     def place(
         self,

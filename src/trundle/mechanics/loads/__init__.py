@@ -7,7 +7,7 @@ inherit.
 from __future__ import annotations
 
 from .air import Drag
-from .base import BodyMotion, Load, at_rest, constant_part
+from .base import Acting, BodyMotion, Load, at_rest, constant_part
 from .given import Force, Gravity, Torque
 
-__all__ = ["BodyMotion", "Drag", "Force", "Gravity", "Load", "Torque", "at_rest", "constant_part"]
+__all__ = ["Acting", "BodyMotion", "Drag", "Force", "Gravity", "Load", "Torque", "at_rest", "constant_part"]

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..algebra import ZERO, Quaternion, Vector
-from ..scalars import Scalar
+from ..motions import SupportState
+from ..scalars import Scalar, is_zero
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +29,25 @@ class BodyMotion:
     angular_velocity: Vector  # rad/s
     normal: Vector | None = None  # n at the contact, from the support into the body; None in flight
     support_angular_velocity: Vector = ZERO  # ω, rad/s
+
+
+@dataclass(frozen=True, slots=True)
+class Acting:
+    """What acts on a body at one instant besides the contact force, in the inertial support frame."""
+
+    force: Vector = ZERO  # F, N
+    torque: Vector = ZERO  # K about the centre of mass, N m
+    from_support: Vector = ZERO  # the part of K that the support exerts, N m
+    couple: Vector = ZERO  # what the support exerts besides for each newton of normal force, m
+
+    @property
+    def has_couple(self) -> bool:
+        """Whether any load depends on the normal force."""
+        return not all(is_zero(part) for part in self.couple)
+
+    def moment_on_axle(self, support: SupportState, N: Scalar) -> Scalar:
+        """Return the moment of these couples on the support about its axle under a normal force N, N m."""
+        return -support.axle.dot(self.from_support) - (support.axle.dot(self.couple) * N if self.has_couple else 0.0)
 
 
 def at_rest(mass: Scalar) -> BodyMotion:
@@ -56,6 +76,7 @@ class Load:
     """A force and a torque on the body; by default neither, and no potential."""
 
     constant: bool = False  # the same force and torque always and everywhere
+    at_contact: bool = False  # its torque is exchanged with the support
 
     @property
     def linear_drag(self) -> Scalar | None:

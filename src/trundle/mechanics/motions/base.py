@@ -26,6 +26,15 @@ class SupportState:
     angular_velocity: Vector  # ω, rad/s
     angular_acceleration: Vector  # rad/s²
 
+    @property
+    def axle(self) -> Vector:
+        """The support's third axis, about which it turns."""
+        return self.rotation.transpose.c
+
+    def lever(self, p: Vector) -> Vector:
+        """Return e×(p − X): how the material at p speeds up for each rad/s² about the axle, m."""
+        return self.axle.cross(p - self.origin)
+
     def carried(self, own: Vector) -> Vector:
         """Return where the point of the support with given own coordinates is, m."""
         return self.origin + self.rotation @ own
@@ -47,6 +56,13 @@ class Motion:
     """How a support moves: as a function of time, and of coordinates of its own that the run carries along."""
 
     own: tuple[str, ...] = ()  # names of these coordinates: ("angle",) or, of a free axle, ("angle", "rate")
+
+    free: bool = False  # whether the axle's acceleration is an unknown of the contact law
+    inertia: Scalar  # of a free axle, kg m²
+
+    def axle_torque(self, time: Scalar, own: tuple[Scalar, ...]) -> Scalar:  # noqa: ARG002
+        """Return what drives or brakes a free axle besides the body, N m."""
+        return 0.0
 
     def at(self, time: Scalar, *own: Scalar) -> SupportState:
         """Return pose, twist and acceleration at a time in s, the coordinates of its own having the given values."""
