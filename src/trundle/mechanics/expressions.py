@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..errors import InvalidValueError
+from . import checks
+from .jets import Jet, jets
 from .scalars import Scalar, namespace
 
 FUNCTIONS = ("sin", "cos", "tan", "sqrt", "exp", "log", "abs", "hypot")
@@ -88,6 +90,47 @@ class Expression:
         """Return the value where the variables have the given values: numbers, arrays or symbols."""
         return _value(self.tree, values, namespace(tuple(values.values()), _numbers(self.tree)))
 
+    @property
+    def variables(self) -> frozenset[str]:
+        """The variables that stand in it."""
+        return frozenset(_names(self.tree))
+
+    def gradient(self, variables: tuple[str, ...], **values: Scalar) -> tuple[Scalar, ...]:
+        """Return the slopes in some of the variables, exact, where the variables have the given values.
+
+        Examples
+        --------
+        >>> Expression.parse("x*y**2", ("x", "y"), "formula").gradient(("x", "y"), x=2.0, y=3.0)
+        (9.0, 12.0)
+        """
+        value = self._jet(variables, values)
+        return value.gradient if isinstance(value, Jet) else (0.0,) * len(variables)
+
+    def slope(self, variable: str, **values: Scalar) -> Scalar:
+        """Return the slope in one of the variables, exact, where the variables have the given values.
+
+        Examples
+        --------
+        >>> Expression.parse("3*t**2", ("t",), "rate").slope("t", t=2.0)
+        12.0
+        """
+        return self.gradient((variable,), **values)[0]
+
+    def course(self, time: Scalar) -> tuple[Scalar, Scalar, Scalar]:
+        """Return the value of a formula in t at a time, with its first and second rate.
+
+        Examples
+        --------
+        >>> Expression.parse("t**3", ("t",), "angle").course(2.0)
+        (8.0, 12.0, 12.0)
+        """
+        value = self._jet(("t",), {"t": time})
+        return (value.value, value.gradient[0], value.hessian[0]) if isinstance(value, Jet) else (value, 0.0, 0.0)
+
+    def _jet(self, variables: tuple[str, ...], values: dict[str, Scalar]) -> Any:
+        moved = jets(tuple(values[name] for name in variables))
+        return self.at(**{**values, **dict(zip(variables, moved, strict=True))})
+
     def __str__(self) -> str:
         return self.text
 
@@ -119,6 +162,79 @@ def is_formula(text: Any, variables: tuple[str, ...] = ("t",)) -> bool:
     except (SyntaxError, ValueError, MemoryError, RecursionError):
         return False
     return any(name in variables or name in FUNCTIONS for name in names)
+
+
+def varying(value: Any, kind: str, key: str) -> Any:
+    """Return a number in SI or a formula in the time, whichever the user gave.
+
+    Parameters
+    ----------
+    value : float, quantity, str or Expression
+        What the user gave.
+    kind : str
+        A kind of `trundle.units.UNITS`.
+    key : str
+        The name that an error message uses.
+
+    Returns
+    -------
+    Scalar or Expression
+        The number, or the formula in t.
+
+    Examples
+    --------
+    >>> varying("30 rpm", "angular velocity", "rate") == math.pi, varying("2*t", "angular velocity", "rate").at(t=3.0)
+    (True, 6.0)
+    """
+    if isinstance(value, Expression):
+        return value
+    return Expression.parse(value, ("t",), key) if is_formula(value) else checks.real(value, kind, key)
+
+
+def course(value: Any, time: Scalar) -> tuple[Scalar, Scalar, Scalar]:
+    """Return a number or formula in the time at a time, with its first and second rate.
+
+    Parameters
+    ----------
+    value : Scalar or Expression
+        As `varying` returns it.
+    time : Scalar
+        t, s.
+
+    Returns
+    -------
+    tuple of 3 Scalar
+        The value and its rates, per s and per s².
+
+    Examples
+    --------
+    >>> course(0.5, 1.0)
+    (0.5, 0.0, 0.0)
+    """
+    return value.course(time) if isinstance(value, Expression) else (value, 0.0, 0.0)
+
+
+def now(value: Any, time: Scalar) -> Scalar:
+    """Return a number or formula in the time at a time.
+
+    Parameters
+    ----------
+    value : Scalar or Expression
+        As `varying` returns it.
+    time : Scalar
+        t, s.
+
+    Returns
+    -------
+    Scalar
+        The value.
+
+    Examples
+    --------
+    >>> now(0.5, 1.0)
+    0.5
+    """
+    return value.at(t=time) if isinstance(value, Expression) else value
 
 
 class _RefusedError(Exception):
@@ -177,6 +293,13 @@ def _numbers(tree: Any) -> tuple[Any, ...]:
     if isinstance(tree, tuple):
         return tuple(_numbers(part) for part in tree[1:])
     return () if isinstance(tree, str) else (tree,)
+
+
+def _names(tree: Any) -> tuple[str, ...]:
+    if isinstance(tree, tuple):
+        operands = tree[1:2] if tree[0] == "**" else tree[1:]
+        return tuple(name for part in operands for name in _names(part))
+    return (tree,) if isinstance(tree, str) else ()
 
 
 def _value(tree: Any, values: dict[str, Scalar], xp: Any) -> Scalar:
