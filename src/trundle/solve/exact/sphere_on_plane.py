@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 import math
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 from ...errors import OutOfDomainError
 from ...mechanics.algebra import Vector
 from ...mechanics.loads import constant_part
-from ...mechanics.scalars import Scalar, is_number, is_zero, leaves, namespace
+from ...mechanics.scalars import Scalar, is_number, is_zero, namespace
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
+from .many_samples import ManySamples
 from .phi import Complex, exponentials, phase, quotient_times
-
-_BLOCK, _BLOCKS_AT_ONCE = 2048, 16  # samples: a block's table stays in the processor's cache
 
 
 @dataclass(frozen=True)
-class SphereOnPlane(ClosedForm):
+class SphereOnPlane(ManySamples, ClosedForm):
     """The motion ζ(t) = ζ₀ + t φ₁(λt) ζ̇₀ + t² φ₂(λt) φ with λ = iκ − γ, where ζ = x + iy is the centre (T5).
 
     Every number may be a float, or an array of members that broadcasts against the times: a thousand balls are
@@ -332,78 +331,3 @@ class SphereOnPlane(ClosedForm):
         along = Vector(x / size, y / size, 0.0)
         gone = self.position_at(t) - Vector(*self.position, self.radius)
         return Vector(-along.y, along.x, 0.0), gone.dot(along) / self.radius
-
-    def path_on_grid(self, step: float, count: int, out: Any = None) -> Any:
-        """Return the path of this one ball at 0, h, 2h, ...: the fastest way to many samples.
-
-        The motion starts anew every few thousand samples from T5, and inside such a block it is the same linear
-        function of the block's start, ζ_b + τφ₁(λτ) ζ̇_b + τ²φ₂(λτ) φ: one matrix product for all blocks.
-
-        Parameters
-        ----------
-        step : float
-            h, s.
-        count : int
-            Number of samples.
-        out : array (2, count rounded up to whole blocks of 2048), optional
-            Where to put them.
-
-        Returns
-        -------
-        array (2, count)
-            x and y in the inertial support frame, m; the path of `position_at` to the last digits.
-
-        Examples
-        --------
-        >>> SphereOnPlane(0.025, 0.065, 0.4, 3.5, (0.1, 0.0), (0.0, 0.2)).path_on_grid(0.01, 3).shape
-        (2, 3)
-        """
-        import numpy as np
-
-        blocks = -(-count // _BLOCK)
-        if out is None:
-            out = np.empty((2, blocks * _BLOCK))
-        position, velocity, _, _ = self.motion_at(np.arange(blocks) * (_BLOCK * step))
-        _, gain, push = self._terms(np.arange(_BLOCK) * step)
-        pushed = push * self.phi
-        start, table = np.empty((2, blocks, 4)), np.empty((2, 4, _BLOCK))
-        for row, parts in zip(
-            start, ((position.x, velocity.x, -velocity.y), (position.y, velocity.y, velocity.x)), strict=True
-        ):
-            row.T[:] = np.broadcast_arrays(*parts, np.ones(blocks))
-        for row, part in zip(table, (pushed.re, pushed.im), strict=True):
-            row[:] = np.broadcast_arrays(np.ones(_BLOCK), gain.re, gain.im, part)
-        shaped = out.reshape(2, blocks, _BLOCK)
-        for first in range(0, blocks, _BLOCKS_AT_ONCE):  # what is written stays in the cache until it is done
-            part = slice(first, first + _BLOCKS_AT_ONCE)
-            np.matmul(start[:, part], table, out=shaped[:, part])
-        return out[:, :count]
-
-    def compiled(self) -> Any:
-        """Compile the path ζ(t) of this one ball to machine code with heyoka.
-
-        Returns
-        -------
-        heyoka.cfunc
-            A function of times, shape (1, n) in s, that returns x and y, shape (2, n) in m.
-
-        Raises
-        ------
-        OutOfDomainError
-            If a parameter is an array: the compiled path is of one ball.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> path = SphereOnPlane(0.025, 0.065, 0.4, 3.5, (0.1, 0.0), (0.0, 0.2)).compiled()
-        >>> path(np.zeros((1, 2)))
-        array([[0.1, 0.1],
-               [0. , 0. ]])
-        """
-        import heyoka
-
-        if not all(is_number(value) for value in leaves(astuple(self))):
-            raise OutOfDomainError("The compiled path is of one ball: its parameters must be numbers, not arrays.")
-        t = heyoka.make_vars("t")
-        x, y, _ = self.position_at(t)
-        return heyoka.cfunc([heyoka.expression(part) if is_number(part) else part for part in (x, y)], [t])
