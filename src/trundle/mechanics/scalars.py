@@ -182,6 +182,8 @@ def namespace(*values: Any) -> Any:
     for value in others:
         if hasattr(value, "__array_namespace__"):
             return value.__array_namespace__()
+        if hasattr(type(value), "scalar_functions"):
+            return type(value).scalar_functions()
         package = type(value).__module__.partition(".")[0]
         if package in _SYMBOLIC:
             return _SYMBOLIC[package]()
