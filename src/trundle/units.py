@@ -23,6 +23,8 @@ UNITS: dict[str, tuple[str, str]] = {
     "torque": ("N*m", "2 mN*m"),
     "inertia": ("kg*m^2", "1.6e-5 kg*m^2"),
     "damping": ("kg/s", "0.01 kg/s"),
+    "quadratic damping": ("kg/m", "0.001 kg/m"),
+    "rotational damping": ("N*m*s", "1e-5 N*m*s"),
     "number": ("", "0.4"),
 }
 

@@ -12,6 +12,7 @@ from typing import Any
 
 from ..errors import InvalidValueError
 from . import checks
+from .algebra import Vector
 from .jets import Jet, jets
 from .scalars import Scalar, namespace
 
@@ -189,6 +190,39 @@ def varying(value: Any, kind: str, key: str) -> Any:
     if isinstance(value, Expression):
         return value
     return Expression.parse(value, ("t",), key) if is_formula(value) else checks.real(value, kind, key)
+
+
+def varying_vector(value: Any, kind: str, key: str) -> Vector:
+    """Return three components, each a number in SI or a formula in the time.
+
+    Parameters
+    ----------
+    value : sequence of 3
+        What the user gave.
+    kind, key : str
+        As for `varying`; the components are named ``key[0]``, ``key[1]``, ``key[2]``.
+
+    Returns
+    -------
+    Vector of Scalar or Expression
+        The components.
+
+    Examples
+    --------
+    >>> varying_vector(["1 cm", "2*t", 0.0], "length", "position").x
+    0.01
+    """
+    formulas = isinstance(value, (list, tuple, Vector)) and any(map(_varies, value))
+    plain = tuple(0.0 if _varies(part) else part for part in value) if formulas else value
+    numbers = checks.components(plain, kind, key)
+    if not formulas:
+        return Vector(*numbers)
+    mixed = zip(value, numbers, strict=True)
+    return Vector(*(varying(p, kind, f"{key}[{i}]") if _varies(p) else number for i, (p, number) in enumerate(mixed)))
+
+
+def _varies(part: Any) -> bool:
+    return isinstance(part, Expression) or is_formula(part)
 
 
 def course(value: Any, time: Scalar) -> tuple[Scalar, Scalar, Scalar]:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from .. import checks
 from ..algebra import Vector
-from ..expressions import Expression, is_formula
+from ..expressions import Expression, now, varying_vector
 from ..scalars import Scalar, is_zero
 from .base import BodyMotion, Load
 
@@ -64,16 +63,7 @@ class _Given(Load):
     _kind = "number"
 
     def __post_init__(self) -> None:
-        parts = self.value
-        formulas = isinstance(parts, (list, tuple)) and any(map(_is_formula, parts))
-        plain = tuple(0.0 if _is_formula(part) else part for part in parts) if formulas else parts
-        components = checks.components(plain, self._kind, "value")
-        if formulas:
-            pairs = zip(parts, components, strict=True)
-            components = tuple(
-                _formula(part, f"value[{i}]") if _is_formula(part) else number for i, (part, number) in enumerate(pairs)
-            )
-        object.__setattr__(self, "value", Vector(*components))
+        object.__setattr__(self, "value", varying_vector(self.value, self._kind, "value"))
 
     @property
     def constant(self) -> bool:  # type: ignore[override]
@@ -87,15 +77,7 @@ class _Given(Load):
 
     def at(self, time: Scalar) -> Vector:
         """Return the components at a time in s."""
-        return Vector(*(part.at(t=time) if isinstance(part, Expression) else part for part in self.value))
-
-
-def _is_formula(part: Any) -> bool:
-    return isinstance(part, Expression) or is_formula(part)
-
-
-def _formula(part: Any, key: str) -> Expression:
-    return part if isinstance(part, Expression) else Expression.parse(part, ("t",), key)
+        return Vector(*(now(part, time) for part in self.value))
 
 
 @dataclass(frozen=True)

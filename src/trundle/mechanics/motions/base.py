@@ -57,6 +57,7 @@ class Motion:
 
     own: tuple[str, ...] = ()  # names of these coordinates: ("angle",) or, of a free axle, ("angle", "rate")
 
+    turns: bool = True  # False: it only shifts the support
     free: bool = False  # whether the axle's acceleration is an unknown of the contact law
     inertia: Scalar  # of a free axle, kg m²
 
@@ -90,3 +91,7 @@ class Motion:
     def fastest_rate(self) -> Scalar:
         """The fastest rate in the motion, rad/s: what a look at it must resolve."""
         return abs(self.mean_rate)
+
+    def fastest_rate_within(self, start: float, end: float) -> float:  # noqa: ARG002  formulas ask when
+        """Return the fastest rate in the motion from one time to another, rad/s."""
+        return float(self.fastest_rate)

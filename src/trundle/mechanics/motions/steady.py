@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from .. import checks
-from ..algebra import E_Z, ZERO, Matrix, Vector
-from ..scalars import Scalar, namespace
+from ..algebra import E_Z, ZERO, Matrix
+from ..scalars import Scalar
 from .base import Motion, SupportState
+from .turning import about_third_axis
 
 
 @dataclass(frozen=True)
@@ -19,6 +20,8 @@ class Fixed(Motion):
     >>> Fixed().at(1.0).angular_velocity
     Vector(x=0.0, y=0.0, z=0.0)
     """
+
+    turns = False
 
     def at(self, time: Scalar) -> SupportState:  # noqa: ARG002  the same always
         """Return rest at the origin."""
@@ -57,7 +60,4 @@ class Spin(Motion):
 
     def at(self, time: Scalar) -> SupportState:
         """Return the support turned by ωt."""
-        xp = namespace(self.rate, time)
-        c, s = xp.cos(self.rate * time), xp.sin(self.rate * time)
-        rotation = Matrix(Vector(c, -s, 0.0), Vector(s, c, 0.0), E_Z)
-        return SupportState(rotation, ZERO, ZERO, ZERO, E_Z * self.rate, ZERO)
+        return SupportState(about_third_axis(self.rate * time), ZERO, ZERO, ZERO, E_Z * self.rate, ZERO)

@@ -8,6 +8,7 @@ from .. import checks
 from ..algebra import E_Z, ZERO, Matrix, Vector
 from ..scalars import Scalar, namespace
 from .base import Motion, SupportState
+from .turning import about_third_axis
 
 
 @dataclass(frozen=True)
@@ -55,11 +56,9 @@ class UnevenSpin(Motion):
         xp = namespace(self.rate, self.variation, phase)
         sine, half = xp.sin(phase), xp.sin(0.5 * phase)
         angle = self.rate * (time + self.variation * (2 * half * half) / self.variation_rate)
-        c, s = xp.cos(angle), xp.sin(angle)
-        rotation = Matrix(Vector(c, -s, 0.0), Vector(s, c, 0.0), E_Z)
         omega = E_Z * (self.rate * (1 + self.variation * sine))
         omega_rate = E_Z * (self.rate * self.variation * self.variation_rate * xp.cos(phase))
-        return SupportState(rotation, ZERO, ZERO, ZERO, omega, omega_rate)
+        return SupportState(about_third_axis(angle), ZERO, ZERO, ZERO, omega, omega_rate)
 
 
 @dataclass(frozen=True)

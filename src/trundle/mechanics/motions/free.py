@@ -1,0 +1,87 @@
+"""A support that is free to turn on its axle: the body turns it, too."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from .. import checks
+from ..algebra import E_Z, ZERO
+from ..expressions import now, varying
+from ..scalars import Scalar, namespace
+from .base import Motion, SupportState
+from .turning import about_third_axis
+
+
+@dataclass(frozen=True)
+class FreeAxle(Motion):
+    """A support free to turn about its third axis, I_t ω̇ = τ + M, where M is the moment that the body exerts on it.
+
+    τ(t, ω) = motor − c ω − τ_b ω/√(ω² + ω_b²) is what acts on the axle besides: a motor, a viscous bearing and a dry
+    one. A dry bearing loses its hold below ω_b, so that the rate stays a smooth function of the time.
+
+    Parameters
+    ----------
+    inertia : float or quantity
+        I_t of the support about its axle, kg m².
+    rate : float or quantity
+        ω at the start, rad/s.
+    motor_torque : formula, float or quantity
+        In the time t in s, N m; positive drives the first axis towards the second.
+    bearing_drag : float or quantity
+        c of the viscous bearing, N m s.
+    bearing_torque : float or quantity
+        τ_b of the dry bearing, N m.
+    below : float or quantity
+        ω_b, rad/s.
+
+    Examples
+    --------
+    >>> table = FreeAxle("0.5 kg*m^2", rate=2.0, bearing_drag=0.25)
+    >>> table.own_rates(0.0, (0.0, 2.0), moment=1.0)
+    (2.0, 1.0)
+    """
+
+    inertia: Scalar
+    rate: Scalar = 0.0
+    motor_torque: Any = 0.0
+    bearing_drag: Scalar = 0.0
+    bearing_torque: Scalar = 0.0
+    below: Scalar = 0.01
+    own = ("angle", "rate")
+    free = True
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "inertia", checks.positive(self.inertia, "inertia", "inertia"))
+        object.__setattr__(self, "rate", checks.real(self.rate, "angular velocity", "rate"))
+        object.__setattr__(self, "motor_torque", varying(self.motor_torque, "torque", "motor_torque"))
+        drag = checks.non_negative(self.bearing_drag, "rotational damping", "bearing_drag")
+        object.__setattr__(self, "bearing_drag", drag)
+        object.__setattr__(self, "bearing_torque", checks.non_negative(self.bearing_torque, "torque", "bearing_torque"))
+        object.__setattr__(self, "below", checks.positive(self.below, "angular velocity", "below"))
+
+    @property
+    def mean_rate(self) -> Scalar:
+        """ω at the start, rad/s."""
+        return self.rate
+
+    def own_start(self) -> tuple[Scalar, ...]:
+        """Return the angle 0 and the rate at the start."""
+        return (0.0, self.rate)
+
+    def axle_torque(self, time: Scalar, own: tuple[Scalar, ...]) -> Scalar:
+        """Return τ(t, ω), N m."""
+        _, rate = own
+        xp = namespace(rate, self.below)
+        dry = self.bearing_torque * rate / xp.sqrt(rate * rate + self.below * self.below)
+        return now(self.motor_torque, time) - self.bearing_drag * rate - dry
+
+    def own_rates(self, time: Scalar, own: tuple[Scalar, ...], moment: Scalar) -> tuple[Scalar, ...]:
+        """Return ω and ω̇ = (τ + M)/I_t."""
+        _, rate = own
+        return (rate, (self.axle_torque(time, own) + moment) / self.inertia)
+
+    def at(self, time: Scalar, *own: Scalar) -> SupportState:  # noqa: ARG002
+        """Return the support turned by its angle, for ω̇ = 0: the contact law adds its own."""
+        angle, rate = own
+        return SupportState(about_third_axis(angle), ZERO, ZERO, ZERO, E_Z * rate, ZERO)

@@ -1,0 +1,141 @@
+"""Harmonic motions: rocking about an axis, shaking along a line, and a lean that goes round."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from .. import checks
+from ..algebra import E_Z, ZERO, Matrix, Vector
+from ..scalars import Scalar, namespace
+from .base import Motion, SupportState
+from .given import axis_of, direction_of
+from .turning import about, swing, turned_about
+
+
+@dataclass(frozen=True)
+class Rock(Motion):
+    """A support that rocks about an axis through the origin, by the angle A sin(νt + φ).
+
+    Parameters
+    ----------
+    amplitude : float or quantity
+        A, rad.
+    rate : float or quantity
+        ν, rad/s.
+    phase : float or quantity
+        φ, rad.
+    axis : sequence of 3 floats
+        Its direction in the inertial support frame, of any length; the second axis unless said otherwise: a positive
+        angle then lowers the side of the first axis.
+
+    Examples
+    --------
+    >>> Rock("3 deg", 2.0).at(0.0).angular_velocity.y == 2.0 * Rock("3 deg", 2.0).amplitude
+    True
+    """
+
+    amplitude: Scalar
+    rate: Scalar
+    phase: Scalar = 0.0
+    axis: Any = (0.0, 1.0, 0.0)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "amplitude", checks.real(self.amplitude, "angle", "amplitude"))
+        object.__setattr__(self, "rate", checks.real(self.rate, "angular velocity", "rate"))
+        object.__setattr__(self, "phase", checks.real(self.phase, "angle", "phase"))
+        object.__setattr__(self, "axis", axis_of(self.axis))
+
+    @property
+    def fastest_rate(self) -> Scalar:
+        """The faster of the rocking and the turn in it."""
+        return abs(self.rate) * (1 + abs(self.amplitude))
+
+    def at(self, time: Scalar) -> SupportState:
+        """Return the support turned by A sin(νt + φ)."""
+        return turned_about(direction_of(self.axis), swing(self.amplitude, self.rate, self.phase, time))
+
+
+@dataclass(frozen=True)
+class Shake(Motion):
+    """A support that is shaken along a line without turning, X = A sin(νt + φ).
+
+    Parameters
+    ----------
+    amplitude : sequence of 3 floats or quantities
+        A in the inertial support frame, m.
+    rate : float or quantity
+        ν, rad/s.
+    phase : float or quantity
+        φ, rad.
+
+    Examples
+    --------
+    >>> Shake(("2 mm", 0.0, 0.0), "10 rad/s").at(0.0).velocity
+    Vector(x=0.02, y=0.0, z=0.0)
+    """
+
+    amplitude: Any
+    rate: Scalar
+    phase: Scalar = 0.0
+    turns = False
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "amplitude", Vector(*checks.components(self.amplitude, "length", "amplitude")))
+        object.__setattr__(self, "rate", checks.real(self.rate, "angular velocity", "rate"))
+        object.__setattr__(self, "phase", checks.real(self.phase, "angle", "phase"))
+
+    @property
+    def fastest_rate(self) -> Scalar:
+        """|ν|, rad/s."""
+        return abs(self.rate)
+
+    def at(self, time: Scalar) -> SupportState:
+        """Return the support at A sin(νt + φ)."""
+        where, velocity, acceleration = swing(self.amplitude, self.rate, self.phase, time)
+        return SupportState(Matrix.identity(), where, velocity, acceleration, ZERO, ZERO)
+
+
+@dataclass(frozen=True)
+class PrecessingTilt(Motion):
+    """A support whose axis leans by a given angle in a direction that goes round, while the support does not spin.
+
+    This is how a pan is swirled: R = R₃(νt) R₂(ε) R₃(−νt), which comes back to itself with every round. At t = 0 the
+    side of the first axis is the low one.
+
+    Parameters
+    ----------
+    angle : float or quantity
+        ε between the support's own axis and the third axis, rad.
+    rate : float or quantity
+        ν at which the lowest side goes round, from the first axis towards the second, rad/s.
+
+    Examples
+    --------
+    >>> axis = PrecessingTilt(0.1, 2.0).at(0.0).rotation @ Vector(0.0, 0.0, 1.0)
+    >>> round(axis.x, 6), axis.y
+    (0.099833, 0.0)
+    """
+
+    angle: Scalar
+    rate: Scalar
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "angle", checks.real(self.angle, "angle", "angle"))
+        object.__setattr__(self, "rate", checks.real(self.rate, "angular velocity", "rate"))
+
+    @property
+    def fastest_rate(self) -> Scalar:
+        """|ν|, rad/s."""
+        return abs(self.rate)
+
+    def at(self, time: Scalar) -> SupportState:
+        """Return the support leaning towards νt: ω = ν(e₃ − a) with a its own axis, ȧ = ν e₃×a."""
+        where = self.rate * time
+        xp = namespace(self.rate, self.angle, time)
+        c, s = xp.cos(where), xp.sin(where)
+        lean, half = xp.sin(self.angle), xp.sin(0.5 * self.angle)
+        rotation = about(Vector(-s, c, 0.0), self.angle)
+        a = Vector(c, s, 0.0) * lean
+        omega = Vector(-a.x, -a.y, 2.0 * (half * half)) * self.rate  # 1 − cos ε, no digits lost
+        return SupportState(rotation, ZERO, ZERO, ZERO, omega, E_Z.cross(a) * -(self.rate * self.rate))
