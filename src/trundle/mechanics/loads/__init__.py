@@ -6,8 +6,28 @@ inherit.
 
 from __future__ import annotations
 
-from .air import Drag
+from .air import Drag, Magnus, QuadraticDrag
 from .base import Acting, BodyMotion, Load, at_rest, constant_part
+from .contact import PivotFriction, RollingCouple, RollingResistance
+from .field import Potential
 from .given import Force, Gravity, Torque
+from .inside import Motor
 
-__all__ = ["Acting", "BodyMotion", "Drag", "Force", "Gravity", "Load", "Torque", "at_rest", "constant_part"]
+__all__ = [
+    "Acting",
+    "BodyMotion",
+    "Drag",
+    "Force",
+    "Gravity",
+    "Load",
+    "Magnus",
+    "Motor",
+    "PivotFriction",
+    "Potential",
+    "QuadraticDrag",
+    "RollingCouple",
+    "RollingResistance",
+    "Torque",
+    "at_rest",
+    "constant_part",
+]

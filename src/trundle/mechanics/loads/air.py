@@ -6,12 +6,54 @@ from dataclasses import dataclass
 
 from .. import checks
 from ..algebra import E_Z, Vector
-from ..scalars import Scalar, is_zero
+from ..scalars import Scalar, is_zero, namespace
 from .base import BodyMotion, Load
+
+STILL = 1e-6  # m/s: below it the length of a velocity is rounded off, so that it has slopes also at rest
+
+
+def through_air(motion: BodyMotion, air_rate: Scalar) -> Vector:
+    """Return V − ω_a×r, the velocity of the centre of mass through air that turns about the third axis.
+
+    Parameters
+    ----------
+    motion : BodyMotion
+        Of the body.
+    air_rate : Scalar
+        ω_a, rad/s.
+
+    Returns
+    -------
+    Vector
+        m/s.
+
+    Examples
+    --------
+    >>> from trundle.mechanics.loads import at_rest
+    >>> through_air(at_rest(1.0), 0.0)
+    Vector(x=0.0, y=0.0, z=0.0)
+    """
+    if is_zero(air_rate):
+        return motion.velocity
+    return motion.velocity - (E_Z * air_rate).cross(motion.position)
+
+
+class _OfAir(Load):
+    """A force of the air on the centre of mass."""
+
+    @property
+    def symmetric(self) -> bool:
+        """True: the air looks the same from every side of the axis."""
+        return True
+
+    @property
+    def leaves_spin(self) -> bool:
+        """True: it acts at the centre of mass."""
+        return True
 
 
 @dataclass(frozen=True)
-class Drag(Load):
+class Drag(_OfAir):
     """Linear drag −c(V − ω_a×r) in air that is still or turns about the support's third axis.
 
     Parameters
@@ -42,17 +84,65 @@ class Drag(Load):
 
     def force(self, motion: BodyMotion) -> Vector:
         """Return −c(V − ω_a×r)."""
-        if is_zero(self.air_rate):
-            return motion.velocity * -self.coefficient
-        air = (E_Z * self.air_rate).cross(motion.position)
-        return (motion.velocity - air) * -self.coefficient
+        return through_air(motion, self.air_rate) * -self.coefficient
 
-    @property
-    def symmetric(self) -> bool:
-        """True: the air looks the same from every side of the axis."""
-        return True
 
-    @property
-    def leaves_spin(self) -> bool:
-        """True: it acts at the centre of mass."""
-        return True
+@dataclass(frozen=True)
+class QuadraticDrag(_OfAir):
+    """Quadratic drag −c|v|v with v = V − ω_a×r, in air that is still or turns about the support's third axis.
+
+    |v| is computed as √(v² + v₀²) with v₀ = 1 µm/s, since |v| itself has no slopes at rest: the force is off by less
+    than c v₀²/2, 5e-13 m²/s² times c, at any speed.
+
+    Parameters
+    ----------
+    coefficient : float or quantity
+        c, kg/m: ½ρ C_d A of a body of frontal area A in air of density ρ.
+    air_rate : float or quantity
+        ω_a, at which the air turns, rad/s.
+
+    Examples
+    --------
+    >>> QuadraticDrag("1 g/m").coefficient
+    0.001
+    """
+
+    coefficient: Scalar
+    air_rate: Scalar = 0.0
+
+    def __post_init__(self) -> None:
+        value = checks.non_negative(self.coefficient, "quadratic damping", "coefficient")
+        object.__setattr__(self, "coefficient", value)
+        object.__setattr__(self, "air_rate", checks.real(self.air_rate, "angular velocity", "air_rate"))
+
+    def force(self, motion: BodyMotion) -> Vector:
+        """Return −c|v|v."""
+        v = through_air(motion, self.air_rate)
+        square = v.dot(v) + STILL * STILL
+        return v * (-self.coefficient * namespace(square).sqrt(square))
+
+
+@dataclass(frozen=True)
+class Magnus(_OfAir):
+    """The sideways force c Ω×V of still air on a body that turns while it moves.
+
+    Parameters
+    ----------
+    coefficient : float or quantity
+        c, kg; a positive one pushes a ball with topspin down. For a small slow sphere in air of density ρ it is
+        π ρ a³ (Rubinow and Keller 1961); a fast or rough one has a C_L of its own, c = ½ρ C_L A |V|/|Ω|.
+
+    Examples
+    --------
+    >>> Magnus("0.1 g").coefficient
+    0.0001
+    """
+
+    coefficient: Scalar
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "coefficient", checks.real(self.coefficient, "mass", "coefficient"))
+
+    def force(self, motion: BodyMotion) -> Vector:
+        """Return c Ω×V."""
+        return motion.angular_velocity.cross(motion.velocity) * self.coefficient

@@ -77,6 +77,8 @@ class Load:
 
     constant: bool = False  # the same force and torque always and everywhere
     at_contact: bool = False  # its torque is exchanged with the support
+    stops: bool = False  # it brings rolling to rest in a finite time, where its direction is lost
+    offset: Scalar  # of a load that stops: its couple for each newton of normal force, m
 
     @property
     def linear_drag(self) -> Scalar | None:

@@ -56,8 +56,14 @@ class Gravity(Load):
 
 
 @dataclass(frozen=True)
-class _Given(Load):
-    """Three components that are numbers or formulas in the time t, in the inertial support frame."""
+class Given(Load):
+    """Three components that are numbers or formulas in the time t.
+
+    Examples
+    --------
+    >>> Given((1.0, "2*t", 0.0)).at(3.0).y
+    6.0
+    """
 
     value: Any
     _kind = "number"
@@ -81,7 +87,7 @@ class _Given(Load):
 
 
 @dataclass(frozen=True)
-class Force(_Given):
+class Force(Given):
     """A force on the centre of mass, constant or given as formulas in the time.
 
     Parameters
@@ -114,7 +120,7 @@ class Force(_Given):
 
 
 @dataclass(frozen=True)
-class Torque(_Given):
+class Torque(Given):
     """A torque about the centre of mass, constant or given as formulas in the time.
 
     Parameters
