@@ -16,6 +16,8 @@ class SurfaceContract:
     surface: Surface
     length = 1.0  # over which the surface changes, m
     mapped = True  # it has coordinates
+    square = True  # which cross at right angles everywhere
+    footed = True  # and which a point over the surface shares with its foot
 
     def points(self) -> list[Vector]:
         raise NotImplementedError
@@ -69,6 +71,26 @@ class SurfaceContract:
             assert size_of(self.surface.point(*self.surface.coordinates_of(p)) - p) <= EXACT(16, self.length)
 
     @precisely
+    def test_a_body_is_put_down_where_it_touches(self) -> None:
+        offset = Vector(mpmath.mpf("0.1"), mpmath.mpf("-0.2"), mpmath.mpf("-0.3"))
+        for p in self.points() if self.mapped else []:
+            u, v = self.surface.put_down_at(p, offset)
+            assert size_of(self.surface.under(u, v, offset) - p) <= EXACT(16, self.length)
+
+    @precisely
+    def test_its_own_formulas_are_those_of_its_level(self) -> None:
+        for p in self.points():
+            assert size_of(Surface.normal(self.surface, p) - self.surface.normal(p)) <= EXACT(16, 1)
+            bends = Surface.shape_operator(self.surface, p) - self.surface.shape_operator(p)
+            assert size_of(bends) <= EXACT(16, 1 / self.length)
+
+    @precisely
+    def test_it_is_defined_where_it_is(self) -> None:
+        for p in self.points():
+            room = self.surface.inside(p)
+            assert room is None or room > 0
+
+    @precisely
     def test_the_directions_are_those_in_which_the_coordinates_grow(self) -> None:
         for p in self.points() if self.mapped else []:
             u, v = self.surface.coordinates_of(p)
@@ -78,12 +100,13 @@ class SurfaceContract:
             )
             for direction, wanted in zip(self.surface.directions(p), grown, strict=True):
                 assert size_of(direction - wanted) <= EXACT(16, 1)
-            first, second = self.surface.directions(p)
-            assert abs(first.dot(second)) + abs(first.dot(self.surface.normal(p))) <= EXACT(16, 1)
+            first, second, n = *self.surface.directions(p), self.surface.normal(p)
+            assert abs(first.dot(n)) + abs(second.dot(n)) <= EXACT(16, 1)
+            assert not self.square or abs(first.dot(second)) <= EXACT(16, 1)
 
     @precisely
     def test_a_point_over_the_surface_has_the_coordinates_of_its_foot(self) -> None:
-        for p in self.points() if self.mapped else []:
+        for p in self.points() if self.mapped and self.footed else []:
             over = p + self.surface.normal(p) * (self.length / 8)
             for a, b in zip(self.surface.coordinates_of(over), self.surface.coordinates_of(p), strict=True):
                 assert abs(a - b) <= EXACT(16, 1)

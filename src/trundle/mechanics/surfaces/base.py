@@ -7,15 +7,40 @@ from typing import Any
 
 from ...errors import InvalidValueError
 from ..algebra import Matrix, Vector
-from ..scalars import Scalar, is_number
+from ..jets import jets
+from ..scalars import Scalar, is_number, namespace
 
 
 class Surface:
-    """A smooth surface φ(p) = 0, with φ positive on the side of the body (theory page, section 2)."""
+    """A smooth surface φ(p) = 0, with φ positive on the side of the body (theory page, section 2).
 
-    rim: Scalar | None = None
-    axisymmetric: bool
+    A surface of one's own needs `level`, `point` and `axisymmetric`; the rest follows. Where its coordinates are not
+    x and y of the point itself, it needs `coordinates_of` and `directions`, too. Formulas that are cheaper or better
+    conditioned than the general ones may replace them.
+
+    Examples
+    --------
+    >>> class Saddle(Surface):
+    ...     axisymmetric = False
+    ...
+    ...     def level(self, p):
+    ...         return p.z - p.x * p.y
+    ...
+    ...     def point(self, u, v):
+    ...         return Vector(u, v, u * v)
+    >>> Saddle().normal(Vector(0.0, 0.0, 0.0)).z, Saddle().shape_operator(Vector(0.0, 0.0, 0.0)).a.y
+    (1.0, -1.0)
+    """
+
+    rim: Scalar | None = None  # distance of the edge from the axis, m
+    analytic = True  # a formula: heyoka and SymPy can trace it; a table is evaluated on floats and arrays only
+    end = "the end of the surface"  # what the body comes to where `inside` falls to 0
     coordinates: tuple[str, str] = ("length", "length")  # kinds of quantity, as in `trundle.units`
+
+    @property
+    def axisymmetric(self) -> bool:
+        """Whether a turn about the third axis leaves the surface as it is."""
+        raise NotImplementedError
 
     def level(self, p: Vector) -> Scalar:
         """Return φ(p), m."""
@@ -23,23 +48,35 @@ class Surface:
 
     def normal(self, p: Vector) -> Vector:
         """Return n = ∇φ/|∇φ|, from the support into the body."""
-        raise NotImplementedError
+        slope = Vector(*self.level(Vector(*jets(tuple(p)))).gradient)
+        return slope / slope.norm()
 
     def shape_operator(self, p: Vector) -> Matrix:
         """Return S with dn = S dp along the surface, 1/m: outside a sphere of radius b it is +1/b."""
-        raise NotImplementedError
+        level = self.level(Vector(*jets(tuple(p))))
+        slope, (xx, xy, xz, yy, yz, zz) = Vector(*level.gradient), level.hessian
+        bend = Matrix(Vector(xx, xy, xz), Vector(xy, yy, yz), Vector(xz, yz, zz))
+        length = slope.norm()
+        return tangential(bend, slope / length) * (1.0 / length)
+
+    def inside(self, p: Vector) -> Scalar | None:  # noqa: ARG002  most have no end
+        """Return a number that falls through 0 where the surface ends or has a singular point; None where neither."""
+        return None
 
     def point(self, u: Scalar, v: Scalar) -> Vector:
         """Return the point of the surface with given coordinates, m."""
         raise NotImplementedError
 
     def coordinates_of(self, p: Vector) -> tuple[Scalar, Scalar]:
-        """Return the coordinates of a point of the surface, or of a point straight over it."""
-        raise NotImplementedError
+        """Return the coordinates of a point of the surface: x and y, unless it has others."""
+        return p.x, p.y
 
     def directions(self, p: Vector) -> tuple[Vector, Vector]:
-        """Return the unit tangents along which the two coordinates grow."""
-        raise NotImplementedError
+        """Return the unit tangents along which the two coordinates grow: of x at one y, and of y at one x."""
+        n = self.normal(p)
+        sqrt = namespace(*n).sqrt
+        first, second = sqrt(n.x * n.x + n.z * n.z), sqrt(n.y * n.y + n.z * n.z)
+        return Vector(n.z / first, 0.0, -(n.x / first)), Vector(0.0, n.z / second, -(n.y / second))
 
     def under(self, u: Scalar, v: Scalar, offset: Vector) -> Vector:  # noqa: ARG002
         """Return the contact of a body put down at coordinates (u, v); on a curved surface they are the contact's.
@@ -58,8 +95,78 @@ class Surface:
         """
         return self.point(u, v)
 
+    def put_down_at(self, p: Vector, offset: Vector) -> tuple[Scalar, Scalar]:  # noqa: ARG002
+        """Return the coordinates at which a body is put down that touches at p: what `under` undoes.
+
+        Parameters
+        ----------
+        p : Vector
+            The contact, m.
+        offset : Vector
+            ρ, from the centre of mass to the contact, m.
+
+        Returns
+        -------
+        u, v : Scalar
+            Of the kinds in `coordinates`.
+        """
+        return self.coordinates_of(p)
+
     def check_tilt(self, tilt: float, received: Any) -> None:
         """Refuse a tilt at which this surface is not what its name says."""
         if not abs(tilt) <= math.pi:
-            remedy = "Did you mean degrees? Write 'deg' behind the number." if is_number(received) else ""
-            raise InvalidValueError("tilt", "must lie in [−180°, 180°]", received, remedy)
+            raise InvalidValueError("tilt", "must lie in [−180°, 180°]", received, _degrees(received))
+
+
+def tangential(bend: Matrix, n: Vector) -> Matrix:
+    """Return P H P with P = 1 − n nᵀ, what is left of a symmetric H along a surface.
+
+    Parameters
+    ----------
+    bend : Matrix
+        H.
+    n : Vector
+        Unit normal.
+
+    Returns
+    -------
+    Matrix
+        Symmetric, and n maps to 0.
+
+    Examples
+    --------
+    >>> tangential(Matrix.identity(), Vector(0.0, 0.0, 1.0)).c.z
+    0.0
+    """
+    along = bend @ n
+    return bend - Matrix.outer(n, along) - Matrix.outer(along, n) + Matrix.outer(n, n) * n.dot(along)
+
+
+def check_upright(tilt: float, received: Any) -> None:
+    """Refuse a surface that stands upright or hangs over.
+
+    Parameters
+    ----------
+    tilt : float
+        α, rad.
+    received : object
+        As the user gave it.
+
+    Raises
+    ------
+    InvalidValueError
+        Unless α lies in (−90°, 90°).
+
+    Examples
+    --------
+    >>> check_upright(1.6, "1.6 rad")
+    Traceback (most recent call last):
+    ...
+    trundle.errors.InvalidValueError: `tilt` must lie in (−90°, 90°); got '1.6 rad'.
+    """
+    if not abs(tilt) < math.pi / 2:
+        raise InvalidValueError("tilt", "must lie in (−90°, 90°)", received, _degrees(received))
+
+
+def _degrees(received: Any) -> str:
+    return "Did you mean degrees? Write 'deg' behind the number." if is_number(received) else ""

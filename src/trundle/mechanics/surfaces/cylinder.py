@@ -10,7 +10,7 @@ from ..algebra import E_Z, Matrix, Vector
 from ..scalars import Scalar, namespace
 from .base import Surface
 
-_SIDES = ("inside", "outside")
+SIDES = ("inside", "outside")
 
 
 @dataclass(frozen=True)
@@ -40,8 +40,8 @@ class Cylinder(Surface):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "radius", checks.positive(self.radius, "length", "radius"))
-        if self.side not in _SIDES:
-            raise UnknownNameError("side of a cylinder", str(self.side), _SIDES)
+        if self.side not in SIDES:
+            raise UnknownNameError("side of a cylinder", str(self.side), SIDES)
 
     @property
     def sign(self) -> float:
@@ -50,15 +50,15 @@ class Cylinder(Surface):
 
     def level(self, p: Vector) -> Scalar:
         """Return the distance from the wall, m."""
-        return (_from_axis(p)[1] - self.radius) * self.sign
+        return (from_axis(p)[1] - self.radius) * self.sign
 
     def normal(self, p: Vector) -> Vector:
         """Return the direction away from the axis outside, towards it inside."""
-        return _from_axis(p)[0] * self.sign
+        return from_axis(p)[0] * self.sign
 
     def shape_operator(self, p: Vector) -> Matrix:
         """Return ±1/d around and 0 along, d being the distance of p from the axis."""
-        e, distance = _from_axis(p)
+        e, distance = from_axis(p)
         around = Vector(-e.y, e.x, 0.0)
         return Matrix.outer(around, around) * (self.sign / distance)
 
@@ -73,11 +73,27 @@ class Cylinder(Surface):
 
     def directions(self, p: Vector) -> tuple[Vector, Vector]:
         """Return the tangent around, towards growing angle, and the axis."""
-        e, _ = _from_axis(p)
+        e, _ = from_axis(p)
         return Vector(-e.y, e.x, 0.0), E_Z
 
 
-def _from_axis(p: Vector) -> tuple[Vector, Scalar]:
-    """Return the direction away from the third axis, and the distance from it."""
+def from_axis(p: Vector) -> tuple[Vector, Scalar]:
+    """Return the direction away from the third axis, and the distance from it.
+
+    Parameters
+    ----------
+    p : Vector
+        A point off the axis, m.
+
+    Returns
+    -------
+    direction, distance : Vector, Scalar
+        The first of length 1, the second in m.
+
+    Examples
+    --------
+    >>> from_axis(Vector(3.0, 4.0, 7.0))
+    (Vector(x=0.6, y=0.8, z=0.0), 5.0)
+    """
     distance = namespace(p.x, p.y).sqrt(p.x * p.x + p.y * p.y)
     return Vector(p.x / distance, p.y / distance, 0.0), distance

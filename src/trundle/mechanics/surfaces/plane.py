@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any
 
-from ...errors import InvalidValueError
 from .. import checks
 from ..algebra import E_X, E_Y, E_Z, Matrix, Vector
-from ..scalars import Scalar, is_number
-from .base import Surface
+from ..scalars import Scalar
+from .base import Surface, check_upright
 
 
 @dataclass(frozen=True)
@@ -63,8 +61,10 @@ class Plane(Surface):
         """Return the contact of a body whose centre of mass is over (x, y)."""
         return Vector(u + offset.x, v + offset.y, 0.0)
 
+    def put_down_at(self, p: Vector, offset: Vector) -> tuple[Scalar, Scalar]:
+        """Return x and y of the centre of mass."""
+        return p.x - offset.x, p.y - offset.y
+
     def check_tilt(self, tilt: float, received: Any) -> None:
         """Refuse a plane that stands upright or hangs over."""
-        if not abs(tilt) < math.pi / 2:
-            remedy = "Did you mean degrees? Write 'deg' behind the number." if is_number(received) else ""
-            raise InvalidValueError("tilt", "must lie in (−90°, 90°)", received, remedy)
+        check_upright(tilt, received)

@@ -1,0 +1,92 @@
+"""The inside of an ellipsoid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from ...errors import InvalidValueError
+from .. import checks
+from ..algebra import Matrix, Vector
+from ..scalars import Scalar, is_number, leaves, namespace
+from .base import Surface, check_upright, tangential
+
+
+@dataclass(frozen=True)
+class EllipsoidalBowl(Surface):
+    """The inside of an ellipsoid with semi-axes A, B, C along the three axes, its lowest point at the origin.
+
+    Parameters
+    ----------
+    semi_axes : sequence of 3 floats or quantities
+        A, B and C, m. At the lowest point its radii of curvature are A²/C and B²/C: a ball must be smaller.
+    depth : float or quantity, optional
+        Height of the edge over the lowest point, m, at most C; absent: the ellipsoid is closed.
+
+    Examples
+    --------
+    >>> bowl = EllipsoidalBowl(("50 cm", "40 cm", "25 cm"))
+    >>> round(bowl.point(0.3, 0.0).z, 15), bowl.axisymmetric
+    (0.05, False)
+    """
+
+    semi_axes: tuple[Scalar, Scalar, Scalar]
+    depth: Scalar | None = None
+    end = "the edge of the bowl"
+
+    def __post_init__(self) -> None:
+        axes = checks.components(self.semi_axes, "length", "semi_axes")
+        axes = tuple(checks.positive(axis, "length", f"semi_axes[{i}]") for i, axis in enumerate(axes))
+        object.__setattr__(self, "semi_axes", axes)
+        if self.depth is None:
+            return
+        depth = checks.positive(self.depth, "length", "depth")
+        if is_number(depth) and is_number(axes[2]) and depth > axes[2]:
+            remedy = f"The third semi-axis is {axes[2]:g} m; a depth of that makes half an ellipsoid."
+            raise InvalidValueError("depth", "must be at most the third semi-axis", self.depth, remedy)
+        object.__setattr__(self, "depth", depth)
+
+    @property
+    def axisymmetric(self) -> bool:
+        """Whether the first two semi-axes are equal numbers."""
+        a, b, _ = self.semi_axes
+        return is_number(a) and is_number(b) and bool(a == b)
+
+    def _bends(self) -> tuple[Scalar, Scalar, Scalar]:
+        """Return C/A², C/B² and 1/C, 1/m: the second derivatives of −φ."""
+        a, b, c = self.semi_axes
+        return c / (a * a), c / (b * b), 1.0 / c
+
+    def level(self, p: Vector) -> Scalar:
+        """Return φ = z − z²/(2C) − C(x²/A² + y²/B²)/2, m, of slope 1 at the lowest point."""
+        k, l, m = self._bends()
+        return p.z - 0.5 * (k * (p.x * p.x) + l * (p.y * p.y) + m * (p.z * p.z))
+
+    def _slope(self, p: Vector) -> Vector:
+        k, l, m = self._bends()
+        return Vector(-(k * p.x), -(l * p.y), 1.0 - m * p.z)
+
+    def normal(self, p: Vector) -> Vector:
+        """Return n = ∇φ/|∇φ|."""
+        slope = self._slope(p)
+        return slope / slope.norm()
+
+    def shape_operator(self, p: Vector) -> Matrix:
+        """Return S = P H P/|∇φ| with H = −diag(C/A², C/B², 1/C)."""
+        slope = self._slope(p)
+        length = slope.norm()
+        return tangential(Matrix.diagonal(*self._bends()), slope / length) * (-1.0 / length)
+
+    def inside(self, p: Vector) -> Scalar | None:
+        """Return how far below the edge the point is, m; without an edge, None."""
+        return None if self.depth is None else self.depth - p.z
+
+    def point(self, u: Scalar, v: Scalar) -> Vector:
+        """Return the point at x and y, m, on the lower half."""
+        a, b, c = self.semi_axes
+        square = u * u / (a * a) + v * v / (b * b)
+        return Vector(u, v, c * square / (1.0 + namespace(*leaves((u, v, a, b, c))).sqrt(1.0 - square)))
+
+    def check_tilt(self, tilt: float, received: Any) -> None:
+        """Refuse a bowl whose axis does not point up."""
+        check_upright(tilt, received)

@@ -1,0 +1,71 @@
+"""Height fields z(x, y), by a formula."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from .. import checks
+from ..expressions import Expression
+from ..scalars import Scalar
+from .measured import Grid, HeightTable
+from .over_plane import OverPlane
+
+
+@dataclass(frozen=True)
+class HeightField(OverPlane):
+    """The surface z = h(x, y), by a formula in x and y.
+
+    It never counts as symmetric about the axis; write a `Revolution` for one that is.
+
+    Parameters
+    ----------
+    formula : str or Expression
+        h in m, of x and y in m. With h(0, 0) = 0 the origin lies on the surface.
+    rim : float or quantity, optional
+        Distance of the edge from the axis, m; absent: it has none.
+
+    Examples
+    --------
+    >>> HeightField("0.2*x*cos(2*y)").point(0.5, 0.0).z
+    0.1
+    """
+
+    formula: Any
+    rim: Scalar | None = None
+    axisymmetric = False
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.formula, Expression):
+            object.__setattr__(self, "formula", Expression.parse(str(self.formula), ("x", "y"), "formula"))
+        if self.rim is not None:
+            object.__setattr__(self, "rim", checks.positive(self.rim, "length", "rim"))
+
+    @staticmethod
+    def through(x: Any, y: Any, z: Any) -> HeightTable:
+        """Return the surface through a grid of heights, a smooth spline.
+
+        Parameters
+        ----------
+        x, y : sequence of floats or quantities
+            Four at least and ascending, m. Six and more make a quintic spline (C⁴), fewer a cubic one (C²).
+        z : sequence of sequences of floats or quantities
+            A row for each x, with a height for each y, m.
+
+        Returns
+        -------
+        HeightTable
+            It ends where the grid does.
+
+        Examples
+        --------
+        >>> side = [-0.2, -0.1, 0.0, 0.1, 0.2]
+        >>> saddle = HeightField.through(side, side, [[x * x - y * y for y in side] for x in side])
+        >>> round(saddle.point(0.15, 0.05).z, 12)
+        0.02
+        """
+        return HeightTable(Grid(x, y, z))
+
+    def height(self, x: Scalar, y: Scalar) -> Scalar:
+        """Return h, m."""
+        return self.formula.at(x=x, y=y)

@@ -1,0 +1,50 @@
+"""The paraboloid of revolution, a bowl or a mound."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ...errors import InvalidValueError
+from .. import checks
+from ..scalars import Scalar, is_number
+from .over_plane import Bends, OverPlane, Slopes
+
+
+@dataclass(frozen=True)
+class Paraboloid(OverPlane):
+    """The paraboloid z = r²/(2b): a bowl where b is positive, a mound where it is negative.
+
+    Parameters
+    ----------
+    radius : float or quantity
+        b, the radius of curvature at the vertex, m. A ball fits a bowl if it is smaller.
+    rim : float or quantity, optional
+        Distance of the edge from the axis, m; absent: it has none.
+
+    Examples
+    --------
+    >>> Paraboloid("50 cm").point(0.3, 0.4).z, Paraboloid(-0.5).point(0.3, 0.4).z
+    (0.25, -0.25)
+    """
+
+    radius: Scalar
+    rim: Scalar | None = None
+    axisymmetric = True
+
+    def __post_init__(self) -> None:
+        radius = checks.real(self.radius, "length", "radius")
+        if is_number(radius) and radius == 0:
+            remedy = "It is the radius of curvature at the vertex: positive makes a bowl, negative a mound."
+            raise InvalidValueError("radius", "must not be zero", self.radius, remedy)
+        object.__setattr__(self, "radius", radius)
+        if self.rim is not None:
+            object.__setattr__(self, "rim", checks.positive(self.rim, "length", "rim"))
+
+    def height(self, x: Scalar, y: Scalar) -> Scalar:
+        """Return r²/(2b), m."""
+        return 0.5 * (x * x + y * y) / self.radius
+
+    def derivatives(self, x: Scalar, y: Scalar) -> tuple[Slopes, Bends]:
+        """Return the slopes x/b and y/b, and 1/b both ways."""
+        b = self.radius
+        return (x / b, y / b), (1.0 / b, 0.0, 1.0 / b)
