@@ -1,0 +1,90 @@
+"""Energies, and what a free table has (theory page, section 6): who gives power to whom.
+
+The contact force R gives the body the power R·(s + u), s being the slip and u the velocity of the support's material.
+Rolling has s = 0; without friction s·R = 0; in flight R = 0. Over a support that turns with ω about a fixed axis,
+R·u = ω·(p×R): what the body gains in energy, it gains ω times in angular momentum about the axis.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..algebra import Vector
+from ..scalars import Scalar
+from ..symmetry import conservative, fixed, free_axle, frictionless, symmetric_potential
+from ..system import RollingSystem
+from .base import FLIGHT, PHASES, ROLLING, Invariant, Record
+
+
+def spin_momentum(system: RollingSystem, at: Record) -> Vector:
+    """Return JΩ in the support frame, kg m²/s."""
+    return system.body.inertia_in_space(at.motion.orientation.matrix()) @ at.motion.angular_velocity
+
+
+def _energy(system: RollingSystem, at: Record) -> list[Scalar]:
+    V, Omega = at.motion.velocity, at.motion.angular_velocity
+    kinetic = [0.5 * system.body.mass * V.dot(V), 0.5 * Omega.dot(spin_momentum(system, at))]
+    return [*kinetic, *(load.potential(at.motion) for load in system.all_loads)]
+
+
+def _about_axis(system: RollingSystem, at: Record) -> list[Scalar]:
+    """Return e·L: of the orbit, and of the turning."""
+    r, V = at.motion.position, at.motion.velocity
+    return [r.cross(V).z * system.body.mass, spin_momentum(system, at).z]
+
+
+def _moving_energy(system: RollingSystem, at: Record) -> list[Scalar]:
+    rate = system.support.motion.steady_rate
+    return [*_energy(system, at), *(-(rate * part) for part in _about_axis(system, at))]
+
+
+def _energy_with_table(system: RollingSystem, at: Record) -> list[Scalar]:
+    inertia: Any = free_axle(system.support.motion)
+    return [*_energy(system, at), 0.5 * inertia * at.own[1] * at.own[1]]
+
+
+def _momentum_with_table(system: RollingSystem, at: Record) -> list[Scalar]:
+    inertia: Any = free_axle(system.support.motion)
+    return [*_about_axis(system, at), inertia * at.own[1]]
+
+
+def _working(system: RollingSystem) -> tuple[str, ...]:
+    """Return the phases in which nothing is lost to friction."""
+    return PHASES if frictionless(system) else (ROLLING, FLIGHT)
+
+
+def _has_energy(system: RollingSystem) -> tuple[str, ...]:
+    if not all(conservative(load) for load in system.all_loads):
+        return ()
+    return _working(system) if fixed(system) else (FLIGHT,)
+
+
+def _has_moving_energy(system: RollingSystem) -> tuple[str, ...]:
+    # An elliptic bowl turns with its own ω: of the surface nothing is asked, only of the loads.
+    turns = system.support.motion.steady_rate is not None and not fixed(system)
+    return _working(system) if turns and symmetric_potential(system) else ()
+
+
+def _has_energy_with_table(system: RollingSystem) -> tuple[str, ...]:
+    free = free_axle(system.support.motion) is not None
+    return _working(system) if free and all(conservative(load) for load in system.all_loads) else ()
+
+
+def _has_momentum_with_table(system: RollingSystem) -> tuple[str, ...]:
+    free = free_axle(system.support.motion) is not None
+    return PHASES if free and symmetric_potential(system) else ()
+
+
+ENERGY = Invariant("energy", "½mV² + ½Ω·JΩ + U", "J", _has_energy, _energy)
+# fasso2015: E − ω·L, where the constraint moves steadily along a symmetry of body and loads.
+MOVING_ENERGY = Invariant("moving energy", "E − ω·L", "J", _has_moving_energy, _moving_energy)
+# weckesser1997, whose table is the frame of the system: what it gives, the body gets.
+ENERGY_WITH_TABLE = Invariant("energy with the table", "E + ½I_t ω²", "J", _has_energy_with_table, _energy_with_table)
+MOMENTUM_WITH_TABLE = Invariant(
+    "angular momentum with the table",
+    "e·L + I_t ω",
+    "kg m²/s",
+    _has_momentum_with_table,
+    _momentum_with_table,
+    through_changes=True,
+)

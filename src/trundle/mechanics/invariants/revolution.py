@@ -1,0 +1,155 @@
+"""Routh's pair of linear integrals of a sphere that rolls on a surface of revolution (theory page, section 6).
+
+A sphere with the same inertia I = k m a² about every axis rolls on a surface of revolution that turns at a steady ω
+about its axis, under loads with a potential that a turn about the axis leaves alone. Let n be the normal and κ, κ_φ the
+curvatures of the surface along the meridian and across it, R_p and R = R_p + a n_R the distances of contact and
+centre from the axis, σ the length of the contact's way along the meridian, positive along (n_z, −n_R). With the
+centre's ℓ = R V_φ and the spin w = a Ω·n, the parts of I Ω̇ = ρ×(m V̇ − F) across the meridian and along n are
+
+    dℓ/dσ = k/(1 + k) R (κ w + ω n_z)        dw/dσ = [n_R (1 + a κ)/R − κ] ℓ/R + κ ω R_p
+
+without the time: a linear equation along the meridian, whose constants of integration are two integrals linear in the
+velocities (routh1905, articles 224-226; borisov2002 for the turning surface).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..algebra import Vector
+from ..surfaces import Plane
+from ..symmetry import symmetric_potential, without_torque
+from ..system import RollingSystem
+from .base import ROLLING, Invariant, Record
+
+_TOLERANCE = 1e-13
+_STEPS = 48  # of the meridian's stretch at least: its dense output is then as good as its steps
+_WIDER = 8  # times that the stretch is widened, each time to twice what it was
+
+
+def _has_pair(system: RollingSystem) -> tuple[str, ...]:
+    surface, body = system.support.surface, system.body
+    ball = body.is_isotropic_sphere and body.shape.axis is None
+    round_ = bool(surface.axisymmetric) and not isinstance(surface, Plane)  # on a plane they are simpler ones
+    steady = system.support.motion.steady_rate is not None
+    loads = symmetric_potential(system) and all(without_torque(load) for load in system.all_loads)
+    return (ROLLING,) if ball and round_ and steady and loads else ()
+
+
+class _Meridian:
+    """The linear equation along the meridian, from the latitude of a record's first contact."""
+
+    def __init__(self, system: RollingSystem, distance: Any, height: Any) -> None:
+        import numpy as np
+
+        self.surface, self.a = system.support.surface, float(system.body.radius)
+        k = float(system.body.inertia_ratio)
+        self.share, self.rate = k / (1 + k), float(system.support.motion.steady_rate or 0.0)
+        self.least = 0.5 * float(np.min(distance))
+        self.start = (float(distance[0]), float(height[0]))
+        away = np.hypot(distance - self.start[0], height - self.start[1])
+        self.size = float(np.max(away))
+
+    def slopes(self, _: float, y: Any) -> list[float]:
+        """Return the slopes of R_p, z, the matrix of solutions (by rows) and the solution that starts at zero."""
+        R_p, z = y[0], y[1]
+        p = Vector(R_p, 0.0, z)
+        n, S = self.surface.normal(p), self.surface.shape_operator(p)
+        along = Vector(n.z, 0.0, -n.x)
+        kappa, R = along.dot(S @ along), R_p + self.a * n.x
+        up, down = self.share * R * kappa, (n.x * (1 + self.a * kappa) / R - kappa) / R
+        turned = (self.share * R * self.rate * n.z, kappa * self.rate * R_p)
+        return [
+            n.z,
+            -n.x,
+            up * y[4],
+            up * y[5],
+            down * y[2],
+            down * y[3],
+            up * y[7] + turned[0],
+            down * y[6] + turned[1],
+        ]
+
+    def solve(self, end: float) -> Any:
+        """Integrate to a length σ, of either sign, but not across the axis."""
+        from scipy.integrate import solve_ivp
+
+        def near_axis(_: float, y: Any) -> float:
+            return float(y[0] - self.least)
+
+        near_axis.terminal = True  # type: ignore[attr-defined]
+        y = [*self.start, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0]
+        return solve_ivp(
+            self.slopes,
+            (0.0, end),
+            y,
+            method="DOP853",
+            rtol=_TOLERANCE,
+            atol=1e-3 * _TOLERANCE,
+            max_step=abs(end) / _STEPS,
+            dense_output=True,
+            events=near_axis,
+        )
+
+    def at(self, distance: Any, height: Any) -> Any:
+        """Return the solutions at each contact: an array of 8 rows."""
+        import numpy as np
+
+        if self.size <= 1e-12 * max(1e-300, float(np.abs(self.start).max())):
+            return np.broadcast_to(np.array([[*self.start, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0]]).T, (8, distance.size))
+        reach = 1.1 * self.size
+        for _ in range(_WIDER):
+            solutions = self.solve(-reach).sol, self.solve(reach).sol
+            sigma = self._placed(solutions, distance, height)
+            rows = _both(solutions, sigma)
+            if np.hypot(rows[0] - distance, rows[1] - height).max() <= 1e-6 * self.size:
+                break
+            reach *= 2
+        return rows
+
+    def _placed(self, solutions: tuple[Any, Any], distance: Any, height: Any) -> Any:
+        """Return the σ of each contact: the nearest of many, then Newton's method along the meridian."""
+        import numpy as np
+        from scipy.spatial import cKDTree
+
+        low, high = (float(solution.t_max if solution.t_max > 0 else solution.t_min) for solution in solutions)
+        grid = np.linspace(low, high, 2001)
+        rows = _both(solutions, grid)
+        sigma = grid[cKDTree(rows[:2].T).query(np.column_stack([distance, height]))[1]]
+        for _ in range(4):
+            rows = _both(solutions, sigma)
+            n = self.surface.normal(Vector(rows[0], np.zeros_like(rows[0]), rows[1]))
+            step = (distance - rows[0]) * n.z - (height - rows[1]) * n.x
+            sigma = np.clip(sigma + step, low, high)
+        return sigma
+
+
+def _both(solutions: tuple[Any, Any], sigma: Any) -> Any:
+    import numpy as np
+
+    return np.where(sigma < 0, solutions[0](np.minimum(sigma, 0.0)), solutions[1](np.maximum(sigma, 0.0)))
+
+
+def _pair(system: RollingSystem, at: Record) -> list[Any]:
+    """Return the terms of ℓ and w carried back along the meridian to the latitude of the record's first contact."""
+    import numpy as np
+
+    a, r, V = float(system.body.radius), at.motion.position, at.motion.velocity
+    n, Omega = system.support.surface.normal(at.contact), at.motion.angular_velocity
+    parts = [r.x * V.y, -(r.y * V.x), *(a * x * y for x, y in zip(Omega, n, strict=True))]
+    shape = np.broadcast_shapes(*(np.shape(part) for part in (*parts, at.contact.x, at.contact.z)))
+    flat = [np.broadcast_to(np.asarray(part, dtype=float), shape).reshape(-1) for part in parts]
+    contact = [np.broadcast_to(np.asarray(x, dtype=float), shape).reshape(-1) for x in at.contact]
+    distance = np.hypot(contact[0], contact[1])
+    rows = _Meridian(system, distance, contact[2]).at(distance, contact[2])
+    A, B, C, D = rows[2:6]
+    inverse = np.array([[D, -B], [-C, A]]) / (A * D - B * C)
+    columns = [inverse[:, 0] * part for part in flat[:2]] + [inverse[:, 1] * part for part in flat[2:]]
+    columns += [-inverse[:, 0] * rows[6], -inverse[:, 1] * rows[7]]
+    reach = float(distance[0])  # makes both angular momenta, per mass
+    return [(column * np.array([[1.0], [reach]])).T.reshape(*shape, 2) for column in columns]
+
+
+ROUTH_PAIR = Invariant(
+    "pair of linear integrals of Routh", "R V_φ and a Ω·n, carried along the meridian", "m²/s", _has_pair, _pair
+)
