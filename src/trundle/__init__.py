@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from .geometry import Arc, Curve, PathScenario, RolledPath, Rotation, Straight, roll_along
     from .holonomy import ConstraintAnalysis, PfaffianSystem
     from .imperfections import Sensitivity, air_drag, sensitivity
-    from .mechanics.bodies import Body, Isotropic, Principal, RatioInertia
+    from .mechanics.bodies import Body, Isotropic, Principal, RatioInertia, Tensor
     from .mechanics.loads import (
         Drag,
         Force,
@@ -48,7 +48,17 @@ if TYPE_CHECKING:
         UnevenSpin,
         Wobble,
     )
-    from .mechanics.shapes import Roller, Sphere
+    from .mechanics.shapes import (
+        Disc,
+        Ellipsoid,
+        HalfCylinder,
+        Hemisphere,
+        Roller,
+        Shape,
+        Sphere,
+        SupportFunction,
+        Torus,
+    )
     from .mechanics.surfaces import (
         Bowl,
         Cone,
@@ -81,8 +91,18 @@ _HOMES = {
     "geometry": ("roll_along", "Straight", "Arc", "Curve", "RolledPath", "Rotation", "PathScenario"),
     "holonomy": ("PfaffianSystem", "ConstraintAnalysis"),
     "imperfections": ("sensitivity", "Sensitivity", "air_drag"),
-    "mechanics.bodies": ("Body", "Isotropic", "Principal", "RatioInertia"),
-    "mechanics.shapes": ("Roller", "Sphere"),
+    "mechanics.bodies": ("Body", "Isotropic", "Principal", "RatioInertia", "Tensor"),
+    "mechanics.shapes": (
+        "Disc",
+        "Ellipsoid",
+        "HalfCylinder",
+        "Hemisphere",
+        "Roller",
+        "Shape",
+        "Sphere",
+        "SupportFunction",
+        "Torus",
+    ),
     "mechanics.surfaces": (
         "Bowl",
         "Cone",
@@ -143,8 +163,10 @@ __all__ = [
     "ConstraintAnalysis",
     "Curve",
     "Cylinder",
+    "Disc",
     "Dome",
     "Drag",
+    "Ellipsoid",
     "EllipsoidalBowl",
     "Equilibria",
     "Equilibrium",
@@ -152,7 +174,9 @@ __all__ = [
     "Fixed",
     "Force",
     "FreeAxle",
+    "HalfCylinder",
     "HeightField",
+    "Hemisphere",
     "InvalidValueError",
     "Isotropic",
     "Magnus",
@@ -182,6 +206,7 @@ __all__ = [
     "ScenarioError",
     "Sensitivity",
     "Shake",
+    "Shape",
     "SolverError",
     "Sphere",
     "Spin",
@@ -189,8 +214,11 @@ __all__ = [
     "State",
     "Straight",
     "Support",
+    "SupportFunction",
+    "Tensor",
     "Tilt",
     "Torque",
+    "Torus",
     "TorusTrack",
     "Trajectory",
     "TrundleError",

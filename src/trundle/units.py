@@ -25,6 +25,7 @@ UNITS: dict[str, tuple[str, str]] = {
     "damping": ("kg/s", "0.01 kg/s"),
     "quadratic damping": ("kg/m", "0.001 kg/m"),
     "rotational damping": ("N*m*s", "1e-5 N*m*s"),
+    "density": ("kg/m^3", "7.8 g/cm^3"),
     "number": ("", "0.4"),
 }
 

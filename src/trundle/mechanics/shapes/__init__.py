@@ -6,6 +6,20 @@ A new shape is one class with `support_map` and `support_gradient`; `tests/contr
 from __future__ import annotations
 
 from .base import Shape
-from .sphere import Roller, Sphere, concentric_sphere
+from .ellipsoid import Ellipsoid
+from .rims import Disc, Torus
+from .sphere import HalfCylinder, Hemisphere, Roller, Sphere, concentric_sphere
+from .support_function import SupportFunction
 
-__all__ = ["Roller", "Shape", "Sphere", "concentric_sphere"]
+__all__ = [
+    "Disc",
+    "Ellipsoid",
+    "HalfCylinder",
+    "Hemisphere",
+    "Roller",
+    "Shape",
+    "Sphere",
+    "SupportFunction",
+    "Torus",
+    "concentric_sphere",
+]

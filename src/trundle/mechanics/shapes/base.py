@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+from .. import checks
 from ..algebra import Matrix, Vector
+from ..scalars import Scalar, is_zero
 
 
 class Shape:
@@ -17,6 +21,15 @@ class Shape:
     def support_gradient(self, nu: Vector) -> Matrix:
         """Return ∂X/∂ν on the tangent plane of ν, in m: symmetric, its eigenvalues the radii of curvature."""
         raise NotImplementedError
+
+    def covers(self, nu: Vector) -> Scalar | None:  # noqa: ARG002
+        """Return what is positive where the formulas hold, as on the round side of a hemisphere; None: everywhere."""
+        return None
+
+    @property
+    def axisymmetric(self) -> bool:
+        """Whether the surface looks the same after any turn about the body's third axis."""
+        return False
 
     def contact(self, Q: Matrix, n: Vector) -> tuple[Vector, Matrix]:
         """Return ρ = Q X(−Qᵀn) and C = Q (∂X/∂ν) Qᵀ for a support with unit normal n into the body.
@@ -37,3 +50,34 @@ class Shape:
         """
         nu = -(Q.transpose @ n)
         return Q @ self.support_map(nu), Q @ self.support_gradient(nu) @ Q.transpose
+
+
+def centre_of(value: Any) -> Vector | None:
+    """Return the place of a shape's own centre as a vector.
+
+    Parameters
+    ----------
+    value : Vector, sequence of 3 floats or quantities, or None
+        From the centre of mass, body frame, m.
+
+    Returns
+    -------
+    Vector or None
+        None where the two coincide.
+
+    Examples
+    --------
+    >>> centre_of([0, 0, "2 mm"])
+    Vector(x=0.0, y=0.0, z=0.002)
+    """
+    return None if value is None else Vector(*checks.components(value, "length", "centre"))
+
+
+def moved(centre: Vector | None, point: Vector) -> Vector:
+    """Return a point of a shape from the centre of mass, given from the shape's own centre."""
+    return point if centre is None else centre + point
+
+
+def on_third_axis(centre: Vector | None) -> bool:
+    """Tell whether a shape's own centre is known to lie on the body's third axis."""
+    return centre is None or (is_zero(centre.x) and is_zero(centre.y))

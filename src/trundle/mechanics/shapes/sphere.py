@@ -1,4 +1,4 @@
-"""Spheres, and cylinders that roll straight as one would."""
+"""Spheres, cylinders that roll straight as one would, and half of each."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ...errors import InvalidValueError
 from .. import checks
 from ..algebra import E_Z, Matrix, Vector
 from ..scalars import Scalar, is_number
-from .base import Shape
+from .base import Shape, centre_of, moved, on_third_axis
 
 
 @dataclass(frozen=True)
@@ -34,10 +34,16 @@ class Sphere(Shape):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "radius", checks.positive(self.radius, "length", "radius"))
+        object.__setattr__(self, "centre", centre_of(self.centre))
+
+    @property
+    def axisymmetric(self) -> bool:
+        """Whether its centre lies on the third axis."""
+        return on_third_axis(self.centre)
 
     def support_map(self, nu: Vector) -> Vector:
         """Return X = c + a ν."""
-        return self.radius * nu if self.centre is None else self.centre + self.radius * nu
+        return moved(self.centre, self.radius * nu)
 
     def support_gradient(self, nu: Vector) -> Matrix:
         """Return a(1 − ν νᵀ)."""
@@ -47,6 +53,29 @@ class Sphere(Shape):
         """Return ρ = Q c − a n and C = a(1 − n nᵀ): a sphere looks the same from every side, so Q Qᵀ drops out."""
         rho = self.radius * -n
         return rho if self.centre is None else Q @ self.centre + rho, self.support_gradient(n)
+
+
+@dataclass(frozen=True)
+class Hemisphere(Sphere):
+    """Half a sphere, which rocks on its round side; the outward normal of its flat face is the third axis.
+
+    It is a sphere as long as it touches on the round side. The motion on its edge, and on the flat face, is not in the
+    shape: a run ends where `covers` falls to zero.
+
+    Parameters
+    ----------
+    radius, centre : see Sphere
+        Of the round side; of a solid one, the centre lies (3/8) a from the centre of mass, along the third axis.
+
+    Examples
+    --------
+    >>> Hemisphere(0.1, Vector(0.0, 0.0, 0.0375)).covers(Vector(0.0, 0.0, -1.0))
+    1.0
+    """
+
+    def covers(self, nu: Vector) -> Scalar:
+        """Return −ν_z: positive on the round side, zero at the edge."""
+        return -nu.z
 
 
 @dataclass(frozen=True)
@@ -75,6 +104,26 @@ class Roller(Sphere):
             raise InvalidValueError(
                 "centre", "must lie across the cylinder's axis", tuple(self.centre), "Let its third component be 0."
             )
+
+
+@dataclass(frozen=True)
+class HalfCylinder(Roller):
+    """Half a cylinder, which rocks on its round side; the outward normal of its flat face is the first axis.
+
+    Parameters
+    ----------
+    radius, centre : see Roller
+        Of the round side; of a solid one, the centre lies 4a/(3π) from the centre of mass, along the first axis.
+
+    Examples
+    --------
+    >>> HalfCylinder(0.1, Vector(0.04244, 0.0, 0.0)).covers(Vector(-1.0, 0.0, 0.0))
+    1.0
+    """
+
+    def covers(self, nu: Vector) -> Scalar:
+        """Return −ν_x: positive on the round side, zero at the edge."""
+        return -nu.x
 
 
 def concentric_sphere(shape: Any) -> bool:

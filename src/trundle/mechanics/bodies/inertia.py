@@ -1,0 +1,259 @@
+"""Inertia tensors about the centre of mass: the same all round, by a ratio, by principal moments, or any."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from ...errors import InvalidValueError
+from .. import checks
+from ..algebra import ZERO, Matrix, Vector
+from ..scalars import Scalar, is_number, namespace
+
+_SLACK = 1e-12  # of a moment: the rounding that a rule is not held against
+
+
+@dataclass(frozen=True)
+class Isotropic:
+    """The same moment of inertia about every axis through the centre of mass.
+
+    Parameters
+    ----------
+    moment : float
+        I, kg m².
+
+    Examples
+    --------
+    >>> from trundle import Body, Sphere
+    >>> Body(1.0, Isotropic(2.0), Sphere(1.0)).inertia_in_space(Matrix.identity()).a
+    Vector(x=2.0, y=0.0, z=0.0)
+    """
+
+    moment: Scalar
+    axisymmetric = True
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "moment", checks.positive(self.moment, "inertia", "inertia.moment"))
+
+    def in_space(self, Q: Matrix, body: Any) -> Matrix:  # noqa: ARG002  the same from every side
+        """Return the inertia tensor in the support frame, kg m²."""
+        return Matrix.diagonal(self.moment, self.moment, self.moment)
+
+    def gyroscopic(self, Q: Matrix, Omega: Vector, body: Any) -> Vector:  # noqa: ARG002
+        """Return Ω×JΩ = 0: JΩ is along Ω."""
+        return ZERO
+
+    def ratio_of(self, body: Any) -> Scalar:
+        """Return k = I/(m a²) for a spherical body of radius a."""
+        return self.moment / (body.mass * body.radius * body.radius)
+
+
+@dataclass(frozen=True)
+class RatioInertia:
+    """The inertia I = k m a² of a round body, given by its ratio k, which is kept to the last digit.
+
+    Parameters
+    ----------
+    ratio : float
+        k = I/(m a²): 2/5 for a solid sphere, 2/3 for a shell, never more for a sphere; 1/2 for a solid cylinder about
+        its axis, 1 for a hoop, never more.
+
+    Examples
+    --------
+    >>> RatioInertia(0.4).ratio
+    0.4
+    """
+
+    ratio: Scalar
+    axisymmetric = True
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "ratio", checks.positive(self.ratio, "number", "inertia_ratio"))
+
+    def in_space(self, Q: Matrix, body: Any) -> Matrix:  # noqa: ARG002  the same from every side
+        """Return the inertia tensor in the support frame, kg m²."""
+        moment = self.ratio * body.mass * body.radius * body.radius
+        return Matrix.diagonal(moment, moment, moment)
+
+    def gyroscopic(self, Q: Matrix, Omega: Vector, body: Any) -> Vector:  # noqa: ARG002
+        """Return Ω×JΩ = 0: JΩ is along Ω."""
+        return ZERO
+
+    def ratio_of(self, body: Any) -> Scalar:  # noqa: ARG002
+        """Return k."""
+        return self.ratio
+
+
+@dataclass(frozen=True)
+class Principal:
+    """Three principal moments of inertia, about the axes of the body frame.
+
+    Parameters
+    ----------
+    x, y, z : float
+        Moments about the centre of mass, kg m².
+
+    Examples
+    --------
+    >>> from trundle import Body, Sphere
+    >>> Body(1.0, Principal(1.0, 2.0, 2.5), Sphere(3.0)).inertia_in_space(Matrix.identity()).b
+    Vector(x=0.0, y=2.0, z=0.0)
+    """
+
+    x: Scalar
+    y: Scalar
+    z: Scalar
+
+    def __post_init__(self) -> None:
+        moments = [checks.positive(getattr(self, name), "inertia", f"inertia.{name}") for name in "xyz"]
+        for name, moment in zip("xyz", moments, strict=True):
+            object.__setattr__(self, name, moment)
+        if all(is_number(moment) for moment in moments) and 2 * max(moments) > sum(moments) * (1 + _SLACK):
+            raise InvalidValueError(
+                "inertia", "must obey the triangle rule, each moment at most the sum of the others", tuple(moments)
+            )
+
+    @property
+    def axisymmetric(self) -> bool:
+        """Whether the first two moments are equal."""
+        return is_number(self.x) and is_number(self.y) and bool(self.x == self.y)
+
+    def in_space(self, Q: Matrix, body: Any) -> Matrix:  # noqa: ARG002
+        """Return Q diag(x, y, z) Qᵀ, the inertia tensor in the support frame, kg m²."""
+        return Q @ Matrix.diagonal(self.x, self.y, self.z) @ Q.transpose
+
+    def gyroscopic(self, Q: Matrix, Omega: Vector, body: Any) -> Vector:
+        """Return Ω×JΩ in the support frame, N m."""
+        return Omega.cross(self.in_space(Q, body) @ Omega)
+
+
+@dataclass(frozen=True)
+class Tensor:
+    """Any inertia tensor, by its six elements in the body frame: its principal axes need not be those of the shape.
+
+    Parameters
+    ----------
+    xx, yy, zz : float
+        Moments about the axes of the body frame through the centre of mass, kg m².
+    xy, xz, yz : float
+        The other elements of the tensor, kg m²: xy = −∫ x y dm, with its sign.
+
+    Raises
+    ------
+    InvalidValueError
+        If the principal moments are not positive or break the triangle rule.
+
+    Examples
+    --------
+    The rattleback of Kane and Levinson:
+
+    >>> round(Tensor(2e-4, 1.6e-3, 1.7e-3, xy=-2e-5).principal_turn, 6)
+    0.014282
+    """
+
+    xx: Scalar
+    yy: Scalar
+    zz: Scalar
+    xy: Scalar = 0.0
+    xz: Scalar = 0.0
+    yz: Scalar = 0.0
+
+    def __post_init__(self) -> None:
+        for i, name in enumerate(("xx", "yy", "zz")):
+            object.__setattr__(self, name, checks.positive(getattr(self, name), "inertia", f"moments[{i}]"))
+        for i, name in enumerate(("xy", "xz", "yz")):
+            object.__setattr__(self, name, checks.real(getattr(self, name), "inertia", f"products[{i}]"))
+        if all(is_number(element) for element in self.elements):
+            self._check_principal_moments()
+
+    def _check_principal_moments(self) -> None:
+        import numpy as np
+
+        moments = np.linalg.eigvalsh([list(row) for row in self.matrix.rows])
+        shown = ", ".join(f"{moment:.6g}" for moment in moments)
+        if not moments[0] > 0:
+            remedy = f"They are {shown} kg m². Is a product of inertia too large?"
+            raise InvalidValueError("inertia", "must have positive principal moments", self.elements, remedy)
+        if moments[2] > (moments[0] + moments[1]) * (1 + _SLACK):
+            rule = "must obey the triangle rule, each principal moment at most the sum of the others"
+            raise InvalidValueError("inertia", rule, self.elements, f"They are {shown} kg m².")
+
+    @property
+    def elements(self) -> tuple[Scalar, ...]:
+        """The six elements, as they are given."""
+        return self.xx, self.yy, self.zz, self.xy, self.xz, self.yz
+
+    @property
+    def matrix(self) -> Matrix:
+        """The tensor in the body frame."""
+        rows = ((self.xx, self.xy, self.xz), (self.xy, self.yy, self.yz), (self.xz, self.yz, self.zz))
+        return Matrix(*(Vector(*row) for row in rows))
+
+    @property
+    def principal_turn(self) -> Scalar:
+        """The angle from the first axis to the nearest principal one, about the third, rad, where xz = yz = 0."""
+        apart = self.xx - self.yy
+        angle = 0.5 * namespace(self.elements).atan2(2.0 * self.xy, apart)
+        return angle if not is_number(apart) or apart >= 0 else 0.5 * namespace().atan2(-2.0 * self.xy, -apart)
+
+    @property
+    def axisymmetric(self) -> bool:
+        """Whether it is diagonal with its first two moments equal."""
+        return all(is_number(element) for element in self.elements) and bool(
+            self.xx == self.yy and self.xy == self.xz == self.yz == 0
+        )
+
+    def in_space(self, Q: Matrix, body: Any) -> Matrix:  # noqa: ARG002
+        """Return Q J Qᵀ, the inertia tensor in the support frame, kg m²."""
+        return Q @ self.matrix @ Q.transpose
+
+    def gyroscopic(self, Q: Matrix, Omega: Vector, body: Any) -> Vector:
+        """Return Ω×JΩ in the support frame, N m."""
+        return Omega.cross(self.in_space(Q, body) @ Omega)
+
+
+Inertia = (Isotropic, RatioInertia, Principal, Tensor)
+
+
+def inertia_of(moments: Any, products: Any = None, turn: Any = 0.0) -> Isotropic | Principal | Tensor:
+    """Return the inertia with given elements, of the simplest kind that holds them.
+
+    Parameters
+    ----------
+    moments : sequence of 3 floats or quantities
+        J_xx, J_yy, J_zz about the centre of mass, kg m².
+    products : sequence of 3 floats or quantities, optional
+        J_xy, J_xz, J_yz, elements of the tensor with their sign, kg m².
+    turn : float or quantity
+        The tensor is turned by this angle about the body's third axis, from the first towards the second, rad.
+
+    Returns
+    -------
+    Isotropic, Principal or Tensor
+        The inertia.
+
+    Examples
+    --------
+    >>> inertia_of((1.0, 2.0, 2.5)), inertia_of((1.0, 2.0, 2.5), turn="90 deg").yy
+    (Principal(x=1.0, y=2.0, z=2.5), 1.0)
+    """
+    xx, yy, zz = checks.components(moments, "inertia", "moments")
+    xy, xz, yz = checks.components((0.0, 0.0, 0.0) if products is None else products, "inertia", "products")
+    angle = checks.real(turn, "angle", "turn")
+    straight = all(is_number(value) and value == 0 for value in (xy, xz, yz, angle))
+    if straight and is_number(xx) and is_number(yy) and is_number(zz) and xx == yy == zz:
+        return Isotropic(xx)
+    if straight:
+        return Principal(xx, yy, zz)
+    xp = namespace(angle)
+    c, s = xp.cos(angle), xp.sin(angle)
+    # R₃ J R₃ᵀ
+    turned = (
+        xx * (c * c) + yy * (s * s) - 2.0 * (xy * c * s),
+        xx * (s * s) + yy * (c * c) + 2.0 * (xy * c * s),
+        zz,
+        (xx - yy) * (c * s) + xy * (c * c - s * s),
+        xz * c - yz * s,
+        xz * s + yz * c,
+    )
+    return Tensor(*(turned if not (is_number(angle) and angle == 0) else (xx, yy, zz, xy, xz, yz)))

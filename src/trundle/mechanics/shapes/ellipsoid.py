@@ -1,0 +1,58 @@
+"""Ellipsoids."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .. import checks
+from ..algebra import Matrix, Vector
+from ..scalars import Scalar, is_number, namespace
+from .base import Shape, centre_of, moved, on_third_axis
+
+
+@dataclass(frozen=True)
+class Ellipsoid(Shape):
+    """An ellipsoid with its axes along those of the body frame; its centre may sit away from the centre of mass.
+
+    Parameters
+    ----------
+    a, b, c : float
+        Semi-axes along the first, second and third axis of the body frame, m.
+    centre : Vector, optional
+        The ellipsoid's centre from the centre of mass in the body frame, m; absent: the two coincide.
+
+    Examples
+    --------
+    >>> Ellipsoid(0.2, 0.03, 0.02).support_map(Vector(0.0, 0.0, -1.0))
+    Vector(x=0.0, y=0.0, z=-0.02)
+    """
+
+    a: Scalar
+    b: Scalar
+    c: Scalar
+    centre: Vector | None = None
+
+    def __post_init__(self) -> None:
+        for i, name in enumerate("abc"):
+            object.__setattr__(self, name, checks.positive(getattr(self, name), "length", f"semi_axes[{i}]"))
+        object.__setattr__(self, "centre", centre_of(self.centre))
+
+    @property
+    def axisymmetric(self) -> bool:
+        """Whether the first two semi-axes are equal, and its centre lies on the third axis."""
+        return is_number(self.a) and is_number(self.b) and bool(self.a == self.b) and on_third_axis(self.centre)
+
+    def support_map(self, nu: Vector) -> Vector:
+        """Return X = c + Aν/√(νᵀAν) with A = diag(a², b², c²)."""
+        stretched, h = self._stretched(nu)
+        return moved(self.centre, stretched / h)
+
+    def support_gradient(self, nu: Vector) -> Matrix:
+        """Return (A − Aν(Aν)ᵀ/h²)/h with h = √(νᵀAν)."""
+        stretched, h = self._stretched(nu)
+        A = Matrix.diagonal(self.a * self.a, self.b * self.b, self.c * self.c)
+        return (A - Matrix.outer(stretched, stretched) * (1.0 / (h * h))) * (1.0 / h)
+
+    def _stretched(self, nu: Vector) -> tuple[Vector, Scalar]:
+        stretched = Vector(self.a * self.a * nu.x, self.b * self.b * nu.y, self.c * self.c * nu.z)
+        return stretched, namespace(*stretched).sqrt(nu.dot(stretched))
