@@ -132,9 +132,9 @@ class PrecessingTilt(Motion):
     def at(self, time: Scalar) -> SupportState:
         """Return the support leaning towards νt: ω = ν(e₃ − a) with a its own axis, ȧ = ν e₃×a."""
         where = self.rate * time
-        xp = namespace(self.rate, self.angle, time)
-        c, s = xp.cos(where), xp.sin(where)
-        lean, half = xp.sin(self.angle), xp.sin(0.5 * self.angle)
+        around, leaning = namespace(where), namespace(self.angle)
+        c, s = around.cos(where), around.sin(where)
+        lean, half = leaning.sin(self.angle), leaning.sin(0.5 * self.angle)
         rotation = about(Vector(-s, c, 0.0), self.angle)
         a = Vector(c, s, 0.0) * lean
         omega = Vector(-a.x, -a.y, 2.0 * (half * half)) * self.rate  # 1 − cos ε, no digits lost

@@ -52,7 +52,7 @@ def about(axis: Vector, angle: Scalar) -> Matrix:
     >>> about(Vector(0.0, 1.0, 0.0), 0.5) @ Vector(0.0, 1.0, 0.0)
     Vector(x=0.0, y=1.0, z=0.0)
     """
-    xp = namespace(tuple(axis), angle)
+    xp = namespace(angle)
     c, s, half = xp.cos(angle), xp.sin(angle), xp.sin(0.5 * angle)
     x, y, z = axis
     crossed = Matrix(Vector(0.0, -z, y), Vector(z, 0.0, -x), Vector(-y, x, 0.0))
@@ -108,6 +108,6 @@ def swing(amplitude: Any, rate: Scalar, phase: Scalar, time: Scalar) -> tuple[An
     (0.0, 6.0, -0.0)
     """
     where = rate * time + phase
-    xp = namespace(rate, phase, time)
+    xp = namespace(where)
     s, c = xp.sin(where), xp.cos(where)
     return amplitude * s, amplitude * (rate * c), amplitude * -(rate * rate * s)

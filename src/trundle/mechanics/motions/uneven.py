@@ -100,8 +100,8 @@ class Wobble(Motion):
 
     def at(self, time: Scalar) -> SupportState:
         """Return the support leaning by ε about its first axis, then turned by ωt about the axle."""
-        xp = namespace(self.rate, self.angle, time)
-        c, s = xp.cos(self.rate * time), xp.sin(self.rate * time)
-        cl, sl = xp.cos(self.angle), xp.sin(self.angle)
+        turning, leaning = namespace(self.rate, time), namespace(self.angle)
+        c, s = turning.cos(self.rate * time), turning.sin(self.rate * time)
+        cl, sl = leaning.cos(self.angle), leaning.sin(self.angle)
         rotation = Matrix(Vector(c, -(s * cl), s * sl), Vector(s, c * cl, -(c * sl)), Vector(0.0, sl, cl))
         return SupportState(rotation, ZERO, ZERO, ZERO, E_Z * self.rate, ZERO)
