@@ -8,7 +8,7 @@ from typing import Any
 from ...errors import InvalidValueError
 from .. import checks
 from ..algebra import ZERO, Matrix, Vector
-from ..scalars import Scalar, is_number, namespace
+from ..scalars import Scalar, is_number, is_zero, namespace
 
 _SLACK = 1e-12  # of a moment: the rounding that a rule is not held against
 
@@ -232,23 +232,40 @@ def inertia_of(moments: Any, products: Any = None, turn: Any = 0.0) -> Isotropic
     Isotropic, Principal or Tensor
         The inertia.
 
+    Raises
+    ------
+    InvalidValueError
+        If no body has such moments.
+
     Examples
     --------
     >>> inertia_of((1.0, 2.0, 2.5)), inertia_of((1.0, 2.0, 2.5), turn="90 deg").yy
     (Principal(x=1.0, y=2.0, z=2.5), 1.0)
     """
-    xx, yy, zz = checks.components(moments, "inertia", "moments")
+    xx, yy, zz = (
+        checks.positive(moment, "inertia", f"moments[{i}]")
+        for i, moment in enumerate(checks.components(moments, "inertia", "moments"))
+    )
     xy, xz, yz = checks.components((0.0, 0.0, 0.0) if products is None else products, "inertia", "products")
     angle = checks.real(turn, "angle", "turn")
-    straight = all(is_number(value) and value == 0 for value in (xy, xz, yz, angle))
-    if straight and is_number(xx) and is_number(yy) and is_number(zz) and xx == yy == zz:
-        return Isotropic(xx)
-    if straight:
+    try:
+        if not all(is_zero(value) for value in (xy, xz, yz, angle)):
+            return Tensor(*_turned((xx, yy, zz, xy, xz, yz), angle))
+        if is_number(xx) and is_number(yy) and is_number(zz) and xx == yy == zz:
+            return Isotropic(xx)
         return Principal(xx, yy, zz)
+    except InvalidValueError as error:
+        raise InvalidValueError("moments", error.rule, error.received, error.remedy) from None
+
+
+def _turned(elements: tuple[Scalar, ...], angle: Scalar) -> tuple[Scalar, ...]:
+    """Return the elements of R₃ J R₃ᵀ."""
+    if is_zero(angle):
+        return elements
+    xx, yy, zz, xy, xz, yz = elements
     xp = namespace(angle)
     c, s = xp.cos(angle), xp.sin(angle)
-    # R₃ J R₃ᵀ
-    turned = (
+    return (
         xx * (c * c) + yy * (s * s) - 2.0 * (xy * c * s),
         xx * (s * s) + yy * (c * c) + 2.0 * (xy * c * s),
         zz,
@@ -256,4 +273,3 @@ def inertia_of(moments: Any, products: Any = None, turn: Any = 0.0) -> Isotropic
         xz * c - yz * s,
         xz * s + yz * c,
     )
-    return Tensor(*(turned if not (is_number(angle) and angle == 0) else (xx, yy, zz, xy, xz, yz)))

@@ -9,7 +9,7 @@ from ...errors import InvalidValueError
 from .. import checks
 from ..scalars import is_number
 from ..shapes import Disc, Torus
-from .inertia import Principal
+from .inertia import Principal, inertia_of
 from .rigid import RigidBody, mass_of
 
 
@@ -17,8 +17,17 @@ class RimBuilders(RigidBody):
     """Builders of discs, rings and tori on their rim, for `Body`."""
 
     @classmethod
-    def disc(cls, radius: Any, mass: Any = None, density: Any = None, thickness: Any = 0.0) -> Self:
-        """Make a homogeneous disc, a coin, that rolls, leans and spins on its rim.
+    def disc(
+        cls,
+        radius: Any,
+        mass: Any = None,
+        density: Any = None,
+        thickness: Any = 0.0,
+        moments: Any = None,
+        products: Any = None,
+        centre: Any = None,
+    ) -> Self:
+        """Make a disc, a coin, that rolls, leans and spins on its rim; homogeneous unless moments are given.
 
         Parameters
         ----------
@@ -28,6 +37,10 @@ class RimBuilders(RigidBody):
             kg or kg/m³; one of the two.
         thickness : float or quantity
             d, m. It counts in mass and inertia; the rim that touches is the sharp circle half way between the faces.
+        moments, products : sequence of 3 floats or quantities, optional
+            J_xx, J_yy, J_zz and J_xy, J_xz, J_yz about the centre of mass, kg m²; absent: as below.
+        centre : sequence of 3 floats or quantities, optional
+            The middle of the disc from the centre of mass, body frame, m; absent: the two coincide.
 
         Returns
         -------
@@ -45,7 +58,8 @@ class RimBuilders(RigidBody):
         volume = None if isinstance(d, float) and d == 0 else math.pi * a * a * d
         m = mass_of(mass, density, volume, "`thickness`")
         across = m * (a * a / 4 + d * d / 12)
-        return cls(m, Principal(across, across, m * (a * a) / 2), shape)
+        own = (across, across, m * (a * a) / 2) if moments is None else moments
+        return cls(m, inertia_of(own, products), Disc(a, centre))
 
     @classmethod
     def ring(cls, radius: Any, mass: Any) -> Self:
@@ -72,8 +86,17 @@ class RimBuilders(RigidBody):
         return cls(m, Principal(m * (a * a) / 2, m * (a * a) / 2, m * (a * a)), shape)
 
     @classmethod
-    def torus(cls, radius: Any, rim_radius: Any, mass: Any = None, density: Any = None) -> Self:
-        """Make a homogeneous solid ring of round cross-section that rolls, leans and spins on its rim.
+    def torus(
+        cls,
+        radius: Any,
+        rim_radius: Any,
+        mass: Any = None,
+        density: Any = None,
+        moments: Any = None,
+        products: Any = None,
+        centre: Any = None,
+    ) -> Self:
+        """Make a solid ring of round cross-section that rolls, leans and spins on its rim.
 
         Parameters
         ----------
@@ -83,11 +106,16 @@ class RimBuilders(RigidBody):
             e, of the cross-section, m, at most a.
         mass, density : float or quantity
             kg or kg/m³; one of the two.
+        moments, products : sequence of 3 floats or quantities, optional
+            J_xx, J_yy, J_zz and J_xy, J_xz, J_yz about the centre of mass, kg m²; absent: as below.
+        centre : sequence of 3 floats or quantities, optional
+            The middle of the ring from the centre of mass, body frame, m; absent: the two coincide.
 
         Returns
         -------
         Body
-            J = m(a²/2 + 5e²/8) across its axis, the third of the body frame, and m(a² + 3e²/4) about it.
+            J = m(a²/2 + 5e²/8) across its axis, the third of the body frame, and m(a² + 3e²/4) about it. With moments
+            of its own it may as well be a disc whose rim is rounded.
 
         Examples
         --------
@@ -103,4 +131,5 @@ class RimBuilders(RigidBody):
             raise InvalidValueError("rim_radius", "must be at most `radius`", rim_radius, remedy)
         m = mass_of(mass, density, 2 * math.pi**2 * a * e * e)
         across = m * (a * a / 2 + 5 * (e * e) / 8)
-        return cls(m, Principal(across, across, m * (a * a + 3 * (e * e) / 4)), shape)
+        own = (across, across, m * (a * a + 3 * (e * e) / 4)) if moments is None else moments
+        return cls(m, inertia_of(own, products), Torus(a, e, centre))

@@ -10,7 +10,7 @@ from .. import checks
 from ..algebra import Vector
 from ..scalars import is_number
 from ..shapes import HalfCylinder, Hemisphere, Roller
-from .inertia import Isotropic, Principal, RatioInertia
+from .inertia import Isotropic, RatioInertia, inertia_of
 from .rigid import HOOP, SOLID_CYLINDER, RigidBody, mass_of
 
 
@@ -145,8 +145,16 @@ class RollerBuilders(RigidBody):
         return cls(checks.positive(mass, "mass", "mass"), Isotropic(moment), shape)
 
     @classmethod
-    def hemisphere(cls, radius: Any, mass: Any = None, density: Any = None) -> Self:
-        """Make a solid half sphere that rocks on its round side; the normal of its flat face is the third axis.
+    def hemisphere(
+        cls,
+        radius: Any,
+        mass: Any = None,
+        density: Any = None,
+        moments: Any = None,
+        products: Any = None,
+        centre: Any = None,
+    ) -> Self:
+        """Make a half sphere that rocks on its round side; the normal of its flat face is the third axis.
 
         Parameters
         ----------
@@ -154,12 +162,16 @@ class RollerBuilders(RigidBody):
             a, m.
         mass, density : float or quantity
             kg or kg/m³; one of the two.
+        moments, products : sequence of 3 floats or quantities, optional
+            J_xx, J_yy, J_zz and J_xy, J_xz, J_yz about the centre of mass, kg m²; absent: as below.
+        centre : sequence of 3 floats or quantities, optional
+            The middle of the flat face from the centre of mass, body frame, m; absent: (0, 0, (3/8) a).
 
         Returns
         -------
         Body
-            Its centre of mass lies (3/8) a from the flat face; J = (83/320) m a² across the third axis, (2/5) m a²
-            about it. It is told apart from a sphere by `shape.covers`, zero where it tips over its edge.
+            A solid one: its centre of mass lies (3/8) a from the flat face; J = (83/320) m a² across the third axis,
+            (2/5) m a² about it. It is told apart from a sphere by `shape.covers`, zero where it tips over its edge.
 
         Examples
         --------
@@ -171,11 +183,20 @@ class RollerBuilders(RigidBody):
         a = shape.radius
         m = mass_of(mass, density, 2 / 3 * math.pi * a * a * a)
         across = 83 / 320 * m * (a * a)
-        return cls(m, Principal(across, across, 2 / 5 * m * (a * a)), Hemisphere(a, Vector(0.0, 0.0, 3 / 8 * a)))
+        own = (across, across, 2 / 5 * m * (a * a)) if moments is None else moments
+        return cls(m, inertia_of(own, products), Hemisphere(a, (0.0, 0.0, 3 / 8 * a) if centre is None else centre))
 
     @classmethod
-    def half_cylinder(cls, radius: Any, mass: Any = None, density: Any = None, length: Any = None) -> Self:
-        """Make a solid half cylinder that rocks on its round side; the normal of its flat face is the first axis.
+    def half_cylinder(
+        cls,
+        radius: Any,
+        mass: Any = None,
+        density: Any = None,
+        length: Any = None,
+        moment_of_inertia: Any = None,
+        centre: Any = None,
+    ) -> Self:
+        """Make a half cylinder that rocks on its round side; the normal of its flat face is the first axis.
 
         Parameters
         ----------
@@ -185,12 +206,16 @@ class RollerBuilders(RigidBody):
             kg or kg/m³; one of the two.
         length : float or quantity, optional
             Along the axis, m; it is needed with a density only.
+        moment_of_inertia : float or quantity, optional
+            About the line through the centre of mass along the axis, kg m²; absent: as below.
+        centre : sequence of 3 floats or quantities, optional
+            The axis of the round side from the centre of mass, body frame, m; absent: (4a/(3π), 0, 0).
 
         Returns
         -------
         Body
-            Its centre of mass lies 4a/(3π) from the flat face; I = (1/2 − 16/(9π²)) m a² about the line through it
-            along the axis. It rolls straight, as every cylinder here.
+            A solid one: its centre of mass lies 4a/(3π) from the flat face; I = (1/2 − 16/(9π²)) m a² about the line
+            through it along the axis. It rolls straight, as every cylinder here.
 
         Examples
         --------
@@ -201,6 +226,7 @@ class RollerBuilders(RigidBody):
         a = HalfCylinder(radius).radius
         volume = None if length is None else 0.5 * math.pi * a * a * checks.positive(length, "length", "length")
         m = mass_of(mass, density, volume, "`length`")
-        offset = 4 / (3 * math.pi)
-        shape = HalfCylinder(a, Vector(offset * a, 0.0, 0.0))
-        return cls(m, Isotropic((1 / 2 - offset * offset) * m * (a * a)), shape)
+        away = 4 / (3 * math.pi)
+        own = (1 / 2 - away * away) * m * (a * a) if moment_of_inertia is None else moment_of_inertia
+        moment = checks.positive(own, "inertia", "moment_of_inertia")
+        return cls(m, Isotropic(moment), HalfCylinder(a, (away * a, 0.0, 0.0) if centre is None else centre))

@@ -45,7 +45,11 @@ class Whole:
     def inertia(self, mass: Any) -> tuple[tuple[Any, Any, Any], tuple[Any, Any, Any]]:
         """Return J_xx, J_yy, J_zz and J_xy, J_xz, J_yz about the centre of mass, kg m²."""
         xx, yy, zz, xy, xz, yz = self.second
-        return (mass * (yy + zz), mass * (zz + xx), mass * (xx + yy)), (0.0 - mass * xy, 0.0 - mass * xz, 0.0 - mass * yz)
+        return (mass * (yy + zz), mass * (zz + xx), mass * (xx + yy)), (
+            0.0 - mass * xy,
+            0.0 - mass * xz,
+            0.0 - mass * yz,
+        )
 
 
 def homogeneous(shape: Shape) -> Whole:

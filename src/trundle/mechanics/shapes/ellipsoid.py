@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from .. import checks
 from ..algebra import Matrix, Vector
@@ -30,7 +31,7 @@ class Ellipsoid(Shape):
     a: Scalar
     b: Scalar
     c: Scalar
-    centre: Vector | None = None
+    centre: Any = None  # a Vector or None once it is made
 
     def __post_init__(self) -> None:
         for i, name in enumerate("abc"):

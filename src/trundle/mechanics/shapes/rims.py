@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from .. import checks
 from ..algebra import Matrix, Vector
@@ -60,7 +61,7 @@ class Disc(_Rim):
     """
 
     radius: Scalar
-    centre: Vector | None = None
+    centre: Any = None  # a Vector or None once it is made
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "radius", checks.positive(self.radius, "length", "radius"))
@@ -91,7 +92,7 @@ class Torus(_Rim):
 
     radius: Scalar
     rim_radius: Scalar
-    centre: Vector | None = None
+    centre: Any = None  # a Vector or None once it is made
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "radius", checks.positive(self.radius, "length", "radius"))

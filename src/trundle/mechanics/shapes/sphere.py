@@ -30,7 +30,7 @@ class Sphere(Shape):
     """
 
     radius: Scalar
-    centre: Vector | None = None
+    centre: Any = None  # a Vector or None once it is made
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "radius", checks.positive(self.radius, "length", "radius"))

@@ -43,7 +43,7 @@ class SupportFunction(Shape):
     """
 
     formula: Any  # an Expression once it is made
-    centre: Vector | None = None
+    centre: Any = None  # a Vector or None
 
     def __post_init__(self) -> None:
         if not isinstance(self.formula, Expression):

@@ -1,4 +1,4 @@
-"""Tables of bodies."""
+"""Tables of spheres, and of cylinders that roll straight as one would."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field, model_validator
 
-from ...errors import InvalidValueError
-from ..fields import written
-from .values import CylinderRatio, Mass, Moment, Radius, Ratio, Table
+from ....errors import InvalidValueError
+from ...fields import written
+from ..values import CylinderRatio, Mass, Moment, Radius, Ratio, Table
 
 if TYPE_CHECKING:
-    from ...mechanics.bodies import Body
+    from ....mechanics.bodies import Body
 
 
 class SolidSphere(Table):
@@ -23,7 +23,7 @@ class SolidSphere(Table):
 
     def build(self) -> Body:
         """Return the body."""
-        from ...mechanics.bodies import Body
+        from ....mechanics.bodies import Body
 
         return Body.solid_sphere(radius=float(self.radius), mass=float(self.mass))
 
@@ -37,7 +37,7 @@ class HollowSphere(Table):
 
     def build(self) -> Body:
         """Return the body."""
-        from ...mechanics.bodies import Body
+        from ....mechanics.bodies import Body
 
         return Body.hollow_sphere(radius=float(self.radius), mass=float(self.mass))
 
@@ -52,7 +52,7 @@ class AnySphere(Table):
 
     def build(self) -> Body:
         """Return the body."""
-        from ...mechanics.bodies import Body
+        from ....mechanics.bodies import Body
 
         return Body.sphere(float(self.radius), float(self.mass), float(self.inertia_ratio))
 
@@ -76,8 +76,8 @@ class MomentSphere(Table):
 
     def build(self) -> Body:
         """Return the body."""
-        from ...mechanics.bodies import Body, Isotropic
-        from ...mechanics.shapes import Sphere
+        from ....mechanics.bodies import Body, Isotropic
+        from ....mechanics.shapes import Sphere
 
         return Body(float(self.mass), Isotropic(float(self.moment_of_inertia)), Sphere(float(self.radius)))
 
@@ -92,7 +92,7 @@ class CylinderBody(Table):
 
     def build(self) -> Body:
         """Return the body."""
-        from ...mechanics.bodies import Body
+        from ....mechanics.bodies import Body
 
         return Body.cylinder(float(self.radius), float(self.mass), float(self.inertia_ratio))
 
@@ -106,7 +106,7 @@ class Hoop(Table):
 
     def build(self) -> Body:
         """Return the body."""
-        from ...mechanics.bodies import Body
+        from ....mechanics.bodies import Body
 
         return Body.hoop(float(self.radius), float(self.mass))
 
@@ -130,20 +130,7 @@ class WeightedCylinder(Table):
 
     def build(self) -> Body:
         """Return the body."""
-        from ...mechanics.bodies import Body
+        from ....mechanics.bodies import Body
 
         numbers = (self.radius, self.mass, self.weight, self.distance, self.inertia_ratio)
         return Body.weighted_cylinder(*map(float, numbers))
-
-
-Bodies = SolidSphere | HollowSphere | AnySphere | MomentSphere | CylinderBody | Hoop | WeightedCylinder
-
-BODIES: dict[str, type[Table]] = {
-    "solid-sphere": SolidSphere,
-    "hollow-sphere": HollowSphere,
-    "sphere": AnySphere,
-    "sphere-with-moment": MomentSphere,
-    "cylinder": CylinderBody,
-    "hoop": Hoop,
-    "weighted-cylinder": WeightedCylinder,
-}
