@@ -268,7 +268,7 @@ BAD = [  # (what stands in the file, what comes instead, the key, the value, the
     ('kind = "sphere"', "kind = 3", "body.kind", "3", "There are: solid-sphere"),
     ('kind = "sphere"', 'kind = "solid-sphere"', "body.inertia_ratio", "0.5", "is no key of [body]"),
     ("inertia_ratio = 0.5", "", "body.inertia_ratio", "nothing", "inertia_ratio = 0.4"),
-    ('kind = "plane"', 'kind = "cone"', "support.kind", "'cone'", "There are: plane"),
+    ('kind = "plane"', 'kind = "saddle"', "support.kind", "'saddle'", "There are: plane"),
     ('kind = "plane"', "", "support.kind", "nothing", 'kind = "plane"'),
     ('kind = "spin"', 'kind = "fixed"', "support.motion.rate", "'33.3 rpm'", "There are: kind"),
     ('kind = "drag"', 'kind = "dragg"', "loads[2].kind", "'dragg'", "Did you mean 'drag'?"),
