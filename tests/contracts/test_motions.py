@@ -249,7 +249,7 @@ class TestAShakenFreeTable(MotionContract):
     @pytest.mark.parametrize(
         ("parts", "named"),
         [((FreeAxle(1.0), Spin(1.0)), r"parts\[0\].*last"), ((Rock(0.1, 1.0), FreeAxle(1.0)), r"parts\[0\].*turn"),
-         ((Fixed(), Combined((Shake((0, 0, 1), 1.0), Spin(1.0))), FreeAxle(1.0)), r"parts\[1\].*turn"),
+         ((Fixed(), Combined((Shake((0, 0, 1), 1.0), Spin(1.0))), FreeAxle(1.0)), r"parts\[2\].*turn"),
          ((), "at least one"), ((Spin(1.0), 3.0), r"parts\[1\]"), (3.0, r"parts\[0\]")],
     )  # fmt: skip
     def test_what_cannot_be_is_refused_by_name(self, parts: object, named: str) -> None:

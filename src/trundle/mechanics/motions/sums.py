@@ -36,6 +36,8 @@ class Combined(Motion):
             checks.instance(
                 part, Motion, f"parts[{i}]", "Give for instance (tr.Shake((0.002, 0, 0), 30), tr.Spin(3.5))."
             )
+        parts = tuple(inner for part in parts for inner in (part.parts if isinstance(part, Combined) else (part,)))
+        object.__setattr__(self, "parts", parts)
         if not parts:
             raise InvalidValueError("parts", "must hold at least one motion", parts)
         for i, part in enumerate(parts[:-1]):
@@ -44,7 +46,6 @@ class Combined(Motion):
             if parts[-1].free and part.turns:
                 remedy = "Shake and Move shift it without turning it."
                 raise InvalidValueError(f"parts[{i}]", "must not turn a free axle", part, remedy)
-        object.__setattr__(self, "parts", parts)
 
     @property
     def own(self) -> tuple[str, ...]:  # type: ignore[override]

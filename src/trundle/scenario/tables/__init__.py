@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from .bodies import BODIES, Bodies
 from .loads import LOADS, Loads
-from .motions import MOTIONS
+from .motions import MOTIONS, PARTS
 from .start import Run, Start
 from .supports import SUPPORTS, Supports
 from .values import Place2, Radius, Table, Turn4
@@ -17,6 +17,7 @@ KINDS: dict[str, dict[str, type[Table]]] = {
     "body": BODIES,
     "support": SUPPORTS,
     "support.motion": MOTIONS,
+    "support.motion.parts": PARTS,
     "loads": LOADS,
 }
 

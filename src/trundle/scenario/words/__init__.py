@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from .bodies import body_words
 from .loads import LOADS
+from .motions import MOTIONS
 from .parts import Words, number_of, numbers_of, one_of
-from .supports import MOTIONS, SURFACES
+from .supports import SURFACES
 
 __all__ = ["LOADS", "MOTIONS", "SURFACES", "Words", "body_words", "number_of", "numbers_of", "one_of"]

@@ -2,17 +2,41 @@
 
 from __future__ import annotations
 
-from ...mechanics.loads import Drag, Force, Torque
-from .parts import Describe, Words, number_of, numbers_of
+from ...mechanics.loads import (
+    Drag,
+    Force,
+    Magnus,
+    Motor,
+    PivotFriction,
+    Potential,
+    QuadraticDrag,
+    RollingCouple,
+    RollingResistance,
+    Torque,
+)
+from .motions import by_kind, words_of
+from .parts import Describe, Words
 
 
-def _drag(load: Drag, key: str) -> Words:
-    air = {} if load.air_rate == 0 else {"air": number_of(load.air_rate, f"{key}.air")}
-    return {"kind": "drag", "coefficient": number_of(load.coefficient, f"{key}.coefficient"), **air}
+def _through_air(kind: str, load: Drag | QuadraticDrag, key: str) -> Words:
+    words = words_of(kind, load, key)
+    rate = words.pop("air_rate")
+    return words if rate == 0 else {**words, "air": rate}
 
 
 LOADS: Describe = {
-    Force: lambda load, key: {"kind": "force", "value": numbers_of(load.value, f"{key}.value")},
-    Torque: lambda load, key: {"kind": "torque", "value": numbers_of(load.value, f"{key}.value")},
-    Drag: _drag,
+    Drag: lambda load, key: _through_air("drag", load, key),
+    QuadraticDrag: lambda load, key: _through_air("quadratic-drag", load, key),
+    **by_kind(
+        {
+            Force: "force",
+            Torque: "torque",
+            Potential: "potential",
+            RollingResistance: "rolling-resistance",
+            PivotFriction: "pivot-friction",
+            RollingCouple: "rolling-couple",
+            Magnus: "magnus",
+            Motor: "motor",
+        }
+    ),
 }
