@@ -74,6 +74,7 @@ if TYPE_CHECKING:
     from .mechanics.system import RollingSystem, State, Support
     from .simulation import Scenario, simulate
     from .statics import Equilibria, Equilibrium, equilibria
+    from .steady import PeriodicMotion, SteadyMotion, SteadyMotions, periodic_motion, steady_motions
     from .trajectory import Event, Trajectory
     from .verify import Card
 
@@ -145,6 +146,7 @@ _HOMES = {
     "derivation": ("derive",),
     "simulation": ("simulate", "Scenario"),
     "statics": ("equilibria", "Equilibria", "Equilibrium"),
+    "steady": ("steady_motions", "SteadyMotions", "SteadyMotion", "periodic_motion", "PeriodicMotion"),
     "trajectory": ("Trajectory", "Event"),
     "verify": ("Card",),
     "checking": ("check", "check_equations", "Check", "Mistake"),
@@ -186,6 +188,7 @@ __all__ = [
     "OutOfDomainError",
     "Paraboloid",
     "PathScenario",
+    "PeriodicMotion",
     "PfaffianSystem",
     "PivotFriction",
     "Plane",
@@ -212,6 +215,8 @@ __all__ = [
     "Spin",
     "SpinBy",
     "State",
+    "SteadyMotion",
+    "SteadyMotions",
     "Straight",
     "Support",
     "SupportFunction",
@@ -232,9 +237,11 @@ __all__ = [
     "check_equations",
     "derive",
     "equilibria",
+    "periodic_motion",
     "roll_along",
     "sensitivity",
     "simulate",
+    "steady_motions",
     "to_turntable",
     "twin",
     "units",

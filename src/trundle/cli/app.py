@@ -18,6 +18,7 @@ from .check import check
 from .derive import derive
 from .equilibria import equilibria
 from .sensitivity import sensitivity
+from .steady import steady
 from .twin import twin
 
 if TYPE_CHECKING:
@@ -45,6 +46,7 @@ def command() -> Any:
     app.command("constraints", short_help="Holonomic or not: decide it, and show why.")(constraints.constraints)
     app.command("sensitivity", short_help="Rank the shortcomings of a turntable by what they do.")(sensitivity)
     app.command("equilibria", short_help="Where a body stays, put down at rest.")(equilibria)
+    app.command("steady", short_help="Steady motions, and whether they are stable.")(steady)
     return typer.main.get_command(app)
 
 

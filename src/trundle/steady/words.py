@@ -1,0 +1,151 @@
+"""The findings in words."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from .modes import Mode
+from .quantities import UNITS
+
+if TYPE_CHECKING:
+    from .periodic import PeriodicMotion
+    from .result import SteadyMotion, SteadyMotions
+
+
+def report(result: SteadyMotions) -> str:
+    """Write the findings out, as the command prints them.
+
+    Parameters
+    ----------
+    result : SteadyMotions
+        Any.
+
+    Returns
+    -------
+    str
+        Several lines.
+    """
+    lines = [result.title] if result.title else []
+    count = len(result.found)
+    lines.append("no steady motion" if not count else f"{count} steady motion{'s' * (count > 1)}")
+    for i, one in enumerate(result.found, 1):
+        lines += ["", f"{i}. {one.kind}, {one.verdict}", *(f"   {line}" for line in facts(one))]
+    lines += ["", f"from the start: {_moved(result.moved)}"] if count else [result.reason]
+    if result.pulled:
+        lines.append(f"not counted: {result.pulled} more, in which the support would have to pull")
+    lines.append(f"searched: {result.searched}")
+    return "\n".join(lines)
+
+
+def _moved(distance: float) -> str:
+    return "it is one already" if distance < 1e-9 else f"{distance:.3g} away, in units of the body's size and rates"
+
+
+def facts(one: SteadyMotion) -> list[str]:
+    """Return what there is to say of one steady motion, line by line."""
+    values = ", ".join(f"{name} {said(name, value)}" for name, value in one.quantities.items())
+    force = f"contact force N = {one.normal_force:.6g} N, f = {one.friction_force:.6g} N; {_friction(one)}"
+    return [values, force, *_nudges(one), _family(one), _evidence(one)]
+
+
+def said(name: str, value: float) -> str:
+    """Return a quantity with its unit, angles in degrees."""
+    if name == "lean":
+        return f"{math.degrees(value) + 0.0:.6g}°"
+    return f"{value + 0.0:.6g} {UNITS[name]}"
+
+
+def _friction(one: SteadyMotion) -> str:
+    needed = f"needs friction of at least {one.friction_needed:.6g}" if one.friction_force else "needs no friction"
+    if one.holds is None:
+        return needed
+    return f"{needed}, the support has {one.system.support.friction:g}" + ("" if one.holds else ": it SLIPS")
+
+
+def _nudges(one: SteadyMotion) -> list[str]:
+    if not one.modes:
+        return ["a nudge only changes it into another steady motion"]
+    said_once = list(dict.fromkeys(mode_words(mode) for mode in one.modes if not _twin(mode, one.modes)))
+    frame = "" if one.frame == "inertial" else ", seen turning with the support"
+    return [f"a nudge {words}{frame}" for words in said_once]
+
+
+def _twin(mode: Mode, modes: tuple[Mode, ...]) -> bool:
+    """Whether a mode dies away at the rate at which another grows: it comes with it and decides nothing."""
+    return mode.growth < 0 and any(
+        other.growth > 0 and abs(other.growth + mode.growth) <= 1e-6 * other.growth for other in modes
+    )
+
+
+def mode_words(mode: Mode) -> str:
+    """Say in a few words what a nudge leads to.
+
+    Parameters
+    ----------
+    mode : Mode
+        Of a steady motion.
+
+    Returns
+    -------
+    str
+        With frequency and rate of growth.
+
+    Examples
+    --------
+    >>> mode_words(Mode(2j)), mode_words(Mode(0.5 + 0j))
+    ('oscillates at 2 rad/s, once in 3.14159 s', 'grows at 0.5 1/s, by e in 2 s')
+    """
+    if mode.kind == "neutral":
+        return "stands at a limit of stability: the linear law neither carries it back nor away"
+    swings = f"oscillates at {mode.frequency:.6g} rad/s, once in {2 * math.pi / mode.frequency:.6g} s" * bool(
+        mode.frequency
+    )
+    if mode.growth == 0:
+        return swings
+    if mode.growth > 0:
+        grows = f"grows at {mode.growth:.6g} 1/s, by e in {1 / mode.growth:.6g} s"
+    else:
+        grows = f"dies away at {-mode.growth:.6g} 1/s"
+    return f"{grows}, and {swings}" if swings else grows
+
+
+def _family(one: SteadyMotion) -> str:
+    if not one.dimension:
+        return "stands alone but for place, direction and phase"
+    numbers = {1: "one number", 2: "two numbers", 3: "three numbers"}.get(one.dimension, f"{one.dimension} numbers")
+    return f"one of a family with {numbers} to choose"
+
+
+def _evidence(one: SteadyMotion) -> str:
+    return f"evidence: steady to {one.residual:.1g}; nudged runs follow the linear law to {one.checked:.1g}"
+
+
+def periodic_report(motion: PeriodicMotion) -> str:
+    """Write out what was found of a periodic motion.
+
+    Parameters
+    ----------
+    motion : PeriodicMotion
+        Any.
+
+    Returns
+    -------
+    str
+        Several lines.
+    """
+    rest = motion.multipliers[motion.free :]
+    lines = [
+        f"periodic, {motion.verdict}",
+        f"   repeats after {motion.period:.9g} s, turned on by {math.degrees(motion.turned) + 0.0:.6g}° about the axis",
+        f"   multipliers: {', '.join(map(_multiplier, rest)) or 'none besides 1'}",
+        f"   and {motion.free} equal to 1, along the motion and its family",
+        f"   evidence: closes to {motion.residual:.1g} of its scale",
+    ]
+    return "\n".join(lines)
+
+
+def _multiplier(value: complex) -> str:
+    if abs(value.imag) < 1e-9:
+        return f"{value.real:.6g}"
+    return f"{abs(value):.6g} at {math.degrees(math.atan2(value.imag, value.real)):.6g}°"
