@@ -8,12 +8,18 @@ import numpy as np
 
 from .mechanics.system import RollingSystem
 from .solve.methods import tolerance_of
-from .solve.samples import Samples
+from .solve.samples import FLIGHT, Samples
 
 if TYPE_CHECKING:
     import xarray
 
-PHASES = {0: "rolling", 1: "slipping", 2: "flight"}
+PHASES = {0: "rolling", 1: "slipping", 2: "flight", 3: "resting"}
+
+# The coordinates of a support that is free to move, or moves as a formula says -> (long name, unit)
+_OWN = {
+    "angle": ("angle by which the support has turned", "rad"),
+    "rate": ("rate at which the support turns", "rad s-1"),
+}
 
 # Dataset variable -> (long name, unit)
 _VECTORS = {
@@ -50,9 +56,10 @@ def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any])
     import pandas as pd
     import xarray
 
-    arrays = {name: getattr(samples, name, None) for name in _VECTORS}
+    arrays: dict[str, Any] = {name: getattr(samples, name, None) for name in _VECTORS}
     V, carried, u = samples.speeds(system)
     arrays["slip_velocity"] = np.broadcast_to((V + carried - u).array(), samples.position.shape).copy()
+    arrays["slip_velocity"][samples.phase == FLIGHT] = np.nan  # nothing touches
     variables = {
         name: (("time", "axis"), arrays[name], {"long_name": long_name, "units": unit})
         for name, (long_name, unit) in _VECTORS.items()
@@ -68,7 +75,8 @@ def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any])
         {
             **variables,
             "orientation": (("time", "quaternion"), samples.orientation, turning),
-            "phase": (("time",), np.zeros(samples.time.size, dtype=np.int8), phase),
+            "phase": (("time",), samples.phase.astype(np.int8), phase),
+            **_own(system, samples),
         },
         coords={
             # As pandas indexes: to make them, xarray would first import every package of arrays that it knows of.
@@ -78,6 +86,37 @@ def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any])
         },
         attrs={"Conventions": "CF-1.11", **attributes},
     )
+
+
+def own_names(system: RollingSystem) -> list[str]:
+    """Return the names of the variables that hold the coordinates of the support's own motion.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Its support.
+
+    Returns
+    -------
+    list of str
+        In the order in which `Motion.at` takes them; mostly none.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> own_names(tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), tr.Support(tr.Plane())))
+    []
+    """
+    names = system.support.motion.own
+    return [f"support_{name}" if names.count(name) == 1 else f"support_{name}_{i}" for i, name in enumerate(names)]
+
+
+def _own(system: RollingSystem, samples: Samples) -> dict[str, Any]:
+    facts = [_OWN[name] for name in system.support.motion.own]
+    return {
+        variable: (("time",), column, {"long_name": long_name, "units": unit})
+        for variable, column, (long_name, unit) in zip(own_names(system), samples.own.T, facts, strict=True)
+    }
 
 
 def attributes(title: str, method: str) -> dict[str, Any]:

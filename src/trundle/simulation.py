@@ -9,8 +9,9 @@ from . import labels
 from .errors import InvalidValueError, ScenarioError
 from .mechanics import straight
 from .mechanics.algebra import Quaternion, Vector
-from .mechanics.contact import settle, touch
-from .mechanics.system import SLIP_TOLERANCE, RollingSystem, State
+from .mechanics.contact import Contact, settle
+from .mechanics.placing import SLIP_TOLERANCE
+from .mechanics.system import RollingSystem, State
 from .scenario import ScenarioFile
 from .solve import methods
 from .solve.samples import Progress
@@ -99,31 +100,42 @@ def _described(system: RollingSystem, start: State, times: Any, method: str, tit
 
 
 def _check_start(system: RollingSystem, start: State) -> None:
-    """Refuse a hand-made start that does not touch the support or that slips."""
+    """Refuse a hand-made start inside the support, or one that slips where nothing limits the friction."""
     if not isinstance(start, State):
         raise InvalidValueError("start", "must be a State, as system.place(...) makes it", start)
+    own = system.support.motion.own
+    if len(start.support) != len(own):
+        remedy = "Let system.place(...) make the start."
+        raise InvalidValueError("start.support", f"must hold {', '.join(own) or 'nothing'}", start.support, remedy)
     q, centre = Quaternion(*start.orientation), Vector(*start.position)
-    contact = settle(system, start.time, centre, q)
+    contact = settle(system, start.time, centre, q, start.support)
     point = centre + contact.offset
-    own = contact.support.rotation.transpose @ (point - contact.support.origin)
-    gap, size = system.support.surface.level(own), contact.offset.norm()
-    if abs(gap) > SLIP_TOLERANCE * size:
+    gap = (point - contact.point).dot(contact.normal)
+    if not gap >= -SLIP_TOLERANCE * contact.offset.norm():
         raise InvalidValueError(
-            "start.position", "must put the body on the support", start.position, f"Gap: {gap:g} m."
+            "start.position", "must put the body on the support or over it", start.position, f"Gap: {gap:g} m."
         )
     system.check_rim(point, start.position)
+    if gap <= SLIP_TOLERANCE * contact.offset.norm():
+        _check_slip(system, start, contact)
+        straight.check_start(system, start)
+
+
+def _check_slip(system: RollingSystem, start: State, contact: Contact) -> None:
+    if system.support.friction is not None:
+        return
     V, Omega = Vector(*start.velocity), Vector(*start.angular_velocity)
-    contact = touch(system, start.time, point, q)
-    slip = contact.slip_velocity(V, Omega).norm()
-    scale = max(V.norm(), Omega.cross(contact.offset).norm(), contact.support.material_velocity(point).norm())
+    s = contact.slip_velocity(V, Omega)
+    slip = (s - contact.normal * s.dot(contact.normal)).norm()
+    u = contact.support.material_velocity(contact.point)
+    scale = max(V.norm(), Omega.cross(contact.offset).norm(), u.norm())
     if slip > SLIP_TOLERANCE * scale:
         raise InvalidValueError(
             "start.angular_velocity",
-            "must agree with rolling, V + Ω×ρ = u(p)",
+            "must agree with rolling, V + Ω×ρ = u(p), where the support has no `friction`",
             f"a slip of {slip:.6g} m/s",
-            "Let system.place(...) find Ω from no slip.",
+            "Let system.place(...) find Ω from no slip; or give the support a friction.",
         )
-    straight.check_start(system, start)
 
 
 class Scenario(ScenarioFile):

@@ -91,8 +91,9 @@ class Trajectory:
     def samples(self) -> Samples:
         """The arrays in the inertial support frame, as the methods and the card take them."""
         data = self.in_frame("support").data
-        arrays = {part.name: data[part.name].values for part in fields(Samples) if part.name != "events"}
-        return Samples(**arrays, events=self.events)
+        arrays = {part.name: data[part.name].values for part in fields(Samples) if part.name in data}
+        own = [data[name].values for name in labels.own_names(self.system)]
+        return Samples(**arrays, events=self.events, own=np.stack(own, axis=-1) if own else None)
 
     def in_frame(self, frame: str) -> Trajectory:
         """Return the same motion seen from another frame.
@@ -327,7 +328,7 @@ class Trajectory:
             ScenarioFile.loads(scenario, source=str(path)).system(),
             State(**_tuples(json.loads(start))),
             str(data.attrs["method"]),
-            tuple(Event(**event) for event in json.loads(events)),
+            tuple(_event(event) for event in json.loads(events)),
             scenario,
             {"card": verify.Card.from_json(card)},
         )
@@ -336,6 +337,11 @@ class Trajectory:
 def _public_names() -> list[str]:
     names = {part.name for part in fields(Trajectory)} | set(dir(Trajectory))
     return sorted(name for name in names if not name.startswith("_"))
+
+
+def _event(values: dict[str, Any]) -> Event:
+    states = {name: State(**_tuples(values[name])) for name in ("before", "after") if values.get(name)}
+    return Event(**{**values, **states})
 
 
 def _tuples(values: dict[str, Any]) -> dict[str, Any]:

@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from tests.additions import Ellipsoid, Torus
 from tests.tolerances import EXACT
 
 import trundle as tr
 from trundle.mechanics.algebra import Vector
-from trundle.mechanics.shapes import Sphere
+from trundle.mechanics.shapes import Ellipsoid, Sphere, Torus
 
 PRINCIPAL = tr.Principal(0.003, 0.004, 0.005)
 BODIES = {
@@ -88,7 +87,7 @@ def test_an_angular_velocity_that_agrees_is_taken_as_it_is(body: tr.Body) -> Non
         ({"position": (0.1, math.nan)}, "position"),
         ({"position": "here"}, "position"),
         ({"velocity": "corotating"}, "velocity"),
-        ({"velocity": (0.1, 0.2, 0.3)}, "velocity"),
+        ({"velocity": (0.1, 0.2, 0.3, 0.4)}, "velocity"),
         ({"velocity": ("1 m", "2 m")}, "velocity"),
         ({"spin": "3 m/s"}, "spin"),
         ({"spin": math.inf}, "spin"),

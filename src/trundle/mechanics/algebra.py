@@ -148,6 +148,11 @@ class Matrix:
         """The three rows."""
         return self.a, self.b, self.c
 
+    @property
+    def determinant(self) -> Scalar:
+        """The determinant."""
+        return self.a.dot(self.b.cross(self.c))
+
     def solve(self, v: Vector) -> Vector:
         """Return x with (this matrix) x = v, by Cramer's rule: no pivoting, so that symbols can pass."""
         p, q, r = self.transpose.rows

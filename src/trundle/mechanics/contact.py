@@ -42,6 +42,10 @@ class Contact:
         reach = self.inverse_curvature if is_zero(gap) else self.inverse_curvature + Matrix.identity() * gap
         return Matrix.identity() + reach @ self.shape_operator
 
+    def clearance(self, gap: Scalar = 0.0) -> Scalar:
+        """Return det(1 + (C + g)S), which falls to 0 where the support is as hollow as the body is round."""
+        return self.across(gap).determinant
+
     def rates(
         self, slip: Vector, angular_velocity: Vector, velocity: Vector, gap: Scalar = 0.0
     ) -> tuple[Vector, Vector]:

@@ -6,18 +6,16 @@ import math
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..errors import InvalidValueError, did_you_mean
-from . import checks, straight
-from .algebra import E_Z, ZERO, Quaternion, Vector
+from ..errors import InvalidValueError
+from . import checks
+from .algebra import E_Z, ZERO, Vector
 from .bodies import Body
-from .contact import Contact, touch
 from .loads import Acting, BodyMotion, Gravity, Load
 from .motions import Fixed, Motion
-from .scalars import Scalar, is_number, is_zero, namespace
+from .scalars import Scalar, is_number, namespace
 from .surfaces import Surface
 
 STANDARD_GRAVITY = 9.80665  # m/s², exact by definition (3rd CGPM, 1901)
-SLIP_TOLERANCE = 1e-9  # of the largest speed at the contact: beyond it a start slips
 
 
 @dataclass(frozen=True)
@@ -33,7 +31,11 @@ class Support:
     tilt : float or quantity
         α, the angle between the support's axis and the vertical, rad; the first axis points down the slope.
     friction : float, optional
-        Coulomb coefficient; absent: it holds whatever rolling takes, and the card says how much that was.
+        Coulomb's coefficient μ; absent: it holds whatever rolling takes, and the card says how much that was.
+    kinetic_friction : float, optional
+        Of slipping, at most `friction`; absent: the same.
+    restitution : float
+        e of a landing, by Stronge's hypothesis: the share e² of the work of compression is given back; 0 to 1.
 
     Examples
     --------
@@ -46,6 +48,8 @@ class Support:
     motion: Motion = field(default_factory=Fixed)
     tilt: Scalar = 0.0
     friction: Scalar | None = None
+    kinetic_friction: Scalar | None = None
+    restitution: Scalar = 0.0
 
     def __post_init__(self) -> None:
         checks.instance(self.surface, Surface, "surface", "Give for instance tr.Plane(rim=0.5).")
@@ -56,6 +60,27 @@ class Support:
         object.__setattr__(self, "tilt", tilt)
         if self.friction is not None:
             object.__setattr__(self, "friction", checks.non_negative(self.friction, "number", "friction"))
+        self._check_slipping()
+
+    def _check_slipping(self) -> None:
+        """Check what belongs to slipping and landing."""
+        if self.kinetic_friction is not None:
+            kinetic = checks.non_negative(self.kinetic_friction, "number", "kinetic_friction")
+            object.__setattr__(self, "kinetic_friction", kinetic)
+            if self.friction is None:
+                remedy = "Give `friction` too: where rolling ends."
+                raise InvalidValueError("kinetic_friction", "must stand beside `friction`", kinetic, remedy)
+            if is_number(kinetic) and is_number(self.friction) and kinetic > self.friction:
+                raise InvalidValueError("kinetic_friction", "must be at most `friction`", kinetic)
+        e = checks.non_negative(self.restitution, "number", "restitution")
+        if is_number(e) and e > 1:
+            raise InvalidValueError("restitution", "must lie in [0, 1]", self.restitution)
+        object.__setattr__(self, "restitution", e)
+
+    @property
+    def sliding_friction(self) -> Scalar:
+        """The coefficient of slipping, μ of f = −μ N ŝ."""
+        return self.friction if self.kinetic_friction is None else self.kinetic_friction
 
 
 @dataclass(frozen=True)
@@ -74,6 +99,8 @@ class State:
         Unit quaternion (w, x, y, z), body frame to support frame.
     time : float
         s.
+    support : tuple of float
+        The coordinates of the support's own motion, such as the angle and rate of a free axle; mostly none.
 
     Examples
     --------
@@ -86,6 +113,7 @@ class State:
     angular_velocity: tuple[float, float, float]
     orientation: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
     time: float = 0.0
+    support: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -165,26 +193,34 @@ class RollingSystem:
         angular_velocity: Any = None,
         orientation: Any = None,
         roll: Any = 0.0,
+        attitude: Any = None,
+        height: Any = 0.0,
     ) -> State:
-        """Put the body down so that it rolls from the first instant.
+        """Put the body down so that it rolls from the first instant; or so that it slips, or falls.
 
         Parameters
         ----------
         position : sequence of 2 floats or quantities
             On a plane, the centre of the body over it, m. On a curved support, the coordinates of the contact: on a
             cylinder the angle from its first axis towards the second, rad, and the height along its axis, m.
-        velocity : sequence of 2 floats or quantities, or "co-rotating", optional
-            Of the centre, in the inertial support frame, along the directions in which the two coordinates grow, m/s;
-            absent: at rest. "co-rotating" releases the body from rest relative to the support's material under it.
+        velocity : sequence of 2 or 3 floats or quantities, or "co-rotating", optional
+            Of the centre, in the inertial support frame, along the directions in which the two coordinates grow and
+            along the normal, m/s; absent: at rest. Of two components, the third follows from the contact.
+            "co-rotating" releases the body from rest relative to the support's material under it.
         spin : float or quantity, optional
             Ω·n, rad/s; the rest of Ω follows from no slip. Absent: 0, or the support's rate when co-rotating.
         angular_velocity : sequence of 3 floats or quantities, optional
-            Ω instead of `spin`; it must agree with rolling.
+            Ω instead of `spin`. It must agree with rolling unless the support has a `friction`: then it may slip.
         orientation : sequence of 4 floats, optional
             Quaternion (w, x, y, z), body frame to support frame; it is normalised. Absent: not turned; a cylinder is
             laid across its way, the first axis of the body frame along the normal.
         roll : float or quantity
             Of a cylinder laid down so: the angle by which it has rolled on since, rad.
+        attitude : sequence of 3 floats or quantities, optional
+            Heading, lean and turn instead of `orientation`, rad: see `trundle.mechanics.attitude`. An upright coin
+            that heads along the first direction has (0, π/2, 0).
+        height : float or quantity
+            Of the body over the support, along the normal, m; above 0 it falls, and does not turn unless told to.
 
         Returns
         -------
@@ -194,7 +230,7 @@ class RollingSystem:
         Raises
         ------
         InvalidValueError
-            If a value is refused, the body is outside the rim, or the start contradicts itself.
+            If a value is refused, the body does not fit there, or the start contradicts itself.
 
         Examples
         --------
@@ -204,64 +240,10 @@ class RollingSystem:
         >>> system.place(position=(1.0, 0.0), velocity="co-rotating").velocity
         (0.0, 2.0, 0.0)
         """
-        surface = self.support.surface
-        u, v = (
-            checks.real(part, kind, f"position[{i}]")
-            for i, (part, kind) in enumerate(zip(_pair(position, "position"), surface.coordinates, strict=True))
-        )
-        begin = self.support.motion.at(0.0)
-        turning = self.body.shape.axis is not None and orientation is None
-        q = _unit_quaternion((1.0, 0.0, 0.0, 0.0) if orientation is None else orientation)
-        contact = touch(self, 0.0, begin.carried(surface.point(u, v)), q)
-        if turning:
-            q = straight.facing(contact, begin, surface, velocity, checks.real(roll, "angle", "roll"))
-            contact = touch(self, 0.0, contact.point, q)
-        elif not is_zero(roll):
-            raise InvalidValueError("roll", "belongs to a cylinder put down without `orientation`", roll)
-        own = begin.rotation.transpose @ contact.offset
-        contact = touch(self, 0.0, begin.carried(surface.under(u, v, own)), q)
-        self.check_rim(contact.point, position)
-        V = self._velocity(contact, velocity, begin.rotation.transpose @ (contact.point - begin.origin))
-        Omega = self._angular_velocity(contact, V, spin, angular_velocity, isinstance(velocity, str))
-        start = State(_triple(contact.centre), _triple(V), _triple(Omega), tuple(q))
-        straight.check_start(self, start)
-        return start
+        from .placing import Placing
 
-    def _velocity(self, contact: Contact, velocity: Any, own: Vector) -> Vector:
-        """Return V from its components along the surface; the one along n follows from V·ρ = u·ρ."""
-        begin, rho, n = contact.support, contact.offset, contact.normal
-        first, second = (begin.rotation @ e for e in self.support.surface.directions(own))
-        if isinstance(velocity, str):
-            if velocity != "co-rotating":
-                raise InvalidValueError(
-                    "velocity",
-                    'must be two components or "co-rotating"',
-                    velocity,
-                    did_you_mean(velocity, ["co-rotating"]).strip(),
-                )
-            carried = begin.material_velocity(contact.centre)
-            along = (carried.dot(first), carried.dot(second))
-        else:
-            along = checks.components((0.0, 0.0) if velocity is None else velocity, "velocity", "velocity", 2)
-        V = first * along[0] + second * along[1]
-        u = begin.material_velocity(contact.point)
-        return V + n * ((u - V).dot(rho) / n.dot(rho))
-
-    def _angular_velocity(
-        self, contact: Contact, V: Vector, spin: Any, angular_velocity: Any, co_rotating: bool
-    ) -> Vector:
-        u, rho = contact.support.material_velocity(contact.point), contact.offset
-        if angular_velocity is None:
-            turning = contact.support.angular_velocity.dot(contact.normal) if co_rotating else 0.0
-            about_normal = turning if spin is None else checks.real(spin, "angular velocity", "spin")
-            return _rolling_rate(V - u, rho, contact.normal, about_normal)
-        if spin is not None:
-            raise InvalidValueError(
-                "angular_velocity", "must not stand beside `spin`", angular_velocity, "Give one of the two."
-            )
-        Omega = Vector(*checks.components(angular_velocity, "angular velocity", "angular_velocity"))
-        _check_no_slip(contact.slip_velocity(V, Omega), V, Omega.cross(rho), u)
-        return Omega
+        placing = Placing(self, position, velocity, spin, angular_velocity, orientation, roll, attitude, height)
+        return placing.state()
 
     def check_rim(self, point: Vector, position: Any) -> None:
         """Refuse a contact point at or beyond the rim, naming the position as the user gave it."""
@@ -273,45 +255,6 @@ class RollingSystem:
                 position,
                 f"The contact is {distance:g} m from the axis.",
             )
-
-
-def _triple(v: Vector) -> tuple[float, float, float]:
-    return v.x + 0.0, v.y + 0.0, v.z + 0.0  # + 0.0 turns -0.0 into 0.0
-
-
-def _pair(value: Any, key: str) -> tuple[Any, Any]:
-    """Return two parts of whatever kinds; `checks.components` is for parts of one kind."""
-    parts = None if isinstance(value, (str, bytes)) or not hasattr(value, "__len__") else tuple(value)
-    if parts is None or len(parts) != 2:
-        raise InvalidValueError(key, "must be a list of 2 components", value)
-    return parts
-
-
-def _unit_quaternion(orientation: Any) -> Quaternion:
-    parts = checks.components(orientation, "number", "orientation", 4)
-    length = math.hypot(*parts)
-    if not 0 < length < math.inf:
-        raise InvalidValueError("orientation", "must be a quaternion other than zero", orientation)
-    if abs(length - 1) < 4e-16:  # it is one already: keep it to the last digit
-        return Quaternion(*parts)
-    return Quaternion(*(part / length for part in parts))
-
-
-def _rolling_rate(relative: Vector, rho: Vector, n: Vector, spin: Scalar) -> Vector:
-    """Solve ρ×Ω = V − u for the Ω with Ω·n = spin."""
-    across = relative.cross(rho) / rho.dot(rho)
-    return across + rho * ((spin - across.dot(n)) / rho.dot(n))
-
-
-def _check_no_slip(slip: Vector, *speeds: Vector) -> None:
-    scale = max(speed.norm() for speed in speeds)
-    if slip.norm() > SLIP_TOLERANCE * scale:
-        raise InvalidValueError(
-            "angular_velocity",
-            "must agree with rolling, V + Ω×ρ = u(p)",
-            f"a slip of {slip.norm():.6g} m/s",
-            "Give `spin` instead and the rest follows from no slip; starts that slip are not covered yet.",
-        )
 
 
 __all__ = ["E_Z", "STANDARD_GRAVITY", "RollingSystem", "State", "Support"]

@@ -14,7 +14,8 @@ from ..mechanics.system import RollingSystem, State
 from .exact import CLOSED_FORMS, ClosedForm, SphereOnPlane, closed_form
 from .monodromy import Monodromy
 from .orientation import orientation, periodic_orientation
-from .samples import Array, Progress, Samples, ran_off
+from .phases import end as end_event
+from .samples import Array, Progress, Samples
 
 _PHASE_A_STEP = 0.05  # rad of the motion's own phase between looks at the rim
 _LOOKS_AT_ONCE = 100_000
@@ -60,7 +61,7 @@ def solve(
     if end is not None:
         times = np.append(times[times < start.time + end], start.time + end)
     samples = _evaluate(system, motion, start, times, progress)
-    return samples if end is None else samples.ended(ran_off(start.time + end, system.support.surface.rim))
+    return samples if end is None else samples.ended(end_event(system, "rim", samples.state(-1)))
 
 
 def _evaluate(

@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from ..errors import SolverError
-from ..mechanics.algebra import Vector
 from ..mechanics.system import RollingSystem, State
-from .samples import Array, Progress, Samples, cut, ran_off
-from .tracing import contact_state, python_rates
+from . import phases
+from .laws import Law
+from .phases import Stop, Stretch
+from .samples import Array, Progress, Samples
+from .tracing import python_law
 
 TOLERANCE = 1e-12
+_LOOKS = 8  # at the stops in each step
+_EPSILON = 2.0**-52
 
 
 def solve(
     system: RollingSystem, start: State, times: Array, tolerance: float = TOLERANCE, progress: Progress | None = None
 ) -> Samples:
-    """Integrate the rolling law and return the states at the given times; a rim ends the run at the located instant.
+    """Integrate the laws of contact and return the states at the given times; every event is located as it happens.
 
     Parameters
     ----------
@@ -28,7 +33,7 @@ def solve(
     Returns
     -------
     Samples
-        At `times`, cut at the rim where it is reached.
+        At `times`, cut where the run ends early, with its events.
 
     Raises
     ------
@@ -43,88 +48,114 @@ def solve(
     >>> print(round(x / (9.80665 * np.sin(0.1) / 2), 9))  # (5/7) g sin α
     0.714285714
     """
-    from scipy.integrate import solve_ivp
+    return phases.solve(integrate, system, start, times, tolerance, progress)
 
-    rates = python_rates(system)
-    begin, end = start.time, max(float(times[-1]), float(np.nextafter(start.time, np.inf)))  # some way to go
-    y0 = np.asarray(contact_state(system, start))
 
-    def law(t: float, y: Array) -> list[float]:
-        if progress is not None:
-            progress(min(1.0, (t - begin) / (end - begin)))
-        return rates(t, y.tolist())
+def integrate(
+    system: RollingSystem,
+    law: Law,
+    begin: float,
+    state: Sequence[float],
+    times: Array,
+    tolerance: float,
+    extras: Sequence[float] = (),
+    progress: Progress | None = None,
+) -> Stretch:
+    """Follow one law to its first stop.
 
-    scale = np.maximum(np.abs(y0), [*[1e-3 * _size(y0[:3])] * 3, *[1.0] * 4, *[1e-3 * _size(y0[7:])] * 3])
-    result = solve_ivp(
-        law,
-        (begin, end),
-        y0,
-        method="DOP853",
-        t_eval=times,
-        rtol=tolerance,
-        atol=tolerance * scale,
-        events=_exits(system, rates),
-        dense_output=system.support.surface.rim is not None,
-    )
-    if result.status < 0:
-        raise SolverError(f"The Runge-Kutta method broke down on the way to t = {end:g} s: {result.message}")
-    times, states, reached = result.t, result.y.T, _first_exit(system, result)
-    if reached is not None and result.sol is not None:
-        times, states = cut(times, states, reached, result.sol(reached))
-    samples = Samples.of_contact(system, times, states[:, :3], states[:, 3:7], states[:, 7:])
-    return samples if reached is None else samples.ended(ran_off(reached, system.support.surface.rim))
+    Parameters
+    ----------
+    system, law, begin, state, times, tolerance, extras, progress
+        As for `trundle.solve.taylor.integrate`.
+
+    Returns
+    -------
+    Stretch
+        The states at the times before the stop.
+
+    Raises
+    ------
+    SolverError
+        If the integration breaks down.
+    """
+    from scipy.integrate import DOP853
+
+    function, names = python_law(system, law, extras)
+    size, y0 = len(state), np.asarray(state, dtype=float)
+    end = max(float(times[-1]) if times.size else begin, float(np.nextafter(begin, np.inf)))  # some way to go
+
+    def rates(t: float, y: Array) -> Array:
+        return np.array(function(t, y.tolist())[:size])
+
+    def stops(t: float, y: Array) -> Array:
+        return np.array(function(t, y.tolist())[size:])
+
+    try:
+        stepper = DOP853(rates, begin, y0, end, rtol=tolerance, atol=tolerance * _scale(y0))  # type: ignore[arg-type]
+        return _steps(stepper, stops, names, times, progress)
+    except (ZeroDivisionError, ValueError, OverflowError) as error:
+        raise SolverError(f"The Runge-Kutta method broke down on the way to t = {end:g} s: {error}.") from None
+
+
+def _scale(y0: Array) -> Array:
+    """Return against what an error of each number is small or not: its own size, or a share of its vector's."""
+    least = [*[1e-3 * _size(y0[:3])] * 3, *[1.0] * 4, *[1e-3 * _size(y0[7:10])] * 3, *[1e-3 * _size(y0[10:])] * 99]
+    return np.maximum(np.abs(y0), least[: y0.size])
 
 
 def _size(part: Array) -> float:
-    return max(float(np.abs(part).max()), 1e-3)
+    return max(float(np.abs(part).max(initial=0.0)), 1e-3)
 
 
-def _arm(system: RollingSystem, t: float, y: Array) -> Vector:
-    """Return p − X, from the support's origin to the contact, m."""
-    return Vector(*y[:3]) - system.support.motion.at(t).origin
+def _steps(stepper: Any, stops: Any, names: list[str], times: Array, progress: Progress | None) -> Stretch:
+    """Take steps to the end or the first stop; the states at the times are read off each step's own polynomial."""
+    states = np.empty((times.size, stepper.n))
+    done = int(np.searchsorted(times, stepper.t, side="right"))
+    states[:done] = stepper.y
+    values = stops(stepper.t, stepper.y)
+    while stepper.status == "running":
+        message = stepper.step()
+        if stepper.status == "failed" or not np.isfinite(stepper.y).all():
+            raise SolverError(f"The Runge-Kutta method broke down at t = {stepper.t:.9g} s: {message or 'not finite'}")
+        path = stepper.dense_output()
+        found = _first_stop(path, stops, values, len(names))
+        reach = stepper.t if found is None else found[0]
+        upto = int(np.searchsorted(times, reach, side="right" if found is None else "left"))
+        if upto > done:
+            states[done:upto] = path(times[done:upto]).T
+            done = upto
+        if found is not None:
+            return Stretch(times[:done], states[:done], Stop(found[0], names[found[1]], path(found[0])))
+        values = stops(stepper.t, stepper.y)
+        if progress is not None:
+            progress(float(stepper.t))
+    return Stretch(times[:done], states[:done], None)
 
 
-def _excess(system: RollingSystem) -> Any:
-    """Return the function of time and state that rises through 0 at the rim."""
-    rim = float(system.support.surface.rim or 0.0)
+def _first_stop(path: Any, stops: Any, begin: Array, count: int) -> tuple[float, int] | None:
+    """Return the first instant in a step at which a stop falls through zero, also where it rises again at once."""
+    from scipy.optimize import brentq, minimize_scalar
 
-    def excess(t: float, y: Array) -> float:
-        arm = _arm(system, t, y)
-        return float(arm.dot(arm) - rim * rim)
-
-    return excess
-
-
-def _exits(system: RollingSystem, rates: Any) -> list[Any] | None:
-    """Return what SciPy looks for at the ends of each step: the rim, and where the distance from the axis is largest.
-
-    Without the second a ball could leave and come back within one step unseen.
-    """
-    if system.support.surface.rim is None:
+    if not count:
         return None
-    excess = _excess(system)
+    looks = np.linspace(path.t_old, path.t, _LOOKS)
+    values = np.array([begin, *(stops(t, path(t)) for t in looks[1:])])
+    found: list[tuple[float, int]] = []
+    for which in range(count):
+        value = values[:, which]
 
-    def outside(t: float, y: Array) -> float:
-        return excess(t, y)
+        def at(t: float, which: int = which) -> float:
+            return float(stops(t, path(t))[which])
 
-    def leaving(t: float, y: Array) -> float:
-        away = Vector(*rates(t, y.tolist())[:3]) - system.support.motion.at(t).velocity
-        return float(_arm(system, t, y).dot(away))
-
-    outside.terminal, outside.direction = True, 1  # type: ignore[attr-defined]
-    leaving.direction = -1  # type: ignore[attr-defined]
-    return [outside, leaving]
-
-
-def _first_exit(system: RollingSystem, result: Any) -> float | None:
-    """Return the first instant at the rim: at an event of its own, or just before a largest distance beyond it."""
-    from scipy.optimize import brentq
-
-    if not result.t_events:
-        return None
-    excess, (ends, peaks) = _excess(system), result.t_events
-    for peak in peaks:
-        if excess(peak, result.sol(peak)) >= 0:
-            inside = float(result.sol.ts[np.searchsorted(result.sol.ts, peak) - 1])
-            return float(brentq(lambda t: excess(t, result.sol(t)), inside, peak, xtol=1e-300, rtol=1e-15))
-    return float(ends[0]) if ends.size else None
+        for j in range(_LOOKS - 1):
+            if value[j] >= 0 > value[j + 1]:
+                found.append((float(brentq(at, looks[j], looks[j + 1], xtol=1e-300, rtol=4 * _EPSILON)), which))
+                break
+            if j > 0 and value[j - 1] > value[j] < value[j + 1] and value[j] >= 0:  # it may dip below in between
+                bounds = (looks[j - 1], looks[j + 1])
+                low = minimize_scalar(at, bounds=bounds, method="bounded", options={"xatol": 1e-9 * np.ptp(bounds)})
+                if low.fun < 0:
+                    root = brentq(at, looks[j - 1], low.x, xtol=1e-300, rtol=4 * _EPSILON)
+                    found.append((float(root), which))
+                    break
+    return min(found) if found else None

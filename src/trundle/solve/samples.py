@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -10,12 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import normal_at, roll
+from ..mechanics.contact import normal_at
 from ..mechanics.loads import BodyMotion
+from ..mechanics.motions import SupportState
 from ..mechanics.system import RollingSystem, State
 
 Array = NDArray[np.float64]
 Progress = Callable[[float], None]  # told the fraction done, 0 to 1
+
+
+ROLLING, SLIPPING, FLIGHT, RESTING = range(4)  # phases of the contact
 
 
 @dataclass(frozen=True)
@@ -27,9 +31,15 @@ class Event:
     time : float
         s.
     kind : str
-        ``"rim"``: the contact reached the rim, and the run ended.
+        ``"slip"``: rolling gave way to slipping. ``"grip"``: slipping ended. ``"lift"``: the support no longer held the
+        body. ``"land"``: a flight ended, the body bouncing or not. ``"settle"``: it landed, and its bounces were cut
+        short. ``"stop"``, ``"start"``: it came to rest on the support, or left it. The run ended at ``"rim"``: the
+        contact reached the rim; ``"end"``: the end of the surface; ``"edge"``: of what the body's shape covers;
+        ``"curved"``: where the support is too hollow for the body.
     text : str
         What happened, for the reader.
+    before, after : State, optional
+        The state just before and just after; they differ where something struck.
 
     Examples
     --------
@@ -40,6 +50,13 @@ class Event:
     time: float
     kind: str
     text: str
+    before: State | None = None
+    after: State | None = None
+
+    @property
+    def final(self) -> bool:
+        """Whether the run ended here."""
+        return self.kind in ("rim", "end", "edge", "curved")
 
 
 @dataclass(frozen=True)
@@ -48,11 +65,9 @@ class Samples:
 
     Examples
     --------
-    >>> import trundle as tr
-    >>> system = tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), tr.Support(tr.Plane()))
-    >>> still = Samples.of_contact(system, np.zeros(1), np.zeros((1, 3)), np.array([[1.0, 0, 0, 0]]), np.zeros((1, 3)))
-    >>> still.contact_force.tolist()
-    [[0.0, 0.0, 9.80665]]
+    >>> still = Samples(np.zeros(1), *[np.zeros((1, 3))] * 4, np.array([[1.0, 0, 0, 0]]), np.zeros((1, 3)))
+    >>> still.phase.tolist(), still.own.shape
+    ([0], (1, 0))
     """
 
     time: Array
@@ -63,25 +78,30 @@ class Samples:
     orientation: Array
     contact_force: Array
     events: tuple[Event, ...] = ()
+    phase: Any = None  # (n,) int8: ROLLING, SLIPPING, FLIGHT or RESTING; absent: rolling
+    own: Any = None  # (n, k): the coordinates of the support's own motion; absent: none
+
+    def __post_init__(self) -> None:
+        if self.phase is None:
+            object.__setattr__(self, "phase", np.zeros(self.time.size, dtype=np.int8))
+        if self.own is None:
+            object.__setattr__(self, "own", np.zeros((self.time.size, 0)))
+
+    @property
+    def support_own(self) -> tuple[Array, ...]:
+        """The coordinates of the support's own motion, as `Motion.at` takes them."""
+        return tuple(self.own.T)
 
     @staticmethod
-    def of_contact(
-        system: RollingSystem, time: Array, point: Array, orientation: Array, angular_velocity: Array
-    ) -> Samples:
-        """Complete contact point, orientation and Ω to a full record by the rolling law."""
-        q = orientation / np.linalg.norm(orientation, axis=-1, keepdims=True)
-        now = roll(system, time, Vector.of(point), Quaternion.of(q), Vector.of(angular_velocity))
-        full = np.broadcast_shapes(point.shape, angular_velocity.shape)
-
-        def array(v: Vector) -> Array:
-            return np.broadcast_to(v.array(), full).copy()
-
-        return Samples(
-            time, array(now.contact.centre), point, array(now.velocity), angular_velocity, q, array(now.reaction) + 0.0
-        )
+    def joined(parts: Sequence[Samples], events: tuple[Event, ...] = ()) -> Samples:
+        """Return several stretches of one run as one."""
+        names = [field.name for field in fields(Samples) if field.name != "events"]
+        joined = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
+        return Samples(**joined, events=events)
 
     def motion(self, system: RollingSystem) -> BodyMotion:
         """Return the motion that loads and integrals take, with arrays as components."""
+        touching = not (self.phase == FLIGHT).all()
         return BodyMotion(
             self.time,
             system.body.mass,
@@ -89,17 +109,23 @@ class Samples:
             Vector.of(self.velocity),
             Quaternion.of(self.orientation),
             Vector.of(self.angular_velocity),
+            Vector.of(self.normals(system)) if touching else None,
+            self.support(system).angular_velocity,
         )
+
+    def support(self, system: RollingSystem) -> SupportState:
+        """Return pose, twist and acceleration of the support at each instant."""
+        return system.support.motion.at(self.time, *self.support_own)
 
     def speeds(self, system: RollingSystem) -> tuple[Vector, Vector, Vector]:
         """Return V, Ω×ρ and u, m/s, from the samples' own numbers; the slip is s = V + Ω×ρ − u."""
-        u = system.support.motion.at(self.time).material_velocity(Vector.of(self.contact))
+        u = self.support(system).material_velocity(Vector.of(self.contact))
         rho = Vector.of(self.contact - self.position)
         return Vector.of(self.velocity), Vector.of(self.angular_velocity).cross(rho), u
 
     def normals(self, system: RollingSystem) -> Array:
         """Return the support's unit normal at each contact (n, 3), from the support into the body."""
-        normal = normal_at(system, self.time, Vector.of(self.contact))
+        normal = normal_at(system, self.time, Vector.of(self.contact), self.support_own)
         return np.broadcast_to(normal.array(), self.position.shape)
 
     def ended(self, event: Event) -> Samples:
@@ -123,6 +149,7 @@ class Samples:
             row(self.angular_velocity),
             row(self.orientation),
             float(self.time[index]),
+            row(self.own),
         )
 
 
@@ -147,31 +174,3 @@ def ran_off(time: float, rim: Any) -> Event:
     'ran off the rim (0.5 m from the axis) at t = 1.25 s'
     """
     return Event(time, "rim", f"ran off the rim ({float(rim):g} m from the axis) at t = {time:.9g} s")
-
-
-def cut(times: Array, states: Array, end: float, last: Array) -> tuple[Array, Array]:
-    """Keep the states before an end, and add the state at the end itself.
-
-    Parameters
-    ----------
-    times : array (n,)
-        Ascending, s.
-    states : array (n, ...)
-        One a time.
-    end : float
-        s.
-    last : array (...)
-        The state at the end.
-
-    Returns
-    -------
-    times, states : array
-        The last time is the end.
-
-    Examples
-    --------
-    >>> cut(np.array([0.0, 1.0, 2.0]), np.zeros((3, 1)), 1.5, np.ones(1))[0].tolist()
-    [0.0, 1.0, 1.5]
-    """
-    before = times < end
-    return np.append(times[before], end), np.concatenate([states[before], last[None]])

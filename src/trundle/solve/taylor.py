@@ -9,6 +9,7 @@ import os
 import pickle
 import platform
 import stat
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -19,8 +20,11 @@ from ..errors import SolverError
 from ..files import written_whole
 from ..mechanics.parameters import numbers
 from ..mechanics.system import RollingSystem, State
-from .samples import Array, Progress, Samples, cut, ran_off
-from .tracing import contact_state, heyoka_system
+from . import phases
+from .laws import Law
+from .phases import Stop, Stretch, cut
+from .samples import Array, Progress, Samples
+from .tracing import heyoka_system
 
 TOLERANCE = 1e-15
 _CHUNKS = 100  # of a run at most, between which progress is told and Ctrl-C is heard
@@ -48,14 +52,14 @@ def available() -> bool:
 def solve(
     system: RollingSystem, start: State, times: Array, tolerance: float = TOLERANCE, progress: Progress | None = None
 ) -> Samples:
-    """Integrate the rolling law and return the states at the given times; a rim ends the run at the located instant.
+    """Integrate the laws of contact and return the states at the given times; every event is located as it happens.
 
     Parameters
     ----------
     system : RollingSystem
         Any system.
     start : State
-        A start that rolls.
+        A start on the support or over it.
     times : array (n,)
         Ascending, s, none before the start.
     tolerance : float
@@ -66,7 +70,7 @@ def solve(
     Returns
     -------
     Samples
-        At `times`, cut at the rim where it is reached.
+        At `times`, cut where the run ends early, with its events.
 
     Raises
     ------
@@ -82,53 +86,119 @@ def solve(
     >>> print(round(x / (9.80665 * np.sin(0.1) / 2), 12))  # (5/7) g sin α
     0.714285714286
     """
-    integrator = _integrator(system, tolerance)
-    integrator.time = start.time
-    integrator.state[:] = contact_state(system, start)
-    integrator.pars[:] = numbers(system)
+    return phases.solve(integrate, system, start, times, tolerance, progress)
+
+
+def integrate(
+    system: RollingSystem,
+    law: Law,
+    begin: float,
+    state: Sequence[float],
+    times: Array,
+    tolerance: float,
+    extras: Sequence[float] = (),
+    progress: Progress | None = None,
+) -> Stretch:
+    """Follow one law to its first stop.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Any system.
+    law : Law
+        Of the phase.
+    begin : float
+        s.
+    state : sequence of float
+        The law's numbers then.
+    times : array (n,)
+        Ascending, s, none before the beginning.
+    tolerance : float
+        Of each step, relative.
+    extras : sequence of float
+        What the law's stops take besides.
+    progress : callable, optional
+        Told the time reached.
+
+    Returns
+    -------
+    Stretch
+        The states at the times before the stop.
+
+    Raises
+    ------
+    SolverError
+        If the integration breaks down.
+    """
+    integrator, stops = compiled(system, law, tolerance)
+    integrator.time = begin
+    integrator.state[:] = state
+    integrator.pars[:] = [*numbers(system), *extras]
     states, reached = _propagate(integrator, times, progress)
-    times = times[: len(states)]
-    if reached is not None:
-        times, states = cut(times, states, reached, integrator.state)
-    samples = Samples.of_contact(system, times, states[:, :3], states[:, 3:7], states[:, 7:])
-    return samples if reached is None else samples.ended(ran_off(reached, system.support.surface.rim))
+    if reached is None:
+        return Stretch(times, states, None)
+    stop = Stop(float(integrator.time), stops[reached], integrator.state.copy())
+    kept, states = cut(times[: len(states)], states, stop.time)
+    return Stretch(kept, states, stop)
 
 
-def _propagate(integrator: Any, times: Array, progress: Progress | None) -> tuple[Array, float | None]:
-    """Return the states at the times, and the time of the terminal event if it came first."""
+def compiled(system: RollingSystem, law: Law, tolerance: float = TOLERANCE) -> tuple[Any, list[str]]:
+    """Return a fresh copy of a compiled integrator: from this process, the user's cache, or the compiler.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Only its structure matters: state and parameters are the caller's to set.
+    law : Law
+        Of the phase.
+    tolerance : float
+        Of each step, relative.
+
+    Returns
+    -------
+    integrator : heyoka.taylor_adaptive_dbl
+        At time 0.
+    stops : list of str
+        Names of its terminal events.
+
+    Examples
+    --------
+    See `benchmarks/trajectory.py`.
+    """
+    equations, stops = heyoka_system(system, law)
+    parameters = len(numbers(system)) + law.extras
+    key = _key(equations, list(stops.values()), tolerance, parameters)
+    made = _compiled(key, lambda: _compile(equations, list(stops.values()), tolerance, parameters))
+    return copy.copy(made), list(stops)
+
+
+def _propagate(integrator: Any, times: Array, progress: Progress | None) -> tuple[Array, int | None]:
+    """Return the states at the times, and which terminal event came first if one did."""
     import heyoka
 
-    parts: list[Array] = []
-    for chunk in np.array_split(times, min(_CHUNKS, max(1, times.size // _LEAST_CHUNK))):
+    parts: list[Array] = [np.empty((0, integrator.state.size))]
+    for chunk in np.array_split(times, min(_CHUNKS, max(1, times.size // _LEAST_CHUNK))) if times.size else []:
         if integrator.time < chunk[0]:
             outcome = integrator.propagate_until(float(chunk[0]))[0]
             if outcome != heyoka.taylor_outcome.time_limit:
-                return _stopped(integrator, outcome, parts)
+                return np.vstack(parts), _event(integrator, outcome)
         result = integrator.propagate_grid(chunk)
         parts.append(result[-1].reshape(-1, integrator.state.size))
         if result[0] != heyoka.taylor_outcome.time_limit:
-            return _stopped(integrator, result[0], parts)
+            return np.vstack(parts), _event(integrator, result[0])
         if progress is not None:
-            progress(float((chunk[-1] - times[0]) / max(times[-1] - times[0], 1e-300)))
+            progress(float(chunk[-1]))
     return np.vstack(parts), None
 
 
-def _stopped(integrator: Any, outcome: Any, parts: list[Array]) -> tuple[Array, float]:
-    """Tell the terminal event from a breakdown."""
+def _event(integrator: Any, outcome: Any) -> int:
+    """Tell which terminal event it was from a breakdown."""
     if int(outcome) >= 0 or int(outcome) < -1000:
         raise SolverError(
             f"Taylor's method broke down at t = {integrator.time:.9g} s ({outcome}): the rates are no longer finite. "
             "Look for a support or load that jumps, or a surface too curved for the body."
         )
-    states = np.vstack(parts) if parts else np.empty((0, integrator.state.size))
-    return states, float(integrator.time)
-
-
-def _integrator(system: RollingSystem, tolerance: float) -> Any:
-    """Return a fresh copy of the compiled integrator: from this process, the user's cache, or the compiler."""
-    equations, exits = heyoka_system(system)
-    key = _key(equations, exits, tolerance, len(numbers(system)))
-    return copy.copy(_compiled(key, lambda: _compile(equations, exits, tolerance, len(numbers(system)))))
+    return -int(outcome) - 1
 
 
 class _Memory:
@@ -153,25 +223,25 @@ def _compiled(key: str, compile_: Any) -> Any:
     return known[key]
 
 
-def _compile(equations: list[Any], exits: list[Any], tolerance: float, parameters: int) -> Any:
+def _compile(equations: list[Any], stops: list[Any], tolerance: float, parameters: int) -> Any:
     import heyoka
 
     return heyoka.taylor_adaptive(
         equations,
-        [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        [0.0] * len(equations),
         pars=[0.0] * parameters,
         tol=tolerance,
         compact_mode=True,
-        t_events=[heyoka.t_event(exit_, direction=heyoka.event_direction.negative) for exit_ in exits],
+        t_events=[heyoka.t_event(stop, direction=heyoka.event_direction.negative) for stop in stops],
     )
 
 
-def _key(equations: list[Any], exits: list[Any], tolerance: float, parameters: int) -> str:
+def _key(equations: list[Any], stops: list[Any], tolerance: float, parameters: int) -> str:
     """Name what a compiled integrator depends on: the equations, the tolerance, heyoka and the processor."""
     import heyoka
 
     parts = [repr(tolerance), str(parameters), heyoka.__version__, _processor()]
-    whole = pickle.dumps((equations, exits))  # the repr of a long expression ends in "..."
+    whole = pickle.dumps((equations, stops))  # the repr of a long expression ends in "..."
     return hashlib.sha256("\n".join(parts).encode() + whole).hexdigest()[:32]
 
 

@@ -1,6 +1,6 @@
-"""The rolling law traced once with symbols, so that it can be compiled: by heyoka to Taylor series, by SymPy to Python.
+"""The laws traced once with symbols, so that they can be compiled: by heyoka to Taylor series, on a tape to Python.
 
-The state is (p, q, Ω), ten numbers; the system's own numbers are parameters.
+The system's own numbers are parameters, so that another radius, tilt or rate compiles nothing.
 """
 
 from __future__ import annotations
@@ -8,13 +8,14 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import roll, settle
 from ..mechanics.parameters import numbers, with_numbers
 from ..mechanics.scalars import Scalar
 from ..mechanics.system import RollingSystem, State
+from .laws import Law, RollingLaw
+from .tape import Tape
 
-STATE = ("p_x", "p_y", "p_z", "q_w", "q_x", "q_y", "q_z", "Omega_x", "Omega_y", "Omega_z")
+# (time, state) -> rates, and the values of the law's stops in their order
+Traced = Callable[[float, Sequence[float]], list[float]]
 
 
 def state_rates(system: RollingSystem, time: Scalar, state: Sequence[Scalar]) -> list[Scalar]:
@@ -41,12 +42,11 @@ def state_rates(system: RollingSystem, time: Scalar, state: Sequence[Scalar]) ->
     >>> [rate + 0.0 for rate in state_rates(level, 0.0, [0, 0, 0, 1, 0, 0, 0, 0.0, 2.0, 0.0])]
     [2.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0]
     """
-    now = roll(system, time, Vector(*state[:3]), Quaternion(*state[3:7]), Vector(*state[7:]))
-    return [*now.point_rate, *now.orientation_rate, *now.angular_acceleration]
+    return RollingLaw().rates(system, time, state)
 
 
 def contact_state(system: RollingSystem, start: State) -> list[float]:
-    """Return the ten numbers (p, q, Ω) of a start.
+    """Return the ten numbers (p, q, Ω) of a start, and those of the support's own motion.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def contact_state(system: RollingSystem, start: State) -> list[float]:
 
     Returns
     -------
-    list of 10 float
+    list of float
         p in m, q, Ω in rad/s.
 
     Examples
@@ -67,63 +67,90 @@ def contact_state(system: RollingSystem, start: State) -> list[float]:
     >>> contact_state(level, level.place((0.5, 0.0)))[:3]
     [0.5, 0.0, 0.0]
     """
-    centre, q = Vector(*start.position), Quaternion(*start.orientation)
-    offset = settle(system, start.time, centre, q).offset
-    return [*(centre + offset), *q, *start.angular_velocity]
+    return RollingLaw().pack(system, start)
 
 
-def heyoka_system(system: RollingSystem) -> tuple[list[tuple[Any, Any]], list[Any]]:
-    """Trace the law with heyoka: the system's numbers become runtime parameters.
+def heyoka_system(system: RollingSystem, law: Law | None = None) -> tuple[list[tuple[Any, Any]], dict[str, Any]]:
+    """Trace a law with heyoka: the system's numbers, and after them the law's extras, become runtime parameters.
 
     Parameters
     ----------
     system : RollingSystem
         Only its structure matters.
+    law : Law, optional
+        Of the phase; absent: rolling.
 
     Returns
     -------
     equations : list of (variable, rate)
         As `heyoka.taylor_adaptive` takes them.
-    exits : list of expressions
-        One, rim² − |p − X|², where the surface has a rim; it falls to 0 where the run ends.
+    stops : dict of expressions
+        Each falls through 0 where the phase ends, by name.
     """
     import heyoka
 
-    symbolic = with_numbers(system, [heyoka.par[i] for i in range(len(numbers(system)))])
-    variables = heyoka.make_vars(*STATE)
-    rates = state_rates(symbolic, heyoka.time, variables)
-    expressions = [r if isinstance(r, heyoka.expression) else heyoka.expression(float(r)) for r in rates]
-    rim = symbolic.support.surface.rim
-    arm = Vector(*variables[:3]) - symbolic.support.motion.at(heyoka.time).origin
-    exits = [] if rim is None else [rim * rim - arm.dot(arm)]
-    return list(zip(variables, expressions, strict=True)), exits
+    law = RollingLaw() if law is None else law
+    count = len(numbers(system))
+    symbolic = with_numbers(system, [heyoka.par[i] for i in range(count)])
+    extras = [heyoka.par[count + i] for i in range(law.extras)]
+    variables = heyoka.make_vars(*law.names(system))
+    rates = law.rates(symbolic, heyoka.time, variables)
+    stops = law.stops(symbolic, heyoka.time, variables, extras)
+    equations = list(zip(variables, map(_expression, rates), strict=True))
+    return equations, {name: _expression(stop) for name, stop in stops.items()}
 
 
-def python_rates(system: RollingSystem) -> Callable[[float, Sequence[float]], list[float]]:
-    """Trace the law with SymPy and return it as a flat Python function, some 20 times faster than the vectors.
+def _expression(value: Any) -> Any:
+    import heyoka
+
+    return value if isinstance(value, heyoka.expression) else heyoka.expression(float(value))
+
+
+def python_law(system: RollingSystem, law: Law, extras: Sequence[float] = ()) -> tuple[Traced, list[str]]:
+    """Trace a law on a tape and return it as a flat Python function, some 20 times faster than the vectors.
 
     Parameters
     ----------
     system : RollingSystem
-        Structure and numbers.
+        Structure and numbers. A support given as a table cannot be traced: it is worked out on floats each time.
+    law : Law
+        Of the phase.
+    extras : sequence of float
+        What its stops take besides.
 
     Returns
     -------
-    callable
-        (t, state of 10) -> rates of 10.
+    function : callable
+        (t, state) -> rates and stops, one list.
+    stops : list of str
+        Names of the stops.
 
     Examples
     --------
     >>> import trundle as tr
     >>> level = tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), tr.Support(tr.Plane()))
-    >>> python_rates(level)(0.0, [0, 0, 0, 1, 0, 0, 0, 0.0, 2.0, 0.0])[0]
-    2.0
+    >>> law, stops = python_law(level, RollingLaw())
+    >>> law(0.0, [0, 0, 0, 1, 0, 0, 0, 0.0, 2.0, 0.0])[0], stops
+    (2.0, ['lift'])
     """
-    import sympy
+    size = len(law.names(system))
+    if not system.support.surface.analytic:
+        return _untraced(system, law, extras)
+    values = [*numbers(system), *extras]
+    tape = Tape()
+    time, *rest = tape.inputs(1 + size + len(values))
+    state, parameters = rest[:size], rest[size:]
+    symbolic = with_numbers(system, parameters[: len(values) - len(extras)])
+    rates = law.rates(symbolic, time, state)
+    stops = law.stops(symbolic, time, state, parameters[len(values) - len(extras) :])
+    function = tape.function([*rates, *stops.values()])
+    return lambda t, y: function([t, *y, *values]), list(stops)
 
-    values = numbers(system)
-    time, *state = sympy.symbols(("t", *STATE), real=True)
-    parameters = sympy.symbols(f"par0:{len(values)}", real=True)
-    rates = state_rates(with_numbers(system, parameters), time, state)
-    law = sympy.lambdify([time, state, parameters], rates, modules="math", cse=True)
-    return lambda t, y: law(t, y, values)
+
+def _untraced(system: RollingSystem, law: Law, extras: Sequence[float]) -> tuple[Traced, list[str]]:
+    def evaluated(t: float, y: Sequence[float]) -> list[float]:
+        return [float(value) for value in (*law.rates(system, t, y), *law.stops(system, t, y, extras).values())]
+
+    start = [0.0] * len(law.names(system))
+    start[3] = 1.0
+    return evaluated, list(law.stops(system, 0.0, start, extras))

@@ -1,0 +1,243 @@
+"""Landings: the impulse of a hard contact with Coulomb friction, by Darboux and Keller's equations.
+
+The normal impulse P grows while the body stays where it is; the slip velocity follows ds/dP = M(n − μ ŝ), and slipping
+may stop or turn on the way (Keller 1986). Compression ends where s·n = 0, and the impact where the share e² of the work
+of compression is given back (Stronge 1990): so no landing makes energy, whatever the body.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..errors import SolverError
+from .algebra import E_X, E_Z, Quaternion, Vector
+from .contact import Contact
+
+if TYPE_CHECKING:
+    from .system import RollingSystem
+
+_SLOW = 1e-10  # share of the speed at impact from which on slipping ends along a straight line
+_MOST_PIECES = 20
+
+
+@dataclass(frozen=True)
+class Impact:
+    """What a landing does.
+
+    Parameters
+    ----------
+    impulse : Vector
+        P on the body, N s, in the inertial support frame.
+    velocity_change, angular_velocity_change : Vector
+        Of the body, m/s and rad/s.
+    axle_rate_change : float
+        Of a free axle, rad/s.
+    """
+
+    impulse: Vector
+    velocity_change: Vector
+    angular_velocity_change: Vector
+    axle_rate_change: float
+
+
+def land(system: RollingSystem, contact: Contact, orientation: Quaternion, slip: Vector) -> Impact:
+    """Return what the support's impulse does to a body that comes down on it.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Body, and a support with friction or without limit to it, and a restitution.
+    contact : Contact
+        Where they touch.
+    orientation : Quaternion
+        Body frame to support frame.
+    slip : Vector
+        s just before, m/s, with s·n < 0.
+
+    Returns
+    -------
+    Impact
+        The impulse and the changes of V and Ω.
+
+    Raises
+    ------
+    SolverError
+        If friction jams the body so that no impulse ends the impact.
+
+    Examples
+    --------
+    A solid ball dropped on a rough floor with sidewards speed 1 keeps 5/7 of it and rolls off:
+
+    >>> import trundle as tr
+    >>> from trundle.mechanics.contact import touch
+    >>> floor = tr.RollingSystem(tr.Body.solid_sphere(0.1, 2.0), tr.Support(tr.Plane()))
+    >>> still = Quaternion(1.0, 0.0, 0.0, 0.0)
+    >>> contact = touch(floor, 0.0, Vector(0.0, 0.0, 0.0), still)
+    >>> struck = land(floor, contact, still, Vector(1.0, 0.0, -3.0))
+    >>> round(1.0 + struck.velocity_change.x, 12) == round(5 / 7, 12), struck.velocity_change.z
+    (True, 3.0)
+    """
+    J = system.body.inertia_in_space(orientation.matrix())
+    basis = _basis(contact.normal)
+    M = np.array([[response(system, contact, orientation, e).dot(d) for e in basis] for d in basis])
+    mu = None if system.support.friction is None else float(system.support.sliding_friction)
+    begin = np.array([float(slip.dot(d)) for d in basis])
+    parts = _Course(M, mu, float(system.support.restitution), begin).impulse()
+    P = sum((d * float(part) for d, part in zip(basis, parts, strict=True)), start=basis[0] * 0.0)
+    motion = system.support.motion
+    axle = -contact.support.lever(contact.point).dot(P) / motion.inertia if motion.free else 0.0
+    return Impact(P, P / system.body.mass, J.solve(contact.offset.cross(P)), axle)
+
+
+def _basis(n: Vector) -> tuple[Vector, Vector, Vector]:
+    """Return two tangents and n."""
+    first = n.cross(E_X if abs(n.x) < 0.9 else E_Z)
+    first = first / first.norm()
+    return first, n.cross(first), n
+
+
+def response(system: RollingSystem, contact: Contact, orientation: Quaternion, impulse: Vector) -> Vector:
+    """Return by how much an impulse at the contact changes s, m/s.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Body and support.
+    contact : Contact
+        Where they touch.
+    orientation : Quaternion
+        Body frame to support frame.
+    impulse : Vector
+        On the body, N s.
+
+    Returns
+    -------
+    Vector
+        M P, with M = 1/m + [J⁻¹(ρ×·)]×ρ, and what a free axle adds.
+    """
+    rho, motion = contact.offset, system.support.motion
+    J = system.body.inertia_in_space(orientation.matrix())
+    answer = impulse / system.body.mass + J.solve(rho.cross(impulse)).cross(rho)
+    if motion.free:
+        lever = contact.support.lever(contact.point)
+        answer = answer + lever * (lever.dot(impulse) / motion.inertia)
+    return answer
+
+
+@dataclass
+class _Course:
+    """The course of s over the normal impulse, in a basis of two tangents and n."""
+
+    M: Any  # (3, 3), 1/kg
+    mu: Any  # None: no limit
+    restitution: float
+    slip: Any  # (3,), m/s
+    work: float = 0.0  # of the normal impulse, J; falls in compression
+    aim: float | None = None  # the work at which it ends, once compression is over
+
+    def impulse(self) -> Any:
+        """Return the whole impulse (3,), N s."""
+        total, size = np.zeros(3), float(np.linalg.norm(self.slip))
+        if self.mu is None:  # friction without limit: slip ends at once
+            total[:2] = np.linalg.solve(self.M[:2, :2], -self.slip[:2])
+            self.slip = self.slip + self.M @ total
+            self.slip[:2] = 0.0
+        for _ in range(_MOST_PIECES):
+            if self.aim is None and self.slip[2] >= 0:
+                self.aim = (1 - self.restitution**2) * self.work
+            if self.aim is not None and self.work >= self.aim:
+                return total
+            sliding = np.linalg.norm(self.slip[:2]) > 2 * _SLOW * size
+            total = total + (self._slide(size) if sliding and self.mu else self._straight(self._held()))
+        raise SolverError("A landing does not end: friction and the body's shape jam it. Use less friction.")
+
+    def _held(self) -> Any:
+        """Return the impulse for each unit of P of a contact that does not slip, or that begins to."""
+        direction = np.array([0.0, 0.0, 1.0])
+        if self.mu == 0:
+            return direction
+        direction[:2] = np.linalg.solve(self.M[:2, :2], -self.M[:2, 2])
+        if self.mu is not None and np.linalg.norm(direction[:2]) > self.mu:
+            direction[:2] = -self.mu * self._beginning()
+        return direction
+
+    def _beginning(self) -> Any:
+        """Return the direction in which slipping begins: the one that its own friction leads along."""
+        from scipy.optimize import brentq
+
+        def across(angle: float) -> float:
+            hat = np.array([math.cos(angle), math.sin(angle)])
+            along = self.M[:2, 2] - self.mu * self.M[:2, :2] @ hat
+            return float(hat[0] * along[1] - hat[1] * along[0])
+
+        angles = np.linspace(0.0, 2 * math.pi, 181)
+        values = [across(angle) for angle in angles]
+        best: Any = None
+        for i in range(len(angles) - 1):
+            if values[i] * values[i + 1] <= 0:
+                angle = brentq(across, angles[i], angles[i + 1], xtol=1e-15)
+                hat = np.array([math.cos(angle), math.sin(angle)])
+                speed = float(hat @ (self.M[:2, 2] - self.mu * self.M[:2, :2] @ hat))
+                if speed > 0 and (best is None or speed > best[0]):
+                    best = speed, hat
+        if best is None:
+            raise SolverError("A landing jams: no direction of slipping leads on. Use less friction.")
+        return best[1]
+
+    def _straight(self, direction: Any) -> Any:
+        """Go on with a fixed direction of the impulse to the end of compression, or of the impact."""
+        change = self.M @ direction
+        if not change[2] > 0:
+            raise SolverError("A landing jams: the impulse does not push the body off. Use less friction.")
+        if self.aim is None:
+            amount = -self.slip[2] / change[2]
+        else:  # the work s_n P + ½ c P² still to be done
+            amount = (-self.slip[2] + math.sqrt(self.slip[2] ** 2 + 2 * change[2] * (self.aim - self.work))) / change[2]
+        self.work += self.slip[2] * amount + 0.5 * change[2] * amount**2
+        if self.aim is not None:
+            self.work = max(self.work, self.aim)
+        self.slip = self.slip + change * amount
+        if self.aim is None:
+            self.slip[2] = 0.0
+        return direction * amount
+
+    def _slide(self, size: float) -> Any:
+        """Go on slipping until slip or compression ends, or the impact.
+
+        The slip is σ ŝ with ŝ at an angle β: where σ falls through 0 all is still smooth.
+        """
+        from scipy.integrate import solve_ivp
+
+        def rates(_: float, y: Any) -> Any:
+            hat = np.array([math.cos(y[1]), math.sin(y[1])])
+            direction = np.array([*(-self.mu * hat), 1.0])
+            x, z, up = self.M @ direction
+            return np.array([hat[0] * x + hat[1] * z, (hat[0] * z - hat[1] * x) / y[0], up, y[2], *direction])
+
+        ends = [lambda _, y: y[0] - _SLOW * size]
+        ends.append((lambda _, y: y[2]) if self.aim is None else (lambda _, y: y[3] - self.aim))
+        for end, direction in zip(ends, (-1, 1), strict=True):
+            end.terminal, end.direction = True, direction  # type: ignore[attr-defined]
+        sigma = float(np.linalg.norm(self.slip[:2]))
+        far = 100 * size / float(np.linalg.eigvalsh(self.M)[0])
+        y0 = np.array([sigma, math.atan2(self.slip[1], self.slip[0]), self.slip[2], self.work, 0.0, 0.0, 0.0])
+        scale = np.array([size, 1.0, size, size * far, far, far, far])
+        found = solve_ivp(rates, (0.0, far), y0, method="DOP853", rtol=1e-12, atol=1e-14 * scale, events=ends)
+        if found.status != 1:
+            raise SolverError("A landing does not end: friction and the body's shape jam it. Use less friction.")
+        y = found.y[:, -1]
+        self.slip = np.array([y[0] * math.cos(y[1]), y[0] * math.sin(y[1]), y[2]])
+        self.work = float(y[3])
+        if abs(y[0] - _SLOW * size) < 1e-3 * _SLOW * size:
+            rest = float(-y[0] / rates(0.0, y)[0])  # straight on to σ = 0
+            y = y + rest * rates(0.0, y)
+            self.slip, self.work = np.array([0.0, 0.0, y[2]]), float(y[3])
+        elif self.aim is None:
+            self.slip[2] = 0.0
+        else:
+            self.work = self.aim
+        return y[4:]

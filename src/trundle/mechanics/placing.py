@@ -1,0 +1,196 @@
+"""How a body is put down on its support, or over it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from ..errors import InvalidValueError, did_you_mean
+from . import checks, fitting, straight
+from .algebra import Quaternion, Vector
+from .attitude import attitude
+from .contact import Contact, touch
+from .motions import SupportState
+from .scalars import Scalar, is_zero
+
+if TYPE_CHECKING:
+    from .system import RollingSystem, State
+
+SLIP_TOLERANCE = 1e-9  # of the largest speed at the contact: beyond it a start slips
+
+
+@dataclass(frozen=True)
+class Placing:
+    """A start as the user describes it; the parameters are those of `RollingSystem.place`.
+
+    Examples
+    --------
+    See `RollingSystem.place`.
+    """
+
+    system: RollingSystem
+    position: Any
+    velocity: Any
+    spin: Any
+    angular_velocity: Any
+    orientation: Any
+    roll: Any
+    attitude: Any
+    height: Any
+
+    def state(self) -> State:
+        """Return the start, checked."""
+        from .system import State
+
+        system, surface = self.system, self.system.support.surface
+        own = system.support.motion.own_start()
+        begin = system.support.motion.at(0.0, *own)
+        u, v = (
+            checks.real(part, kind, f"position[{i}]")
+            for i, (part, kind) in enumerate(zip(_pair(self.position, "position"), surface.coordinates, strict=True))
+        )
+        gap = checks.non_negative(self.height, "length", "height")
+        fitting.check_place(surface, u, v, self.position)
+        q = self._orientation(begin, begin.carried(surface.point(u, v)), own)
+        contact = touch(system, 0.0, begin.carried(surface.point(u, v)), q, own)
+        offset = begin.rotation.transpose @ contact.offset
+        contact = touch(system, 0.0, begin.carried(surface.under(u, v, offset)), q, own)
+        system.check_rim(contact.point, self.position)
+        fitting.check_start(system, contact, q, self.position)
+        turning = self._given_turning(contact, gap)
+        V = self._velocity(contact, begin.rotation.transpose @ (contact.point - begin.origin), gap, turning)
+        Omega = self._following_turning(contact, V) if turning is None else turning
+        self._check_no_slip(contact, V, Omega, gap)
+        centre = contact.centre + contact.normal * gap
+        start = State(_triple(centre), _triple(V), _triple(Omega), tuple(q), support=tuple(map(float, own)))
+        if gap == 0:
+            straight.check_start(system, start)
+        return start
+
+    def _orientation(self, begin: SupportState, point: Vector, own: tuple[Scalar, ...]) -> Quaternion:
+        """Return q from `orientation`, from `attitude`, or as a cylinder is laid down."""
+        laid = self.system.body.shape.axis is not None and self.orientation is None and self.attitude is None
+        if not laid and not is_zero(self.roll):
+            raise InvalidValueError("roll", "belongs to a cylinder put down without `orientation`", self.roll)
+        if self.attitude is not None and self.orientation is not None:
+            raise InvalidValueError(
+                "attitude", "must not stand beside `orientation`", self.attitude, "Give one of the two."
+            )
+        surface = self.system.support.surface
+        if self.attitude is not None:
+            angles = checks.components(self.attitude, "angle", "attitude")
+            there = begin.rotation.transpose @ (point - begin.origin)
+            first, second = surface.directions(there)
+            n = surface.normal(there)
+            axes = (begin.rotation @ first, begin.rotation @ n.cross(first), begin.rotation @ n)
+            del second  # n × e₁, where the two coordinates do not grow at right angles
+            return attitude(*axes, *angles)
+        q = _unit_quaternion((1.0, 0.0, 0.0, 0.0) if self.orientation is None else self.orientation)
+        if not laid:
+            return q
+        turned = checks.real(self.roll, "angle", "roll")
+        return straight.facing(touch(self.system, 0.0, point, q, own), begin, surface, self.velocity, turned)
+
+    def _velocity(self, contact: Contact, there: Vector, gap: float, turning: Vector | None) -> Vector:
+        """Return V from its components along the surface; one along n that is not given follows from the contact."""
+        begin, rho, n = contact.support, contact.offset, contact.normal
+        first, second = (begin.rotation @ e for e in self.system.support.surface.directions(there))
+        velocity, u = self.velocity, begin.material_velocity(contact.point)
+        if isinstance(velocity, str):
+            if velocity != "co-rotating":
+                remedy = did_you_mean(velocity, ["co-rotating"]).strip()
+                raise InvalidValueError("velocity", 'must be two components or "co-rotating"', velocity, remedy)
+            carried = begin.material_velocity(contact.centre)
+            along: tuple[Any, ...] = (carried.dot(first), carried.dot(second))
+        else:
+            three = velocity is not None and not hasattr(velocity, "to") and _length(velocity) == 3
+            along = checks.components(
+                (0.0, 0.0) if velocity is None else velocity, "velocity", "velocity", 3 if three else 2
+            )
+        V = first * along[0] + second * along[1]
+        if len(along) == 3:
+            return V + n * along[2]
+        if gap > 0:
+            return V
+        rolling = V + n * ((u - V).dot(rho) / n.dot(rho))  # what Ω can match: V·ρ = u·ρ
+        if turning is None or _slips(contact, rolling, turning) is None:
+            return rolling
+        return V + n * (u - V - turning.cross(rho)).dot(n)  # nothing opens or closes: n·(V + Ω×ρ − u) = 0
+
+    def _given_turning(self, contact: Contact, gap: float) -> Vector | None:
+        """Return Ω where it is given, or where nothing else could say it."""
+        if self.angular_velocity is not None:
+            if self.spin is not None:
+                raise InvalidValueError(
+                    "angular_velocity", "must not stand beside `spin`", self.angular_velocity, "Give one of the two."
+                )
+            return Vector(*checks.components(self.angular_velocity, "angular velocity", "angular_velocity"))
+        if gap > 0:
+            about = 0.0 if self.spin is None else checks.real(self.spin, "angular velocity", "spin")
+            return contact.normal * about
+        return None
+
+    def _following_turning(self, contact: Contact, V: Vector) -> Vector:
+        """Return the Ω with V = u − Ω×ρ and the spin asked for."""
+        n, rho, u = contact.normal, contact.offset, contact.support.material_velocity(contact.point)
+        turning = contact.support.angular_velocity.dot(n) if isinstance(self.velocity, str) else 0.0
+        about_normal = turning if self.spin is None else checks.real(self.spin, "angular velocity", "spin")
+        relative = V - u
+        if not isinstance(self.velocity, str) and self.velocity is not None and _length(self.velocity) == 3:
+            relative = relative - n * (relative.dot(rho) / n.dot(rho))
+        return _rolling_rate(relative, rho, n, about_normal)
+
+    def _check_no_slip(self, contact: Contact, V: Vector, Omega: Vector, gap: float) -> None:
+        """Refuse a start that slips where nothing says how rough the support is."""
+        if gap > 0 or self.system.support.friction is not None:
+            return
+        slip = _slips(contact, V, Omega)
+        if slip is not None:
+            raise InvalidValueError(
+                "angular_velocity",
+                "must agree with rolling, V + Ω×ρ = u(p), where the support has no `friction`",
+                f"a slip of {slip:.6g} m/s",
+                "Give `spin` instead and the rest follows from no slip; or give the support a friction.",
+            )
+
+
+def _slips(contact: Contact, V: Vector, Omega: Vector) -> float | None:
+    """Return how fast the contact slips along the support, m/s; None where it is rounding."""
+    s = contact.slip_velocity(V, Omega)
+    along = (s - contact.normal * s.dot(contact.normal)).norm()
+    u = contact.support.material_velocity(contact.point)
+    scale = max(speed.norm() for speed in (V, Omega.cross(contact.offset), u))
+    return float(along) if along > SLIP_TOLERANCE * scale else None
+
+
+def _length(value: Any) -> int:
+    return len(value) if hasattr(value, "__len__") and not isinstance(value, (str, bytes)) else 0
+
+
+def _triple(v: Vector) -> tuple[float, float, float]:
+    return v.x + 0.0, v.y + 0.0, v.z + 0.0  # + 0.0 turns -0.0 into 0.0
+
+
+def _pair(value: Any, key: str) -> tuple[Any, Any]:
+    """Return two parts of whatever kinds; `checks.components` is for parts of one kind."""
+    parts = None if isinstance(value, (str, bytes)) or not hasattr(value, "__len__") else tuple(value)
+    if parts is None or len(parts) != 2:
+        raise InvalidValueError(key, "must be a list of 2 components", value)
+    return parts
+
+
+def _unit_quaternion(orientation: Any) -> Quaternion:
+    parts = checks.components(orientation, "number", "orientation", 4)
+    length = math.hypot(*parts)
+    if not 0 < length < math.inf:
+        raise InvalidValueError("orientation", "must be a quaternion other than zero", orientation)
+    if abs(length - 1) < 4e-16:  # it is one already: keep it to the last digit
+        return Quaternion(*parts)
+    return Quaternion(*(part / length for part in parts))
+
+
+def _rolling_rate(relative: Vector, rho: Vector, n: Vector, spin: Scalar) -> Vector:
+    """Solve ρ×Ω = V − u for the Ω with Ω·n = spin."""
+    across = relative.cross(rho) / rho.dot(rho)
+    return across + rho * ((spin - across.dot(n)) / rho.dot(n))

@@ -1,0 +1,206 @@
+"""Slipping and flight, for every body, support and scalar: theory page, equation T4.
+
+Slipping, the state gains the slip velocity s, and friction is f = −μ N ŝ. In flight nothing touches: what is carried
+along then is the support's point nearest to the body, and the gap between them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from .algebra import Quaternion, Vector
+from .contact import Contact, touch
+from .loads import BodyMotion
+from .scalars import Scalar, namespace
+
+if TYPE_CHECKING:
+    from .system import RollingSystem
+
+
+@dataclass(frozen=True, slots=True)
+class Slipping:
+    """Rates of the state and the contact force of a body that slips, in the inertial support frame."""
+
+    contact: Contact
+    velocity: Vector  # V, m/s
+    point_rate: Vector  # ṗ, m/s
+    orientation_rate: Quaternion  # 1/s
+    angular_acceleration: Vector  # Ω̇, rad/s²
+    slip_rate: Vector  # ṡ, m/s²
+    normal_force: Scalar  # N, N
+    reaction: Vector  # R, N
+    axle_moment: Scalar  # of the body on the support, about the support's axle, N m
+
+
+@dataclass(frozen=True, slots=True)
+class Flying:
+    """Rates of the state of a body that touches nothing, in the inertial support frame."""
+
+    contact: Contact
+    centre: Vector  # r, m
+    point_rate: Vector  # ṗ, m/s
+    orientation_rate: Quaternion  # 1/s
+    angular_acceleration: Vector  # Ω̇, rad/s²
+    acceleration: Vector  # V̇, m/s²
+    gap_rate: Scalar  # ġ, m/s
+
+
+def slip_direction(slip: Vector) -> Vector:
+    """Return ŝ = s/|s|.
+
+    Parameters
+    ----------
+    slip : Vector
+        s, m/s, not zero.
+
+    Returns
+    -------
+    Vector
+        Of length 1.
+
+    Examples
+    --------
+    >>> slip_direction(Vector(0.0, 2.0, 0.0))
+    Vector(x=0.0, y=1.0, z=0.0)
+    """
+    return slip / namespace(*slip).sqrt(slip.dot(slip))
+
+
+def slip(
+    system: RollingSystem,
+    time: Scalar,
+    point: Vector,
+    orientation: Quaternion,
+    angular_velocity: Vector,
+    slip_velocity: Vector,
+    own: tuple[Scalar, ...] = (),
+    direction: Vector | None = None,
+) -> Slipping:
+    """Return the rates of (p, q, Ω, s) and the contact force of a body that slips: T1 and T4.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Body, loads, and a support with friction.
+    time : Scalar
+        t, s.
+    point : Vector
+        p in the inertial support frame, m.
+    orientation : Quaternion
+        Body frame to support frame.
+    angular_velocity : Vector
+        Ω, rad/s.
+    slip_velocity : Vector
+        s, along the support, m/s.
+    own : tuple of Scalar
+        The coordinates of the support's own motion, where it has some.
+    direction : Vector, optional
+        ŝ, where s itself does not show it; zero where there is no friction.
+
+    Returns
+    -------
+    Slipping
+        ṗ, q̇, Ω̇, ṡ, V, N and R.
+
+    Examples
+    --------
+    A ball that slides without turning slows down at μ g:
+
+    >>> import trundle as tr
+    >>> from trundle.mechanics.algebra import ZERO
+    >>> lane = tr.RollingSystem(tr.Body.solid_sphere(0.1, 7.0), tr.Support(tr.Plane(), friction=0.1), gravity=10.0)
+    >>> now = slip(lane, 0.0, ZERO, Quaternion(1.0, 0.0, 0.0, 0.0), ZERO, Vector(8.0, 0.0, 0.0))
+    >>> round(now.reaction.x / 7.0, 12), round(now.slip_rate.x, 12)
+    (-1.0, -3.5)
+    """
+    m, Omega, s = system.body.mass, angular_velocity, slip_velocity
+    contact = touch(system, time, point, orientation, own)
+    rho, n, support = contact.offset, contact.normal, contact.support
+    V = contact.rolling_velocity(Omega) + s
+    p_rate, rho_rate = contact.rates(s, Omega, V)
+    u_rate = support.material_acceleration(point, p_rate)
+    acting = system.acting_on(contact.body_motion(m, time, V, orientation, Omega))
+    Q = orientation.matrix()
+    J = system.body.inertia_in_space(Q)
+    hat = slip_direction(s) if direction is None else direction
+    d = n - hat * system.support.sliding_friction
+    torque = rho.cross(d) + acting.couple if acting.has_couple else rho.cross(d)
+    freely = J.solve(acting.torque - system.body.gyroscopic(Q, Omega))
+    turned = J.solve(torque)
+    # T4, N being unknown
+    a0 = acting.force / m + freely.cross(rho) + Omega.cross(rho_rate) - u_rate
+    a1 = d / m + turned.cross(rho)
+    if system.support.motion.free:  # I ω̇ = τ − e·(p − X)×R, so that u̇ is affine in N
+        lever, inertia = support.lever(point), system.support.motion.inertia
+        driven = system.support.motion.axle_torque(time, own) - support.axle.dot(acting.from_support)
+        a0 = a0 - lever * (driven / inertia)
+        a1 = a1 + lever * ((lever.dot(d) + support.axle.dot(acting.couple)) / inertia)
+    n_rate = support.angular_velocity.cross(n) + contact.shape_operator @ (p_rate - support.material_velocity(point))
+    N = -(n.dot(a0) + n_rate.dot(s)) / n.dot(a1)
+    return Slipping(
+        contact,
+        V,
+        p_rate,
+        orientation.rate(Omega),
+        freely + turned * N,
+        a0 + a1 * N,
+        N,
+        d * N,
+        acting.moment_on_axle(support, N) - support.lever(point).dot(d) * N,
+    )
+
+
+def fly(
+    system: RollingSystem,
+    time: Scalar,
+    point: Vector,
+    gap: Scalar,
+    orientation: Quaternion,
+    angular_velocity: Vector,
+    velocity: Vector,
+    own: tuple[Scalar, ...] = (),
+) -> Flying:
+    """Return the rates of (p, g, q, Ω, V) of a body that touches nothing.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Body, support and loads.
+    time : Scalar
+        t, s.
+    point : Vector
+        p, the support's point nearest to the body, in the inertial support frame, m.
+    gap : Scalar
+        g, from p to the body's nearest point p + g n, m.
+    orientation : Quaternion
+        Body frame to support frame.
+    angular_velocity, velocity : Vector
+        Ω, rad/s, and V, m/s.
+    own : tuple of Scalar
+        The coordinates of the support's own motion, where it has some.
+
+    Returns
+    -------
+    Flying
+        ṗ, ġ, q̇, Ω̇ and V̇.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> from trundle.mechanics.algebra import ZERO
+    >>> floor = tr.RollingSystem(tr.Body.solid_sphere(0.1, 7.0), tr.Support(tr.Plane()), gravity=10.0)
+    >>> now = fly(floor, 0.0, ZERO, 0.5, Quaternion(1.0, 0.0, 0.0, 0.0), ZERO, Vector(1.0, 0.0, -2.0))
+    >>> now.gap_rate, now.acceleration.z, now.centre.z
+    (-2.0, -10.0, 0.6)
+    """
+    m, Omega, V = system.body.mass, angular_velocity, velocity
+    contact = touch(system, time, point, orientation, own)
+    n = contact.normal
+    s = contact.slip_velocity(V, Omega)
+    p_rate, _ = contact.rates(s, Omega, V, gap)
+    centre = contact.centre + n * gap
+    acting = system.acting_on(BodyMotion(time, m, centre, V, orientation, Omega))
+    Q = orientation.matrix()
+    turned = system.body.inertia_in_space(Q).solve(acting.torque - system.body.gyroscopic(Q, Omega))
+    return Flying(contact, centre, p_rate, orientation.rate(Omega), turned, acting.force / m, n.dot(s))

@@ -1,0 +1,349 @@
+"""The laws of the phases of contact as the numerical methods take them: a state of numbers, its rates, what ends it.
+
+A phase ends where one of its stops falls through zero. Each law also packs a state into its numbers and completes
+these numbers to a full record; the mechanics itself is in `mechanics.contact` and `mechanics.slipping`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..mechanics.algebra import ZERO, Quaternion, Vector
+from ..mechanics.contact import Contact, Rolling, roll, settle, touch
+from ..mechanics.loads import BodyMotion
+from ..mechanics.scalars import Scalar, is_zero
+from ..mechanics.slipping import Flying, Slipping, fly, slip
+from ..mechanics.system import RollingSystem, State
+from .samples import FLIGHT, RESTING, ROLLING, SLIPPING, Array, Samples
+
+CONTACT = ("p_x", "p_y", "p_z", "q_w", "q_x", "q_y", "q_z", "Omega_x", "Omega_y", "Omega_z")
+Numbers = Sequence[Scalar]
+
+
+class Law:
+    """What a phase is to a method.
+
+    Parameters of the class
+    -----------------------
+    code : int
+        The phase, as in `Samples.phase`.
+    variables : tuple of str
+        Names of the state's numbers; those of the support's own motion come after them.
+    extras : int
+        How many numbers the stops take besides the system's.
+    """
+
+    code: int
+    variables: tuple[str, ...] = CONTACT
+    extras: int = 0
+
+    def names(self, system: RollingSystem) -> tuple[str, ...]:
+        """Return the names of all numbers of the state."""
+        return (*self.variables, *(f"support_{name}" for name in system.support.motion.own))
+
+    def split(self, state: Numbers) -> tuple[Vector, Quaternion, Vector, Numbers, tuple[Scalar, ...]]:
+        """Return p, q, Ω, the numbers that this phase adds, and those of the support's own motion."""
+        own = len(self.variables)
+        return Vector(*state[:3]), Quaternion(*state[3:7]), Vector(*state[7:10]), state[10:own], tuple(state[own:])
+
+    def rates(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:
+        """Return the rates of the state."""
+        raise NotImplementedError
+
+    def stops(self, system: RollingSystem, time: Scalar, state: Numbers, extras: Numbers) -> dict[str, Scalar]:
+        """Return what ends the phase where it falls through zero, by name."""
+        raise NotImplementedError
+
+    def pack(self, system: RollingSystem, state: State) -> list[float]:
+        """Return the numbers of a state."""
+        raise NotImplementedError
+
+    def record(self, system: RollingSystem, time: Array, states: Array) -> Samples:
+        """Complete states (n, ...) to full samples."""
+        raise NotImplementedError
+
+    def _bounds(self, system: RollingSystem, contact: Contact, orientation: Quaternion, gap: Scalar) -> dict[str, Any]:
+        """Return the stops of every phase: where the support ends, the body's shape, or what fits."""
+        surface, support, p = system.support.surface, contact.support, contact.point
+        arm, found = p - support.origin, {}
+        if surface.rim is not None:
+            found["rim"] = surface.rim * surface.rim - arm.dot(arm)
+        there = support.rotation.transpose @ arm
+        ending = surface.inside(there)
+        if ending is not None:
+            found["end"] = ending
+        covered = system.body.shape.covers(-(orientation.matrix().transpose @ contact.normal))
+        if covered is not None:
+            found["edge"] = covered
+        if not all(is_zero(bend) for row in surface.shape_operator(there).rows for bend in row):
+            found["curved"] = contact.clearance(gap)
+        return found
+
+
+class RollingLaw(Law):
+    """No slip: the state is (p, q, Ω).
+
+    Where nothing presses the body on, as with no gravity on a plane, it is not asked when it lifts off.
+    """
+
+    code = ROLLING
+
+    def __init__(self, lifts: bool = True, grips: bool = True) -> None:
+        self.lifts, self.grips = lifts, grips
+
+    def _now(self, system: RollingSystem, time: Scalar, state: Numbers) -> Rolling:
+        p, q, Omega, _, own = self.split(state)
+        return roll(system, time, p, q, Omega, own)
+
+    def rates(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:
+        """Return ṗ, q̇, Ω̇."""
+        now = self._now(system, time, state)
+        own = system.support.motion.own_rates(time, self.split(state)[4], now.axle_moment)
+        return [*now.point_rate, *now.orientation_rate, *now.angular_acceleration, *own]
+
+    def stops(self, system: RollingSystem, time: Scalar, state: Numbers, extras: Numbers) -> dict[str, Scalar]:
+        """Return the normal force, the rest of the friction cone, and the bounds."""
+        now = self._now(system, time, state)
+        n, R = now.contact.normal, now.reaction
+        N = n.dot(R)
+        found = {"lift": N} if self.lifts else {}
+        if system.support.friction is not None and self.grips:
+            f, most = R - n * N, system.support.friction * N
+            found["slip"] = most * most * (1 + CONE_SLACK) - f.dot(f)
+        if self.extras:
+            turning = state_turning(now.contact, Vector(*state[7:10]))
+            found |= _ending("stop", turning, now.angular_acceleration, extras[0])
+        return {**found, **self._bounds(system, now.contact, Quaternion(*state[3:7]), 0.0)}
+
+    def pack(self, system: RollingSystem, state: State) -> list[float]:
+        """Return p = r + ρ, q and Ω."""
+        q, centre = Quaternion(*state.orientation), Vector(*state.position)
+        contact = settle(system, state.time, centre, q, state.support)
+        return [*(centre + contact.offset), *q, *state.angular_velocity, *state.support]
+
+    def record(self, system: RollingSystem, time: Array, states: Array) -> Samples:
+        """Complete p, q and Ω by the rolling law."""
+        p, q, Omega, own = _columns(states, len(self.variables))
+        now = roll(system, time, Vector.of(p), Quaternion.of(q), Vector.of(Omega), tuple(own.T))
+        centre, V, R = _arrays(p, now.contact.centre, now.velocity, now.reaction)
+        return Samples(time, centre, p, V, Omega, q, R + 0.0, phase=_phase(time, self.code), own=own)
+
+
+class RollingWithResistance(RollingLaw):
+    """Rolling that comes to a stop where the body no longer turns over the support."""
+
+    extras = 1
+
+
+class SlippingLaw(Law):
+    """Slipping with friction −μ N ŝ: the state is (p, q, Ω, s)."""
+
+    code = SLIPPING
+    variables = (*CONTACT, "s_x", "s_y", "s_z")
+    extras = 1
+
+    def _now(self, system: RollingSystem, time: Scalar, state: Numbers) -> Slipping:
+        p, q, Omega, s, own = self.split(state)
+        return slip(system, time, p, q, Omega, Vector(*s), own)
+
+    def rates(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:
+        """Return ṗ, q̇, Ω̇, ṡ."""
+        now = self._now(system, time, state)
+        own = system.support.motion.own_rates(time, self.split(state)[4], now.axle_moment)
+        return [*now.point_rate, *now.orientation_rate, *now.angular_acceleration, *now.slip_rate, *own]
+
+    def stops(self, system: RollingSystem, time: Scalar, state: Numbers, extras: Numbers) -> dict[str, Scalar]:
+        """Return the normal force, what is left of the slip, and the bounds."""
+        now, s = self._now(system, time, state), Vector(*state[10:13])
+        found = {"lift": now.normal_force}
+        if self.extras:
+            found |= _ending("grip", s, now.slip_rate, extras[0])
+        return {**found, **self._bounds(system, now.contact, Quaternion(*state[3:7]), 0.0)}
+
+    def pack(self, system: RollingSystem, state: State) -> list[float]:
+        """Return p, q, Ω and the part of s along the support."""
+        q, centre, V = Quaternion(*state.orientation), Vector(*state.position), Vector(*state.velocity)
+        Omega = Vector(*state.angular_velocity)
+        contact = settle(system, state.time, centre, q, state.support)
+        s = contact.slip_velocity(V, Omega)
+        s = s - contact.normal * s.dot(contact.normal)
+        return [*(centre + contact.offset), *q, *Omega, *s, *state.support]
+
+    def record(self, system: RollingSystem, time: Array, states: Array) -> Samples:
+        """Complete p, q, Ω and s by the law of slipping."""
+        p, q, Omega, own = _columns(states, len(self.variables))
+        now = self._recorded(system, time, states)
+        centre, V, R = _arrays(p, now.contact.centre, now.velocity, now.reaction)
+        return Samples(time, centre, p, V, Omega, q, R + 0.0, phase=_phase(time, self.code), own=own)
+
+    def _recorded(self, system: RollingSystem, time: Array, states: Array) -> Slipping:
+        columns = list(states.T)
+        columns[3:7] = _unit(states[:, 3:7]).T
+        return self._now(system, time, columns)
+
+
+class SlidingFreely(SlippingLaw):
+    """Contact without any friction: s has no part in the force, and never grips."""
+
+    extras = 0
+
+    def _now(self, system: RollingSystem, time: Scalar, state: Numbers) -> Slipping:
+        p, q, Omega, s, own = self.split(state)
+        return slip(system, time, p, q, Omega, Vector(*s), own, direction=ZERO)
+
+
+class FlightLaw(Law):
+    """Nothing touches: the state is (p, q, Ω, V, g), p being the support's point nearest to the body, g the gap."""
+
+    code = FLIGHT
+    variables = (*CONTACT, "V_x", "V_y", "V_z", "g")
+
+    def _now(self, system: RollingSystem, time: Scalar, state: Numbers) -> Flying:
+        p, q, Omega, rest, own = self.split(state)
+        return fly(system, time, p, rest[3], q, Omega, Vector(*rest[:3]), own)
+
+    def rates(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:
+        """Return ṗ, q̇, Ω̇, V̇, ġ."""
+        now = self._now(system, time, state)
+        own = system.support.motion.own_rates(time, self.split(state)[4], 0.0)
+        turning = now.angular_acceleration
+        return [*now.point_rate, *now.orientation_rate, *turning, *now.acceleration, now.gap_rate, *own]
+
+    def stops(self, system: RollingSystem, time: Scalar, state: Numbers, extras: Numbers) -> dict[str, Scalar]:  # noqa: ARG002
+        """Return the gap and the bounds."""
+        p, q, _, rest, own = self.split(state)
+        contact = touch(system, time, p, q, own)
+        return {"land": rest[3], **self._bounds(system, contact, q, rest[3])}
+
+    def pack(self, system: RollingSystem, state: State) -> list[float]:
+        """Return the nearest point, q, Ω, V and the gap."""
+        q, centre = Quaternion(*state.orientation), Vector(*state.position)
+        contact = settle(system, state.time, centre, q, state.support)
+        gap = (centre + contact.offset - contact.point).dot(contact.normal)
+        return [*contact.point, *q, *state.angular_velocity, *state.velocity, gap, *state.support]
+
+    def record(self, system: RollingSystem, time: Array, states: Array) -> Samples:
+        """Complete the state of a flight; nothing pushes then."""
+        p, q, Omega, own = _columns(states, len(self.variables))
+        columns = list(states.T)
+        columns[3:7] = q.T
+        (centre,) = _arrays(p, self._now(system, time, columns).centre)
+        phase = _phase(time, self.code)
+        return Samples(time, centre, p, states[:, 10:13].copy(), Omega, q, np.zeros_like(p), phase=phase, own=own)
+
+
+class RestingLaw(Law):
+    """At rest on the support, which carries the body along: the state is (p, q, Ω)."""
+
+    code = RESTING
+
+    def rates(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:
+        """Return the rates of a body that turns with the support."""
+        p, q, _, _, own = self.split(state)
+        support = system.support.motion.at(time, *own)
+        along = system.support.motion.own_rates(time, own, 0.0)
+        turning = support.angular_velocity
+        return [*support.material_velocity(p), *q.rate(turning), *support.angular_acceleration, *along]
+
+    def held(self, system: RollingSystem, time: Scalar, state: Numbers) -> Held:
+        """Return what holds the body: the contact force and the couple that rest takes."""
+        p, q, _, _, own = self.split(state)
+        m, contact = system.body.mass, touch(system, time, p, q, own)
+        support, Q = contact.support, q.matrix()
+        turning = support.angular_velocity
+        V = support.material_velocity(contact.centre)
+        motion = BodyMotion(time, m, contact.centre, V, q, turning, contact.normal, turning)
+        F, K = system.loads_on(motion)
+        R = support.material_acceleration(contact.centre, V) * m - F
+        J = system.body.inertia_in_space(Q)
+        couple = J @ support.angular_acceleration + system.body.gyroscopic(Q, turning) - K - contact.offset.cross(R)
+        return Held(contact, V, R, couple)
+
+    def stops(self, system: RollingSystem, time: Scalar, state: Numbers, extras: Numbers) -> dict[str, Scalar]:  # noqa: ARG002
+        """Return what is left of the resistance, of the friction cone and of the normal force."""
+        held = self.held(system, time, state)
+        n, R = held.contact.normal, held.reaction
+        N = n.dot(R)
+        over = held.couple - n * n.dot(held.couple)
+        arm = sum((load.offset for load in system.loads if load.stops), 0.0) * N
+        found = {"lift": N, "start": arm * arm * (1 + CONE_SLACK) - over.dot(over)}
+        if system.support.friction is not None:
+            f, most = R - n * N, system.support.friction * N
+            found["slip"] = most * most * (1 + CONE_SLACK) - f.dot(f)
+        return {**found, **self._bounds(system, held.contact, Quaternion(*state[3:7]), 0.0)}
+
+    def pack(self, system: RollingSystem, state: State) -> list[float]:
+        """Return p, q and Ω."""
+        return RollingLaw().pack(system, state)
+
+    def record(self, system: RollingSystem, time: Array, states: Array) -> Samples:
+        """Complete the state of a body at rest on its support."""
+        p, q, Omega, own = _columns(states, len(self.variables))
+        columns = list(states.T)
+        columns[3:7] = q.T
+        held = self.held(system, time, columns)
+        centre, V, R = _arrays(p, held.contact.centre, held.velocity, held.reaction)
+        return Samples(time, centre, p, V, Omega, q, R + 0.0, phase=_phase(time, self.code), own=own)
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """A body at rest on its support: where, and what that takes."""
+
+    contact: Contact
+    velocity: Vector
+    reaction: Vector  # R, N
+    couple: Vector  # that the support exerts besides, N m
+
+
+# By this share static friction and resistance hold more than they say, so that rounding does not decide.
+CONE_SLACK = 1e-9
+
+
+def _ending(name: str, v: Vector, rate: Vector, near: Scalar) -> dict[str, Scalar]:
+    """Return two stops for a vector that shrinks to nothing.
+
+    Where its direction stays, v·v̇ passes through zero with it; where it turns, the law grows singular there, and the
+    run stops just before.
+    """
+    return {name: -v.dot(rate), f"near {name}": v.dot(v) - near}
+
+
+def state_turning(contact: Contact, angular_velocity: Vector) -> Vector:
+    """Return the part of Ω − ω along the support: how the body turns over it, rad/s.
+
+    Parameters
+    ----------
+    contact : Contact
+        Of the body.
+    angular_velocity : Vector
+        Ω, rad/s.
+
+    Returns
+    -------
+    Vector
+        rad/s.
+    """
+    relative = angular_velocity - contact.support.angular_velocity
+    return relative - contact.normal * relative.dot(contact.normal)
+
+
+def _unit(q: Array) -> Array:
+    return q / np.linalg.norm(q, axis=-1, keepdims=True)
+
+
+def _columns(states: Array, size: int) -> tuple[Array, Array, Array, Array]:
+    """Return p, unit q, Ω and the support's own coordinates."""
+    return states[:, :3].copy(), _unit(states[:, 3:7]), states[:, 7:10].copy(), states[:, size:].copy()
+
+
+def _arrays(like: Array, *vectors: Vector) -> list[Array]:
+    return [np.broadcast_to(vector.array(), like.shape).copy() for vector in vectors]
+
+
+def _phase(time: Array, code: int) -> Any:
+    return np.full(time.size, code, dtype=np.int8)

@@ -1,0 +1,197 @@
+"""Rolling, slipping, flight and rest: which follows which, and when (theory page, section 4).
+
+A run is a chain of stretches, each by one law to its first stop. What comes next is read off the state there: the gap,
+the slip, the normal force, the friction cone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import SolverError
+from ..mechanics.system import RollingSystem, State
+from . import following
+from .laws import Law
+from .samples import Array, Event, Progress, Samples
+
+_MOST_EVENTS = 10_000
+_AT_ONCE = 20  # events at one instant: more means that no phase goes on
+_ENDS = {
+    "rim": "ran off the rim ({rim:g} m from the axis)",
+    "end": "came to {end}",
+    "edge": "tipped onto the edge of its round side, which its shape does not cover",
+    "curved": "came where the support is as hollow as the body is round: 1 + C S is singular",
+    "spot": "stopped rolling while it still spins about the normal, which is not covered",
+}
+
+
+@dataclass(frozen=True)
+class Stop:
+    """Where a stretch ended: the instant, which of the law's stops, and the state's numbers."""
+
+    time: float
+    name: str
+    state: Array
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """One law's part of a run: states at the times before its stop, if it came to one."""
+
+    times: Array
+    states: Array
+    stop: Stop | None
+
+
+# (system, law, start time, numbers of the state, times, tolerance, extras, progress) -> Stretch
+Integrate = Callable[..., Stretch]
+
+
+def solve(
+    integrate: Integrate,
+    system: RollingSystem,
+    start: State,
+    times: Array,
+    tolerance: float,
+    progress: Progress | None = None,
+) -> Samples:
+    """Follow a body through its phases and return its samples with all events.
+
+    Parameters
+    ----------
+    integrate : callable
+        A method's way through one stretch.
+    system : RollingSystem
+        Any system.
+    start : State
+        Any state on or over the support.
+    times : array (n,)
+        Ascending, s, none before the start.
+    tolerance : float
+        Of the method.
+    progress : callable, optional
+        Told the fraction done.
+
+    Returns
+    -------
+    Samples
+        At `times`, cut where the run ends early.
+
+    Raises
+    ------
+    SolverError
+        If the method breaks down, or events follow each other without end.
+    """
+    events: list[Event] = []
+    parts: list[Samples] = []
+    now = following.at_start(system, start)
+    events += now.events
+    left, told = times, _telling(progress, times)
+    while True:
+        stretch = integrate(system, now.law, now.time, now.state, left, tolerance, now.extras, told)
+        parts.append(now.law.record(system, stretch.times, stretch.states))
+        if stretch.stop is None:
+            break
+        stop, law = stretch.stop, now.law
+        if stop.name in _ENDS or _spinning_on(system, law, stop):
+            samples, event = _ended(system, law, stop)
+            parts.append(samples)
+            events.append(event)
+            break
+        now = following.after(system, law, stop.name, stop.time, stop.state)
+        events += now.events
+        _check_count(events)
+        left = left[left >= stop.time]
+    kept = [part for part in parts if part.time.size] or parts[:1]
+    return Samples.joined(kept, tuple(events))
+
+
+def _telling(progress: Progress | None, times: Array) -> Progress | None:
+    """Return what tells the fraction of the whole run, given an instant."""
+    if progress is None:
+        return None
+    first, span = float(times[0]), max(float(times[-1] - times[0]), 1e-300)
+    return lambda t: progress(min(1.0, max(0.0, (t - first) / span)))
+
+
+def _spinning_on(system: RollingSystem, law: Law, stop: Stop) -> bool:
+    return stop.name.removeprefix("near ") == "stop" and following.spins(system, law, stop.time, stop.state)
+
+
+def _ended(system: RollingSystem, law: Law, stop: Stop) -> tuple[Samples, Event]:
+    samples = law.record(system, np.array([stop.time]), stop.state[None])
+    return samples, end(system, "spot" if stop.name.endswith("stop") else stop.name, samples.state(0))
+
+
+def end(system: RollingSystem, name: str, state: State) -> Event:
+    """Return the event with which a run ends before its time.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Names the rim and the end of the surface.
+    name : str
+        The stop: "rim", "end", "edge", "curved" or "spot".
+    state : State
+        At the end.
+
+    Returns
+    -------
+    Event
+        Of that kind.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> table = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane(rim=0.5)))
+    >>> end(table, "rim", tr.State((0.5, 0.0, 0.1), (1.0, 0.0, 0.0), (0.0, 10.0, 0.0), time=1.25)).text
+    'ran off the rim (0.5 m from the axis) at t = 1.25 s'
+    """
+    surface = system.support.surface
+    said = _ENDS[name].format(rim=float(surface.rim or 0.0), end=surface.end)
+    return Event(state.time, name, f"{said} at t = {state.time:.9g} s", state, state)
+
+
+def _check_count(events: list[Event]) -> None:
+    """Refuse what would go on for ever."""
+    if len(events) > _MOST_EVENTS:
+        raise SolverError(
+            f"More than {_MOST_EVENTS} events by t = {events[-1].time:.9g} s: the contact chatters. Ask for a shorter "
+            "run, or give the landing a smaller restitution."
+        )
+    recent = events[-_AT_ONCE:]
+    if len(recent) == _AT_ONCE and recent[-1].time - recent[0].time <= 1e-14 * abs(recent[-1].time):
+        kinds = ", ".join(dict.fromkeys(event.kind for event in recent))
+        raise SolverError(
+            f"No phase goes on at t = {recent[-1].time:.9g} s ({kinds}): rigid contact has no answer there. Change the "
+            "friction, or round the body off."
+        )
+
+
+def cut(times: Array, states: Array, end: float) -> tuple[Array, Array]:
+    """Keep the states before an end.
+
+    Parameters
+    ----------
+    times : array (n,)
+        Ascending, s.
+    states : array (n, ...)
+        One a time.
+    end : float
+        s.
+
+    Returns
+    -------
+    times, states : array
+        Those before it.
+
+    Examples
+    --------
+    >>> cut(np.array([0.0, 1.0, 2.0]), np.zeros((3, 1)), 1.5)[0].tolist()
+    [0.0, 1.0]
+    """
+    before = times < end
+    return times[before], states[before]
