@@ -1,0 +1,108 @@
+"""Formulas in the time: their slopes, and whether they are finite throughout a run."""
+
+from __future__ import annotations
+
+import math
+
+import mpmath
+import pytest
+from tests.precise import precisely, slope
+from tests.tolerances import EXACT
+
+import trundle as tr
+from trundle.errors import InvalidValueError
+from trundle.mechanics.expressions import Expression
+from trundle.mechanics.finiteness import check_finite, first_singular
+
+SMOOTH = [
+    "3.5*(1 - exp(-t/2))",
+    "1/(1.01 + sin(5*t))",
+    "t**20/(1 + t**20)",
+    "hypot(t - 1, 0.125)",
+    "sqrt(1 + t**2)*cos(t)",
+    "abs(t - 1)",
+    "log(2 + sin(3*t))/(2 - cos(t))",
+    "tan(sin(t))",
+    "7",
+    "+t - -t",
+]
+SINGULAR = {
+    "1/(t - 3)": 3.0,
+    "log(2 - t)": 2.0,
+    "sqrt(t)": 0.0,  # its slope is not finite at the start
+    "sqrt(4 - t)": 4.0,
+    "tan(t)": math.pi / 2,
+    "exp(t**4)": math.log(1e300) ** 0.25,  # beyond 1e300, near the end of the floats
+    "sin(t)/t": 0.0,
+    "1/(t - 7)**2": 7.0,
+    "(t - 5)**-3": 5.0,
+    "hypot(t - 6, 0)": 6.0,
+    "1/sin(t - 2.5)": 2.5,
+    "3/0": 0.0,
+}
+
+
+def formula(text: str) -> Expression:
+    return Expression.parse(text, ("t",), "rate")
+
+
+@pytest.mark.parametrize("text", SMOOTH)
+def test_a_finite_formula_is_let_through(text: str) -> None:
+    assert first_singular(formula(text), 0.0, 10.0) is None
+
+
+@pytest.mark.parametrize("text", SINGULAR)
+def test_the_first_instant_is_found(text: str) -> None:
+    found = first_singular(formula(text), 0.0, 10.0)
+    assert found is not None
+    assert found == pytest.approx(SINGULAR[text], abs=1e-9)
+    if SINGULAR[text] > 0:
+        assert first_singular(formula(text), 0.0, 0.999 * SINGULAR[text]) is None
+
+
+def test_a_needle_between_any_samples_is_found() -> None:
+    # The pole's neighbourhood where |ω| > 1 is 2e-9 s wide in a run of an hour.
+    found = first_singular(formula("1e-9/(t - 1234.56789)"), 0.0, 3600.0)
+    assert found == pytest.approx(1234.56789, abs=1e-8)
+
+
+def test_a_formula_that_cannot_be_told_is_not_refused() -> None:
+    assert first_singular(formula("1/(1.2 + sin(t) + cos(t)/2)"), 0.0, 1e4) is None  # finite: sin + cos/2 ≥ −1.119
+
+
+@pytest.mark.parametrize(
+    ("support", "loads", "key"),
+    [
+        (tr.SpinBy("2/(5 - t)"), (), "support.motion.rate"),
+        (tr.FreeAxle(1.0, motor_torque="2/(5 - t)"), (), "support.motion.motor_torque"),
+        (tr.Combined((tr.Spin(1.0), tr.Move((0.0, "1/(5 - t)", 0.0)))), (), r"support.motion.parts\[1\].position\[1\]"),
+        (tr.Fixed(), (tr.Drag(0.1), tr.Force((0.0, 0.0, "log(5 - t)"))), r"loads\[1\].value\[2\]"),
+    ],
+)
+def test_what_is_not_finite_is_named_with_its_instant(support: tr.Fixed, loads: tuple[tr.Drag, ...], key: str) -> None:
+    table = tr.Support(tr.Plane(), motion=support)
+    system = tr.RollingSystem(tr.Body.solid_sphere(0.025, 0.065), table, loads)
+    check_finite(system, 0.0, 4.9)
+    with pytest.raises(InvalidValueError, match=rf"`{key}`.*t = 5 s"):
+        check_finite(system, 0.0, 6.0)
+
+
+def test_a_potential_is_left_to_the_run() -> None:
+    check_finite(tr.Potential("1/hypot(x, y)"), 0.0, 1.0)
+
+
+@precisely
+def test_slopes_are_those_of_the_formula() -> None:
+    text = "exp(-t/2)*sin(3*t)**2/(2 + cos(t)) + hypot(t, 1)*log(1 + t**2) - tan(t/4) + sqrt(3 + t)*abs(t + 1)"
+    push = formula(text)
+    for t in (mpmath.mpf("0.3"), mpmath.mpf("1.7")):
+        value, rate, bend = push.course(t)
+        assert value == push.at(t=t)
+        assert abs(rate - slope(lambda t: push.at(t=t), t)) <= EXACT(16, 10)
+        assert abs(bend - slope(lambda t: push.slope("t", t=t), t)) <= EXACT(16, 100)
+
+
+def test_it_knows_its_variables() -> None:
+    assert Expression.parse("x**2 + sin(t)*2", ("x", "y", "t"), "formula").variables == {"x", "t"}
+    assert formula("2 + 3").variables == frozenset()
+    assert formula("2 + 3").course(1.0) == (5.0, 0.0, 0.0)
