@@ -7,11 +7,24 @@ A new closed form is one class derived from `ClosedForm`; add it to `CLOSED_FORM
 from __future__ import annotations
 
 from ...mechanics.system import RollingSystem, State
+from .ball_in_leaning_cylinder import BallInLeaningCylinder
+from .ball_in_upright_cylinder import BallInUprightCylinder
 from .base import ClosedForm
 from .cylinder_on_cylinder import CylinderOnCylinder
+from .sphere_coming_to_rest import SphereComingToRest
+from .sphere_in_moving_air import SphereInMovingAir
 from .sphere_on_plane import SphereOnPlane
+from .sphere_on_unsteady_plane import SphereOnUnsteadyPlane
 
-CLOSED_FORMS: tuple[type[ClosedForm], ...] = (SphereOnPlane, CylinderOnCylinder)
+CLOSED_FORMS: tuple[type[ClosedForm], ...] = (
+    SphereOnPlane,
+    CylinderOnCylinder,
+    BallInUprightCylinder,
+    BallInLeaningCylinder,
+    SphereInMovingAir,
+    SphereComingToRest,
+    SphereOnUnsteadyPlane,
+)
 
 
 def closed_form(system: RollingSystem, start: State) -> ClosedForm | None:
@@ -42,4 +55,15 @@ def closed_form(system: RollingSystem, start: State) -> ClosedForm | None:
     return None
 
 
-__all__ = ["CLOSED_FORMS", "ClosedForm", "CylinderOnCylinder", "SphereOnPlane", "closed_form"]
+__all__ = [
+    "CLOSED_FORMS",
+    "BallInLeaningCylinder",
+    "BallInUprightCylinder",
+    "ClosedForm",
+    "CylinderOnCylinder",
+    "SphereComingToRest",
+    "SphereInMovingAir",
+    "SphereOnPlane",
+    "SphereOnUnsteadyPlane",
+    "closed_form",
+]

@@ -1,0 +1,269 @@
+"""T14: a sphere on a plane that turns steadily, in air that turns too and against a viscous couple at the contact."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...errors import SolverError
+from ...mechanics.algebra import Vector
+from ...mechanics.loads import Drag, RollingCouple, constant_part
+from ...mechanics.scalars import Scalar, namespace
+from ...mechanics.surfaces import Plane
+from ...mechanics.system import RollingSystem, State
+from .base import ClosedForm
+from .second_order import fundamental
+
+
+@dataclass(frozen=True)
+class SphereInMovingAir(ClosedForm):
+    """The motion of ζ̈ = (iκ − γ)ζ̇ + iβζ + φ: two complex exponents, one of which may grow (T14a).
+
+    Air that turns at ω_a carries the ball along, −c(ζ̇ − iω_aζ); a couple −c_r(Ω − ω) at the contact does the same as
+    air of c = c_r/a² that turns with the plane. Every number may be a float, or an array of members.
+
+    Parameters
+    ----------
+    radius, mass, inertia_ratio : float or array
+        a in m, m in kg, k = I/(m a²).
+    rate : float or array
+        ω of the plane about its normal, rad/s.
+    position, velocity : pair of float or array
+        Centre at t = 0 over the plane, m and m/s, in the inertial support frame.
+    spin : float or array
+        Ω·n at t = 0, rad/s.
+    force, torque : triple of float or array
+        Constant applied force, weight included, N, and torque about the centre, N m.
+    drag : float or array
+        c of all air, kg/s.
+    carried : float or array
+        Σ c ω_a, kg rad/s².
+    couple, pivot_couple : float or array
+        c_r across the normal and along it, N m s.
+
+    Examples
+    --------
+    A ball at rest on the axis of the table stays there; anywhere else the air takes it round and so outwards:
+
+    >>> ball = SphereInMovingAir(0.025, 0.065, 0.4, 3.5, (0.1, 0.0), drag=0.01, carried=0.035)
+    >>> x, y, _ = ball.position_at(30.0)
+    >>> bool(math.hypot(x, y) > 0.2)
+    True
+    """
+
+    radius: Scalar
+    mass: Scalar
+    inertia_ratio: Scalar
+    rate: Scalar
+    position: tuple[Scalar, Scalar]
+    velocity: tuple[Scalar, Scalar] = (0.0, 0.0)
+    spin: Scalar = 0.0
+    force: tuple[Scalar, Scalar, Scalar] = (0.0, 0.0, 0.0)
+    torque: tuple[Scalar, Scalar, Scalar] = (0.0, 0.0, 0.0)
+    drag: Scalar = 0.0
+    carried: Scalar = 0.0
+    couple: Scalar = 0.0
+    pivot_couple: Scalar = 0.0
+
+    name = "sphere on a plane in moving air"
+    equation = "T14a"
+    source = "theory page, T14; Milne, Vectorial Mechanics (1948), without air"
+    domain = (
+        "a sphere about its centre of mass with the same inertia about every axis, on a plane that is fixed or turns "
+        "steadily about its normal, under gravity, constant force and torque, linear drag in air that is still or "
+        "turns about the same axis, and a viscous couple at the contact"
+    )
+
+    @classmethod
+    def of(cls, system: RollingSystem, start: State) -> SphereInMovingAir:
+        """Read the closed form's numbers from a system and a start.
+
+        Parameters
+        ----------
+        system : RollingSystem
+            Must lie in the domain.
+        start : State
+            A start that rolls.
+
+        Returns
+        -------
+        SphereInMovingAir
+            The motion; its t = 0 is the start's time.
+
+        Raises
+        ------
+        OutOfDomainError
+            If the system lies outside the domain.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> table = tr.Support(tr.Plane(), motion=tr.Spin(3.5))
+        >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.025, 0.065), table, loads=[tr.Drag(0.01, 3.5)])
+        >>> SphereInMovingAir.of(system, system.place((0.1, 0.0))).carried
+        0.035
+        """
+        cls.check_domain(system, start)
+        drags = [load for load in system.loads if isinstance(load, Drag)]
+        couples = [load for load in system.loads if isinstance(load, RollingCouple)]
+        steady = tuple(load for load in system.all_loads if load.constant)
+        force, torque, _ = constant_part(steady, system.body.mass)
+        pivots = [c.coefficient if c.pivot_coefficient is None else c.pivot_coefficient for c in couples]
+        return cls(
+            radius=system.body.radius,
+            mass=system.body.mass,
+            inertia_ratio=system.body.inertia_ratio,
+            rate=system.support.motion.steady_rate,
+            position=start.position[:2],
+            velocity=start.velocity[:2],
+            spin=start.angular_velocity[2],
+            force=tuple(force),
+            torque=tuple(torque),
+            drag=sum((load.coefficient for load in drags), 0.0),
+            carried=sum((load.coefficient * load.air_rate for load in drags), 0.0),
+            couple=sum((load.coefficient for load in couples), 0.0),
+            pivot_couple=sum(pivots, 0.0),
+        )
+
+    @classmethod
+    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
+        """Name what of a system lies outside the domain.
+
+        Parameters
+        ----------
+        system : RollingSystem
+            Any system.
+        start : State, optional
+            Its start; every one that rolls lies in the domain.
+
+        Returns
+        -------
+        list of str
+            Empty where the closed form applies.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> gale = tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), tr.Support(tr.Plane()), [tr.Drag(0.1, 2.0)])
+        >>> SphereInMovingAir.outside(gale)
+        []
+        """
+        reasons = []
+        if not system.body.is_isotropic_sphere:
+            reasons.append("the body is no sphere with isotropic inertia about its centre")
+        if not isinstance(system.support.surface, Plane):
+            reasons.append(f"the surface is a {type(system.support.surface).__name__}, not a Plane")
+        if system.support.motion.steady_rate is None:
+            reasons.append(f"the support's motion {type(system.support.motion).__name__} is no steady turn")
+        reasons += [
+            f"the load {type(load).__name__} is neither constant nor linear drag nor a viscous couple"
+            for load in system.loads
+            if not (load.constant or isinstance(load, (Drag, RollingCouple)))
+        ]
+        return reasons
+
+    # The constants of the motion
+
+    @property
+    def kappa(self) -> Scalar:
+        """κ = ω k/(1 + k), rad/s."""
+        return self.rate * self.inertia_ratio / (1 + self.inertia_ratio)
+
+    @property
+    def _heavy(self) -> Scalar:
+        return self.mass * (1 + self.inertia_ratio)
+
+    @property
+    def gamma(self) -> Scalar:
+        """γ = (c + c_r/a²)/(m(1 + k)), the rate at which air and couple slow the ball, 1/s."""
+        return (self.drag + self._dragging) / self._heavy
+
+    @property
+    def beta(self) -> Scalar:
+        """β = (Σ c ω_a + c_r ω/a²)/(m(1 + k)), by which they carry it along, 1/s²."""
+        return (self.carried + self._dragging * self.rate) / self._heavy
+
+    @property
+    def _dragging(self) -> Scalar:
+        return self.couple / (self.radius * self.radius)
+
+    @property
+    def push(self) -> Any:
+        """φ = [F_x + iF_y + (K_y − iK_x)/a]/(m(1 + k)), as a complex number, m/s²."""
+        (fx, fy, _), (kx, ky, _) = self.force, self.torque
+        return (fx + ky / self.radius + 1j * (fy - kx / self.radius)) / self._heavy
+
+    @property
+    def exponents(self) -> tuple[Any, Any]:
+        """The two s of e^{st}, complex, 1/s; the ball is driven out for ever where one has a positive real part."""
+        half = 0.5 * (1j * self.kappa - self.gamma)
+        root = np.sqrt(half * half + 1j * self.beta)
+        root = np.where((np.conj(half) * root).real < 0, -root, root)
+        fast = half + root
+        slow = np.where(fast == 0, 0.0, -1j * self.beta / np.where(fast == 0, 1.0, fast))
+        return fast[()], slow[()]
+
+    @property
+    def period(self) -> float:
+        """Infinite: what brakes or drives the ball never brings it back."""
+        return math.inf
+
+    # The motion
+
+    def motion_at(self, t: Any) -> tuple[Vector, Vector, Vector, Vector]:
+        """Return position, velocity, angular velocity and contact force together.
+
+        Parameters
+        ----------
+        t : float or array
+            Time since the start, s.
+
+        Returns
+        -------
+        position, velocity, angular_velocity, contact_force : Vector
+            In the inertial support frame, m, m/s, rad/s, N.
+
+        Raises
+        ------
+        SolverError
+            If the ball is driven out beyond what a float holds.
+
+        Examples
+        --------
+        >>> still = SphereInMovingAir(0.025, 0.065, 0.4, 3.5, (0.0, 0.0), force=(0.0, 0.0, -0.64), drag=0.1)
+        >>> float(still.motion_at(2.0)[3].z)
+        0.64
+        """
+        m, a, k, omega = self.mass, self.radius, self.inertia_ratio, self.rate
+        lam, mu, phi = 1j * self.kappa - self.gamma, 1j * self.beta, self.push
+        with np.errstate(over="ignore", invalid="ignore"):
+            base = fundamental(lam, mu, t)
+        zeta0 = self.position[0] + 1j * self.position[1]
+        V0 = self.velocity[0] + 1j * self.velocity[1]
+        zeta = zeta0 * base.U + V0 * base.G + phi * base.H
+        V = zeta0 * (mu * base.G) + V0 * base.G_rate + phi * base.G
+        if not hasattr(namespace(t), "exact") and not np.isfinite(V).all():
+            raise SolverError("The ball is driven out beyond any number. Ask for a shorter run, or give a rim.")
+        Omega = (1j * V + omega * zeta) / a
+        A = lam * V + mu * zeta + phi
+        fx, fy, fz = self.force
+        R = m * A - (fx + 1j * fy) + self.drag * V - 1j * self.carried * zeta
+        zero = 0 * zeta.real
+        return (
+            Vector(zeta.real, zeta.imag, a + zero),
+            Vector(V.real, V.imag, zero),
+            Vector(Omega.real, Omega.imag, self._spin_at(t, k * m * a * a) + zero),
+            Vector(R.real, R.imag, zero - fz),
+        )
+
+    def position_at(self, t: Any) -> Vector:
+        """Return the centre in the inertial support frame, m, at a time since the start, s."""
+        return self.motion_at(t)[0]
+
+    def _spin_at(self, t: Any, moment: Scalar) -> Any:
+        """Return Ω·n: the couple brings it to the plane's rate, a torque drives it."""
+        gain = (self.torque[2] - self.pivot_couple * (self.spin - self.rate)) / moment
+        return self.spin + gain * fundamental(-self.pivot_couple / moment, 0.0, t).G.real
