@@ -1,4 +1,4 @@
-"""Bodies, surfaces and motions that only the tests have: they show that an addition is an addition, not a rewrite."""
+"""Surfaces and motions that only the tests have: they show that an addition is an addition, not a rewrite."""
 
 from __future__ import annotations
 
@@ -8,48 +8,7 @@ from typing import Any
 from trundle.mechanics.algebra import E_X, E_Z, Matrix, Vector
 from trundle.mechanics.motions import Motion, SupportState
 from trundle.mechanics.scalars import Scalar, namespace
-from trundle.mechanics.shapes import Shape
 from trundle.mechanics.surfaces import Surface
-
-
-@dataclass(frozen=True)
-class Ellipsoid(Shape):
-    """Semi-axes a, b, c: X = Aν/√(νᵀAν) with A = diag(a², b², c²)."""
-
-    a: Scalar
-    b: Scalar
-    c: Scalar
-
-    def _stretched(self, nu: Vector) -> tuple[Vector, Scalar]:
-        stretched = Vector(self.a * self.a * nu.x, self.b * self.b * nu.y, self.c * self.c * nu.z)
-        return stretched, namespace(*nu).sqrt(nu.dot(stretched))
-
-    def support_map(self, nu: Vector) -> Vector:
-        stretched, h = self._stretched(nu)
-        return stretched / h
-
-    def support_gradient(self, nu: Vector) -> Matrix:
-        stretched, h = self._stretched(nu)
-        A = Matrix.diagonal(self.a * self.a, self.b * self.b, self.c * self.c)
-        return (A - Matrix.outer(stretched, stretched) * (1 / (h * h))) * (1 / h)
-
-
-@dataclass(frozen=True)
-class Torus(Shape):
-    """A disc of radius a whose rim is rounded with radius e, X = a ν_t/|ν_t| + e ν; e = 0 leaves a sharp rim."""
-
-    a: Scalar
-    e: Scalar
-
-    def support_map(self, nu: Vector) -> Vector:
-        flat = Vector(nu.x, nu.y, 0.0)
-        return flat * (self.a / flat.norm()) + nu * self.e
-
-    def support_gradient(self, nu: Vector) -> Matrix:
-        flat = Vector(nu.x, nu.y, 0.0)
-        length = flat.norm()
-        around = Matrix.diagonal(1.0, 1.0, 0.0) - Matrix.outer(flat, flat) * (1 / (length * length))
-        return around * (self.a / length) + (Matrix.identity() - Matrix.outer(nu, nu)) * self.e
 
 
 @dataclass(frozen=True)

@@ -120,11 +120,12 @@ def test_what_is_no_equation_of_motion_is_refused(equations: Any, says: str) -> 
 
 def test_states_roll_on_any_surface() -> None:
     from tests.additions import Ball as Hollow
-    from tests.additions import Ellipsoid, Tumble
+    from tests.additions import Tumble
 
     from trundle.checking.equations import states
     from trundle.mechanics.algebra import Quaternion, Vector
     from trundle.mechanics.contact import touch
+    from trundle.mechanics.shapes import Ellipsoid
 
     body = tr.Body(0.75, tr.Principal(0.003, 0.004, 0.005), Ellipsoid(0.15, 0.125, 0.1))
     moving = Tumble(1.5, 0.25, -0.75, Vector(0.5, -0.25, 0.125), 2.0)

@@ -7,12 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.additions import Ellipsoid, Torus
 from tests.tolerances import EXACT, SOLVER
 
 import trundle as tr
 from trundle.mechanics.algebra import Quaternion, Vector
-from trundle.mechanics.shapes import Sphere
+from trundle.mechanics.shapes import Ellipsoid, Sphere, Torus
 from trundle.solve import runge_kutta, taylor
 from trundle.solve.samples import Samples
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import mpmath
 import pytest
-from tests.additions import Ball, Ellipsoid, Torus, Tumble
+from tests.additions import Ball, Tumble
 from tests.precise import directions, numbers, precisely, quaternions, size_of, slope, turn, unit, vectors
 from tests.tolerances import EXACT
 
@@ -23,7 +23,7 @@ import trundle as tr
 from trundle.mechanics.algebra import Matrix, Quaternion, Vector
 from trundle.mechanics.contact import roll, touch
 from trundle.mechanics.loads import BodyMotion
-from trundle.mechanics.shapes import Sphere
+from trundle.mechanics.shapes import Ellipsoid, Sphere, Torus
 
 PRINCIPAL = tr.Principal(0.003, 0.004, 0.005)
 BODIES = {

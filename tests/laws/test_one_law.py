@@ -7,7 +7,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
-from tests.additions import Ball, Ellipsoid, Torus, Tumble
+from tests.additions import Ball, Tumble
 from tests.precise import DIGITS
 from tests.tolerances import EXACT
 
@@ -15,7 +15,7 @@ import trundle as tr
 from trundle.mechanics.algebra import Quaternion, Vector
 from trundle.mechanics.contact import roll
 from trundle.mechanics.parameters import numbers, with_numbers
-from trundle.mechanics.shapes import Sphere
+from trundle.mechanics.shapes import Ellipsoid, Sphere, Torus
 
 PUSHED = (tr.Force((0.25, -0.5, 0.125)), tr.Torque((0.01, 0.02, -0.03)), tr.Drag(0.3))
 TUMBLE = Tumble(1.5, 0.25, -0.75, Vector(0.5, -0.25, 0.125), 2.0)

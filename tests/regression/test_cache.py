@@ -13,13 +13,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.additions import Ball, Ellipsoid, Tumble
+from tests.additions import Ball, Tumble
 from tests.tolerances import SOLVER
 
 import trundle as tr
 from trundle.mechanics.algebra import Vector
 from trundle.mechanics.loads import BodyMotion, Load
 from trundle.mechanics.parameters import numbers
+from trundle.mechanics.shapes import Ellipsoid
 from trundle.solve import taylor
 from trundle.solve.tracing import heyoka_system
 

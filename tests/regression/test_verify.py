@@ -12,14 +12,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.additions import Ellipsoid, Tumble
+from tests.additions import Tumble
 from tests.draws import runs
 
 import trundle as tr
 from trundle import verify
 from trundle.mechanics.algebra import Vector
 from trundle.mechanics.contact import roll
-from trundle.mechanics.shapes import Sphere
+from trundle.mechanics.shapes import Ellipsoid, Sphere
 from trundle.mechanics.system import RollingSystem, State
 from trundle.solve import methods, samples, tracing
 from trundle.solve.exact import SphereOnPlane

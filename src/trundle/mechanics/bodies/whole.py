@@ -79,7 +79,16 @@ def homogeneous(shape: Shape) -> Whole:
     """
     import numpy as np
 
-    widths = _half_widths(shape)
+    refusal = InvalidValueError(
+        "support_function",
+        "must be smooth enough to integrate over",
+        getattr(shape, "formula", shape),
+        "Round it off, or give `mass` and `moments`.",
+    )
+    try:
+        widths = _half_widths(shape)
+    except ArithmeticError:
+        raise refusal from None
     size = max(widths)
     latitudes, before, change = _FEWEST, None, np.inf
     while latitudes <= _MOST and change > _CLOSE:
@@ -88,8 +97,7 @@ def homogeneous(shape: Shape) -> Whole:
             change = float(np.abs(now - before).max() / np.abs(now).max())
         latitudes, before = 2 * latitudes, now
     if before is None or not change <= _CLOSE_ENOUGH or not before[0] > 0:
-        remedy = "Round it off, or give `mass` and `moments`."
-        raise InvalidValueError("support_function", "must be smooth enough to integrate over", str(shape), remedy)
+        raise refusal
     return _whole(before, size)
 
 

@@ -47,7 +47,7 @@ def check_convex(h: Callable[[Vector], Jet], text: str) -> None:
     nu = _directions()
     size = look.size(nu)
     least, most = look.radii(nu)
-    if abs(most).max() <= 1e-12 * look.furthest(nu):
+    if size <= 1e-12 * look.furthest(nu):
         raise InvalidValueError(KEY, "must be that of a body", text, "This one is a point: it has no size.")
     at, worst = _closer(nu, least, lambda nu: look.radii(nu)[0])
     if worst < -_ROUNDING * size:
