@@ -20,8 +20,9 @@ class SupportFunction(Shape):
     """A smooth convex body given by its support function h(ν) = X(ν)·ν, in metres.
 
     h says how far the body reaches in the direction of the outward unit normal ν = (nu_x, nu_y, nu_z). With it go the
-    support map X = ∇h and the inverse curvature ∂X/∂ν = ∇∇h, of h continued so that h(λν) = λ h(ν) (Schneider 2014,
-    section 1.7); both are exact derivatives. The formula only needs to be right for vectors of length 1.
+    support map X = ∇h and the inverse curvature ∂X/∂ν = ∇∇h, of h continued so that h(λν) = λ h(ν)
+    ([schneider2014], sections 1.7 and 2.5); both are exact derivatives. The formula only needs to be right for vectors
+    of length 1.
 
     Parameters
     ----------
