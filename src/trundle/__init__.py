@@ -76,6 +76,7 @@ if TYPE_CHECKING:
     from .statics import Equilibria, Equilibrium, equilibria
     from .steady import PeriodicMotion, SteadyMotion, SteadyMotions, periodic_motion, steady_motions
     from .trajectory import Event, Trajectory
+    from .vakonomic import VakonomicComparison, VakonomicPath, compare_vakonomic, vakonomic_path
     from .verify import Card
 
 # Public name -> module that holds it: `import trundle` loads nothing until a name is used.
@@ -148,6 +149,7 @@ _HOMES = {
     "statics": ("equilibria", "Equilibria", "Equilibrium"),
     "steady": ("steady_motions", "SteadyMotions", "SteadyMotion", "periodic_motion", "PeriodicMotion"),
     "trajectory": ("Trajectory", "Event"),
+    "vakonomic": ("compare_vakonomic", "vakonomic_path", "VakonomicComparison", "VakonomicPath"),
     "verify": ("Card",),
     "checking": ("check", "check_equations", "Check", "Mistake"),
 }
@@ -230,11 +232,14 @@ __all__ = [
     "Twin",
     "UnevenSpin",
     "UnknownNameError",
+    "VakonomicComparison",
+    "VakonomicPath",
     "Wobble",
     "__version__",
     "air_drag",
     "check",
     "check_equations",
+    "compare_vakonomic",
     "derive",
     "equilibria",
     "periodic_motion",
@@ -245,6 +250,7 @@ __all__ = [
     "to_turntable",
     "twin",
     "units",
+    "vakonomic_path",
 ]
 
 

@@ -20,6 +20,7 @@ from .equilibria import equilibria
 from .sensitivity import sensitivity
 from .steady import steady
 from .twin import twin
+from .vakonomic import vakonomic
 
 if TYPE_CHECKING:
     from ..trajectory import Trajectory
@@ -46,6 +47,7 @@ def command() -> Any:
     app.command("constraints", short_help="Holonomic or not: decide it, and show why.")(constraints.constraints)
     app.command("sensitivity", short_help="Rank the shortcomings of a turntable by what they do.")(sensitivity)
     app.command("equilibria", short_help="Where a body stays, put down at rest.")(equilibria)
+    app.command("vakonomic", short_help="A negative control: the wrong path of stationary action.")(vakonomic)
     app.command("steady", short_help="Steady motions, and whether they are stable.")(steady)
     return typer.main.get_command(app)
 
