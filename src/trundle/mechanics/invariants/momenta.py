@@ -99,7 +99,7 @@ def _routh(system: RollingSystem, at: Record) -> list[Scalar]:
 
 
 def _has_free_momentum(system: RollingSystem) -> tuple[str, ...]:
-    return (FLIGHT,) if all(without_torque(load) for load in system.all_loads) else ()
+    return (FLIGHT,) if all(load.at_contact or without_torque(load) for load in system.all_loads) else ()
 
 
 SPIN = Invariant(

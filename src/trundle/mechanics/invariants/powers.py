@@ -54,9 +54,10 @@ def _working(system: RollingSystem) -> tuple[str, ...]:
 
 
 def _has_energy(system: RollingSystem) -> tuple[str, ...]:
-    if not all(conservative(load) for load in system.all_loads):
+    if not all(conservative(load) or load.at_contact for load in system.all_loads):
         return ()
-    return _working(system) if fixed(system) else (FLIGHT,)
+    touched = any(load.at_contact for load in system.all_loads)
+    return _working(system) if fixed(system) and not touched else (FLIGHT,)
 
 
 def _has_moving_energy(system: RollingSystem) -> tuple[str, ...]:
@@ -72,7 +73,9 @@ def _has_energy_with_table(system: RollingSystem) -> tuple[str, ...]:
 
 def _has_momentum_with_table(system: RollingSystem) -> tuple[str, ...]:
     free = free_axle(system.support.motion) is not None
-    return PHASES if free and symmetric_potential(system) else ()
+    # What the support exerts besides, such as a couple against rolling, it feels itself.
+    others = all(load.at_contact or (conservative(load) and load.symmetric) for load in system.all_loads)
+    return PHASES if free and others else ()
 
 
 ENERGY = Invariant("energy", "½mV² + ½Ω·JΩ + U", "J", _has_energy, _energy)
