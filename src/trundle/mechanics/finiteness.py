@@ -1,7 +1,7 @@
 """Whether a formula in the time is finite throughout a run, decided by interval arithmetic and not by looking.
 
 Where the bounds of a formula over an interval are finite, so is the formula all over it. Where they are not, the
-interval is halved, from its beginning on, until either they are or the instant is found (Moore 1966).
+interval is halved, from its beginning on, until either they are or the instant is found [moore1966].
 """
 
 from __future__ import annotations

@@ -130,7 +130,7 @@ class Magnus(_OfAir):
     ----------
     coefficient : float or quantity
         c, kg; a positive one pushes a ball with topspin down. For a small slow sphere in air of density ρ it is
-        π ρ a³ (Rubinow and Keller 1961); a fast or rough one has a C_L of its own, c = ½ρ C_L A |V|/|Ω|.
+        π ρ a³ [rubinow1961]; a fast or rough one has a C_L of its own, c = ½ρ C_L A |V|/|Ω|.
 
     Examples
     --------

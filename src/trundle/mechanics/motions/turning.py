@@ -45,7 +45,7 @@ def about(axis: Vector, angle: Scalar) -> Matrix:
     Returns
     -------
     Matrix
-        The rotation (Rodrigues 1840).
+        The rotation, by Rodrigues' formula.
 
     Examples
     --------
