@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import fields
 from typing import Any
 
 from ...errors import ScenarioError
@@ -129,9 +128,3 @@ def wordless(key: str, thing: Any) -> ScenarioError:
     """
     kind = type(thing).__name__
     return ScenarioError(key, "must be of a kind that the scenario format has words for", kind, "Keep it in Python.")
-
-
-def moving(kind: str, motion: Any, key: str) -> Words:
-    """Return the words of a motion that is its numbers."""
-    numbers = {part.name: number_of(getattr(motion, part.name), f"{key}.{part.name}") for part in fields(motion)}
-    return {"kind": kind, **numbers}
