@@ -12,7 +12,7 @@ from .flow import Array
 from .symmetry import moved_by
 
 NOTHING = 1e-7  # of the scale's rate: a slower mode is none
-_KERNEL = 1e-9  # singular values below this share of the rate belong to the family
+_KERNEL = 2e-12  # singular values below this share of the rate belong to the family
 _PURE = 1e-9  # share of the frequency below which growth is rounding
 
 

@@ -23,6 +23,8 @@ FOUND = 2e-14  # closing error in units of the scale: as good as it gets
 CLOSED = 1e-9  # likewise: what is more has not closed
 _RANK = 1e-7
 _ONE = 1e-5  # from 1: a multiplier that differs less is 1
+_BACK = 0.3  # share of the way that it was away: what is left of that is back
+_CLOSE_ENOUGH = 1e-3  # in units of the scale: a better move need not be looked for
 _NEAR = 0.03  # share of the signature's spread below which a dip may be a return
 _STARTS = 24
 
@@ -141,7 +143,7 @@ def periodic_motion(system: Any, start: State | None = None, *, longest: Any = N
     flow, y = flow_of(system, start)
     moves = symmetries(flow, y)
     most = 200 / flow.rate if longest is None else float(checks.positive(longest, "time", "longest"))
-    return _refined(flow, y, moves, _first_return(flow, y, most))
+    return _refined(flow, y, moves, *_first_return(flow, y, moves, most))
 
 
 def signature(flow: Flow, y: Any) -> Array:
@@ -160,18 +162,24 @@ def signature(flow: Flow, y: Any) -> Array:
     return np.stack([np.broadcast_to(row, np.shape(y)[1:]) for row in rows]).astype(float)
 
 
-def _first_return(flow: Flow, y: Array, most: float) -> float:
-    """Return about when the signature first comes back to what it was, moving the same way."""
+def _first_return(flow: Flow, y: Array, moves: Array, most: float) -> tuple[float, Array, float]:
+    """Return about when a run first comes back but for a symmetry, that symmetry's move, and how far away it was.
+
+    The signature says when to look; a mirror image, as of half a swing, has the same signature and does not come back.
+    """
     span = min(most, 12 / flow.rate)
     while True:
         times = np.linspace(0, span, _SAMPLES * max(1, round(span * flow.rate / 12)) + 1)
-        marks = signature(flow, carried(flow, y, times))
+        states = carried(flow, y, times)
+        marks = signature(flow, states)
         apart = np.linalg.norm(marks - marks[:, :1], axis=0)
         if apart.max() < 1e-10:
             raise SolverError("The start is a steady motion: it has no period. Nudge it, or ask for steady motions.")
+        far = _bringing_back(flow, y, moves, states[:, int(apart.argmax())])[1]
         for i in _dips(times, marks, apart):
-            a, b, c = apart[i - 1 : i + 2] ** 2
-            return float(times[i] + 0.5 * (times[1] - times[0]) * (a - c) / max(a - 2 * b + c, 1e-300))
+            move, off = _bringing_back(flow, y, moves, states[:, i])
+            if off < _BACK * far:
+                return float(times[i]), move, far
         if span >= most:
             raise SolverError(
                 f"Nothing came back within {span:g} s. Give a longer `longest`, or a start nearer to a periodic motion."
@@ -193,9 +201,9 @@ def _dips(times: Array, marks: Array, apart: Array) -> list[int]:
     ]
 
 
-def _refined(flow: Flow, y: Array, moves: Array, period: float) -> PeriodicMotion:
+def _refined(flow: Flow, y: Array, moves: Array, period: float, move: Array, far: float) -> PeriodicMotion:
     """Return the periodic motion next to a guess: Newton's method, for period and move first, then the state, too."""
-    move, slope = _bringing_back(flow, y, moves, period), None
+    begin, slope = y, None
     best, last = (math.inf, y, period, move), math.inf
     for _ in range(_STEPS):
         basis, error = flow.tangent(y), (reference(flow, y, period, move) - y) / flow.scale
@@ -214,6 +222,8 @@ def _refined(flow: Flow, y: Array, moves: Array, period: float) -> PeriodicMotio
     if best[0] > CLOSED:
         raise SolverError("No motion that closes was found near the start. Begin nearer to a periodic motion.")
     _, y, period, move = best
+    if np.linalg.norm((y - begin) / flow.scale) > _BACK * far:
+        raise SolverError("The nearest motion that closes is another one. Begin nearer to a periodic motion.")
     return _described(flow, moves, *best, _slope(flow, y, period, move))
 
 
@@ -240,9 +250,8 @@ def _newton(flow: Flow, y: Array, moves: Array, slope: Array | None, error: Arra
     return np.asarray(step * min(1.0, 0.2 / max(float(np.linalg.norm(step[:count])), 1e-300)))
 
 
-def _bringing_back(flow: Flow, y: Array, moves: Array, period: float) -> Array:
-    """Return the move that takes the run's end closest to its start: Gauss and Newton's method from many turns."""
-    end = carried(flow, y, period)
+def _bringing_back(flow: Flow, y: Array, moves: Array, end: Array) -> tuple[Array, float]:
+    """Return the move that takes a state closest to the start, and what is left: Gauss and Newton's method."""
     random, best, least = np.random.default_rng(1883), np.eye(11), math.inf
     for trial in range(_STARTS if len(moves) else 1):
         shares = random.uniform(-math.pi, math.pi, len(moves)) if trial else np.zeros(len(moves))
@@ -262,7 +271,9 @@ def _bringing_back(flow: Flow, y: Array, moves: Array, period: float) -> Array:
         off = float(np.linalg.norm((there - y) / flow.scale))
         if off < least:
             best, least = move, off
-    return best
+        if off < _CLOSE_ENOUGH:
+            break
+    return best, least
 
 
 _Q = np.array([False] * 3 + [True] * 4 + [False] * 3)

@@ -104,7 +104,7 @@ class SteadyMotion:
 
         return check(self.relative, self.reduced)
 
-    def along(self, name: str, lowest: Any = None, highest: Any = None, *, holding: Any = (), count: int = 61) -> Sweep:
+    def along(self, name: str, lowest: Any = None, highest: Any = None, *, holding: Any = (), count: int = 41) -> Sweep:
         """Follow the family while one quantity changes, and find where stability begins and ends.
 
         Parameters

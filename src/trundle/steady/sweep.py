@@ -15,18 +15,28 @@ from ..mechanics import checks
 from ..mechanics.motions import Spin
 from .asking import STEADY, check_name, described, held_from
 from .finding import Relative, nearest
-from .flow import Array, bears_complex_numbers
+from .flow import Array
 from .modes import Mode
 from .quantities import KINDS, UNITS, Held, body_axis
-from .symmetry import symmetries
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from .result import SteadyMotion
 
-_HALVINGS = 44  # of the interval in which stability changes
-_CLOSE = (0.25, 0.09, 0.03, 0.01, 0.002)  # of a grid step: further values next to a limit, where the curves are steep
+_ROUNDS = 24  # of the search for a limit of stability
+_ASIDE = 1e-3  # of the interval: how far from the expected limit it is probed
+_FEW = 9  # values asked for: no further ones are added
+_CLOSE = (
+    1.4,
+    0.9,
+    0.55,
+    0.3,
+    0.15,
+    0.06,
+    0.02,
+    0.004,
+)  # of a grid step: further values next to a limit, where the curves are steep
 _NOTHING_TO_TWICE = (0.02, 2.0)
 _FROM_REST = 20.0  # scales of the rate, for a quantity that is zero
 
@@ -165,7 +175,7 @@ def follow(motion: SteadyMotion, name: str, lowest: Any, highest: Any, holding: 
     if not members:
         raise SolverError(f"No steady motion with {name} between {low:g} and {high:g} {UNITS[name]} was reached.")
     limits = _limits(members, at)
-    for limit in limits:
+    for limit in limits if len(grid) > _FEW else ():
         _close_to(limit, float(grid[1] - grid[0]), members, at)
     values = sorted(members)
     ended = "; the family was lost before the end" if ended_up or ended_down else ""
@@ -208,8 +218,7 @@ def _member(near: Relative, name: str, value: float, held: tuple[Held, ...]) -> 
     system = near.flow.system
     system = replace(system, support=replace(system.support, motion=Spin(value)))
     flow = replace(near.flow, system=system, turning=value if near.flow.turning else 0.0)
-    flow = replace(flow, by_complex_step=bears_complex_numbers(flow, near.y))
-    return nearest(flow, near.y, symmetries(flow, near.y), held)
+    return nearest(flow, near.y, near.symmetries, held)
 
 
 def _unstable(one: SteadyMotion) -> bool:
@@ -217,21 +226,40 @@ def _unstable(one: SteadyMotion) -> bool:
 
 
 def _limits(members: dict[float, SteadyMotion], at: At) -> list[float]:
-    """Return the values between which the verdict turns, by halving."""
-    limits, ordered = [], sorted(members)
-    for a, b in pairwise(ordered):
-        if _unstable(members[a]) == _unstable(members[b]):
-            continue
-        low, high, near = a, b, members[a]
-        for _ in range(_HALVINGS):
-            middle = 0.5 * (low + high)
-            one = at(middle, near.relative)
-            if one is None or middle in (low, high):
-                break
-            low, high = (middle, high) if _unstable(one) == _unstable(members[a]) else (low, middle)
-            near = one
-        limits.append(0.5 * (low + high))
-    return limits
+    """Return the values at which the verdict turns."""
+    ordered = sorted(members)
+    pairs = [(a, b) for a, b in pairwise(ordered) if _unstable(members[a]) != _unstable(members[b])]
+    return [_limit(members[a], members[b], (a, b), at) for a, b in pairs]
+
+
+def _limit(one: SteadyMotion, other: SteadyMotion, ends: tuple[float, float], at: At) -> float:
+    """Return where growth begins, between a value where a nudge grows and one where none does.
+
+    The square of the growth falls to 0 there in a straight line, so two values with growth tell where; the probes on
+    either side of that place make sure of it, and halving takes over where they do not.
+    """
+    grows, (x, y) = (one, ends) if _unstable(one) else (other, ends[::-1])
+    known = [(x, grows.growth**2)]
+    for _ in range(_ROUNDS):
+        guess, aside, (low, high) = 0.5 * (x + y), _ASIDE * (y - x), sorted((x, y))
+        if len(known) > 1 and known[-1][1] != known[-2][1]:
+            (a, square_a), (b, square_b) = known[-2:]
+            line = b - square_b * (b - a) / (square_b - square_a)
+            guess = min(max(line, low + 2 * abs(aside)), high - 2 * abs(aside))
+        for value in (guess - aside, guess + aside):
+            if not low < value < high:
+                continue
+            probe = at(value, grows.relative)
+            if probe is None:
+                return 0.5 * (x + y)
+            if _unstable(probe):
+                x, grows = value, probe
+                known.append((value, probe.growth**2))
+            else:
+                y = value
+        if abs(y - x) <= 4 * np.spacing(abs(x)):
+            break
+    return 0.5 * (x + y)
 
 
 def _close_to(limit: float, step: float, members: dict[float, SteadyMotion], at: At) -> None:
