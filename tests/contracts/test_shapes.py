@@ -8,13 +8,15 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 from tests.contracts.contract_shape import ShapeContract
 from tests.precise import across, directions, precisely, slope, unit
 from tests.tolerances import EXACT
 
 import trundle as tr
 from trundle.errors import InvalidValueError
-from trundle.mechanics.algebra import Vector
+from trundle.mechanics.algebra import Quaternion, Vector
 from trundle.mechanics.parameters import numbers, with_numbers
 from trundle.mechanics.shapes import (
     Disc,
@@ -238,3 +240,29 @@ def test_the_circle_that_a_torus_is_rounded_about_is_the_disc() -> None:
     gap = Torus(0.4, 0.1).support_map(nu) - Disc(0.4).support_map(nu)
     assert math.isclose(float(gap.norm()), 0.1, rel_tol=1e-15)
     assert np.allclose([float(part) for part in gap], [0.1 * float(part) for part in nu], rtol=1e-14)
+
+
+leaves = st.sampled_from(["nu_x", "nu_y", "nu_z", "0.1", "1", "3", "1e-12", "1e12", "0", "pi"])
+formulas = st.recursive(
+    leaves,
+    lambda inner: st.one_of(
+        st.builds("({} {} {})".format, inner, st.sampled_from("+-*/"), inner),
+        st.builds("{}({})".format, st.sampled_from(["sin", "cos", "tan", "sqrt", "exp", "log", "abs"]), inner),
+        st.builds("({})**{}".format, inner, st.integers(-3, 6)),
+    ),
+    max_leaves=6,
+)
+
+
+@settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.too_slow])
+@given(st.one_of(formulas, formulas.map("1 + 0.01*({})".format)))
+def test_any_formula_is_a_body_or_one_error(text: str) -> None:
+    try:
+        body = tr.Body.shape_formula(text, density=1000.0)
+    except InvalidValueError:
+        return
+    Q = Quaternion(0.5, -0.5, 0.1, math.sqrt(0.49)).matrix()
+    rho, C = body.shape.contact(Q, Vector(0.0, 0.6, 0.8))
+    assert math.isfinite(body.mass)
+    assert all(math.isfinite(part) for part in (*rho, *C.a, *C.b, *C.c))
+    assert rho.dot(Vector(0.0, 0.6, 0.8)) < 0  # the centre of mass is on the body's side

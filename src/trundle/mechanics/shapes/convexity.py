@@ -15,6 +15,7 @@ KEY = "support_function"
 _LARGEST = 1e30  # in SI, as everywhere; squares of it are still finite
 _ROUNDING = 1e-9  # share of the size that a radius of curvature may seem negative by
 _FLATTEST = 1e6  # times the size: a larger radius of curvature is that of a flat face
+_JUMP = 1e-6  # share of the size that X(ν) must not jump by
 _LATITUDES, _LONGITUDES = 40, 80
 _CIRCLES, _STEPS = 24, 256
 _CLOSER, _HALVINGS = 20, 30
@@ -116,7 +117,10 @@ class _Look:
         e, f = (np.repeat(v, _STEPS, axis=0) for v in (e, f))
         first = np.tile(np.arange(_STEPS) * (2 * np.pi / _STEPS), _CIRCLES)
         last = first + 2 * np.pi / _STEPS
-        worst = np.argsort(-self._jump(e, f, first, last))[:_CLOSER]
+        jumps = self._jump(e, f, first, last)
+        if jumps.max() <= _JUMP * size:
+            return
+        worst = np.argsort(-jumps)[:_CLOSER]
         e, f, first, last = e[worst], f[worst], first[worst], last[worst]
         for _ in range(_HALVINGS):
             middle = 0.5 * (first + last)
@@ -124,7 +128,7 @@ class _Look:
             first, last = np.where(before, first, middle), np.where(before, middle, last)
         ends = [self.derivatives(_along(e, f, angle)[0])[0] for angle in (first, last)]
         gap = np.linalg.norm(ends[1] - ends[0], axis=-1)
-        if gap.max() > 1e-6 * size:
+        if gap.max() > _JUMP * size:
             at = int(np.argmax(gap))
             raise _flat(str(self.text), _along(e, f, first)[0][at])
 
