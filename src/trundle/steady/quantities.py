@@ -11,7 +11,7 @@ import numpy as np
 from .flow import Array, Flow
 
 KINDS = {
-    "speed": "speed",
+    "speed": "velocity",
     "spin": "angular velocity",
     "lean": "angle",
     "turning": "angular velocity",

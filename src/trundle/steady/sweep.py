@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 
     from .result import SteadyMotion
 
-_ROUNDS = 24  # of the search for a limit of stability
+_ROUNDS = 80  # of the search for a limit of stability, at most
+_SHARP = 1e-13  # share to which it is found
 _ASIDE = 1e-3  # of the interval: how far from the expected limit it is probed
 _FEW = 9  # values asked for: no further ones are added
 _CLOSE = (
@@ -235,30 +236,31 @@ def _limits(members: dict[float, SteadyMotion], at: At) -> list[float]:
 def _limit(one: SteadyMotion, other: SteadyMotion, ends: tuple[float, float], at: At) -> float:
     """Return where growth begins, between a value where a nudge grows and one where none does.
 
-    The square of the growth falls to 0 there in a straight line, so two values with growth tell where; the probes on
-    either side of that place make sure of it, and halving takes over where they do not.
+    The square of the growth falls to 0 there in a nearly straight line, so two values with growth tell where. It is
+    probed on either side of that place, ever wider until the limit lies between; halving takes over where that fails.
     """
     grows, (x, y) = (one, ends) if _unstable(one) else (other, ends[::-1])
-    known = [(x, grows.growth**2)]
-    for _ in range(_ROUNDS):
-        guess, aside, (low, high) = 0.5 * (x + y), _ASIDE * (y - x), sorted((x, y))
-        if len(known) > 1 and known[-1][1] != known[-2][1]:
-            (a, square_a), (b, square_b) = known[-2:]
-            line = b - square_b * (b - a) / (square_b - square_a)
-            guess = min(max(line, low + 2 * abs(aside)), high - 2 * abs(aside))
-        for value in (guess - aside, guess + aside):
-            if not low < value < high:
-                continue
+    known, aside = [(grows.growth**2, x)], _ASIDE
+    for count in range(_ROUNDS):
+        if abs(y - x) <= _SHARP * max(abs(x), abs(y)):
+            break
+        guess, step = 0.5 * (x + y), aside * (y - x)
+        probes = [guess]
+        if len(known) > 1 and count < _ROUNDS // 2:
+            (square, near), (larger, far) = sorted(known)[:2]
+            guess = near - square * (far - near) / (larger - square)
+            low, high = sorted((x + 0.5 * step, y - 0.5 * step))
+            probes = [min(max(guess - step, low), high), min(max(guess + step, low), high)]
+        for value in probes:
             probe = at(value, grows.relative)
             if probe is None:
                 return 0.5 * (x + y)
             if _unstable(probe):
-                x, grows = value, probe
-                known.append((value, probe.growth**2))
+                x, grows = (value, probe) if abs(value - y) < abs(x - y) else (x, grows)
+                known.append((probe.growth**2, value))
             else:
-                y = value
-        if abs(y - x) <= 4 * np.spacing(abs(x)):
-            break
+                y = value if abs(value - x) < abs(y - x) else y
+        aside = _ASIDE if x in probes and y in probes else min(0.3, 8 * aside)
     return 0.5 * (x + y)
 
 
