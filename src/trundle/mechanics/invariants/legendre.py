@@ -4,7 +4,7 @@ With e the disc's axis and x = e·n, the rates ω₃ = Ω·e and η = Ω·n − 
 
     (1 − x²) dω₃/dx = −σ η,   dη/dx = −(C/A) ω₃,   σ = m a²/(C + m a²),                                    (T10)
 
-whatever the lean does in time ([appell1900], [korteweg1900]). So what they would be with the disc upright, x = 0, never
+whatever the lean does in time ([appell1900], [korteweg1899]). So what they would be with the disc upright, x = 0, never
 changes: two first integrals besides the energy.
 """
 

@@ -24,7 +24,7 @@ def spin_momentum(system: RollingSystem, at: Record) -> Vector:
 def _energy(system: RollingSystem, at: Record) -> list[Scalar]:
     V, Omega = at.motion.velocity, at.motion.angular_velocity
     kinetic = [0.5 * system.body.mass * V.dot(V), 0.5 * Omega.dot(spin_momentum(system, at))]
-    return [*kinetic, *(load.potential(at.motion) for load in system.all_loads)]
+    return [*kinetic, *(load.potential(at.motion) for load in system.all_loads if not load.at_contact)]
 
 
 def _about_axis(system: RollingSystem, at: Record) -> list[Scalar]:
