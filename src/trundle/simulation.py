@@ -115,7 +115,7 @@ def _check_start(system: RollingSystem, start: State) -> None:
         raise InvalidValueError(
             "start.position", "must put the body on the support or over it", start.position, f"Gap: {gap:g} m."
         )
-    system.check_rim(point, start.position)
+    system.check_rim(contact, start.position)
     if gap <= SLIP_TOLERANCE * contact.offset.norm():
         _check_slip(system, start, contact)
         straight.check_start(system, start)

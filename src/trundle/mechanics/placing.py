@@ -56,7 +56,7 @@ class Placing:
         contact = touch(system, 0.0, begin.carried(surface.point(u, v)), q, own)
         offset = begin.rotation.transpose @ contact.offset
         contact = touch(system, 0.0, begin.carried(surface.under(u, v, offset)), q, own)
-        system.check_rim(contact.point, self.position)
+        system.check_rim(contact, self.position)
         fitting.check_start(system, contact, q, self.position)
         turning = self._given_turning(contact, gap)
         V = self._velocity(contact, begin.rotation.transpose @ (contact.point - begin.origin), gap, turning)

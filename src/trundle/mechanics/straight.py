@@ -93,7 +93,7 @@ def check_start(system: RollingSystem, start: State) -> None:
         return
     q, Omega = Quaternion(*start.orientation), Vector(*start.angular_velocity)
     axis = q.matrix() @ system.body.shape.axis
-    contact = settle(system, start.time, Vector(*start.position), q)
+    contact = settle(system, start.time, Vector(*start.position), q, start.support)
     if abs(axis.dot(contact.normal)) > TOLERANCE:
         remedy = "Leave `orientation` out and it is laid across its way."
         raise InvalidValueError(
@@ -103,7 +103,7 @@ def check_start(system: RollingSystem, start: State) -> None:
         raise _crooked(system, "its axis along a straight line of the surface", "Leave `orientation` out, or turn it.")
     if _across(Omega, axis) > TOLERANCE * Omega.norm():
         raise _crooked(system, "its Ω along its axis", "A sphere rolls in every direction.")
-    now = roll(system, start.time, contact.point, q, Omega)
+    now = roll(system, start.time, contact.point, q, Omega, start.support)
     size = max(now.angular_acceleration.norm(), Omega.dot(Omega))
     if _across(now.angular_acceleration, axis) > TOLERANCE * size:
         raise _crooked(

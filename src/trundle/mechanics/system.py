@@ -10,6 +10,7 @@ from ..errors import InvalidValueError
 from . import checks
 from .algebra import E_Z, ZERO, Vector
 from .bodies import Body
+from .contact import Contact
 from .loads import Acting, BodyMotion, Gravity, Load
 from .motions import Fixed, Motion
 from .scalars import Scalar, is_number, namespace
@@ -245,9 +246,9 @@ class RollingSystem:
         placing = Placing(self, position, velocity, spin, angular_velocity, orientation, roll, attitude, height)
         return placing.state()
 
-    def check_rim(self, point: Vector, position: Any) -> None:
+    def check_rim(self, contact: Contact, position: Any) -> None:
         """Refuse a contact point at or beyond the rim, naming the position as the user gave it."""
-        rim, distance = self.support.surface.rim, (point - self.support.motion.at(0.0).origin).norm()
+        rim, distance = self.support.surface.rim, (contact.point - contact.support.origin).norm()
         if rim is not None and distance >= rim:
             raise InvalidValueError(
                 "position",

@@ -64,7 +64,7 @@ def _start(system: RollingSystem, start: State) -> Words:
     if tuple(start.orientation) != (1.0, 0.0, 0.0, 0.0) or system.body.shape.axis is not None:
         words["orientation"] = numbers_of(start.orientation, "start.orientation")
     turning = numbers_of(start.angular_velocity, "start.angular_velocity")
-    normal = settle(system, 0.0, Vector(*start.position), Quaternion(*start.orientation)).normal
+    normal = settle(system, 0.0, Vector(*start.position), Quaternion(*start.orientation), start.support).normal
     spin = number_of(normal.dot(Vector(*start.angular_velocity)), "start.spin")
     # The spin says it all where the rest of the angular velocity follows from it to the last digit.
     try:
@@ -78,7 +78,7 @@ def _start(system: RollingSystem, start: State) -> Words:
 
 def _place(system: RollingSystem, start: State) -> Words:
     """Return where the body is and how fast, in the surface's own coordinates."""
-    surface, begin = system.support.surface, system.support.motion.at(0.0)
+    surface, begin = system.support.surface, system.support.motion.at(0.0, *start.support)
     centre = begin.rotation.transpose @ (Vector(*start.position) - begin.origin)
     V = begin.rotation.transpose @ Vector(*start.velocity)
     along = [V.dot(direction) for direction in surface.directions(centre)]

@@ -30,7 +30,7 @@ from .samples import Event
 
 _STILL = 1e-9  # share of the speeds at the contact at which slip or turning has all but ended
 _WEIGHTLESS = 1e-13  # share of the forces at hand below which nothing presses the body on
-_TAKE_OFF = 1e-14  # gap, as a share of |ρ|, with which a flight that begins without a bounce is started
+_TAKE_OFF = 1e-15  # gap, as a share of |ρ|, with which a flight begins: it must not end where it begins
 SETTLED = 1e-6  # height, as a share of |ρ|, below which a bounce is cut
 
 
@@ -141,7 +141,8 @@ def after(system: RollingSystem, law: Law, stop: str, time: float, numbers: Any)
     before = _state(system, law, time, numbers)
     stop = stop.removeprefix("near ")
     if stop in ("grip", "stop") and _goes_on(system, before, numbers, stop):
-        return Next(law, time, list(numbers), _extras(system, law, before))
+        slip = Vector(*map(float, numbers[10:13])) if stop == "grip" else None
+        return Next(law, time, list(numbers), _extras(system, _Touch.of(system, before), slip))
     if stop == "land":
         return _struck(system, before)
     if stop == "lift":
@@ -149,7 +150,7 @@ def after(system: RollingSystem, law: Law, stop: str, time: float, numbers: Any)
     if stop in ("grip", "stop"):
         before = _come_to_it(system, law, time, numbers, stop)
         time = before.time
-    follows = _touching(system, before, started=stop == "start")
+    follows = _touching(system, before, gave_way=stop)
     kind, said = _NAMES[type(follows.law).code] if type(follows.law).code != law.code else ("slip", _TURNED)
     if stop == "grip" and isinstance(follows.law, SlippingLaw):
         kind, said = "slip", _TURNED
@@ -173,10 +174,11 @@ def _goes_on(system: RollingSystem, state: State, numbers: Any, stop: str) -> bo
     return bool(left > 1e3 * _still(system, at))
 
 
-def _extras(system: RollingSystem, law: Law, state: State) -> tuple[float, ...]:
-    at = _Touch.of(system, state)
-    still = _still(system, at) / (1.0 if isinstance(law, SlippingLaw) else at.arm)
-    return (still**2,) if law.extras else ()
+def _extras(system: RollingSystem, at: _Touch, slip: Vector | None = None) -> tuple[float, ...]:
+    """Return what the stops of slipping take: when slip is all but nothing, and its direction; or those of turning."""
+    v = state_turning(at.contact, at.Omega) if slip is None else slip
+    still = _still(system, at) / (at.arm if slip is None else 1.0)
+    return still**2, *_floats(v / v.norm())
 
 
 def spins(system: RollingSystem, law: Law, time: float, numbers: Any) -> bool:
@@ -237,7 +239,7 @@ def _struck(system: RollingSystem, before: State) -> Next:
     if bounces:
         after = at.moving(V, Omega, own)
         event = Event(time, "land", f"{said} and bounced at t = {time:.9g} s", before, after)
-        return _fly(system, after, 0.0, (event,))
+        return _fly(system, after, _TAKE_OFF * at.arm, (event,))
     after = _set_down(system, at.moving(V, Omega, own))
     cut = "; the bounces to come are lower than a millionth of the body and were cut" if off > 0 else ""
     kind = "settle" if off > 0 else "land"
@@ -270,8 +272,11 @@ def _come_to_it(system: RollingSystem, law: Law, time: float, numbers: Any, stop
     return replace(at.moving(at.contact.rolling_velocity(Omega), Omega), time=time + wait)
 
 
-def _touching(system: RollingSystem, state: State, started: bool = False) -> Next:
-    """Return the phase of a body that touches and stays: slipping where it slips, else what its forces ask for."""
+def _touching(system: RollingSystem, state: State, gave_way: str = "") -> Next:
+    """Return the phase of a body that touches and stays: slipping where it slips, else what its forces ask for.
+
+    Where static friction or the resistance has just given way, "slip" or "start", rounding no longer decides it.
+    """
     at = _Touch.of(system, state)
     support, limit = system.support, SLIP_TOLERANCE * at.speed
     if support.friction == 0:
@@ -279,19 +284,19 @@ def _touching(system: RollingSystem, state: State, started: bool = False) -> Nex
         return Next(law, state.time, law.pack(system, state))
     if at.sliding.norm() > limit:
         law = SlippingLaw()
-        return Next(law, state.time, law.pack(system, state), _extras(system, law, state))
-    if any(load.stops for load in system.loads) and not started:
+        return Next(law, state.time, law.pack(system, state), _extras(system, at, at.sliding))
+    if any(load.stops for load in system.loads) and gave_way != "start":
         resting = _resting(system, at)
         if resting is not None:
             return resting
-    return _rolling(system, at)
+    return _rolling(system, at, slips=gave_way == "slip")
 
 
 def _still(system: RollingSystem, at: _Touch) -> float:
     return _STILL * at.scale(system)
 
 
-def _rolling(system: RollingSystem, at: _Touch) -> Next:
+def _rolling(system: RollingSystem, at: _Touch, *, slips: bool) -> Next:
     """Return rolling where the support can make it do so, else slipping or flight."""
     state = at.state
     now = roll(system, state.time, at.contact.point, at.orientation, at.Omega, state.support)
@@ -303,7 +308,7 @@ def _rolling(system: RollingSystem, at: _Touch) -> Next:
     if N < 0 and not weightless:
         return _lifted(system, state)
     mu = system.support.friction
-    if mu is not None and f.norm() > mu * max(N, 0.0) * (1 + CONE_SLACK) + _WEIGHTLESS * forces:
+    if slips or (mu is not None and f.norm() > mu * max(N, 0.0) * (1 + CONE_SLACK) + _WEIGHTLESS * forces):
         return _begins_to_slip(system, at, f)
     if any(load.stops for load in system.loads):
         return _turning_on(system, at, lifts=not weightless)
@@ -322,7 +327,7 @@ def _turning_on(system: RollingSystem, at: _Touch, *, lifts: bool) -> Next:
         way = driven * (-4 * still / driven.norm()) if driven.norm() > 0 else ZERO
         Omega = at.Omega - turning + way
         state = at.moving(at.contact.rolling_velocity(Omega), Omega)
-    return Next(law, state.time, law.pack(system, state), (still**2,))
+    return Next(law, state.time, law.pack(system, state), _extras(system, _Touch.of(system, state)))
 
 
 def _resting(system: RollingSystem, at: _Touch) -> Next | None:
@@ -344,7 +349,7 @@ def _begins_to_slip(system: RollingSystem, at: _Touch, needed: Vector) -> Next:
     numbers = law.pack(system, state)
     hat = _way(system, at, needed)
     numbers[10:13] = _floats(hat * (4 * still))
-    return Next(law, state.time, numbers, (still**2,))
+    return Next(law, state.time, numbers, _extras(system, at, hat))
 
 
 def _way(system: RollingSystem, at: _Touch, needed: Vector) -> Vector:

@@ -116,7 +116,7 @@ class RollingLaw(Law):
             found["slip"] = most * most * (1 + CONE_SLACK) - f.dot(f)
         if self.extras:
             turning = state_turning(now.contact, Vector(*state[7:10]))
-            found |= _ending("stop", turning, now.angular_acceleration, extras[0])
+            found |= _ending("stop", turning, extras)
         return {**found, **self._bounds(system, now.contact, Quaternion(*state[3:7]), 0.0)}
 
     def pack(self, system: RollingSystem, state: State) -> list[float]:
@@ -136,7 +136,7 @@ class RollingLaw(Law):
 class RollingWithResistance(RollingLaw):
     """Rolling that comes to a stop where the body no longer turns over the support."""
 
-    extras = 1
+    extras = 4  # the square of what is all but nothing, and the direction at the beginning
 
 
 class SlippingLaw(Law):
@@ -144,7 +144,7 @@ class SlippingLaw(Law):
 
     code = SLIPPING
     variables = (*CONTACT, "s_x", "s_y", "s_z")
-    extras = 1
+    extras = 4  # as for `RollingWithResistance`
 
     def _now(self, system: RollingSystem, time: Scalar, state: Numbers) -> Slipping:
         p, q, Omega, s, own = self.split(state)
@@ -161,7 +161,7 @@ class SlippingLaw(Law):
         now, s = self._now(system, time, state), Vector(*state[10:13])
         found = {"lift": now.normal_force}
         if self.extras:
-            found |= _ending("grip", s, now.slip_rate, extras[0])
+            found |= _ending("grip", s, extras)
         return {**found, **self._bounds(system, now.contact, Quaternion(*state[3:7]), 0.0)}
 
     def pack(self, system: RollingSystem, state: State) -> list[float]:
@@ -304,13 +304,14 @@ class Held:
 CONE_SLACK = 1e-9
 
 
-def _ending(name: str, v: Vector, rate: Vector, near: Scalar) -> dict[str, Scalar]:
+def _ending(name: str, v: Vector, extras: Numbers) -> dict[str, Scalar]:
     """Return two stops for a vector that shrinks to nothing.
 
-    Where its direction stays, v·v̇ passes through zero with it; where it turns, the law grows singular there, and the
-    run stops just before.
+    Where its direction stays, its part along the direction it had passes through zero with it. Where it turns, the law
+    grows singular there, and the run stops just before; a quarter turn alone is no end.
     """
-    return {name: -v.dot(rate), f"near {name}": v.dot(v) - near}
+    near, *before = extras
+    return {name: v.dot(Vector(*before)), f"near {name}": v.dot(v) - near}
 
 
 def state_turning(contact: Contact, angular_velocity: Vector) -> Vector:

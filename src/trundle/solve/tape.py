@@ -75,32 +75,35 @@ class Node:
         return _Functions
 
     def __add__(self, other: Any) -> Any:
-        return self if _is(other, 0) else self.tape.record("+", self, other)
+        return self if _is(other, 0) else self._with("+", self, other)
 
     __radd__ = __add__
 
     def __sub__(self, other: Any) -> Any:
-        return self if _is(other, 0) else self.tape.record("-", self, other)
+        return self if _is(other, 0) else self._with("-", self, other)
 
     def __rsub__(self, other: Any) -> Any:
-        return -self if _is(other, 0) else self.tape.record("-", other, self)
+        return -self if _is(other, 0) else self._with("-", other, self)
 
     def __mul__(self, other: Any) -> Any:
-        if not isinstance(other, (int, float, Node)):
-            return NotImplemented  # a vector or a matrix knows better
         if _is(other, 0):
             return 0.0
         if _is(other, 1):
             return self
-        return -self if _is(other, -1) else self.tape.record("*", self, other)
+        return -self if _is(other, -1) else self._with("*", self, other)
 
     __rmul__ = __mul__
 
     def __truediv__(self, other: Any) -> Any:
-        return self if _is(other, 1) else self.tape.record("/", self, other)
+        return self if _is(other, 1) else self._with("/", self, other)
 
     def __rtruediv__(self, other: Any) -> Any:
-        return 0.0 if _is(other, 0) else self.tape.record("/", other, self)
+        return 0.0 if _is(other, 0) else self._with("/", other, self)
+
+    def _with(self, operation: str, *operands: Any) -> Any:
+        """Record an operation with another scalar; vectors, matrices and jets know better."""
+        known = all(isinstance(part, (int, float, Node)) for part in operands)
+        return self.tape.record(operation, *operands) if known else NotImplemented
 
     def __neg__(self) -> Any:
         operation, *operands = self.tape.steps[self.index]

@@ -136,7 +136,7 @@ def _magnified(system: RollingSystem, start: State, at: Samples, method: str) ->
 def _nudged(system: RollingSystem, start: State, change: float) -> State:
     """Return a start that rolls a little faster: along the axis of a cylinder, or else with its own Ω."""
     q, Omega = Quaternion(*start.orientation), Vector(*start.angular_velocity)
-    contact = settle(system, start.time, Vector(*start.position), q)
+    contact = settle(system, start.time, Vector(*start.position), q, start.support)
     n, axis = contact.normal, system.body.shape.axis
     if axis is not None:
         direction = q.matrix() @ axis

@@ -212,12 +212,20 @@ class BallInLeaningCylinder(ClosedForm):
         return a[0] * b[0] - self._share * a[1] * b[1], a[0] * b[1] + a[1] * b[0]
 
     def _since(self, t: Any) -> Any:
-        return self._pendulum.angle_at(t) - self._pendulum.angle
+        """Return Δ = θ − θ₀, counted on over whole rounds."""
+        if not _is_mpmath(t):
+            return self._pendulum.angle_at(t) - self._pendulum.angle
+        import mpmath
+
+        sine, cosine, _, _ = self._pendulum._halves(t)
+        half = mpmath.atan2(sine, cosine) - mpmath.mpf(self._pendulum.angle) / 2
+        rounds = round((self._since(float(t)) / 2 - float(half)) / (2 * math.pi))  # a float tells these
+        return 2 * (half + rounds * 2 * mpmath.pi)
 
     def _turned(self, t: Any) -> tuple[Pair, Pair]:
         """Return (cos qΔ, sin qΔ/q) and their integrals over time since the start."""
         constants = self._pendulum._constants
-        if type(t).__module__.partition(".")[0] == "mpmath":
+        if _is_mpmath(t):
             first, second = self._precise.at(t)
             return self._pair(self._since(t)), (first, second)
         if constants.scale == 0:
@@ -324,3 +332,7 @@ class BallInLeaningCylinder(ClosedForm):
     def position_at(self, t: Any) -> Vector:
         """Return the centre in the inertial support frame, m, at a time since the start, s."""
         return self.motion_at(t)[0]
+
+
+def _is_mpmath(t: Any) -> bool:
+    return type(t).__module__.partition(".")[0] == "mpmath"

@@ -18,6 +18,7 @@ from ...mechanics.algebra import Vector
 from ...mechanics.scalars import is_number
 
 _POINTS = 24
+_MOST_KNOWN = 1000
 _POINTS_A_DIGIT = 1.1  # with pieces a third as long as the nearest singularity is away, 6.4⁻ⁿ is what is left
 
 
@@ -163,14 +164,22 @@ class PreciseRunning:
     def __init__(self, function: Callable[[Any], Any], step: float) -> None:
         self.function, self.step = function, step
         self.sums: list[NDArray[Any]] = []  # up to the end of each piece
+        self.known: dict[Any, NDArray[Any]] = {}  # the same time is asked for again and again
         self.digits = 0
 
     def at(self, t: Any) -> NDArray[Any]:
         """Return the integrals from 0 to t ≥ 0."""
         import mpmath
 
-        if self.digits != mpmath.mp.dps:
-            self.digits, self.sums = mpmath.mp.dps, []
+        if self.digits != mpmath.mp.dps or len(self.known) > _MOST_KNOWN:
+            self.digits, self.sums, self.known = mpmath.mp.dps, [], {}
+        if t not in self.known:
+            self.known[t] = self._at(t)
+        return self.known[t]
+
+    def _at(self, t: Any) -> NDArray[Any]:
+        import mpmath
+
         whole = max(0, int(mpmath.floor(t / self.step)))
         while len(self.sums) < whole:
             begin = len(self.sums) * mpmath.mpf(self.step)

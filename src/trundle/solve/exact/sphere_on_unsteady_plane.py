@@ -23,6 +23,7 @@ _LONGEST = 0.5  # s, of a piece: what a rate or a load does within a fiftieth of
 _MOST_PHASE = 2.0  # rad of κ and e-folds of drag on a piece
 _SHARE, _SHORTEST = 4e-15, 1e-13  # left by the last coefficients; of a piece where the rate or a load has a kink
 _MOST_PIECES = 2_000_000
+_MOST_KNOWN, _MOST_KINKS = 1000, 200
 
 
 @dataclass(frozen=True)
@@ -230,11 +231,11 @@ class SphereOnUnsteadyPlane(ClosedForm):
         """
         if not is_one(self):
             return one_by_one(self, t)
-        zeta, moment, turned = (self._precise if _is_mpmath(t) else self._course).at(t)
-        m, a = self.mass, self.radius
+        course = self._precise if _is_mpmath(t) else self._course
+        course.reach(t)
         (omega, omega_rate), (flat, normal, push, _) = self.rates(t), self.pushes(t)
-        growth = 1j * (self.share * omega) - self.gamma
-        V = growth * zeta + moment
+        zeta, V, turned = course.at(t, omega)
+        m, a, growth = self.mass, self.radius, 1j * (self.share * omega) - self.gamma
         A = 1j * (self.share * omega_rate) * zeta + growth * V + push
         Omega, R = (1j * V + omega * zeta) / a, m * A - flat + self.drag * V
         zero = 0 * zeta.real
@@ -250,12 +251,6 @@ class SphereOnUnsteadyPlane(ClosedForm):
         """Return the centre in the inertial support frame, m, at a time since the start, s."""
         return self.motion_at(t)[0]
 
-    @property
-    def _begin(self) -> tuple[complex, complex]:
-        """ζ and M at the start."""
-        zeta, rate = complex(*self.position), float(self.rates(0.0)[0])
-        return zeta, complex(*self.velocity) - (1j * self.share * rate - self.gamma) * zeta
-
     @cached_property
     def _course(self) -> _Course:
         return _Course(self)
@@ -266,31 +261,40 @@ class SphereOnUnsteadyPlane(ClosedForm):
 
 
 class _Course:
-    """ζ and M piece by piece: ζ = e^Λ (ζ_j + ∫e^−Λ M dt), M = M_j + ∫φ dt, Λ = ∫(iκ − γ)dt from the piece's start."""
+    """ζ and ζ̇ piece by piece, from ζ_j and V_j at the start of each, so that strong drag costs no digits.
+
+    ζ = ζ_j + ξ with ξ = e^Λ ∫e^−Λ N dt, ζ̇ = λξ + N, N = V_j + i(κ − κ_j)ζ_j + ∫φ dt, Λ = ∫λ dt and λ = iκ − γ.
+    """
 
     def __init__(self, form: SphereOnUnsteadyPlane) -> None:
         self.form, self.edges, self.length = form, [0.0], min(_LONGEST, _start_length(form))
-        self.zeta, self.moment = ([part] for part in form._begin)
-        self.turned = [0.0]
-        self.series: list[Any] = []  # of ∫ω and ∫K_z, of ∫e^−Λ M and ∫φ
+        self.zeta, self.velocity = [complex(*form.position)], [complex(*form.velocity)]
+        self.rate = [float(form.rates(0.0)[0])]
+        self.turned, self.kinks = [0.0], 0
+        self.series: list[Any] = []  # of ∫ω and ∫K_z, of ∫e^−Λ N and ∫φ
         self.stacked: Any = None
 
-    def at(self, t: Any) -> tuple[Any, Any, Any]:
-        """Return ζ, M and ∫K_z dt."""
-        t = np.asarray(t, dtype=float)
-        if self.edges[-1] <= t.max(initial=0.0):
-            self._extend(float(t.max()))
+    def reach(self, t: Any) -> None:
+        """Work out the pieces up to the last of the times."""
+        last = float(np.max(t, initial=0.0))
+        if self.edges[-1] <= last:
+            self._extend(last)
+
+    def at(self, t: Any, omega: Any) -> tuple[Any, Any, Any]:
+        """Return ζ, ζ̇ and ∫K_z dt; ω is the plane's rate then."""
+        t, form = np.asarray(t, dtype=float), self.form
         if self.stacked is None:
             self.stacked = (
                 np.array(self.edges), *(np.stack(part, axis=-1) for part in zip(*self.series, strict=True)),
-                *(np.array(part) for part in (self.zeta, self.moment, self.turned)),
+                *(np.array(part) for part in (self.zeta, self.velocity, self.rate, self.turned)),
             )  # fmt: skip
-        edges, real, plane, zeta, moment, turned = self.stacked
+        edges, real, plane, zeta, velocity, rate, turned = self.stacked
         j = np.clip(np.searchsorted(edges, t, side="right") - 1, 0, len(edges) - 2)
         x = 2 * (t - edges[j]) / (edges[j + 1] - edges[j]) - 1
         (angle, couple), (weighted, push) = series_at(real, j, x), series_at(plane, j, x)
-        grown = np.exp(1j * self.form.share * angle - self.form.gamma * (t - edges[j]))
-        return grown * (zeta[j] + weighted), moment[j] + push, turned[j] + couple
+        gone = np.exp(1j * form.share * angle - form.gamma * (t - edges[j])) * weighted
+        driven = velocity[j] + 1j * form.share * (omega - rate[j]) * zeta[j] + push
+        return zeta[j] + gone, (1j * form.share * omega - form.gamma) * gone + driven, turned[j] + couple
 
     def _extend(self, end: float) -> None:
         self.stacked = None
@@ -316,45 +320,71 @@ class _Course:
         _check_finite(form.start_time + times, omega, push, couple)
         swept = half * (form.gamma + form.share * np.abs(omega).max())
         kinked = self.length <= _SHORTEST * max(1.0, begin)
-        if swept > _MOST_PHASE and not kinked:
+        if swept > _MOST_PHASE:
+            if kinked:
+                raise SolverError(f"The plane's rate grows beyond any bound at t = {form.start_time + begin:.6g} s.")
             return False
         decay = np.exp(form.gamma * half * (1 + this.points) - 1j * form.share * half * (this.running @ omega))
-        moment = self.moment[-1] + half * (this.running @ push)
-        weighted = decay * moment
+        carried = 1j * form.share * (omega - self.rate[-1]) * self.zeta[-1]
+        weighted = decay * (self.velocity[-1] + carried + half * (this.running @ push))
         values = np.stack([omega, couple, weighted, push])
         tail = np.abs(values @ this.coefficients[-2:].T).max(axis=1)
         size = np.abs(values).max(axis=1)
         size[0] = max(size[0], 1 / (form.share * half + 1e-300))
         size[3] += size[2] / half
-        if (tail > _SHARE * size).any() and not kinked:
-            return False
+        slope = np.abs(np.diff(values, axis=1) / np.diff(times)).max(axis=1)
+        noise = 2e-15 * (form.start_time + begin + self.length) * slope  # from the rounding of the time itself
+        if (tail > _SHARE * size + noise).any():
+            if not kinked:
+                return False
+            self.kinks += 1
+            if self.kinks > _MOST_KINKS:
+                raise SolverError(
+                    "The plane's rate, or a load, is not smooth enough for quadrature near "
+                    f't = {form.start_time + begin:.6g} s. Use method="taylor" or method="runge-kutta".'
+                )
         series = half * (this.antiderivative @ values.T)
         angle, turned, added, push = series.sum(axis=0)
-        grown = np.exp(1j * form.share * angle.real - 2 * form.gamma * half)
+        gone = np.exp(1j * form.share * angle.real - 2 * form.gamma * half) * added
+        rate = float(form.rates(begin + self.length)[0])
+        driven = self.velocity[-1] + 1j * form.share * (rate - self.rate[-1]) * self.zeta[-1] + push
         self.series.append((series[:, :2].real, series[:, 2:]))
-        self.zeta.append(complex(grown * (self.zeta[-1] + added)))
-        self.moment.append(complex(self.moment[-1] + push))
+        self.zeta.append(complex(self.zeta[-1] + gone))
+        self.velocity.append(complex((1j * form.share * rate - form.gamma) * gone + driven))
+        self.rate.append(rate)
         self.turned.append(self.turned[-1] + float(turned.real))
         self.edges.append(begin + self.length)
         return True
 
 
 class _PreciseCourse:
-    """The same with mpmath's numbers, on even pieces."""
+    """The same with mpmath's numbers, on even pieces and by T9 as it stands: ζ = e^Λ (ζ_j + ∫e^−Λ M dt)."""
 
     def __init__(self, form: SphereOnUnsteadyPlane) -> None:
         self.form, self.digits, self.length = form, 0, min(0.25, _start_length(form))
         self.states: list[Any] = []
+        self.known: dict[Any, tuple[Any, Any, Any]] = {}
 
-    def at(self, t: Any) -> tuple[Any, Any, Any]:
-        """Return ζ, M and ∫K_z dt at t ≥ 0."""
+    def reach(self, t: Any) -> None:
+        """Pieces are worked out as they are needed."""
+
+    def at(self, t: Any, omega: Any) -> tuple[Any, Any, Any]:
+        """Return ζ, ζ̇ and ∫K_z dt at t ≥ 0; ω is the plane's rate then."""
         import mpmath
 
         form = self.form
-        if self.digits != mpmath.mp.dps:
+        if self.digits != mpmath.mp.dps or len(self.known) > _MOST_KNOWN:
             zeta, rate = mpmath.mpc(*form.position), form.rates(mpmath.mpf(0))[0]
             moment = mpmath.mpc(*form.velocity) - (1j * (self._share * rate) - self._gamma) * zeta
-            self.digits, self.states = mpmath.mp.dps, [(zeta, moment, mpmath.mpf(0))]
+            self.digits, self.states, self.known = mpmath.mp.dps, [(zeta, moment, mpmath.mpf(0))], {}
+        if t not in self.known:
+            self.known[t] = self._at(t)
+        zeta, moment, turned = self.known[t]
+        return zeta, (1j * (self._share * omega) - self._gamma) * zeta + moment, turned
+
+    def _at(self, t: Any) -> tuple[Any, Any, Any]:
+        import mpmath
+
         length = mpmath.mpf(self.length)
         whole = max(0, int(mpmath.floor(t / length)))
         while len(self.states) <= whole:
