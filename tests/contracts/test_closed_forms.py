@@ -8,15 +8,15 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
-from tests.additions import Ball, Ellipsoid, Tumble
+from tests.additions import Ball, Tumble
 from tests.contracts.contract_closed_form import ClosedFormContract
 
 import trundle as tr
 from trundle.errors import OutOfDomainError
 from trundle.mechanics.algebra import Vector
 from trundle.mechanics.loads import BodyMotion, Load
-from trundle.mechanics.shapes import Sphere
-from trundle.solve.exact import CylinderOnCylinder, SphereOnPlane
+from trundle.mechanics.shapes import Ellipsoid, Sphere
+from trundle.solve.exact import BallInLeaningCylinder, CylinderOnCylinder, SphereOnPlane, closed_form
 
 BALL = tr.Body.solid_sphere(radius=0.025, mass=0.065)
 SHELL = tr.Body.hollow_sphere(radius=0.02, mass=0.0027)
@@ -124,17 +124,11 @@ class TestCylinderOnCylinder(ClosedFormContract):
 
     def outside(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
         inside, start = in_pipe(BALL)
-        leaning = in_pipe(BALL, tilt="80 deg")
-        along = in_pipe(BALL, velocity=(0.2, 0.1))
-        spun = in_pipe(BALL, velocity=(0.2, 0.0), spin=1.0)
         swung = replace(inside, support=replace(inside.support, motion=tr.UnevenSpin(1.0, 0.1, 2.0)))
         top = tr.State((0.0, 0.0, 0.525), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
         eccentric = replace(BALL, shape=Sphere(0.025, Vector(0.0, 0.0, 0.001)))
         still = replace(start, position=(0.475, 0.0, 0.25), velocity=(0.0, 0.0, 0.0), angular_velocity=(0.0, 0.0, 0.0))
         return [
-            (*leaning, "along the cylinder's axis"),
-            (*along, "start moves along"),
-            (*spun, "spins across"),
             (swung, swung.place((0.7, 0.25)), "UnevenSpin"),
             (replace(inside, support=replace(inside.support, surface=Ball(0.5, 1.0))), top, "Ball"),
             (replace(inside, body=eccentric), still, "about its centre"),
@@ -143,6 +137,19 @@ class TestCylinderOnCylinder(ClosedFormContract):
             (replace(inside, loads=(tr.Torque((0.0, 0.0, 0.1)),)), start, "torque"),
             (replace(inside, loads=(tr.Force(("t", 0.0, 0.0)),)), start, "Force"),
         ]
+
+    @pytest.mark.parametrize(
+        ("case", "word"),
+        [
+            (in_pipe(BALL, tilt="80 deg"), "along the cylinder's axis"),
+            (in_pipe(BALL, velocity=(0.2, 0.1)), "start moves along"),
+            (in_pipe(BALL, velocity=(0.2, 0.0), spin=1.0), "spins across"),
+        ],
+    )
+    def test_what_goes_along_the_axis_is_another_form_s(self, case: Any, word: str) -> None:
+        with pytest.raises(OutOfDomainError, match=word):
+            CylinderOnCylinder.of(*case)
+        assert isinstance(closed_form(*case), BallInLeaningCylinder)
 
     def offset(self, system: tr.RollingSystem, at: Vector) -> Vector:
         sign, distance = (1 if system.support.surface.side == "outside" else -1), mpmath.hypot(at.x, at.y)

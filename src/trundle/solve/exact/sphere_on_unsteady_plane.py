@@ -20,7 +20,7 @@ from .base import ClosedForm
 from .quadrature import is_one, one_by_one, rule, series_at
 
 _LONGEST = 0.5  # s, of a piece: what a rate or a load does within a fiftieth of it would not be seen
-_MOST_PHASE = 2.0  # rad of κ and e-folds of drag on a piece
+_MOST_PHASE = 0.7  # rad of κ and e-folds of drag on a piece
 _SHARE, _SHORTEST = 4e-15, 1e-13  # left by the last coefficients; of a piece where the rate or a load has a kink
 _MOST_PIECES = 2_000_000
 _MOST_KNOWN, _MOST_KINKS = 1000, 200
