@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from .algebra import Quaternion, Vector
+from .algebra import ZERO, Quaternion, Vector
 from .contact import Contact, touch
 from .loads import BodyMotion
 from .scalars import Scalar, namespace
@@ -96,7 +96,7 @@ def slip(
     own : tuple of Scalar
         The coordinates of the support's own motion, where it has some.
     direction : Vector, optional
-        ŝ, where s itself does not show it; zero where there is no friction.
+        ŝ, where s itself does not show it; `ZERO` where there is no friction.
 
     Returns
     -------
@@ -108,7 +108,6 @@ def slip(
     A ball that slides without turning slows down at μ g:
 
     >>> import trundle as tr
-    >>> from trundle.mechanics.algebra import ZERO
     >>> lane = tr.RollingSystem(tr.Body.solid_sphere(0.1, 7.0), tr.Support(tr.Plane(), friction=0.1), gravity=10.0)
     >>> now = slip(lane, 0.0, ZERO, Quaternion(1.0, 0.0, 0.0, 0.0), ZERO, Vector(8.0, 0.0, 0.0))
     >>> round(now.reaction.x / 7.0, 12), round(now.slip_rate.x, 12)
@@ -124,7 +123,7 @@ def slip(
     Q = orientation.matrix()
     J = system.body.inertia_in_space(Q)
     hat = slip_direction(s) if direction is None else direction
-    d = n - hat * system.support.sliding_friction
+    d = n if hat is ZERO else n - hat * system.support.sliding_friction
     torque = rho.cross(d) + acting.couple if acting.has_couple else rho.cross(d)
     freely = J.solve(acting.torque - system.body.gyroscopic(Q, Omega))
     turned = J.solve(torque)
@@ -188,7 +187,6 @@ def fly(
     Examples
     --------
     >>> import trundle as tr
-    >>> from trundle.mechanics.algebra import ZERO
     >>> floor = tr.RollingSystem(tr.Body.solid_sphere(0.1, 7.0), tr.Support(tr.Plane()), gravity=10.0)
     >>> now = fly(floor, 0.0, ZERO, 0.5, Quaternion(1.0, 0.0, 0.0, 0.0), ZERO, Vector(1.0, 0.0, -2.0))
     >>> now.gap_rate, now.acceleration.z, now.centre.z
