@@ -109,7 +109,7 @@ def test_circling_on_a_sphere_is_a_tops_steady_precession(
 
 @pytest.mark.parametrize("body", [SOLID, SHELL])
 def test_the_golfers_dilemma(body: tr.Body) -> None:
-    """In an upright cylinder the ball bobs at sqrt(k/(1 + k)) of the rate at which it goes round (gualtieri2006)."""
+    """In an upright cylinder the ball bobs at sqrt(k/(1 + k)) of the rate at which it goes round."""
     system = tr.RollingSystem(body, tr.Support(tr.Cylinder(0.6)))
     (motion,) = tr.steady_motions(system, system.place(velocity=(3.0, 0.0)))
     k = body.inertia_ratio

@@ -66,7 +66,7 @@ def test_a_leaning_disc_circles_as_the_multipliers_say(name: str, lean: float, t
 
 @pytest.mark.parametrize(("name", "share"), [("disc", 1 / 3), ("ring", 1 / 4)])
 def test_rolling_upright_is_stable_above_the_known_speed(name: str, share: float) -> None:
-    """v² > g a/3 for a disc, g a/4 for a hoop (routh1905, neimark1972, oreilly1996): A/(C(1 + C)) in units of m a²."""
+    """v² > g a/3 for a disc, g a/4 for a hoop (przybylska2016): A/(C(1 + C)) in units of m a²."""
     body = BODIES[name]
     system, a = on_plane(body), body.shape.radius
     v = math.sqrt(share * G * a)
@@ -83,7 +83,7 @@ def test_rolling_upright_is_stable_above_the_known_speed(name: str, share: float
 
 @pytest.mark.parametrize(("name", "share"), [("disc", 4 / 5), ("ring", 2 / 3)])
 def test_spinning_on_edge_is_stable_above_the_known_rate(name: str, share: float) -> None:
-    """ω² > g/(a(1 + A/(m a²))): 4g/(5a) for a disc, 2g/(3a) for a hoop (oreilly1996)."""
+    """ω² > g/(a(1 + A/(m a²))): 4g/(5a) for a disc, 2g/(3a) for a hoop (przybylska2016)."""
     body = BODIES[name]
     system, a = on_plane(body), body.shape.radius
     w = math.sqrt(share * G / a)

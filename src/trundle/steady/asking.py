@@ -53,7 +53,7 @@ def steady_motions(
     InvalidValueError
         If the support or the loads change with time, or a held quantity has no meaning here.
 
-    Source: relative equilibria of T1-T3; the method is that of [neimark1972], chapter III, done in numbers.
+    Source: relative equilibria of T1-T3; for disc and hoop [przybylska2016], [borisov2003].
 
     Examples
     --------
