@@ -156,3 +156,13 @@ def test_a_table_cannot_be_traced_and_says_so() -> None:
     assert not surface.analytic
     with pytest.raises(tr.OutOfDomainError, match=r"no formula to trace.*runge-kutta"):
         surface.normal(Vector(x, y, z))
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_a_start_in_python_is_written_so_that_it_reads_back(name: str) -> None:
+    surface = TABLES[name][1]
+    system = tr.RollingSystem(tr.Body.solid_sphere(0.01, 0.05), tr.Support(surface, motion=tr.Spin(2.0)))
+    start = system.place((0.15, 0.05), (0.1, -0.2), spin=3.0)
+    again = ScenarioFile.describe(system, start, duration=1.0, every=0.1).start_state()
+    for part in ("position", "velocity", "angular_velocity"):
+        assert getattr(again, part) == pytest.approx(getattr(start, part), abs=1e-13)

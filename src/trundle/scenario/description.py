@@ -79,10 +79,12 @@ def _start(system: RollingSystem, start: State) -> Words:
 def _place(system: RollingSystem, start: State) -> Words:
     """Return where the body is and how fast, in the surface's own coordinates."""
     surface, begin = system.support.surface, system.support.motion.at(0.0, *start.support)
-    centre = begin.rotation.transpose @ (Vector(*start.position) - begin.origin)
+    q = Quaternion(*start.orientation)
+    contact = settle(system, 0.0, Vector(*start.position), q, start.support)
+    own = begin.rotation.transpose @ (contact.point - begin.origin)
     V = begin.rotation.transpose @ Vector(*start.velocity)
-    along = [V.dot(direction) for direction in surface.directions(centre)]
+    place = surface.put_down_at(own, begin.rotation.transpose @ contact.offset)
     return {
-        "position": numbers_of(surface.coordinates_of(centre), "start.position"),
-        "velocity": numbers_of(along, "start.velocity"),
+        "position": numbers_of(place, "start.position"),
+        "velocity": numbers_of([V.dot(along) for along in surface.directions(own)], "start.velocity"),
     }

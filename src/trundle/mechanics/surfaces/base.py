@@ -72,11 +72,11 @@ class Surface:
         return p.x, p.y
 
     def directions(self, p: Vector) -> tuple[Vector, Vector]:
-        """Return the unit tangents along which the two coordinates grow: of x at one y, and of y at one x."""
+        """Return two unit tangents at right angles: on the first x grows and y stays, on the second y grows."""
         n = self.normal(p)
-        sqrt = namespace(*n).sqrt
-        first, second = sqrt(n.x * n.x + n.z * n.z), sqrt(n.y * n.y + n.z * n.z)
-        return Vector(n.z / first, 0.0, -(n.x / first)), Vector(0.0, n.z / second, -(n.y / second))
+        length = namespace(*n).sqrt(n.x * n.x + n.z * n.z)
+        first = Vector(n.z / length, 0.0, -(n.x / length))
+        return first, n.cross(first)
 
     def under(self, u: Scalar, v: Scalar, offset: Vector) -> Vector:  # noqa: ARG002
         """Return the contact of a body put down at coordinates (u, v); on a curved surface they are the contact's.
