@@ -44,6 +44,24 @@ def test_it_prints_the_motion_its_limit_and_draws_it(trundle: Command) -> None:
     assert "coin/steady.png" in done.files
 
 
+def test_a_slow_coin_falls(here: Command) -> None:
+    Path("slow.toml").write_text(COIN.replace("0.3 m/s", "0.1 m/s"), encoding="utf-8")
+    done = here("steady", "slow.toml", "--no-figure")
+    assert (done.status, done.err) == (0, "")
+    assert "1. rolls straight, unstable" in done.out
+    growth = math.sqrt((9.80665 / 0.012 - 3 * (0.1 / 0.012) ** 2) / 1.25)  # λ² by hand
+    assert f"a nudge grows at {growth:.6g} 1/s, by e in {1 / growth:.6g} s" in done.out
+
+
+def test_a_coin_that_nods_repeats(here: Command) -> None:
+    nods = COIN.replace("0.7071067811865476, 0.7071067811865476", "0.76, 0.65")
+    Path("nods.toml").write_text(nods, encoding="utf-8")
+    done = here("steady", "nods.toml", "--periodic")
+    assert (done.status, done.err) == (0, "")
+    assert "periodic, neutral" in done.out
+    assert "steady motion" in here("steady", "coin.toml", "--periodic").err
+
+
 def test_as_json_with_a_value_held(here: Command) -> None:
     done = here(
         "steady", "coin.toml", "--hold", "lean=20 deg", "--from", "0.2 m/s", "--to", "0.4 m/s", "--json", "--no-figure"

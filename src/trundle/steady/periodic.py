@@ -15,7 +15,7 @@ from ..scenario import ScenarioFile
 from .finding import flow_of
 from .flow import Array, Flow
 from .runs import carried, reference, slope_of_run
-from .symmetry import COUNT, group_matrix, moved_by, symmetries
+from .symmetry import COUNT, generator, group_matrix, moved_by, symmetries
 
 _SAMPLES = 400  # of the run in which the period is looked for
 _STEPS = 25
@@ -26,7 +26,9 @@ _ONE = 1e-5  # from 1: a multiplier that differs less is 1
 _BACK = 0.3  # share of the way that it was away: what is left of that is back
 _CLOSE_ENOUGH = 1e-3  # in units of the scale: a better move need not be looked for
 _NEAR = 0.03  # share of the signature's spread below which a dip may be a return
-_STARTS = 24
+_STARTS = 16  # turns from which a move that brings back is looked for
+_TRIES = 25  # steps from each
+_OTHER_SIGN = np.diag([1.0] * 3 + [-1.0] * 4 + [1.0] * 4)  # q and −q are one orientation
 
 
 @dataclass(frozen=True)
@@ -252,35 +254,30 @@ def _newton(flow: Flow, y: Array, moves: Array, slope: Array | None, error: Arra
 
 def _bringing_back(flow: Flow, y: Array, moves: Array, end: Array) -> tuple[Array, float]:
     """Return the move that takes a state closest to the start, and what is left: Gauss and Newton's method."""
+    from scipy.linalg import expm
+
+    generators = np.array([generator(row) for row in moves]).reshape(-1, 11, 11)
+    largest = max(float(np.abs(moves[:, 3:]).max(initial=0.0)), 1e-300)
     random, best, least = np.random.default_rng(1883), np.eye(11), math.inf
     for trial in range(_STARTS if len(moves) else 1):
-        shares = random.uniform(-math.pi, math.pi, len(moves)) if trial else np.zeros(len(moves))
-        move = group_matrix(shares @ moves / _largest_turn(moves)) if len(moves) else np.eye(11)
-        for _ in range(40 if len(moves) else 0):
-            there = (move @ np.append(end, 1.0))[:10]
-            there = there if np.sum(there[3:7] * y[3:7]) > 0 else np.where(_Q, -there, there)
-            free = np.stack([moved_by(row, there) for row in moves], axis=1) / flow.scale[:, None]
-            step = np.linalg.lstsq(free, (y - there) / flow.scale, rcond=1e-9)[0]
-            move = group_matrix(step @ moves) @ move
-            if np.linalg.norm(step) < 1e-13:
+        shares = random.uniform(-math.pi, math.pi, len(moves)) / largest if trial else np.zeros(len(moves))
+        move, before = expm(np.tensordot(shares, generators, 1)), math.inf
+        for _ in range(_TRIES):
+            there = move @ np.append(end, 1.0)
+            if there[3:7] @ y[3:7] < 0:
+                move, there = _OTHER_SIGN @ move, _OTHER_SIGN @ there
+            left = (y - there[:10]) / flow.scale
+            off = float(np.linalg.norm(left))
+            if off < least:
+                best, least = move, off
+            if not len(moves) or off > 0.99 * before:
                 break
-        there = (move @ np.append(end, 1.0))[:10]
-        if np.sum(there[3:7] * y[3:7]) < 0:
-            move = np.diag([1.0] * 3 + [-1.0] * 4 + [1.0] * 4) @ move
-            there = np.where(_Q, -there, there)
-        off = float(np.linalg.norm((there - y) / flow.scale))
-        if off < least:
-            best, least = move, off
-        if off < _CLOSE_ENOUGH:
+            before = off
+            step = np.linalg.lstsq((generators @ there)[:, :10].T / flow.scale[:, None], left, rcond=1e-9)[0]
+            move = expm(np.tensordot(step, generators, 1)) @ move
+        if least < _CLOSE_ENOUGH:
             break
     return best, least
-
-
-_Q = np.array([False] * 3 + [True] * 4 + [False] * 3)
-
-
-def _largest_turn(moves: Array) -> float:
-    return max(float(np.abs(moves[:, 3:]).max()), 1e-300)
 
 
 def _described(

@@ -136,6 +136,11 @@ class SteadyMotion:
 
         return follow(self, name, lowest, highest, holding, count)
 
+    def __str__(self) -> str:
+        from .words import facts
+
+        return "\n   ".join([f"{self.kind}, {self.verdict}", *facts(self)])
+
     def as_dict(self) -> dict[str, Any]:
         """Return everything in SI units and plain types, for JSON."""
         needed = self.friction_needed
@@ -229,8 +234,8 @@ class SteadyMotions:
         Examples
         --------
         >>> import trundle as tr
-        >>> tr.steady_motions(tr.Scenario.load("tilted-turntable")).as_dict()["steady_motions"][0]["kind"]
-        'turns on the spot'
+        >>> tr.steady_motions(tr.Scenario.load("ball-in-a-trough")).as_dict()["steady_motions"][0]["verdict"]
+        'stable to first order'
         """
         return {
             "title": self.title,

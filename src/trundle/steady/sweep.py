@@ -246,8 +246,9 @@ def _limit(one: SteadyMotion, other: SteadyMotion, ends: tuple[float, float], at
             break
         guess, step = 0.5 * (x + y), aside * (y - x)
         probes = [guess]
-        if len(known) > 1 and count < _ROUNDS // 2:
-            (square, near), (larger, far) = sorted(known)[:2]
+        known.sort()
+        if len(known) > 1 and known[1][0] > known[0][0] and count < _ROUNDS // 2:
+            (square, near), (larger, far) = known[:2]
             guess = near - square * (far - near) / (larger - square)
             low, high = sorted((x + 0.5 * step, y - 0.5 * step))
             probes = [min(max(guess - step, low), high), min(max(guess + step, low), high)]

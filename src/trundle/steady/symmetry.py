@@ -81,10 +81,15 @@ def group_matrix(shares: Array) -> Array:
     """
     from scipy.linalg import expm
 
+    return np.asarray(expm(generator(shares)))
+
+
+def generator(shares: Array) -> Array:
+    """Return the infinitesimal move as a matrix on (p, q, Ω, 1), (11, 11)."""
     whole = np.zeros((11, 11))
     whole[:10, :10] = linear_part(shares, np.eye(10))
     whole[:3, 10] = shares[:3]
-    return np.asarray(expm(whole))
+    return whole
 
 
 def symmetries(flow: Flow, y: Array) -> Array:

@@ -98,9 +98,9 @@ def mode_words(mode: Mode) -> str:
     """
     if mode.kind == "neutral":
         return "stands at a limit of stability: the linear law neither carries it back nor away"
-    swings = f"oscillates at {mode.frequency:.6g} rad/s, once in {2 * math.pi / mode.frequency:.6g} s" * bool(
-        mode.frequency
-    )
+    swings = ""
+    if mode.frequency:
+        swings = f"oscillates at {mode.frequency:.6g} rad/s, once in {2 * math.pi / mode.frequency:.6g} s"
     if mode.growth == 0:
         return swings
     if mode.growth > 0:
