@@ -26,7 +26,7 @@ ROWS = [  # (what stands in the file, what comes instead, the key, the value tha
     ('duration = "20 s"', "duration = -3", "`run.duration`", "-3", "Write for instance"),
     ('every = "10 ms"', "every = 0", "`run.every`", "0", "Write for instance"),
     ('every = "10 ms"', 'every = "30 s"', "`run.every`", "'30 s'", "shorter step"),
-    ('"20 cm"', '"60 cm"', "`start.position`", "'60 cm'", "the rim is at 0.5 m"),
+    ('"20 cm"', '"60 cm"', "`start.position`", "'60 cm'", "inside the rim at 0.5 m"),
     ('kind = "plane"', 'kind = "plane"\ntilt = "90 deg"', "`support.tilt`", "'90 deg'", "wall"),
     ('kind = "plane"', 'kind = "plane"\ntilt = 5', "`support.tilt`", "5", 'Did you mean "5 deg"?'),
     (NUDGE, "spin = 1\nangular_velocity = [0, 0, 1]", TURNING, "[0.0, 0.0, 1.0]", "Give `spin`"),

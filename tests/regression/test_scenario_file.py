@@ -311,7 +311,7 @@ BAD = [  # (what stands in the file, what comes instead, the key, the value, the
     ("friction = 0.3", "friction = -0.3", "support.friction", "-0.3", "must not be negative"),
     ('"1.62 m/s^2"', "-9.8", "gravity", "-9.8", "must not be negative"),
     ('"1 g/s"', "-1", "loads[2].coefficient", "-1", "must not be negative"),
-    ('"0.5 m"', '"5 cm"', "start.position", "['10 cm', 0.0]", "the rim is at 0.05 m"),
+    ('"0.5 m"', '"5 cm"', "start.position", "['10 cm', 0.0]", "inside the rim at 0.05 m"),
     ('"3 deg"', '"90 deg"', "support.tilt", "'90 deg'", "(-90 deg, 90 deg)"),
     ('"3 deg"', '"-172 deg"', "support.tilt", "'-172 deg'", "(-90 deg, 90 deg)"),
     ('"3 deg"', "3", "support.tilt", "3", 'Did you mean "3 deg"?'),
@@ -319,12 +319,21 @@ BAD = [  # (what stands in the file, what comes instead, the key, the value, the
     # starts that contradict themselves
     (VELOCITY, "angular_velocity = [0, 0, 0]", "start.angular_velocity", "[0.0, 0.0, 0.0]", "beside `spin`"),
     (
-        'spin = "1 rad/s"',
-        "angular_velocity = [0, 0, 0]",
-        "start.angular_velocity",
-        "slip",
-        "agree with rolling",
+        "friction = 0.3",
+        "kinetic_friction = 0.3",
+        "support.kinetic_friction",
+        "0.3",
+        "must stand beside `friction`",
     ),
+    ("friction = 0.3", "friction = 0.3\nkinetic_friction = 0.4", "support.kinetic_friction", "0.4", "at most"),
+    ("friction = 0.3", "restitution = 1.5", "support.restitution", "1.5", "[0, 1]"),
+    ("friction = 0.3", "restitution = -0.5", "support.restitution", "-0.5", "must not be negative"),
+    ("orientation = [0, 1, 0, 0]", "attitude = [0, 1]", "start.attitude", "[0, 1]", "a list of 3"),
+    ("orientation = [0, 1, 0, 0]", 'attitude = [0, "1 m", 0]', "start.attitude[1]", "'1 m'", "must be an angle"),
+    ("[0, 1, 0, 0]", "[0, 1, 0, 0]\nattitude = [0, 1, 0]", "start.attitude", "[0.0, 1.0, 0.0]", "`orientation`"),
+    ("[0, 1, 0, 0]", '[0, 1, 0, 0]\nheight = "-1 cm"', "start.height", "'-1 cm'", "must not be negative"),
+    (VELOCITY, 'velocity = ["1 m/s"]', "start.velocity", "['1 m/s']", "a list of 2 or 3"),
+    (VELOCITY, 'velocity = [0, 0, "1 m"]', "start.velocity[2]", "'1 m'", "must be a velocity"),
     (VELOCITY, 'velocity = "corotating"', "start.velocity", "'corotating'", "Did you mean 'co-rotating'?"),
     ("[0, 1, 0, 0]", "[0, 0, 0, 0]", "start.orientation", "[0.0, 0.0", "[1, 0, 0, 0]"),
     # what belongs to another surface, body or load
@@ -348,6 +357,14 @@ BAD = [  # (what stands in the file, what comes instead, the key, the value, the
     (RADIUS, "radius = " + "[" * 5000, "scenario", "", "nest"),
     (RADIUS, "radius = " + "9" * 5000, "scenario", "", "thousands of digits"),
 ]
+
+
+def test_a_start_that_slips_needs_a_support_that_says_how_rough_it_is() -> None:
+    smooth = WHOLE.replace("friction = 0.3\n", "")
+    slipping = ('spin = "1 rad/s"', "angular_velocity = [0, 0, 0]")
+    with pytest.raises(ScenarioError, match=r"start\.angular_velocity.*agree with rolling.*friction.*slip of"):
+        ScenarioFile.loads(smooth.replace(*slipping))
+    assert ScenarioFile.loads(WHOLE.replace(*slipping)).start_state().angular_velocity == (0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize(("there", "instead", "key", "value", "said"), BAD)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 from pydantic import Field, model_validator
@@ -102,16 +101,10 @@ class ScenarioFile(Document):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        rim, distance = self.support.rim, math.hypot(*self.start.position)
-        if rim is not None and not distance < rim:
-            remedy = f"It is {distance:g} m from the axis and the rim is at {float(rim):g} m."
-            received = written(self.start.position)
-            raise InvalidValueError("start.position", "must lie inside the rim", received, remedy)
         kinds = self.support.build().surface.coordinates
         for i, (part, kind) in enumerate(zip(self.start.position, kinds, strict=True)):
             Measure(kind)(part, f"start.position[{i}]")
-        if self.start.angular_velocity is not None or self.start.roll or self.body.build().shape.axis is not None:
-            self.start_state()  # it knows whether the start rolls
+        self.start_state()  # it knows whether the body fits there, and whether the start rolls
         return self
 
     # --- what it describes -------------------------------------------------------------------------------
@@ -162,8 +155,14 @@ class ScenarioFile(Document):
         (0.0, 0.0, 0.0)
         """
         system = self.system()
-        with _named_in("start"):
-            return system.place(**self.start.arguments())
+        with _named_in("start", self.start):
+            try:
+                return system.place(**self.start.arguments())
+            except ZeroDivisionError:
+                shown = "nothing" if self.start.attitude is None else written(self.start.attitude)
+                rule = "must stand the body on one point of its round side"
+                remedy = 'Write for instance attitude = [0, "90 deg", 0] for a disc on its rim.'
+                raise InvalidValueError("attitude", rule, shown, remedy) from None
 
     # --- for editors ----------------------------------------------------------------------------------------
 
@@ -187,15 +186,19 @@ class ScenarioFile(Document):
 
 
 class _named_in:  # noqa: N801  a context manager reads as a phrase
-    """Give a refusal by the mechanics its key in the file."""
+    """Give a refusal by the mechanics its key in the file, and the words that stand there."""
 
-    def __init__(self, table: str) -> None:
-        self.table = table
+    def __init__(self, path: str, table: Any = None) -> None:
+        self.path, self.table = path, table
 
     def __enter__(self) -> None:
         return None
 
     def __exit__(self, kind: Any, error: Any, trace: Any) -> None:
         if isinstance(error, InvalidValueError):
-            key = f"{self.table}.{error.key}" if self.table else error.key
-            raise ScenarioError(key, error.rule, error.received, error.remedy) from None
+            received = error.received if isinstance(error.received, str) else self._written(error)
+            key = f"{self.path}.{error.key}" if self.path else error.key
+            raise ScenarioError(key, error.rule, received, error.remedy) from None
+
+    def _written(self, error: InvalidValueError) -> Any:
+        return written(getattr(self.table, error.key, None) if self.table is not None else None) or error.received

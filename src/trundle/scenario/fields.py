@@ -202,6 +202,8 @@ class Measures:
         How many.
     word : str, optional
         A text that may stand instead of the list.
+    most : int, optional
+        How many there may be at most, where some may be left out at the end; absent: `size`.
 
     Examples
     --------
@@ -212,6 +214,7 @@ class Measures:
     each: Measure
     size: int
     word: str | None = None
+    most: int | None = None
 
     def __call__(self, value: Any) -> tuple[Quantity, ...] | str:
         """Return the checked numbers, or the word."""
@@ -219,7 +222,7 @@ class Measures:
             if value == self.word:
                 return value
             raise InvalidValueError("", self._rule, value, (did_you_mean(value, [self.word]) or self._remedy).strip())
-        if not isinstance(value, (list, tuple)) or len(value) != self.size:
+        if not isinstance(value, (list, tuple)) or not self.size <= len(value) <= (self.most or self.size):
             raise InvalidValueError("", self._rule, value, self._remedy)
         return tuple(self.each(part, f"[{index}]") for index, part in enumerate(value))
 
@@ -232,7 +235,8 @@ class Measures:
 
     @property
     def _rule(self) -> str:
-        return f"must be a list of {self.size}" + (f', or "{self.word}"' if self.word else "")
+        sizes = str(self.size) if self.most is None else f"{self.size} or {self.most}"
+        return f"must be a list of {sizes}" + (f', or "{self.word}"' if self.word else "")
 
     @property
     def _remedy(self) -> str:
@@ -244,7 +248,7 @@ class Measures:
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         """Return what an editor may know of it: a list of so many numbers, or the word."""
         each = self.each.__get_pydantic_json_schema__(schema, handler)
-        numbers = {"type": "array", "items": each, "minItems": self.size, "maxItems": self.size}
+        numbers = {"type": "array", "items": each, "minItems": self.size, "maxItems": self.most or self.size}
         return {"anyOf": [numbers, {"const": self.word}]} if self.word else numbers
 
 

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from ...errors import InvalidValueError
 from ..fields import written
-from .values import Angle, Duration, Place2, Rate, Rate3, Step, Table, Turn4, Velocity2
+from .values import Angle, Angle3, Duration, Height, Place2, Rate, Rate3, Step, Table, Turn4, Velocity
 
 Method = Literal["auto", "exact", "taylor", "runge-kutta"]
 
@@ -17,12 +17,16 @@ Method = Literal["auto", "exact", "taylor", "runge-kutta"]
 class Start(Table):
     """Where the body is put down, and how it moves then."""
 
-    position: Place2 = Field(description="Of the centre over a plane, x and y; on a cylinder its angle and height.")
-    velocity: Velocity2 = Field(default=(0.0, 0.0), description="Of the centre, along the two coordinates.")
+    position: Place2 = Field(description="Of the centre over a plane, of the contact on any other surface.")
+    velocity: Velocity = Field(
+        default=(0.0, 0.0), description="Of the centre, along the two coordinates, and the normal if a third is given."
+    )
     spin: Rate | None = Field(default=None, description="Angular velocity about the normal; the rest follows.")
     angular_velocity: Rate3 | None = Field(default=None, description="All of it, instead of spin.")
     orientation: Turn4 | None = Field(default=None, description="Quaternion w, x, y, z; absent: not turned.")
+    attitude: Angle3 | None = Field(default=None, description="Heading, lean and turn, instead of orientation.")
     roll: Angle = Field(default=0.0, description="Of a cylinder: how far it has rolled on since its mark was on top.")
+    height: Height = Field(default=0.0, description="Over the support, along the normal: above 0 it falls.")
 
     @model_validator(mode="after")
     def _check(self) -> Start:
@@ -30,6 +34,9 @@ class Start(Table):
             remedy = "Give `spin` and the rest follows from no slip, or all three components and no `spin`."
             shown = written(self.angular_velocity)
             raise InvalidValueError("angular_velocity", "must not stand beside `spin`", shown, remedy)
+        if self.orientation is not None and self.attitude is not None:
+            shown = written(self.attitude)
+            raise InvalidValueError("attitude", "must not stand beside `orientation`", shown, "Give one of the two.")
         length = 1.0 if self.orientation is None else math.hypot(*self.orientation)
         if not 1e-150 < length < 1e150:
             shown = written(self.orientation)
@@ -39,16 +46,14 @@ class Start(Table):
 
     def arguments(self) -> dict[str, Any]:
         """Return what `RollingSystem.place` takes."""
-        velocity = self.velocity if isinstance(self.velocity, str) else tuple(map(float, self.velocity))
-        turning = None if self.angular_velocity is None else tuple(map(float, self.angular_velocity))
-        return {
-            "position": tuple(map(float, self.position)),
-            "velocity": velocity,
-            "spin": None if self.spin is None else float(self.spin),
-            "angular_velocity": turning,
-            "orientation": None if self.orientation is None else tuple(map(float, self.orientation)),
-            "roll": float(self.roll),
-        }
+        return {name: _plain(getattr(self, name)) for name in Start.model_fields}
+
+
+def _plain(value: Any) -> Any:
+    """Return numbers without the texts that they were written as."""
+    if value is None or isinstance(value, str):
+        return value
+    return tuple(map(float, value)) if isinstance(value, tuple) else float(value)
 
 
 class Run(Table):

@@ -12,7 +12,7 @@ from pydantic_core import CoreSchema, core_schema
 from ...errors import InvalidValueError
 from ..fields import Measure, Measures, Quantity, written
 from .motions import FixedMotion, Motions
-from .values import AnyTilt, Friction, Radius, Rim, Table, Tilt
+from .values import AnyTilt, Friction, Radius, Restitution, Rim, Table, Tilt
 
 if TYPE_CHECKING:
     from ...mechanics.surfaces import Surface
@@ -86,17 +86,21 @@ Motion = Annotated[Motions, Field(discriminator="kind")]
 
 _TILT = Field(default=0.0, description="Angle of the axis to the vertical; down the first axis.")
 _FRICTION = Field(default=None, description="Coulomb coefficient; absent: never slips.")
+_KINETIC = Field(default=None, description="Coefficient while it slips, at most `friction`; absent: the same.")
+_RESTITUTION = Field(default=0.0, description="Of a landing, 0 to 1: e, of which e² of the energy comes back.")
 _FIXED = FixedMotion(kind="fixed")
 _FORMULA = "In SI: numbers, the variables, pi, + - * / **, sin, cos, tan, sqrt, exp, log, abs and hypot."
 
 
 class OnSurface(Table):
-    """What every support does with its keys: each lists its own first and then these three."""
+    """What every support does with its keys: each lists its own first and then these."""
 
     if TYPE_CHECKING:  # not here, or pydantic would put them before the surface's own
         kind: str
         tilt: float
         friction: float | None
+        kinetic_friction: float | None
+        restitution: float
         motion: Motions
 
     def surface(self) -> Surface:
@@ -106,14 +110,26 @@ class OnSurface(Table):
     @model_validator(mode="after")
     def _check(self) -> Self:
         self.surface()  # it knows what its numbers must be to each other
+        try:
+            self.build()
+        except InvalidValueError as error:
+            received = written(getattr(self, error.key, error.received))
+            raise InvalidValueError(error.key, error.rule, received, error.remedy) from None
         return self
 
     def build(self) -> Support:
         """Return the support."""
         from ...mechanics.system import Support
 
-        friction = None if self.friction is None else float(self.friction)
-        return Support(self.surface(), motion=self.motion.build(), tilt=float(self.tilt), friction=friction)
+        kinetic = None if self.kinetic_friction is None else float(self.kinetic_friction)
+        return Support(
+            self.surface(),
+            motion=self.motion.build(),
+            tilt=float(self.tilt),
+            friction=None if self.friction is None else float(self.friction),
+            kinetic_friction=kinetic,
+            restitution=float(self.restitution),
+        )
 
 
 class PlaneSupport(OnSurface):
@@ -123,6 +139,8 @@ class PlaneSupport(OnSurface):
     tilt: Tilt = Field(default=0.0, description="Angle of the plane's normal to the vertical; down the first axis.")
     rim: Rim | None = Field(default=None, description="Radius of the rim; absent: unbounded.")
     friction: Friction | None = _FRICTION
+    kinetic_friction: Friction | None = _KINETIC
+    restitution: Restitution = _RESTITUTION
     motion: Motion = _FIXED
 
     def surface(self) -> Surface:
@@ -140,6 +158,8 @@ class CylinderSupport(OnSurface):
     side: Side = "inside"
     tilt: AnyTilt = Field(default=0.0, description="Angle of the axis to the vertical; 90 deg: a trough or a log.")
     friction: Friction | None = _FRICTION
+    kinetic_friction: Friction | None = _KINETIC
+    restitution: Restitution = _RESTITUTION
     motion: Motion = _FIXED
     rim: ClassVar[None] = None
 
@@ -158,6 +178,8 @@ class BowlSupport(OnSurface):
     rim: Rim | None = Field(default=None, description="Distance of the edge from the axis; absent: a closed sphere.")
     tilt: Upright = _TILT
     friction: Friction | None = _FRICTION
+    kinetic_friction: Friction | None = _KINETIC
+    restitution: Restitution = _RESTITUTION
     motion: Motion = _FIXED
 
     def surface(self) -> Surface:
@@ -175,6 +197,8 @@ class DomeSupport(OnSurface):
     rim: Rim | None = Field(default=None, description="Distance of the edge from the axis; absent: the whole sphere.")
     tilt: Upright = _TILT
     friction: Friction | None = _FRICTION
+    kinetic_friction: Friction | None = _KINETIC
+    restitution: Restitution = _RESTITUTION
     motion: Motion = _FIXED
 
     def surface(self) -> Surface:
@@ -193,6 +217,8 @@ class ConeSupport(OnSurface):
     rim: Rim | None = Field(default=None, description="Distance of the edge from the axis; absent: unbounded.")
     tilt: AnyTilt = _TILT
     friction: Friction | None = _FRICTION
+    kinetic_friction: Friction | None = _KINETIC
+    restitution: Restitution = _RESTITUTION
     motion: Motion = _FIXED
 
     def surface(self) -> Surface:
@@ -210,6 +236,8 @@ class ParaboloidSupport(OnSurface):
     rim: Rim | None = Field(default=None, description="Distance of the edge from the axis; absent: unbounded.")
     tilt: Upright = _TILT
     friction: Friction | None = _FRICTION
+    kinetic_friction: Friction | None = _KINETIC
+    restitution: Restitution = _RESTITUTION
     motion: Motion = _FIXED
 
     def surface(self) -> Surface:
@@ -227,6 +255,8 @@ class EllipsoidalBowlSupport(OnSurface):
     depth: Radius | None = Field(default=None, description="Height of the edge over the lowest point; absent: closed.")
     tilt: Upright = _TILT
     friction: Friction | None = _FRICTION
+    kinetic_friction: Friction | None = _KINETIC
+    restitution: Restitution = _RESTITUTION
     motion: Motion = _FIXED
     rim: ClassVar[None] = None
 
@@ -246,6 +276,8 @@ class TorusTrackSupport(OnSurface):
     side: Side = "inside"
     tilt: AnyTilt = _TILT
     friction: Friction | None = _FRICTION
+    kinetic_friction: Friction | None = _KINETIC
+    restitution: Restitution = _RESTITUTION
     motion: Motion = _FIXED
     rim: ClassVar[None] = None
 
@@ -266,6 +298,8 @@ class RevolutionSupport(OnSurface):
     rim: Rim | None = Field(default=None, description="Of a formula: distance of the edge from the axis.")
     tilt: Upright = _TILT
     friction: Friction | None = _FRICTION
+    kinetic_friction: Friction | None = _KINETIC
+    restitution: Restitution = _RESTITUTION
     motion: Motion = _FIXED
 
     def surface(self) -> Surface:
@@ -288,6 +322,8 @@ class HeightFieldSupport(OnSurface):
     rim: Rim | None = Field(default=None, description="Of a formula: distance of the edge from the axis.")
     tilt: Upright = _TILT
     friction: Friction | None = _FRICTION
+    kinetic_friction: Friction | None = _KINETIC
+    restitution: Restitution = _RESTITUTION
     motion: Motion = _FIXED
 
     def surface(self) -> Surface:

@@ -46,6 +46,11 @@ def _check_cylinder_ratio(ratio: float, received: Any) -> None:
         raise InvalidValueError("", "must lie in (0, 1]", received, "1 is a hoop; no cylinder has more.")
 
 
+def _check_restitution(share: float, received: Any) -> None:
+    if not share <= 1:
+        raise InvalidValueError("", "must lie in [0, 1]", received, "1 gives back all that the landing took.")
+
+
 @dataclass(frozen=True)
 class Air(Measure):
     """How the air turns: a rate, or one of two words."""
@@ -71,6 +76,7 @@ AnyTilt = Annotated[float, Measure("angle", check=_check_any_tilt)]
 Tilt = Annotated[float, Measure("angle", check=_check_tilt)]
 Rim = Annotated[float, Measure("length", "positive", example='"0.5 m"')]
 Friction = Annotated[float, Measure("number", "not negative", example="0.3")]
+Restitution = Annotated[float, Measure("number", "not negative", _check_restitution, "0.5")]
 Rate = Annotated[float, Measure("angular velocity")]
 Coefficient = Annotated[float, Measure("damping", "not negative")]
 Duration = Annotated[float, Measure("time", "positive")]
@@ -79,7 +85,11 @@ Force3 = Annotated[tuple[float | str, float | str, float | str], Measures(Varyin
 Torque3 = Annotated[tuple[float | str, float | str, float | str], Measures(Varying("torque"), 3)]
 Rate3 = Annotated[tuple[float, float, float], Measures(Measure("angular velocity", example='"2 rad/s"'), 3)]
 Place2 = Annotated[tuple[float, float], Measures(Coordinate("length", example='"10 cm"'), 2)]
-Velocity2 = Annotated[tuple[float, float] | str, Measures(Measure("velocity"), 2, "co-rotating")]
+Velocity = Annotated[
+    tuple[float, float] | tuple[float, float, float] | str, Measures(Measure("velocity"), 2, "co-rotating", most=3)
+]
+Angle3 = Annotated[tuple[float, float, float], Measures(Measure("angle", example='"90 deg"'), 3)]
+Height = Annotated[float, Measure("length", "not negative", example='"5 cm"')]
 Angle = Annotated[float, Measure("angle")]
 Share = Annotated[float, Measure("number", example="0.01")]
 PositiveRate = Annotated[float, Measure("angular velocity", "positive")]
