@@ -1,0 +1,205 @@
+"""How T9's sphere goes on from piece to piece of time: the quadratures of a motion under a rate and loads in time."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ...errors import SolverError
+from .quadrature import rule, series_at
+
+_LONGEST = 0.5  # s, of a piece: what a rate or a load does within a fiftieth of it would not be seen
+_MOST_PHASE = 1.0  # rad of κ and e-folds of drag on a piece
+_SHARE, _SHORTEST = 4e-15, 1e-13  # left by the last coefficients; of a piece where the rate or a load has a kink
+_MOST_PIECES = 2_000_000
+_MOST_KNOWN, _MOST_KINKS = 1000, 200
+
+
+class Course:
+    """ζ and ζ̇ piece by piece, from ζ_j and V_j at the start of each, so that strong drag costs no digits.
+
+    ζ = ζ_j + ξ with ξ = e^Λ ∫e^−Λ N dt, ζ̇ = λξ + N, N = V_j + i(κ − κ_j)ζ_j + ∫φ dt, Λ = ∫λ dt and λ = iκ − γ.
+    """
+
+    def __init__(self, form: Any) -> None:
+        self.form, self.edges, self.length = form, [0.0], min(_LONGEST, _start_length(form))
+        self.zeta, self.velocity = [complex(*form.position)], [complex(*form.velocity)]
+        self.rate = [float(form.rates(0.0)[0])]
+        self.turned, self.swept, self.kinks = [0.0], [0.0], 0
+        self.series: list[Any] = []  # of ∫ω and ∫K_z, of ∫e^−Λ N and ∫φ
+        self.stacked: Any = None
+
+    def reach(self, t: Any) -> None:
+        """Work out the pieces up to the last of the times."""
+        last = float(np.max(t, initial=0.0))
+        if self.edges[-1] <= last:
+            self._extend(last)
+
+    def at(self, t: Any, omega: Any) -> tuple[Any, Any, Any]:
+        """Return ζ, ζ̇ and ∫K_z dt; ω is the plane's rate then."""
+        t, form = np.asarray(t, dtype=float), self.form
+        edges, real, plane, real0, plane0, zeta, velocity, rate, turned = self._arrays()
+        j, x = self._place(t)
+        (angle, couple), (weighted, push) = series_at(real, j, x) - real0[:, j], series_at(plane, j, x) - plane0[:, j]
+        gone = np.exp(1j * form.share * angle - form.gamma * (t - edges[j])) * weighted
+        driven = velocity[j] + 1j * form.share * (omega - rate[j]) * zeta[j] + push
+        return zeta[j] + gone, (1j * form.share * omega - form.gamma) * gone + driven, turned[j] + couple
+
+    def swept_at(self, t: Any) -> Any:
+        """Return ∫ω dt, rad."""
+        real, real0 = self._arrays()[1], self._arrays()[3]
+        j, x = self._place(np.asarray(t, dtype=float))
+        return np.array(self.swept)[j] + (series_at(real, j, x) - real0[:, j])[0]
+
+    def _arrays(self) -> Any:
+        if self.stacked is None:
+            series = [np.stack(part, axis=-1) for part in zip(*self.series, strict=True)]
+            begins = [series_at(part, np.arange(part.shape[2]), -1.0) for part in series]  # 0 but for rounding
+            states = [np.array(part) for part in (self.zeta, self.velocity, self.rate, self.turned)]
+            self.stacked = np.array(self.edges), *series, *begins, *states
+        return self.stacked
+
+    def _place(self, t: Any) -> tuple[Any, Any]:
+        """Return the piece of each time, and the place in it from −1 to 1."""
+        edges = self._arrays()[0]
+        j = np.clip(np.searchsorted(edges, t, side="right") - 1, 0, len(edges) - 2)
+        return j, 2 * (t - edges[j]) / (edges[j + 1] - edges[j]) - 1
+
+    def _extend(self, end: float) -> None:
+        self.stacked = None
+        while self.edges[-1] <= end:
+            begin = self.edges[-1]
+            self.length = min(_LONGEST, 2 * self.length)
+            while not self._piece(begin):
+                self.length /= 2
+            if len(self.series) > _MOST_PIECES:
+                raise SolverError(
+                    f"The plane's turning and the loads change too fast to be followed over {end:g} s: "
+                    f"{_MOST_PIECES} pieces end at t = {begin:g} s. Ask for a shorter run."
+                )
+
+    def _piece(self, begin: float) -> bool:
+        """Add a piece; False where it is too long for its polynomials."""
+        form, this = self.form, rule()
+        half = 0.5 * self.length
+        times = begin + half * (1 + this.points)
+        with np.errstate(all="ignore"):  # what is not finite is refused by name
+            omega = np.broadcast_to(form.rates(times)[0], times.shape)
+            _, _, push, couple = (np.broadcast_to(part, times.shape) for part in form.pushes(times))
+        _check_finite(form.start_time + times, omega, push, couple)
+        swept = half * (form.gamma + form.share * np.abs(omega).max())
+        kinked = self.length <= _SHORTEST * max(1.0, begin)
+        if swept > _MOST_PHASE:
+            if kinked:
+                raise SolverError(f"The plane's rate grows beyond any bound at t = {form.start_time + begin:.6g} s.")
+            return False
+        decay = np.exp(form.gamma * half * (1 + this.points) - 1j * form.share * half * (this.running @ omega))
+        carried = 1j * form.share * (omega - self.rate[-1]) * self.zeta[-1]
+        weighted = decay * (self.velocity[-1] + carried + half * (this.running @ push))
+        values = np.stack([omega, couple, weighted, push])
+        tail = np.abs(values @ this.coefficients[-2:].T).max(axis=1)
+        size = np.abs(values).max(axis=1)
+        size[0] = max(size[0], 1 / (form.share * half + 1e-300))
+        size[3] += size[2] / half
+        slope = np.abs(np.diff(values, axis=1) / np.diff(times)).max(axis=1)
+        noise = 2e-15 * (form.start_time + begin + self.length) * slope  # from the rounding of the time itself
+        if (tail > _SHARE * size + noise).any():
+            if not kinked:
+                return False
+            self.kinks += 1
+            if self.kinks > _MOST_KINKS:
+                raise SolverError(
+                    "The plane's rate, or a load, is not smooth enough for quadrature near "
+                    f't = {form.start_time + begin:.6g} s. Use method="taylor" or method="runge-kutta".'
+                )
+        series = half * (this.antiderivative @ values.T)
+        angle, turned, added, push = series.sum(axis=0)
+        gone = np.exp(1j * form.share * angle.real - 2 * form.gamma * half) * added
+        rate = float(form.rates(begin + self.length)[0])
+        driven = self.velocity[-1] + 1j * form.share * (rate - self.rate[-1]) * self.zeta[-1] + push
+        self.series.append((series[:, :2].real, series[:, 2:]))
+        self.zeta.append(complex(self.zeta[-1] + gone))
+        self.velocity.append(complex((1j * form.share * rate - form.gamma) * gone + driven))
+        self.rate.append(rate)
+        self.swept.append(self.swept[-1] + float(angle.real))
+        self.turned.append(self.turned[-1] + float(turned.real))
+        self.edges.append(begin + self.length)
+        return True
+
+
+class PreciseCourse:
+    """The same with mpmath's numbers, on even pieces and by T9 as it stands: ζ = e^Λ (ζ_j + ∫e^−Λ M dt)."""
+
+    def __init__(self, form: Any) -> None:
+        self.form, self.digits, self.length = form, 0, min(0.25, _start_length(form))
+        self.states: list[Any] = []
+        self.known: dict[Any, tuple[Any, Any, Any]] = {}
+
+    def reach(self, t: Any) -> None:
+        """Pieces are worked out as they are needed."""
+
+    def at(self, t: Any, omega: Any) -> tuple[Any, Any, Any]:
+        """Return ζ, ζ̇ and ∫K_z dt at t ≥ 0; ω is the plane's rate then."""
+        import mpmath
+
+        form = self.form
+        if self.digits != mpmath.mp.dps or len(self.known) > _MOST_KNOWN:
+            zeta, rate = mpmath.mpc(*form.position), form.rates(mpmath.mpf(0))[0]
+            moment = mpmath.mpc(*form.velocity) - (1j * (self._share * rate) - self._gamma) * zeta
+            self.digits, self.states, self.known = mpmath.mp.dps, [(zeta, moment, mpmath.mpf(0))], {}
+        if t not in self.known:
+            self.known[t] = self._at(t)
+        zeta, moment, turned = self.known[t]
+        return zeta, (1j * (self._share * omega) - self._gamma) * zeta + moment, turned
+
+    def _at(self, t: Any) -> tuple[Any, Any, Any]:
+        import mpmath
+
+        length = mpmath.mpf(self.length)
+        whole = max(0, int(mpmath.floor(t / length)))
+        while len(self.states) <= whole:
+            self.states.append(self._ahead(self.states[-1], (len(self.states) - 1) * length, length))
+        return self._ahead(self.states[whole], whole * length, t - whole * length)
+
+    @property
+    def _share(self) -> Any:
+        import mpmath
+
+        k = mpmath.mpf(self.form.inertia_ratio)
+        return k / (1 + k)
+
+    @property
+    def _gamma(self) -> Any:
+        import mpmath
+
+        return mpmath.mpf(self.form.drag) / (mpmath.mpf(self.form.mass) * (1 + mpmath.mpf(self.form.inertia_ratio)))
+
+    def _ahead(self, state: tuple[Any, Any, Any], begin: Any, length: Any) -> tuple[Any, Any, Any]:
+        import mpmath
+
+        this, half, (zeta, moment, turned) = rule(self.digits), length / 2, state
+        times = [begin + half * (1 + x) for x in this.points]
+        omega = np.array([self.form.rates(t)[0] for t in times], dtype=object)
+        pushes = [self.form.pushes(t) for t in times]
+        push, couple = (np.array([row[i] for row in pushes], dtype=object) for i in (2, 3))
+        exponent = self._gamma * half * (1 + this.points) - 1j * (self._share * half * (this.running @ omega))
+        grown = np.frompyfunc(mpmath.exp, 1, 1)(exponent)
+        weighted = grown * (moment + half * (this.running @ push))
+        whole = 1j * (self._share * half * (this.total @ omega)) - self._gamma * length
+        return (
+            mpmath.exp(whole) * (zeta + half * (this.total @ weighted)),
+            moment + half * (this.total @ push),
+            turned + half * (this.total @ couple),
+        )
+
+
+def _start_length(form: Any) -> float:
+    return 1.0 / max(float(form.motion.fastest_rate) + float(form.gamma), 2.0)
+
+
+def _check_finite(times: Any, *values: Any) -> None:
+    for value, name in zip(values, ("the plane's rate", "a force or torque", "a torque"), strict=True):
+        wrong = ~np.isfinite(value)
+        if wrong.any():
+            raise SolverError(f"{name[0].upper()}{name[1:]} is not finite at t = {times[wrong].min():.6g} s.")
