@@ -75,7 +75,7 @@ class BallInLeaningCylinder(ClosedForm):
 
     name = "ball round and along a leaning cylinder"
     equation = "T8"
-    source = "Abramowitz and Stegun (1964), ch. 16, for the angle; theory page, T8, for the rest, by one quadrature"
+    source = "Abramowitz and Stegun (1964), ch. 16, and one quadrature; Cross, Am. J. Phys. 89, 459 (2021); theory page"
     domain = (
         "a ball with the same inertia about every axis inside or outside a cylinder at any angle to gravity, fixed or "
         "turning steadily about its axis, under gravity and constant force"

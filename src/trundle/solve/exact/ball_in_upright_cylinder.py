@@ -66,7 +66,7 @@ class BallInUprightCylinder(ClosedForm):
 
     name = "ball round an upright cylinder"
     equation = "T7"
-    source = "Gualtieri, Tokieda et al., Am. J. Phys. 74, 497 (2006); Neimark and Fufaev (1972); theory page"
+    source = "Gualtieri et al., Golfer's dilemma, Am. J. Phys. 74, 497 (2006); theory page, T7"
     domain = (
         "a ball with the same inertia about every axis inside or outside a cylinder that is fixed or turns steadily "
         "about its axis, under gravity and constant force along that axis"

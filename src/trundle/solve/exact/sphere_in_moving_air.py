@@ -239,12 +239,12 @@ class SphereInMovingAir(ClosedForm):
         """
         m, a, k, omega = self.mass, self.radius, self.inertia_ratio, self.rate
         lam, mu, phi = 1j * self.kappa - self.gamma, 1j * self.beta, self.push
-        with np.errstate(over="ignore", invalid="ignore"):
-            base = fundamental(lam, mu, t)
         zeta0 = self.position[0] + 1j * self.position[1]
         V0 = self.velocity[0] + 1j * self.velocity[1]
-        zeta = zeta0 * base.U + V0 * base.G + phi * base.H
-        V = zeta0 * (mu * base.G) + V0 * base.G_rate + phi * base.G
+        with np.errstate(over="ignore", invalid="ignore"):
+            base = fundamental(lam, mu, t)
+            zeta = zeta0 * base.U + V0 * base.G + phi * base.H
+            V = zeta0 * (mu * base.G) + V0 * base.G_rate + phi * base.G
         if not hasattr(namespace(t), "exact") and not np.isfinite(V).all():
             raise SolverError("The ball is driven out beyond any number. Ask for a shorter run, or give a rim.")
         Omega = (1j * V + omega * zeta) / a
