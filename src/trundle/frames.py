@@ -1,27 +1,35 @@
 """The three frames that users are offered, and how a dataset goes from one to another.
 
 "support" is inertial: third axis the support's, first axis down the slope. "world" is inertial: third axis
-vertically up, second axis that of "support". "corotating" turns with the support and coincides with "support" at
-t = 0; velocities, angular velocities and orientation are those seen by somebody who turns with it.
+vertically up, second axis that of "support". "corotating" is fixed to the support's material, however that turns and
+moves: its origin and axes are the support's own. For a steady turn it coincides with "support" at t = 0. Velocities,
+angular velocities and orientation are those seen by somebody who rides on the support.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .errors import OutOfDomainError
 from .mechanics.algebra import E_Z, Matrix, Quaternion, Vector
+from .mechanics.motions import Motion, SupportState
 from .mechanics.system import Support
 
 if TYPE_CHECKING:
     import xarray
 
+Array = NDArray[np.float64]
+
 FRAMES = ("support", "world", "corotating")
+_STEP = 1.0  # rad: the support is followed in steps that turn it by less, so that half a turn is never missed
+_PIECE = 200_000  # steps followed at once
 
 
-def change(data: xarray.Dataset, support: Support, old: str, new: str) -> xarray.Dataset:
+def change(data: xarray.Dataset, support: Support, old: str, new: str, own: Sequence[str] = ()) -> xarray.Dataset:
     """Return a dataset with its vectors in another frame.
 
     Parameters
@@ -32,6 +40,8 @@ def change(data: xarray.Dataset, support: Support, old: str, new: str) -> xarray
         Gives tilt and motion.
     old, new : str
         Two of `FRAMES`.
+    own : sequence of str
+        The variables that hold the coordinates of the support's own motion, as `trundle.labels.own_names` has them.
 
     Returns
     -------
@@ -41,7 +51,7 @@ def change(data: xarray.Dataset, support: Support, old: str, new: str) -> xarray
     Raises
     ------
     OutOfDomainError
-        If the support's motion is no steady turn, so that no corotating frame is defined.
+        If the support's motion has coordinates of its own that the data lack.
 
     Examples
     --------
@@ -51,15 +61,12 @@ def change(data: xarray.Dataset, support: Support, old: str, new: str) -> xarray
         if frame == "world":
             data = _tilted(data, float(support.tilt) * (1 if forwards else -1))
         elif frame == "corotating":
-            data = _turning(data, _rate(support), forwards)
+            rate = support.motion.steady_rate
+            if rate is None:
+                data = _carried(data, support.motion, own, forwards)
+            else:
+                data = _turning(data, float(rate), forwards)
     return data.assign_attrs(frame=new)
-
-
-def _rate(support: Support) -> float:
-    rate = support.motion.steady_rate
-    if rate is None:
-        raise OutOfDomainError("A corotating frame is defined for a support that turns steadily about its axis.")
-    return float(rate)
 
 
 def _tilted(data: xarray.Dataset, tilt: float) -> xarray.Dataset:
@@ -71,7 +78,7 @@ def _tilted(data: xarray.Dataset, tilt: float) -> xarray.Dataset:
 
 
 def _turning(data: xarray.Dataset, rate: float, forwards: bool) -> xarray.Dataset:
-    """Go to the frame that turns with the support, or back."""
+    """Go to the frame that turns steadily with the support, or back."""
     angle = rate * data.time.values
     c, s = np.cos(angle), np.sin(angle) * (-1 if forwards else 1)
     turn = Matrix(Vector(c, -s, 0.0), Vector(s, c, 0.0), E_Z)
@@ -88,11 +95,100 @@ def _turning(data: xarray.Dataset, rate: float, forwards: bool) -> xarray.Datase
     return _with(data, turned, half)
 
 
+def _carried(data: xarray.Dataset, motion: Motion, names: Sequence[str], forwards: bool) -> xarray.Dataset:
+    """Go to the frame that is fixed to a support that moves in any way, or back."""
+    own = _own(data, motion, names)
+    time = np.asarray(data.time.values, dtype=float)
+    state, vectors = motion.at(time, *own), _vectors(data)
+    turn, half = state.rotation, _followed(motion, time, own)
+    if forwards:
+        r = vectors["position"]
+        seen = {
+            "velocity": vectors["velocity"] - state.material_velocity(r),
+            "angular_velocity": vectors["angular_velocity"] - state.angular_velocity,
+        }
+        vectors |= seen | {name: vectors[name] - state.origin for name in _PLACES if name in vectors}
+        back = turn.transpose
+        return _with(data, {name: back @ vector for name, vector in vectors.items()}, half.conjugate)
+    turned = {name: turn @ vector for name, vector in vectors.items()}
+    turned |= {name: turned[name] + state.origin for name in _PLACES if name in turned}
+    turned["velocity"] = turned["velocity"] + state.material_velocity(turned["position"])
+    turned["angular_velocity"] = turned["angular_velocity"] + state.angular_velocity
+    return _with(data, turned, half)
+
+
+_PLACES = ("position", "contact")  # what counts from the support's origin
+
+
+def _own(data: xarray.Dataset, motion: Motion, names: Sequence[str]) -> tuple[Array, ...]:
+    """Return the coordinates of the support's own motion."""
+    if len(names) != len(motion.own) or any(name not in data for name in names):
+        raise OutOfDomainError(
+            "A corotating frame is defined where the support's motion is known: this one turns by an angle that is "
+            "part of the run, and the data do not hold it. Use the frame 'support' or 'world'."
+        )
+    return tuple(np.asarray(data[name].values, dtype=float) for name in names)
+
+
+def _followed(motion: Motion, time: Array, own: tuple[Array, ...]) -> Quaternion:
+    """Return how the support has turned, with the sign that is continuous from the start of its motion on.
+
+    The turn is a continuous function of the time and the support's own coordinates. Any way through these that joins
+    the samples therefore gives the sign: straight from one to the next, in steps too small to miss half a turn.
+    """
+    points = np.column_stack([time, *own])
+    points = np.vstack([[0.0, *(float(value) for value in motion.own_start())], points])
+    leaps = np.abs(np.diff(points, axis=0))
+    fastest = motion.fastest_rate_within(float(np.min(points[:, 0])), float(np.max(points[:, 0])))
+    parts = np.ceil((leaps[:, 0] * fastest + np.sum(leaps[:, 1:], axis=1)) / _STEP).astype(int)
+    parts = np.maximum(parts, 1)
+    ends = np.cumsum(parts)
+    found = np.empty((len(time), 4))
+    last = _quaternions(_at(motion, points[:1]), 1)[0]
+    first = 0
+    while first < len(time):
+        stop = max(int(np.searchsorted(ends, (ends[first - 1] if first else 0) + _PIECE)), first + 1)
+        count = parts[first:stop]
+        share = (np.arange(np.sum(count)) - np.repeat(np.cumsum(count) - count, count) + 1) / np.repeat(count, count)
+        here = np.repeat(points[first:stop], count, axis=0)
+        way = here + share[:, None] * (np.repeat(points[first + 1 : stop + 1], count, axis=0) - here)
+        way[np.cumsum(count) - 1] = points[first + 1 : stop + 1]
+        q = _quaternions(_at(motion, way), len(way))
+        against = np.sum(q * np.vstack([last, q[:-1]]), axis=1) < 0
+        q = q * np.where(np.cumsum(against) % 2, -1.0, 1.0)[:, None]
+        found[first:stop], last = q[np.cumsum(count) - 1], q[-1]
+        first = stop
+    return Quaternion.of(found)
+
+
+def _at(motion: Motion, points: Array) -> SupportState:
+    return motion.at(points[:, 0], *points[:, 1:].T)
+
+
+def _quaternions(state: SupportState, count: int) -> Array:
+    """Return the unit quaternions (n, 4) of rotations, by way of their largest components, w not negative."""
+    (a, b, c), (d, e, f), (g, h, i) = (tuple(row) for row in state.rotation.rows)
+    rows = (
+        (1.0 + a + e + i, h - f, c - g, d - b),
+        (h - f, 1.0 + a - e - i, b + d, c + g),
+        (c - g, b + d, 1.0 - a + e - i, f + h),
+        (d - b, c + g, f + h, 1.0 - a - e + i),
+    )
+    table = np.stack([np.stack([np.broadcast_to(part, (count,)) for part in row]) for row in rows])
+    chosen = np.argmax(np.stack([table[j, j] for j in range(4)]), axis=0)
+    q = table[chosen, :, np.arange(count)]
+    return q * np.where(q[:, :1] < 0, -1.0, 1.0) / np.linalg.norm(q, axis=1, keepdims=True)
+
+
 def _vectors(data: xarray.Dataset) -> dict[Any, Vector]:
     return {name: Vector.of(data[name].values) for name in data.data_vars if data[name].dims[1:] == ("axis",)}
 
 
 def _with(data: xarray.Dataset, vectors: dict[Any, Vector], turn: Quaternion) -> xarray.Dataset:
-    changed = {name: data[name].copy(data=vector.array()) for name, vector in vectors.items()}
+    changed = {name: data[name].copy(data=_filled(vector, data[name].shape)) for name, vector in vectors.items()}
     q = turn * Quaternion.of(data.orientation.values)
     return data.assign({**changed, "orientation": data.orientation.copy(data=q.array())})
+
+
+def _filled(vector: Vector, shape: tuple[int, ...]) -> Array:
+    return np.broadcast_to(vector.array(), shape)

@@ -102,7 +102,7 @@ class Trajectory:
         ----------
         frame : str
             "support": inertial, third axis the support's, first axis down the slope. "world": inertial, third axis
-            vertically up. "corotating": turning with the support; velocities are those seen from it.
+            vertically up. "corotating": fixed to the support, however it moves; velocities are those seen from it.
 
         Returns
         -------
@@ -129,7 +129,8 @@ class Trajectory:
             raise UnknownNameError("frame", str(frame), frames.FRAMES)
         if frame == self.frame:
             return self
-        return replace(self, data=frames.change(self.data, self.system.support, self.frame, frame))
+        own = labels.own_names(self.system)
+        return replace(self, data=frames.change(self.data, self.system.support, self.frame, frame, own))
 
     def at(self, times: Any) -> Trajectory:
         """Return the motion at other instants, by the same method from the same start: nothing is interpolated.
