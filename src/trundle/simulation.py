@@ -128,7 +128,7 @@ def _check_slip(system: RollingSystem, start: State, contact: Contact) -> None:
     s = contact.slip_velocity(V, Omega)
     slip = (s - contact.normal * s.dot(contact.normal)).norm()
     u = contact.support.material_velocity(contact.point)
-    scale = max(V.norm(), Omega.cross(contact.offset).norm(), u.norm())
+    scale = max(V.norm(), Omega.norm() * contact.offset.norm(), u.norm())
     if slip > SLIP_TOLERANCE * scale:
         raise InvalidValueError(
             "start.angular_velocity",

@@ -160,7 +160,7 @@ def _slips(contact: Contact, V: Vector, Omega: Vector) -> float | None:
     s = contact.slip_velocity(V, Omega)
     along = (s - contact.normal * s.dot(contact.normal)).norm()
     u = contact.support.material_velocity(contact.point)
-    scale = max(speed.norm() for speed in (V, Omega.cross(contact.offset), u))
+    scale = max(V.norm(), Omega.norm() * contact.offset.norm(), u.norm())
     return float(along) if along > SLIP_TOLERANCE * scale else None
 
 

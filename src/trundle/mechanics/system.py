@@ -248,7 +248,8 @@ class RollingSystem:
 
     def check_rim(self, contact: Contact, position: Any) -> None:
         """Refuse a contact point at or beyond the rim, naming the position as the user gave it."""
-        rim, distance = self.support.surface.rim, (contact.point - contact.support.origin).norm()
+        there = contact.support.rotation.transpose @ (contact.point - contact.support.origin)
+        rim, distance = self.support.surface.rim, math.hypot(there.x, there.y)
         if rim is not None and distance >= rim:
             raise InvalidValueError(
                 "position",

@@ -28,7 +28,8 @@ from .laws import (
 )
 from .samples import Event
 
-_STILL = 1e-9  # share of the speeds at the contact at which slip or turning has all but ended
+_STILL = 1e-12  # share of the speeds at the contact at which slip or turning has all but ended
+_FIRST = 1e-14  # share of them with which slip begins: a direction, and nothing to speak of
 _WEIGHTLESS = 1e-13  # share of the forces at hand below which nothing presses the body on
 _TAKE_OFF = 1e-15  # gap, as a share of |ρ|, with which a flight begins: it must not end where it begins
 SETTLED = 1e-6  # height, as a share of |ρ|, below which a bounce is cut
@@ -67,7 +68,7 @@ class _Touch:
         gap = (centre + contact.offset - contact.point).dot(contact.normal)
         arm = contact.offset.norm()
         u = contact.support.material_velocity(contact.point)
-        speed = max(V.norm(), Omega.cross(contact.offset).norm(), u.norm())
+        speed = max(V.norm(), Omega.norm() * arm, u.norm())
         return _Touch(state, contact, q, V, Omega, contact.slip_velocity(V, Omega), float(gap), arm, float(speed))
 
     @property
@@ -171,7 +172,7 @@ def _goes_on(system: RollingSystem, state: State, numbers: Any, stop: str) -> bo
     """Tell whether slip or turning was only at its slowest, and did not end."""
     at = _Touch.of(system, state)
     left = np.linalg.norm(numbers[10:13]) if stop == "grip" else state_turning(at.contact, at.Omega).norm() * at.arm
-    return bool(left > 1e3 * _still(system, at))
+    return bool(left > 1e2 * _still(system, at))
 
 
 def _extras(system: RollingSystem, at: _Touch, slip: Vector | None = None) -> tuple[float, ...]:
@@ -345,11 +346,11 @@ def _resting(system: RollingSystem, at: _Touch) -> Next | None:
 
 def _begins_to_slip(system: RollingSystem, at: _Touch, needed: Vector) -> Next:
     """Return slipping with a first little slip, the way that its own friction leads along."""
-    law, state, still = SlippingLaw(), at.state, _still(system, at)
+    law, state, first = SlippingLaw(), at.state, _FIRST * at.scale(system)
     numbers = law.pack(system, state)
     hat = _way(system, at, needed)
-    numbers[10:13] = _floats(hat * (4 * still))
-    return Next(law, state.time, numbers, _extras(system, at, hat))
+    numbers[10:13] = _floats(hat * first)
+    return Next(law, state.time, numbers, ((first / 4) ** 2, *_floats(hat)))
 
 
 def _way(system: RollingSystem, at: _Touch, needed: Vector) -> Vector:

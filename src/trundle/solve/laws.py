@@ -68,19 +68,18 @@ class Law:
 
     def _bounds(self, system: RollingSystem, contact: Contact, orientation: Quaternion, gap: Scalar) -> dict[str, Any]:
         """Return the stops of every phase: where the support ends, the body's shape, or what fits."""
-        surface, support, p = system.support.surface, contact.support, contact.point
-        arm, found = p - support.origin, {}
+        surface, support = system.support.surface, contact.support
+        there, found = support.rotation.transpose @ (contact.point - support.origin), {}
         if surface.rim is not None:
-            found["rim"] = surface.rim * surface.rim - arm.dot(arm)
-        there = support.rotation.transpose @ arm
+            found["rim"] = surface.rim * surface.rim - (there.x * there.x + there.y * there.y)
         ending = surface.inside(there)
-        if ending is not None:
-            found["end"] = ending
+        if ending is not None and self.code != FLIGHT:
+            found["end"] = ending - _SHORT_OF_IT * contact.offset.norm()
         covered = system.body.shape.covers(-(orientation.matrix().transpose @ contact.normal))
         if covered is not None:
             found["edge"] = covered
         if not all(is_zero(bend) for row in surface.shape_operator(there).rows for bend in row):
-            found["curved"] = contact.clearance(gap)
+            found["curved"] = contact.clearance(gap) - _SHORT_OF_IT
         return found
 
 
@@ -300,6 +299,8 @@ class Held:
     couple: Vector  # that the support exerts besides, N m
 
 
+# A run stops so far short of an end at which the law is singular; in units of |ρ|, and of 1 + C S.
+_SHORT_OF_IT = 1e-6
 # By this share static friction and resistance hold more than they say, so that rounding does not decide.
 CONE_SLACK = 1e-9
 

@@ -105,6 +105,10 @@ def solve(
         events += now.events
         _check_count(events)
         left = left[left >= stop.time]
+        early = left[left < now.time]  # while it came to the end that was all but reached
+        if early.size:
+            parts.append(now.law.record(system, early, np.tile(now.state, (early.size, 1))))
+            left = left[early.size :]
     kept = [part for part in parts if part.time.size] or parts[:1]
     return Samples.joined(kept, tuple(events))
 

@@ -14,16 +14,21 @@ from ..mechanics.invariants import Record, invariants_of
 from ..mechanics.system import RollingSystem, State
 from ..solve.exact import ClosedForm, SphereOnPlane, closed_form
 from ..solve.methods import solver, tolerance_of
-from ..solve.samples import Samples
-from .bounds import EXACT, SOLVER, Array, bound_of, largest, pace_of, speed_of, turned_in
+from ..solve.samples import FLIGHT, ROLLING, SLIPPING, Samples
+from .bounds import EXACT, SOLVER, Array, bound_of, speed_of, turned_in
 from .card import Card, CardFigure, checked
 from .circle import measure
 from .compared import cross_check, same_again
-from .law import residuals, window_times
+from .energy import balance
+from .friction import contact_force, friction_law
+from .law import residuals
 from .plane import reactions, straightness
+from .stretches import Stretch, stretches
 
 _MOST_SAMPLES = 20_000  # looked at for integrals
 _RUN_AGAIN = 2000  # samples
+_MOST_STRETCHES = 200  # looked at
+_EVENTS_TOLD = 4
 _FITTED, _CIRCLES_FITTED = 2000, 20  # points and, where they are taken anew, circles
 
 
@@ -58,18 +63,31 @@ def card(system: RollingSystem, start: State, samples: Samples, method: str, tit
     motion = closed_form(system, start)
     every = max(1, samples.time.size // _MOST_SAMPLES)
     some = samples.part(slice(None, None, every)) if every > 1 else samples
+    rolls = bool((samples.phase == ROLLING).all()) and all(event.final for event in samples.events)
+    bound = bound_of(method, turned_in(some))
     figures = [
-        _no_slip(system, some, method),
-        *straightness(system, some, bound_of(method, turned_in(some))),
+        *_no_slip(system, some, method),
+        *(straightness(system, some, bound) if rolls else ()),
         *_law(system, start, some, method),
-        *reactions(system, some, bound_of(method, turned_in(some))),
+        *(reactions(system, some, bound) if rolls else ()),
         *_integrals(system, some, method),
-        *_guiding_centre(motion, start, some, method),
+        *(_guiding_centre(motion, start, some, method) if rolls else ()),
         *cross_check(system, start, some, method, motion),
-        *_circle(system, motion, start, samples, method),
-        *_contact_force(system, samples),
+        *(_circle(system, motion, start, samples, method) if rolls else ()),
+        *contact_force(system, samples),
+        *_events(samples),
     ]
     return Card(title, _described(method, motion), tuple(figures))
+
+
+def _events(samples: Samples) -> Iterator[CardFigure]:
+    """List what happened, in short."""
+    if not samples.events:
+        return
+    kinds = [event.kind for event in samples.events]
+    told = [f"{event.kind} at {event.time:.6g} s" for event in samples.events[:_EVENTS_TOLD]]
+    more = f" and {len(kinds) - len(told)} more" if len(kinds) > len(told) else ""
+    yield CardFigure("events", float(len(kinds)), note=", ".join(told) + more)
 
 
 def _described(method: str, motion: ClosedForm | None) -> str:
@@ -79,37 +97,82 @@ def _described(method: str, motion: ClosedForm | None) -> str:
     return f"{name}, tolerance {tolerance_of(method):g}"
 
 
-def _no_slip(system: RollingSystem, at: Samples, method: str) -> CardFigure:
-    V, turning, u = at.speeds(system)
-    slip, size = (V + turning - u).norm(), max(speed_of(system, at), 1e-300)
-    return checked("no slip", float(np.max(slip)) / size, bound_of(method), "|V + Ω×ρ − u| over the speed")
+def _no_slip(system: RollingSystem, at: Samples, method: str) -> Iterator[CardFigure]:
+    rolling = at.part(at.phase == ROLLING)
+    if rolling.time.size:
+        V, turning, u = rolling.speeds(system)
+        slip, size = (V + turning - u).norm(), max(speed_of(system, rolling), 1e-300)
+        while_ = "" if rolling.time.size == at.time.size else ", while it rolls"
+        note = f"|V + Ω×ρ − u| over the speed{while_}"
+        yield checked("no slip", float(np.max(slip)) / size, bound_of(method), note)
+    slipping = at.part(at.phase == SLIPPING)
+    if slipping.time.size:
+        yield friction_law(system, slipping, bound_of(method, turned_in(at)))
 
 
 def _law(system: RollingSystem, start: State, at: Samples, method: str) -> Iterator[CardFigure]:
-    begin, end = float(at.time[0]), float(at.time[-1])
-    fastest = pace_of(system, at) + 1 / (end - begin)
-    # Short of a rim by a little, which the method run again may reach a rounding earlier.
-    times = window_times(begin, end - (1e-9 * (end - begin) if at.events else 0.0), fastest)
+    found = stretches(system, start.time, at)
+    total = sum(stretch.length for stretch in found)
+    windows = np.vstack([stretch.windows(stretch.length / total) for stretch in found[:_MOST_STRETCHES]])
     sampled = at.part(slice(None, None, max(1, at.time.size // _RUN_AGAIN)))
-    again = solver(method)(system, start, np.union1d(times, sampled.time), tolerance_of(method))
+    panels = [stretch.panels() for stretch in found] if _wants_balance(system, at, found) else []
+    nodes = np.concatenate([times.ravel() for times, _ in panels]) if panels else np.empty(0)
+    every = [windows.ravel(), sampled.time, nodes, np.array([start.time, at.time[-1]])]
+    again = solver(method)(system, start, np.unique(np.concatenate(every)), tolerance_of(method))
     yield same_again(system, start, sampled, again, method)
-    windows = again.part(np.searchsorted(again.time, times.ravel()))
-    found = residuals(system, windows, times)
+    looked_at = again.part(_places(again.time, windows.ravel()))
+    law = residuals(system, looked_at, windows)
     # A slope taken over a third of a radian of turning multiplies a method's own error by some tens.
     bound = max(EXACT * 10, 100 * SOLVER * tolerance_of(method))
-    yield checked("velocity is the slope of the path", found.path, bound, "at 24 instants, share of the speed")
-    yield checked("law of motion", found.law, bound, "Newton, Euler and the constraint as one 9×9 system; T2 not used")
-    yield checked(
-        "virtual power of the reaction", found.virtual_power, bound, "over the admissible velocities (d'Alembert)"
-    )
+    count = len(windows)
+    yield checked("velocity is the slope of the path", law.path, bound, f"at {count} instants, share of the speed")
+    yield checked("law of motion", law.law, bound, "Newton, Euler and the constraint as one 9×9 system; T2 not used")
+    if (looked_at.phase == ROLLING).any():
+        note = "over the admissible velocities (d'Alembert)"
+        yield checked("virtual power of the reaction", law.virtual_power, bound, note)
+    if panels:
+        weights = np.concatenate([weight.ravel() for _, weight in panels])
+        ends = again.part(_places(again.time, np.array([start.time, at.time[-1]])))
+        along = again.part(_places(again.time, nodes))
+        yield from balance(system, ends, along, weights, at.events, bound_of(method, turned_in(at)))
+
+
+def _places(times: Array, wanted: Array) -> Any:
+    """Return where instants stand among ascending times, the last one for what a run's end left out."""
+    return np.minimum(np.searchsorted(times, wanted), times.size - 1)
+
+
+def _wants_balance(system: RollingSystem, at: Samples, found: list[Stretch]) -> bool:
+    """Tell whether the energy is to be balanced: where no integral says the same, and the run can be followed."""
+    kept = any(integral.name in ("energy", "moving energy") for integral in invariants_of(system))
+    plain = kept and not any(not event.final for event in at.events)
+    return not plain and len(found) <= _MOST_STRETCHES and all(stretch.resolved for stretch in found)
 
 
 def _integrals(system: RollingSystem, at: Samples, method: str) -> Iterator[CardFigure]:
-    record, bound = Record(at.motion(system), Vector.of(at.contact)), bound_of(method, turned_in(at))
-    for integral in invariants_of(system):
-        terms = [_as_array(term, at.time.size) for term in integral.terms(system, record)]
-        drift = _drift(sum(terms), max(float(np.abs(term).max()) for term in terms))
-        yield checked(f"drift of the {integral.name}", drift, bound, f"{integral.formula} stays the same")
+    """Check each first integral over every stretch of a phase that it survives."""
+    bound, phases = bound_of(method, turned_in(at)), set()
+    worst: dict[str, tuple[float, Any, set[str]]] = {}
+    for part, phase in _runs_of_a_phase(at):
+        record = Record(part.motion(system), Vector.of(part.contact), part.support_own)
+        phases.add(phase)
+        for integral in invariants_of(system, phases=(phase,)):
+            terms = [_as_array(term, part.time.size) for term in integral.terms(system, record)]
+            drift = _drift(sum(terms), max(float(np.abs(term).max()) for term in terms))
+            known = worst.get(integral.name, (0.0, integral, set()))
+            worst[integral.name] = max(known[0], drift), integral, known[2] | {phase}
+    for name, (drift, integral, held) in worst.items():
+        while_ = "" if held == phases else f" while {' or '.join(sorted(held))}"
+        yield checked(f"drift of the {name}", drift, bound, f"{integral.formula} stays the same{while_}")
+
+
+def _runs_of_a_phase(at: Samples) -> Iterator[tuple[Samples, str]]:
+    """Return the samples between events, with the phase of each part by its name."""
+    names = {ROLLING: "rolling", SLIPPING: "slipping", FLIGHT: "flight"}
+    changes = [event.time for event in at.events if not event.final]
+    for index in np.split(np.arange(at.time.size), np.searchsorted(at.time, changes)):
+        if index.size > 1 and int(at.phase[index[0]]) in names:
+            yield at.part(index), names[int(at.phase[index[0]])]
 
 
 def _as_array(term: Any, count: int) -> Array:
@@ -194,29 +257,6 @@ def _even_path(
 
 def _pair(value: complex, unit: str) -> str:
     return f"({value.real:.9g}, {value.imag:.9g}) {unit}".rstrip()
-
-
-def _contact_force(system: RollingSystem, samples: Samples) -> Iterator[CardFigure]:
-    """Say what friction the motion needs, and whether the support pushes rather than pulls."""
-    normal = samples.normals(system)
-    N = np.einsum("ni,ni->n", samples.contact_force, normal)
-    f = np.linalg.norm(samples.contact_force - N[:, None] * normal, axis=1)
-    least = int(np.argmin(N))
-    weightless = largest(samples.contact_force) == 0
-    pushed = None if weightless else bool(N[least] > 0)
-    held = "; a support cannot pull: it would come off" if pushed is False else ""
-    yield CardFigure(
-        "normal force", float(N[least]), "N", None, pushed, f"least, at t = {samples.time[least]:.6g} s{held}"
-    )
-    needed = np.where(N > 0, f / np.where(N > 0, N, 1.0), np.where(f > 0, np.inf, 0.0))
-    worst = int(np.argmax(needed))
-    mu = system.support.friction
-    note = f"max |f|/N, at t = {samples.time[worst]:.6g} s"
-    if mu is None:
-        yield CardFigure("friction coefficient needed", float(needed[worst]), note=note)
-    else:
-        remedy = "" if needed[worst] <= mu else "; it would slip"
-        yield checked("friction coefficient needed", float(needed[worst]), float(mu), note + remedy)
 
 
 __all__ = ["Card", "CardFigure", "card"]

@@ -12,9 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import touch
 from ..mechanics.system import RollingSystem
-from ..solve.samples import Samples
+from ..solve.samples import RESTING, ROLLING, Samples
 
 Array = NDArray[np.float64]
 
@@ -86,7 +85,7 @@ def residuals(system: RollingSystem, windows: Samples, times: Array) -> Residual
     windows : Samples
         The trajectory at `times.ravel()`.
     times : array (windows, nodes)
-        As `window_times` returns them.
+        As `window_times` returns them, none across an event.
 
     Returns
     -------
@@ -97,6 +96,18 @@ def residuals(system: RollingSystem, windows: Samples, times: Array) -> Residual
     --------
     See `trundle.verify.card`.
     """
+    nodes = times.shape[1]
+    phases = windows.phase[_HALF_NODES::nodes]
+    found = []
+    for phase in np.unique(phases):
+        which = np.flatnonzero(phases == phase)
+        index = (which[:, None] * nodes + np.arange(nodes)).ravel()
+        found.append(_residuals_of(system, windows.part(index), times[which], int(phase)))
+    return Residuals(*(max(getattr(part, name) for part in found) for name in ("path", "law", "virtual_power")))
+
+
+def _residuals_of(system: RollingSystem, windows: Samples, times: Array, phase: int) -> Residuals:
+    """Return the residuals of windows of one phase."""
     shape = times.shape
 
     def slope(array: Array) -> Array:
@@ -105,24 +116,31 @@ def residuals(system: RollingSystem, windows: Samples, times: Array) -> Residual
     V_rate, Omega_rate = slope(windows.velocity), slope(windows.angular_velocity)
     p_rate, r_rate = slope(windows.contact), slope(windows.position)
     rho_rate = slope(windows.contact - windows.position)
+    own_rate = slope(windows.own) if windows.own.size else None
     middle = windows.part(np.arange(_HALF_NODES, times.size, shape[1]))
     m, V, Omega = float(system.body.mass), middle.velocity, middle.angular_velocity
     rho = middle.contact - middle.position
-    F, K, J, gyroscopic, u_rate = applied(system, middle, p_rate)
-    solved = newton_euler(m, J, rho, F, K - gyroscopic, u_rate - np.cross(Omega, rho_rate))
+    F, K, J, gyroscopic, u_rate = applied(system, middle, p_rate, own_rate)
+    R = middle.contact_force
+    if phase == ROLLING:  # what holds the body to the support is not asked for, but found
+        solved = newton_euler(m, J, rho, F, K - gyroscopic, u_rate - np.cross(Omega, rho_rate))
+    else:
+        turned = Omega_rate if phase == RESTING else _euler(J, K - gyroscopic + np.cross(rho, R))
+        solved = (F + R) / m, turned, R
 
     rate = np.linalg.norm(Omega, axis=1).max() + np.abs(V_rate).max() / max(np.abs(V).max(), 1e-300)
     a_size = max(np.abs(F).max() / m, np.abs(V_rate).max(), np.abs(V).max() * rate, 1e-300)
     lever = m * a_size * np.linalg.norm(rho, axis=1).max() / np.trace(J, axis1=1, axis2=2).min()  # what R may turn
     turn_size = max(np.abs(Omega_rate).max(), np.abs(Omega).max() * rate, lever)
-    R = middle.contact_force
     law = max(
         np.abs(solved[0] - V_rate).max() / a_size,
         np.abs(solved[1] - Omega_rate).max() / turn_size,
         np.abs(solved[2] - R).max() / (m * a_size),
     )
-    half = (times[:, -1] - times[:, 0]).max() / 2
+    half = (times[:, -1] - times[:, 0]).min() / 2
     path = np.abs(r_rate - V).max() / max(np.abs(V).max(), np.abs(middle.position).max() / half)
+    if phase != ROLLING:
+        return Residuals(float(path), float(law), 0.0)
 
     force = m * V_rate - F  # the reaction and its torque as the motion shows them
     torque = np.einsum("nij,nj->ni", J, Omega_rate) + gyroscopic - K
@@ -135,7 +153,11 @@ def residuals(system: RollingSystem, windows: Samples, times: Array) -> Residual
     return Residuals(float(path), float(law), float(max(power) / torque_size))
 
 
-def applied(system: RollingSystem, at: Samples, p_rate: Array) -> tuple[Array, ...]:
+def _euler(J: Array, torque: Array) -> Array:
+    return np.asarray(np.linalg.solve(J, torque[..., None])[..., 0])
+
+
+def applied(system: RollingSystem, at: Samples, p_rate: Array, own_rate: Array | None = None) -> tuple[Array, ...]:
     """Return F, K, J, Ω×JΩ and u̇ at each instant, as arrays.
 
     Parameters
@@ -143,9 +165,11 @@ def applied(system: RollingSystem, at: Samples, p_rate: Array) -> tuple[Array, .
     system : RollingSystem
         Body, support and loads.
     at : Samples
-        Instants of a motion, n of them.
+        Instants of a motion, n of them; their contact force gives the normal force that couples follow.
     p_rate : array (n, 3)
         ṗ, m/s.
+    own_rate : array (n, k), optional
+        Rates of the coordinates of the support's own motion: the last is the ω̇ of a free axle.
 
     Returns
     -------
@@ -153,13 +177,18 @@ def applied(system: RollingSystem, at: Samples, p_rate: Array) -> tuple[Array, .
         (n, 3) each, J (n, 3, 3); SI, inertial support frame.
     """
     q, shape = Quaternion.of(at.orientation), at.position.shape
-    force, torque = system.loads_on(at.motion(system))
+    acting = system.acting_on(at.motion(system))
+    torque = acting.torque
+    if acting.has_couple:
+        torque = torque + acting.couple * Vector.of(at.contact_force).dot(Vector.of(at.normals(system)))
     tensor = system.body.inertia_in_space(q.matrix())
     J = np.stack([np.broadcast_to(row.array(), shape) for row in tensor.rows], axis=1)
     JOmega = np.einsum("nij,nj->ni", J, at.angular_velocity)
-    support = touch(system, at.time, Vector.of(at.contact), q).support
-    u_rate = support.material_acceleration(Vector.of(at.contact), Vector.of(p_rate))
-    F, K, u = (np.broadcast_to(v.array(), shape) for v in (force, torque, u_rate))
+    support, p = at.support(system), Vector.of(at.contact)
+    u_rate = support.material_acceleration(p, Vector.of(p_rate))
+    if system.support.motion.free and own_rate is not None:
+        u_rate = u_rate + support.lever(p) * own_rate[:, -1]
+    F, K, u = (np.broadcast_to(v.array(), shape) for v in (acting.force, torque, u_rate))
     return F, K, J, np.cross(at.angular_velocity, JOmega), u
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from ..system import RollingSystem
 from .base import FLIGHT, PHASES, ROLLING, SLIPPING, Invariant, Record
+from .legendre import LEGENDRE_PAIR
 from .momenta import (
     CONTACT_MOMENTUM,
     FREE_MOMENTUM,
@@ -28,6 +29,7 @@ INVARIANTS = (
     JELLETT,
     ROUTH,
     ROUTH_PAIR,
+    LEGENDRE_PAIR,
     FREE_MOMENTUM,
 )
 

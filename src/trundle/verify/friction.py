@@ -1,0 +1,97 @@
+"""What the support does to the body: the normal force, the friction that rolling takes, and friction while slipping."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..mechanics.system import RollingSystem
+from ..solve.samples import FLIGHT, ROLLING, Samples
+from .bounds import Array, largest
+from .card import CardFigure, checked
+
+
+def _parts(system: RollingSystem, at: Samples) -> tuple[Array, Array]:
+    """Return N and f of the contact force."""
+    normal = at.normals(system)
+    N = np.einsum("ni,ni->n", at.contact_force, normal)
+    return N, at.contact_force - N[:, None] * normal
+
+
+def contact_force(system: RollingSystem, samples: Samples) -> Iterator[CardFigure]:
+    """Say what friction rolling needs, and whether the support pushes rather than pulls.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        What moved.
+    samples : Samples
+        Of the run.
+
+    Yields
+    ------
+    CardFigure
+        Two, for the parts of the run in which the body touches, and rolls.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> tr.Scenario.load("tilted-turntable").run().card()["normal force"].passed
+    True
+    """
+    touching = samples.part(samples.phase != FLIGHT)
+    if not touching.time.size:
+        return
+    N, f = _parts(system, touching)
+    least = int(np.argmin(N))
+    size = largest(touching.contact_force)
+    pushed = None if size == 0 else bool(N[least] >= -1e-12 * size)
+    held = "; a support cannot pull: it would come off" if pushed is False else ""
+    said = f"least, at t = {touching.time[least]:.6g} s{held}"
+    yield CardFigure("normal force", float(N[least]), "N", None, pushed, said)
+    rolls = touching.phase == ROLLING
+    if not rolls.any():
+        return
+    N, f_size, times = N[rolls], np.linalg.norm(f[rolls], axis=1), touching.time[rolls]
+    needed = np.where(N > 0, f_size / np.where(N > 0, N, 1.0), np.where(f_size > 0, np.inf, 0.0))
+    worst = int(np.argmax(needed))
+    mu, note = system.support.friction, f"max |f|/N, at t = {times[worst]:.6g} s"
+    if mu is None:
+        yield CardFigure("friction coefficient needed", float(needed[worst]), note=note)
+    else:
+        allowed = float(mu) * (1 + 1e-8)
+        remedy = "" if needed[worst] <= allowed else "; it would slip"
+        yield checked("friction coefficient needed", float(needed[worst]), allowed, note + remedy)
+
+
+def friction_law(system: RollingSystem, slipping: Samples, bound: float) -> CardFigure:
+    """Check Coulomb's law of slipping: f = −μ N ŝ.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        What moved.
+    slipping : Samples
+        Samples in which it slips.
+    bound : float
+        The share of μN by which friction may be off.
+
+    Returns
+    -------
+    CardFigure
+        The largest departure.
+    """
+    N, f = _parts(system, slipping)
+    V, turning, u = slipping.speeds(system)
+    s = (V + turning - u).array()
+    speed = np.linalg.norm(s, axis=1)
+    mu = float(system.support.sliding_friction)
+    clear = speed > 1e-6 * max(float(speed.max()), 1e-300)  # of less, rounding decides the direction
+    off = f[clear] + mu * (N / np.where(speed > 0, speed, 1.0))[clear, None] * s[clear]
+    share = largest(off) / max(largest(slipping.contact_force), 1e-300) if clear.any() else 0.0
+    # V is the small difference that slip is made of: its direction is as sharp as that.
+    sharp = max(
+        1.0, float((np.max(V.norm()) + np.max(turning.norm())) / max(float(speed[clear].min(initial=1.0)), 1e-300))
+    )
+    return checked("friction while slipping", share, bound * sharp, f"f = −μ N ŝ, μ = {mu:g}")

@@ -1,0 +1,105 @@
+"""The stretches of a run between its events, and the instants at which each is looked at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..mechanics.system import RollingSystem
+from ..solve.samples import SLIPPING, Samples
+from .bounds import Array, pace_of
+from .law import WINDOWS, window_times
+
+_MARGIN = 0.02  # of a stretch that is left out at its ends: slip turns faster and faster before it ends
+_TURNS = 20.0  # by so many radians, at most, slip turns over what is left of a stretch
+_NODES = 16  # of Gauss and Legendre in each panel
+_PHASE_A_PANEL = 1.5  # rad of the fastest rotation
+_MOST_PANELS = 8000
+_HALVINGS = 40
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A part of a run in which one law holds.
+
+    Parameters
+    ----------
+    begin, end : float
+        s.
+    pace : float
+        The fastest rate in it, 1/s.
+    slips : bool
+        Whether the body slips in it.
+    """
+
+    begin: float
+    end: float
+    pace: float
+    slips: bool = False
+
+    @property
+    def length(self) -> float:
+        """How long it lasts, s."""
+        return self.end - self.begin
+
+    def windows(self, share: float) -> Array:
+        """Return short windows for slopes, a share of all of them."""
+        count = max(1, round(WINDOWS * share))
+        inset = _MARGIN * self.length if share < 1 else 0.0
+        times = window_times(self.begin + inset, self.end - inset, self.pace)
+        return times[:: max(1, WINDOWS // count)][:count]
+
+    def panels(self) -> tuple[Array, Array]:
+        """Return nodes and weights for an integral over it, (panels, nodes) each, s."""
+        x, w = np.polynomial.legendre.leggauss(_NODES)
+        count = int(np.clip(np.ceil(self.length * self.pace / _PHASE_A_PANEL), 1, _MOST_PANELS))
+        edges = np.linspace(self.begin, self.end, count + 1)
+        if self.slips:  # closer and closer towards both ends, where the slip turns fast
+            nearer = self.length * 0.5 ** np.arange(1, _HALVINGS)
+            edges = np.unique(np.concatenate([edges, self.begin + nearer, self.end - nearer]))
+        half = 0.5 * np.diff(edges)[:, None]
+        return edges[:-1, None] + half * (1 + x), half * w
+
+    @property
+    def resolved(self) -> bool:
+        """Whether the panels are enough to follow all of it."""
+        return self.length * self.pace / _PHASE_A_PANEL <= _MOST_PANELS
+
+
+def stretches(system: RollingSystem, begin: float, samples: Samples) -> list[Stretch]:
+    """Cut a run at its events.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        What moved.
+    begin : float
+        Of the run, s.
+    samples : Samples
+        The run.
+
+    Returns
+    -------
+    list of Stretch
+        Those that last at all, in order.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> run = tr.Scenario.load("off-the-rim").run()
+    >>> [round(stretch.end, 3) == round(run.events[0].time, 3) for stretch in stretches(run.system, 0.0, run.samples)]
+    [True]
+    """
+    end = float(samples.time[-1])
+    edges = [begin, *(event.time for event in samples.events if begin < event.time < end), end]
+    found = []
+    for first, last in zip(edges[:-1], edges[1:], strict=True):
+        if last - first <= 1e-12 * (end - begin):
+            continue
+        inside = np.flatnonzero((samples.time >= first) & (samples.time <= last))
+        part = samples.part(inside) if inside.size > 2 else samples
+        pace = pace_of(system, part) + 1 / (last - first)
+        slips = bool((part.phase == SLIPPING).any())
+        found.append(Stretch(first, last, pace + (_TURNS / (last - first) if slips else 0.0), slips))
+    return found
