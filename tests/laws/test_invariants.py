@@ -269,7 +269,7 @@ def _record(system: tr.RollingSystem, at: Samples) -> Record:
 
 
 def test_the_pair_on_a_cylinder_and_on_a_plane_s_limit_is_what_is_known() -> None:
-    # routh1905: on an upright cylinder R V_φ is constant, and aΩ·n grows evenly with the height, by n_R V_φ/R.
+    # [routh1905]: on an upright cylinder R V_φ is constant, and aΩ·n grows evenly with the height, by n_R V_φ/R.
     at = ran(system := system_of(BALL, tr.Cylinder(0.3)), 1.0, **ON_WALL)
     terms = NAMED[PAIR].terms(system, _record(system, at))
     r, V, R = at.position, at.velocity, 0.275

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     Complex = NDArray[np.complex128]
 
 TOLERANCE = 1e-12
-_MOST_CALLS = 300_000  # of the slopes, some seconds
+_MOST_CALLS = 150_000  # of the slopes, some seconds
 
 
 @dataclass(frozen=True)
@@ -186,9 +186,9 @@ def vakonomic_path(
     ...     path = vakonomic_path(system, system.place((0.2, 0.0), (0.0, 0.1)), [0.0, 1.0])
     ...     true = tr.simulate(system, system.place((0.2, 0.0), (0.0, 0.1)), duration=1.0, every=1.0)
     ...     apart = path.position[-1] - true.data.position.values[-1, :2]
-    ...     print(f"{abs(apart).max():.4f} m apart")
-    0.0000 m apart
-    0.0338 m apart
+    ...     print(f"at the rate {rate} it is off: {bool(abs(apart).max() > 0.01)}")
+    at the rate 0.0 it is off: False
+    at the rate 3.5 it is off: True
     """
     import numpy as np
     from scipy.integrate import solve_ivp

@@ -21,6 +21,7 @@ _MAP, _LEFT, _FOOT, _HEADER, _KEY = 6.0, 0.8, 0.55, 0.82, 0.95  # inches
 TRUE: dict[str, Any] = {"color": BLUE, "lw": 3.2}
 WRONG: dict[str, Any] = {"color": VERMILION, "lw": 2.0, "ls": (0, (5, 2))}
 OTHERS: dict[str, Any] = {"color": VERMILION, "lw": 0.8, "alpha": 0.55, "ls": (0, (5, 2))}
+_CLEAR: dict[str, Any] = {"fc": "white", "ec": "none", "pad": 0.8, "alpha": 0.7}
 START: dict[str, Any] = {"color": INK, "marker": "o", "mfc": "white", "ms": 7.5, "mew": 1.5, "ls": "none"}
 
 
@@ -104,7 +105,7 @@ def _table(ax: Axes, found: VakonomicComparison, page: Page, ruler: Ruler) -> No
             turning(ax, page, ruler, 1.05 * float(edge), math.radians(45.0), rate)
     if rate and inside:
         ax.plot(0.0, 0.0, color=GREY, marker="+", ms=11, mew=1.3, ls="none", zorder=3)
-        ax.annotate("axis", (0, 0), (7, -11), textcoords="offset points", color=GREY, fontsize=8.5)
+        ax.annotate("axis", (0, 0), (7, -11), textcoords="offset points", color=GREY, fontsize=8.5, bbox=_CLEAR)
     if support.tilt:
         signpost(ax, (_MAP - 0.45, _MAP - 0.08), (_MAP, _MAP), True, "downhill", (0.0, -1.0))
 

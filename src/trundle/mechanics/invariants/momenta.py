@@ -118,7 +118,7 @@ NORMAL_MOMENTUM = Invariant(
     _normal_momentum,
     through_changes=True,
 )
-# chaplygin1903: on a plane at rest V = −Ω×ρ, and it is JΩ + mρ×(Ω×ρ); so written it holds on moving planes, too.
+# [chaplygin1903]: on a plane at rest V = −Ω×ρ, and it is JΩ + mρ×(Ω×ρ); so written it holds on moving planes, too.
 CONTACT_MOMENTUM = Invariant(
     "angular momentum about the contact",
     "JΩ − mρ×V",
@@ -127,7 +127,9 @@ CONTACT_MOMENTUM = Invariant(
     _contact_momentum,
     through_changes=True,
 )
+# [jellett1872], for a body that slips.
 JELLETT = Invariant("integral of Jellett", "JΩ·ρ", "kg m³/s", _has_jellett, _jellett, through_changes=True)
+# [routh1905].
 ROUTH = Invariant("integral of Routh", "Ω·e √(J₁J₃ + mρ·Jρ)", "kg m²/s", _has_routh, _routh)
 FREE_MOMENTUM = Invariant(
     "angular momentum about the centre of mass",

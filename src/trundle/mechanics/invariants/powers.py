@@ -79,9 +79,9 @@ def _has_momentum_with_table(system: RollingSystem) -> tuple[str, ...]:
 
 
 ENERGY = Invariant("energy", "½mV² + ½Ω·JΩ + U", "J", _has_energy, _energy)
-# fasso2015: E − ω·L, where the constraint moves steadily along a symmetry of body and loads.
+# [fasso2016]: E − ω·L, where the constraint moves steadily along a symmetry of body and loads.
 MOVING_ENERGY = Invariant("moving energy", "E − ω·L", "J", _has_moving_energy, _moving_energy)
-# weckesser1997, whose table is the frame of the system: what it gives, the body gets.
+# [weckesser1997], whose table is the frame of the system: what it gives, the body gets.
 ENERGY_WITH_TABLE = Invariant("energy with the table", "E + ½I_t ω²", "J", _has_energy_with_table, _energy_with_table)
 MOMENTUM_WITH_TABLE = Invariant(
     "angular momentum with the table",

@@ -9,7 +9,7 @@ centre's ℓ = R V_φ and the spin w = a Ω·n, the parts of I Ω̇ = ρ×(m V̇
     dℓ/dσ = k/(1 + k) R (κ w + ω n_z)        dw/dσ = [n_R (1 + a κ)/R − κ] ℓ/R + κ ω R_p
 
 without the time: a linear equation along the meridian, whose constants of integration are two integrals linear in the
-velocities (routh1905, articles 224-226; borisov2002 for the turning surface).
+velocities ([routh1905]; [borisov2002] for the turning surface).
 """
 
 from __future__ import annotations
