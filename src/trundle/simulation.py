@@ -10,6 +10,7 @@ from .errors import InvalidValueError, ScenarioError
 from .mechanics import straight
 from .mechanics.algebra import Quaternion, Vector
 from .mechanics.contact import Contact, settle
+from .mechanics.finiteness import check_finite
 from .mechanics.placing import SLIP_TOLERANCE
 from .mechanics.system import RollingSystem, State
 from .scenario import ScenarioFile
@@ -60,7 +61,7 @@ def simulate(
     Raises
     ------
     InvalidValueError
-        If a value is refused or the start does not roll.
+        If a value is refused, the start does not roll, or a formula in the time is not finite throughout the run.
     OutOfDomainError
         If method is "exact" and no closed form covers the system.
     SolverError
@@ -78,6 +79,7 @@ def simulate(
     """
     _check_start(system, start)
     times = start.time + sample_times(duration, every)
+    check_finite(system, float(times[0]), float(times[-1]))
     chosen = methods.choose(method, system, start)
     samples = methods.solver(chosen)(system, start, times, methods.tolerance_of(chosen), progress)
     if scenario is None:

@@ -11,6 +11,7 @@ from . import checks, fitting, straight
 from .algebra import Quaternion, Vector
 from .attitude import attitude
 from .contact import Contact, touch
+from .finiteness import check_finite
 from .motions import SupportState
 from .scalars import Scalar, is_zero
 
@@ -44,6 +45,7 @@ class Placing:
         from .system import State
 
         system, surface = self.system, self.system.support.surface
+        check_finite(system, 0.0, 0.0)
         own = system.support.motion.own_start()
         begin = system.support.motion.at(0.0, *own)
         u, v = (
