@@ -24,6 +24,7 @@ FAMILY = 6  # initial multipliers, in directions evenly around
 SHARE = 0.1  # of m V, V being the ball's largest speed: the size of these multipliers
 REACH = 1.6  # times as far from the axis as the ball goes: where the vakonomic path is followed no more
 _SAMPLES = 2001
+_SAME = 1e-9  # share of the distance from the axis, below which two paths are one
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,16 @@ class VakonomicComparison:
         return np.hypot(*(self.vakonomic.position - self.position[:seen]).T)
 
     @property
+    def stays(self) -> bool:
+        """Whether the ball stays where it was put down."""
+        return bool(abs(self.position - self.position[0]).max() <= _SAME * self.reach)
+
+    @property
+    def agree(self) -> bool:
+        """Whether the two paths are one, as from rest on a level table."""
+        return bool(self.apart.max() <= _SAME * self.reach)
+
+    @property
     def leaves(self) -> float | None:
         """When the vakonomic path leaves the reach, s, to a sample; None if it stays."""
         return float(self.vakonomic.time[-1]) if self.vakonomic.time.size < self.time.size else None
@@ -80,8 +91,10 @@ class VakonomicComparison:
         """What the ball does, in a few words."""
         from ..plots.scales import with_unit
 
+        if self.stays:
+            return "stays where it was put"
         if self.radius is None:
-            return "rolls"
+            return "rolls along as drawn"
         size = with_unit(self.radius, "length", 4)
         return (
             f"goes round in loops of radius {size} that drift" if self.drifting else f"runs a circle of radius {size}"
@@ -130,14 +143,17 @@ class VakonomicComparison:
         unit = unit_for(float(self.apart.max()), "length")
         lam = self.vakonomic.multipliers[0]
         lines = [self.title] if self.title else []
-        lines += ["The vakonomic path beside the true one. It is wrong: no ball moves so.", ""]
+        wrong = "Its equations are wrong." if self.agree else "It is wrong: no ball moves so."
+        lines += [f"The vakonomic path beside the true one. {wrong}", ""]
         lines += ["     time            ball, x and y           vakonomic, x and y        apart"]
         for t, ball, other in self.rows():
             pair = [f"({z.real:9.4f}, {z.imag:9.4f}) m" for z in (ball, other)]
             apart = f"{short(abs(other - ball) / unit.scale, 3)} {unit.symbol}"
             lines.append(f"{t:7.3f} s  {pair[0]}  {pair[1]}  {apart:>9}")
         lines.append("")
-        if self.radius is not None:
+        if self.agree:
+            lines.append("From this start and these multipliers the two agree, one of them by luck.")
+        if self.radius is not None or self.stays:
             lines.append(f"The ball {self.way}.")
         if self.leaves is not None:
             where = with_unit(self.reach, "length", 4)
@@ -200,7 +216,9 @@ def compare_vakonomic(
     rim = system.support.surface.rim
     distance = float(np.hypot(*position.T).max())
     reach = float(rim) if rim is not None else REACH * distance + 10 * float(begin.system.body.radius)
-    size = SHARE * float(system.body.mass) * float(np.hypot(*np.gradient(position, time, axis=0).T).max())
+    speed = float(np.hypot(*np.gradient(position, time, axis=0).T).max())
+    carried = abs(float(system.support.motion.steady_rate or 0.0)) * distance
+    size = SHARE * float(system.body.mass) * (speed if speed > _SAME * carried else carried)
     around = [cmath.rect(size, 2 * math.pi * i / FAMILY) for i in range(FAMILY)] if size > 0 else []
     paths = [
         vakonomic_path(system, start, time, pair, reach=reach)

@@ -59,7 +59,10 @@ def draw(found: VakonomicComparison) -> Sheet:
         ax.plot(*ruler(ball).T, zorder=4, **TRUE)
         ax.plot(*ruler(wrong).T, zorder=5, **WRONG)
         ax.plot(*ruler(ball[0]), zorder=8, **START)
-        _cross(ax, ruler, wrong)
+        if found.stays:
+            ax.plot(*ruler(ball[0]), marker="o", color=BLUE, ms=16, ls="none", zorder=7)
+        if not found.agree:
+            _cross(ax, ruler, wrong)
         sheet.legend(
             handles=_handles(found),
             loc="lower left",
@@ -116,15 +119,22 @@ def _cross(ax: Axes, ruler: Ruler, wrong: Array) -> None:
 
 
 def _handles(found: VakonomicComparison) -> list[Line2D]:
-    wrong = WRONG | {"marker": "X", "mec": INK, "mew": 0.6, "ms": 8, "markevery": (1, 2)}
-    texts = [
-        (f"TRUE: how a ball rolls (d'Alembert); it {found.way}", TRUE),
-        (f"WRONG: stationary action under the constraint (vakonomic), λ₀ = {_pair(found)} kg m/s", wrong),
-    ]
+    if found.agree:
+        entry = ("From this start the same: stationary action (vakonomic), λ₀ = 0 kg m/s", WRONG)
+    else:
+        entry = _wrong(found)
+    true = TRUE | ({"marker": "o", "ms": 10, "ls": "none"} if found.stays else {})
+    texts = [(f"TRUE: how a ball rolls (d'Alembert); it {found.way}", true), entry]
     if found.family:
         size = float(np.hypot(*found.family[0].multipliers[0]))
         texts.append((f"WRONG: the same with |λ₀| = {short(size, 2)} kg m/s in other directions", OTHERS))
     return [Line2D([], [], label=label, **style) for label, style in (*texts, ("start of all of them", START))]
+
+
+def _wrong(found: VakonomicComparison) -> tuple[str, dict[str, Any]]:
+    """Return the entry of the wrong path, struck out as the path is."""
+    wrong = WRONG | {"marker": "X", "mec": INK, "mew": 0.6, "ms": 8, "markevery": (1, 2)}
+    return f"WRONG: stationary action under the constraint (vakonomic), λ₀ = {_pair(found)} kg m/s", wrong
 
 
 def _pair(found: VakonomicComparison) -> str:
