@@ -77,10 +77,19 @@ def _evaluate(
         if progress is not None:
             progress(0.5 * min(1.0, (first + _LOOKS_AT_ONCE) / times.size))
     q = orientations(motion, start, times)
-    contact = position + touch(system, times, Vector.of(position), Quaternion.of(q)).offset.array()
+    own = _own(system, motion, start, times)
+    contact = position + touch(system, times, Vector.of(position), Quaternion.of(q), tuple(own.T)).offset.array()
     if progress is not None:
         progress(1.0)
-    return Samples(times, position, contact, velocity, turning, q, force)
+    return Samples(times, position, contact, velocity, turning, q, force, own=own)
+
+
+def _own(system: RollingSystem, motion: ClosedForm, start: State, times: Array) -> Array:
+    """Return the coordinates of the support's own motion, (n, k)."""
+    if not system.support.motion.own:
+        return np.zeros((times.size, 0))
+    gone = np.stack([np.broadcast_to(part, times.shape) for part in motion.own_at(times - start.time)], axis=1)
+    return np.asarray(start.support) + gone
 
 
 def orientations(motion: ClosedForm, start: State, times: Array) -> Array:

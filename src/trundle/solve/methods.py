@@ -8,7 +8,7 @@ from functools import cache
 from importlib import import_module
 from typing import Any
 
-from ..errors import UnknownNameError
+from ..errors import OutOfDomainError, UnknownNameError
 from ..mechanics.system import RollingSystem, State
 from .exact import closed_form
 
@@ -37,6 +37,8 @@ def choose(method: str, system: RollingSystem, start: State) -> str:
     ------
     UnknownNameError
         If there is no such method.
+    OutOfDomainError
+        If Taylor's method is asked for on a surface that is a table, which has no derivatives to take.
 
     Examples
     --------
@@ -47,8 +49,14 @@ def choose(method: str, system: RollingSystem, start: State) -> str:
     """
     if method not in CHOICES:
         raise UnknownNameError("method", str(method), CHOICES)
+    analytic = system.support.surface.analytic
     if method == "auto":
-        method = "exact" if closed_form(system, start) is not None else "taylor"
+        method = "exact" if closed_form(system, start) is not None else "taylor" if analytic else "runge-kutta"
+    if method == "taylor" and not analytic:
+        raise OutOfDomainError(
+            f"Taylor's method needs a surface that is a formula; a {type(system.support.surface).__name__} is a table. "
+            'Use method="runge-kutta".'
+        )
     return _instead_of_taylor() if method == "taylor" and not _has_taylor() else method
 
 

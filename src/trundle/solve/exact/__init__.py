@@ -6,7 +6,10 @@ A new closed form is one class derived from `ClosedForm`; add it to `CLOSED_FORM
 
 from __future__ import annotations
 
+from ...errors import SolverError
 from ...mechanics.system import RollingSystem, State
+from .. import following
+from ..samples import RESTING, ROLLING
 from .ball_in_leaning_cylinder import BallInLeaningCylinder
 from .ball_in_upright_cylinder import BallInUprightCylinder
 from .base import ClosedForm
@@ -49,10 +52,19 @@ def closed_form(system: RollingSystem, start: State) -> ClosedForm | None:
     >>> closed_form(system, system.place()).equation
     'T5'
     """
+    if system.support.friction is not None or not _rolls(system, start):  # a limit to friction may end the rolling
+        return None
     for form in CLOSED_FORMS:
         if not form.outside(system, start):
             return form.of(system, start)
     return None
+
+
+def _rolls(system: RollingSystem, start: State) -> bool:
+    try:
+        return following.at_start(system, start).law.code in (ROLLING, RESTING)
+    except SolverError:  # it cannot go on at all
+        return False
 
 
 __all__ = [

@@ -46,6 +46,11 @@ class ClosedForm:
         """Return position, velocity, angular velocity and contact force at a time since the start, s."""
         raise NotImplementedError
 
+    def own_at(self, t: Any) -> tuple[Any, ...]:
+        """Return by how much the coordinates of the support's own motion have grown, where it has some."""
+        del t
+        return ()
+
     @property
     def period(self) -> Any:
         """Time after which the motion repeats, s; infinite where it does not."""
