@@ -21,7 +21,7 @@ from trundle.mechanics.algebra import Vector
 from trundle.mechanics.contact import roll
 from trundle.mechanics.shapes import Ellipsoid, Sphere
 from trundle.mechanics.system import RollingSystem, State
-from trundle.solve import methods, samples, tracing
+from trundle.solve import laws, methods
 from trundle.solve.exact import SphereOnPlane
 from trundle.solve.samples import Samples
 from trundle.verify import Card, CardFigure, compared
@@ -160,8 +160,7 @@ def test_a_wrong_law_fails(monkeypatch: pytest.MonkeyPatch) -> None:
         return replace(now, angular_acceleration=now.angular_acceleration * (1 + 1e-4))
 
     system = replace(SYSTEM, body=tr.Body(0.065, tr.Principal(1.6e-5, 1.7e-5, 1.8e-5), Sphere(0.025)))
-    for module in (tracing, samples):
-        monkeypatch.setattr(module, "roll", wrong)
+    monkeypatch.setattr(laws, "roll", wrong)
     card = verify.card(system, START, solved(system, method="runge-kutta"), "runge-kutta")
     assert {"law of motion"} <= failures(card), str(card)
 
@@ -220,29 +219,56 @@ def test_the_samples_of_another_body_fail_where_nothing_is_conserved() -> None:
 # --- friction and the normal force ----------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("friction", "passes"), [(None, True), (0.2, True), (0.05, False), (0.0, False)])
-def test_friction(friction: float | None, passes: bool) -> None:
-    system = replace(SYSTEM, support=replace(TABLE, friction=friction))
-    card = tr.simulate(system, START, duration=10.0, every=0.01).card()
-    figure = card["friction coefficient needed"]
-    assert figure.bound == friction
-    assert figure.passed is (None if friction is None else passes)
-    assert card.passed is passes
-    assert card.as_dict()["passed"] is passes
-    assert ("slip" in figure.note) is not passes
-    # A full turn on a tilted table asks for tan α + κ²ϱ/(g cos α).
+def needed_on_a_tilted_table() -> float:
+    # A full turn asks for tan α + κ²ϱ/(g cos α).
     kappa, drift = 1.0, 9.80665 * math.sin(0.05) / (3.5 * 0.4)
     radius = abs(complex(0.05, 0.2) - 1j * drift) / kappa
-    needed = math.tan(0.05) + kappa**2 * radius / (9.80665 * math.cos(0.05))
-    assert figure.value == pytest.approx(needed, rel=1e-4)  # of samples 0.01 s apart
+    return math.tan(0.05) + kappa**2 * radius / (9.80665 * math.cos(0.05))
 
 
-def test_the_support_cannot_pull() -> None:
+@pytest.mark.parametrize("friction", [None, 0.2])
+def test_friction_that_is_enough(friction: float | None) -> None:
+    system = replace(SYSTEM, support=replace(TABLE, friction=friction))
+    run = tr.simulate(system, START, duration=10.0, every=0.01)
+    figure = run.card()["friction coefficient needed"]
+    assert not run.events
+    assert figure.bound == friction
+    assert figure.passed is (None if friction is None else True)
+    assert run.card().passed, str(run.card())
+    assert figure.value == pytest.approx(needed_on_a_tilted_table(), rel=1e-4)  # of samples 0.01 s apart
+
+
+@pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
+@pytest.mark.parametrize("friction", [0.05, 0.0])
+def test_friction_that_is_not_enough(friction: float, method: str) -> None:
+    system = replace(SYSTEM, support=replace(TABLE, friction=friction))
+    assert friction < needed_on_a_tilted_table()
+    run = tr.simulate(system, START, duration=10.0, every=0.01, method=method)
+    assert (run.data.phase.values == 1).any()
+    assert run.card()["friction while slipping"].passed
+    assert run.card().passed, str(run.card())
+
+
+def test_rolling_beyond_the_friction_given_fails() -> None:
+    system = replace(SYSTEM, support=replace(TABLE, friction=0.05))
+    figure = verify.card(system, START, solved(), "exact")["friction coefficient needed"]
+    assert figure.passed is False
+    assert "slip" in figure.note
+
+
+def test_the_support_does_not_pull() -> None:
     lifted = replace(SYSTEM, loads=(tr.Force((0.0, 0.0, 1.0)),))
-    card = tr.simulate(lifted, lifted.place((0.1, 0.0)), duration=1.0, every=0.1).card()
-    assert "normal force" in failures(card)
-    assert card["normal force"].value == pytest.approx(0.065 * 9.80665 * math.cos(0.05) - 1.0)
-    assert card["friction coefficient needed"].value == math.inf
+    run = tr.simulate(lifted, lifted.place((0.1, 0.0)), duration=1.0, every=0.1, method="runge-kutta")
+    assert [event.kind for event in run.events] == ["lift"]
+    assert run.card().passed, str(run.card())
+    up = (1.0 / 0.065 - 9.80665 * math.cos(0.05)) / 2  # m after 1 s
+    assert run.data.position.values[-1, 2] == pytest.approx(0.025 + up, rel=1e-12)
+
+
+def test_a_support_that_pulls_fails() -> None:
+    right = solved()
+    pulled = replace(right, contact_force=-right.contact_force)
+    assert "normal force" in failures(verify.card(SYSTEM, START, pulled, "exact"))
 
 
 # --- integrals ------------------------------------------------------------------------------------------

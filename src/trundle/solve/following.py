@@ -283,7 +283,7 @@ def _touching(system: RollingSystem, state: State, gave_way: str = "") -> Next:
     if support.friction == 0:
         law: Law = SlidingFreely()
         return Next(law, state.time, law.pack(system, state))
-    if at.sliding.norm() > limit:
+    if support.friction is not None and at.sliding.norm() > limit:
         law = SlippingLaw()
         return Next(law, state.time, law.pack(system, state), _extras(system, at, at.sliding))
     if any(load.stops for load in system.loads) and gave_way != "start":

@@ -12,6 +12,9 @@ from .bounds import Array, largest
 from .card import CardFigure, checked
 
 
+_SLACK = 1e-8  # by which rolling may pass the cone before it gives way: what `CONE_SLACK` leaves, and rounding
+
+
 def _parts(system: RollingSystem, at: Samples) -> tuple[Array, Array]:
     """Return N and f of the contact force."""
     normal = at.normals(system)
@@ -60,9 +63,9 @@ def contact_force(system: RollingSystem, samples: Samples) -> Iterator[CardFigur
     if mu is None:
         yield CardFigure("friction coefficient needed", float(needed[worst]), note=note)
     else:
-        allowed = float(mu) * (1 + 1e-8)
-        remedy = "" if needed[worst] <= allowed else "; it would slip"
-        yield checked("friction coefficient needed", float(needed[worst]), allowed, note + remedy)
+        held = bool(needed[worst] <= mu * (1 + _SLACK))
+        note += "" if held else "; it would slip"
+        yield CardFigure("friction coefficient needed", float(needed[worst]), "", float(mu), held, note)
 
 
 def friction_law(system: RollingSystem, slipping: Samples, bound: float) -> CardFigure:
