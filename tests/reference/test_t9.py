@@ -47,7 +47,7 @@ def test_it_solves_newton_and_euler(rate: str, drag: float) -> None:
         solution = mpmath.odefun(slopes, 0, [mpmath.mpf(p) for p in (0.1, 0.05, 0.2, -0.1)])
         motion = closed_form(*on(rate, (tr.Drag(drag),) if drag else ()))
         assert isinstance(motion, SphereOnUnsteadyPlane)
-        for t in (0.3, 1.5):
+        for t in (0.8,):
             wanted = solution(mpmath.mpf(t))
             r, V, Omega, _ = motion.motion_at(t)
             for got, right in zip((r.x, r.y, V.x, V.y), wanted, strict=True):
