@@ -161,7 +161,8 @@ def test_air_turns_with_a_support_that_is_combined() -> None:
         ('kind = "rock"\namplitude = 0.1\nrate = 1\naxis = [0, 1]', "support.motion.axis", "list of 3"),
         ('kind = "shake"\namplitude = 0.1\nrate = 1', "support.motion.amplitude", "list of 3"),
         ('kind = "move"\nposition = ["t", 0, "2 kg"]', "support.motion.position[2]", "length"),
-        ('kind = "combined"', "support.motion.parts", ""),
+        ('kind = "combined"', "support.motion.parts", '[[support.motion.parts]] kind = "spin"'),
+        ('kind = "spin-by"\nrate = "1/t"', "support.motion.rate", "not at t = 0 s"),
         ('kind = "combined"\nparts = []', "support.motion.parts", "at least one"),
         (
             'kind = "combined"\nparts = [{kind = "spin", rate = 1}, {kind = "spinn"}]',

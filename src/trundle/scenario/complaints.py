@@ -180,7 +180,12 @@ def _how_to_add(field: FieldInfo, key: str, model: Any) -> str:
     return f"Add for instance, each on a line of its own: {head} {' ; '.join(lines)}"
 
 
+_LISTS = {"parts": '[[support.motion.parts]] kind = "spin" ; rate = "33.3 rpm"'}  # of tables
+
+
 def _example(field: FieldInfo, key: str) -> str:
+    if get_origin(field.annotation) is tuple and key in _LISTS:
+        return _LISTS[key]
     if field.examples:
         offer = f'"{field.examples[0]}"' if isinstance(field.examples[0], str) else str(field.examples[0])
     elif get_args(field.annotation):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 from pydantic import Field, model_validator
 
 from ..errors import InvalidValueError, ScenarioError
-from .complaints import Kinds
+from .complaints import Kinds, Nothing
 from .fields import Measure, written
 from .tables import KINDS, Bodies, Loads, Run, Start, Supports
 from .whole import Document
@@ -101,9 +101,13 @@ class ScenarioFile(Document):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
+        from ..mechanics.finiteness import check_finite
+
         kinds = self.support.build().surface.coordinates
         for i, (part, kind) in enumerate(zip(self.start.position, kinds, strict=True)):
             Measure(kind)(part, f"start.position[{i}]")
+        with _named_in(""):
+            check_finite(self.system(), 0.0, float(self.timing.duration))
         self.start_state()  # it knows whether the body fits there, and whether the start rolls
         return self
 
@@ -159,7 +163,7 @@ class ScenarioFile(Document):
             try:
                 return system.place(**self.start.arguments())
             except ZeroDivisionError:
-                shown = "nothing" if self.start.attitude is None else written(self.start.attitude)
+                shown = Nothing() if self.start.attitude is None else written(self.start.attitude)
                 rule = "must stand the body on one point of its round side"
                 remedy = 'Write for instance attitude = [0, "90 deg", 0] for a disc on its rim.'
                 raise InvalidValueError("attitude", rule, shown, remedy) from None
