@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trundle.mechanics.loads import Drag, Force, Torque
-from trundle.mechanics.motions import Motion, UnevenSpin, Wobble
-from trundle.mechanics.scalars import is_zero
-from trundle.mechanics.surfaces import Cylinder
+from trundle.mechanics.loads import Force, Torque
+from trundle.mechanics.shapes import Ellipsoid, Roller, Sphere
+from trundle.mechanics.surfaces import Bowl, Cylinder, Dome, Plane, TorusTrack
 from trundle.solve.exact import SphereOnPlane, closed_form
 
-from .scales import Array, as_ratio, short, with_unit
+from .happenings import FLIGHT, Happening, Stretch, happenings_of, stretches_of
+from .scales import Array
+from .words import ground_of, key_numbers, noun_of, title_of
 
 if TYPE_CHECKING:
+    from trundle.mechanics.motions import SupportState
     from trundle.mechanics.system import RollingSystem
     from trundle.trajectory import Trajectory
 
@@ -30,14 +32,24 @@ class Facts:
 
     title: str
     numbers: str
-    radius: float
+    radius: float  # of the body, or half its largest width, m
+    round: bool  # whether it looks like a circle from every side that is drawn
     tilt: float
-    rate: float
+    rate: float  # mean rate of the support's turn about its third axis, rad/s; 0 where it turns both ways
+    moving: bool  # whether the support turns or moves at all
+    stays: bool  # whether the support keeps its axis
+    fixed: bool  # whether the surface covers the same places all the time
     rim: float | None
     friction: float | None
     noun: str  # of the body
     wall: float | None  # radius of the cylinder that is rolled on, seen along its axis
+    ground: str  # what the support is called on the maps
+    outline: float | None  # distance from the axis at which the surface is seen to end from above, m
+    curved: bool  # whether it takes a picture of its surface
+    off_centre: bool  # whether the contact does not follow the centre
     pushes: tuple[tuple[str, float, float], ...]  # name and direction, in the plane, of what acts on the body
+    stretches: tuple[Stretch, ...]
+    happenings: tuple[Happening, ...]
 
     @property
     def tilted(self) -> bool:
@@ -46,27 +58,100 @@ class Facts:
 
     @property
     def turning(self) -> bool:
-        """Whether the support turns."""
+        """Whether the support turns, on the whole one way."""
         return self.rate != 0.0
+
+    @property
+    def flies(self) -> bool:
+        """Whether the body leaves the support on the way."""
+        return any(stretch.phase == FLIGHT for stretch in self.stretches)
 
 
 def facts_of(run: Trajectory) -> Facts:
     """Gather what the figures show of a run's system."""
-    system = run.system
-    support = system.support
-    surface = support.surface
+    system, support = run.system, run.system.support
+    surface, shape = support.surface, system.body.shape
+    given = run.data.attrs.get("title")
+    straight = isinstance(shape, Roller)
+    wall = isinstance(surface, Cylinder)
+    stays = support.motion.steady_rate is not None or _stays(run)
     return Facts(
-        title=_title(run),
-        numbers=_key_numbers(system),
-        radius=float(getattr(system.body.shape, "radius", 0.0)),
+        title="".join(letter if letter.isprintable() else " " for letter in str(given)) if given else title_of(system),
+        numbers=key_numbers(system),
+        radius=_size(run),
+        round=isinstance(shape, Sphere) and (wall or not straight),
         tilt=float(support.tilt),
-        rate=float(support.motion.mean_rate),
+        rate=_rate(run),
+        moving=support.motion.steady_rate != 0.0,
+        stays=stays,
+        fixed=support.motion.steady_rate == 0.0 or (stays and surface.axisymmetric),
         rim=None if surface.rim is None else float(surface.rim),
         friction=None if support.friction is None else float(support.friction),
-        noun="ball" if system.body.shape.axis is None else "cylinder",
+        noun=noun_of(system.body),
         wall=float(surface.radius) if isinstance(surface, Cylinder) else None,
+        ground=ground_of(surface),
+        outline=_outline(surface),
+        curved=not isinstance(surface, Plane) and not (wall and _flat(run)),
+        off_centre=not straight and not (isinstance(shape, Sphere) and shape.centre is None),
         pushes=_pushes(system),
+        stretches=tuple(stretches_of(run)),
+        happenings=tuple(happenings_of(run)),
     )
+
+
+def support_states(run: Trajectory) -> SupportState:
+    """Return pose and twist of the support at each sample."""
+    motion = run.system.support.motion
+    own = [np.asarray(run.data[name].values, dtype=float) for name in own_variables(run)]
+    return motion.at(np.asarray(run.data["time"].values, dtype=float), *own)
+
+
+def own_variables(run: Trajectory) -> list[str]:
+    """Return the names of the variables that hold the coordinates of the support's own motion."""
+    return [f"support_{name}" for name in run.system.support.motion.own]
+
+
+def _size(run: Trajectory) -> float:
+    shape: Any = run.system.body.shape
+    if isinstance(shape, Ellipsoid):
+        return float(max(shape.a, shape.b, shape.c))
+    if hasattr(shape, "radius"):
+        return float(shape.radius) + float(getattr(shape, "rim_radius", 0.0))
+    return float(np.linalg.norm(run.data["contact"].values[0] - run.data["position"].values[0]))
+
+
+def _rate(run: Trajectory) -> float:
+    motion = run.system.support.motion
+    if motion.steady_rate is not None:
+        return float(motion.steady_rate)
+    state = support_states(run)
+    rates = np.atleast_1d(np.asarray(state.angular_velocity.dot(state.axle), dtype=float))
+    largest = float(np.max(np.abs(rates)))
+    both = float(np.min(rates)) < -0.01 * largest and float(np.max(rates)) > 0.01 * largest
+    # A lean that goes round turns the axle a little, too: that is no turn of the table.
+    turned = getattr(motion, "turns", True) and (motion.own or float(motion.mean_rate) != 0.0)
+    return 0.0 if both or not turned else float(np.mean(rates))
+
+
+def _stays(run: Trajectory) -> bool:
+    """Tell whether a support that moves keeps its axis, so that one of revolution covers the same places."""
+    state = support_states(run)
+    away = [np.max(np.abs(part)) for part in (*state.origin, state.axle.x, state.axle.y)]
+    return float(max(away)) < 1e-12
+
+
+def _flat(run: Trajectory) -> bool:
+    """Tell whether the motion stays in a plane across the third axis."""
+    place = np.asarray(run.data["position"].values, dtype=float)
+    return bool(np.ptp(place[:, 2]) <= 1e-6 * max(float(np.max(np.ptp(place, axis=0))), _size(run)))
+
+
+def _outline(surface: Any) -> float | None:
+    if isinstance(surface, TorusTrack):
+        return float(surface.ring_radius) + float(surface.tube_radius)
+    if isinstance(surface, Cylinder) or (isinstance(surface, Bowl | Dome) and surface.rim is None):
+        return float(surface.radius)
+    return None if surface.rim is None else float(surface.rim)
 
 
 def guiding_centre(run: Trajectory, times: Array) -> Array | None:
@@ -74,6 +159,8 @@ def guiding_centre(run: Trajectory, times: Array) -> Array | None:
     form = closed_form(run.system, run.start)
     if not isinstance(form, SphereOnPlane) or not form.has_guiding_centre:
         return None
+    if any(stretch.phase for stretch in stretches_of(run)):
+        return None  # it moves while the ball slips
     x, y = form.guiding_centre(times - run.start.time)
     return np.column_stack([x, y])
 
@@ -112,63 +199,6 @@ def turns_in(time: Array, velocity: Array) -> float:
         return 0.0
     duration = float(time[-1] - time[0])
     return abs(float(np.sum(angle))) / (2 * math.pi) * duration / float(np.sum(np.diff(time[seen])[1:]))
-
-
-def _title(run: Trajectory) -> str:
-    given = run.data.attrs.get("title")
-    if given:
-        return "".join(letter if letter.isprintable() else " " for letter in str(given))
-    system = run.system
-    turning = "turning" if system.support.motion.mean_rate else "fixed"
-    body = "Ball" if system.body.shape.axis is None else "Cylinder"
-    if isinstance(system.support.surface, Cylinder):
-        return f"{body} {system.support.surface.side} a {turning} cylinder"
-    return f"{body} on a {turning}{', tilted' if system.support.tilt else ''} plane"
-
-
-def _key_numbers(system: RollingSystem) -> str:
-    body, support = system.body, system.support
-    parts = []
-    rate, wall = float(support.motion.mean_rate), isinstance(support.surface, Cylinder)
-    if rate:
-        parts.append(f"{'wall' if wall else 'table'} {_rate(rate)}")
-    if wall:
-        parts.append(f"wall of radius {with_unit(float(support.surface.radius), 'length')}")  # type: ignore[attr-defined]
-    elif support.tilt:
-        parts.append(f"tilt {short(math.degrees(support.tilt), 4)}°")
-    if body.is_isotropic_sphere:
-        parts.append(f"inertia ratio k = {as_ratio(float(body.inertia_ratio))}")
-        radius = float(getattr(body.shape, "radius", 0.0))
-        millimetres = 1e-3 <= radius < 0.1  # as balls are sold
-        parts.append(f"radius {f'{radius * 1e3:.4g} mm' if millimetres else with_unit(radius, 'length')}")
-    parts += _shortcomings(support.motion)
-    for load in system.loads:
-        if isinstance(load, Force):
-            parts.append(f"force {_size(load, 'force')}")
-        elif isinstance(load, Torque):
-            parts.append(f"torque {_size(load, 'torque')}")
-        elif isinstance(load, Drag):
-            air = "" if is_zero(load.air_rate) else ", air turning"
-            parts.append(f"drag {with_unit(float(load.coefficient), 'damping')}{air}")
-    return "  ·  ".join(parts)
-
-
-def _shortcomings(motion: Motion) -> list[str]:
-    if isinstance(motion, Wobble):
-        return [f"askew by {short(math.degrees(float(motion.angle)), 3)}°"]
-    if isinstance(motion, UnevenSpin):
-        return [f"uneven by {short(100 * float(motion.variation), 3)} %"]
-    return []
-
-
-def _size(load: Force | Torque, kind: str) -> str:
-    return with_unit(math.hypot(*load.value), kind) if load.constant else "that varies"
-
-
-def _rate(rate: float) -> str:
-    per_minute = rate * 30 / math.pi
-    text = f"{short(rate, 4)} rad/s"
-    return f"{text} ({short(per_minute, 4)} rpm)" if 0.1 <= abs(per_minute) < 1e5 else text
 
 
 def _pushes(system: RollingSystem) -> tuple[tuple[str, float, float], ...]:

@@ -14,7 +14,7 @@ from matplotlib.patches import Circle, Ellipse
 from matplotlib.path import Path
 
 from .scales import Array, Unit
-from .sheet import BLUE, GREY, INK, TABLE, VERMILION
+from .sheet import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, TABLE, VERMILION
 
 _ARROWHEAD = Path([(-0.8, -0.9), (0.0, 1.1), (0.8, -0.9), (0.0, -0.5), (-0.8, -0.9)], closed=True)
 
@@ -138,6 +138,7 @@ def _beside_name(
     return at[0], at[1] - away if top else at[1] + away
 
 
+_EVENT: dict[str, Any] = {"mec": INK, "mew": 0.8, "ms": 8.0, "ls": "none", "zorder": 8.4}
 STYLES: dict[str, dict[str, Any]] = {
     "path": {"color": BLUE, "lw": 1.8, "zorder": 4},
     "first turn": {"color": BLUE, "lw": 2.4, "zorder": 4.1},
@@ -156,8 +157,21 @@ STYLES: dict[str, dict[str, Any]] = {
         "ls": "none",
         "zorder": 8.5,
     },
+    "slipping": {"color": ORANGE, "lw": 6.0, "alpha": 0.45, "zorder": 3.8, "solid_capstyle": "butt"},
+    "flight": {"color": BLUE, "lw": 1.4, "ls": (0, (1, 1.6)), "zorder": 4},
+    "contact": {"color": GREEN, "lw": 0.8, "zorder": 3.6},
+    "slip": {"color": ORANGE, "marker": "d"} | _EVENT,
+    "grip": {"color": GREEN, "marker": "p"} | _EVENT,
+    "lift": {"color": SKY, "marker": "^"} | _EVENT,
+    "land": {"color": SKY, "marker": "v"} | _EVENT,
+    "bounce": {"color": "white", "marker": "v"} | _EVENT,
+    "settle": {"color": SKY, "marker": "P"} | _EVENT,
+    "stop": {"color": PURPLE, "marker": "h"} | _EVENT,
+    "off": {"color": PURPLE, "marker": ">"} | _EVENT,
     "axis": {"color": GREY, "marker": "+", "ms": 11, "mew": 1.3, "ls": "none", "zorder": 3},
     "rim": {"color": GREY, "lw": 1.1},
+    "ground": {"color": GREY, "lw": 1.3},
+    "contour": {"color": "#B9B5A6", "lw": 0.9},
     "ball": {"color": GREY, "lw": 1.1, "ls": (0, (1, 1.2))},
 }
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .facts import NOTHING, Facts, guiding_centre, turns_in
+from .happenings import FLIGHT, SLIPPING, part_in, with_events
 from .marks import Page
 from .scales import LONG_LINE, Array, refined, with_unit
 
@@ -38,6 +39,7 @@ class Panel:
     turns: float
     at_rest: bool
     sparse: bool  # too few samples a turn for a line
+    contact: Array | None = None  # (n, 2), of the samples; NaN in flight
     until: float | None = None  # the time up to which it is shown; None: all of it
     low: tuple[float, float] = (0.0, 0.0)  # the view, (across, up)
     high: tuple[float, float] = (0.0, 0.0)
@@ -96,28 +98,31 @@ class Panel:
 
 def panels_of(run: Trajectory, facts: Facts) -> list[Panel]:
     """Return the maps that tell something about a run, with their views chosen."""
-    steady = facts.turning and run.system.support.motion.steady_rate is not None
-    walled = facts.wall is not None
-    names = ["support"] + ["world"] * (facts.tilted and not walled) + ["corotating"] * (steady and not walled)
+    plain = not facts.curved
+    walled = plain and facts.wall is not None
+    names = ["support"] + ["world"] * (facts.tilted and plain and not walled)
+    names += ["corotating"] * (facts.moving and not walled)
+    run = with_events(run)
     time = np.asarray(run.data["time"].values, dtype=float)
     panels = [_panel(run, facts, name, time) for name in names]
-    return [_viewed(_rounded(panel), facts) for panel in _windowed(panels, facts)]
+    if len(panels) == 2 and np.allclose(panels[0].samples[:, :2], panels[1].samples[:, :2], rtol=0, atol=1e-9):
+        panels = panels[:1]  # shaken up and down: from above there is nothing to tell apart
+    return [_viewed(_rounded(panel), facts) for panel in (_windowed(panels, facts) if plain else panels)]
 
 
 def _panel(run: Trajectory, facts: Facts, name: str, time: Array) -> Panel:
+    inertial = "Support frame" if facts.tilted else "Support and world frame"
     titles = {
-        "support": "Along the cylinder's axis"
-        if facts.wall is not None
-        else "Support frame"
-        if facts.tilted
-        else "Support and world frame",
+        "support": "Along the cylinder's axis" if facts.wall is not None else inertial,
         "world": "World frame, from above",
-        "corotating": "Corotating frame",
+        "corotating": "Corotating frame" if facts.turning and facts.stays else f"Seen from the {facts.ground}",
     }
+    if facts.curved and facts.wall is None:
+        titles["support"] += ", from above"
     labels = {
         "support": ("x, down" if facts.wall else "x, down the slope", "y, level") if facts.tilted else ("x", "y"),
         "world": ("X, level, downhill", "Y, level"),
-        "corotating": ("x′, on the table", "y′, on the table"),
+        "corotating": (f"x′, on the {facts.ground}", f"y′, on the {facts.ground}"),
     }
     data = run.in_frame(name).data
     samples = np.asarray(data["position"].values, dtype=float)
@@ -130,7 +135,7 @@ def _panel(run: Trajectory, facts: Facts, name: str, time: Array) -> Panel:
         name,
         titles[name],
         labels[name],
-        Page.downhill_down(facts.tilt),
+        _page(facts, samples),
         samples,
         velocity,
         time,
@@ -139,7 +144,22 @@ def _panel(run: Trajectory, facts: Facts, name: str, time: Array) -> Panel:
         turns,
         at_rest,
         sparse=turns * FEWEST_A_TURN > len(samples),
+        contact=_contact(data, facts, time) if facts.off_centre else None,
     )
+
+
+def _page(facts: Facts, samples: Array) -> Page:
+    """Let the slope fall towards the reader, and a flight along the second axis go across the page."""
+    if not facts.tilted and facts.flies and np.ptp(samples[:, 1]) > 1.5 * np.ptp(samples[:, 0]):
+        return Page(across=1, across_sign=1, up_sign=-1)
+    return Page.downhill_down(facts.tilt)
+
+
+def _contact(data: Any, facts: Facts, time: Array) -> Array:
+    """Return where the body touches, NaN where it does not."""
+    points = np.array(data["contact"].values[:, :2], dtype=float)
+    points[part_in(facts.stretches, FLIGHT, time)] = np.nan
+    return points
 
 
 def _guide(run: Trajectory, facts: Facts, name: str, time: Array) -> Array | None:
@@ -193,11 +213,14 @@ def _viewed(panel: Panel, facts: Facts) -> Panel:
     span = float(np.max(high - low))
     shown = [low, high]
     reach = float(np.max(np.hypot(path[:, 0], path[:, 1])))
+    if panel.contact is not None and not panel.sparse:
+        touched = panel.page.order(panel.contact[np.isfinite(panel.contact[:, 0])])
+        shown += [np.min(touched, axis=0), np.max(touched, axis=0)] if len(touched) else []
     if facts.wall is not None:
         shown += [np.full(2, -facts.wall), np.full(2, facts.wall)]
         shown += [low - 1.2 * facts.radius, high + 1.2 * facts.radius]
-    elif facts.rim is not None and (panel.at_rest or span > facts.rim / 5 or reach > 0.8 * facts.rim):
-        shown += [np.full(2, -facts.rim), np.full(2, facts.rim)]
+    elif facts.outline is not None and at_home(panel, facts) and _is_near(facts, panel, span, reach):
+        shown += [np.full(2, -facts.outline), np.full(2, facts.outline)]
     elif panel.at_rest:
         shown += [low - 2.0 * facts.radius, high + 2.0 * facts.radius]
     if panel.at_rest or float(np.max(np.abs((low + high) / 2))) <= 2.0 * span:
@@ -212,8 +235,38 @@ def _viewed(panel: Panel, facts: Facts) -> Panel:
     return replace(panel, low=tuple(low - pad), high=tuple(high + pad))
 
 
+def at_home(panel: Panel, facts: Facts) -> bool:
+    """Tell whether the support is seen at rest in a map, or at least covers the same places all the time."""
+    return facts.fixed or panel.name == "corotating"
+
+
+def _is_near(facts: Facts, panel: Panel, span: float, reach: float) -> bool:
+    """Tell whether the edge of the support belongs in the view: a rim does even where it is somewhat far."""
+    edge = facts.outline or math.inf
+    return reach > 0.8 * edge or (facts.rim is not None and (panel.at_rest or span > edge / 5))
+
+
 def until_text(panel: Panel) -> str:
     """Return the title of a map, with the time up to which it is shown."""
     if panel.until is None:
         return panel.title
     return f"{panel.title}, first {with_unit(panel.until - float(panel.time[0]), 'time', 2)}"
+
+
+def phases_of(panel: Panel, facts: Facts) -> tuple[Array, Array | None, Array | None]:
+    """Return for touching, flight and slipping what to multiply the shown line with: 1 within, NaN without.
+
+    Flight and slipping are None where there is none.
+    """
+    time = panel.time[panel.shown]
+    found: list[Array | None] = []
+    for phase in (FLIGHT, SLIPPING):
+        inside = part_in(facts.stretches, phase, time)
+        found.append(np.where(inside, 1.0, np.nan) if np.any(inside) else None)
+    flying, slipping = found
+    touching = np.ones(len(time))
+    if flying is not None:
+        others = {stretch.phase for stretch in facts.stretches} - {FLIGHT}
+        parts = [part_in(facts.stretches, phase, time) for phase in others]
+        touching = np.where(np.any(parts, axis=0), 1.0, np.nan) if parts else np.full(len(time), np.nan)
+    return touching, flying, slipping

@@ -11,9 +11,10 @@ from matplotlib.axes import Axes
 
 from . import marks
 from .facts import NOTHING, Facts, facts_of
+from .happenings import FLIGHT, SLIPPING
 from .layout import Place, Plan, arrange
 from .marks import STYLES, Ruler
-from .panels import MANY_TURNS, Panel, panels_of, until_text
+from .panels import MANY_TURNS, Panel, at_home, panels_of, phases_of, until_text
 from .scales import Array, Unit, round_step, thin_path, unit_for, with_unit
 from .sheet import BLUE, GREY, VERMILION, Sheet, look
 
@@ -27,34 +28,53 @@ def draw(run: Trajectory) -> Sheet:
     """Draw the sheet."""
     facts = facts_of(run)
     with look():
-        return _Drawing(run, facts, panels_of(run, facts)).sheet()
+        if facts.curved:
+            from .curved import CurvedDrawing
+
+            return CurvedDrawing(run, facts, panels_of(run, facts)).sheet()
+        return Drawing(facts, panels_of(run, facts)).sheet()
 
 
-class _Drawing:
+class Drawing:
     """The sheet while it is being drawn."""
 
-    def __init__(self, run: Trajectory, facts: Facts, panels: list[Panel]) -> None:
+    def __init__(self, facts: Facts, panels: list[Panel]) -> None:
         self.facts, self.panels = facts, panels
         self.units = _units(panels)
         self.step, self.instants, self.of_what = _instants(panels)
-        self.events = [event for event in run.events if panels[0].time[0] <= event.time <= panels[0].time[-1]][:20]
         self.legend: dict[str, str] = {}
 
     def sheet(self) -> Sheet:
         """Draw it."""
-        plan = arrange([(panel.name, panel.span) for panel in self.panels])
+        under = "world" if any(panel.name == "world" for panel in self.panels) else self._from_the_side()
+        plan = arrange([(panel.name, panel.span) for panel in self.panels], under, lines=self._lines_of_key())
         sheet = Sheet(plan.width, plan.height)
         sheet.head(self.facts.title, self.facts.numbers)
         for panel, place in zip(self.panels, plan.maps, strict=True):
-            fitted = _fitted(panel, place, signs=panel.name != "corotating" and self.facts.rim is None)
+            shown = fitted(panel, place, signs=panel.name != "corotating" and self.facts.rim is None)
             ax = sheet.add_box(*place)
-            self._map(ax, fitted, place)
-            if panel.name == "world" and plan.strip is not None:
+            self._map(ax, shown, place)
+            if panel.name == under and plan.strip is not None:
                 ax.set_xlabel("")
                 ax.tick_params(labelbottom=False)
-                self._strip(sheet.add_box(*plan.strip, sharex=ax), fitted, place.width)
+                self._strip(sheet.add_box(*plan.strip, sharex=ax), shown, place.width)
         self._key(sheet, plan)
         return sheet
+
+    def _from_the_side(self) -> str | None:
+        """Return the map under which heights are drawn, where they change."""
+        panel = self.panels[0]
+        rises = float(np.ptp(panel.line[:, 2])) > 2e-2 * self.facts.radius
+        return "support" if rises and self.facts.wall is None else None
+
+    def _lines_of_key(self) -> int:
+        """Return how many lines the legend takes at the foot of a sheet, two unless there is much to say."""
+        return 2 + math.ceil(self._said() / 2)
+
+    def _said(self) -> int:
+        """Return how many entries the legend has besides the usual ones."""
+        phases = {stretch.phase for stretch in self.facts.stretches} & {SLIPPING, FLIGHT}
+        return len(self.facts.happenings) + len(phases) + self.facts.off_centre
 
     def _key(self, sheet: Sheet, plan: Plan) -> None:
         """Write the legend, shared out over the places that the plan has for it."""
@@ -82,7 +102,9 @@ class _Drawing:
         if not panel.at_rest:
             self._guide(ax, panel, ruler)
             self._path(ax, panel, ruler)
+        self._contact(ax, panel, ruler)
         self._ends(ax, panel, ruler)
+        self._events(ax, panel, ruler)
 
     def _frame(self, ax: Axes, panel: Panel, width: float) -> Ruler:
         """Set axes, labels and title; count from the start where the path is tiny beside its place."""
@@ -109,17 +131,18 @@ class _Drawing:
     def _table(self, ax: Axes, panel: Panel, ruler: Ruler) -> None:
         """Draw what the ball rolls on, and the ball at the end, to scale."""
         facts = self.facts
-        if facts.rim is not None and _crosses(panel, facts.rim):
+        if facts.rim is not None and at_home(panel, facts) and crosses(panel, facts.rim):
             marks.rim(ax, panel.page, ruler, facts.rim, facts.tilt if panel.name == "world" else 0.0)
             self.legend["rim"] = "rim"
         if facts.wall is not None:
             marks.rim(ax, panel.page, ruler, facts.wall, 0.0)
             self.legend["rim"] = "wall"
-        elif facts.turning and _crosses(panel, 0.0):
+        elif facts.turning and at_home(panel, facts) and crosses(panel, 0.0):
             ax.plot(*ruler(np.zeros(2)), **STYLES["axis"])
-            self.legend["axis"] = "axis of the table"
+            self.legend["axis"] = f"axis of the {facts.ground}"
         smallest = 0.035 if facts.wall is None else 0.012
-        if smallest * max(panel.span) < facts.radius < 0.35 * min(panel.span) and panel.until is None:
+        large_enough = smallest * max(panel.span) < facts.radius < 0.35 * min(panel.span)
+        if facts.round and large_enough and panel.until is None:
             marks.ball(ax, ruler, panel.path[-1], facts.radius)
             self.legend["ball"] = f"{facts.noun} at the end, to scale"
 
@@ -129,7 +152,12 @@ class _Drawing:
         signs = [("down" if facts.wall else "downhill", (0.0, -1.0))] if facts.tilted else []
         signs += [(name, panel.page.direction(x, y)) for name, x, y in facts.pushes]
         arc = facts.turning
-        whole = facts.rim is not None and max(panel.low) < -facts.rim and min(panel.high) > facts.rim
+        whole = (
+            facts.rim is not None
+            and at_home(panel, facts)
+            and max(panel.low) < -facts.rim
+            and min(panel.high) > facts.rim
+        )
         count = len(signs) + (arc and not whole)
         left, top = _emptiest(panel, place, SIGN * count, corners_only=whole)
         if whole and arc:
@@ -141,7 +169,7 @@ class _Drawing:
             if i < len(signs):
                 marks.signpost(ax, at, (place.width, place.height), top, *signs[i])
             else:
-                marks.turn_sign(ax, at, (place.width, place.height), top, facts.rate, "wall" if facts.wall else "table")
+                marks.turn_sign(ax, at, (place.width, place.height), top, facts.rate, facts.ground)
 
     def _guide(self, ax: Axes, panel: Panel, ruler: Ruler) -> None:
         track = panel.track
@@ -174,7 +202,16 @@ class _Drawing:
         tolerance = 1e-4 * max(panel.span)
         many = panel.turns > MANY_TURNS and panel.until is None and not panel.repeats
         thin = {"lw": 0.5 if panel.turns > 60 else 0.9} if many else {}
-        ax.plot(*ruler(thin_path(path, tolerance)).T, **STYLES["path"] | thin, label="path")
+        touching, flying, slipping = phases_of(panel, self.facts)
+        if flying is None:
+            ax.plot(*ruler(thin_path(path, tolerance)).T, **STYLES["path"] | thin, label="path")
+        else:
+            ax.plot(*ruler(path * touching[:, None]).T, **STYLES["path"] | thin, label="path")
+            ax.plot(*ruler(path * flying[:, None]).T, **STYLES["flight"])
+            self.legend["flight"] = "in flight"
+        if slipping is not None:
+            ax.plot(*ruler(path * slipping[:, None]).T, **STYLES["slipping"])
+            self.legend["slipping"] = "slipping"
         if first is not None:
             ax.plot(*ruler(thin_path(first, tolerance)).T, **STYLES["first turn"])
             self.legend["first turn"] = "its first turn"
@@ -201,21 +238,44 @@ class _Drawing:
             onward = step * (panel.page.across_sign, panel.page.up_sign)
             marks.arrowhead(ax, ruler(at), (float(onward[0]), float(onward[1])), BLUE, 12)
 
+    def _contact(self, ax: Axes, panel: Panel, ruler: Ruler) -> None:
+        """Draw the track of the contact, where it is not that of the centre."""
+        if panel.contact is None or panel.sparse or not np.any(np.isfinite(panel.contact)):
+            return
+        track = panel.page.order(panel.contact)
+        extent = np.nanmax(track, axis=0) - np.nanmin(track, axis=0)
+        if float(np.max(extent)) > 1e-3 * max(panel.span):
+            ax.plot(*ruler(track).T, **STYLES["contact"])
+            self.legend["contact"] = "track of the contact"
+
     def _ends(self, ax: Axes, panel: Panel, ruler: Ruler) -> None:
         path, time = panel.page.order(panel.line), panel.time
-        last = "event" if any(event.time >= time[-1] for event in self.events) else "end"
+        last = "event" if any(found.kind == "event" for found in self.facts.happenings) else "end"
         if panel.until is None and not panel.at_rest and last == "end":
             ax.plot(*ruler(path[-1]), **STYLES["end"])
             self.legend["end"] = f"end, {with_unit(float(time[-1]), 'time')}"
         ax.plot(*ruler(path[0]), **STYLES["start"])
         self.legend["start"] = "start"
         if panel.at_rest and len(time) > 1:
-            ax.annotate("at rest", tuple(ruler(path[0])), (0, 9), textcoords="offset points", ha="center", va="bottom")
-        for event in self.events if panel.until is None else ():
-            at = [float(np.interp(event.time, time, path[:, i])) for i in range(2)]
-            ax.plot(*ruler(np.array(at)), **STYLES["event"])
-            what = event.text.split(" (")[0].split(" at ")[0]  # the text has its place and time too
-            self.legend["event"] = f"{what}, {with_unit(float(event.time), 'time')}"
+            bobs = float(np.ptp(panel.line[:, 2])) > 1e-6 * self.facts.radius
+            ax.annotate(
+                "straight up and down" if bobs else "at rest",
+                tuple(ruler(path[0])),
+                (0, 9),
+                textcoords="offset points",
+                ha="center",
+                va="bottom",
+            )
+
+    def _events(self, ax: Axes, panel: Panel, ruler: Ruler) -> None:
+        """Mark what happened where it happened."""
+        path, time = panel.page.order(panel.line), panel.time
+        for found in self.facts.happenings:
+            times = found.marked if panel.until is None else found.marked[found.marked <= panel.until]
+            at = np.column_stack([np.interp(times, time, path[:, i]) for i in range(2)])
+            ax.plot(*ruler(at).T, **STYLES[found.kind])
+            if len(times):
+                self.legend[found.kind] = found.text
 
     def _strip(self, ax: Axes, panel: Panel, width: float) -> None:
         """Draw the height of the centre above its start, against the level coordinate of the map above it."""
@@ -237,9 +297,20 @@ class _Drawing:
         extent = np.where(
             np.ptp(line, axis=0) > 0.0, np.ptp(line, axis=0), 1.0
         )  # the two axes have scales of their own
-        drawn = thin_path(line / extent, 1e-4) * extent
-        ax.plot(*drawn.T, **STYLES[kind] | ({"lw": 0.5} if many else {}))
-        ax.plot(*line[-1], **STYLES["event" if "event" in self.legend and "end" not in self.legend else "end"])
+        touching, flying, slipping = phases_of(panel, self.facts)
+        if flying is None:
+            drawn = thin_path(line / extent, 1e-4) * extent
+            ax.plot(*drawn.T, **STYLES[kind] | ({"lw": 0.5} if many else {}))
+        else:
+            ax.plot(*(line * touching[:, None]).T, **STYLES[kind])
+            ax.plot(*(line * flying[:, None]).T, **STYLES["flight"])
+        if slipping is not None:
+            ax.plot(*(line * slipping[:, None]).T, **STYLES["slipping"])
+        for found in self.facts.happenings:
+            at = np.column_stack([np.interp(found.marked, panel.time, line[:, i]) for i in range(2)])
+            ax.plot(*at.T, **STYLES[found.kind])
+        if "end" in self.legend:
+            ax.plot(*line[-1], **STYLES["end"])
         ax.plot(*line[0], **STYLES["start"])
         ax.set_xlabel(f"{panel.labels[page.across]} ({ruler.symbol})", labelpad=2)
         ax.set_ylabel(f"height above\nstart ({unit.symbol})")
@@ -279,7 +350,7 @@ def _instants(panels: list[Panel]) -> tuple[float, Array, str]:
     return step, instants, ", first turn" if panel.repeats else ""
 
 
-def _fitted(panel: Panel, place: Place, signs: bool) -> Panel:
+def fitted(panel: Panel, place: Place, *, signs: bool) -> Panel:
     """Widen a view to the shape of its place; in a wide one, leave the room at the top, for the signs."""
     scale = max(panel.span[0] / place.width, panel.span[1] / place.height)
     middle = (np.array(panel.low) + np.array(panel.high)) / 2
@@ -289,7 +360,7 @@ def _fitted(panel: Panel, place: Place, signs: bool) -> Panel:
     return replace(panel, low=tuple(middle - half), high=tuple(middle + half))
 
 
-def _crosses(panel: Panel, radius: float) -> bool:
+def crosses(panel: Panel, radius: float) -> bool:
     """Whether some of a circle about the axis lies in the view."""
     nearest = np.clip(0.0, panel.low, panel.high)
     farthest = np.maximum(np.abs(panel.low), np.abs(panel.high))

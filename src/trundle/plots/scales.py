@@ -50,6 +50,7 @@ _UNITS: dict[str, _Units] = {
     "torque": ((1, "N m", 1), (1e-3, "mN m", 1), (1e-6, "µN m", 1)),
     "damping": ((1, "kg/s", 0.5), (1e-3, "g/s", 0.5), (1e-6, "mg/s", 0.5)),
     "number": ((1, "", 5e-3),),
+    "angle": ((math.pi / 180, "°", 1e-2),),
 }
 _SI = {
     "length": "m",
@@ -60,6 +61,7 @@ _SI = {
     "torque": "N m",
     "damping": "kg/s",
     "number": "",
+    "angle": "rad",
 }
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -72,7 +74,7 @@ def unit_for(size: float, kind: str) -> Unit:
     size : float
         The largest magnitude on the axis (SI).
     kind : str
-        "length", "speed", "force", "time", "angular velocity" or "number".
+        "length", "speed", "force", "time", "angular velocity", "torque", "damping", "angle" or "number".
 
     Returns
     -------

@@ -10,13 +10,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib import rcParams
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
-from trundle.mechanics.algebra import Vector
-from trundle.mechanics.contact import normal_at
-
-from .facts import NOTHING, Facts, facts_of, guiding_centre, turns_in
+from .facts import Facts, facts_of, turns_in
+from .happenings import FLIGHT, RESTING, SLIPPING
+from .marks import STYLES
+from .quantities import Series, quantities_of
 from .scales import Array, Unit, thin_series, unit_for
-from .sheet import BLUE, GREEN, GREY, INK, VERMILION, Sheet, look
+from .sheet import BLUE, GREEN, GREY, INK, ORANGE, SKY, VERMILION, Sheet, look
 
 if TYPE_CHECKING:
     from trundle.trajectory import Trajectory
@@ -25,43 +27,18 @@ MANY_TURNS = 40  # beyond it the first turns are shown beside the whole
 FIRST_TURNS = 5
 LEFT, RIGHT, FOOT, HEADER, GAP, EACH, WIDTH = 0.95, 0.95, 0.52, 0.8, 0.14, 1.12, 8.4
 FEWEST_A_TURN = 5  # samples; with fewer, a line between them would mislead
+KEY_LINE = 0.2
+# Shades of the phases: slipping is hatched besides, so that it is told apart without colour.
+_SHADES: dict[int, tuple[str, dict[str, Any]]] = {
+    SLIPPING: ("slipping", {"fc": "#FBE7C2", "ec": ORANGE, "lw": 0.0, "hatch": "////"}),
+    FLIGHT: ("in flight", {"fc": "#DCEFFA", "ec": SKY, "lw": 0.0}),
+    RESTING: ("at rest", {"fc": "#EEEEEE", "ec": GREY, "lw": 0.0, "hatch": "...."}),
+}
 _STYLES: tuple[dict[str, Any], ...] = (
     {"color": BLUE, "lw": 1.7},
     {"color": VERMILION, "lw": 1.5, "ls": (0, (5, 1.6))},
     {"color": GREEN, "lw": 1.6, "ls": (0, (7, 1.5, 1.5, 1.5))},
 )
-
-
-@dataclass(frozen=True)
-class Series:
-    """One panel: its quantity, its lines by name, and the size beside which rounding error is nothing."""
-
-    name: str
-    kind: str
-    natural: float
-    lines: dict[str, Array]
-    from_zero: bool = False
-    offered: float | None = None  # the friction coefficient that the support has
-
-    @property
-    def largest(self) -> float:
-        """The largest magnitude of any line."""
-        return max(float(np.nanmax(np.abs(line))) for line in self.lines.values())
-
-    @property
-    def is_nothing(self) -> bool:
-        """Whether all lines are zero but for rounding."""
-        return self.largest <= NOTHING * self.natural
-
-    @property
-    def unit(self) -> Unit:
-        """The unit that its axis is labelled in."""
-        return unit_for(self.natural if self.is_nothing else self.largest, self.kind)
-
-    @property
-    def label(self) -> str:
-        """The name and the unit."""
-        return f"{self.name} ({self.unit.symbol})" if self.unit.symbol else self.name
 
 
 @dataclass(frozen=True)
@@ -80,20 +57,29 @@ def draw(run: Trajectory) -> Sheet:
     """Draw the sheet."""
     facts = facts_of(run)
     time = np.asarray(run.data["time"].values, dtype=float)
-    support = run.in_frame("support").data
-    panels = _panels(run, facts, time, support)
-    columns = _columns(time, turns_in(time, _array(support, "velocity")[:, :2]))
-    header = HEADER + 0.2 * (len(columns) - 1)
+    velocity = np.asarray(run.in_frame("support").data["velocity"].values, dtype=float)
+    panels = quantities_of(run, facts)
+    columns = _columns(time, turns_in(time, velocity[:, :2]) if not facts.flies else 0.0)
+    key = _key(facts)
+    rows = math.ceil(len(key) / 2)
+    header = HEADER + 0.2 * (len(columns) - 1) + (KEY_LINE * rows + 0.1 if rows else 0.0)
     height = header + len(panels) * EACH + (len(panels) - 1) * GAP + FOOT
     with look():
         sheet = Sheet(WIDTH, height)
         sheet.head(facts.title, facts.numbers)
+        if rows:
+            place = (LEFT / WIDTH, 1.0 - (HEADER - 0.06) / height)
+            style = {"ncols": 2, "borderpad": 0.0, "borderaxespad": 0.0, "columnspacing": 1.8}
+            sheet.legend(handles=key, loc="upper left", bbox_to_anchor=place, **style)
         for column in columns:
             top: Axes | None = None
             for i, panel in enumerate(panels):
                 bottom = FOOT + (len(panels) - 1 - i) * (EACH + GAP)
                 ax = sheet.add_box(column.left, bottom, column.width, EACH, sharex=top)
+                _phases(ax, facts, time[column.samples])
                 _lines(ax, panel, time, column)
+                if i == 0:
+                    _events(ax, facts, time[column.samples])
                 _value_axis(ax, panel, column)
                 if column is columns[0]:
                     ax.set_ylabel(panel.label, fontsize=9)
@@ -108,69 +94,35 @@ def draw(run: Trajectory) -> Sheet:
     return sheet
 
 
-def _array(data: Any, name: str) -> Array:
-    return np.asarray(data[name].values, dtype=float)
+def _key(facts: Facts) -> list[Any]:
+    """Return the entries of the legend: the shades of the phases, the marks of the events."""
+    present = {stretch.phase for stretch in facts.stretches}
+    shades = [Patch(label=_SHADES[phase][0], **_SHADES[phase][1]) for phase in _SHADES if phase in present]
+    marks = [Line2D([], [], label=found.text, **STYLES[found.kind]) for found in facts.happenings]
+    return [*shades, *marks] if len(present) > 1 or marks else []
 
 
-def _panels(run: Trajectory, facts: Facts, time: Array, support: Any) -> list[Series]:
-    r, V = _array(support, "position"), _array(support, "velocity")
-    Omega, R = _array(support, "angular_velocity"), _array(support, "contact_force")
-    duration = float(time[-1] - time[0])
-    length = max(float(np.max(np.abs(r))), facts.radius, 1e-300)
-    frequency = max(abs(facts.rate), 1.0 / duration if duration > 0.0 else 1.0)
-    normal = np.broadcast_to(normal_at(run.system, time, Vector.of(_array(support, "contact"))).array(), R.shape)
-    N = np.einsum("ni,ni->n", R, normal)
-    f = np.linalg.norm(R - N[:, None] * normal, axis=1)
-    force = float(np.max(np.abs(R)))
-    panels = [
-        _position(r, length),
-        Series("speed", "speed", length * frequency, {"": np.sqrt(np.sum(V * V, axis=1))}, from_zero=True),
-        Series(
-            "angular\nvelocity",
-            "angular velocity",
-            max(frequency, float(np.max(np.abs(Omega)))),
-            _turning(Omega, facts),
-        ),
-        Series("contact\nforce", "force", force or 1.0, {"N, normal": N, "|f|, friction": f}, from_zero=True),
-    ]
-    if float(np.max(N)) > NOTHING * force:
-        pressed = np.where(NOTHING * force < N, N, np.nan)
-        panels.append(
-            Series(
-                "friction\nneeded, |f|/N",
-                "number",
-                1.0,
-                {"": f / pressed},
-                from_zero=True,
-                offered=facts.friction,
-            )
-        )
-    if facts.tilted:
-        height = _array(run.in_frame("world").data, "position")[:, 2]
-        lines = {"": height - height[0]}
-        guide = guiding_centre(run, time)
-        if guide is not None:
-            lines = {"ball": lines[""], "guiding\ncentre": (guide[:, 0] - r[0, 0]) * -math.sin(facts.tilt)}
-        panels.append(Series("height\nabove start", "length", length, lines))
-    return panels
+def _phases(ax: Axes, facts: Facts, time: Array) -> None:
+    """Shade what is not rolling, and rule a line at every event that has room."""
+    clock, start, end = _clock(time).scale, float(time[0]), float(time[-1])
+    for stretch in facts.stretches if len({stretch.phase for stretch in facts.stretches}) > 1 else ():
+        if stretch.phase in _SHADES and stretch.end > start and stretch.start < end:
+            low, high = max(stretch.start, start) / clock, min(stretch.end, end) / clock
+            ax.axvspan(low, high, zorder=0.2, **_SHADES[stretch.phase][1])
+    ruled: list[float] = []
+    for when in sorted(float(t) for found in facts.happenings for t in found.times):
+        if start <= when <= end and (not ruled or when - ruled[-1] >= 0.006 * (end - start)):
+            ruled.append(when)
+    ax.vlines(np.array(ruled) / clock, 0.0, 1.0, transform=ax.get_xaxis_transform(), color=GREY, lw=0.6, zorder=1.2)
 
 
-def _turning(Omega: Array, facts: Facts) -> dict[str, Array]:
-    if facts.wall is None:
-        return {"Ωx": Omega[:, 0], "Ωy": Omega[:, 1], "Ωn, normal": Omega[:, 2]}
-    size = NOTHING * max(float(np.max(np.abs(Omega))), 1e-300)
-    across = {"Ωx": Omega[:, 0], "Ωy": Omega[:, 1]}
-    seen = {name: values for name, values in across.items() if float(np.max(np.abs(values))) > size}
-    return {"Ωz, along\nthe axis": Omega[:, 2], **seen}
-
-
-def _position(r: Array, length: float) -> Series:
-    """Count from the start where the path is tiny beside its distance from the axis."""
-    x, y = r[:, 0], r[:, 1]
-    extent = max(float(np.ptp(x)), float(np.ptp(y)))
-    if NOTHING * length < extent < 0.01 * length:
-        return Series("position\nfrom start", "length", length, {"x − x₀": x - x[0], "y − y₀": y - y[0]})
-    return Series("position", "length", length, {"x": x, "y": y})
+def _events(ax: Axes, facts: Facts, time: Array) -> None:
+    """Mark what happened over the highest panel."""
+    clock = _clock(time).scale
+    for found in facts.happenings:
+        when = found.marked[(found.marked >= time[0]) & (found.marked <= time[-1])]
+        style = STYLES[found.kind] | {"ms": 6.5}
+        ax.plot(when / clock, np.ones(len(when)), transform=ax.get_xaxis_transform(), clip_on=False, **style)
 
 
 def _columns(time: Array, turns: float) -> list[Column]:
@@ -192,8 +144,9 @@ def _lines(ax: Axes, panel: Series, time: Array, column: Column) -> None:
     clock = _clock(time[column.samples])
     for style, (name, values) in zip(_STYLES, panel.lines.items(), strict=False):
         t, v = thin_series(time[column.samples], values[column.samples])
-        extent = float(np.ptp(v))
-        sways = extent > 0.02 * panel.largest and float(np.sum(np.abs(np.diff(v)))) > 20 * extent
+        known = v[np.isfinite(v)]
+        extent = float(np.ptp(known)) if len(known) else 0.0
+        sways = extent > 0.02 * panel.largest and float(np.sum(np.abs(np.diff(known)))) > 20 * extent
         own = {"lw": 0.5, "ls": "-", "zorder": 1.9} if column.many and sways else column.marked
         ax.plot(t / clock.scale, v / panel.unit.scale, **(style | own | {"label": name or panel.name}))
     if panel.offered is not None and _is_near(panel):
@@ -208,7 +161,8 @@ def _is_near(panel: Series) -> bool:
 def _value_axis(ax: Axes, panel: Series, column: Column) -> None:
     unit = panel.unit
     shown = [line[column.samples] for line in panel.lines.values()]
-    low, high = min(float(np.nanmin(line)) for line in shown), max(float(np.nanmax(line)) for line in shown)
+    known = np.concatenate([line[np.isfinite(line)] for line in shown])
+    low, high = (float(np.min(known)), float(np.max(known))) if len(known) else (0.0, panel.natural)
     if panel.is_nothing:
         low, high = -panel.natural, panel.natural
     if panel.offered is not None and _is_near(panel):
@@ -228,9 +182,9 @@ def _names(ax: Axes, panel: Series) -> None:
     """Name the lines at their right ends, pushed apart where they meet."""
     bottom, top = ax.get_ylim()
     named = [
-        (float(line[-1]) / panel.unit.scale, name, style["color"])
+        (float(line[np.isfinite(line)][-1]) / panel.unit.scale, name, style["color"])
         for style, (name, line) in zip(_STYLES, panel.lines.items(), strict=False)
-        if name
+        if name and np.any(np.isfinite(line))
     ]
     if panel.offered is not None and _is_near(panel):
         named.append((panel.offered / panel.unit.scale, f"μ = {panel.offered:.3g}", INK))

@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 
 # Okabe and Ito's colours, told apart by every kind of colour vision; lines differ in dash and marker besides.
 BLUE, VERMILION, GREEN = "#0072B2", "#D55E00", "#007A5A"
+SKY, ORANGE, PURPLE = "#56B4E9", "#E69F00", "#CC79A7"
 INK, GREY, FAINT, TABLE = "#1A1A1A", "#5F5F5F", "#D9D9D9", "#F4F3EE"
 
 _LOOK: dict[str, Any] = {
