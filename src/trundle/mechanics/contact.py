@@ -6,9 +6,11 @@ balls, heyoka expressions or SymPy symbols.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ..errors import SolverError
 from .algebra import ZERO, Matrix, Quaternion, Vector, point_inertia
 from .loads import Acting, BodyMotion
 from .motions import SupportState
@@ -19,6 +21,8 @@ if TYPE_CHECKING:
     from .system import RollingSystem
 
 _MOST_STEPS = 60  # of Newton's method, which needs five
+_CLOSE = 1e-9  # share of the lengths at hand to which it must have found the contact
+_LOOKS = 600  # for a better first guess
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,6 +206,11 @@ def settle(
     Contact
         Where the body touches, or would if it were pushed on along the normal.
 
+    Raises
+    ------
+    SolverError
+        Where no point of the surface is nearest to the body.
+
     Examples
     --------
     >>> import trundle as tr
@@ -209,22 +218,67 @@ def settle(
     >>> settle(system, 0.0, Vector(0.4, 0.0, 0.0), Quaternion(1.0, 0.0, 0.0, 0.0)).point
     Vector(x=0.5, y=0.0, z=0.0)
     """
-    surface, support = system.support.surface, system.support.motion.at(time, *own)
-    point = centre  # the normal there is already that at the contact for a sphere over a surface of constant curvature
-    contact = touch(system, time, point, orientation, own)
-    for step in range(_MOST_STEPS):
-        apart = centre + contact.offset - point
-        gap = contact.normal.dot(apart)
-        aside = apart - contact.normal * gap
-        down = contact.normal * -_height(surface, _own(support, point), support.rotation.transpose @ contact.normal)
-        size = point.norm() + contact.offset.norm()
-        if step > 0 and aside.norm() <= 1e-15 * size and down.norm() <= 1e-15 * size:
-            break
-        if step > 0:  # Newton's: the normal leans by S along the support, and ρ follows it by C
-            aside = contact.across(gap).solve(aside)
-        point = point + aside + down
+    # The normal at the centre is already that at the contact for a sphere over a surface of constant curvature.
+    found = _newton(system, time, centre, centre, orientation, own)
+    if found is None:
+        guess = _guess(system, time, centre, orientation, own)
+        found = None if guess is None else _newton(system, time, centre, guess, orientation, own)
+    if found is None:
+        raise SolverError(
+            f"At t = {float(time):.9g} s no point of the surface is nearest to the body, whose centre is at "
+            f"({', '.join(f'{float(part):.4g}' for part in centre)}) m. Does the surface reach there, and smoothly?"
+        )
+    return found
+
+
+def _newton(
+    system: RollingSystem,
+    time: float,
+    centre: Vector,
+    point: Vector,
+    orientation: Quaternion,
+    own: tuple[Scalar, ...],
+) -> Contact | None:
+    """Return the contact to which Newton's method leads from a first guess at p; None where it leads nowhere."""
+    surface = system.support.surface
+    try:
         contact = touch(system, time, point, orientation, own)
-    return contact
+        for step in range(_MOST_STEPS):
+            support = contact.support
+            apart = centre + contact.offset - point
+            gap = contact.normal.dot(apart)
+            aside = apart - contact.normal * gap
+            down = contact.normal * -_height(surface, _own(support, point), support.rotation.transpose @ contact.normal)
+            size = point.norm() + contact.offset.norm()
+            left = max(aside.norm(), down.norm()) / size
+            if step > 0 and left <= 1e-15:
+                break
+            if step > 0:  # Newton's: the normal leans by S along the support, and ρ follows it by C
+                aside = contact.across(gap).solve(aside)
+            point = point + aside + down
+            contact = touch(system, time, point, orientation, own)
+    except (ArithmeticError, ValueError):  # outside a formula, or where it has no slope
+        return None
+    return contact if left <= _CLOSE else None
+
+
+def _guess(
+    system: RollingSystem, time: float, centre: Vector, orientation: Quaternion, own: tuple[Scalar, ...]
+) -> Vector | None:
+    """Return r + ρ(n) for the n, of many all around, that is nearest to the surface's normal there."""
+    support, best = system.support.motion.at(time, *own), None
+    for i in range(_LOOKS):
+        z, angle = 1.0 - (2 * i + 1) / _LOOKS, math.pi * (1.0 + math.sqrt(5.0)) * (i + 0.5)  # Fibonacci's lattice
+        across = math.sqrt(1.0 - z * z)
+        n = support.rotation @ Vector(across * math.cos(angle), across * math.sin(angle), z)
+        try:
+            point = centre + system.body.shape.contact(orientation.matrix(), n)[0]
+            off = (support.rotation @ system.support.surface.normal(_own(support, point)) - n).norm()
+        except (ArithmeticError, ValueError):
+            continue
+        if best is None or off < best[0]:
+            best = off, point
+    return None if best is None else best[1]
 
 
 def _height(surface: Surface, there: Vector, n: Vector) -> float:

@@ -55,9 +55,9 @@ class Placing:
         gap = checks.non_negative(self.height, "length", "height")
         fitting.check_place(surface, u, v, self.position)
         q = self._orientation(begin, begin.carried(surface.point(u, v)), own)
-        contact = touch(system, 0.0, begin.carried(surface.point(u, v)), q, own)
+        contact = self._contact(begin.carried(surface.point(u, v)), q, own)
         offset = begin.rotation.transpose @ contact.offset
-        contact = touch(system, 0.0, begin.carried(surface.under(u, v, offset)), q, own)
+        contact = self._contact(begin.carried(surface.under(u, v, offset)), q, own)
         system.check_rim(contact, self.position)
         fitting.check_start(system, contact, q, self.position)
         turning = self._given_turning(contact, gap)
@@ -69,6 +69,24 @@ class Placing:
         if gap == 0:
             straight.check_start(system, start)
         return start
+
+    def _contact(self, point: Vector, q: Quaternion, own: tuple[Scalar, ...]) -> Contact:
+        """Return the contact there, or say that the body would touch on a side that its shape does not cover."""
+        try:
+            contact = touch(self.system, 0.0, point, q, own)
+            covered = self.system.body.shape.covers(-(q.matrix().transpose @ contact.normal))
+        except (ArithmeticError, ValueError):
+            covered = 0.0
+        if covered is None or covered > 0:
+            return contact
+        given = (1.0, 0.0, 0.0, 0.0) if self.orientation is None else self.orientation
+        raise InvalidValueError(
+            "orientation" if self.attitude is None else "attitude",
+            "must let the body touch in one point of its round side",
+            given if self.attitude is None else self.attitude,
+            "There it lies flat or on its edge, which its shape does not cover: turn it. A disc upright on its rim "
+            "has `attitude` (heading, 90°, turn).",
+        ) from None
 
     def _orientation(self, begin: SupportState, point: Vector, own: tuple[Scalar, ...]) -> Quaternion:
         """Return q from `orientation`, from `attitude`, or as a cylinder is laid down."""
