@@ -45,7 +45,7 @@ def simulate(
         Step between samples, s; the end is always sampled.
     method : str
         "exact": the closed form. "taylor": heyoka at 1e-15. "runge-kutta": SciPy's DOP853 at 1e-12. "auto": the closed
-        form where there is one, else Taylor's method.
+        form where every phase of the run has one, else Taylor's method.
     title : str
         For figures and the card.
     scenario : str, optional
@@ -63,7 +63,7 @@ def simulate(
     InvalidValueError
         If a value is refused, the start does not roll, or a formula in the time is not finite throughout the run.
     OutOfDomainError
-        If method is "exact" and no closed form covers the system.
+        If method is "exact" and no closed form covers a phase that the run comes to.
     SolverError
         If a numerical method breaks down.
 
@@ -80,8 +80,7 @@ def simulate(
     _check_start(system, start)
     times = start.time + sample_times(duration, every)
     check_finite(system, float(times[0]), float(times[-1]))
-    chosen = methods.choose(method, system, start)
-    samples = methods.solver(chosen)(system, start, times, methods.tolerance_of(chosen), progress)
+    chosen, samples = methods.run(method, system, start, times, progress)
     if scenario is None:
         title, scenario = _described(system, start, times, method, title)
     data = labels.dataset(system, samples, labels.attributes(title, chosen))

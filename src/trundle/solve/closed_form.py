@@ -1,7 +1,9 @@
-"""The closed forms of `exact` as a method: states at given times, orientation, and the instant at the rim."""
+"""The closed forms of `exact` as a method: each covers one phase of contact, and a run is a chain of them."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -10,39 +12,44 @@ import numpy as np
 from ..errors import OutOfDomainError
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import touch
+from ..mechanics.scalars import is_number
 from ..mechanics.system import RollingSystem, State
-from .exact import CLOSED_FORMS, ClosedForm, SphereOnPlane, closed_form
+from . import phases
+from .exact import ClosedForm, SphereOnPlane, form_of_phase, refusals
+from .first_stop import first_stop
+from .laws import Law
 from .monodromy import Monodromy
 from .orientation import orientation, periodic_orientation
-from .phases import end as end_event
-from .samples import Array, Progress, Samples
+from .phases import Stop, Stretch
+from .samples import FLIGHT, SLIPPING, Array, Progress, Samples
 
-_PHASE_A_STEP = 0.05  # rad of the motion's own phase between looks at the rim
-_LOOKS_AT_ONCE = 100_000
+_PHASE_A_STEP = 0.05  # rad of the motion's own phase between two looks at what may end it
+_AT_ONCE = 100_000
 _PERIODS_WORTH_A_MONODROMY = 2.0
+_BOUNDS = {"rim", "end", "edge", "curved"}  # which the place of the contact decides
 
 
 def solve(
     system: RollingSystem, start: State, times: Array, tolerance: float = 0.0, progress: Progress | None = None
 ) -> Samples:
-    """Evaluate the closed form at the given times; a rim ends the run at the located instant.
+    """Follow a body through its phases by their closed forms; every event is located to the last digit.
 
     Parameters
     ----------
     system, start, times, progress
         As for `trundle.solve.taylor.solve`.
     tolerance : float
-        Not used: the closed form is as exact as its numbers.
+        Not used: a closed form is as exact as its numbers.
 
     Returns
     -------
     Samples
-        At `times`, cut at the rim where it is reached.
+        At `times`, cut where the run ends early, with its events.
 
     Raises
     ------
     OutOfDomainError
-        If no closed form covers the system.
+        If no closed form covers a phase that the run comes to.
 
     Examples
     --------
@@ -52,43 +59,154 @@ def solve(
     >>> solve(system, system.place((0.1, 0.0)), np.array([0.0, 9.0])).position.tolist()
     [[0.1, 0.0, 0.025], [0.1, 0.0, 0.025]]
     """
-    del tolerance
-    motion = closed_form(system, start)
-    if motion is None:
-        refusals = " ".join(form.refusal(system, start) for form in CLOSED_FORMS)
-        raise OutOfDomainError(f'{refusals} Use method="taylor" or method="runge-kutta".')
-    end = _first_exit(motion, system.support.surface.rim, float(times[-1]) - start.time)
-    if end is not None:
-        times = np.append(times[times < start.time + end], start.time + end)
-    samples = _evaluate(system, motion, start, times, progress)
-    return samples if end is None else samples.ended(end_event(system, "rim", samples.state(-1)))
+
+    def stretch(system: RollingSystem, law: Law, begin: float, state: Sequence[float], *rest: Any) -> Stretch:
+        untouched = begin == start.time and list(state) == law.pack(system, start)  # then to the start's last digit
+        return integrate(system, law, begin, state, *rest, start=start if untouched else None)
+
+    return phases.solve(stretch, system, start, times, tolerance, progress)
 
 
-def _evaluate(
-    system: RollingSystem, motion: ClosedForm, start: State, times: Array, progress: Progress | None
+def integrate(
+    system: RollingSystem,
+    law: Law,
+    begin: float,
+    state: Sequence[float],
+    times: Array,
+    tolerance: float = 0.0,  # noqa: ARG001
+    extras: Sequence[float] = (),
+    progress: Progress | None = None,
+    *,
+    start: State | None = None,
+) -> Stretch:
+    """Follow one law to its first stop by the closed form of its phase.
+
+    Parameters
+    ----------
+    system, law, begin, state, times, extras, progress
+        As for `trundle.solve.taylor.integrate`.
+    tolerance : float
+        Not used.
+    start : State, optional
+        The same as `state`, where it is known to more digits.
+
+    Returns
+    -------
+    Stretch
+        The samples at the times before the stop.
+
+    Raises
+    ------
+    OutOfDomainError
+        If no closed form covers the phase.
+    """
+    if start is None:
+        start = law.record(system, np.array([begin]), np.asarray(state, dtype=float)[None]).state(0)
+    form = form_of_phase(law.code, system, start, state)
+    if form is None:
+        raise OutOfDomainError(refusals(law.code, system, start))
+    end = float(times[-1]) if times.size else begin
+    found = _first_stop(system, law, extras, form, start, end - begin)
+    if found is None:
+        samples = _samples(system, law, form, start, times, progress)
+        return Stretch(times, np.empty((times.size, 0)), None, samples)
+    reached = begin + found[0]
+    kept = times[times < reached]
+    samples = _samples(system, law, form, start, np.append(kept, reached), progress)
+    numbers = np.array(law.pack(system, samples.state(-1)), dtype=float)
+    stop = Stop(reached, found[1], numbers)
+    return Stretch(kept, np.empty((kept.size, 0)), stop, samples.part(slice(0, kept.size)))
+
+
+# What ends a stretch
+
+
+def _first_stop(
+    system: RollingSystem, law: Law, extras: Sequence[float], form: ClosedForm, start: State, duration: float
+) -> tuple[float, str] | None:
+    """Return when and by which of the law's stops the form's motion ends, if it does within the duration."""
+    names = law.stops(system, start.time, law.pack(system, start), extras)
+    known = {name: t for name, t in form.ends_at.items() if name in names and 0 <= t <= duration}
+    sooner = min(((t, name) for name, t in known.items()), default=None)
+    given = {*form.ends_at, *(f"near {name}" for name in form.ends_at), *form.never}
+    asked = [name for name in names if name not in given]
+    if not asked:
+        return sooner
+    upto = min(duration if sooner is None else sooner[0], 1.01 * max(form.repeats(name) for name in asked))
+    pace = form.pace(upto)
+    values = _values(system, law, extras, form, start, asked)
+    found = first_stop(values, upto, _PHASE_A_STEP / pace if pace > 0 else math.inf)
+    return sooner if found is None else (found[0], asked[found[1]])
+
+
+def _values(
+    system: RollingSystem, law: Law, extras: Sequence[float], form: ClosedForm, start: State, asked: list[str]
+) -> Callable[[Any], Any]:
+    """Return the stops asked for as functions of the time since the start.
+
+    They do not depend on the orientation: every closed form's body is the same from all sides, or turns in its plane.
+    """
+    q, only_bounds = Quaternion(*start.orientation), set(asked) <= _BOUNDS
+
+    def at(t: Any) -> Any:
+        r, V, Omega, _ = form.motion_at(t)
+        own = tuple(of_start + gone for of_start, gone in zip(start.support, form.own_at(t), strict=True))
+        contact = touch(system, start.time + t, r, q, own)
+        contact = replace(contact, point=r + contact.offset)
+        if only_bounds:
+            found = law._bounds(system, contact, q, 0.0)
+        else:
+            added: list[Any] = []
+            if law.code == SLIPPING:
+                s = contact.slip_velocity(V, Omega)
+                added = [*(s - contact.normal * s.dot(contact.normal))]
+            found = law.stops(system, start.time + t, [*contact.point, *q, *Omega, *added, *own], extras)
+        if is_number(t):
+            return [float(found[name]) for name in asked]
+        return np.array([np.broadcast_to(found[name], np.shape(t)) for name in asked])
+
+    return at
+
+
+# Samples
+
+
+def _samples(
+    system: RollingSystem, law: Law, form: ClosedForm, start: State, times: Array, progress: Progress | None
 ) -> Samples:
     shape = (times.size, 3)
     position, velocity, turning, force = (np.empty(shape) for _ in range(4))
-    for first in range(0, times.size, _LOOKS_AT_ONCE):
-        part = slice(first, first + _LOOKS_AT_ONCE)
-        parts = motion.motion_at(times[part] - start.time)
+    for first in range(0, times.size, _AT_ONCE):
+        part = slice(first, first + _AT_ONCE)
+        parts = form.motion_at(times[part] - start.time)
         for array, vector in zip((position, velocity, turning, force), parts, strict=True):
             array[part] = vector.array()
         if progress is not None:
-            progress(0.5 * min(1.0, (first + _LOOKS_AT_ONCE) / times.size))
-    q = orientations(motion, start, times)
-    own = _own(system, motion, start, times)
-    contact = position + touch(system, times, Vector.of(position), Quaternion.of(q), tuple(own.T)).offset.array()
-    if progress is not None:
-        progress(1.0)
-    return Samples(times, position, contact, velocity, turning, q, force, own=own)
+            progress(0.5 * (start.time + float(times[part][-1])))
+    q = orientations(form, start, times) if times.size else np.empty((0, 4))
+    own = _own(system, form, start, times)
+    contact = _contact(system, law, times, position, q, own)
+    if progress is not None and times.size:
+        progress(float(times[-1]))
+    phase: Any = np.full(times.size, law.code, dtype=np.int8)
+    return Samples(times, position, contact, velocity, turning, q, force + 0.0, phase=phase, own=own)
 
 
-def _own(system: RollingSystem, motion: ClosedForm, start: State, times: Array) -> Array:
+def _contact(system: RollingSystem, law: Law, times: Array, position: Array, q: Array, own: Array) -> Array:
+    """Return the contacts; in flight the points of the support nearest to the body."""
+    centre = Vector.of(position)
+    now = touch(system, times, centre, Quaternion.of(q), tuple(own.T))
+    if law.code != FLIGHT:
+        return position + now.offset.array()
+    there = now.support.rotation.transpose @ (centre - now.support.origin)
+    return (centre - now.normal * system.support.surface.level(there)).array()
+
+
+def _own(system: RollingSystem, form: ClosedForm, start: State, times: Array) -> Array:
     """Return the coordinates of the support's own motion, (n, k)."""
     if not system.support.motion.own:
         return np.zeros((times.size, 0))
-    gone = np.stack([np.broadcast_to(part, times.shape) for part in motion.own_at(times - start.time)], axis=1)
+    gone = np.stack([np.broadcast_to(part, times.shape) for part in form.own_at(times - start.time)], axis=1)
     return np.asarray(start.support) + gone
 
 
@@ -157,44 +275,3 @@ def _monodromy(motion: SphereOnPlane) -> Monodromy:
         arm = mpmath.mpc(*precise.position) - centre
         turning = (precise.rate - precise.kappa) * arm / precise.radius
         return Monodromy.of_turning_vector(precise.rate * centre / precise.radius, turning, motion.spin, precise.kappa)
-
-
-def _first_exit(motion: Any, rim: float | None, duration: float) -> float | None:
-    """Return the first time at which the contact reaches the rim, if it does within the run."""
-    if rim is None or duration <= 0:
-        return None
-    duration = min(duration, 1.01 * motion.period)
-    phase_rate = float(np.hypot(motion.kappa, motion.gamma))
-    looks = int(max(256, np.ceil(duration * phase_rate / _PHASE_A_STEP))) + 1
-
-    def excess(t: Any) -> Any:
-        r = motion.position_at(t)
-        return r.x * r.x + r.y * r.y - rim * rim
-
-    def growth(t: Any) -> Any:
-        r, V, *_ = motion.motion_at(t)
-        return Vector(r.x, r.y, 0.0).dot(V)
-
-    for first in range(0, looks - 1, _LOOKS_AT_ONCE):
-        index = np.arange(first, min(first + _LOOKS_AT_ONCE, looks - 1) + 1)
-        step = duration / (looks - 1)
-        t = index * step
-        over, rate = (np.broadcast_to(value, t.shape) for value in (excess(t), growth(t)))
-        out, rising = over >= 0, rate > 0
-        # A maximum between two looks, both inside, that may reach the rim: r² gains 2 r·ṙ, which falls to 0 meanwhile.
-        near = over[:-1] + 4 * step * (np.abs(rate[:-1]) + np.abs(rate[1:])) >= 0
-        peaks = rising[:-1] & ~rising[1:] & ~out[1:] & near
-        for j in np.flatnonzero(peaks | out[1:]):
-            begin, end = float(t[j]), float(t[j + 1])
-            if not out[j + 1]:
-                end = _root(growth, begin, end)
-                if excess(end) < 0:
-                    continue
-            return _root(excess, begin, end)
-    return None
-
-
-def _root(function: Any, begin: float, end: float) -> float:
-    from scipy.optimize import brentq
-
-    return float(brentq(function, begin, end, xtol=1e-300, rtol=4 * np.finfo(float).eps))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 from importlib import import_module
 from typing import Any
@@ -11,13 +12,14 @@ from typing import Any
 from ..errors import OutOfDomainError, UnknownNameError
 from ..mechanics.system import RollingSystem, State
 from .exact import closed_form
+from .samples import Array, Progress, Samples
 
 METHODS = {"exact": "closed_form", "taylor": "taylor", "runge-kutta": "runge_kutta"}
 CHOICES = ("auto", *METHODS)
 
 
 def choose(method: str, system: RollingSystem, start: State) -> str:
-    """Return the method that will run: `auto` takes the closed form where there is one, else Taylor's method.
+    """Return the method that a run begins with: `auto` takes the closed form where there is one, else Taylor's method.
 
     Parameters
     ----------
@@ -26,7 +28,7 @@ def choose(method: str, system: RollingSystem, start: State) -> str:
     system : RollingSystem
         What will be solved.
     start : State
-        A start that rolls.
+        Any start.
 
     Returns
     -------
@@ -49,15 +51,71 @@ def choose(method: str, system: RollingSystem, start: State) -> str:
     """
     if method not in CHOICES:
         raise UnknownNameError("method", str(method), CHOICES)
-    analytic = system.support.surface.analytic
     if method == "auto":
-        method = "exact" if closed_form(system, start) is not None else "taylor" if analytic else "runge-kutta"
-    if method == "taylor" and not analytic:
+        return "exact" if closed_form(system, start) is not None else _numerical(system)
+    if method == "taylor" and not system.support.surface.analytic:
         raise OutOfDomainError(
             f"Taylor's method needs a surface that is a formula; a {type(system.support.surface).__name__} is a table. "
             'Use method="runge-kutta".'
         )
-    return _instead_of_taylor() if method == "taylor" and not _has_taylor() else method
+    return _numerical(system) if method == "taylor" else method
+
+
+def run(
+    method: str, system: RollingSystem, start: State, times: Array, progress: Progress | None = None
+) -> tuple[str, Samples]:
+    """Run a method; `auto` leaves the closed forms where the run comes to a phase that none covers.
+
+    Parameters
+    ----------
+    method : str
+        One of `CHOICES`.
+    system : RollingSystem
+        What will be solved.
+    start : State
+        Any start.
+    times : array (n,)
+        Ascending, s, none before the start.
+    progress : callable, optional
+        Told the fraction done.
+
+    Returns
+    -------
+    method : str
+        The one of `METHODS` that ran.
+    samples : Samples
+        What it found.
+
+    Raises
+    ------
+    UnknownNameError, OutOfDomainError, SolverError
+        As `choose` and the method.
+
+    Examples
+    --------
+    A ball slips on a turning table before it rolls, which only the rolling has a closed form for:
+
+    >>> import numpy as np
+    >>> import trundle as tr
+    >>> table = tr.Support(tr.Plane(), motion=tr.Spin(3.0), friction=0.2)
+    >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), table)
+    >>> start = system.place(velocity=(1.0, 0.0), angular_velocity=(0.0, 0.0, 0.0))
+    >>> run("auto", system, start, np.array([0.0, 1.0]))[0]
+    'taylor'
+    """
+    chosen = choose(method, system, start)
+    if method == "auto" and chosen == "exact":
+        with suppress(OutOfDomainError):
+            return chosen, solver(chosen)(system, start, times, tolerance_of(chosen), progress)
+        chosen = _numerical(system)
+    return chosen, solver(chosen)(system, start, times, tolerance_of(chosen), progress)
+
+
+def _numerical(system: RollingSystem) -> str:
+    """Return the best numerical method for a system."""
+    if not system.support.surface.analytic:
+        return "runge-kutta"
+    return "taylor" if _has_taylor() else _instead_of_taylor()
 
 
 def _has_taylor() -> bool:

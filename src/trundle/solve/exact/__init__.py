@@ -6,15 +6,21 @@ A new closed form is one class derived from `ClosedForm`; add it to `CLOSED_FORM
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+import numpy as np
+
 from ...errors import SolverError
 from ...mechanics.system import RollingSystem, State
 from .. import following
-from ..samples import RESTING, ROLLING
 from .ball_in_leaning_cylinder import BallInLeaningCylinder
 from .ball_in_upright_cylinder import BallInUprightCylinder
 from .base import ClosedForm
 from .cylinder_on_cylinder import CylinderOnCylinder
+from .resting_body import RestingBody
+from .sliding_sphere import SlidingSphere
 from .sphere_coming_to_rest import SphereComingToRest
+from .sphere_in_flight import SphereInFlight
 from .sphere_in_moving_air import SphereInMovingAir
 from .sphere_on_plane import SphereOnPlane
 from .sphere_on_unsteady_plane import SphereOnUnsteadyPlane
@@ -27,6 +33,9 @@ CLOSED_FORMS: tuple[type[ClosedForm], ...] = (
     SphereInMovingAir,
     SphereComingToRest,
     SphereOnUnsteadyPlane,
+    SlidingSphere,
+    SphereInFlight,
+    RestingBody,
 )
 
 
@@ -38,12 +47,12 @@ def closed_form(system: RollingSystem, start: State) -> ClosedForm | None:
     system : RollingSystem
         Any system.
     start : State
-        A start that rolls.
+        Any start.
 
     Returns
     -------
     ClosedForm or None
-        The motion, or None where no closed form applies.
+        Of the phase in which the run starts; None where no closed form applies.
 
     Examples
     --------
@@ -52,19 +61,56 @@ def closed_form(system: RollingSystem, start: State) -> ClosedForm | None:
     >>> closed_form(system, system.place()).equation
     'T5'
     """
-    if system.support.friction is not None or not _rolls(system, start):  # a limit to friction may end the rolling
+    try:
+        now = following.at_start(system, start)
+    except SolverError:  # it cannot go on at all
         return None
+    if list(now.state) != now.law.pack(system, start):  # it strikes the support at once, or begins to slip
+        start = now.law.record(system, np.array([now.time]), np.asarray(now.state, dtype=float)[None]).state(0)
+    return form_of_phase(now.law.code, system, start, now.state)
+
+
+def form_of_phase(phase: int, system: RollingSystem, start: State, numbers: Sequence[float]) -> ClosedForm | None:
+    """Return the closed form that covers one phase of contact from a state on, if there is one.
+
+    Parameters
+    ----------
+    phase : int
+        As in `Samples.phase`.
+    system : RollingSystem
+        Any system.
+    start : State
+        In that phase.
+    numbers : sequence of float
+        The same as the phase's law has it.
+
+    Returns
+    -------
+    ClosedForm or None
+        The motion, or None where no closed form applies.
+    """
     for form in CLOSED_FORMS:
-        if not form.outside(system, start):
-            return form.of(system, start)
+        if phase in form.phases and not form.outside(system, start):
+            return form.of_numbers(system, start, numbers)
     return None
 
 
-def _rolls(system: RollingSystem, start: State) -> bool:
-    try:
-        return following.at_start(system, start).law.code in (ROLLING, RESTING)
-    except SolverError:  # it cannot go on at all
-        return False
+def refusals(phase: int, system: RollingSystem, start: State) -> str:
+    """Say why no closed form covers a phase.
+
+    Parameters
+    ----------
+    phase, system, start
+        As for `form_of_phase`.
+
+    Returns
+    -------
+    str
+        Each form's domain and what lies outside it, and the remedy.
+    """
+    found = " ".join(form.refusal(system, start) for form in CLOSED_FORMS if phase in form.phases)
+    doing = ("rolls", "slips", "flies", "rests")[phase]
+    return f'From t = {start.time:.6g} s the body {doing}. {found} Use method="taylor" or method="runge-kutta".'
 
 
 __all__ = [
@@ -73,9 +119,14 @@ __all__ = [
     "BallInUprightCylinder",
     "ClosedForm",
     "CylinderOnCylinder",
+    "RestingBody",
+    "SlidingSphere",
     "SphereComingToRest",
+    "SphereInFlight",
     "SphereInMovingAir",
     "SphereOnPlane",
     "SphereOnUnsteadyPlane",
     "closed_form",
+    "form_of_phase",
+    "refusals",
 ]

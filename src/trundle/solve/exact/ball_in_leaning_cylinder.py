@@ -81,6 +81,8 @@ class BallInLeaningCylinder(ClosedForm):
         "turning steadily about its axis, under gravity and constant force"
     )
 
+    never = frozenset({"curved"})
+
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> BallInLeaningCylinder:
         """Read the closed form's numbers from a system and a start.
@@ -187,6 +189,14 @@ class BallInLeaningCylinder(ClosedForm):
             return math.inf
         across = self.climb == 0 and self.force[2] == 0 and (self.spin == 0 or self.angular_rate == 0 == self._pull)
         return float(self._pendulum.period) if across else math.inf
+
+    def pace(self, duration: float) -> float:
+        """Return that of the pendulum, 1/s: what happens along the axis is slower."""
+        return self._pendulum.pace(duration)
+
+    def repeats(self, stop: str) -> float:
+        """Return the pendulum's period for what the motion across the axis decides."""
+        return float(self._pendulum.period) if stop == "lift" else self.period
 
     @property
     def _pull(self) -> float:

@@ -72,6 +72,8 @@ class BallInUprightCylinder(ClosedForm):
         "about its axis, under gravity and constant force along that axis"
     )
 
+    never = frozenset({"lift", "curved"})  # N is constant
+
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> BallInUprightCylinder:
         """Read the closed form's numbers from a system and a start.
@@ -199,6 +201,14 @@ class BallInUprightCylinder(ClosedForm):
             return math.inf
         level = self.climb == 0 and abs(self._push) <= 4 * 2.0**-52 * abs(self._fall)
         return 2 * math.pi / abs(self.angular_rate) if level else math.inf
+
+    def pace(self, duration: float) -> float:  # noqa: ARG002
+        """Return θ̇, than which the bobbing is slower, 1/s."""
+        return abs(float(self.angular_rate))
+
+    def repeats(self, stop: str) -> float:
+        """Return the period of the bobbing for the friction."""
+        return float(self.bobbing_period) if stop == "slip" else self.period
 
     # The motion
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, ClassVar, Self
 
 from ...errors import OutOfDomainError
 from ...mechanics.algebra import Vector
 from ...mechanics.system import RollingSystem, State
+from ..samples import ROLLING
 
 
 class ClosedForm:
@@ -16,11 +18,18 @@ class ClosedForm:
     equation: ClassVar[str]
     source: ClassVar[str]
     domain: ClassVar[str]
+    phases: ClassVar[tuple[int, ...]] = (ROLLING,)  # of contact that it covers
+    never: ClassVar[frozenset[str]] = frozenset()  # stops of the phase that cannot come
 
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> Self:
         """Read the closed form's numbers from a system and a start; raise OutOfDomainError outside its domain."""
         raise NotImplementedError
+
+    @classmethod
+    def of_numbers(cls, system: RollingSystem, start: State, numbers: Sequence[float]) -> Self:  # noqa: ARG003
+        """Do the same where the numbers of the phase's law say more than the state, such as a very small slip."""
+        return cls.of(system, start)
 
     @classmethod
     def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:
@@ -55,6 +64,19 @@ class ClosedForm:
     def period(self) -> Any:
         """Time after which the motion repeats, s; infinite where it does not."""
         raise NotImplementedError
+
+    def pace(self, duration: float) -> float:  # forms given in time ask how long
+        """Return the fastest rate in the motion over a time, 1/s: what a look at it must resolve."""
+        raise NotImplementedError
+
+    @property
+    def ends_at(self) -> dict[str, float]:
+        """When the phase ends, s since the start, by those of its law's stops that the form knows; or never, inf."""
+        return {}
+
+    def repeats(self, stop: str) -> float:  # noqa: ARG002
+        """Return after how long the course of one of the law's stops repeats, s; infinite where it does not."""
+        return float(self.period)
 
     @property
     def has_guiding_centre(self) -> bool:

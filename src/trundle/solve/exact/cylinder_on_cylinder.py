@@ -73,6 +73,8 @@ class CylinderOnCylinder(ClosedForm):
         "plane"
     )
 
+    never = frozenset({"curved"})
+
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> CylinderOnCylinder:
         """Read the closed form's numbers from a system and a start.
@@ -197,6 +199,10 @@ class CylinderOnCylinder(ClosedForm):
     def period(self) -> Any:
         """Of the motion, s; infinite at rest and on the separatrix."""
         return self._constants.period
+
+    def pace(self, duration: float) -> float:  # noqa: ARG002
+        """Return 2λ, of which θ̇ is no faster, 1/s."""
+        return 2 * float(self._constants.scale)
 
     @property
     def sensitivity(self) -> float:

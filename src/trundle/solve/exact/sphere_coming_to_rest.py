@@ -14,6 +14,7 @@ from ...mechanics.loads.air import STILL
 from ...mechanics.scalars import Scalar, is_number, is_zero, namespace
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
+from ..samples import RESTING, ROLLING
 from .base import ClosedForm
 from .second_order import fundamental
 
@@ -76,6 +77,9 @@ class SphereComingToRest(ClosedForm):
         "a sphere about its centre of mass with the same inertia about every axis, on a plane at rest and level, under "
         "forces along its normal, rolling resistance, linear and quadratic drag in still air and a viscous couple"
     )
+
+    phases = (ROLLING, RESTING)
+    never = frozenset({"lift", "start"})  # N is constant, and nothing drives it
 
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> SphereComingToRest:
@@ -247,6 +251,16 @@ class SphereComingToRest(ClosedForm):
     def period(self) -> float:
         """Infinite: it comes to rest."""
         return math.inf
+
+    def pace(self, duration: float) -> float:  # noqa: ARG002
+        """Return how fast it slows down at first, 1/s."""
+        v = float(self.speed)
+        return float(self.gamma + self.eta * v + (self.deceleration / v if v else 0.0))
+
+    @property
+    def ends_at(self) -> dict[str, float]:
+        """It stops where resistance stops it, and then for good."""
+        return {"stop": float(self.stops_at)}
 
     # The motion
 

@@ -77,6 +77,8 @@ class SphereInMovingAir(ClosedForm):
         "turns about the same axis, and a viscous couple at the contact"
     )
 
+    never = frozenset({"lift"})  # N is constant
+
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> SphereInMovingAir:
         """Read the closed form's numbers from a system and a start.
@@ -210,6 +212,10 @@ class SphereInMovingAir(ClosedForm):
     def period(self) -> float:
         """Infinite: what brakes or drives the ball never brings it back."""
         return math.inf
+
+    def pace(self, duration: float) -> float:  # noqa: ARG002
+        """Return the size of the larger s, 1/s."""
+        return float(max(map(abs, self.exponents)))
 
     # The motion
 

@@ -71,6 +71,8 @@ class SphereOnPlane(ManySamples, ClosedForm):
         "turns steadily about its normal, under gravity, constant force, constant torque and linear drag in still air"
     )
 
+    never = frozenset({"lift"})  # N is constant
+
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> SphereOnPlane:
         """Read the closed form's numbers from a system and a start.
@@ -188,6 +190,16 @@ class SphereOnPlane(ManySamples, ClosedForm):
         """Time of one circle 2π/|κ| where the motion repeats (level, no drag, turning); infinite elsewhere, s."""
         repeats = not self.is_drifting and is_zero(self.drag) and not is_zero(self.rate)
         return 2 * math.pi / abs(self.kappa) if repeats else math.inf
+
+    def pace(self, duration: float) -> float:  # noqa: ARG002
+        """Return |λ|, 1/s."""
+        return math.hypot(self.kappa, self.gamma)
+
+    def repeats(self, stop: str) -> float:
+        """Return the period; the friction goes round with e^{λt}, drift or not."""
+        if stop == "slip" and is_zero(self.drag):
+            return 0.0 if is_zero(self.kappa) else 2 * math.pi / abs(self.kappa)
+        return float(self.period)
 
     @property
     def drift_velocity(self) -> tuple[Scalar, Scalar]:

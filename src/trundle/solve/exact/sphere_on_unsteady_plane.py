@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 from ...mechanics.algebra import Vector
@@ -193,6 +194,20 @@ class SphereOnUnsteadyPlane(ClosedForm):
         flat = force.x + 1j * force.y
         driven = (flat + (torque.y - 1j * torque.x) / self.radius) / (self.mass * (1 + self.inertia_ratio))
         return flat, force.z, driven, torque.z
+
+    @property
+    def never(self) -> frozenset[str]:  # type: ignore[override]
+        """It cannot lift off where nothing varies along the normal."""
+        steady = all(load.constant or load.linear_drag is not None for load in self.loads)
+        return frozenset({"lift"} if steady else ())
+
+    def pace(self, duration: float) -> float:
+        """Return the fastest rate of the plane, of drag, and of what the pieces of the quadrature resolve, 1/s."""
+        self._course.reach(duration)
+        pieces = self._course.edges
+        resolved = max((1 / (b - a) for a, b in pairwise(pieces)), default=0.0)
+        rate = self.motion.fastest_rate_within(self.start_time, self.start_time + duration)
+        return rate + self.gamma + resolved
 
     # The motion
 

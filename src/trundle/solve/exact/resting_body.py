@@ -1,0 +1,150 @@
+"""A body at rest on a support at rest, held by its rolling resistance: nothing moves until a load changes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from ...mechanics.algebra import ZERO, Vector
+from ...mechanics.loads import Drag, QuadraticDrag, RollingCouple, RollingResistance, at_rest
+from ...mechanics.scalars import Scalar, is_zero
+from ...mechanics.system import RollingSystem, State
+from ..samples import RESTING
+from .base import ClosedForm
+
+_SILENT = (Drag, QuadraticDrag, RollingCouple, RollingResistance)  # at rest
+
+
+@dataclass(frozen=True)
+class RestingBody(ClosedForm):
+    """Rest: R = −F (T3 with V̇ = 0).
+
+    Parameters
+    ----------
+    position : triple of float or array
+        Centre of mass, m.
+    force : triple of float or array
+        F, weight included, N.
+
+    Examples
+    --------
+    >>> RestingBody((0.0, 0.0, 0.1), (0.0, 0.0, -9.8)).motion_at(5.0)[3]
+    Vector(x=0.0, y=0.0, z=9.8)
+    """
+
+    position: tuple[Scalar, Scalar, Scalar]
+    force: tuple[Scalar, Scalar, Scalar]
+
+    name = "body at rest"
+    equation = "T3"
+    source = "theory page, T3, with nothing moving"
+    domain = "any body at rest on a support at rest, under gravity, constant loads, resistances and still air"
+    phases = (RESTING,)
+    never = frozenset({"lift", "start", "slip", "rim", "end", "edge", "curved"})
+
+    @classmethod
+    def of(cls, system: RollingSystem, start: State) -> RestingBody:
+        """Read the closed form's numbers from a system and a start.
+
+        Parameters
+        ----------
+        system : RollingSystem
+            Must lie in the domain.
+        start : State
+            At rest.
+
+        Returns
+        -------
+        RestingBody
+            The motion; its t = 0 is the start's time.
+
+        Raises
+        ------
+        OutOfDomainError
+            If the system lies outside the domain.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> ball, felt = tr.Body.solid_sphere(1.0, 1.0), [tr.RollingResistance(0.01)]
+        >>> felt = tr.RollingSystem(ball, tr.Support(tr.Plane()), felt)
+        >>> RestingBody.of(felt, felt.place()).force
+        (0.0, 0.0, -9.80665)
+        """
+        cls.check_domain(system, start)
+        force = ZERO
+        for load in system.all_loads:
+            force = force + load.force(at_rest(system.body.mass)) if load.constant else force
+        return cls(start.position, tuple(force))
+
+    @classmethod
+    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:
+        """Name what of a system lies outside the domain.
+
+        Parameters
+        ----------
+        system : RollingSystem
+            Any system.
+        start : State, optional
+            Its start.
+
+        Returns
+        -------
+        list of str
+            Empty where the closed form applies.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> table = tr.Support(tr.Plane(), motion=tr.Spin(2.0))
+        >>> RestingBody.outside(tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), table))
+        ['the support moves']
+        """
+        reasons = []
+        rate = system.support.motion.steady_rate
+        if rate is None or not is_zero(rate):
+            reasons.append("the support moves")
+        for load in system.loads:
+            if not load.constant and not isinstance(load, _SILENT):
+                reasons.append(f"the load {type(load).__name__} is not constant")
+            elif isinstance(load, (Drag, QuadraticDrag)) and not is_zero(load.air_rate):
+                reasons.append("the air moves")
+        if start is not None and any((*start.velocity, *start.angular_velocity)):
+            reasons.append("the body moves")
+        return reasons
+
+    @property
+    def period(self) -> float:
+        """Infinite: nothing moves."""
+        return math.inf
+
+    def pace(self, duration: float) -> float:  # noqa: ARG002
+        """Return 0, 1/s."""
+        return 0.0
+
+    def motion_at(self, t: Any) -> tuple[Vector, Vector, Vector, Vector]:
+        """Return position, velocity, angular velocity and contact force together.
+
+        Parameters
+        ----------
+        t : float or array
+            Time since the start, s.
+
+        Returns
+        -------
+        position, velocity, angular_velocity, contact_force : Vector
+            In the inertial support frame, m, m/s, rad/s, N.
+
+        Examples
+        --------
+        >>> RestingBody((0.0, 0.0, 0.1), (0.0, 0.0, -9.8)).motion_at(5.0)[0]
+        Vector(x=0.0, y=0.0, z=0.1)
+        """
+        zero = 0 * t
+        still = Vector(zero, zero, zero)
+        return still + Vector(*self.position), still, still, still - Vector(*self.force)
+
+    def straight_turn(self, t: Any) -> tuple[Vector, Any]:
+        """Return no turn at all."""
+        return Vector(0.0, 0.0, 1.0), 0 * t

@@ -1,0 +1,412 @@
+"""T11: a sphere that slips on a plane at rest, level or tilted, until it grips."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...mechanics.algebra import Vector
+from ...mechanics.loads import constant_part
+from ...mechanics.scalars import Scalar, is_number, is_zero
+from ...mechanics.surfaces import Plane
+from ...mechanics.system import RollingSystem, State
+from ..samples import SLIPPING
+from .base import ClosedForm
+from .quadrature import is_one, one_by_one
+
+_MOST_STEPS = 400
+
+
+@dataclass(frozen=True)
+class SlidingSphere(ClosedForm):
+    """The motion ṡ = A − B ŝ of the slip, A = F/m along the plane, B = μN(1 + 1/k)/m (T11).
+
+    Straight, the slip changes evenly. Turning, it is a sum of exponentials of x = ∫dt/s, in which the law is linear:
+    s = s₀[c e^{−(B−A)x} + d e^{−(B+A)x}] with c, d = (1 ± cos φ₀)/2, φ from A to s; time and place are their integrals.
+
+    Parameters
+    ----------
+    radius, mass, inertia_ratio : float or array
+        a in m, m in kg, k = I/(m a²).
+    position, velocity : pair of float or array
+        Centre at t = 0 over the plane, m and m/s.
+    angular_velocity : triple of float or array
+        Ω at t = 0, rad/s.
+    slip : pair of float or array
+        s at t = 0, m/s.
+    force : triple of float or array
+        Constant, weight included, N.
+    friction : float or array
+        μ of slipping.
+
+    Examples
+    --------
+    A solid ball that slides without turning grips after 2v/(7μg), at 5/7 of its speed:
+
+    >>> ball = SlidingSphere(
+    ...     0.1, 1.0, 0.4, (0.0, 0.0), (7.0, 0.0), (0.0, 0.0, 0.0), (7.0, 0.0), (0.0, 0.0, -10.0), 0.2
+    ... )
+    >>> round(ball.grips_at, 15), round(ball.motion_at(ball.grips_at)[1].x, 15)
+    (1.0, 5.0)
+    """
+
+    radius: Scalar
+    mass: Scalar
+    inertia_ratio: Scalar
+    position: tuple[Scalar, Scalar]
+    velocity: tuple[Scalar, Scalar]
+    angular_velocity: tuple[Scalar, Scalar, Scalar]
+    slip: tuple[Scalar, Scalar]
+    force: tuple[Scalar, Scalar, Scalar]
+    friction: Scalar
+
+    name = "sphere slipping on a plane"
+    equation = "T11"
+    source = "Coriolis, Théorie mathématique des effets du jeu de billard (1835), level; theory page, T11"
+    domain = (
+        "a sphere about its centre of mass with the same inertia about every axis that slips on a plane at rest, level "
+        "or tilted, under gravity and constant force; without friction the plane may turn steadily"
+    )
+    phases = (SLIPPING,)
+    never = frozenset({"lift"})  # N is constant
+
+    @classmethod
+    def of(cls, system: RollingSystem, start: State) -> SlidingSphere:
+        """Read the closed form's numbers from a system and a start.
+
+        Parameters
+        ----------
+        system : RollingSystem
+            Must lie in the domain.
+        start : State
+            A start that slips.
+
+        Returns
+        -------
+        SlidingSphere
+            The motion; its t = 0 is the start's time.
+
+        Raises
+        ------
+        OutOfDomainError
+            If the system lies outside the domain.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> lane = tr.RollingSystem(tr.Body.solid_sphere(0.1, 7.0), tr.Support(tr.Plane(), friction=0.1), gravity=10.0)
+        >>> start = lane.place(velocity=(7.0, 0.0), angular_velocity=(0.0, 0.0, 0.0))
+        >>> round(SlidingSphere.of(lane, start).grips_at, 15)
+        2.0
+        """
+        cls.check_domain(system, start)
+        (vx, vy, _), (wx, wy, _), a = start.velocity, start.angular_velocity, system.body.radius
+        rate, (x, y, _) = system.support.motion.steady_rate or 0.0, start.position
+        force, _, _ = constant_part(system.all_loads, system.body.mass)
+        return cls(
+            radius=a,
+            mass=system.body.mass,
+            inertia_ratio=system.body.inertia_ratio,
+            position=(x, y),
+            velocity=(vx, vy),
+            angular_velocity=start.angular_velocity,
+            slip=(vx - a * wy + rate * y, vy + a * wx - rate * x),
+            force=tuple(force),
+            friction=system.support.sliding_friction,
+        )
+
+    @classmethod
+    def of_numbers(cls, system: RollingSystem, start: State, numbers: Sequence[float]) -> SlidingSphere:
+        """Take the slip from the law's own numbers: where slip begins, it is smaller than a rounding of V and Ω."""
+        from dataclasses import replace
+
+        return replace(cls.of(system, start), slip=(float(numbers[10]), float(numbers[11])))
+
+    @classmethod
+    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
+        """Name what of a system lies outside the domain.
+
+        Parameters
+        ----------
+        system : RollingSystem
+            Any system.
+        start : State, optional
+            Its start; every one that slips lies in the domain.
+
+        Returns
+        -------
+        list of str
+            Empty where the closed form applies.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> table = tr.Support(tr.Plane(), motion=tr.Spin(2.0), friction=0.2)
+        >>> SlidingSphere.outside(tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), table))
+        ['the plane turns, so that its own velocity differs from place to place']
+        """
+        reasons, rate = [], system.support.motion.steady_rate
+        if not system.body.is_isotropic_sphere:
+            reasons.append("the body is no sphere with isotropic inertia about its centre")
+        if not isinstance(system.support.surface, Plane):
+            reasons.append(f"the surface is a {type(system.support.surface).__name__}, not a Plane")
+        if system.support.friction is None:
+            reasons.append("the support has no friction coefficient")
+        elif rate is None:
+            reasons.append(f"the support's motion {type(system.support.motion).__name__} is no steady turn")
+        elif not is_zero(rate) and not is_zero(system.support.sliding_friction):
+            reasons.append("the plane turns, so that its own velocity differs from place to place")
+        reasons += [f"the load {type(load).__name__} is not constant" for load in system.loads if not load.constant]
+        if not reasons:
+            force, torque, _ = constant_part(system.all_loads, system.body.mass)
+            if any(torque):
+                reasons.append("a torque acts on the body")
+            if is_number(force.z) and force.z > 0:
+                reasons.append("the plane does not press on the body")
+        return reasons
+
+    # The constants of the motion
+
+    @property
+    def grips_at(self) -> float:
+        """Time at which the slip has ended, s: s₀[c/(B − A) + d/(B + A)]; infinite where friction is too weak."""
+        return float(_Slip.of(self, float).ends_at)
+
+    @property
+    def ends_at(self) -> dict[str, float]:
+        """When it grips."""
+        return {"grip": self.grips_at}
+
+    @property
+    def period(self) -> float:
+        """Infinite: it never comes back."""
+        return math.inf
+
+    def pace(self, duration: float) -> float:  # noqa: ARG002
+        """Return 0: the path is a parabola, or smoother, 1/s."""
+        return 0.0
+
+    # The motion
+
+    def motion_at(self, t: Any) -> tuple[Vector, Vector, Vector, Vector]:
+        """Return position, velocity, angular velocity and contact force together.
+
+        Parameters
+        ----------
+        t : float or array
+            Time since the start, s, not after it grips.
+
+        Returns
+        -------
+        position, velocity, angular_velocity, contact_force : Vector
+            In the inertial support frame, m, m/s, rad/s, N.
+
+        Examples
+        --------
+        >>> ball = SlidingSphere(0.1, 1.0, 0.4, (0, 0), (7.0, 0), (0, 0, 0), (7.0, 0), (0, 0, -10.0), 0.2)
+        >>> round(ball.motion_at(0.5)[3].x, 12)
+        -2.0
+        """
+        if not is_one(self):
+            return one_by_one(self, t)
+        number = _mpf if _is_mpmath(t) else float
+        slip = _Slip.of(self, number)
+        s, gone, direction = slip.at(t)
+        a, k, m = (number(part) for part in (self.radius, self.inertia_ratio, self.mass))
+        share, (fx, fy, fz) = k / (1 + k), (number(part) for part in self.force)
+        N, mu, zero = -fz, number(self.friction), 0 * t
+        # What friction has given: V − V₀ − At, of which the slip takes (1 + 1/k).
+        gained = [share * (s[i] - number(self.slip[i]) - f / m * t) for i, f in enumerate((fx, fy))]
+        carried = [share * (gone[i] - number(self.slip[i]) * t - f / m * (t * t / 2)) for i, f in enumerate((fx, fy))]
+        r, V = ([number(part) for part in of_start] for of_start in (self.position, self.velocity))
+        Omega = [number(part) for part in self.angular_velocity]
+        pulled = (fx / m, fy / m)
+        x, y = (r[i] + V[i] * t + pulled[i] * (t * t / 2) + carried[i] for i in range(2))
+        vx, vy = (V[i] + pulled[i] * t + gained[i] for i in range(2))
+        return (
+            Vector(x, y, a + zero),
+            Vector(vx, vy, zero),
+            Vector(Omega[0] + gained[1] / (k * a), Omega[1] - gained[0] / (k * a), Omega[2] + zero),
+            Vector(zero - mu * N * direction[0], zero - mu * N * direction[1], N + zero),
+        )
+
+
+@dataclass(frozen=True)
+class _Slip:
+    """The slip, along the pull A and across it; all numbers floats, or all mpmath's."""
+
+    size: Any  # s₀, m/s
+    c: Any
+    d: Any
+    sine: Any  # of φ₀
+    pull: Any  # A, m/s²
+    brake: Any  # B, m/s²
+    along: tuple[Any, Any]  # unit vector along A
+
+    @staticmethod
+    def of(form: SlidingSphere, number: Any) -> _Slip:
+        m, k = number(form.mass), number(form.inertia_ratio)
+        sx, sy = (number(part) for part in form.slip)
+        Ax, Ay = (number(part) / m for part in form.force[:2])
+        size, pull = _root(sx * sx + sy * sy), _root(Ax * Ax + Ay * Ay)
+        brake = number(form.friction) * -number(form.force[2]) * (1 + 1 / k) / m
+        along = (Ax / pull, Ay / pull) if pull else (sx / size, sy / size) if size else (number(1), number(0))
+        if size == 0:
+            return _Slip(size, number(1), number(0), number(0), pull, brake, along)
+        cosine, sine = (along[0] * sx + along[1] * sy) / size, (along[0] * sy - along[1] * sx) / size
+        larger = (1 + abs(cosine)) / 2
+        smaller = sine * sine / (4 * larger)  # c d = sin²φ₀/4, of which no digits are lost
+        c, d = (larger, smaller) if cosine > 0 else (smaller, larger)
+        return _Slip(size, c, d, sine, pull, brake, along)
+
+    @property
+    def straight(self) -> bool:
+        """Whether the slip keeps its line."""
+        return bool(self.pull == 0 or self.brake == 0 or self.c == 0 or self.d == 0)
+
+    @property
+    def ends_at(self) -> Any:
+        A, B = self.pull, self.brake
+        if self.size == 0 or B == 0:
+            return math.inf
+        if B <= A and self.c > 0:
+            return math.inf
+        return self.size * ((self.c / (B - A) if self.c else 0) + self.d / (B + A))
+
+    def at(self, t: Any) -> tuple[list[Any], list[Any], list[Any]]:
+        """Return s, ∫s dt and ŝ in the plane's two axes."""
+        t = t if _is_mpmath(t) else np.minimum(t, self.ends_at)
+        (ex, ey), zero = self.along, 0 * t
+        along, across, gone_along, gone_across, cosine, sine = self._straight(t) if self.straight else self._turning(t)
+
+        def in_axes(u: Any, v: Any) -> list[Any]:
+            return [ex * u - ey * v + zero, ey * u + ex * v + zero]
+
+        return in_axes(along, across), in_axes(gone_along, gone_across), in_axes(cosine, sine)
+
+    def _straight(self, t: Any) -> tuple[Any, ...]:
+        cosine = self.c - self.d
+        first, rate = (
+            (self.size * cosine, self.size * self.sine),
+            (self.pull - self.brake * cosine, -self.brake * self.sine),
+        )
+        return (
+            *(part + change * t for part, change in zip(first, rate, strict=True)),
+            *(part * t + change * (t * t / 2) for part, change in zip(first, rate, strict=True)),
+            cosine, self.sine,
+        )  # fmt: skip
+
+    def _turning(self, t: Any) -> tuple[Any, ...]:
+        A, B, c, d, s0, sine = self.pull, self.brake, self.c, self.d, self.size, self.sine
+        x = self._precise(t) if _is_mpmath(t) else self._found(np.asarray(t, dtype=float))
+        slow, fast = _exp(-(B - A) * x), _exp(-(B + A) * x)
+        square = s0 * s0
+        ahead = c * c * _shrunk(2 * (B - A), x) - d * d * _shrunk(2 * (B + A), x)
+        aside = c * _shrunk(2 * B - A, x) + d * _shrunk(2 * B + A, x)
+        ratio = _exp(-2 * A * x)
+        whole = c + d * ratio
+        return (
+            s0 * (c * slow - d * fast), s0 * sine * _exp(-B * x), square * ahead, square * sine * aside,
+            (c - d * ratio) / whole, sine * _exp(-A * x) / whole,
+        )  # fmt: skip
+
+    def _time(self, x: Any) -> tuple[Any, Any]:
+        """Return t and s = dt/dx."""
+        A, B, c, d, s0 = self.pull, self.brake, self.c, self.d, self.size
+        time = s0 * (c * _shrunk(B - A, x) + d * _shrunk(B + A, x))
+        return time, s0 * (c * _exp(-(B - A) * x) + d * _exp(-(B + A) * x))
+
+    def _left(self, x: Any) -> tuple[Any, Any]:
+        """Return how long it still slips, and s."""
+        A, B, c, d, s0 = self.pull, self.brake, self.c, self.d, self.size
+        slow, fast = _exp(-(B - A) * x), _exp(-(B + A) * x)
+        return s0 * (c * slow / (B - A) + d * fast / (B + A)), s0 * (c * slow + d * fast)
+
+    def _found(self, t: Any) -> Any:
+        """Return x at given times: by Newton's method on the time that is left, or within brackets on the time."""
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            if not math.isfinite(self.ends_at):
+                return self._bracketed(t)
+            left = np.maximum(self.ends_at - t, 1e-300)
+            x = np.zeros_like(t)
+            for _ in range(_MOST_STEPS):  # ln of a sum of exponentials is convex: from the left no step goes too far
+                remaining, s = self._left(x)
+                step = np.maximum(remaining * np.log(remaining / left) / s, 0.0)
+                x = x + step
+                if (step <= 4e-16 * x).all():
+                    break
+            early = t < 0.5 * self.ends_at
+            return np.where(early, self._bracketed(np.where(early, t, 0.0)), x)
+
+    def _bracketed(self, t: Any) -> Any:
+        low, high = np.zeros_like(t), t / self.size
+        for _ in range(_MOST_STEPS):
+            short = self._time(high)[0] < t
+            if not short.any():
+                break
+            high = np.where(short, 2 * high, high)
+        x = np.where(self._time(0.5 * high)[0] < t, high, 0.5 * high)
+        for _ in range(_MOST_STEPS):
+            time, s = self._time(x)
+            over = ~(time < t)
+            low, high = np.where(over, low, x), np.where(over, x, high)
+            better = x - (time - t) / s
+            inside = (better > low) & (better < high)
+            better = np.where(inside, better, 0.5 * (low + high))
+            done = (np.abs(better - x) <= 2e-16 * x) | (high - low <= 2e-16 * high)
+            x = better
+            if done.all():
+                break
+        return x
+
+    def _precise(self, t: Any) -> Any:
+        import mpmath
+
+        size, c, d, sine, pull, brake = map(float, (self.size, self.c, self.d, self.sine, self.pull, self.brake))
+        rough = _Slip(size, c, d, sine, pull, brake, (1.0, 0.0))
+        x = mpmath.mpf(float(rough._found(np.asarray(float(t)))))
+        for _ in range(12):
+            time, s = self._time(x)
+            x = x - (time - t) / s
+        return x
+
+
+def _shrunk(rate: Any, x: Any) -> Any:
+    """Return ∫₀ˣ e^{−rate x} dx."""
+    if rate == 0:
+        return x
+    if _is_mpmath(x):
+        import mpmath
+
+        return -mpmath.expm1(-rate * x) / rate
+    return -np.expm1(-rate * x) / rate
+
+
+def _exp(x: Any) -> Any:
+    if _is_mpmath(x):
+        import mpmath
+
+        return mpmath.exp(x)
+    return np.exp(x)
+
+
+def _root(x: Any) -> Any:
+    if _is_mpmath(x):
+        import mpmath
+
+        return mpmath.sqrt(x)
+    return math.sqrt(x)
+
+
+def _mpf(value: Any) -> Any:
+    import mpmath
+
+    return mpmath.mpf(value)
+
+
+def _is_mpmath(t: Any) -> bool:
+    return type(t).__module__.partition(".")[0] == "mpmath"

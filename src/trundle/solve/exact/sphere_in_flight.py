@@ -1,0 +1,294 @@
+"""T11a: a sphere in flight under constant loads: a parabola, and the instant at which it lands."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...mechanics.algebra import Vector
+from ...mechanics.loads import constant_part
+from ...mechanics.motions import FreeAxle
+from ...mechanics.scalars import Scalar, is_number, is_zero, namespace
+from ...mechanics.surfaces import Bowl, Cylinder, Dome, Plane
+from ...mechanics.system import RollingSystem, State
+from ..samples import FLIGHT
+from .base import ClosedForm
+
+# Shares of their sizes below which the gap, its rate and its curvature at the start are rounding: a flight begins
+# where the support lets go, with all three 0, or after a bounce, with a rate.
+_NOTHING = (1e-12, 1e-12, 1e-9)
+
+
+@dataclass(frozen=True)
+class SphereInFlight(ClosedForm):
+    """The motion r = r₀ + V₀t + (F/m)t²/2, Ω = Ω₀ + K t/(k m a²) (T11a), which lands at the root of a polynomial.
+
+    Parameters
+    ----------
+    radius, mass, inertia_ratio : float or array
+        a in m, m in kg, k = I/(m a²).
+    position, velocity : triple of float or array
+        Centre at t = 0, m and m/s.
+    angular_velocity : triple of float or array
+        Ω at t = 0, rad/s.
+    force, torque : triple of float or array
+        Constant, weight included, N and N m.
+    across : triple of float
+        1 or 0 for each axis along which the distance from the support is measured: of a plane the third.
+    middle : triple of float
+        From where: the centre of a bowl, m.
+    distance : float
+        At which it touches: a over a plane, b + a from the axis of a cylinder when outside, b − a when inside, m.
+    side : float
+        +1 where it may be no nearer, −1 where it may be no further away.
+    axle_rate : float, optional
+        Of a support on a free axle, rad/s; absent for any other.
+
+    Examples
+    --------
+    >>> ball = SphereInFlight(0.1, 1.0, 0.4, (0.0, 0.0, 5.1), (2.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, -10.0))
+    >>> ball.ends_at["land"], ball.motion_at(1.0)[0]
+    (1.0, Vector(x=2.0, y=0.0, z=0.09999999999999964))
+    """
+
+    radius: Scalar
+    mass: Scalar
+    inertia_ratio: Scalar
+    position: tuple[Scalar, Scalar, Scalar]
+    velocity: tuple[Scalar, Scalar, Scalar]
+    angular_velocity: tuple[Scalar, Scalar, Scalar]
+    force: tuple[Scalar, Scalar, Scalar] = (0.0, 0.0, 0.0)
+    torque: tuple[Scalar, Scalar, Scalar] = (0.0, 0.0, 0.0)
+    across: tuple[float, float, float] = (0.0, 0.0, 1.0)
+    middle: tuple[Scalar, Scalar, Scalar] = (0.0, 0.0, 0.0)
+    distance: Scalar | None = None
+    side: float = 1.0
+    axle_rate: Scalar | None = None
+
+    name = "sphere in flight"
+    equation = "T11a"
+    source = "Galilei, Discorsi (1638), fourth day; theory page, T11"
+    domain = (
+        "a sphere about its centre of mass with the same inertia about every axis, in flight over a plane, a cylinder, "
+        "a bowl or a dome that is fixed or turns about its axis steadily or freely, under gravity and constant force "
+        "and torque"
+    )
+    phases = (FLIGHT,)
+    never = frozenset({"curved"})
+
+    @classmethod
+    def of(cls, system: RollingSystem, start: State) -> SphereInFlight:
+        """Read the closed form's numbers from a system and a start.
+
+        Parameters
+        ----------
+        system : RollingSystem
+            Must lie in the domain.
+        start : State
+            In flight.
+
+        Returns
+        -------
+        SphereInFlight
+            The motion; its t = 0 is the start's time.
+
+        Raises
+        ------
+        OutOfDomainError
+            If the system lies outside the domain.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> floor = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane()), gravity=10.0)
+        >>> round(SphereInFlight.of(floor, floor.place(height=0.2)).ends_at["land"], 12)
+        0.2
+        """
+        cls.check_domain(system, start)
+        force, torque, _ = constant_part(system.all_loads, system.body.mass)
+        surface: Any = system.support.surface
+        a = system.body.radius
+        across, middle, distance, side = (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), a, 1.0
+        if not isinstance(surface, Plane):
+            side = surface.sign
+            distance = surface.radius + side * a
+            across = (1.0, 1.0, 0.0) if isinstance(surface, Cylinder) else (1.0, 1.0, 1.0)
+            middle = middle if isinstance(surface, Cylinder) else (0.0, 0.0, -side * surface.radius)
+        return cls(
+            radius=a,
+            mass=system.body.mass,
+            inertia_ratio=system.body.inertia_ratio,
+            position=start.position,
+            velocity=start.velocity,
+            angular_velocity=start.angular_velocity,
+            force=tuple(force),
+            torque=tuple(torque),
+            across=across,
+            middle=middle,
+            distance=distance,
+            side=side,
+            axle_rate=start.support[1] if isinstance(system.support.motion, FreeAxle) else None,
+        )
+
+    @classmethod
+    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
+        """Name what of a system lies outside the domain.
+
+        Parameters
+        ----------
+        system : RollingSystem
+            Any system.
+        start : State, optional
+            Its start.
+
+        Returns
+        -------
+        list of str
+            Empty where the closed form applies.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> bowl = tr.Support(tr.Paraboloid(2.0))
+        >>> SphereInFlight.outside(tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), bowl))
+        ['the surface is a Paraboloid, not a Plane, Cylinder, Bowl or Dome']
+        """
+        reasons, motion = [], system.support.motion
+        if not system.body.is_isotropic_sphere:
+            reasons.append("the body is no sphere with isotropic inertia about its centre")
+        if not isinstance(system.support.surface, (Plane, Cylinder, Bowl, Dome)):
+            kind = type(system.support.surface).__name__
+            reasons.append(f"the surface is a {kind}, not a Plane, Cylinder, Bowl or Dome")
+        if motion.steady_rate is None and not turns_freely(motion):
+            reasons.append(f"the support's motion {type(motion).__name__} is no steady or free turn")
+        reasons += [f"the load {type(load).__name__} is not constant" for load in system.loads if not load.constant]
+        return reasons
+
+    @property
+    def period(self) -> float:
+        """Infinite: it never comes back."""
+        return math.inf
+
+    def pace(self, duration: float) -> float:
+        """Return the rate at which the place changes over its distance, 1/s."""
+        speeds = [abs(v) + abs(f) * duration / self.mass for v, f in zip(self.velocity, self.force, strict=True)]
+        return max(speeds) / float(self.radius if self.distance is None else self.distance)
+
+    @property
+    def ends_at(self) -> dict[str, float]:
+        """When it lands, s: the first root of the distance, a polynomial, at which that falls to where it touches."""
+        f = self._gap()
+        if not any(f):
+            return {"land": math.inf}
+        f = f / np.abs(f).max()
+        while f[0] == 0:
+            f = f[1:]
+        if f[0] < 0:  # it presses on the support
+            return {"land": 0.0}
+        roots = np.roots(f[::-1])
+        near = np.abs(roots.imag) <= 1e-7 * np.abs(roots)
+        found = sorted(float(t) for t in roots[near].real if t > 0)
+        crossed = [t for t in (_polished(f, t) for t in found) if np.polyval(np.polyder(f[::-1]), t) <= 0]
+        return {"land": crossed[0] if crossed else math.inf}
+
+    def _gap(self) -> Any:
+        """Return the coefficients of a polynomial of the time that has the sign of the gap, constant first."""
+        r, V, A = (
+            np.array([float(part) * on for part, on in zip(vector, self.across, strict=True)])
+            for vector in (
+                [p - c for p, c in zip(self.position, self.middle, strict=True)],
+                self.velocity,
+                [f / self.mass for f in self.force],
+            )
+        )
+        ell = float(self.radius if self.distance is None else self.distance)
+        if sum(self.across) == 1:
+            f = np.array([r.sum() - ell, V.sum(), 0.5 * A.sum(), 0.0, 0.0])
+            sizes = [ell, np.abs(self.velocity).max(), 0.0]
+        else:
+            f = np.array([r @ r - ell * ell, 2 * r @ V, V @ V + r @ A, A @ V, 0.25 * A @ A]) * self.side
+            sizes = [ell * ell, ell * float(np.linalg.norm(V)), float(V @ V) + ell * float(np.linalg.norm(A))]
+        for i, (share, size) in enumerate(zip(_NOTHING, sizes, strict=True)):
+            if abs(f[i]) > share * size:
+                break
+            f[i] = 0.0
+        return f
+
+    def motion_at(self, t: Any) -> tuple[Vector, Vector, Vector, Vector]:
+        """Return position, velocity, angular velocity and contact force together.
+
+        Parameters
+        ----------
+        t : float or array
+            Time since the start, s.
+
+        Returns
+        -------
+        position, velocity, angular_velocity, contact_force : Vector
+            In the inertial support frame, m, m/s, rad/s, N.
+
+        Examples
+        --------
+        >>> SphereInFlight(0.1, 1.0, 0.4, (0.0, 0.0, 1.0), (0.0, 0.0, 3.0), (0.0, 1.0, 0.0)).motion_at(2.0)[0].z
+        7.0
+        """
+        zero = 0 * t
+        A, V0 = Vector(*self.force) / self.mass, Vector(*self.velocity)
+        turned = Vector(*self.torque) / (self.inertia_ratio * self.mass * self.radius * self.radius)
+        nothing = Vector(zero, zero, zero)
+        return (
+            Vector(*self.position) + V0 * t + A * (0.5 * t * t),
+            V0 + A * t,
+            Vector(*self.angular_velocity) + turned * t,
+            nothing,
+        )
+
+    def own_at(self, t: Any) -> tuple[Any, ...]:
+        """Return by how much angle and rate of a free axle grow: nothing touches it."""
+        return () if self.axle_rate is None else (self.axle_rate * t, 0 * t)
+
+    def straight_turn(self, t: Any) -> tuple[Vector, Any] | None:
+        """Return the axis and the angle by which it has turned, where Ω keeps its direction."""
+        parts = (*self.angular_velocity, *self.torque)
+        if not all(map(is_number, parts)) or not all(is_zero(part) for part in self.torque):
+            return None
+        Omega = Vector(*self.angular_velocity)
+        size = namespace(Omega.x).sqrt(Omega.dot(Omega))
+        return (Omega / size, size * t) if size else (Vector(0.0, 0.0, 1.0), 0 * t)
+
+
+def turns_freely(motion: Any) -> bool:
+    """Tell whether a support turns on a free axle on which nothing else acts.
+
+    Parameters
+    ----------
+    motion : Motion
+        Any.
+
+    Returns
+    -------
+    bool
+        False for any other motion.
+
+    Examples
+    --------
+    >>> turns_freely(FreeAxle(0.5, 2.0)), turns_freely(FreeAxle(0.5, 2.0, bearing_drag=0.1))
+    (True, False)
+    """
+    if not isinstance(motion, FreeAxle):
+        return False
+    return all(is_zero(part) for part in (motion.motor_torque, motion.bearing_drag, motion.bearing_torque))
+
+
+def _polished(f: Any, t: float) -> float:
+    """Return a root of a polynomial, constant first, to the last digit by Newton's steps."""
+    slope = np.polyder(f[::-1])
+    for _ in range(4):
+        rate = np.polyval(slope, t)
+        if rate == 0:
+            break
+        t = float(t - np.polyval(f[::-1], t) / rate)
+    return t
