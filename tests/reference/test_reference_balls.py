@@ -164,14 +164,15 @@ def test_on_a_table_that_starts_up_the_ball_turns_by_two_sevenths() -> None:
 
 
 def test_a_ball_on_a_pushed_box_gains_two_sevenths_of_it() -> None:
-    """SimBenchmark's rolling test, one ball; f = (2/7) m A, so that 2 A/(7 g) of friction is needed."""
-    name = "ball-on-a-pushed-box"
+    """SimBenchmark's rolling test, one ball: (M + (2/7) m) A = P − μ (M + m) g, and f = (2/7) m A."""
+    name, gain = "ball-on-a-pushed-box", 10.388
     path = run(name)
     t = path.data.time.values
-    np.testing.assert_allclose(flat(path), 2 / 7 * t**2, rtol=0, atol=SOLVER(100, TAYLOR))
+    np.testing.assert_allclose(flat(path), gain / 7 * t**2, rtol=0, atol=SOLVER(100, TAYLOR))
     force = path.data.contact_force.values
-    np.testing.assert_allclose(force[:, 0] / force[:, 2], 4 / (7 * G), rtol=1e-12)
-    says(name, f"{4 / 7:.3f} m/s", f"{4 / (7 * G):.4f}")
+    np.testing.assert_allclose(force[:, 0] / force[:, 2], 2 / 7 * gain / G, rtol=1e-12)
+    assert (150 - 0.4 * 11 * G) / (10 + 2 / 7) == pytest.approx(gain, abs=5e-4)
+    says(name, f"{gain:.3f} m/s", f"{2 / 7 * gain:.3f} m/s", f"{2 / 7 * gain / G:.3f}")
     slipping = changed(name, ("friction = 0.8", "friction = 0.05"))
     np.testing.assert_allclose(flat(slipping), 0.5 * 0.05 * G * t**2, rtol=0, atol=SOLVER(1e4, TAYLOR))
 
