@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import SolverError
-from ..mechanics.algebra import ZERO, Quaternion, Vector
+from ..mechanics.algebra import E_X, E_Y, E_Z, ZERO, Matrix, Quaternion, Vector
 from ..mechanics.contact import Contact, roll, settle
 from ..mechanics.impact import land, response
 from ..mechanics.placing import SLIP_TOLERANCE
@@ -29,7 +29,9 @@ from .laws import (
 from .samples import Event
 
 _STILL = 1e-12  # share of the speeds at the contact at which slip or turning has all but ended
-_FIRST = 1e-14  # share of them with which slip begins: a direction, and nothing to speak of
+_FIRST = 1e-6  # share of |ρ| over that speed that slip takes to begin, at least, and a hundred times that at most
+_SETTLED_IN = 2e4  # how much faster its direction settles than it grows once it has begun
+_JUST = 1e-8  # share of friction below which what it cannot give has no direction yet
 _WEIGHTLESS = 1e-13  # share of the forces at hand below which nothing presses the body on
 _TAKE_OFF = 1e-15  # gap, as a share of |ρ|, with which a flight begins: it must not end where it begins
 SETTLED = 1e-6  # height, as a share of |ρ|, below which a bounce is cut
@@ -155,7 +157,7 @@ def after(system: RollingSystem, law: Law, stop: str, time: float, numbers: Any)
     kind, said = _NAMES[type(follows.law).code] if type(follows.law).code != law.code else ("slip", _TURNED)
     if stop == "grip" and isinstance(follows.law, SlippingLaw):
         kind, said = "slip", _TURNED
-    event = Event(time, kind, f"{said} at t = {time:.9g} s", before, _state(system, follows.law, time, follows.state))
+    event = Event(time, kind, f"{said} at t = {time:.9g} s", before, before)
     return replace(follows, events=(event, *follows.events))
 
 
@@ -345,16 +347,55 @@ def _resting(system: RollingSystem, at: _Touch) -> Next | None:
 
 
 def _begins_to_slip(system: RollingSystem, at: _Touch, needed: Vector) -> Next:
-    """Return slipping with a first little slip, the way that its own friction leads along."""
-    law, state, first = SlippingLaw(), at.state, _FIRST * at.scale(system)
-    numbers = law.pack(system, state)
-    hat = _way(system, at, needed)
-    numbers[10:13] = _floats(hat * first)
-    return Next(law, state.time, numbers, ((first / 4) ** 2, *_floats(hat)))
+    """Return slipping after its first moment, in which the body still rolls but for what friction cannot give.
+
+    What it cannot give grows from nothing, mostly, and so the slip is the integral of a slope. Its direction would
+    settle so fast at first that no method could follow.
+    """
+    state, numbers = at.state, RollingLaw().pack(system, at.state)
+    begun = _way(system, at, needed)[1]
+
+    def later(wait: float) -> tuple[_Touch, Vector, float]:
+        moved = RollingLaw().advanced(system, state.time, numbers, wait)
+        then = _Touch.of(system, _state(system, RollingLaw(), state.time + wait, moved))
+        return (then, *_way(system, then, _friction(system, then)))
+
+    trial = _FIRST * at.arm / at.scale(system)
+    growth = max((later(trial)[2] - begun) / trial, 1e-300)
+    settling = needed.norm() * response(system, at.contact, at.orientation, needed / needed.norm()).norm()
+    wait = trial if begun > 0 else min(max(settling / (_SETTLED_IN * growth), trial), 100 * trial)
+    (middle, *_), (then, hat, speed) = (later(0.5 * wait), later(wait))
+    halfway = _way(system, middle, _friction(system, middle))[1]
+    slip = hat * (wait * (begun + 4 * halfway + speed) / 6)
+    follows = SlippingLaw()
+    changed = follows.pack(system, _pushed(system, then, slip))
+    near = min((0.25 * slip.norm()) ** 2, _still(system, at) ** 2)
+    return Next(follows, then.state.time, changed, (near, *_floats(hat)))
 
 
-def _way(system: RollingSystem, at: _Touch, needed: Vector) -> Vector:
-    """Return the direction ŝ in which slip grows along ŝ when friction acts against it."""
+def _friction(system: RollingSystem, at: _Touch) -> Vector:
+    """Return the friction that rolling takes."""
+    state, n = at.state, at.contact.normal
+    R = roll(system, state.time, at.contact.point, at.orientation, at.Omega, state.support).reaction
+    return R - n * n.dot(R)
+
+
+def _pushed(system: RollingSystem, at: _Touch, slip: Vector) -> State:
+    """Return the state after the impulse at the contact that makes it slip so."""
+    columns = [response(system, at.contact, at.orientation, e) for e in (E_X, E_Y, E_Z)]
+    P = Matrix(*columns).transpose.solve(slip)
+    J = system.body.inertia_in_space(at.orientation.matrix())
+    own = at.state.support
+    if system.support.motion.free:
+        own = (
+            *own[:-1],
+            own[-1] - float(at.contact.support.lever(at.contact.point).dot(P) / system.support.motion.inertia),
+        )
+    return at.moving(at.V + P / system.body.mass, at.Omega + J.solve(at.contact.offset.cross(P)), own)
+
+
+def _way(system: RollingSystem, at: _Touch, needed: Vector) -> tuple[Vector, float]:
+    """Return the direction ŝ in which slip grows along ŝ when friction acts against it, and how fast, m/s²."""
     from scipy.optimize import brentq
 
     first = needed / -needed.norm()
@@ -364,8 +405,8 @@ def _way(system: RollingSystem, at: _Touch, needed: Vector) -> Vector:
         own = at.state.support
         return slip(system, at.state.time, at.contact.point, at.orientation, at.Omega, ZERO, own, hat).slip_rate
 
-    if grows(first).norm() <= 1e-6 * needed.norm() / system.body.mass:  # it gives way just now
-        return first
+    if grows(first).norm() <= _JUST * needed.norm() / system.body.mass:  # it gives way just now
+        return first, 0.0
 
     def hat_at(angle: float) -> Vector:
         return first * math.cos(angle) + second * math.sin(angle)
@@ -387,7 +428,8 @@ def _way(system: RollingSystem, at: _Touch, needed: Vector) -> Vector:
             f"At t = {at.state.time:.9g} s the body can neither roll nor slip any way (friction jams it: Painlevé's "
             "paradox of rigid contact). Use less friction."
         )
-    return max(growing, key=lambda pair: pair[0])[1]
+    speed, hat = max(growing, key=lambda pair: pair[0])
+    return hat, speed
 
 
 __all__ = ["SETTLED", "Next", "after", "at_start", "spins"]

@@ -66,6 +66,19 @@ class Law:
         """Complete states (n, ...) to full samples."""
         raise NotImplementedError
 
+    def advanced(self, system: RollingSystem, time: float, state: Sequence[float], step: float) -> list[float]:
+        """Return the state after a step so short that one of the classical Runge-Kutta method is exact."""
+        y = np.asarray(state, dtype=float)
+
+        def rates(t: float, at: Array) -> Array:
+            return np.array([float(rate) for rate in self.rates(system, t, at.tolist())])
+
+        first = rates(time, y)
+        second = rates(time + step / 2, y + step / 2 * first)
+        third = rates(time + step / 2, y + step / 2 * second)
+        fourth = rates(time + step, y + step * third)
+        return (y + step / 6 * (first + 2 * second + 2 * third + fourth)).tolist()
+
     def _bounds(self, system: RollingSystem, contact: Contact, orientation: Quaternion, gap: Scalar) -> dict[str, Any]:
         """Return the stops of every phase: where the support ends, the body's shape, or what fits."""
         surface, support = system.support.surface, contact.support

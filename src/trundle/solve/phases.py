@@ -107,9 +107,10 @@ def solve(
         events += now.events
         _check_count(events)
         left = left[left >= stop.time]
-        early = left[left < now.time]  # while it came to the end that was all but reached
+        early = left[left < now.time]  # in the short step across the event
         if early.size:
-            parts.append(now.law.record(system, early, np.tile(now.state, (early.size, 1))))
+            steps = [law.advanced(system, stop.time, stop.state, t - stop.time) for t in early.tolist()]
+            parts.append(law.record(system, early, np.array(steps)))
             left = left[early.size :]
     kept = [part for part in parts if part.time.size] or parts[:1]
     return Samples.joined(kept, tuple(events))

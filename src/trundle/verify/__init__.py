@@ -115,9 +115,7 @@ def _law(system: RollingSystem, start: State, at: Samples, method: str) -> Itera
     total = sum(stretch.length for stretch in found)
     windows = np.vstack([stretch.windows(stretch.length / total) for stretch in found[:_MOST_STRETCHES]])
     sampled = at.part(slice(None, None, max(1, at.time.size // _RUN_AGAIN)))
-    panels = [stretch.panels() for stretch in found] if _wants_balance(system, at, found) else []
-    nodes = np.concatenate([times.ravel() for times, _ in panels]) if panels else np.empty(0)
-    every = [windows.ravel(), sampled.time, nodes, np.array([start.time, at.time[-1]])]
+    every = [windows.ravel(), sampled.time, np.array([start.time, at.time[-1]])]
     again = solver(method)(system, start, np.unique(np.concatenate(every)), tolerance_of(method))
     yield same_again(system, start, sampled, again, method)
     looked_at = again.part(_places(again.time, windows.ravel()))
@@ -130,11 +128,15 @@ def _law(system: RollingSystem, start: State, at: Samples, method: str) -> Itera
     if (looked_at.phase == ROLLING).any():
         note = "over the admissible velocities (d'Alembert)"
         yield checked("virtual power of the reaction", law.virtual_power, bound, note)
-    if panels:
-        weights = np.concatenate([weight.ravel() for _, weight in panels])
+    if _wants_balance(system, at, found):
         ends = again.part(_places(again.time, np.array([start.time, at.time[-1]])))
-        along = again.part(_places(again.time, nodes))
-        yield from balance(system, ends, along, weights, at.events, bound_of(method, turned_in(at)))
+
+        def follow(times: Array) -> Samples:
+            there = solver(method)(system, start, times, tolerance_of(method))
+            return there.part(_places(there.time, times))
+
+        panels = np.vstack([stretch.panels() for stretch in found])
+        yield balance(system, ends, panels, follow, at.events, bound_of(method, turned_in(at)))
 
 
 def _places(times: Array, wanted: Array) -> Any:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..errors import OutOfDomainError
 from ..mechanics.algebra import E_X, E_Z, Quaternion, Vector
 from ..mechanics.contact import settle
 from ..mechanics.system import RollingSystem, State
@@ -81,7 +82,10 @@ def cross_check(
     numerical = other if method == "exact" else method
     span, speed = float(at.time[-1] - start.time), largest(at.angular_velocity)
     times = start.time + np.linspace(0.0, min(span, _MOST_RADIANS / max(speed, 1e-300)), _INSTANTS)
-    ours, theirs = (solver(name)(system, start, times, tolerance_of(name)) for name in (method, other))
+    try:
+        ours, theirs = (solver(name)(system, start, times, tolerance_of(name)) for name in (method, other))
+    except OutOfDomainError:  # the run comes into a phase that no closed form covers
+        return
     count = min(theirs.time.size, ours.time.size)  # one may reach the rim first, by a rounding
     ours, theirs = ours.part(slice(0, count)), theirs.part(slice(0, count))
     turned = speed * float(ours.time[-1] - start.time)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -11,25 +10,13 @@ import numpy as np
 from ..mechanics.algebra import Vector
 from ..mechanics.loads import BodyMotion, Load
 from ..mechanics.system import RollingSystem, State
-from ..solve.samples import Samples
+from ..solve.samples import FLIGHT, Samples
 from .bounds import Array
 from .card import CardFigure, checked
 
-
-@dataclass(frozen=True)
-class Work:
-    """Work on the body, J, and the size of what it is a sum of."""
-
-    friction: float  # of the contact force through the slip
-    support: float  # of the contact force, and of couples, through the support's motion
-    loads: float  # of loads without a potential, and of couples at the contact
-    landings: float  # what impacts took
-    size: float
-
-    @property
-    def total(self) -> float:
-        """All of it."""
-        return self.friction + self.support + self.loads + self.landings
+_NODES = 16  # of Gauss and Legendre in each panel
+_PARTS = 4  # into which a panel is cut where its power is rough
+_MOST_PASSES = 8
 
 
 def energy(system: RollingSystem, at: Samples) -> Array:
@@ -70,43 +57,61 @@ def _keeps(load: Load, motion: BodyMotion) -> bool:
     return not load.at_contact and load.potential(motion) is not None
 
 
-def work(system: RollingSystem, at: Samples, weights: Array, events: tuple[Any, ...]) -> Work:
-    """Return the work on the body along a run.
+def powers(system: RollingSystem, at: Samples) -> Array:
+    """Return the power of friction, of the support and of loads without a potential, (3, n), W.
 
     Parameters
     ----------
     system : RollingSystem
-        What moved.
+        What moves.
     at : Samples
-        At the nodes of a quadrature that stops at every event.
-    weights : array (n,)
-        Of the nodes, s.
-    events : tuple of Event
-        Of the run: what struck changed the energy at once.
+        Of the run.
 
     Returns
     -------
-    Work
-        J.
+    array (3, n)
+        R·s, R·u, and the rest; couples at the contact belong to the loads.
     """
+    found = np.zeros((3, at.time.size))
+    flies = at.phase == FLIGHT
+    for which in (np.flatnonzero(flies), np.flatnonzero(~flies)):  # at the contact nothing acts in flight
+        if which.size:
+            found[:, which] = _powers(system, at.part(which))
+    return found
+
+
+def _powers(system: RollingSystem, at: Samples) -> Array:
     motion = at.motion(system)
-    acting = system.acting_on(motion)
-    normal = Vector.of(at.normals(system)) if len(at.time) else Vector(0.0, 0.0, 0.0)
-    R = Vector.of(at.contact_force)
-    couple = acting.couple * R.dot(normal)
+    R, Omega = Vector.of(at.contact_force), motion.angular_velocity
     V, carried, u = at.speeds(system)
-    slip = V + carried - u
-    done = R.dot(u)
-    lost = R.dot(slip)
-    given: Any = couple.dot(motion.angular_velocity)
+    given: Any = 0.0
     for load in system.all_loads:
         if not _keeps(load, motion):
-            given = given + load.force(motion).dot(V) + load.torque(motion).dot(motion.angular_velocity)
-    powers = [np.broadcast_to(np.asarray(power, dtype=float), at.time.shape) for power in (lost, done, given)]
-    friction, moved, loads = (float(weights @ power) for power in powers)
-    struck = sum(_energy_of(system, event.after) - _energy_of(system, event.before) for event in _striking(events))
-    size = float(sum(weights @ np.abs(power) for power in powers)) + abs(struck)
-    return Work(friction, moved, loads, float(struck), size)
+            given = given + load.force(motion).dot(V) + load.torque(motion).dot(Omega)
+    if motion.normal is not None:
+        given = given + (system.acting_on(motion).couple * R.dot(motion.normal)).dot(Omega)
+    both = (R.dot(V + carried - u), R.dot(u), given)
+    return np.stack([np.broadcast_to(np.asarray(power, dtype=float), at.time.shape) for power in both])
+
+
+def _integrals(system: RollingSystem, panels: Array, follow: Callable[[Array], Samples]) -> tuple[Array, Array]:
+    """Return the work of each kind and its size, (3,) each, J; panels are cut until a polynomial follows the powers."""
+    x, w = np.polynomial.legendre.leggauss(_NODES)
+    tops = np.polynomial.legendre.legvander(x, _NODES - 1)[:, -2:] * w[:, None] * (_NODES - 1)
+    total, size = np.zeros(3), np.zeros(3)
+    for _ in range(_MOST_PASSES):
+        half = 0.5 * np.diff(panels)
+        times = panels[:, :1] + half * (1 + x)
+        values = powers(system, follow(times.ravel())).reshape(3, *times.shape)
+        parts, sizes = (values @ w) * half[:, 0], (np.abs(values) @ w) * half[:, 0]
+        tails = np.abs(values @ tops).max(axis=(0, 2)) * half[:, 0]
+        rough = tails > 1e-15 * max(float((size + sizes.sum(axis=1)).max()), 1e-300)
+        total, size = total + parts[:, ~rough].sum(axis=1), size + sizes[:, ~rough].sum(axis=1)
+        if not rough.any():
+            return total, size
+        edges = panels[rough, :1] + np.diff(panels[rough]) * np.linspace(0.0, 1.0, _PARTS + 1)
+        panels = np.stack([edges[:, :-1].ravel(), edges[:, 1:].ravel()], axis=1)
+    return total + parts[:, rough].sum(axis=1), size + sizes[:, rough].sum(axis=1)
 
 
 def _striking(events: tuple[Any, ...]) -> list[Any]:
@@ -129,8 +134,13 @@ def _energy_of(system: RollingSystem, state: State) -> float:
 
 
 def balance(
-    system: RollingSystem, ends: Samples, at: Samples, weights: Array, events: tuple[Any, ...], bound: float
-) -> Iterator[CardFigure]:
+    system: RollingSystem,
+    ends: Samples,
+    panels: Array,
+    follow: Callable[[Array], Samples],
+    events: tuple[Any, ...],
+    bound: float,
+) -> CardFigure:
     """Compare what the energy gained over a run with the work done.
 
     Parameters
@@ -139,25 +149,26 @@ def balance(
         What moved.
     ends : Samples
         The two ends of the run.
-    at, weights, events
-        As for `work`.
+    panels : array (n, 2)
+        Beginning and end of the panels of a quadrature, none of them across an event, s.
+    follow : callable
+        Takes ascending instants, returns the run's samples there.
+    events : tuple of Event
+        Of the run: what struck changed the energy at once.
     bound : float
         The share that may be left over.
 
-    Yields
-    ------
+    Returns
+    -------
     CardFigure
-        One, with the parts in its note.
+        With the parts in its note.
     """
     first, last = energy(system, ends)[[0, -1]]
-    done = work(system, at, weights, events)
-    size = max(abs(first), abs(last), float(np.ptp(energy(system, at))), done.size, 1e-300)
-    parts = {
-        "friction": done.friction,
-        "the support": done.support,
-        "loads": done.loads,
-        "landings": done.landings,
-    }
+    (friction, support, loads), sizes = _integrals(system, panels, follow)
+    struck = sum(_energy_of(system, event.after) - _energy_of(system, event.before) for event in _striking(events))
+    size = max(abs(first), abs(last), abs(struck), float(sizes.sum()), 1e-300)
+    parts = {"friction": friction, "the support": support, "loads": loads, "landings": struck}
     said = ", ".join(f"{name} {value:+.6g} J" for name, value in parts.items() if abs(value) > 1e-15 * size)
     note = f"energy {first:.6g} to {last:.6g} J; work of {said}" if said else f"energy stays at {first:.6g} J"
-    yield checked("energy balance", abs(float(last - first) - done.total) / size, bound, note)
+    left = float(last - first) - float(friction + support + loads + struck)
+    return checked("energy balance", abs(left) / size, bound, note)

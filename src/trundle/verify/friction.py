@@ -11,7 +11,6 @@ from ..solve.samples import FLIGHT, ROLLING, Samples
 from .bounds import Array, largest
 from .card import CardFigure, checked
 
-
 _SLACK = 1e-8  # by which rolling may pass the cone before it gives way: what `CONE_SLACK` leaves, and rounding
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +14,6 @@ from .law import WINDOWS, window_times
 
 _MARGIN = 0.02  # of a stretch that is left out at its ends: slip turns faster and faster before it ends
 _TURNS = 20.0  # by so many radians, at most, slip turns over what is left of a stretch
-_NODES = 16  # of Gauss and Legendre in each panel
 _PHASE_A_PANEL = 1.5  # rad of the fastest rotation
 _MOST_PANELS = 8000
 _HALVINGS = 40
@@ -50,16 +50,14 @@ class Stretch:
         times = window_times(self.begin + inset, self.end - inset, self.pace)
         return times[:: max(1, WINDOWS // count)][:count]
 
-    def panels(self) -> tuple[Array, Array]:
-        """Return nodes and weights for an integral over it, (panels, nodes) each, s."""
-        x, w = np.polynomial.legendre.leggauss(_NODES)
+    def panels(self) -> Array:
+        """Return the beginning and end of each panel of a quadrature over it, (panels, 2), s."""
         count = int(np.clip(np.ceil(self.length * self.pace / _PHASE_A_PANEL), 1, _MOST_PANELS))
         edges = np.linspace(self.begin, self.end, count + 1)
         if self.slips:  # closer and closer towards both ends, where the slip turns fast
             nearer = self.length * 0.5 ** np.arange(1, _HALVINGS)
             edges = np.unique(np.concatenate([edges, self.begin + nearer, self.end - nearer]))
-        half = 0.5 * np.diff(edges)[:, None]
-        return edges[:-1, None] + half * (1 + x), half * w
+        return np.stack([edges[:-1], edges[1:]], axis=1)
 
     @property
     def resolved(self) -> bool:
@@ -94,7 +92,7 @@ def stretches(system: RollingSystem, begin: float, samples: Samples) -> list[Str
     end = float(samples.time[-1])
     edges = [begin, *(event.time for event in samples.events if begin < event.time < end), end]
     found = []
-    for first, last in zip(edges[:-1], edges[1:], strict=True):
+    for first, last in itertools.pairwise(edges):
         if last - first <= 1e-12 * (end - begin):
             continue
         inside = np.flatnonzero((samples.time >= first) & (samples.time <= last))
