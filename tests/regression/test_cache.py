@@ -22,7 +22,8 @@ from trundle.mechanics.loads import BodyMotion, Load
 from trundle.mechanics.parameters import numbers
 from trundle.mechanics.shapes import Ellipsoid
 from trundle.solve import taylor
-from trundle.solve.tracing import heyoka_system
+from trundle.solve.laws import RollingLaw
+from trundle.solve.lowering import lower
 
 pytest.importorskip("heyoka")
 
@@ -127,7 +128,7 @@ def test_long_equations_that_differ_at_their_end_are_not_taken_for_one_another()
 
     def key(place: bool) -> str:
         system = tr.RollingSystem(body, support, (Twist(Vector(0.1, 0.2, 0.3), place),))
-        return taylor._key(*heyoka_system(system), 1e-15, len(numbers(system)))
+        return taylor._key(*lower(system, RollingLaw()).heyoka(), 1e-15, len(numbers(system)))
 
     assert key(True) == key(True)
     assert key(True) != key(False)
@@ -136,7 +137,7 @@ def test_long_equations_that_differ_at_their_end_are_not_taken_for_one_another()
 def test_the_key_depends_on_tolerance_heyoka_and_processor(monkeypatch: pytest.MonkeyPatch) -> None:
     import heyoka
 
-    traced = heyoka_system(SYSTEM)
+    traced = lower(SYSTEM, RollingLaw()).heyoka()
     keys = {taylor._key(*traced, 1e-15, 7), taylor._key(*traced, 1e-9, 7)}
     monkeypatch.setattr(taylor, "_processor", lambda: "another")
     keys.add(taylor._key(*traced, 1e-15, 7))
@@ -150,17 +151,20 @@ def test_the_key_is_the_same_in_every_process() -> None:
 import trundle as tr
 from trundle.mechanics.parameters import numbers
 from trundle.solve import taylor
-from trundle.solve.tracing import heyoka_system
+from trundle.solve.laws import RollingLaw
+from trundle.solve.lowering import lower
 ball = tr.Body.solid_sphere(radius=0.025, mass=0.065)
 system = tr.RollingSystem(ball, tr.Support(tr.Plane(), motion=tr.Spin(3.5), tilt=0.05))
-print(taylor._key(*heyoka_system(system), 1e-15, len(numbers(system))))
+print(taylor._key(*lower(system, RollingLaw()).heyoka(), 1e-15, len(numbers(system))))
 """
     found = set()
     for seed in ("1", "2"):
         env = dict(os.environ, PYTHONHASHSEED=seed)
         found.add(subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, check=True).stdout)  # noqa: S603
     assert len(found) == 1
-    assert found.pop().decode().strip() == taylor._key(*heyoka_system(SYSTEM), 1e-15, len(numbers(SYSTEM)))
+    assert found.pop().decode().strip() == taylor._key(
+        *lower(SYSTEM, RollingLaw()).heyoka(), 1e-15, len(numbers(SYSTEM))
+    )
 
 
 @pytest.mark.parametrize("spoil", ["empty", "cut", "bit", "garbage", "other pickle", "folder in its place"])

@@ -34,22 +34,26 @@ class Tape:
 
     def record(self, operation: str, *operands: Any) -> Node:
         """Return the result of an operation, the earlier one where the same was done before."""
-        key = (operation, *(part.index if isinstance(part, Node) else ("number", part) for part in operands))
+        key = _key(operation, operands)
         if key not in self.known:
             self.known[key] = Node(self, len(self.steps))
             self.steps.append((operation, *operands))
         return self.known[key]
 
+    def has(self, operation: str, *operands: Any) -> bool:
+        """Tell whether an operation was recorded before."""
+        return _key(operation, operands) in self.known
+
     def function(self, outputs: Sequence[Any]) -> Callable[[Sequence[float]], list[float]]:
         """Return the function of the inputs that gives the outputs."""
-        lines = [f"    v{i} = {_written(self.steps[i])}" for i in self._needed(outputs)]
+        lines = [f"    v{i} = {_written(self.steps[i])}" for i in self.needed(outputs)]
         returned = ", ".join(map(_name, outputs))
         source = "\n".join(["def traced(x):", *lines, f"    return [{returned}]"])
         place: dict[str, Any] = dict(_PYTHON)
         exec(source, place)  # noqa: S102  operators, numbers and the names of `_PYTHON`, nothing else
         return place["traced"]
 
-    def _needed(self, outputs: Sequence[Any]) -> list[int]:
+    def needed(self, outputs: Sequence[Any]) -> list[int]:
         """Return the steps that the outputs lean on, in order."""
         waiting, found = [part.index for part in outputs if isinstance(part, Node)], set()
         while waiting:
@@ -58,6 +62,10 @@ class Tape:
                 found.add(index)
                 waiting += [part.index for part in self.steps[index][1:] if isinstance(part, Node)]
         return sorted(found)
+
+
+def _key(operation: str, operands: Sequence[Any]) -> tuple[Any, ...]:
+    return (operation, *(part.index if isinstance(part, Node) else ("number", part) for part in operands))
 
 
 class Node:
@@ -75,39 +83,44 @@ class Node:
         return _Functions
 
     def __add__(self, other: Any) -> Any:
-        return self if _is(other, 0) else self._with("+", self, other)
+        return self if _is(other, 0) else self._with(_sum, self, other)
 
     __radd__ = __add__
 
     def __sub__(self, other: Any) -> Any:
-        return self if _is(other, 0) else self._with("-", self, other)
+        return self if _is(other, 0) else self._with(_difference, self, other)
 
     def __rsub__(self, other: Any) -> Any:
-        return -self if _is(other, 0) else self._with("-", other, self)
+        return -self if _is(other, 0) else self._with(_difference, other, self)
 
     def __mul__(self, other: Any) -> Any:
         if _is(other, 0):
             return 0.0
         if _is(other, 1):
             return self
-        return -self if _is(other, -1) else self._with("*", self, other)
+        return -self if _is(other, -1) else self._with(_product, self, other)
 
     __rmul__ = __mul__
 
     def __truediv__(self, other: Any) -> Any:
-        return self if _is(other, 1) else self._with("/", self, other)
+        return self if _is(other, 1) else self._with(_quotient, self, other)
 
     def __rtruediv__(self, other: Any) -> Any:
-        return 0.0 if _is(other, 0) else self._with("/", other, self)
+        return 0.0 if _is(other, 0) else self._with(_quotient, other, self)
 
-    def _with(self, operation: str, *operands: Any) -> Any:
+    def _with(self, operation: Callable[[Tape, Any, Any], Any], a: Any, b: Any) -> Any:
         """Record an operation with another scalar; vectors, matrices and jets know better."""
-        known = all(isinstance(part, (int, float, Node)) for part in operands)
-        return self.tape.record(operation, *operands) if known else NotImplemented
+        known = all(isinstance(part, (int, float, Node)) for part in (a, b))
+        return operation(self.tape, a, b) if known else NotImplemented
 
     def __neg__(self) -> Any:
+        return self.minus or self.tape.record("neg", self)
+
+    @property
+    def minus(self) -> Any:
+        """What this is the negative of, or None."""
         operation, *operands = self.tape.steps[self.index]
-        return operands[0] if operation == "neg" else self.tape.record("neg", self)
+        return operands[0] if operation == "neg" else None
 
     def __pow__(self, power: int) -> Any:
         return self if power == 1 else self.tape.record("**", self, power)
@@ -120,6 +133,43 @@ class Node:
 
     def __gt__(self, other: Any) -> Any:
         return self.tape.record(">", self, other)
+
+
+# One form for what is the same to the last bit: factors and summands in the order in which they came up, signs outside.
+
+
+def _sum(tape: Tape, a: Any, b: Any) -> Any:
+    if _minus(b) is not None:
+        return -tape.record("+", *_ordered(_minus(a), _minus(b))) if _minus(a) is not None else a - _minus(b)
+    return b - _minus(a) if _minus(a) is not None else tape.record("+", *_ordered(a, b))
+
+
+def _difference(tape: Tape, a: Any, b: Any) -> Any:
+    if _minus(b) is not None:
+        return a + _minus(b)
+    if _minus(a) is not None:
+        return -(_minus(a) + b)
+    return -tape.record("-", b, a) if tape.has("-", b, a) else tape.record("-", a, b)
+
+
+def _product(tape: Tape, a: Any, b: Any) -> Any:
+    if _minus(a) is not None or _minus(b) is not None:
+        return -(-a * b) if _minus(a) is not None else -(a * -b)
+    return tape.record("*", *_ordered(a, b))
+
+
+def _quotient(tape: Tape, a: Any, b: Any) -> Any:
+    if _minus(a) is not None or _minus(b) is not None:
+        return -(-a / b) if _minus(a) is not None else -(a / -b)
+    return tape.record("/", a, b)
+
+
+def _minus(part: Any) -> Any:
+    return part.minus if isinstance(part, Node) else None
+
+
+def _ordered(a: Any, b: Any) -> tuple[Any, Any]:
+    return (a, b) if not isinstance(b, Node) or (isinstance(a, Node) and a.index <= b.index) else (b, a)
 
 
 def _function(name: str) -> Callable[..., Any]:
@@ -149,6 +199,42 @@ _PYTHON: dict[str, Callable[..., Any]] = {
     "where": _where,
 }
 _Functions = type("_Functions", (), {name: _function(name) for name in _PYTHON})
+
+
+def apply(tape: Tape, operation: str, *operands: Any) -> Any:
+    """Return the result of an operation given by its name, as `Tape.steps` keeps it.
+
+    Parameters
+    ----------
+    tape : Tape
+        Of the operands.
+    operation : str
+        Of arithmetic, or the name of a function.
+    *operands : Node or float
+        One of them on the tape.
+
+    Returns
+    -------
+    Node or float
+        On the tape.
+
+    Examples
+    --------
+    >>> tape = Tape()
+    >>> (x,) = tape.inputs(1)
+    >>> tape.function([apply(tape, "*", x, 3.0)])([2.0])
+    [6.0]
+    """
+    return _ARITHMETIC[operation](*operands) if operation in _ARITHMETIC else tape.record(operation, *operands)
+
+
+_ARITHMETIC: dict[str, Callable[..., Any]] = {
+    "+": lambda a, b: a + b,
+    "-": lambda a, b: a - b,
+    "*": lambda a, b: a * b,
+    "/": lambda a, b: a / b,
+    "neg": lambda a: -a,
+}
 
 
 def _is(value: Any, number: float) -> bool:

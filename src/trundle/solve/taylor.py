@@ -22,13 +22,14 @@ from ..mechanics.parameters import numbers
 from ..mechanics.system import RollingSystem, State
 from . import phases
 from .laws import Law
+from .lowering import Lowered, lower
 from .phases import Stop, Stretch, cut
 from .samples import Array, Progress, Samples
-from .tracing import heyoka_system
 
 TOLERANCE = 1e-15
 _CHUNKS = 100  # of a run at most, between which progress is told and Ctrl-C is heard
 _LEAST_CHUNK = 60  # instants
+_LONGEST = 100.0  # s without a new reference of time, at most
 
 
 def available() -> bool:
@@ -130,19 +131,17 @@ def integrate(
     SolverError
         If the integration breaks down.
     """
-    integrator, stops = compiled(system, law, tolerance)
-    integrator.time = begin
-    integrator.state[:] = state
-    integrator.pars[:] = [*numbers(system), *extras]
-    states, reached = _propagate(integrator, times, progress)
+    integrator, lowered = compiled(system, law, tolerance)
+    run = _Run(integrator, lowered, [*numbers(system), *extras], begin, state)
+    states, reached = _propagate(run, times, progress)
     if reached is None:
         return Stretch(times, states, None)
-    stop = Stop(float(integrator.time), stops[reached], integrator.state.copy())
+    stop = Stop(run.time, lowered.stops[reached], integrator.state.copy())
     kept, states = cut(times[: len(states)], states, stop.time)
     return Stretch(kept, states, stop)
 
 
-def compiled(system: RollingSystem, law: Law, tolerance: float = TOLERANCE) -> tuple[Any, list[str]]:
+def compiled(system: RollingSystem, law: Law, tolerance: float = TOLERANCE) -> tuple[Any, Lowered]:
     """Return a fresh copy of a compiled integrator: from this process, the user's cache, or the compiler.
 
     Parameters
@@ -158,44 +157,87 @@ def compiled(system: RollingSystem, law: Law, tolerance: float = TOLERANCE) -> t
     -------
     integrator : heyoka.taylor_adaptive_dbl
         At time 0.
-    stops : list of str
-        Names of its terminal events.
+    lowered : Lowered
+        What its state, parameters and terminal events are.
 
     Examples
     --------
     See `benchmarks/trajectory.py`.
     """
-    equations, stops = heyoka_system(system, law)
-    parameters = len(numbers(system)) + law.extras
-    key = _key(equations, list(stops.values()), tolerance, parameters)
-    made = _compiled(key, lambda: _compile(equations, list(stops.values()), tolerance, parameters))
-    return copy.copy(made), list(stops)
+    lowered = lower(system, law)
+    equations, stops = lowered.heyoka()
+    key = _key(equations, stops, tolerance, lowered.parameters)
+    made = _compiled(key, lambda: _compile(equations, stops, tolerance, lowered.parameters))
+    return copy.copy(made), lowered
 
 
-def _propagate(integrator: Any, times: Array, progress: Progress | None) -> tuple[Array, int | None]:
+class _Run:
+    """An integrator on its way; its own time counts from a reference that moves along."""
+
+    def __init__(
+        self, integrator: Any, lowered: Lowered, given: Sequence[float], begin: float, state: Sequence[float]
+    ) -> None:
+        self.integrator, self.lowered, self.given = integrator, lowered, given
+        integrator.state[:] = state
+        self._refer_to(begin)
+
+    @property
+    def time(self) -> float:
+        """The time reached, s."""
+        return self.reference + float(self.integrator.time)
+
+    def tidy(self, time: float) -> None:
+        """Count from here on, and take rounding's share out of φ(p) = 0 and |q| = 1."""
+        self._refer_to(time)
+        self.integrator.state[:] = self.lowered.tidy([0.0, *self.integrator.state, *self.integrator.pars])
+
+    def _refer_to(self, time: float) -> None:
+        self.reference, self.integrator.time = time, 0.0
+        self.integrator.pars[:] = self.lowered.values(self.given, time)
+
+
+def _propagate(run: _Run, times: Array, progress: Progress | None) -> tuple[Array, int | None]:
     """Return the states at the times, and which terminal event came first if one did."""
-    import heyoka
-
+    integrator = run.integrator
     parts: list[Array] = [np.empty((0, integrator.state.size))]
-    for chunk in np.array_split(times, min(_CHUNKS, max(1, times.size // _LEAST_CHUNK))) if times.size else []:
-        if integrator.time < chunk[0]:
-            outcome = integrator.propagate_until(float(chunk[0]))[0]
-            if outcome != heyoka.taylor_outcome.time_limit:
-                return np.vstack(parts), _event(integrator, outcome)
-        result = integrator.propagate_grid(chunk)
+    for chunk in _chunks(times):
+        while run.time < chunk[0]:
+            until = min(float(chunk[0]), run.reference + _LONGEST)
+            ended = _event(run, integrator.propagate_until(until - run.reference)[0])
+            if ended is not None:
+                return np.vstack(parts), ended
+            run.tidy(until)
+        result = integrator.propagate_grid(chunk - run.reference)
         parts.append(result[-1].reshape(-1, integrator.state.size))
-        if result[0] != heyoka.taylor_outcome.time_limit:
-            return np.vstack(parts), _event(integrator, result[0])
+        ended = _event(run, result[0])
+        if ended is not None:
+            return np.vstack(parts), ended
         if progress is not None:
             progress(float(chunk[-1]))
     return np.vstack(parts), None
 
 
-def _event(integrator: Any, outcome: Any) -> int:
-    """Tell which terminal event it was from a breakdown."""
+def _chunks(times: Array) -> list[Array]:
+    """Part the instants so that none is long after the first of its part."""
+    if not times.size:
+        return []
+    parts = np.array_split(times, min(_CHUNKS, max(1, times.size // _LEAST_CHUNK)))
+    found = []
+    for part in parts:
+        which = np.floor((part - part[0]) / _LONGEST)
+        found += np.split(part, np.flatnonzero(np.diff(which)) + 1)
+    return found
+
+
+def _event(run: _Run, outcome: Any) -> int | None:
+    """Return which terminal event ended it, None if none did; refuse a breakdown."""
+    import heyoka
+
+    if outcome == heyoka.taylor_outcome.time_limit:
+        return None
     if int(outcome) >= 0 or int(outcome) < -1000:
         raise SolverError(
-            f"Taylor's method broke down at t = {integrator.time:.9g} s ({outcome}): the rates are no longer finite. "
+            f"Taylor's method broke down at t = {run.time:.9g} s ({outcome}): the rates are no longer finite. "
             "Look for a support or load that jumps, or a surface too curved for the body."
         )
     return -int(outcome) - 1

@@ -1,12 +1,8 @@
-"""The laws traced once with symbols, so that they can be compiled: by heyoka to Taylor series, on a tape to Python.
-
-The system's own numbers are parameters, so that another radius, tilt or rate compiles nothing.
-"""
+"""The laws traced once on a tape and turned to flat Python; `lowering` makes them ready for heyoka's compiler."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
 
 from ..mechanics.parameters import numbers, with_numbers
 from ..mechanics.scalars import Scalar
@@ -68,42 +64,6 @@ def contact_state(system: RollingSystem, start: State) -> list[float]:
     [0.5, 0.0, 0.0]
     """
     return RollingLaw().pack(system, start)
-
-
-def heyoka_system(system: RollingSystem, law: Law | None = None) -> tuple[list[tuple[Any, Any]], dict[str, Any]]:
-    """Trace a law with heyoka: the system's numbers, and after them the law's extras, become runtime parameters.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Only its structure matters.
-    law : Law, optional
-        Of the phase; absent: rolling.
-
-    Returns
-    -------
-    equations : list of (variable, rate)
-        As `heyoka.taylor_adaptive` takes them.
-    stops : dict of expressions
-        Each falls through 0 where the phase ends, by name.
-    """
-    import heyoka
-
-    law = RollingLaw() if law is None else law
-    count = len(numbers(system))
-    symbolic = with_numbers(system, [heyoka.par[i] for i in range(count)])
-    extras = [heyoka.par[count + i] for i in range(law.extras)]
-    variables = heyoka.make_vars(*law.names(system))
-    rates = law.rates(symbolic, heyoka.time, variables)
-    stops = law.stops(symbolic, heyoka.time, variables, extras)
-    equations = list(zip(variables, map(_expression, rates), strict=True))
-    return equations, {name: _expression(stop) for name, stop in stops.items()}
-
-
-def _expression(value: Any) -> Any:
-    import heyoka
-
-    return value if isinstance(value, heyoka.expression) else heyoka.expression(float(value))
 
 
 def python_law(system: RollingSystem, law: Law, extras: Sequence[float] = ()) -> tuple[Traced, list[str]]:
