@@ -369,7 +369,7 @@ def test_a_start_that_slips_needs_a_support_that_says_how_rough_it_is() -> None:
 
 def test_a_disc_is_not_put_down_flat() -> None:
     lying = LEAST.replace('"hollow-sphere"', '"disc"')
-    with pytest.raises(ScenarioError, match=r"start\.attitude.*one point.*got nothing.*90 deg"):
+    with pytest.raises(ScenarioError, match=r"start\.orientation.*one point.*`attitude`"):
         ScenarioFile.loads(lying)
     standing = ScenarioFile.loads(lying.replace("position = [0, 0]", 'position = [0, 0]\nattitude = [0, "90 deg", 0]'))
     assert standing.start_state().position == (0.0, 0.0, 1.0)

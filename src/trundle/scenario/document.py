@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 from pydantic import Field, model_validator
 
 from ..errors import InvalidValueError, ScenarioError
-from .complaints import Kinds, Nothing
+from .complaints import Kinds
 from .fields import Measure, written
 from .tables import KINDS, Bodies, Loads, Run, Start, Supports
 from .whole import Document
@@ -160,13 +160,7 @@ class ScenarioFile(Document):
         """
         system = self.system()
         with _named_in("start", self.start):
-            try:
-                return system.place(**self.start.arguments())
-            except ZeroDivisionError:
-                shown = Nothing() if self.start.attitude is None else written(self.start.attitude)
-                rule = "must stand the body on one point of its round side"
-                remedy = 'Write for instance attitude = [0, "90 deg", 0] for a disc on its rim.'
-                raise InvalidValueError("attitude", rule, shown, remedy) from None
+            return system.place(**self.start.arguments())
 
     # --- for editors ----------------------------------------------------------------------------------------
 
