@@ -22,6 +22,7 @@ from .sliding_sphere import SlidingSphere
 from .sphere_coming_to_rest import SphereComingToRest
 from .sphere_in_flight import SphereInFlight
 from .sphere_in_moving_air import SphereInMovingAir
+from .sphere_on_free_plane import SphereOnFreePlane
 from .sphere_on_plane import SphereOnPlane
 from .sphere_on_unsteady_plane import SphereOnUnsteadyPlane
 
@@ -33,6 +34,7 @@ CLOSED_FORMS: tuple[type[ClosedForm], ...] = (
     SphereInMovingAir,
     SphereComingToRest,
     SphereOnUnsteadyPlane,
+    SphereOnFreePlane,
     SlidingSphere,
     SphereInFlight,
     RestingBody,
@@ -124,6 +126,7 @@ __all__ = [
     "SphereComingToRest",
     "SphereInFlight",
     "SphereInMovingAir",
+    "SphereOnFreePlane",
     "SphereOnPlane",
     "SphereOnUnsteadyPlane",
     "closed_form",

@@ -1,0 +1,146 @@
+"""Equations of Kepler's kind, t(x) = t for an x that only grows with the time, and the functions that they are made of.
+
+Closed forms that are simple in another variable than the time come back to the time by one of these.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import factorial
+from typing import Any
+
+import numpy as np
+
+_MOST_STEPS = 400
+_TERMS = 12  # of the series below |z| = 1: the next would be 1e-24
+_EPSILON = 2.0**-52
+
+
+def inverse_of(time: Callable[[Any], tuple[Any, Any]], t: Any, high: Any) -> Any:
+    """Return the x at which an increasing function has given values: Newton's method, kept within brackets.
+
+    Parameters
+    ----------
+    time : callable
+        Takes x (n,), returns t(x), which is 0 at 0, and dt/dx > 0.
+    t : array (n,)
+        At least 0.
+    high : array (n,)
+        A first guess; where it is too small, it is doubled.
+
+    Returns
+    -------
+    array (n,)
+        x ≥ 0.
+
+    Examples
+    --------
+    >>> x = inverse_of(lambda x: (x + x**3, 1 + 3 * x**2), np.array([0.0, 10.0]), np.array([1.0, 1.0]))
+    >>> np.round(x, 12).tolist()
+    [0.0, 2.0]
+    """
+    low, high = np.zeros_like(t), np.array(high, dtype=float)
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        for _ in range(_MOST_STEPS):
+            short = time(high)[0] < t
+            if not short.any():
+                break
+            low, high = np.where(short, high, low), np.where(short, 2 * high, high)
+        x = 0.5 * (low + high)
+        for _ in range(_MOST_STEPS):
+            now, rate = time(x)
+            over = ~(now < t)
+            low, high = np.where(over, low, x), np.where(over, x, high)
+            better = x - (now - t) / rate
+            inside = (better >= low) & (better <= high)
+            better = np.where(inside, better, 0.5 * (low + high))
+            done = (np.abs(better - x) <= _EPSILON * np.abs(x)) | (high - low <= 2 * _EPSILON * high)
+            x = better
+            if done.all():
+                break
+    return x
+
+
+def precisely(time: Callable[[Any], tuple[Any, Any]], t: Any, near: float) -> Any:
+    """Return the same with mpmath's digits, from a root known as a float.
+
+    Parameters
+    ----------
+    time : callable
+        As for `inverse_of`, of mpmath's numbers.
+    t : mpmath number
+        At least 0.
+    near : float
+        x to some digits.
+
+    Returns
+    -------
+    mpmath number
+        x.
+
+    Examples
+    --------
+    >>> import mpmath
+    >>> float(precisely(lambda x: (x + x**3, 1 + 3 * x**2), mpmath.mpf(10), 2.1))
+    2.0
+    """
+    import mpmath
+
+    x = mpmath.mpf(near)
+    for _ in range(60):
+        now, rate = time(x)
+        step = (now - t) / rate
+        x = x - step
+        if abs(step) <= mpmath.eps * abs(x):
+            break
+    return x
+
+
+def stumpff(square: Any, x: Any) -> tuple[Any, Any, Any, Any]:
+    """Return cos νx, sin νx/ν, (1 − cos νx)/ν² and (x − sin νx/ν)/ν², smooth where ν² falls through zero.
+
+    Parameters
+    ----------
+    square : float or mpmath number
+        ν², 1/s²; where it is negative, these are hyperbolic functions.
+    x : array or mpmath number
+        s.
+
+    Returns
+    -------
+    tuple of 4
+        As x.
+
+    Examples
+    --------
+    >>> [float(part) for part in stumpff(0.0, np.array(2.0))]
+    [1.0, 2.0, 2.0, 1.3333333333333333]
+    """
+    if type(x).__module__.partition(".")[0] == "mpmath":
+        return _precise_stumpff(square, x)
+    z = square * x * x
+    small = np.abs(z) < 1
+    near = np.where(small, z, 0.0)
+    c2 = sum((-near) ** n / factorial(2 * n + 2) for n in range(_TERMS))
+    s3 = sum((-near) ** n / factorial(2 * n + 3) for n in range(_TERMS))
+    nu = abs(square) ** 0.5
+    with np.errstate(over="ignore", invalid="ignore"):
+        y = np.where(small, 0.0, nu * x)
+        half, sine = (np.sin(0.5 * y), np.sin(y)) if square > 0 else (np.sinh(0.5 * y), np.sinh(y))
+    over = 1 / nu if nu else 0.0
+    versine = np.where(small, x * x * c2, 2 * (half * over) ** 2)
+    s1 = np.where(small, x * (1 - near * s3), sine * over)
+    rest = np.where(small, x * x * x * s3, (x - s1) / (square or 1.0))
+    return 1 - square * versine, s1, versine, rest
+
+
+def _precise_stumpff(square: Any, x: Any) -> tuple[Any, Any, Any, Any]:
+    import mpmath
+
+    if not square:
+        return 1 + 0 * x, x, x * x / 2, x**3 / 6
+    with mpmath.extradps(3 * mpmath.mp.dps):
+        nu = mpmath.sqrt(square)
+        cosine, s1 = mpmath.cos(nu * x).real, (mpmath.sin(nu * x) / nu).real
+        parts = (cosine, s1, (1 - cosine) / square, (x - s1) / square)
+    return tuple(+part for part in parts)  # type: ignore[return-value]

@@ -1,0 +1,319 @@
+"""T13: a ball on a level turntable that turns freely on its axle: a conic, in time by an equation like Kepler's."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...mechanics.algebra import Vector
+from ...mechanics.loads import constant_part
+from ...mechanics.scalars import Scalar, is_number
+from ...mechanics.surfaces import Plane
+from ...mechanics.system import RollingSystem, State
+from .base import ClosedForm
+from .kepler import inverse_of, precisely, stumpff
+from .quadrature import is_one, one_by_one
+from .sphere_in_flight import turns_freely
+
+
+@dataclass(frozen=True)
+class SphereOnFreePlane(ClosedForm):
+    """The motion ζ = ζ₀ + ζ₀′ sin ντ/ν + ζ₀″(1 − cos ντ)/ν², t = ∫w dτ, ω = h/w with w² = I_t + mκ̂|ζ|² (T13).
+
+    M = ζ̇ − iκ̂ωζ and h = ωw are constant, κ̂ = k/(1 + k), and ν² = κ̂(κ̂h² − m|M|²): where it is positive, the path
+    is an ellipse, where negative, a branch of a hyperbola. The table has turned by hτ.
+
+    Parameters
+    ----------
+    radius, mass, inertia_ratio : float or array
+        a in m, m in kg, k = I/(m a²).
+    axle_inertia : float or array
+        I_t of the table about its axle, kg m².
+    rate : float or array
+        ω of the table at t = 0, rad/s.
+    position, velocity : pair of float or array
+        Centre at t = 0 over the plane, m and m/s, in the inertial support frame.
+    spin : float or array
+        Ω·n, rad/s.
+    normal_force : float or array
+        N, N.
+
+    Examples
+    --------
+    A ball that is let go at rest on a heavy table circles as on a driven one:
+
+    >>> ball = SphereOnFreePlane(0.025, 0.065, 0.4, 1e9, 3.5, (0.1, 0.0), (0.0, 0.2))
+    >>> round(ball.period * 3.5 / math.pi, 6)  # 2π over 2/7 of the rate
+    7.0
+    """
+
+    radius: Scalar
+    mass: Scalar
+    inertia_ratio: Scalar
+    axle_inertia: Scalar
+    rate: Scalar
+    position: tuple[Scalar, Scalar]
+    velocity: tuple[Scalar, Scalar] = (0.0, 0.0)
+    spin: Scalar = 0.0
+    normal_force: Scalar = 0.0
+
+    name = "sphere on a free turntable"
+    equation = "T13"
+    source = "Weckesser, Am. J. Phys. 65, 736 (1997), for the conic; theory page, T13, for the time"
+    domain = (
+        "a ball about its centre of mass with the same inertia about every axis, on a level plane that turns freely "
+        "about its normal, under forces along that normal"
+    )
+    never = frozenset({"lift"})  # N is constant
+
+    @classmethod
+    def of(cls, system: RollingSystem, start: State) -> SphereOnFreePlane:
+        """Read the closed form's numbers from a system and a start.
+
+        Parameters
+        ----------
+        system : RollingSystem
+            Must lie in the domain.
+        start : State
+            A start that rolls.
+
+        Returns
+        -------
+        SphereOnFreePlane
+            The motion; its t = 0 is the start's time.
+
+        Raises
+        ------
+        OutOfDomainError
+            If the system lies outside the domain.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> table = tr.Support(tr.Plane(), motion=tr.FreeAxle(0.01, 3.0))
+        >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.025, 0.065), table)
+        >>> SphereOnFreePlane.of(system, system.place((0.1, 0.0))).path
+        'ellipse'
+        """
+        cls.check_domain(system, start)
+        force, _, _ = constant_part(system.all_loads, system.body.mass)
+        return cls(
+            radius=system.body.radius,
+            mass=system.body.mass,
+            inertia_ratio=system.body.inertia_ratio,
+            axle_inertia=system.support.motion.inertia,
+            rate=start.support[1],
+            position=start.position[:2],
+            velocity=start.velocity[:2],
+            spin=start.angular_velocity[2],
+            normal_force=-force.z,
+        )
+
+    @classmethod
+    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
+        """Name what of a system lies outside the domain.
+
+        Parameters
+        ----------
+        system : RollingSystem
+            Any system.
+        start : State, optional
+            Its start; every one that rolls lies in the domain.
+
+        Returns
+        -------
+        list of str
+            Empty where the closed form applies.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> table = tr.Support(tr.Plane(), motion=tr.FreeAxle(0.01, 3.0, bearing_drag=0.1))
+        >>> SphereOnFreePlane.outside(tr.RollingSystem(tr.Body.solid_sphere(0.025, 0.065), table))
+        ["the support's motion FreeAxle is no turn on an axle without motor or bearing torque"]
+        """
+        reasons, kind = [], type(system.support.motion).__name__
+        if not system.body.is_isotropic_sphere or system.body.shape.axis is not None:
+            reasons.append("the body is no sphere with isotropic inertia about its centre")
+        if not isinstance(system.support.surface, Plane):
+            reasons.append(f"the surface is a {type(system.support.surface).__name__}, not a Plane")
+        if not turns_freely(system.support.motion):
+            reasons.append(f"the support's motion {kind} is no turn on an axle without motor or bearing torque")
+        reasons += [f"the load {type(load).__name__} is not constant" for load in system.loads if not load.constant]
+        if not reasons:
+            force, torque, _ = constant_part(system.all_loads, system.body.mass)
+            if any((force.x, force.y, *torque)):
+                reasons.append("a force pushes along the plane, or a torque acts")
+            if is_number(force.z) and force.z > 0:
+                reasons.append("the plane does not press on the body")
+        return reasons
+
+    # The constants of the motion
+
+    @property
+    def drive(self) -> tuple[Any, Any]:
+        """M = ζ̇ − iκ̂ωζ, m/s: constant, however the table turns."""
+        M = _Orbit.of(self, float).M
+        return M.real, M.imag
+
+    @property
+    def angular_momentum(self) -> Any:
+        """L = I_tω + m(xẏ − yẋ) about the axle, kg m²/s: constant, besides the spin."""
+        (x, y), (vx, vy) = self.position, self.velocity
+        return self.axle_inertia * self.rate + self.mass * (x * vy - y * vx)
+
+    @property
+    def path(self) -> str:
+        """What the conic is: "ellipse", "parabola" or "hyperbola"."""
+        square = _Orbit.of(self, float).square
+        return "ellipse" if square > 0 else "hyperbola" if square < 0 else "parabola"
+
+    @property
+    def period(self) -> float:
+        """Of the ellipse, s; infinite on any other path."""
+        if not is_one(self):
+            return math.inf
+        return float(_Orbit.of(self, float).period)
+
+    def pace(self, duration: float) -> float:  # noqa: ARG002
+        """Return a bound of the rate at which it goes round, 1/s."""
+        orbit = _Orbit.of(self, float)
+        return float((math.sqrt(abs(orbit.square)) + abs(orbit.c)) / math.sqrt(self.axle_inertia))
+
+    # The motion
+
+    def motion_at(self, t: Any) -> tuple[Vector, Vector, Vector, Vector]:
+        """Return position, velocity, angular velocity and contact force together.
+
+        Parameters
+        ----------
+        t : float or array
+            Time since the start, s.
+
+        Returns
+        -------
+        position, velocity, angular_velocity, contact_force : Vector
+            In the inertial support frame, m, m/s, rad/s, N.
+
+        Examples
+        --------
+        >>> ball = SphereOnFreePlane(0.025, 0.065, 0.4, 0.01, 3.5, (0.1, 0.0), (0.0, 0.2))
+        >>> [round(float(part), 12) for part in ball.motion_at(ball.period)[0]]
+        [0.1, 0.0, 0.025]
+        """
+        if not is_one(self):
+            return one_by_one(self, t)
+        number = _mpf if _is_mpmath(t) else float
+        orbit = _Orbit.of(self, number)
+        zeta, V, A, omega, _ = orbit.at(t)
+        a, m, zero = number(self.radius), number(self.mass), 0 * t
+        Omega = (1j * V + omega * zeta) / a
+        return (
+            Vector(zeta.real + zero, zeta.imag + zero, a + zero),
+            Vector(V.real + zero, V.imag + zero, zero),
+            Vector(Omega.real + zero, Omega.imag + zero, number(self.spin) + zero),
+            Vector(m * A.real + zero, m * A.imag + zero, number(self.normal_force) + zero),
+        )
+
+    def own_at(self, t: Any) -> tuple[Any, Any]:
+        """Return the angle by which the table has turned, rad, and by how much its rate has grown, rad/s."""
+        *_, omega, angle = _Orbit.of(self, _mpf if _is_mpmath(t) else float).at(t)
+        return angle, omega - self.rate
+
+
+@dataclass(frozen=True)
+class _Orbit:
+    """The linear system ζ′ = icζ + Mw, w′ = mκ̂ Re(ζ̄M) of τ = ∫dt/w; all numbers floats, or all mpmath's."""
+
+    share: Any  # κ̂
+    pull: Any  # mκ̂
+    zeta: Any  # ζ₀
+    M: Any
+    w: Any  # w₀
+    h: Any
+    c: Any  # κ̂h
+    square: Any  # ν²
+    along: tuple[Any, Any]  # X = Re(ζ̄M) and X′ at the start
+
+    @staticmethod
+    def of(form: SphereOnFreePlane, number: Any) -> _Orbit:
+        k, omega = number(form.inertia_ratio), number(form.rate)
+        share = k / (1 + k)
+        pull = number(form.mass) * share
+        zeta, V = (number(x) + 1j * number(y) for x, y in (form.position, form.velocity))
+        M = V - 1j * (share * omega) * zeta
+        square = number(form.axle_inertia) + pull * (zeta.real**2 + zeta.imag**2)
+        w = square**0.5 if number is float else _root(square)
+        h = omega * w
+        c, size = share * h, M.real**2 + M.imag**2
+        across = zeta.conjugate() * M
+        return _Orbit(
+            share, pull, zeta, M, w, h, c, c * c - pull * size, (across.real, c * across.imag + size * w)
+        )
+
+    @property
+    def turn(self) -> Any:
+        """2π/ν, once round the ellipse."""
+        return 2 * math.pi / math.sqrt(self.square)
+
+    @property
+    def period(self) -> Any:
+        if self.square <= 0:
+            return math.inf
+        return self.turn * (self.w + self.pull * self.along[1] / self.square)
+
+    def _time(self, tau: Any) -> tuple[Any, Any]:
+        """Return t and w = dt/dτ."""
+        _, s1, c2, s3 = stumpff(self.square, tau)
+        X, X_rate = self.along
+        return self.w * tau + self.pull * (X * c2 + X_rate * s3), self.w + self.pull * (X * s1 + X_rate * c2)
+
+    def at(self, t: Any) -> tuple[Any, Any, Any, Any, Any]:
+        """Return ζ, ζ̇, ζ̈, ω and the table's angle."""
+        rounds: Any = 0.0
+        if _is_mpmath(t):
+            rough = _Orbit(*(_rounded(part) for part in vars(self).values()))
+            tau = precisely(self._time, t, float(rough.found(np.asarray(float(t)))))
+        else:
+            t = np.asarray(t, dtype=float)
+            rounds = np.floor(t / self.period)
+            tau = self.found(t - rounds * self.period if math.isfinite(self.period) else t)
+        cosine, s1, c2, _ = stumpff(self.square, tau)
+        _, w = self._time(tau)
+        X = self.along[0] * cosine + self.along[1] * s1
+        first = 1j * self.c * self.zeta + self.M * self.w
+        second = 1j * self.c * first + self.M * (self.pull * self.along[0])
+        zeta, V = self.zeta + first * s1 + second * c2, (first * cosine + second * s1) / w
+        omega = self.h / w
+        A = 1j * self.share * (omega * V - omega * self.pull * X / (w * w) * zeta)
+        whole = rounds * self.turn if self.square > 0 and not _is_mpmath(t) else 0
+        return zeta, V, A, omega, self.h * (tau + whole)
+
+    def found(self, t: Any) -> Any:
+        """Return τ at given times."""
+        return inverse_of(self._time, t, t / self.w)
+
+
+def _rounded(part: Any) -> Any:
+    if isinstance(part, tuple):
+        return tuple(float(one) for one in part)
+    return complex(part) if hasattr(part, "imag") and part.imag else float(part.real)
+
+
+def _root(x: Any) -> Any:
+    import mpmath
+
+    return mpmath.sqrt(x)
+
+
+def _mpf(value: Any) -> Any:
+    import mpmath
+
+    return mpmath.mpf(value)
+
+
+def _is_mpmath(t: Any) -> bool:
+    return type(t).__module__.partition(".")[0] == "mpmath"
