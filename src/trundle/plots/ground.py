@@ -59,6 +59,11 @@ def window_of(surface: Surface, places: Array, size: float) -> Window:
             low[:2], high[:2] = np.maximum(low[:2], ends[:, 0]), np.minimum(high[:2], ends[:, 1])
         pad = max(0.5 * extent, 2 * size)
     low[2], high[2] = low[2] - pad, high[2] + pad
+    if surface.axisymmetric and tuple(surface.coordinates) == ("length", "length"):
+        with np.errstate(all="ignore"):
+            z = np.asarray(surface.point(np.linspace(0.0, reach, 200), np.zeros(200)).z, dtype=float)
+        z = z[np.abs(z - places[0, 2]) < 1.5 * reach]  # not all the way down a steep funnel
+        low[2], high[2] = min(low[2], *z), max(high[2], *z)
     if isinstance(surface, TorusTrack):
         low[2], high[2] = -1.03 * float(surface.tube_radius), 1.03 * float(surface.tube_radius)
     return Window(low, high, reach)

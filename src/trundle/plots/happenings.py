@@ -114,7 +114,8 @@ def happenings_of(run: Trajectory) -> list[Happening]:
 def _grouped(kind: str, times: Array, said: str) -> Happening:
     if len(times) == 1:
         return Happening(kind, times, times, f"{said}, {with_unit(float(times[0]), 'time')}")
-    text = f"{said} {len(times)} times, up to {with_unit(float(times[-1]), 'time')}"
+    times_said = "twice" if len(times) == 2 else f"{len(times)} times"
+    text = f"{said} {times_said}, up to {with_unit(float(times[-1]), 'time')}"
     if len(times) <= FEW:
         return Happening(kind, times, times, text)
     marked = np.append(times[: FEW - 2], times[-1])

@@ -78,7 +78,7 @@ def _row(shapes: list[float], names: list[str], tallest: float, under: str | Non
     narrowest = 6.4 if count == 1 else 8.8 if "world" not in names else 7.2  # for title and legend
     shapes = [shape * max(1.0, (narrowest - furniture) / (height * sum(shapes))) for shape in shapes]
     width = furniture + height * sum(shapes)
-    beside = under is not None and count > 1  # the legend has room beside the strip
+    beside = under == "world"  # then the legend has room beside the strip
     low = FOOT if beside else FOOT + lines * KEY_LINE + 0.12
     foot = low + (STRIP + STRIP_GAP if under else 0.0) + (0.1 if beside or not under else 0.0)
     maps, left = [], LEFT
