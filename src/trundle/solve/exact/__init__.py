@@ -17,6 +17,7 @@ from .ball_in_leaning_cylinder import BallInLeaningCylinder
 from .ball_in_upright_cylinder import BallInUprightCylinder
 from .base import ClosedForm
 from .cylinder_on_cylinder import CylinderOnCylinder
+from .off_a_dome import OffADome
 from .resting_body import RestingBody
 from .sliding_sphere import SlidingSphere
 from .sphere_coming_to_rest import SphereComingToRest
@@ -24,6 +25,7 @@ from .sphere_in_flight import SphereInFlight
 from .sphere_in_moving_air import SphereInMovingAir
 from .sphere_on_free_plane import SphereOnFreePlane
 from .sphere_on_plane import SphereOnPlane
+from .sphere_on_sphere import SphereOnSphere
 from .sphere_on_unsteady_plane import SphereOnUnsteadyPlane
 
 CLOSED_FORMS: tuple[type[ClosedForm], ...] = (
@@ -35,6 +37,7 @@ CLOSED_FORMS: tuple[type[ClosedForm], ...] = (
     SphereComingToRest,
     SphereOnUnsteadyPlane,
     SphereOnFreePlane,
+    SphereOnSphere,
     SlidingSphere,
     SphereInFlight,
     RestingBody,
@@ -121,6 +124,7 @@ __all__ = [
     "BallInUprightCylinder",
     "ClosedForm",
     "CylinderOnCylinder",
+    "OffADome",
     "RestingBody",
     "SlidingSphere",
     "SphereComingToRest",
@@ -128,6 +132,7 @@ __all__ = [
     "SphereInMovingAir",
     "SphereOnFreePlane",
     "SphereOnPlane",
+    "SphereOnSphere",
     "SphereOnUnsteadyPlane",
     "closed_form",
     "form_of_phase",

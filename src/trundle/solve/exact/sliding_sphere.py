@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
 from ..samples import SLIPPING
 from .base import ClosedForm
+from .kepler import inverse_of, precisely
 from .quadrature import is_one, one_by_one
 
 _MOST_STEPS = 400
@@ -122,8 +123,6 @@ class SlidingSphere(ClosedForm):
     @classmethod
     def of_numbers(cls, system: RollingSystem, start: State, numbers: Sequence[float]) -> SlidingSphere:
         """Take the slip from the law's own numbers: where slip begins, it is smaller than a rounding of V and Ω."""
-        from dataclasses import replace
-
         return replace(cls.of(system, start), slip=(float(numbers[10]), float(numbers[11])))
 
     @classmethod
@@ -343,36 +342,12 @@ class _Slip:
             return np.where(early, self._bracketed(np.where(early, t, 0.0)), x)
 
     def _bracketed(self, t: Any) -> Any:
-        low, high = np.zeros_like(t), t / self.size
-        for _ in range(_MOST_STEPS):
-            short = self._time(high)[0] < t
-            if not short.any():
-                break
-            high = np.where(short, 2 * high, high)
-        x = np.where(self._time(0.5 * high)[0] < t, high, 0.5 * high)
-        for _ in range(_MOST_STEPS):
-            time, s = self._time(x)
-            over = ~(time < t)
-            low, high = np.where(over, low, x), np.where(over, x, high)
-            better = x - (time - t) / s
-            inside = (better > low) & (better < high)
-            better = np.where(inside, better, 0.5 * (low + high))
-            done = (np.abs(better - x) <= 2e-16 * x) | (high - low <= 2e-16 * high)
-            x = better
-            if done.all():
-                break
-        return x
+        return inverse_of(self._time, t, t / self.size)
 
     def _precise(self, t: Any) -> Any:
-        import mpmath
-
         size, c, d, sine, pull, brake = map(float, (self.size, self.c, self.d, self.sine, self.pull, self.brake))
         rough = _Slip(size, c, d, sine, pull, brake, (1.0, 0.0))
-        x = mpmath.mpf(float(rough._found(np.asarray(float(t)))))
-        for _ in range(12):
-            time, s = self._time(x)
-            x = x - (time - t) / s
-        return x
+        return precisely(self._time, t, float(rough._found(np.asarray(float(t)))))
 
 
 def _shrunk(rate: Any, x: Any) -> Any:

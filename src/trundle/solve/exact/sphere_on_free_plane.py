@@ -250,9 +250,7 @@ class _Orbit:
         h = omega * w
         c, size = share * h, M.real**2 + M.imag**2
         across = zeta.conjugate() * M
-        return _Orbit(
-            share, pull, zeta, M, w, h, c, c * c - pull * size, (across.real, c * across.imag + size * w)
-        )
+        return _Orbit(share, pull, zeta, M, w, h, c, c * c - pull * size, (across.real, c * across.imag + size * w))
 
     @property
     def turn(self) -> Any:

@@ -1,0 +1,243 @@
+"""T12: a ball that rolls along a great circle of a bowl or dome: the pendulum of T6, until the support lets it go."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from ...mechanics.algebra import E_X, E_Y, E_Z, Vector
+from ...mechanics.loads import constant_part
+from ...mechanics.scalars import Scalar, is_zero, namespace
+from ...mechanics.surfaces import Bowl, Dome
+from ...mechanics.system import RollingSystem, State
+from .base import ClosedForm
+from .cylinder_on_cylinder import CylinderOnCylinder
+
+_ASIDE = 1e-12  # share of the motion that may lead out of the plane by rounding
+
+
+@dataclass(frozen=True)
+class SphereOnSphere(ClosedForm):
+    """The motion (1 + k) ℓ θ̈ = −(G/m) sin θ in the plane of a great circle, θ from the pull G (T12).
+
+    Parameters
+    ----------
+    radius, mass, inertia_ratio : float or array
+        a in m, m in kg, k = I/(m a²).
+    track_radius : float or array
+        b of the bowl or dome, m.
+    side : float or array
+        +1 on a dome, −1 in a bowl: ℓ = b + side·a.
+    angle, angular_rate : float or array
+        θ and θ̇ of the centre at t = 0, rad and rad/s, from `first` towards `second`.
+    pull : float or array
+        G, weight included, N.
+    first, second : triple of float or array
+        Unit vectors in the plane of the circle, the first along G.
+
+    Examples
+    --------
+    A ball that leaves the top of a dome at rest is let go where cos = 2/(3 + k), for a solid one 10/17:
+
+    >>> down, along = (0.0, 0.0, -1.0), (1.0, 0.0, 0.0)
+    >>> ball = SphereOnSphere(0.1, 1.0, 0.4, 0.9, 1.0, math.pi, 0.0, 9.80665, down, along)
+    >>> round(ball.lift_cosine * 17, 12)
+    10.0
+    """
+
+    radius: Scalar
+    mass: Scalar
+    inertia_ratio: Scalar
+    track_radius: Scalar
+    side: Scalar
+    angle: Scalar
+    angular_rate: Scalar
+    pull: Scalar
+    first: tuple[Scalar, Scalar, Scalar]
+    second: tuple[Scalar, Scalar, Scalar]
+
+    name = "ball in a great circle of a bowl or dome"
+    equation = "T12"
+    source = "Abramowitz and Stegun (1964), ch. 16, for the pendulum; theory page, T12"
+    domain = (
+        "a ball with the same inertia about every axis on a bowl or dome at rest, in the plane of a great circle that "
+        "gravity and constant force lie in, without spin out of it"
+    )
+    never = frozenset({"curved"})
+
+    @classmethod
+    def of(cls, system: RollingSystem, start: State) -> SphereOnSphere:
+        """Read the closed form's numbers from a system and a start.
+
+        Parameters
+        ----------
+        system : RollingSystem
+            Must lie in the domain.
+        start : State
+            A start that rolls in the plane of a great circle.
+
+        Returns
+        -------
+        SphereOnSphere
+            The motion; its t = 0 is the start's time.
+
+        Raises
+        ------
+        OutOfDomainError
+            If the system or the start lies outside the domain.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> dome = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Dome(0.9)))
+        >>> round(SphereOnSphere.of(dome, dome.place(velocity=(1.0, 0.0))).lift_cosine, 6)  # (2 + 1.4 v²/(g ℓ))/3.4
+        0.630223
+        """
+        cls.check_domain(system, start)
+        surface: Any = system.support.surface
+        a, b, side = system.body.radius, surface.radius, surface.sign
+        arm, V = Vector(*start.position) + E_Z * (side * b), Vector(*start.velocity)
+        force, _, _ = constant_part(system.all_loads, system.body.mass)
+        G, length = force.norm(), b + side * a
+        first = force / G if G else arm / arm.norm()
+        across = _plane(arm, V, first)
+        second = across.cross(first)
+        return cls(
+            radius=a,
+            mass=system.body.mass,
+            inertia_ratio=system.body.inertia_ratio,
+            track_radius=b,
+            side=side,
+            angle=math.atan2(arm.dot(second), arm.dot(first)),
+            angular_rate=arm.cross(V).dot(across) / (arm.norm() * length),
+            pull=G,
+            first=tuple(first),
+            second=tuple(second),
+        )
+
+    @classmethod
+    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:
+        """Name what of a system, and of a start where one is given, lies outside the domain.
+
+        Parameters
+        ----------
+        system : RollingSystem
+            Any system.
+        start : State, optional
+            Its start.
+
+        Returns
+        -------
+        list of str
+            Empty where the closed form applies.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> SphereOnSphere.outside(tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane())))
+        ['the surface is a Plane, not a Bowl or Dome']
+        """
+        reasons, motion = [], system.support.motion
+        if not system.body.is_isotropic_sphere or system.body.shape.axis is not None:
+            reasons.append("the body is no sphere with isotropic inertia about its centre")
+        if not isinstance(system.support.surface, (Bowl, Dome)):
+            reasons.append(f"the surface is a {type(system.support.surface).__name__}, not a Bowl or Dome")
+        if motion.steady_rate is None or not is_zero(motion.steady_rate):
+            reasons.append("the support moves")
+        reasons += [f"the load {type(load).__name__} is not constant" for load in system.loads if not load.constant]
+        if not reasons and any(constant_part(system.all_loads, system.body.mass)[1]):
+            reasons.append("a torque acts on the body")
+        if start is not None and not reasons:
+            surface: Any = system.support.surface
+            arm = Vector(*start.position) + E_Z * (surface.sign * surface.radius)
+            V, Omega = Vector(*start.velocity), Vector(*start.angular_velocity)
+            force, _, _ = constant_part(system.all_loads, system.body.mass)
+            n, a = arm / arm.norm(), system.body.radius
+            moment, speed = arm.cross(V), max(V.norm(), a * Omega.norm())
+            if abs(moment.dot(force)) > _ASIDE * arm.norm() * speed * force.norm():
+                reasons.append("the start moves out of the plane of the pull")
+            elif a * abs(Omega.dot(n)) > _ASIDE * speed:
+                reasons.append("the start spins about the normal")
+        return reasons
+
+    # The constants of the motion
+
+    @property
+    def length(self) -> Scalar:
+        """ℓ = b + side·a, of the centre from the sphere's, m."""
+        return self.track_radius + self.side * self.radius
+
+    @cached_property
+    def pendulum(self) -> CylinderOnCylinder:
+        """The same motion in its plane."""
+        return CylinderOnCylinder(
+            self.radius, self.mass, self.inertia_ratio, self.track_radius, self.side, 0.0 * self.side,
+            self.angle, self.angular_rate, 0.0 * self.side, (self.pull, 0.0 * self.pull),
+        )  # fmt: skip
+
+    @property
+    def lift_cosine(self) -> Any:
+        """Cosine of the angle from the top at which a dome lets the ball go, [2 cos θ₀ + (1 + k) mℓθ̇₀²/G]/(3 + k)."""
+        k, above = self.inertia_ratio, -namespace(self.angle).cos(self.angle)
+        speed = self.mass * self.length * self.angular_rate * self.angular_rate / self.pull
+        return (2 * above + (1 + k) * speed) / (3 + k)
+
+    @property
+    def period(self) -> Any:
+        """Of the motion, s; infinite at rest and on the separatrix."""
+        return self.pendulum.period
+
+    def pace(self, duration: float) -> float:
+        """Return that of the pendulum, 1/s."""
+        return self.pendulum.pace(duration)
+
+    # The motion
+
+    def motion_at(self, t: Any) -> tuple[Vector, Vector, Vector, Vector]:
+        """Return position, velocity, angular velocity and contact force together.
+
+        Parameters
+        ----------
+        t : float or array
+            Time since the start, s.
+
+        Returns
+        -------
+        position, velocity, angular_velocity, contact_force : Vector
+            In the inertial support frame, m, m/s, rad/s, N.
+
+        Examples
+        --------
+        >>> bowl = SphereOnSphere(0.1, 1.0, 0.4, 0.6, -1.0, 0.0, 0.0, 9.8, (0.0, 0.0, -1.0), (1.0, 0.0, 0.0))
+        >>> [part + 0.0 for part in bowl.motion_at(2.0)[3]]
+        [0.0, 0.0, 9.8]
+        """
+        first, second = Vector(*self.first), Vector(*self.second)
+        across = first.cross(second)
+        r, V, Omega, R = self.pendulum.motion_at(t)
+        middle = E_Z * -(self.side * self.track_radius)
+        return (
+            middle + first * r.x + second * r.y,
+            first * V.x + second * V.y,
+            across * Omega.z,
+            first * R.x + second * R.y,
+        )
+
+    def straight_turn(self, t: Any) -> tuple[Vector, Any]:
+        """Return the axis and the angle by which the ball has turned: from its place alone."""
+        return Vector(*self.first).cross(Vector(*self.second)), self.pendulum.straight_turn(t)[1]
+
+
+def _plane(arm: Vector, V: Vector, first: Vector) -> Vector:
+    """Return the unit normal of the plane in which it moves: of arm and velocity, of pull and arm, or any."""
+    out = arm / arm.norm()
+    if V.norm():
+        normal = out.cross(V)
+    else:
+        least = min((E_X, E_Y, E_Z), key=lambda e: abs(e.dot(first)))
+        normal = first.cross(out)
+        normal = normal if normal.norm() > _ASIDE else first.cross(least)
+    straight = normal - first * normal.dot(first)
+    return straight / straight.norm()
