@@ -40,7 +40,7 @@ UNDERSIDE = ellipsoid((0.2, 0.03, 0.02), (0, 0, 0.01))
 DOWN = (G * math.sin(SLOPE), 0.0, -G * math.cos(SLOPE))
 
 FREE: dict[str, tuple[Free, float]] = {
-    "coin-rolling-upright": (Free(0.008, disc(0.008, 0.012), rim(0.012)), 0.6),
+    "coin-rolling-upright": (Free(0.008, disc(0.008, 0.012), rim(0.012)), 0.3),
     "hoop-rolling-too-slowly": (Free(0.5, disc(0.5, 0.3, 1.0), rim(0.3)), 2.0),
     "coin-in-a-circle": (Free(0.008, disc(0.008, 0.012), rim(0.012)), 0.5),
     "coin-upright-on-incline": (Free(0.1, disc(0.1, 0.05), rim(0.05), gravity=DOWN, couple=guide), 0.4),
@@ -86,16 +86,15 @@ def lean(run: tr.Trajectory) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    ("body", "share", "limit"),
-    [(tr.Body.disc(0.012, 0.008), 0.5, 3), (tr.Body.ring(0.3, 0.5), 1.0, 4)],
+    ("body", "a", "share", "limit"),
+    [(tr.Body.disc(0.012, 0.008), 0.012, 0.5, 3), (tr.Body.ring(0.3, 0.5), 0.3, 1.0, 4)],
     ids=["disc, v² > g a/3", "hoop, v² > g a/4"],
 )
 @pytest.mark.parametrize("relative", [0.7, 1.3])
 def test_a_nudged_coin_sways_or_falls_at_the_linear_rate(
-    body: tr.Body, share: float, limit: int, relative: float
+    body: tr.Body, a: float, share: float, limit: int, relative: float
 ) -> None:
     # (A + m a²) λ̈ = (m g a − (C/A)(C + m a²) v²/a²) λ, with A = C/2: C/A = 2 [przybylska2016].
-    a = body.shape.radius
     v = relative * math.sqrt(G * a / limit)
     square = (G / a - 2 * (share + 1) * (v / a) ** 2) / (share / 2 + 1)
     assert (square > 0) == (relative < 1)  # the limit
@@ -252,7 +251,7 @@ def test_the_tippe_top_turns_over() -> None:
     assert math.degrees(over[-1]) > 150
     kept = jellett(run, TIPPE, share * a, a)
     assert spread(kept) < SOLVER(1e4, 1e-15)
-    # The published threshold of turning over, with 1 − α < γ = I₁/I₃ < 1 [rauch2014].
+    # The published threshold of turning over, with 1 − α < γ = I₁/I₃ < 1 (Rauch-Wojciechowski and Rutstam, 2014).
     gamma = TIPPE[0, 0] / TIPPE[2, 2]
     assert 1 - share < gamma < 1
     assert abs(kept[0]) > math.sqrt(m * G * a**3 * TIPPE[2, 2] * share) * (1 + share) ** 2 / math.sqrt(
@@ -288,7 +287,7 @@ def kane_levinson(sigma: float, first: float, times: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize(("name", "sigma"), [("rattleback", 0.0), ("rattleback-with-losses", 1.0)])
 def test_the_rattleback_reverses_as_kane_and_levinsons(name: str, sigma: float) -> None:
-    run = followed(name, 3.5, 0.05)
+    run = followed(name, 4.0, 0.05)
     alpha, beta, gamma, *w = kane_levinson(sigma, -5.0, run.data.time.to_numpy())
     own = np.einsum("tji,tj->ti", space_axes(run), run.data.angular_velocity.to_numpy())
     assert abs(own - np.stack([w[0], -w[1], -w[2]], axis=1)).max() < SOLVER(1e4, 1e-10, 5.0)
@@ -297,7 +296,7 @@ def test_the_rattleback_reverses_as_kane_and_levinsons(name: str, sigma: float) 
     assert own[-1, 2] < -1  # it has turned round
     furthest = int(np.argmin(gamma))
     assert 2.4 < run.data.time[furthest] < 3.0
-    assert gamma[-1] > gamma[furthest] + 1
+    assert gamma[-1] > gamma[furthest] + 0.5  # rad
 
 
 ROCKERS = {
