@@ -109,7 +109,7 @@ def solve(
         left = left[left >= stop.time]
         early = left[left < now.time]  # in the short step across the event
         if early.size:
-            steps = [law.advanced(system, stop.time, stop.state, t - stop.time) for t in early.tolist()]
+            steps = [law.advanced(system, stop.time, stop.state.tolist(), t - stop.time) for t in early.tolist()]
             parts.append(law.record(system, early, np.array(steps)))
             left = left[early.size :]
     kept = [part for part in parts if part.time.size] or parts[:1]

@@ -62,9 +62,9 @@ def contact_force(system: RollingSystem, samples: Samples) -> Iterator[CardFigur
     if mu is None:
         yield CardFigure("friction coefficient needed", float(needed[worst]), note=note)
     else:
-        held = bool(needed[worst] <= mu * (1 + _SLACK))
-        note += "" if held else "; it would slip"
-        yield CardFigure("friction coefficient needed", float(needed[worst]), "", float(mu), held, note)
+        enough = bool(needed[worst] <= mu * (1 + _SLACK))
+        note += "" if enough else "; it would slip"
+        yield CardFigure("friction coefficient needed", float(needed[worst]), "", float(mu), enough, note)
 
 
 def friction_law(system: RollingSystem, slipping: Samples, bound: float) -> CardFigure:
