@@ -85,7 +85,8 @@ class ClosedFormContract:
             return self.offset(system, motion.motion_at(t)[0])
 
         def material_velocity(t: Any) -> Vector:
-            return support.at(start.time + t).material_velocity(motion.motion_at(t)[0] + offset(t))
+            own = (of_start + gone for of_start, gone in zip(start.support, motion.own_at(t), strict=True))
+            return support.at(start.time + t, *own).material_velocity(motion.motion_at(t)[0] + offset(t))
 
         rho = offset(t)
         _, V, Omega, R = motion.motion_at(t)
