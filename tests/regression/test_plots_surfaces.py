@@ -259,7 +259,7 @@ def test_events_are_ruled_and_phases_shaded_in_every_panel_of_the_series() -> No
         ruled = [segment[0][0] for lines in ax.collections for segment in lines.get_segments() if len(segment)]
         assert {slip.time, lift.time} <= {min(ruled, key=lambda t: abs(t - e.time)) for e in (slip, lift)}
         slipping, flight = ax.patches
-        assert slipping.get_hatch() == "////"
+        assert slipping.get_hatch() == "//"
         assert not flight.get_hatch()
         assert (slipping.get_x(), slipping.get_x() + slipping.get_width()) == pytest.approx((slip.time, lift.time))
         assert flight.get_x() == pytest.approx(lift.time)

@@ -39,6 +39,7 @@ class Panel:
     turns: float
     at_rest: bool
     sparse: bool  # too few samples a turn for a line
+    sampled: Array  # (n,), s
     contact: Array | None = None  # (n, 2), of the samples; NaN in flight
     until: float | None = None  # the time up to which it is shown; None: all of it
     low: tuple[float, float] = (0.0, 0.0)  # the view, (across, up)
@@ -60,6 +61,14 @@ class Panel:
     def path(self) -> Array:
         """The shown part of the line as (across, up)."""
         return self.page.order(self.line[self.shown])
+
+    @property
+    def touched(self) -> Array | None:
+        """The shown part of the track of the contact as (across, up), where it can be drawn as a line."""
+        if self.contact is None or self.sparse or not np.any(np.isfinite(self.contact)):
+            return None
+        until = math.inf if self.until is None else self.until
+        return self.page.order(self.contact[: max(2, int(np.searchsorted(self.sampled, until, side="right")))])
 
     @property
     def track(self) -> Array | None:
@@ -144,6 +153,7 @@ def _panel(run: Trajectory, facts: Facts, name: str, time: Array) -> Panel:
         turns,
         at_rest,
         sparse=turns * FEWEST_A_TURN > len(samples),
+        sampled=time,
         contact=_contact(data, facts, time) if facts.off_centre else None,
     )
 
@@ -213,9 +223,8 @@ def _viewed(panel: Panel, facts: Facts) -> Panel:
     span = float(np.max(high - low))
     shown = [low, high]
     reach = float(np.max(np.hypot(path[:, 0], path[:, 1])))
-    if panel.contact is not None and not panel.sparse:
-        touched = panel.page.order(panel.contact[np.isfinite(panel.contact[:, 0])])
-        shown += [np.min(touched, axis=0), np.max(touched, axis=0)] if len(touched) else []
+    if panel.touched is not None and np.any(np.isfinite(panel.touched)):
+        shown += [np.nanmin(panel.touched, axis=0), np.nanmax(panel.touched, axis=0)]
     if facts.wall is not None:
         shown += [np.full(2, -facts.wall), np.full(2, facts.wall)]
         shown += [low - 1.2 * facts.radius, high + 1.2 * facts.radius]

@@ -21,6 +21,7 @@ from .sheet import BLUE, GREY, VERMILION, Sheet, look
 if TYPE_CHECKING:
     from trundle.trajectory import Trajectory
 
+COARSE_A_TURN = 12  # samples; with fewer the track of the contact is drawn as points
 SIGN = 0.66  # inches across, for each of the arrows that say what pushes and turns
 
 
@@ -240,12 +241,13 @@ class Drawing:
 
     def _contact(self, ax: Axes, panel: Panel, ruler: Ruler) -> None:
         """Draw the track of the contact, where it is not that of the centre."""
-        if panel.contact is None or panel.sparse or not np.any(np.isfinite(panel.contact)):
+        track = panel.touched
+        if track is None or not np.any(np.isfinite(track)):
             return
-        track = panel.page.order(panel.contact)
         extent = np.nanmax(track, axis=0) - np.nanmin(track, axis=0)
         if float(np.max(extent)) > 1e-3 * max(panel.span):
-            ax.plot(*ruler(track).T, **STYLES["contact"])
+            coarse = panel.turns * COARSE_A_TURN > len(panel.samples)
+            ax.plot(*ruler(track).T, **STYLES["contact"] | ({"ls": "none", "marker": ".", "ms": 3} if coarse else {}))
             self.legend["contact"] = "track of the contact"
 
     def _ends(self, ax: Axes, panel: Panel, ruler: Ruler) -> None:

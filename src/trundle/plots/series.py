@@ -18,7 +18,7 @@ from .happenings import FLIGHT, RESTING, SLIPPING
 from .marks import STYLES
 from .quantities import Series, quantities_of
 from .scales import Array, Unit, thin_series, unit_for
-from .sheet import BLUE, GREEN, GREY, INK, ORANGE, SKY, VERMILION, Sheet, look
+from .sheet import BLUE, GREEN, GREY, INK, SKY, VERMILION, Sheet, look
 
 if TYPE_CHECKING:
     from trundle.trajectory import Trajectory
@@ -30,7 +30,7 @@ FEWEST_A_TURN = 5  # samples; with fewer, a line between them would mislead
 KEY_LINE = 0.2
 # Shades of the phases: slipping is hatched besides, so that it is told apart without colour.
 _SHADES: dict[int, tuple[str, dict[str, Any]]] = {
-    SLIPPING: ("slipping", {"fc": "#FBE7C2", "ec": ORANGE, "lw": 0.0, "hatch": "////"}),
+    SLIPPING: ("slipping", {"fc": "#FCEFD6", "ec": "#EFC578", "lw": 0.0, "hatch": "//"}),
     FLIGHT: ("in flight", {"fc": "#DCEFFA", "ec": SKY, "lw": 0.0}),
     RESTING: ("at rest", {"fc": "#EEEEEE", "ec": GREY, "lw": 0.0, "hatch": "...."}),
 }
