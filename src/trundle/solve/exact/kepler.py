@@ -143,4 +143,5 @@ def _precise_stumpff(square: Any, x: Any) -> tuple[Any, Any, Any, Any]:
         nu = mpmath.sqrt(square)
         cosine, s1 = mpmath.cos(nu * x).real, (mpmath.sin(nu * x) / nu).real
         parts = (cosine, s1, (1 - cosine) / square, (x - s1) / square)
-    return tuple(+part for part in parts)  # type: ignore[return-value]
+    cosine, s1, c2, s3 = (+part for part in parts)
+    return cosine, s1, c2, s3

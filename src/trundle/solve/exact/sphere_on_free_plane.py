@@ -231,6 +231,7 @@ class _Orbit:
     share: Any  # κ̂
     pull: Any  # mκ̂
     zeta: Any  # ζ₀
+    first: Any  # ζ₀′ = w₀ζ̇₀
     M: Any
     w: Any  # w₀
     h: Any
@@ -249,8 +250,9 @@ class _Orbit:
         w = square**0.5 if number is float else _root(square)
         h = omega * w
         c, size = share * h, M.real**2 + M.imag**2
-        across = zeta.conjugate() * M
-        return _Orbit(share, pull, zeta, M, w, h, c, c * c - pull * size, (across.real, c * across.imag + size * w))
+        first = w * V
+        along = (zeta.conjugate() * M).real, (first.conjugate() * M).real
+        return _Orbit(share, pull, zeta, first, M, w, h, c, c * c - pull * size, along)
 
     @property
     def turn(self) -> Any:
@@ -282,7 +284,7 @@ class _Orbit:
         cosine, s1, c2, _ = stumpff(self.square, tau)
         _, w = self._time(tau)
         X = self.along[0] * cosine + self.along[1] * s1
-        first = 1j * self.c * self.zeta + self.M * self.w
+        first = self.first
         second = 1j * self.c * first + self.M * (self.pull * self.along[0])
         zeta, V = self.zeta + first * s1 + second * c2, (first * cosine + second * s1) / w
         omega = self.h / w

@@ -160,6 +160,8 @@ class SphereOnSphere(ClosedForm):
                 reasons.append("the start moves out of the plane of the pull")
             elif a * abs(Omega.dot(n)) > _ASIDE * speed:
                 reasons.append("the start spins about the normal")
+            elif speed == 0 and arm.cross(force).norm() <= _ASIDE * arm.norm() * force.norm() and arm.dot(force) < 0:
+                reasons.append("the start balances on the top, where a rounding would decide which way it falls")
         return reasons
 
     # The constants of the motion
