@@ -85,6 +85,8 @@ def _value(system: RollingSystem, integral: Invariant, at: Motion) -> tuple[Arra
         Vector.of(at.velocity),
         Quaternion.of(at.orientation),
         Vector.of(at.angular_velocity),
+        at.contact.normal,
+        at.contact.support.angular_velocity,
     )
     terms = [_rows(term, at.time.size) for term in integral.terms(system, Record(state, at.contact.point))]
     size = max(float(np.abs(term).max()) for term in terms)
@@ -94,7 +96,9 @@ def _value(system: RollingSystem, integral: Invariant, at: Motion) -> tuple[Arra
 
 
 def _rows(term: Any, count: int) -> Array:
-    array = term.array() if isinstance(term, Vector) else np.asarray(term, dtype=float)[..., None]
+    array = term.array() if isinstance(term, Vector) else np.asarray(term, dtype=float)
+    if array.ndim < 2 and not isinstance(term, Vector):  # one number, or one an instant
+        array = array[..., None]
     return np.broadcast_to(array, (count, array.shape[-1])).astype(float)
 
 
@@ -197,7 +201,8 @@ def _run(system: RollingSystem, at: Motion, step: Array, count: int) -> tuple[Sa
     state = _start(system, at, step)
     method = methods.choose("auto", system, state)
     samples = methods.solver(method)(system, state, at.time[:count], methods.tolerance_of(method))
-    return samples.part(slice(0, samples.time.size - len(samples.events))), method  # the last is at the rim
+    ended = sum(event.final for event in samples.events)
+    return samples.part(slice(0, samples.time.size - ended)), method  # the last is where the support ends
 
 
 def _start(system: RollingSystem, at: Motion, step: Array) -> State:
@@ -208,7 +213,7 @@ def _start(system: RollingSystem, at: Motion, step: Array) -> State:
     point = _first(at.contact.point) + first * step[0] + second * step[1]
     own = surface.point(*surface.coordinates_of(now.rotation.transpose @ (point - now.origin)))
     contact = touch(system, time, now.origin + now.rotation @ own, q)
-    system.check_rim(contact.point, at.position[0].tolist())
+    system.check_rim(contact, at.position[0].tolist())
     rho, n = contact.offset, contact.normal
     relative = Vector(*at.velocity[0]) + first * step[2] + second * step[3]
     relative = relative - contact.support.material_velocity(contact.point)

@@ -12,11 +12,10 @@ import numpy as np
 from ..errors import InvalidValueError
 from ..mechanics.algebra import Matrix, Quaternion, Vector
 from ..mechanics.contact import roll, touch
-from ..mechanics.loads import BodyMotion
 from ..mechanics.system import RollingSystem
 from ..verify import CardFigure
 from . import laws, wrong_laws
-from .record import Array
+from .record import Array, check_covered
 from .result import Check, Mistake
 from .symbols import callable_of
 
@@ -120,7 +119,7 @@ def accelerations(system: RollingSystem, at: States) -> tuple[Array, Array]:
     """
     q, Omega = Quaternion.of(at.orientation), Vector.of(at.angular_velocity)
     now = roll(system, at.time, Vector.of(at.point), q, Omega)
-    state = BodyMotion(at.time, system.body.mass, now.contact.centre, now.velocity, q, Omega)
+    state = now.contact.body_motion(system.body.mass, at.time, now.velocity, q, Omega)
     V_rate = (now.reaction + system.loads_on(state)[0]) / system.body.mass
     shape = at.position.shape
     return np.broadcast_to(V_rate.array(), shape), np.broadcast_to(now.angular_acceleration.array(), shape)
@@ -180,7 +179,8 @@ def check_equations(
     """
     if not isinstance(system, RollingSystem):
         raise InvalidValueError("system", "must be a RollingSystem", system)
-    at = states(system, _count(samples), seed)
+    check_covered(system)
+    at = _states(system, _count(samples), seed)
     theirs = _evaluated(callable_of(equations, values or {}), at)
     case = _Case(system, at, theirs, tolerance)
     shares, worst = case.off(accelerations(system, at))
@@ -205,6 +205,15 @@ def check_equations(
         remark=remark,
         worst_state=state if failed else None,
     )
+
+
+def _states(system: RollingSystem, count: int, seed: int) -> States:
+    try:
+        return states(system, count, seed)
+    except (ArithmeticError, ValueError) as error:  # a formula that is not defined all around the axis
+        surface = type(system.support.surface).__name__
+        remedy = f"On the way to some random states: {error}. Check a trajectory instead."
+        raise InvalidValueError("system", "must have a surface that goes on smoothly", surface, remedy) from None
 
 
 def _count(samples: Any) -> int:

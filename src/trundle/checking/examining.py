@@ -10,7 +10,6 @@ import numpy as np
 
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import roll
-from ..mechanics.loads import BodyMotion
 from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem, State
 from ..verify.law import applied, newton_euler
@@ -111,10 +110,22 @@ def independent_law(system: RollingSystem, at: Motion) -> tuple[Array, Array]:
     slip = Vector.of(at.slip)
     Omega, V = Vector.of(at.angular_velocity), Vector.of(at.velocity)
     p_rate, rho_rate = (np.broadcast_to(v.array(), at.position.shape) for v in at.contact.rates(slip, Omega, V))
-    F, K, J, gyroscopic, u_rate = applied(system, at.samples(), p_rate)
+    samples = at.samples()
+    F, K, J, gyroscopic, u_rate = applied(system, samples, p_rate)
     constraint = u_rate - np.cross(at.angular_velocity, rho_rate)
-    V_rate, Omega_rate, _ = newton_euler(float(system.body.mass), J, at.offset, F, K - gyroscopic, constraint)
-    return V_rate, Omega_rate
+
+    def solved(moment: Array) -> tuple[Array, Array, Array]:
+        return newton_euler(float(system.body.mass), J, at.offset, F, moment - gyroscopic, constraint)
+
+    V_rate, Omega_rate, R = solved(K)
+    acting = system.acting_on(samples.motion(system))
+    if not acting.has_couple:
+        return V_rate, Omega_rate
+    # A couple that grows with N: all is linear in it, and N = n·R closes the circle.
+    V_more, Omega_more, R_more = solved(K + np.broadcast_to(acting.couple.array(), K.shape))
+    n = samples.normals(system)
+    N = (n * R).sum(axis=1) / (1.0 - (n * (R_more - R)).sum(axis=1))
+    return V_rate + N[:, None] * (V_more - V_rate), Omega_rate + N[:, None] * (Omega_more - Omega_rate)
 
 
 def eliminated_law(system: RollingSystem, at: Motion) -> tuple[Array, Array]:
@@ -132,7 +143,7 @@ def eliminated_law(system: RollingSystem, at: Motion) -> tuple[Array, Array]:
     """
     q, Omega = Quaternion.of(at.orientation), Vector.of(at.angular_velocity)
     now = roll(system, at.time, at.contact.point, q, Omega)
-    state = BodyMotion(at.time, system.body.mass, now.contact.centre, now.velocity, q, Omega)
+    state = now.contact.body_motion(system.body.mass, at.time, now.velocity, q, Omega)
     V_rate = (now.reaction + system.loads_on(state)[0]) / system.body.mass
     shape = at.position.shape
     return np.broadcast_to(V_rate.array(), shape), np.broadcast_to(now.angular_acceleration.array(), shape)

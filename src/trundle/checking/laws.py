@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..mechanics.algebra import ZERO, Matrix, Vector
-from ..mechanics.bodies import Body, Isotropic, Principal
+from ..mechanics.bodies import Body, Isotropic, Principal, Tensor
 from ..mechanics.loads import Force, Load
 from ..mechanics.motions import Fixed, Motion, Spin, SupportState
 from ..mechanics.system import RollingSystem
@@ -37,8 +37,8 @@ class _NeverCarried(SupportState):
 class _CarryingForgotten(Motion):
     inner: Motion
 
-    def at(self, time: Any) -> SupportState:
-        now = self.inner.at(time)
+    def at(self, time: Any, *own: Any) -> SupportState:
+        now = self.inner.at(time, *own)
         return _NeverCarried(
             now.rotation,
             now.origin,
@@ -88,6 +88,8 @@ def with_inertia(system: RollingSystem, factor: float) -> RollingSystem:
     body = system.body
     if isinstance(body.inertia, Principal):
         inertia: Any = Principal(*(float(getattr(body.inertia, axis)) * factor for axis in "xyz"))
+    elif isinstance(body.inertia, Tensor):
+        inertia = Tensor(*(float(element) * factor for element in body.inertia.elements))
     else:
         moment = float(body.inertia_in_space(Matrix.identity()).a.x)
         inertia = Isotropic(moment * factor)  # more than a shell's, even: theirs may be so

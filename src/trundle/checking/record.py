@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidValueError
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import Contact, touch
+from ..mechanics.contact import Contact, settle, touch
 from ..mechanics.shapes import concentric_sphere
 from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem
@@ -176,6 +176,38 @@ def _same_from_every_side(system: RollingSystem) -> bool:
     return bool(system.body.is_isotropic_sphere)
 
 
+def check_covered(system: RollingSystem) -> None:
+    """Refuse a support of which data about the body do not tell where it is.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        What is said to move.
+
+    Raises
+    ------
+    InvalidValueError
+        If the support's motion has coordinates of its own, as a free axle has.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> free = tr.Support(tr.Plane(), motion=tr.FreeAxle(inertia=0.1))
+    >>> check_covered(tr.RollingSystem(tr.Body.solid_sphere(0.5, 1.0), free))
+    Traceback (most recent call last):
+    ...
+    trundle.errors.InvalidValueError: `support.motion` must say where the support is at each instant, for a check; ...
+    """
+    own = system.support.motion.own
+    if own:
+        raise InvalidValueError(
+            "support.motion",
+            "must say where the support is at each instant, for a check",
+            type(system.support.motion).__name__,
+            f"Its {' and '.join(own)} would have to come with the data, which is not covered.",
+        )
+
+
 def contact_of(system: RollingSystem, time: Array, centre: Array, orientation: Array) -> Contact:
     """Return the contact of a body whose centre is known: p = r + ρ(n(p)), found by going back and forth.
 
@@ -213,7 +245,18 @@ def contact_of(system: RollingSystem, time: Array, centre: Array, orientation: A
         moved = float(np.max((point - before).norm()))
         if moved <= 1e-14 * size:
             break
-    return contact
+    if moved <= 1e-9 * size:
+        return contact
+    points = [
+        _settled(system, *row) for row in zip(time, centre, orientation, strict=True)
+    ]  # one by one, as a run does
+    contact = touch(system, time, Vector.of(np.array(points)), q)
+    return replace(contact, point=r + contact.offset)
+
+
+def _settled(system: RollingSystem, time: float, centre: Array, orientation: Array) -> list[float]:
+    parts = Vector(*map(float, centre)), Quaternion(*map(float, orientation))
+    return [float(part) for part in settle(system, float(time), *parts).point]
 
 
 def gap_of(system: RollingSystem, contact: Contact) -> Array:

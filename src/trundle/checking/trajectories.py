@@ -18,7 +18,7 @@ from .examining import ACCELERATION, Series, examine
 from .misread import READINGS
 from .motion import Motion, motion_of, with_orientation
 from .reading import Conventions, read
-from .record import Theirs, checked
+from .record import Theirs, check_covered, checked
 from .result import Check
 from .slipping import CRUDE
 from .wrong_laws import LAWS
@@ -128,6 +128,7 @@ def check(
     """
     tolerance = _positive(tolerance)
     system, start, title = _system_of(scenario, start)
+    check_covered(system)
     conventions = Conventions(columns or {}, axes, angles, quaternion, orientation, euler, frame, time, length)
     theirs = checked(read(data, system, conventions), system)
     given = theirs.parts

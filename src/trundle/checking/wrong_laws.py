@@ -10,7 +10,7 @@ from fractions import Fraction
 import numpy as np
 
 from ..errors import TrundleError
-from ..mechanics.bodies import Principal
+from ..mechanics.bodies import Principal, Tensor
 from ..mechanics.loads import at_rest
 from ..mechanics.system import RollingSystem
 from . import laws
@@ -140,7 +140,7 @@ def _inertias(system: RollingSystem, numbers: Array, doubts: Array) -> Iterator[
         return
     factor, doubt = math.exp(numbers[0]), float(doubts[0])
     changed = laws.with_inertia(system, factor)
-    if isinstance(system.body.inertia, Principal) or not system.body.is_isotropic_sphere:
+    if isinstance(system.body.inertia, (Principal, Tensor)) or not system.body.is_isotropic_sphere:
         says = f"The moments of inertia are wrong: {factor:.5g} times as large ones fit."
         yield Trial("wrong-inertia", says, system=changed, numbers={"factor": factor}, named=False)
         return
@@ -225,7 +225,7 @@ def _rolling_factors(system: RollingSystem, pull: float) -> list[tuple[tuple[flo
 
 def left_out(case: Case) -> Iterator[Trial]:
     """Try the law with a term forgotten."""
-    if isinstance(case.system.body.inertia, Principal):
+    if isinstance(case.system.body.inertia, (Principal, Tensor)):
         says = "Ω×JΩ was left out of Euler's equation: the moments of inertia are not all the same."
         yield Trial("missing-gyroscopic-term", says, system=laws.without_gyroscopic(case.system), law=eliminated_law)
     if case.system.support.motion.steady_rate == 0:
