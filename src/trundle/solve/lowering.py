@@ -100,8 +100,10 @@ def lower(system: RollingSystem, law: Law) -> Lowered:
     stops = law.stops(symbolic, time, state, given[count:])
     tidied = _tidied(symbolic, law, time, state)
     lowering = _Lowering(tape, len(names), len(given))
+    # First what the tidying takes: heyoka counts parameters by the last that its own equations have.
+    kept = [lowering.copy(part) for part in tidied]
     outputs = tuple(lowering.copy(part) for part in (*rates, *stops.values()))
-    tidy = lowering.new.function([lowering.copy(part) for part in tidied])
+    tidy = lowering.new.function(kept)
     parameters = len(lowering.wanted)
     return Lowered(names, tuple(stops), outputs, lowering.new, parameters, lowering.values(), tidy)
 
