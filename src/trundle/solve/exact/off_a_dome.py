@@ -21,7 +21,7 @@ class OffADome:
 
     Examples
     --------
-    >>> rough, slick = OffADome(0.4, 1e9), OffADome(0.4, 1e-9)
+    >>> rough, slick = OffADome(0.4, 1e6), OffADome(0.4, 1e-9)
     >>> round(math.cos(rough.lifts_at), 6), round(math.cos(slick.lifts_at), 6)  # 10/17 and 2/3
     (0.588235, 0.666667)
     """
@@ -76,4 +76,6 @@ class OffADome:
         def left(angle: float) -> float:
             return math.cos(angle) - self.slipping(angle)
 
-        return float(brentq(left, self.slips_at, 0.5 * math.pi, xtol=1e-300, rtol=4 * 2.0**-52))
+        begin = self.slips_at
+        end = min(0.5 * math.pi, begin + 300 / self.friction)  # no exponential overflows on the way
+        return float(brentq(left, begin, end, xtol=1e-300, rtol=4 * 2.0**-52))

@@ -51,7 +51,7 @@ class SlidingSphere(ClosedForm):
     >>> ball = SlidingSphere(
     ...     0.1, 1.0, 0.4, (0.0, 0.0), (7.0, 0.0), (0.0, 0.0, 0.0), (7.0, 0.0), (0.0, 0.0, -10.0), 0.2
     ... )
-    >>> round(ball.grips_at, 15), round(ball.motion_at(ball.grips_at)[1].x, 15)
+    >>> round(ball.grips_at, 15), round(float(ball.motion_at(ball.grips_at)[1].x), 15)
     (1.0, 5.0)
     """
 
@@ -207,7 +207,7 @@ class SlidingSphere(ClosedForm):
         Examples
         --------
         >>> ball = SlidingSphere(0.1, 1.0, 0.4, (0, 0), (7.0, 0), (0, 0, 0), (7.0, 0), (0, 0, -10.0), 0.2)
-        >>> round(ball.motion_at(0.5)[3].x, 12)
+        >>> round(float(ball.motion_at(0.5)[3].x), 12)
         -2.0
         """
         if not is_one(self):

@@ -93,7 +93,7 @@ class SphereOnSphere(ClosedForm):
         >>> import trundle as tr
         >>> dome = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Dome(0.9)))
         >>> round(SphereOnSphere.of(dome, dome.place(velocity=(1.0, 0.0))).lift_cosine, 6)  # (2 + 1.4 v²/(g ℓ))/3.4
-        0.630223
+        0.630224
         """
         cls.check_domain(system, start)
         surface: Any = system.support.surface
