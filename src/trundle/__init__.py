@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from .geometry import Arc, Curve, PathScenario, RolledPath, Rotation, Straight, roll_along
     from .holonomy import ConstraintAnalysis, PfaffianSystem
     from .imperfections import Sensitivity, air_drag, sensitivity
+    from .many import simulate_many
     from .mechanics.bodies import Body, Isotropic, Principal, RatioInertia, Tensor
     from .mechanics.loads import (
         Drag,
@@ -93,6 +94,7 @@ _HOMES = {
     "geometry": ("roll_along", "Straight", "Arc", "Curve", "RolledPath", "Rotation", "PathScenario"),
     "holonomy": ("PfaffianSystem", "ConstraintAnalysis"),
     "imperfections": ("sensitivity", "Sensitivity", "air_drag"),
+    "many": ("simulate_many",),
     "mechanics.bodies": ("Body", "Isotropic", "Principal", "RatioInertia", "Tensor"),
     "mechanics.shapes": (
         "Disc",
@@ -246,6 +248,7 @@ __all__ = [
     "roll_along",
     "sensitivity",
     "simulate",
+    "simulate_many",
     "steady_motions",
     "to_turntable",
     "twin",

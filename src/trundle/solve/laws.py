@@ -158,9 +158,9 @@ class SlippingLaw(Law):
     variables = (*CONTACT, "s_x", "s_y", "s_z")
     extras = 4  # as for `RollingWithResistance`
 
-    def _now(self, system: RollingSystem, time: Scalar, state: Numbers) -> Slipping:
+    def _now(self, system: RollingSystem, time: Scalar, state: Numbers, direction: Vector | None = None) -> Slipping:
         p, q, Omega, s, own = self.split(state)
-        return slip(system, time, p, q, Omega, Vector(*s), own)
+        return slip(system, time, p, q, Omega, Vector(*s), own, direction)
 
     def rates(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:
         """Return ṗ, q̇, Ω̇, ṡ."""
@@ -195,7 +195,9 @@ class SlippingLaw(Law):
     def _recorded(self, system: RollingSystem, time: Array, states: Array) -> Slipping:
         columns = list(states.T)
         columns[3:7] = _unit(states[:, 3:7]).T
-        return self._now(system, time, columns)
+        s = Vector(*columns[10:13])
+        length = s.norm()
+        return self._now(system, time, columns, s / np.where(length > 0, length, 1.0))  # none where s has just ended
 
 
 class SlidingFreely(SlippingLaw):
@@ -203,9 +205,15 @@ class SlidingFreely(SlippingLaw):
 
     extras = 0
 
-    def _now(self, system: RollingSystem, time: Scalar, state: Numbers) -> Slipping:
+    def _now(
+        self,
+        system: RollingSystem,
+        time: Scalar,
+        state: Numbers,
+        direction: Vector | None = ZERO,  # noqa: ARG002
+    ) -> Slipping:
         p, q, Omega, s, own = self.split(state)
-        return slip(system, time, p, q, Omega, Vector(*s), own, direction=ZERO)
+        return slip(system, time, p, q, Omega, Vector(*s), own, ZERO)
 
 
 class FlightLaw(Law):

@@ -40,11 +40,11 @@ class Lowered:
     tape : Tape
         Holds them.
     parameters : int
-        How many.
+        How many the outputs take.
     values : callable
-        (the system's numbers and the law's extras, the reference time in s) -> the parameters.
+        (the system's numbers and the law's extras, the reference time in s) -> the parameters, and those of `tidy`.
     tidy : callable
-        [0, *state, *parameters] -> the state with p on the support and q of length 1, at the reference time.
+        [0, *state, *values] -> the state with p on the support and q of length 1, at the reference time.
     """
 
     names: tuple[str, ...]
@@ -100,11 +100,9 @@ def lower(system: RollingSystem, law: Law) -> Lowered:
     stops = law.stops(symbolic, time, state, given[count:])
     tidied = _tidied(symbolic, law, time, state)
     lowering = _Lowering(tape, len(names), len(given))
-    # First what the tidying takes: heyoka counts parameters by the last that its own equations have.
-    kept = [lowering.copy(part) for part in tidied]
     outputs = tuple(lowering.copy(part) for part in (*rates, *stops.values()))
-    tidy = lowering.new.function(kept)
     parameters = len(lowering.wanted)
+    tidy = lowering.new.function([lowering.copy(part) for part in tidied])  # it may want some of its own
     return Lowered(names, tuple(stops), outputs, lowering.new, parameters, lowering.values(), tidy)
 
 

@@ -189,11 +189,12 @@ class _Run:
     def tidy(self, time: float) -> None:
         """Count from here on, and take rounding's share out of φ(p) = 0 and |q| = 1."""
         self._refer_to(time)
-        self.integrator.state[:] = self.lowered.tidy([0.0, *self.integrator.state, *self.integrator.pars])
+        self.integrator.state[:] = self.lowered.tidy([0.0, *self.integrator.state.tolist(), *self.values])
 
     def _refer_to(self, time: float) -> None:
         self.reference, self.integrator.time = time, 0.0
-        self.integrator.pars[:] = self.lowered.values(self.given, time)
+        self.values = self.lowered.values(self.given, time)
+        self.integrator.pars[:] = self.values[: self.lowered.parameters]
 
 
 def _propagate(run: _Run, times: Array, progress: Progress | None) -> tuple[Array, int | None]:
@@ -217,11 +218,11 @@ def _propagate(run: _Run, times: Array, progress: Progress | None) -> tuple[Arra
     return np.vstack(parts), None
 
 
-def _chunks(times: Array) -> list[Array]:
+def _chunks(times: Array, most: int = _CHUNKS) -> list[Array]:
     """Part the instants so that none is long after the first of its part."""
     if not times.size:
         return []
-    parts = np.array_split(times, min(_CHUNKS, max(1, times.size // _LEAST_CHUNK)))
+    parts = np.array_split(times, min(most, max(1, times.size // _LEAST_CHUNK)))
     found = []
     for part in parts:
         which = np.floor((part - part[0]) / _LONGEST)

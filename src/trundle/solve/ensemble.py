@@ -1,0 +1,334 @@
+"""Many members of one system at once: heyoka's Taylor integrator with eight of them in each vector register.
+
+Members share the structure of the system; their numbers and their starts are their own, and so is every step size, so
+that what a member gives does not depend on its company.
+"""
+
+from __future__ import annotations
+
+import copy
+import os
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any
+
+import numpy as np
+
+from ..mechanics.algebra import Quaternion, Vector
+from ..mechanics.contact import Contact, touch
+from ..mechanics.jets import jets
+from ..mechanics.parameters import numbers, with_numbers
+from ..mechanics.placing import SLIP_TOLERANCE
+from ..mechanics.scalars import is_number
+from ..mechanics.system import RollingSystem, State
+from . import taylor
+from .laws import Law, RollingLaw
+from .lowering import Lowered, lower
+from .samples import Array, Samples
+
+LANES = 8  # doubles in the widest registers; where they are half as wide, two at a time still gain
+_MOST_CHUNKS = 10
+_MOST_STEPS = 30  # of Newton's method
+_PRESSED = 1e-9  # share of the weight with which a member must press on to be taken along
+
+
+@dataclass(frozen=True)
+class Block:
+    """What one register's worth of members did.
+
+    Parameters
+    ----------
+    members : array (k,)
+        Which they are.
+    samples : Samples
+        Of all at the first instant, then of all at the second, and so on.
+    system : RollingSystem
+        Its numbers are arrays as long as the samples where members differ.
+    """
+
+    members: Array
+    samples: Samples
+    system: RollingSystem
+
+
+def structure(thing: Any) -> Any:
+    """Return what a system is apart from its numbers, in a form that can be compared.
+
+    Parameters
+    ----------
+    thing : RollingSystem or any part of it
+        Dataclasses, tuples, numbers and names, nested.
+
+    Returns
+    -------
+    object
+        Equal for systems that one compiled integrator serves.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> plain, small, large = tr.Plane(), tr.Plane(rim=0.5), tr.Plane(rim=2.0)
+    >>> structure(small) == structure(large), structure(small) == structure(plain)
+    (True, False)
+    """
+    if is_dataclass(thing) and not isinstance(thing, type):
+        return type(thing), tuple(structure(getattr(thing, field.name)) for field in fields(thing))
+    if isinstance(thing, tuple):
+        return tuple(structure(part) for part in thing)
+    return None if thing is None else "number" if is_number(thing) and not isinstance(thing, bool) else thing
+
+
+def together(systems: Sequence[RollingSystem], repeat: int = 1) -> RollingSystem:
+    """Return one system whose numbers are arrays over members, or plain numbers where all agree.
+
+    Parameters
+    ----------
+    systems : sequence of RollingSystem
+        Of one structure.
+    repeat : int
+        How often the members follow one another.
+
+    Returns
+    -------
+    RollingSystem
+        The mechanics takes it as it takes any other.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> balls = [tr.RollingSystem(tr.Body.solid_sphere(a, 1.0), tr.Support(tr.Plane())) for a in (0.1, 0.2)]
+    >>> together(balls, 2).body.shape.radius.tolist(), together(balls).body.mass
+    ([0.1, 0.2, 0.1, 0.2], 1.0)
+    """
+    values = np.array([numbers(system) for system in systems]).T
+    columns = [float(row[0]) if (row == row[0]).all() else np.tile(row, repeat) for row in values]
+    return with_numbers(systems[0], columns)
+
+
+def rolling_from(systems: Sequence[RollingSystem], starts: Sequence[State]) -> tuple[Array, Any]:
+    """Return the numbers (p, q, Ω, ...) of every start, and which of them plainly roll.
+
+    Parameters
+    ----------
+    systems : sequence of RollingSystem
+        Of one structure.
+    starts : sequence of State
+        At one time.
+
+    Returns
+    -------
+    states : array (members, size)
+        As `RollingLaw` takes them.
+    rolls : array (members,) of bool
+        Whether a start touches, does not slip, and is held by its support with something to spare. What else it may
+        be is the scalar engine's to find out.
+    """
+    system, time = together(systems), starts[0].time
+    r, V, Omega, q, own = (
+        np.array([getattr(start, name) for start in starts], dtype=float)
+        for name in ("position", "velocity", "angular_velocity", "orientation", "support")
+    )
+    with np.errstate(all="ignore"):  # a start far from the support converges to nothing, and is left out
+        contact = _settled(system, time, Vector.of(r), Quaternion.of(q), tuple(own.T))
+        states = np.column_stack([contact.point.array(), q, Omega, own])
+        arm = contact.offset.norm()
+        touches = (contact.centre - Vector.of(r)).norm() <= SLIP_TOLERANCE * arm
+        v, turning = Vector.of(V), Vector.of(Omega)
+        u = contact.support.material_velocity(contact.point)
+        speed = np.maximum(np.maximum(v.norm(), turning.norm() * arm), _norm(u))
+        grips = contact.slip_velocity(v, turning).norm() <= SLIP_TOLERANCE * speed
+        held = _held(system, time, states)
+    return states, np.broadcast_to(touches & grips & held, (len(starts),)).copy()
+
+
+def _norm(v: Vector) -> Any:
+    return np.sqrt(np.asarray(v.dot(v), dtype=float))
+
+
+def _settled(system: RollingSystem, time: float, r: Vector, q: Quaternion, own: tuple[Any, ...]) -> Contact:
+    """Return the contacts nearest to many bodies: `mechanics.contact.settle` on arrays."""
+    surface, point = system.support.surface, r
+    contact = touch(system, time, point, q, own)
+    for step in range(_MOST_STEPS):
+        support, n = contact.support, contact.normal
+        apart = r + contact.offset - point
+        gap = n.dot(apart)
+        aside = apart - n * gap
+        there = support.rotation.transpose @ (point - support.origin)
+        level = surface.level(Vector(*jets(tuple(there))))
+        slope = Vector(*level.gradient)
+        down = n * -(level.value / _norm(slope))
+        moved = _norm(aside) + _norm(down)
+        going = 1.0 if step == 0 else np.where(moved > 1e-15 * (point.norm() + contact.offset.norm()), 1.0, 0.0)
+        if not np.any(going):
+            break
+        if step > 0:
+            aside = contact.across(gap).solve(aside)
+        point = point + (aside + down) * going  # who has arrived stays, however far the others have to go
+        contact = touch(system, time, point, q, own)
+    return contact
+
+
+def _held(system: RollingSystem, time: float, states: Array) -> Any:
+    stops = RollingLaw().stops(system, time, list(states.T), ())
+    held = np.ones(len(states), dtype=bool)
+    for name, value in stops.items():
+        least = _PRESSED * system.body.mass * abs(system.gravity) if name == "lift" else 0.0
+        held &= np.broadcast_to(value > least, held.shape)
+    return held
+
+
+def integrate(
+    systems: Sequence[RollingSystem],
+    states: Array,
+    members: Sequence[int],
+    times: Array,
+    done: Callable[[Block], None],
+    *,
+    tolerance: float = taylor.TOLERANCE,
+    workers: int = 1,
+) -> list[int]:
+    """Follow members that roll, for as long as they do.
+
+    Parameters
+    ----------
+    systems : sequence of RollingSystem
+        All of them, of one structure.
+    states : array (all, size)
+        As `rolling_from` gives them.
+    members : sequence of int
+        Which to follow.
+    times : array (n,)
+        Ascending, s, none before the starts.
+    done : callable
+        Given each block as it is done, from any thread.
+    tolerance : float
+        Of each step, relative.
+    workers : int
+        Threads.
+
+    Returns
+    -------
+    list of int
+        Members that came to a stop of the law, or broke down, and are in no block.
+    """
+    law = RollingLaw()
+    lowered = lower(systems[0], law)
+    integrator = _compiled(lowered, tolerance)
+    blocks = [list(members[i : i + LANES]) for i in range(0, len(members), LANES)]
+
+    def work(which: int) -> list[int]:
+        mine = copy.copy(integrator)
+        stopped: list[int] = []
+        for block in blocks[which::workers]:
+            path, left = _follow(mine, lowered, [systems[i] for i in block], states[block], times)
+            kept = [lane for lane in range(len(block)) if lane not in left]
+            stopped += [block[lane] for lane in sorted(left)]
+            if kept:
+                done(_block(law, systems, [block[lane] for lane in kept], times, path[:, :, kept]))
+        return stopped
+
+    if workers == 1:
+        return sorted(work(0))
+    with ThreadPoolExecutor(workers) as pool:
+        return sorted(member for part in pool.map(work, range(workers)) for member in part)
+
+
+def cores() -> int:
+    """Return how many threads can run at once.
+
+    Returns
+    -------
+    int
+        Processors that this process may use.
+
+    Examples
+    --------
+    >>> cores() >= 1
+    True
+    """
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _block(law: Law, systems: Sequence[RollingSystem], members: list[int], times: Array, path: Array) -> Block:
+    system = together([systems[i] for i in members], times.size)
+    flat = path.transpose(0, 2, 1).reshape(-1, path.shape[1])
+    samples = law.record(system, np.repeat(times, len(members)), flat)
+    return Block(np.array(members), samples, system)
+
+
+def _follow(
+    integrator: Any, lowered: Lowered, systems: list[RollingSystem], states: Array, times: Array
+) -> tuple[Array, set[int]]:
+    """Return the states (n, size, LANES) at the times, and the lanes that did not come through.
+
+    Where a lane stops, all go back to where the part of the run began, and another's state takes its place.
+    """
+    lane = [min(i, len(systems) - 1) for i in range(LANES)]  # a short block repeats its last member
+    given = [numbers(systems[i]) for i in lane]
+    state, left = states[lane].T.copy(), set[int]()
+    path = np.empty((times.size, state.shape[0], LANES))
+    place = 0
+    for first, chunk in _chunks(times):
+        while len(left) < len(systems):
+            alive = next(i for i in range(len(systems)) if i not in left)
+            for i in range(LANES):
+                if lane[i] in left:
+                    state[:, i], given[i] = state[:, alive], given[alive]
+            _begin(integrator, lowered, given, state, first)
+            part = integrator.propagate_grid(np.repeat((chunk - first)[:, None], LANES, axis=1))[-1]
+            ended = [_ended(result[0]) for result in integrator.propagate_res]
+            failed = {lane[i] for i in range(LANES) if lane[i] not in left and ended[i]}
+            if not failed:
+                break
+            left |= failed
+        else:
+            break
+        path[place : place + len(chunk)], state = part, integrator.state.copy()
+        place += len(chunk)
+    return path, left
+
+
+def _ended(outcome: Any) -> bool:
+    """Tell whether a lane came to a stop or broke down; one that was cut short by another lane's stop has not."""
+    import heyoka
+
+    return int(outcome) >= -1000 or outcome == heyoka.taylor_outcome.err_nf_state
+
+
+def _begin(integrator: Any, lowered: Lowered, given: list[list[float]], state: Array, time: float) -> None:
+    integrator.set_time(0.0)
+    integrator.reset_cooldowns()
+    for i in range(LANES):
+        values = lowered.values(given[i], time)
+        integrator.pars[:, i] = values[: lowered.parameters]
+        integrator.state[:, i] = lowered.tidy([0.0, *state[:, i].tolist(), *values])
+
+
+def _chunks(times: Array) -> Iterator[tuple[float, Array]]:
+    """Yield the parts of a run, each with the instant from which it counts: the last of the part before."""
+    first = float(times[0])
+    for part in taylor._chunks(times, _MOST_CHUNKS):
+        yield first, part
+        first = float(part[-1])
+
+
+def _compiled(lowered: Lowered, tolerance: float) -> Any:
+    """Return the integrator from this process, the user's cache, or the compiler."""
+    equations, stops = lowered.heyoka()
+    key = f"{LANES}-{taylor._key(equations, stops, tolerance, lowered.parameters)}"
+    return taylor._compiled(key, lambda: _compile(equations, stops, tolerance, lowered.parameters))
+
+
+def _compile(equations: list[Any], stops: list[Any], tolerance: float, parameters: int) -> Any:
+    import heyoka
+
+    return heyoka.taylor_adaptive_batch(
+        equations,
+        np.zeros((len(equations), LANES)),
+        pars=np.zeros((parameters, LANES)),
+        tol=tolerance,
+        compact_mode=True,
+        t_events=[heyoka.t_event_batch(stop, direction=heyoka.event_direction.negative) for stop in stops],
+    )

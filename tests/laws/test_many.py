@@ -1,0 +1,211 @@
+"""Many members in one call: the same numbers as one by one, whatever the company, and every event where it belongs."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from tests.tolerances import SOLVER
+
+import trundle as tr
+from trundle import many
+from trundle.solve import ensemble, runge_kutta, taylor
+
+pytest.importorskip("heyoka")
+
+BALL = tr.Body.solid_sphere(radius=0.025, mass=0.065)
+COIN = tr.Body.disc(radius=0.012, mass=0.0075, thickness=0.0022)
+FLAT = tr.Support(tr.Plane())
+BOWL = tr.EllipsoidalBowl((0.5, 0.4, 0.3))
+
+
+@pytest.fixture
+def alone(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Note which members are not taken along with the others."""
+    found: list[int] = []
+    put_alone = many._Result.put_alone
+
+    def noted(self: Any, member: int, *arguments: Any) -> None:
+        found.append(member)
+        put_alone(self, member, *arguments)
+
+    monkeypatch.setattr(many._Result, "put_alone", noted)
+    return found
+
+
+def coins() -> tuple[list[tr.RollingSystem], list[tr.State]]:
+    systems = [tr.RollingSystem(COIN, FLAT, gravity=g) for g in np.linspace(9.0, 10.0, 11)]
+    return systems, [
+        system.place(attitude=(0.1, f"{80 + j} deg", 0.0), velocity=(0.5, 0.05 + 0.01 * j), spin=1.0)
+        for j, system in enumerate(systems)
+    ]
+
+
+def bowls() -> tuple[list[tr.RollingSystem], list[tr.State]]:
+    systems = [
+        tr.RollingSystem(tr.Body.solid_sphere(0.02 + 0.004 * j, 0.1), tr.Support(BOWL, motion=tr.Spin(1.0 + 0.1 * j)))
+        for j in range(11)
+    ]
+    return systems, [system.place((0.1, 0.01 * j), (0.1, 0.2), spin=1.0) for j, system in enumerate(systems)]
+
+
+def stones() -> tuple[list[tr.RollingSystem], list[tr.State]]:
+    stone = tr.Body.ellipsoid((0.2, 0.15, 0.12), mass=1.0, turn="2 deg")
+    system = tr.RollingSystem(stone, replace(FLAT, tilt=0.01, friction=0.8))
+    return [system], [system.place(attitude=(0.0, 0.02 * j, 0.1), spin=1.0) for j in range(9)]
+
+
+def free_tables() -> tuple[list[tr.RollingSystem], list[tr.State]]:
+    table = tr.Support(tr.Plane(), motion=tr.FreeAxle(inertia=0.02, rate=3.0))
+    system = tr.RollingSystem(BALL, table)
+    return [system], [system.place((0.1, 0.0), (0.0, 0.02 * j), spin=0.0) for j in range(9)]
+
+
+@pytest.mark.parametrize("made", [coins, bowls, stones, free_tables])
+def test_the_same_numbers_as_one_by_one(made: Any, alone: list[int]) -> None:
+    systems, starts = made()
+    runs = tr.simulate_many(systems, starts, duration=1.0, every=0.1)
+    assert not alone
+    systems = systems * len(starts) if len(systems) == 1 else systems
+    for member in (0, 3, 8):
+        single = tr.simulate(systems[member], starts[member], 1.0, 0.1, method="taylor").data
+        assert set(single.data_vars) <= set(runs.data_vars)
+        for name, values in single.data_vars.items():
+            found, scale = runs[name].isel(member=member), max(float(np.abs(values).max()), 1e-3)
+            assert found.dims == values.dims
+            assert float(np.abs(found - values).max()) <= SOLVER(3000, taylor.TOLERANCE, scale), name
+
+
+def test_balls_on_a_tilted_turntable_against_the_closed_form(alone: list[int]) -> None:
+    systems = [
+        tr.RollingSystem(tr.Body.solid_sphere(a, 0.1), tr.Support(tr.Plane(), motion=tr.Spin(rate), tilt=tilt))
+        for a, rate, tilt in [(0.01, 3.0, 0.01), (0.02, -2.0, 0.05), (0.05, 0.0, 0.1), (0.03, 1e-3, 0.0)]
+    ]
+    starts = [system.place((0.1, 0.0), (0.0, 0.2), spin=1.0) for system in systems]
+    runs = tr.simulate_many(systems, starts, duration=5.0, every=0.5)
+    assert not alone
+    for member, (system, start) in enumerate(zip(systems, starts, strict=True)):
+        exact = tr.simulate(system, start, 5.0, 0.5, method="exact").data
+        for name in ("position", "velocity", "angular_velocity", "orientation", "contact_force"):
+            scale = max(float(np.abs(exact[name]).max()), 1.0)
+            apart = float(np.abs(runs[name].isel(member=member) - exact[name]).max())
+            assert apart <= SOLVER(1000, taylor.TOLERANCE, scale)
+
+
+def test_a_member_does_not_depend_on_its_company() -> None:
+    systems, starts = bowls()
+    whole = tr.simulate_many(systems, starts, 1.0, 0.25)
+    for order in ([4], [10, 3, 4], list(range(10, -1, -1))):
+        some = tr.simulate_many([systems[i] for i in order], [starts[i] for i in order], 1.0, 0.25, workers=3)
+        wanted = whole.isel(member=order)
+        for name in ("contact", "orientation", "angular_velocity"):
+            assert np.array_equal(some[name].values, wanted[name].values)
+
+
+def test_members_that_run_off_the_rim_end_there(alone: list[int]) -> None:
+    table = tr.Support(tr.Plane(rim=0.5), motion=tr.Spin(3.5))
+    system = tr.RollingSystem(BALL, table)
+    starts = [system.place((0.1, 0.0), (0.0, speed)) for speed in (0.0, 0.1, 1.0, 0.05, 2.0, 0.15, 0.0, 0.1, 3.0, 0.2)]
+    runs = tr.simulate_many(system, starts, duration=2.0, every=0.1)
+    fast = [2, 4, 8]
+    assert alone == fast
+    assert runs.ending.values.tolist() == ["rim" if i in fast else "" for i in range(10)]
+    for member in range(10):
+        single = tr.simulate(system, starts[member], 2.0, 0.1, method="exact")
+        ended = single.events[-1].time if single.events else 2.0
+        assert float(runs.end[member]) == pytest.approx(ended, abs=SOLVER(1000, taylor.TOLERANCE))
+        before = runs.time.values <= ended
+        mine = runs.isel(member=member)
+        assert np.array_equal(np.isfinite(mine.position.values).all(axis=1), before)
+        assert np.array_equal(mine.phase.values == -1, ~before)
+        apart = np.abs(mine.position.values[before] - single.data.position.values[: before.sum()]).max()
+        assert apart <= SOLVER(1000, taylor.TOLERANCE)
+        assert int(runs.events[member]) == len(single.events)
+
+
+def test_members_that_slip_or_fly_are_followed_through_their_phases(alone: list[int]) -> None:
+    system = tr.RollingSystem(BALL, replace(FLAT, friction=0.2))
+    starts = [
+        system.place(velocity=(1.0, 0.0)),
+        system.place(velocity=(0.7, 0.0), angular_velocity=(0.0, 0.0, 0.0)),
+        system.place(velocity=(0.7, 0.0, 0.0), angular_velocity=(0.0, 0.0, 0.0), height=0.05),
+    ]
+    runs = tr.simulate_many(system, starts, duration=1.0, every=0.05)
+    assert alone == [1, 2]
+    assert runs.phase.isel(time=0).values.tolist() == [0, 1, 2]
+    assert (runs.phase.isel(time=-1) == 0).all()
+    assert runs.events.values.tolist()[0] == 0
+    assert (runs.events.values[1:] >= 1).all()
+    # Billiards: it slips for 2v/(7μg), and goes on at 5v/7.
+    grip = 2 * 0.7 / (7 * 0.2 * 9.80665)
+    mine = runs.isel(member=1)
+    assert np.array_equal(mine.phase.values, np.where(mine.time.values < grip, 1, 0))
+    assert float(mine.velocity.sel(axis="x")[-1]) == pytest.approx(0.5, abs=1e-9)
+
+
+def test_starts_at_a_later_time() -> None:
+    systems, starts = bowls()
+    later = [replace(start, time=float(j)) for j, start in enumerate(starts)]
+    level = tr.RollingSystem(BALL, FLAT)
+    runs = tr.simulate_many(level, [replace(level.place(velocity=(v, 0.0)), time=4.0) for v in (1.0, 2.0)], 1.0, 0.5)
+    assert runs.time.values.tolist() == [4.0, 4.5, 5.0]
+    assert np.abs(runs.position.sel(axis="x").values - [[0, 0.5, 1], [0, 1, 2]]).max() <= SOLVER(100, taylor.TOLERANCE)
+    with pytest.raises(tr.InvalidValueError, match=r"starts\[1\].*at the time of starts\[0\]"):
+        tr.simulate_many(systems, later, 1.0, 0.5)
+
+
+def refused() -> Iterator[Any]:
+    system = tr.RollingSystem(BALL, FLAT)
+    other = replace(system, support=tr.Support(tr.Plane(rim=1.0)))
+    start = system.place((0.1, 0.0))
+    yield pytest.param([system, other], start, {}, r"systems\[1\].*same parts", id="structure")
+    yield pytest.param([system] * 2, [start] * 3, {}, r"starts.*as many as the systems, 2; got 3", id="count")
+    yield pytest.param(system, [], {}, "starts.*at least one", id="none")
+    yield pytest.param(system, [start, 4], {}, r"starts\[1\].*must be a State", id="kind")
+    yield pytest.param(4, start, {}, r"systems\[0\].*must be a RollingSystem", id="system")
+    yield pytest.param(system, [start] * 100, {"every": 1e-5}, "10,000,000 samples", id="samples")
+    yield pytest.param(system, start, {"workers": 0}, "workers", id="workers")
+    sunk = replace(start, position=(0.1, 0.0, 0.02))
+    yield pytest.param(system, [start, sunk], {}, r"starts\[1\]\.position", id="inside the support")
+
+
+@pytest.mark.parametrize(("systems", "starts", "more", "said"), list(refused()))
+def test_what_is_refused_is_named(systems: Any, starts: Any, more: dict[str, Any], said: str) -> None:
+    with pytest.raises(tr.InvalidValueError, match=said):
+        tr.simulate_many(systems, starts, **{"duration": 1.0, "every": 0.5, **more})
+
+
+def test_without_heyoka_members_run_one_by_one(monkeypatch: pytest.MonkeyPatch, alone: list[int]) -> None:
+    systems, starts = bowls()
+    wanted = tr.simulate_many(systems[:2], starts[:2], 0.5, 0.25)
+    monkeypatch.setattr(taylor, "available", lambda: False)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # that heyoka is not there, once
+        tr.simulate_many(systems[0], starts[0], 0.5, 0.25)
+    runs = tr.simulate_many(systems[:2], starts[:2], 0.5, 0.25)
+    assert alone == [0, 0, 1]
+    assert np.abs(runs.position - wanted.position).max() <= SOLVER(1000, runge_kutta.TOLERANCE)
+
+
+def test_another_radius_or_rate_compiles_nothing(monkeypatch: pytest.MonkeyPatch, tmp_path: Any) -> None:
+    compiled: list[Any] = []
+    compile_, memory = ensemble._compile, taylor._Memory()
+    monkeypatch.setattr(ensemble, "_compile", lambda *parts: compiled.append(parts) or compile_(*parts))
+    monkeypatch.setattr(taylor, "cache_folder", lambda: tmp_path / "cache")
+    monkeypatch.setattr(taylor, "_memory", lambda: memory)
+    systems, starts = bowls()
+    for some in (slice(0, 3), slice(3, 11)):
+        tr.simulate_many(systems[some], starts[some], 0.25, 0.25)
+    assert len(compiled) == 1
+
+
+def test_progress_is_told_to_the_end() -> None:
+    systems, starts = bowls()
+    told: list[float] = []
+    tr.simulate_many(systems, starts, 0.5, 0.25, progress=told.append)
+    assert told == sorted(told)
+    assert told[-1] == 1.0
