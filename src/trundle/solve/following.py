@@ -29,10 +29,11 @@ from .laws import (
 from .samples import Event
 
 _STILL = 1e-12  # share of the speeds at the contact at which slip or turning has all but ended
-_FIRST = 1e-6  # share of |ρ| over that speed that slip takes to begin, at least, and a hundred times that at most
-_SETTLED_IN = 2e4  # how much faster its direction settles than it grows once it has begun
+_FIRST = 1e-6  # share of |ρ| over that speed that slip takes to begin, at least, and a thousand times that at most
+_SETTLED_IN = 2e3  # how much faster its direction settles than it grows once it has begun
 _JUST = 1e-8  # share of friction below which what it cannot give has no direction yet
 _WEIGHTLESS = 1e-13  # share of the forces at hand below which nothing presses the body on
+_PULLED_BACK = 1e-8  # share of the accelerations at hand at which a body that lifts off would come straight down
 _TAKE_OFF = 1e-15  # gap, as a share of |ρ|, with which a flight begins: it must not end where it begins
 SETTLED = 1e-6  # height, as a share of |ρ|, below which a bounce is cut
 
@@ -184,9 +185,29 @@ def _extras(system: RollingSystem, at: _Touch, slip: Vector | None = None) -> tu
     return still**2, *_floats(v / v.norm())
 
 
-def spins(system: RollingSystem, law: Law, time: float, numbers: Any) -> bool:
-    """Tell whether a body that stopped rolling still spins about the normal."""
-    at = _Touch.of(system, _state(system, law, time, numbers))
+def spins_on(system: RollingSystem, law: Law, time: float, numbers: Any) -> bool:
+    """Tell whether a body has stopped rolling, and still spins about the normal.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Body and support.
+    law : Law
+        Of rolling, at its stop.
+    time : float
+        s.
+    numbers : array
+        The state there.
+
+    Returns
+    -------
+    bool
+        False also where its turning over the support was only at its slowest.
+    """
+    state = _state(system, law, time, numbers)
+    if _goes_on(system, state, numbers, "stop"):
+        return False
+    at = _Touch.of(system, state)
     relative = at.Omega - at.contact.support.angular_velocity
     return bool(abs(relative.dot(at.contact.normal)) * at.arm > 1e-9 * at.scale(system))
 
@@ -208,7 +229,7 @@ def _fly(system: RollingSystem, state: State, least_gap: float = 0.0, events: tu
 
 def _lifted(system: RollingSystem, state: State) -> Next:
     at = _Touch.of(system, state)
-    if system.support.friction is None and _pull(system, at) > _WEIGHTLESS * at.scale(system) ** 2 / at.arm:
+    if system.support.friction is None and _pull(system, at) > _PULLED_BACK * at.scale(system) ** 2 / at.arm:
         raise SolverError(
             f"At t = {state.time:.9g} s friction without limit would have to hold the body down, which no support "
             "does. Give the support a `friction`, so that the body slips before that."
@@ -295,6 +316,32 @@ def _touching(system: RollingSystem, state: State, gave_way: str = "") -> Next:
     return _rolling(system, at, slips=gave_way == "slip")
 
 
+def moment(system: RollingSystem, state: State) -> float:
+    """Return a time in which a motion changes: |ρ| over its speed, or over what the forces make of it.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Body, support and loads.
+    state : State
+        At a contact.
+
+    Returns
+    -------
+    float
+        s.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> table = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane()))
+    >>> moment(table, table.place(velocity=(10.0, 0.0)))
+    0.01
+    """
+    at = _Touch.of(system, state)
+    return float(at.arm / at.scale(system))
+
+
 def _still(system: RollingSystem, at: _Touch) -> float:
     return _STILL * at.scale(system)
 
@@ -363,7 +410,7 @@ def _begins_to_slip(system: RollingSystem, at: _Touch, needed: Vector) -> Next:
     trial = _FIRST * at.arm / at.scale(system)
     growth = max((later(trial)[2] - begun) / trial, 1e-300)
     settling = needed.norm() * response(system, at.contact, at.orientation, needed / needed.norm()).norm()
-    wait = trial if begun > 0 else min(max(settling / (_SETTLED_IN * growth), trial), 100 * trial)
+    wait = trial if begun > 0 else min(max(settling / (_SETTLED_IN * growth), trial), 1000 * trial)
     (middle, *_), (then, hat, speed) = (later(0.5 * wait), later(wait))
     halfway = _way(system, middle, _friction(system, middle))[1]
     slip = hat * (wait * (begun + 4 * halfway + speed) / 6)
@@ -432,4 +479,4 @@ def _way(system: RollingSystem, at: _Touch, needed: Vector) -> tuple[Vector, flo
     return hat, speed
 
 
-__all__ = ["SETTLED", "Next", "after", "at_start", "spins"]
+__all__ = ["SETTLED", "Next", "after", "at_start", "spins_on"]

@@ -7,18 +7,22 @@ the slip, the normal force, the friction cone.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..errors import SolverError
+from ..mechanics.algebra import ZERO, Quaternion, Vector
+from ..mechanics.slipping import slip
 from ..mechanics.system import RollingSystem, State
 from . import following
-from .laws import Law
-from .samples import Array, Event, Progress, Samples
+from .following import Next
+from .laws import Law, RollingLaw
+from .samples import SLIPPING, Array, Event, Progress, Samples
 
 _MOST_EVENTS = 10_000
 _AT_ONCE = 20  # events at one instant: more means that no phase goes on
+_MANY, _MANY_WITHIN = 50, 1e-3  # events, and the share of the time in which the motion changes: no bounces are so close
 _ENDS = {
     "rim": "ran off the rim ({rim:g} m from the axis)",
     "end": "came to {end}",
@@ -91,6 +95,9 @@ def solve(
     now = following.at_start(system, start)
     events += now.events
     left, told = times, _telling(progress, times)
+    if now.time > start.time:  # it slips from rest: its first moment is behind it
+        held = RollingLaw()
+        left = _across(system, held, Stop(start.time, "", np.array(held.pack(system, start))), now, left, parts)
     while True:
         stretch = integrate(system, now.law, now.time, now.state, left, tolerance, now.extras, told)
         known = stretch.samples
@@ -105,15 +112,29 @@ def solve(
             break
         now = following.after(system, law, stop.name, stop.time, stop.state)
         events += now.events
-        _check_count(events)
-        left = left[left >= stop.time]
-        early = left[left < now.time]  # in the short step across the event
-        if early.size:
-            steps = [law.advanced(system, stop.time, stop.state.tolist(), t - stop.time) for t in early.tolist()]
-            parts.append(law.record(system, early, np.array(steps)))
-            left = left[early.size :]
+        _check_count(system, events)
+        left = _across(system, law, stop, now, left[left >= stop.time], parts)
     kept = [part for part in parts if part.time.size] or parts[:1]
     return Samples.joined(kept, tuple(events))
+
+
+def _across(system: RollingSystem, law: Law, stop: Stop, follows: Next, left: Array, parts: list[Samples]) -> Array:
+    """Add the samples in the short step across an event, and return the times after it."""
+    early = left[left < follows.time]
+    if early.size:
+        steps = [law.advanced(system, stop.time, stop.state.tolist(), t - stop.time) for t in early.tolist()]
+        samples = law.record(system, early, np.array(steps))
+        parts.append(_giving_way(system, samples, follows) if follows.law.code == SLIPPING else samples)
+    return left[early.size :]
+
+
+def _giving_way(system: RollingSystem, at: Samples, follows: Next) -> Samples:
+    """Return samples in which slip has begun, all but zero: the contact force is that of slipping."""
+    place = Vector.of(at.contact), Quaternion.of(at.orientation), Vector.of(at.angular_velocity)
+    direction = Vector(*follows.extras[1:4])
+    R = slip(system, at.time, *place, ZERO, at.support_own, direction).reaction
+    force = np.broadcast_to(R.array(), at.position.shape).copy()
+    return replace(at, contact_force=force, phase=np.full(at.time.size, SLIPPING, dtype=np.int8))
 
 
 def _telling(progress: Progress | None, times: Array) -> Progress | None:
@@ -125,7 +146,7 @@ def _telling(progress: Progress | None, times: Array) -> Progress | None:
 
 
 def _spinning_on(system: RollingSystem, law: Law, stop: Stop) -> bool:
-    return stop.name.removeprefix("near ") == "stop" and following.spins(system, law, stop.time, stop.state)
+    return stop.name.endswith("stop") and following.spins_on(system, law, stop.time, stop.state)
 
 
 def _ended(system: RollingSystem, law: Law, stop: Stop) -> tuple[Samples, Event]:
@@ -162,7 +183,7 @@ def end(system: RollingSystem, name: str, state: State) -> Event:
     return Event(state.time, name, f"{said} at t = {state.time:.9g} s", state, state)
 
 
-def _check_count(events: list[Event]) -> None:
+def _check_count(system: RollingSystem, events: list[Event]) -> None:
     """Refuse what would go on for ever."""
     if len(events) > _MOST_EVENTS:
         raise SolverError(
@@ -175,6 +196,16 @@ def _check_count(events: list[Event]) -> None:
         raise SolverError(
             f"No phase goes on at t = {recent[-1].time:.9g} s ({kinds}): rigid contact has no answer there. Change the "
             "friction, or round the body off."
+        )
+    many = events[-_MANY:]
+    if len(many) < _MANY or many[-1].after is None:
+        return
+    span = many[-1].time - many[0].time
+    if span < _MANY_WITHIN * following.moment(system, many[-1].after):
+        kinds = ", ".join(dict.fromkeys(event.kind for event in many))
+        raise SolverError(
+            f"The contact chatters at t = {many[-1].time:.9g} s: {_MANY} events ({kinds}) within {span:.2g} s. Does a "
+            "couple that acts while they touch throw the body off, and its absence let it come back?"
         )
 
 

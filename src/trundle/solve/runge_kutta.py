@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import SolverError
 from ..mechanics.system import RollingSystem, State
 from . import phases
-from .laws import Law
+from .laws import Law, SlippingLaw
 from .phases import Stop, Stretch
 from .samples import Array, Progress, Samples
 from .tracing import python_law
@@ -18,6 +18,8 @@ from .tracing import python_law
 TOLERANCE = 1e-12
 _LOOKS = 8  # at the stops in each step
 _EPSILON = 2.0**-52
+_SLOW_SLIP = 1e-6  # m/s for each rad/s of Ω
+_FIRST_STEP = 1e-12  # s
 
 
 def solve(
@@ -78,7 +80,7 @@ def integrate(
     SolverError
         If the integration breaks down.
     """
-    from scipy.integrate import DOP853
+    from scipy.integrate import DOP853, Radau
 
     function, names = python_law(system, law, extras)
     size, y0 = len(state), np.asarray(state, dtype=float)
@@ -91,10 +93,29 @@ def integrate(
         return np.array(function(t, y.tolist())[size:])
 
     try:
-        stepper = DOP853(rates, begin, y0, end, rtol=tolerance, atol=tolerance * _scale(y0))  # type: ignore[arg-type]
-        return _steps(stepper, stops, names, times, progress)
+        given: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * _scale(y0)}
+        if not _stiff(law, y0):
+            return _steps(DOP853(rates, begin, y0, end, **given), stops, names, times, progress)
+        # Its first steps must be as short as the law is stiff: across a jump of direction there are other solutions.
+        first = Radau(rates, begin, y0, end, first_step=min(_FIRST_STEP, end - begin), **given)
+        begun = _steps(first, stops, names, times, progress, until=lambda y: not _stiff(law, y))
+        if begun.stop is None or begun.stop.name:
+            return begun
+        left, y0 = times[begun.times.size :], begun.stop.state
+        then = _steps(DOP853(rates, begun.stop.time, y0, end, **given), stops, names, left, progress)
+        both = np.concatenate([begun.times, then.times]), np.concatenate([begun.states, then.states])
+        return Stretch(*both, then.stop)
     except (ZeroDivisionError, ValueError, OverflowError) as error:
         raise SolverError(f"The Runge-Kutta method broke down on the way to t = {end:g} s: {error}.") from None
+
+
+def _stiff(law: Law, y: Array) -> bool:
+    """Tell whether a body slips so slowly that the direction of its slip settles far faster than all else changes."""
+    return isinstance(law, SlippingLaw) and law.extras > 0 and 0 < _length(y[10:13]) < _SLOW_SLIP * _length(y[7:10])
+
+
+def _length(v: Array) -> float:
+    return float(np.linalg.norm(v))
 
 
 def _scale(y0: Array) -> Array:
@@ -107,8 +128,18 @@ def _size(part: Array) -> float:
     return max(float(np.abs(part).max(initial=0.0)), 1e-3)
 
 
-def _steps(stepper: Any, stops: Any, names: list[str], times: Array, progress: Progress | None) -> Stretch:
-    """Take steps to the end or the first stop; the states at the times are read off each step's own polynomial."""
+def _steps(
+    stepper: Any,
+    stops: Any,
+    names: list[str],
+    times: Array,
+    progress: Progress | None,
+    until: Callable[[Array], bool] = lambda _: False,
+) -> Stretch:
+    """Take steps to the end or the first stop; the states at the times are read off each step's own polynomial.
+
+    Where `until` says so of a state, they end after the step, at a stop without a name.
+    """
     states = np.empty((times.size, stepper.n))
     done = int(np.searchsorted(times, stepper.t, side="right"))
     states[:done] = stepper.y
@@ -126,6 +157,8 @@ def _steps(stepper: Any, stops: Any, names: list[str], times: Array, progress: P
             done = upto
         if found is not None:
             return Stretch(times[:done], states[:done], Stop(found[0], names[found[1]], path(found[0])))
+        if until(stepper.y) and done < times.size:
+            return Stretch(times[:done], states[:done], Stop(float(stepper.t), "", stepper.y.copy()))
         values = stops(stepper.t, stepper.y)
         if progress is not None:
             progress(float(stepper.t))
@@ -151,7 +184,9 @@ def _first_stop(path: Any, stops: Any, begin: Array, count: int) -> tuple[float,
             if value[j] >= 0 > value[j + 1]:
                 found.append((float(brentq(at, looks[j], looks[j + 1], xtol=1e-300, rtol=4 * _EPSILON)), which))
                 break
-            if j > 0 and value[j - 1] > value[j] < value[j + 1] and value[j] >= 0:  # it may dip below in between
+            dips = j > 0 and value[j - 1] > value[j] < value[j + 1] and value[j] >= 0
+            # It may fall below zero in between, but hardly by more than it falls and rises from look to look.
+            if dips and value[j] < max(value[j - 1], value[j + 1]) - value[j]:
                 bounds = (looks[j - 1], looks[j + 1])
                 low = minimize_scalar(at, bounds=bounds, method="bounded", options={"xatol": 1e-9 * np.ptp(bounds)})
                 if low.fun < 0:

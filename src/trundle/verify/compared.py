@@ -145,9 +145,12 @@ def _nudged(system: RollingSystem, start: State, change: float) -> State:
     if axis is not None:
         direction = q.matrix() @ axis
     else:
-        across = Omega - n * Omega.dot(n)
-        across = across if across.norm() > 0 else n.cross(E_X if abs(n.x) < 0.9 else E_Z)
-        direction = across / across.norm()
+        # Not along any motion of its own: a little of all that it can do.
+        first = n.cross(E_X if abs(n.x) < 0.9 else E_Z)
+        first = first / first.norm()
+        turning = Omega / Omega.norm() if Omega.norm() > 0 else first
+        direction = turning + first * 0.8 + n.cross(first) * 0.6 + n * 0.4
+        direction = direction / direction.norm()
     turned = Omega + direction * change
     rolling = contact.rolling_velocity(turned)
     (vx, vy, vz), (wx, wy, wz) = map(float, rolling), map(float, turned)

@@ -58,7 +58,7 @@ def _keeps(load: Load, motion: BodyMotion) -> bool:
 
 
 def powers(system: RollingSystem, at: Samples) -> Array:
-    """Return the power of friction, of the support and of loads without a potential, (3, n), W.
+    """Return the power of friction, of the support and of loads without a potential, and how large they may be, W.
 
     Parameters
     ----------
@@ -69,10 +69,10 @@ def powers(system: RollingSystem, at: Samples) -> Array:
 
     Returns
     -------
-    array (3, n)
-        R·s, R·u, and the rest; couples at the contact belong to the loads.
+    array (4, n)
+        R·s, R·u, and the rest; couples at the contact belong to the loads. The last is |R| times the speeds.
     """
-    found = np.zeros((3, at.time.size))
+    found = np.zeros((4, at.time.size))
     flies = at.phase == FLIGHT
     for which in (np.flatnonzero(flies), np.flatnonzero(~flies)):  # at the contact nothing acts in flight
         if which.size:
@@ -90,28 +90,29 @@ def _powers(system: RollingSystem, at: Samples) -> Array:
             given = given + load.force(motion).dot(V) + load.torque(motion).dot(Omega)
     if motion.normal is not None:
         given = given + (system.acting_on(motion).couple * R.dot(motion.normal)).dot(Omega)
-    both = (R.dot(V + carried - u), R.dot(u), given)
+    largest = R.norm() * (V.norm() + carried.norm() + u.norm())  # what rounding is a share of
+    both = (R.dot(V + carried - u), R.dot(u), given, largest)
     return np.stack([np.broadcast_to(np.asarray(power, dtype=float), at.time.shape) for power in both])
 
 
-def _integrals(system: RollingSystem, panels: Array, follow: Callable[[Array], Samples]) -> tuple[Array, Array]:
-    """Return the work of each kind and its size, (3,) each, J; panels are cut until a polynomial follows the powers."""
+def _integrals(system: RollingSystem, panels: Array, follow: Callable[[Array], Samples]) -> tuple[Array, float]:
+    """Return the work of each kind (3,) and its size, J; panels are cut until a polynomial follows the powers."""
     x, w = np.polynomial.legendre.leggauss(_NODES)
     tops = np.polynomial.legendre.legvander(x, _NODES - 1)[:, -2:] * w[:, None] * (_NODES - 1)
-    total, size = np.zeros(3), np.zeros(3)
-    for _ in range(_MOST_PASSES):
+    total, size = np.zeros(3), 0.0
+    for last in [False] * _MOST_PASSES + [True]:
         half = 0.5 * np.diff(panels)
         times = panels[:, :1] + half * (1 + x)
-        values = powers(system, follow(times.ravel())).reshape(3, *times.shape)
-        parts, sizes = (values @ w) * half[:, 0], (np.abs(values) @ w) * half[:, 0]
-        tails = np.abs(values @ tops).max(axis=(0, 2)) * half[:, 0]
-        rough = tails > 1e-15 * max(float((size + sizes.sum(axis=1)).max()), 1e-300)
-        total, size = total + parts[:, ~rough].sum(axis=1), size + sizes[:, ~rough].sum(axis=1)
+        *values, largest = powers(system, follow(times.ravel())).reshape(4, *times.shape)
+        parts, sizes = (np.array(values) @ w) * half[:, 0], (largest @ w) * half[:, 0]
+        tails = np.abs(np.array(values) @ tops).max(axis=(0, 2)) * half[:, 0]
+        rough = (tails > 1e-15 * max(size + float(sizes.sum()), 1e-300)) & (not last)
+        total, size = total + parts[:, ~rough].sum(axis=1), size + float(sizes[~rough].sum())
         if not rough.any():
-            return total, size
+            break
         edges = panels[rough, :1] + np.diff(panels[rough]) * np.linspace(0.0, 1.0, _PARTS + 1)
         panels = np.stack([edges[:, :-1].ravel(), edges[:, 1:].ravel()], axis=1)
-    return total + parts[:, rough].sum(axis=1), size + sizes[:, rough].sum(axis=1)
+    return total, size
 
 
 def _striking(events: tuple[Any, ...]) -> list[Any]:
@@ -164,9 +165,9 @@ def balance(
         With the parts in its note.
     """
     first, last = energy(system, ends)[[0, -1]]
-    (friction, support, loads), sizes = _integrals(system, panels, follow)
+    (friction, support, loads), size = _integrals(system, panels, follow)
     struck = sum(_energy_of(system, event.after) - _energy_of(system, event.before) for event in _striking(events))
-    size = max(abs(first), abs(last), abs(struck), float(sizes.sum()), 1e-300)
+    size = max(abs(first), abs(last), abs(struck), size, 1e-300)
     parts = {"friction": friction, "the support": support, "loads": loads, "landings": struck}
     said = ", ".join(f"{name} {value:+.6g} J" for name, value in parts.items() if abs(value) > 1e-15 * size)
     note = f"energy {first:.6g} to {last:.6g} J; work of {said}" if said else f"energy stays at {first:.6g} J"
