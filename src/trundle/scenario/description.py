@@ -16,6 +16,7 @@ from .words import LOADS, MOTIONS, SURFACES, Words, body_words, number_of, numbe
 
 _DIGITS = (None, 15, 14, 13)  # as computed; and as someone may have written them
 _ROUNDINGS = [(None, None), (15, 15), (15, None), (None, 15), (14, 14), (14, None), (13, 13)]  # of place, of motion
+_AS_GOOD = 1e-15  # of a state's parts: no more than a rounding or two
 _ROUNDING = 1e-12  # of a state's parts: below it other digits may do where these words do not
 
 
@@ -97,7 +98,7 @@ def _nearest(system: RollingSystem, start: State, seen: _Seen) -> _Told:
     """Return the first words that lead to the start to the last digit, else those that lead nearest."""
     told: list[_Told] = []
     for turned, wording in itertools.product(seen.turned, (seen.short, seen.riding, seen.turning, seen.whole)):
-        if wording == seen.whole and any(one.apart <= _ROUNDING for one in told):
+        if wording == seen.whole and any(one.apart <= _AS_GOOD for one in told):
             continue
         for place, motion in _ROUNDINGS:
             told.append(_tell(system, start, {**seen.place(place), **turned, **wording(motion)}))
