@@ -23,6 +23,8 @@ from .tape import Node, Tape, apply
 
 # 2π to 60 digits
 _TURN = Fraction("6.28318530717958647692528676655900576839433879875021164194988")
+# Only the sign of a stop matters; made small, it leaves the size of the steps to the state.
+_SMALL = 2.0**-20
 
 
 @dataclass(frozen=True)
@@ -63,7 +65,8 @@ class Lowered:
         variables = heyoka.make_vars(*self.names)
         inputs = [heyoka.time, *variables, *(heyoka.par[i] for i in range(self.parameters))]
         expressions = _as_heyoka(self.tape, self.outputs, inputs)
-        return list(zip(variables, expressions[:size], strict=True)), expressions[size:]
+        stops = [stop * _SMALL for stop in expressions[size:]]
+        return list(zip(variables, expressions[:size], strict=True)), stops
 
 
 def lower(system: RollingSystem, law: Law) -> Lowered:
@@ -100,6 +103,8 @@ def lower(system: RollingSystem, law: Law) -> Lowered:
     stops = law.stops(symbolic, time, state, given[count:])
     tidied = _tidied(symbolic, law, time, state)
     lowering = _Lowering(tape, len(names), len(given))
+    # A stop that never changes is passed at the start or never.
+    stops = {name: stop for name, stop in stops.items() if isinstance(stop, Node) and not lowering.fixed[stop.index]}
     outputs = tuple(lowering.copy(part) for part in (*rates, *stops.values()))
     parameters = len(lowering.wanted)
     tidy = lowering.new.function([lowering.copy(part) for part in tidied])  # it may want some of its own

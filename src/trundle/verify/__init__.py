@@ -132,7 +132,7 @@ def _law(system: RollingSystem, start: State, at: Samples, method: str) -> Itera
         ends = again.part(_places(again.time, np.array([start.time, at.time[-1]])))
 
         def follow(times: Array) -> Samples:
-            there = solver(method)(system, start, times, tolerance_of(method))
+            there = solver(method)(system, start, np.unique(times), tolerance_of(method))
             return there.part(_places(there.time, times))
 
         panels = np.vstack([stretch.panels() for stretch in found])
