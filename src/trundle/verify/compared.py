@@ -52,7 +52,7 @@ def same_again(system: RollingSystem, start: State, ours: Samples, again: Sample
     rounding = max(EXACT, 1e-15 * turned, 100 * tolerance_of(method) * turned)  # of an angle, which adds up
     bound = bound_of(method, turned)
     share = max(_difference(ours, theirs, sizes), angle * bound / rounding)
-    bound, grown = _allowing_growth(share, bound, system, start, ours, method)
+    bound, grown = _allowing_growth(share, bound, system, start, ours, method, sizes)
     note = f"gives the same motion, force and orientation at {known.sum()} instants{grown}"
     return checked("the method run again", share, bound, note)
 
@@ -95,7 +95,7 @@ def cross_check(
     angle = 2 * largest(turn.array()[:, 1:])
     allowed = 100 * tolerance_of(numerical) * max(10.0, turned)  # the error of Ω added up over the turning
     share = max(difference, angle * bound / allowed)
-    wider, grown = _allowing_growth(share, bound, system, start, ours, numerical)
+    wider, grown = _allowing_growth(share, bound, system, start, ours, numerical, sizes_of(system, ours))
     over = f"over {ours.time[-1] - start.time:g} s, {count} instants"
     yield checked(name, difference, wider, f"position, velocity, Ω; {over}{grown}")
     alone = "; exact from the place alone" if motion.straight_turn(0.0) is not None else ""
@@ -111,7 +111,13 @@ def _difference(ours: Samples, theirs: Samples, sizes: dict[str, float]) -> floa
 
 
 def _allowing_growth(
-    share: float, bound: float, system: RollingSystem, start: State, at: Samples, method: str
+    share: float,
+    bound: float,
+    system: RollingSystem,
+    start: State,
+    at: Samples,
+    method: str,
+    sizes: dict[str, float],
 ) -> tuple[float, str]:
     """Widen a bound by what the motion itself does to a small difference, where the plain bound does not hold.
 
@@ -120,12 +126,12 @@ def _allowing_growth(
     """
     if share <= bound:
         return bound, ""
-    magnified = _magnified(system, start, at, method)
+    magnified = _magnified(system, start, at, method, sizes)
     wider = bound * max(1.0, _A_STEP * magnified * np.sqrt(max(turned_in(at), 1.0)) / SOLVER)
     return (wider, f"; a change of the start shows {magnified:.2g} times larger") if wider > bound else (bound, "")
 
 
-def _magnified(system: RollingSystem, start: State, at: Samples, method: str) -> float:
+def _magnified(system: RollingSystem, start: State, at: Samples, method: str, sizes: dict[str, float]) -> float:
     """Return how many times larger than in Ω of the start a small change shows in the motion."""
     span = float(at.time[-1] - at.time[0])
     size = max(largest(at.angular_velocity), 1 / max(span, 1e-300))
@@ -134,7 +140,7 @@ def _magnified(system: RollingSystem, start: State, at: Samples, method: str) ->
     runs = [solver(method)(system, begin, times, tolerance_of(method)) for begin in (start, changed)]
     count = min(run.time.size for run in runs)
     one, other = (run.part(slice(0, count)) for run in runs)
-    return _difference(one, other, sizes_of(system, one)) / _NUDGE
+    return _difference(one, other, sizes) / _NUDGE
 
 
 def _nudged(system: RollingSystem, start: State, change: float) -> State:
