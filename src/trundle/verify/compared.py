@@ -135,32 +135,31 @@ def _magnified(system: RollingSystem, start: State, at: Samples, method: str, si
     """Return how many times larger than in Ω of the start a small change shows in the motion."""
     span = float(at.time[-1] - at.time[0])
     size = max(largest(at.angular_velocity), 1 / max(span, 1e-300))
-    changed = _nudged(system, start, _NUDGE * size)
     times = np.union1d(at.time[:: max(1, at.time.size // _INSTANTS)], at.time[-1:])
-    runs = [solver(method)(system, begin, times, tolerance_of(method)) for begin in (start, changed)]
-    count = min(run.time.size for run in runs)
-    one, other = (run.part(slice(0, count)) for run in runs)
-    return _difference(one, other, sizes) / _NUDGE
+    starts = [start, *_nudged(system, start, _NUDGE * size)]
+    first, *others = (solver(method)(system, begin, times, tolerance_of(method)) for begin in starts)
+    found = []
+    for other in others:
+        count = min(first.time.size, other.time.size)
+        one, changed = (run.part(slice(0, count)) for run in (first, other))
+        found.append(_difference(one, changed, sizes) / _NUDGE)
+    return max(found)
 
 
-def _nudged(system: RollingSystem, start: State, change: float) -> State:
-    """Return a start that rolls a little faster: along the axis of a cylinder, or else with its own Ω."""
+def _nudged(system: RollingSystem, start: State, change: float) -> list[State]:
+    """Return starts that roll a little differently: along the axis of a cylinder, or else each way a body can turn."""
     q, Omega = Quaternion(*start.orientation), Vector(*start.angular_velocity)
     contact = settle(system, start.time, Vector(*start.position), q, start.support)
     n, axis = contact.normal, system.body.shape.axis
-    if axis is not None:
-        direction = q.matrix() @ axis
-    else:
-        # Not along any motion of its own: a little of all that it can do.
-        first = n.cross(E_X if abs(n.x) < 0.9 else E_Z)
-        first = first / first.norm()
-        turning = Omega / Omega.norm() if Omega.norm() > 0 else first
-        direction = turning + first * 0.8 + n.cross(first) * 0.6 + n * 0.4
-        direction = direction / direction.norm()
-    turned = Omega + direction * change
-    rolling = contact.rolling_velocity(turned)
-    (vx, vy, vz), (wx, wy, wz) = map(float, rolling), map(float, turned)
-    return replace(start, velocity=(vx, vy, vz), angular_velocity=(wx, wy, wz))
+    first = n.cross(E_X if abs(n.x) < 0.9 else E_Z)
+    first = first / first.norm()
+    found = []
+    for way in (first, n.cross(first), n) if axis is None else (q.matrix() @ axis,):
+        turned = Omega + way * change
+        rolling = contact.rolling_velocity(turned)
+        (vx, vy, vz), (wx, wy, wz) = map(float, rolling), map(float, turned)
+        found.append(replace(start, velocity=(vx, vy, vz), angular_velocity=(wx, wy, wz)))
+    return found
 
 
 __all__ = ["cross_check", "same_again"]
