@@ -29,6 +29,7 @@ _MOST_SAMPLES = 20_000  # looked at for integrals
 _RUN_AGAIN = 2000  # samples
 _MOST_STRETCHES = 200  # looked at
 _EVENTS_TOLD = 4
+_MEANWHILE = {"rolling": "while it rolls", "slipping": "while it slips", "flight": "in flight"}
 _FITTED, _CIRCLES_FITTED = 2000, 20  # points and, where they are taken anew, circles
 
 
@@ -164,7 +165,7 @@ def _integrals(system: RollingSystem, at: Samples, method: str) -> Iterator[Card
             known = worst.get(integral.name, (0.0, integral, set()))
             worst[integral.name] = max(known[0], drift), integral, known[2] | {phase}
     for name, (drift, integral, held) in worst.items():
-        while_ = "" if held == phases else f" while {' or '.join(sorted(held))}"
+        while_ = "" if held == phases else f" {' and '.join(_MEANWHILE[phase] for phase in sorted(held))}"
         yield checked(f"drift of the {name}", drift, bound, f"{integral.formula} stays the same{while_}")
 
 
