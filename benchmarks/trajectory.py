@@ -7,36 +7,26 @@ Ten numbers, orientation included, so nothing here knows of the closed form. Ach
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 import trundle as tr
-from measure import Row, best_times, check, seconds, timed
+from measure import Row, best_times, check, seconds
+from peers import Solver, attempts, fairest, run, scipy_peers
 from rolling_ball import for_jax, for_numba, law
 from trundle.mechanics.parameters import numbers
 from trundle.solve import closed_form, taylor
+from trundle.solve.laws import RollingLaw
 from trundle.solve.tracing import contact_state
 
 TITLE = "Taylor: three trajectories of a ball on a tilted turntable with drag, ten numbers, 60 s, 601 samples each"
 
 DURATION, SAMPLES, ROUNDS = 60.0, 601, 4
 STARTS = (0.30, 0.35, 0.40)  # m from the axis
-TOLERANCES = (1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 2.3e-14, 1e-14)  # solve_ivp takes nothing below 2.22e-14
 
 Array = NDArray[Any]
-Solver = Callable[[Array, float], Array]  # the ten numbers at the start, tolerance -> (samples, 10)
-
-
-@dataclass(frozen=True)
-class Attempt:
-    """What a peer reached with one tolerance."""
-
-    tolerance: float
-    error: float
-    time: float
 
 
 def rows() -> Iterator[Row]:
@@ -62,22 +52,23 @@ def rows() -> Iterator[Row]:
     check(exact_error < 1e-12, f"closed form and reference must agree; they are {exact_error:.1e} apart")
     our_error = error(ours())
 
-    integrator = taylor._integrator(system, taylor.TOLERANCE)  # heyoka alone, for information
+    integrator, lowered = taylor.compiled(system, RollingLaw())  # heyoka alone, for information
+    parameters = lowered.values(numbers(system), 0.0)[: lowered.parameters]
 
     def bare() -> list[Array]:
         found = []
         for state in states:
-            integrator.time, integrator.state[:], integrator.pars[:] = 0.0, state, numbers(system)
+            integrator.time, integrator.state[:], integrator.pars[:] = 0.0, state, parameters
             found.append(integrator.propagate_grid(times)[-1].copy())
         return found
 
     peers = _peers(facts, times)
-    attempts = {name: _attempts(solver, states, error) for name, solver in peers.items()}
-    chosen = {name: _fairest(found, our_error) for name, found in attempts.items()}
+    tried = {name: attempts(solver, states, error) for name, solver in peers.items()}
+    chosen = {name: fairest(found, our_error) for name, found in tried.items()}
     candidates: dict[str, Callable[[], Any]] = {"ours": ours, "bare": bare}
     for name, solver in peers.items():
-        for label, attempt in ((name, chosen[name]), (f"{name}, loose", attempts[name][0])):
-            candidates[label] = _run(solver, states, attempt.tolerance)
+        for label, attempt in ((name, chosen[name]), (f"{name}, loose", tried[name][0])):
+            candidates[label] = run(solver, states, attempt.tolerance)
     best = best_times(candidates, ROUNDS)
 
     for name, attempt in chosen.items():
@@ -86,7 +77,7 @@ def rows() -> Iterator[Row]:
         raw = f"{our_error:.1e} / {attempt.error:.1e}"
         yield Row("  achieved error: taylor.solve / the peer", our_error / attempt.error, most=1, raw=raw)
     for name in peers:
-        loose, label = attempts[name][0], f"{name}, loose"
+        loose, label = tried[name][0], f"{name}, loose"
         raw = f"{seconds(best[label])} / {seconds(best['ours'])}, the peer with error {loose.error:.1e}"
         yield Row(f"{name} at {loose.tolerance:.0e} / ours", best[label] / best["ours"], raw=raw)
     raw = f"{seconds(best['ours'])} / {seconds(best['bare'])}, heyoka's error {error(bare()):.1e}"
@@ -114,24 +105,12 @@ def _error(found: Array, reference: Array) -> float:
 
 
 def _peers(facts: tuple[float, ...], times: Array) -> dict[str, Solver]:
-    """Return the peers. SciPy has DOP853 twice: in Python as solve_ivp, and compiled as ode."""
+    """Return the peers."""
     import diffrax
     import jax
-    from scipy.integrate import ode, solve_ivp
 
     jax.config.update("jax_enable_x64", True)
     on_numba, on_jax = for_numba(law(*facts)), for_jax(law(*facts))
-
-    def with_solve_ivp(state: Array, tolerance: float) -> Array:
-        if tolerance < 100 * np.finfo(float).eps:
-            return np.full((SAMPLES, 10), np.inf)
-        span = (0.0, DURATION)
-        return solve_ivp(on_numba, span, state, "DOP853", times, rtol=tolerance, atol=tolerance).y.T
-
-    def with_ode(state: Array, tolerance: float) -> Array:
-        solver = ode(on_numba).set_integrator("dop853", rtol=tolerance, atol=tolerance, nsteps=10**9)
-        solver.set_initial_value(state, 0.0)
-        return np.array([state, *(solver.integrate(t) for t in times[1:])])
 
     @jax.jit
     def compiled(state: Any, tolerance: Any) -> Any:
@@ -151,29 +130,4 @@ def _peers(facts: tuple[float, ...], times: Array) -> dict[str, Solver]:
     def with_diffrax(state: Array, tolerance: float) -> Array:
         return np.asarray(compiled(state, tolerance))
 
-    return {
-        "SciPy solve_ivp DOP853, numba": with_solve_ivp,
-        "SciPy ode dop853, numba": with_ode,
-        "diffrax Dopri8, jit": with_diffrax,
-    }
-
-
-def _run(solver: Solver, states: list[Array], tolerance: float) -> Callable[[], list[Array]]:
-    return lambda: [solver(state, tolerance) for state in states]
-
-
-def _attempts(solver: Solver, states: list[Array], error: Callable[[list[Array]], float]) -> list[Attempt]:
-    """Run a peer at each tolerance; one that it refuses, or does not come through with, has the error infinity."""
-    found = []
-    solver(states[0], TOLERANCES[0])  # compiles
-    for tolerance in TOLERANCES:
-        time, trajectories = timed(_run(solver, states, tolerance))
-        reached = error(trajectories)
-        found.append(Attempt(tolerance, reached if np.isfinite(reached) else np.inf, time))
-    return found
-
-
-def _fairest(attempts: list[Attempt], our_error: float) -> Attempt:
-    """Choose the fastest run that is as good as ours; where there is none, the fastest of the peer's best error."""
-    goal = max(our_error, min(attempt.error for attempt in attempts))
-    return min((attempt for attempt in attempts if attempt.error <= goal), key=lambda attempt: attempt.time)
+    return {**scipy_peers(on_numba, times), "diffrax Dopri8, jit": with_diffrax}

@@ -10,6 +10,7 @@ import numpy as np
 
 from . import labels
 from .errors import InvalidValueError, SolverError, TrundleError
+from .mechanics.parameters import structure_of
 from .mechanics.system import RollingSystem, State
 from .simulation import simulate
 from .solve import taylor
@@ -111,11 +112,9 @@ def _listed(values: Any, key: str, kind: type) -> list[Any]:
 
 
 def _check(systems: list[RollingSystem], starts: list[State], instants: int, workers: int | None) -> None:
-    from .solve.ensemble import structure
-
-    first = structure(systems[0])
+    first = structure_of(systems[0])
     for i, system in enumerate(systems):
-        if system is not systems[0] and structure(system) != first:
+        if system is not systems[0] and structure_of(system) != first:
             remedy = "Members differ in numbers only; run other bodies, supports or loads in another call."
             raise InvalidValueError(f"systems[{i}]", "must be made of the same parts as systems[0]", system, remedy)
     for i, start in enumerate(starts):

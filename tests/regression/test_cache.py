@@ -295,3 +295,22 @@ print(len(count))
         for _ in range(2)
     ]
     assert counts == ["1\n", "0\n"]
+
+
+@dataclass(frozen=True)
+class Moody(Load):
+    """A load that holds what cannot be hashed."""
+
+    values: Any
+
+    def force(self, motion: BodyMotion) -> Vector:  # noqa: ARG002
+        return Vector(self.values[0], 0.0, 0.0)
+
+
+def test_a_part_that_may_change_is_looked_at_each_time(machine: Machine) -> None:
+    push = [0.0]
+    system = replace(SYSTEM, loads=(Moody(push),))
+    still = machine.run(system)
+    push[0] = 0.5
+    assert np.abs(machine.run(system).position - still.position).max() > 1e-3
+    assert np.array_equal(still.position, machine.run(replace(SYSTEM, loads=(Moody((0.0,)),))).position)

@@ -28,7 +28,7 @@ def numbers(thing: Any) -> list[float]:
     --------
     >>> import trundle as tr
     >>> numbers(tr.Support(tr.Plane(rim=0.5), motion=tr.Spin(3.5), tilt=0.05))
-    [0.5, 3.5, 0.05]
+    [0.5, 3.5, 0.05, 0.0]
     """
     return [float(value) for value in _walk(thing)]
 
@@ -42,6 +42,33 @@ def _walk(thing: Any) -> Iterator[Any]:
             yield from _walk(part)
     elif is_number(thing) and not isinstance(thing, bool):
         yield thing
+
+
+def structure_of(thing: Any) -> Any:
+    """Return what a system is apart from its numbers, in a form that can be compared.
+
+    Parameters
+    ----------
+    thing : RollingSystem or any part of it
+        Dataclasses, tuples, numbers and names, nested.
+
+    Returns
+    -------
+    object
+        Equal for systems that one compiled integrator serves.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> plain, small, large = tr.Plane(), tr.Plane(rim=0.5), tr.Plane(rim=2.0)
+    >>> structure_of(small) == structure_of(large), structure_of(small) == structure_of(plain)
+    (True, False)
+    """
+    if is_dataclass(thing) and not isinstance(thing, type):
+        return type(thing), tuple(structure_of(getattr(thing, field.name)) for field in fields(thing))
+    if isinstance(thing, tuple):
+        return tuple(structure_of(part) for part in thing)
+    return float if is_number(thing) and not isinstance(thing, bool) else thing
 
 
 def with_numbers(thing: T, values: Sequence[Scalar]) -> T:

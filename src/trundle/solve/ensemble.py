@@ -10,7 +10,7 @@ import copy
 import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -20,11 +20,10 @@ from ..mechanics.contact import Contact, touch
 from ..mechanics.jets import jets
 from ..mechanics.parameters import numbers, with_numbers
 from ..mechanics.placing import SLIP_TOLERANCE
-from ..mechanics.scalars import is_number
 from ..mechanics.system import RollingSystem, State
 from . import taylor
 from .laws import Law, RollingLaw
-from .lowering import Lowered, lower
+from .lowering import Lowered
 from .samples import Array, Samples
 
 LANES = 8  # doubles in the widest registers; where they are half as wide, two at a time still gain
@@ -50,33 +49,6 @@ class Block:
     members: Array
     samples: Samples
     system: RollingSystem
-
-
-def structure(thing: Any) -> Any:
-    """Return what a system is apart from its numbers, in a form that can be compared.
-
-    Parameters
-    ----------
-    thing : RollingSystem or any part of it
-        Dataclasses, tuples, numbers and names, nested.
-
-    Returns
-    -------
-    object
-        Equal for systems that one compiled integrator serves.
-
-    Examples
-    --------
-    >>> import trundle as tr
-    >>> plain, small, large = tr.Plane(), tr.Plane(rim=0.5), tr.Plane(rim=2.0)
-    >>> structure(small) == structure(large), structure(small) == structure(plain)
-    (True, False)
-    """
-    if is_dataclass(thing) and not isinstance(thing, type):
-        return type(thing), tuple(structure(getattr(thing, field.name)) for field in fields(thing))
-    if isinstance(thing, tuple):
-        return tuple(structure(part) for part in thing)
-    return None if thing is None else "number" if is_number(thing) and not isinstance(thing, bool) else thing
 
 
 def together(systems: Sequence[RollingSystem], repeat: int = 1) -> RollingSystem:
@@ -214,8 +186,8 @@ def integrate(
         Members that came to a stop of the law, or broke down, and are in no block.
     """
     law = RollingLaw()
-    lowered = lower(systems[0], law)
-    integrator = _compiled(lowered, tolerance)
+    lowered, key = taylor._ready(systems[0], law, tolerance)
+    integrator = taylor._compiled(f"{LANES}-{key}", lambda: _compile(lowered, tolerance))
     blocks = [list(members[i : i + LANES]) for i in range(0, len(members), LANES)]
 
     def work(which: int) -> list[int]:
@@ -314,20 +286,14 @@ def _chunks(times: Array) -> Iterator[tuple[float, Array]]:
         first = float(part[-1])
 
 
-def _compiled(lowered: Lowered, tolerance: float) -> Any:
-    """Return the integrator from this process, the user's cache, or the compiler."""
-    equations, stops = lowered.heyoka()
-    key = f"{LANES}-{taylor._key(equations, stops, tolerance, lowered.parameters)}"
-    return taylor._compiled(key, lambda: _compile(equations, stops, tolerance, lowered.parameters))
-
-
-def _compile(equations: list[Any], stops: list[Any], tolerance: float, parameters: int) -> Any:
+def _compile(lowered: Lowered, tolerance: float) -> Any:
     import heyoka
 
+    equations, stops = lowered.heyoka()
     return heyoka.taylor_adaptive_batch(
         equations,
         np.zeros((len(equations), LANES)),
-        pars=np.zeros((parameters, LANES)),
+        pars=np.zeros((lowered.parameters, LANES)),
         tol=tolerance,
         compact_mode=True,
         t_events=[heyoka.t_event_batch(stop, direction=heyoka.event_direction.negative) for stop in stops],

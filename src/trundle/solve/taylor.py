@@ -18,7 +18,7 @@ import numpy as np
 
 from ..errors import SolverError
 from ..files import written_whole
-from ..mechanics.parameters import numbers
+from ..mechanics.parameters import numbers, structure_of
 from ..mechanics.system import RollingSystem, State
 from . import phases
 from .laws import Law
@@ -164,11 +164,28 @@ def compiled(system: RollingSystem, law: Law, tolerance: float = TOLERANCE) -> t
     --------
     See `benchmarks/trajectory.py`.
     """
-    lowered = lower(system, law)
-    equations, stops = lowered.heyoka()
-    key = _key(equations, stops, tolerance, lowered.parameters)
-    made = _compiled(key, lambda: _compile(equations, stops, tolerance, lowered.parameters))
-    return copy.copy(made), lowered
+    lowered, key = _ready(system, law, tolerance)
+
+    def compile_() -> Any:
+        return _compile(*lowered.heyoka(), tolerance, lowered.parameters)
+
+    return copy.copy(_compiled(key, compile_)), lowered
+
+
+def _ready(system: RollingSystem, law: Law, tolerance: float) -> tuple[Lowered, str]:
+    """Return a law ready for the compiler, and the name of what comes of it; worked out once for each structure."""
+    ready = _memory().ready
+    structure: Any = (structure_of(system), type(law), tuple(vars(law).items()), tolerance)
+    try:
+        known = ready.get(structure)
+    except TypeError:  # a part of one's own that cannot be hashed, and so may change
+        structure = known = None
+    if known is None:
+        lowered = lower(system, law)
+        known = lowered, _key(*lowered.heyoka(), tolerance, lowered.parameters)
+        if structure is not None:
+            ready[structure] = known
+    return known
 
 
 class _Run:
@@ -245,10 +262,11 @@ def _event(run: _Run, outcome: Any) -> int | None:
 
 
 class _Memory:
-    """Compiled integrators of this process, by key; never used themselves, only copied."""
+    """Compiled integrators of this process, by key, never used themselves, only copied; and the laws they came of."""
 
     def __init__(self) -> None:
         self.known: dict[str, Any] = {}
+        self.ready: dict[Any, tuple[Lowered, str]] = {}
 
 
 @cache
