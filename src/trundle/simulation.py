@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -117,9 +118,25 @@ def _check_start(system: RollingSystem, start: State) -> None:
             "start.position", "must put the body on the support or over it", start.position, f"Gap: {gap:g} m."
         )
     system.check_rim(contact, start.position)
+    _check_loads(system, start, contact)
     if gap <= SLIP_TOLERANCE * contact.offset.norm():
         _check_slip(system, start, contact)
         straight.check_start(system, start)
+
+
+def _check_loads(system: RollingSystem, start: State, contact: Contact) -> None:
+    """Refuse a load that has no value where the body starts."""
+    V, q, Omega = Vector(*start.velocity), Quaternion(*start.orientation), Vector(*start.angular_velocity)
+    motion = contact.body_motion(system.body.mass, start.time, V, q, Omega)
+    for i, load in enumerate(system.loads):
+        try:
+            parts = [*load.force(motion), *load.torque(motion), *load.torque_per_normal_force(motion)]
+            finite = all(math.isfinite(part) for part in parts)
+        except (ArithmeticError, ValueError):  # a formula divides by 0, or takes the root of something negative
+            finite = False
+        if not finite:
+            remedy = "Start somewhere else, or change its formula."
+            raise InvalidValueError(f"loads[{i}]", "must be finite at the start", load, remedy)
 
 
 def _check_slip(system: RollingSystem, start: State, contact: Contact) -> None:

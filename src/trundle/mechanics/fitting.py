@@ -130,7 +130,9 @@ def check_place(surface: Surface, u: float, v: float, received: Any, key: str = 
             raise InvalidValueError(key, "must be where the surface is smooth", received, remedy)
     left = surface.inside(p)
     if left is not None and not left > 0:
-        raise InvalidValueError(key, "must be on the surface", received, f"It is at or beyond {surface.end}.")
+        raise InvalidValueError(
+            key, "must be on the surface, where it is smooth", received, f"It is at or beyond {surface.end}."
+        )
 
 
 def check_curvature(contact: Contact, received: Any, key: str = "position") -> None:

@@ -86,7 +86,7 @@ class Law:
         if surface.rim is not None:
             found["rim"] = surface.rim * surface.rim - (there.x * there.x + there.y * there.y)
         ending = surface.inside(there)
-        if ending is not None and self.code != FLIGHT:
+        if ending is not None:
             found["end"] = ending - _SHORT_OF_IT * contact.offset.norm()
         covered = system.body.shape.covers(-(orientation.matrix().transpose @ contact.normal))
         if covered is not None:

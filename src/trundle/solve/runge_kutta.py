@@ -87,10 +87,16 @@ def integrate(
     end = max(float(times[-1]) if times.size else begin, float(np.nextafter(begin, np.inf)))  # some way to go
 
     def rates(t: float, y: Array) -> Array:
-        return np.array(function(t, y.tolist())[:size])
+        try:
+            return np.array(function(t, y.tolist())[:size])
+        except (ArithmeticError, ValueError):  # a trial beyond the end of a formula: a shorter step stays before it
+            return np.full(size, np.nan)
 
     def stops(t: float, y: Array) -> Array:
-        return np.array(function(t, y.tolist())[size:])
+        try:
+            return np.array(function(t, y.tolist())[size:])
+        except (ArithmeticError, ValueError):
+            return np.full(len(names), np.nan)
 
     try:
         given: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * _scale(y0)}

@@ -6,17 +6,21 @@ from dataclasses import dataclass
 from typing import Any
 
 from .. import checks
+from ..algebra import Vector
 from ..expressions import Expression
+from ..jets import jets
 from ..scalars import Scalar
 from .measured import Grid, HeightTable
 from .over_plane import OverPlane
+from .seams import seams, to_the_next
 
 
 @dataclass(frozen=True)
 class HeightField(OverPlane):
     """The surface z = h(x, y), by a formula in x and y.
 
-    It never counts as symmetric about the axis; write a `Revolution` for one that is.
+    It never counts as symmetric about the axis; write a `Revolution` for one that is. A run ends where the contact
+    comes to a crease, as ``abs`` makes it, or to the end of the formula.
 
     Parameters
     ----------
@@ -34,6 +38,7 @@ class HeightField(OverPlane):
     formula: Any
     rim: Scalar | None = None
     axisymmetric = False
+    end = "where the surface's formula ends or has a crease"
 
     def __post_init__(self) -> None:
         if not isinstance(self.formula, Expression):
@@ -69,3 +74,8 @@ class HeightField(OverPlane):
     def height(self, x: Scalar, y: Scalar) -> Scalar:
         """Return h, m."""
         return self.formula.at(x=x, y=y)
+
+    def inside(self, p: Vector) -> Scalar | None:
+        """Return about how far the nearest crease is, or the end of the formula, m; None where it has neither."""
+        x, y = jets((p.x, p.y))
+        return to_the_next(seams(self.formula.tree), x=x, y=y)

@@ -37,6 +37,46 @@ def in_square(tree: Any) -> Any:
     return None if odd else rest
 
 
+def is_even(tree: Any) -> bool:
+    """Tell whether a formula in r is even, f(−r) = f(r), also where it cannot be written in r².
+
+    Parameters
+    ----------
+    tree : nested tuple
+        Of an `Expression` in r and r2.
+
+    Returns
+    -------
+    bool
+        False where it is not seen to be.
+
+    Examples
+    --------
+    >>> is_even(("cos", "r")), is_even(("*", "r", ("sin", "r"))), is_even(("sin", "r"))
+    (True, True, False)
+    """
+    try:
+        return not _odd(tree)
+    except _NeitherError:
+        return False
+
+
+def _odd(tree: Any) -> bool:
+    if not isinstance(tree, tuple):
+        return bool(tree == "r")
+    operator, *rest = tree
+    if operator == "**":
+        return _odd(rest[0]) and int(rest[1]) % 2 == 1
+    odds = [_odd(part) for part in rest]
+    if operator in ("*", "/"):
+        return odds[0] != odds[1]
+    if operator in ("cos", "abs", "hypot"):
+        return False
+    if len(set(odds)) > 1 or (odds[0] and operator not in ("neg", "+", "-", "sin", "tan")):
+        raise _NeitherError
+    return odds[0]
+
+
 def _parted(tree: Any) -> tuple[bool, Any]:
     """Return whether a formula is odd, and g with f = g(r²), or f = r g(r²) where it is."""
     if not isinstance(tree, tuple):

@@ -6,12 +6,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from .. import checks
+from ..algebra import Vector
 from ..expressions import Expression
 from ..jets import Jet, jets
 from ..scalars import Scalar, namespace
 from .measured import Profile, RevolutionTable
 from .over_plane import Bends, OverPlane, Slopes, around_axis
-from .parity import in_square
+from .parity import in_square, is_even
+from .seams import seams, to_the_next
 
 _VARIABLES = ("r", "r2")
 # Added to r² so that a formula that is smooth at the axis, but not written in r², has its limit there, not 0/0.
@@ -42,6 +44,7 @@ class Revolution(OverPlane):
     formula: Any
     rim: Scalar | None = None
     axisymmetric = True
+    end = "where the surface's formula ends or has a crease or an apex"
 
     def __post_init__(self) -> None:
         if not isinstance(self.formula, Expression):
@@ -95,6 +98,16 @@ class Revolution(OverPlane):
         e, f, around = x / r, y / r, first / r
         bend = second - around
         return (first * e, first * f), (around + bend * (e * e), bend * (e * f), around + bend * (f * f))
+
+    def inside(self, p: Vector) -> Scalar | None:
+        """Return about how far a crease is, an apex or the end of the formula, m; None where it has none of them."""
+        even = in_square(self.formula.tree)
+        if even is not None:
+            return to_the_next(seams(even), r2=self._square(*jets((p.x, p.y))))
+        square = self._square(p.x, p.y)
+        (r,) = jets((namespace(square).sqrt(square + _NOTHING),))
+        apex = [] if is_even(self.formula.tree) else ["r"]
+        return to_the_next([*seams(self.formula.tree), *apex], r=r, r2=r * r)
 
 
 def _differentiated(formula: Expression, **variable: Scalar) -> tuple[Scalar, Scalar, Scalar]:

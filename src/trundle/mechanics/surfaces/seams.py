@@ -1,0 +1,81 @@
+"""Where a formula is not smooth, or ends: how far that is."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..expressions import Expression
+from ..jets import Jet
+from ..scalars import Scalar, namespace
+
+# Metres beyond which a seam does not matter. What is left of a seam's distance stays finite where its slope vanishes.
+_FAR = 1.0
+_NOTHING = 1e-300
+
+
+def seams(tree: Any) -> list[Any]:
+    """Return parts of a formula that are 0 where it is not smooth, or ends.
+
+    Parameters
+    ----------
+    tree : nested tuple
+        Of an `Expression`.
+
+    Returns
+    -------
+    list of nested tuple
+        What stands under a root, in a logarithm, between the bars of an absolute value, below a fraction bar.
+
+    Examples
+    --------
+    >>> seams(("*", 0.2, ("abs", "x"))), seams(("+", ("sin", "x"), ("/", "y", 2.0)))
+    (['x'], [])
+    """
+    if not isinstance(tree, tuple):
+        return []
+    operator, *rest = tree
+    if operator == "**":
+        return [*seams(rest[0]), *([rest[0]] if int(rest[1]) < 0 else [])]
+    found = [seam for part in rest for seam in seams(part)]
+    if operator in ("abs", "sqrt", "log"):
+        found.append(rest[0])
+    elif operator == "/":
+        found.append(rest[1])
+    elif operator == "hypot":
+        found.append(("+", *(("**", part, "2") for part in rest)))
+    elif operator == "tan":
+        found.append(("cos", rest[0]))
+    return [seam for seam in found if isinstance(seam, (str, tuple))]
+
+
+def to_the_next(trees: list[Any], **values: Any) -> Scalar | None:
+    """Return about how far the nearest seam is, m, at most 1 m; 0 on it.
+
+    Parameters
+    ----------
+    trees : list of nested tuple
+        The seams.
+    values : Jet or Scalar
+        Of the variables, as jets in lengths along the plane.
+
+    Returns
+    -------
+    Scalar or None
+        None where there are none.
+
+    Examples
+    --------
+    >>> from trundle.mechanics.jets import jets
+    >>> x, y = jets((0.03, 0.04))
+    >>> round(to_the_next(seams(("abs", "x")), x=x, y=y), 4)
+    0.03
+    """
+    product: Scalar | None = None
+    for tree in trees:
+        g = Expression(tree, "").at(**values)
+        if not isinstance(g, Jet):
+            continue
+        slope, square = sum((part * part for part in g.gradient), 0.0), g.value * g.value
+        share = square / (slope * _FAR**2 + square + _NOTHING)
+        product = share if product is None else product * share
+    return None if product is None else namespace(product).sqrt(product) * _FAR
