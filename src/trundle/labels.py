@@ -112,7 +112,7 @@ def own_names(system: RollingSystem) -> list[str]:
 
 
 def _own(system: RollingSystem, samples: Samples) -> dict[str, Any]:
-    facts = [_OWN[name] for name in system.support.motion.own]
+    facts = [_OWN[name.rstrip("_0123456789")] for name in system.support.motion.own]  # of two that turn: angle_2
     return {
         variable: (("time",), column, {"long_name": long_name, "units": unit})
         for variable, column, (long_name, unit) in zip(own_names(system), samples.own.T, facts, strict=True)

@@ -121,7 +121,7 @@ def _check_start(system: RollingSystem, start: State) -> None:
     _check_loads(system, start, contact)
     if gap <= SLIP_TOLERANCE * contact.offset.norm():
         _check_slip(system, start, contact)
-        straight.check_start(system, start)
+    straight.check_start(system, start)
 
 
 def _check_loads(system: RollingSystem, start: State, contact: Contact) -> None:

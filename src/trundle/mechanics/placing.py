@@ -66,8 +66,7 @@ class Placing:
         self._check_no_slip(contact, V, Omega, gap)
         centre = contact.centre + contact.normal * gap
         start = State(_triple(centre), _triple(V), _triple(Omega), tuple(q), support=tuple(map(float, own)))
-        if gap == 0:
-            straight.check_start(system, start)
+        straight.check_start(system, start)
         return start
 
     def _contact(self, point: Vector, q: Quaternion, own: tuple[Scalar, ...]) -> Contact:

@@ -54,7 +54,8 @@ def facing(contact: Contact, begin: SupportState, surface: Surface, velocity: An
     first, second = (begin.rotation @ e for e in surface.directions(own))
     along = (1.0, 0.0)
     if velocity is not None and not isinstance(velocity, str):
-        vx, vy = checks.components(velocity, "velocity", "velocity", 2)
+        count = 3 if hasattr(velocity, "__len__") and len(velocity) == 3 else 2  # the third is along the normal
+        vx, vy, *_ = checks.components(velocity, "velocity", "velocity", count)
         speed = math.hypot(vx, vy)
         # The way is not reversed by rolling backwards along the first coordinate.
         if speed > 0 and vy != 0:
@@ -73,7 +74,7 @@ def check_start(system: RollingSystem, start: State) -> None:
     system : RollingSystem
         Bodies that touch at a point pass.
     start : State
-        A start that touches and rolls.
+        A start that touches, or falls.
 
     Raises
     ------
@@ -103,6 +104,10 @@ def check_start(system: RollingSystem, start: State) -> None:
         raise _crooked(system, "its axis along a straight line of the surface", "Leave `orientation` out, or turn it.")
     if _across(Omega, axis) > TOLERANCE * Omega.norm():
         raise _crooked(system, "its Ω along its axis", "A sphere rolls in every direction.")
+    V = Vector(*start.velocity)
+    along = V - contact.support.material_velocity(contact.point)
+    if abs(along.dot(axis)) > TOLERANCE * max(along.norm(), V.norm()):
+        raise _crooked(system, "its way across its axis", "Leave `orientation` out and it is laid across its way.")
     now = roll(system, start.time, contact.point, q, Omega, start.support)
     size = max(now.angular_acceleration.norm(), Omega.dot(Omega))
     if _across(now.angular_acceleration, axis) > TOLERANCE * size:

@@ -110,7 +110,7 @@ def solve(
             parts.append(samples)
             events.append(event)
             break
-        now = following.after(system, law, stop.name, stop.time, stop.state)
+        now = _following(system, law, stop)
         events += now.events
         _check_count(system, events)
         left = _across(system, law, stop, now, left[left >= stop.time], parts)
@@ -181,6 +181,16 @@ def end(system: RollingSystem, name: str, state: State) -> Event:
     surface = system.support.surface
     said = _ENDS[name].format(rim=float(surface.rim or 0.0), end=surface.end)
     return Event(state.time, name, f"{said} at t = {state.time:.9g} s", state, state)
+
+
+def _following(system: RollingSystem, law: Law, stop: Stop) -> following.Next:
+    """Return what follows a stop, or say that nothing can be worked out there."""
+    try:
+        return following.after(system, law, stop.name, stop.time, stop.state)
+    except (ArithmeticError, ValueError) as error:
+        raise SolverError(
+            f"What follows at t = {stop.time:.9g} s cannot be worked out ({error}): the contact is singular there."
+        ) from None
 
 
 def _check_count(system: RollingSystem, events: list[Event]) -> None:

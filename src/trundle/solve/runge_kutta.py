@@ -153,7 +153,7 @@ def _steps(
     while stepper.status == "running":
         message = stepper.step()
         if stepper.status == "failed" or not np.isfinite(stepper.y).all():
-            raise SolverError(f"The Runge-Kutta method broke down at t = {stepper.t:.9g} s: {message or 'not finite'}")
+            raise SolverError(_broken(stepper, message))
         path = stepper.dense_output()
         found = _first_stop(path, stops, values, len(names))
         reach = stepper.t if found is None else found[0]
@@ -169,6 +169,16 @@ def _steps(
         if progress is not None:
             progress(float(stepper.t))
     return Stretch(times[:done], states[:done], None)
+
+
+def _broken(stepper: Any, message: str | None) -> str:
+    """Say when and where the method broke down."""
+    near = ", ".join(f"{part:.6g}" for part in stepper.y[:3])
+    why = str(message or "The rates are no longer finite.").rstrip(".")
+    return (
+        f"The Runge-Kutta method broke down at t = {stepper.t:.9g} s, near ({near}) m on the support: {why}. Look "
+        "for a surface, a body or a load that is not smooth there."
+    )
 
 
 def _first_stop(path: Any, stops: Any, begin: Array, count: int) -> tuple[float, int] | None:
