@@ -57,7 +57,10 @@ def test_what_is_compiled_is_the_law(name: str, phase: str, reference: float, la
     ready = lower(system, law)
     found = ready.tape.function(ready.outputs)([later, *state, *ready.values([*numbers(system), *extras], reference)])
     time = reference + later
-    wanted = [*law.rates(system, time, state), *law.stops(system, time, state, extras).values()]
+    stops = law.stops(system, time, state, extras)
+    wanted = [*law.rates(system, time, state), *(stops[name] for name in ready.stops)]
+    other = law.stops(system, time + 0.7, [*state[:7], *(2 * part for part in state[7:])], extras)
+    assert all(other[name] == stops[name] for name in set(stops) - set(ready.stops))  # left out: what never changes
     scale = max(abs(value) for value in wanted)
     assert np.abs(np.array(found) - wanted).max() <= EXACT(300, scale)
 
