@@ -175,7 +175,7 @@ def anything(draw: st.DrawFn) -> tuple[tr.RollingSystem, dict[str, Any]]:
         draw(ANY_MOTION),
         draw(st.sampled_from([0.0, 0.3, -1.0, *([0.5 * 3.141592653589793] if lying else [])])),
         mu,
-        None if kinetic is None else kinetic * mu,
+        None if kinetic is None or mu is None else kinetic * mu,
         draw(st.sampled_from([0.0, 0.6, 1.0])),
     )
     system = tr.RollingSystem(

@@ -103,3 +103,66 @@ def test_what_is_no_bad_input_is_called_a_bug(here: Command, monkeypatch: pytest
     )
     monkeypatch.setenv("TRUNDLE_DEBUG", "1")
     assert "Traceback" in here("list").err
+
+
+SUPPORT, PLANE_MOTION = 'kind = "plane"', 'kind = "spin"\nrate = "33.3 rpm"'
+COMBINED = [  # of the other bodies, surfaces, motions and starts: (what stands there, what comes instead, key, remedy)
+    ([(SUPPORT, 'kind = "bowl"\nradius = "2 cm"'), ('rim = "0.5 m"', "")], "`start.position`", "on the surface"),
+    (
+        [(SUPPORT, 'kind = "bowl"\nradius = "22 mm"'), ('rim = "0.5 m"', ""), ('"20 cm"', "0")],
+        "`start.position`",
+        "must be where the body fits the surface",
+    ),
+    (
+        [(SUPPORT, 'kind = "height-field"\nformula = "0.2*abs(x)"'), ('"20 cm"', "0")],
+        "`start.position`",
+        "where it is smooth",
+    ),
+    ([(PLANE_MOTION, 'kind = "spin-by"\nrate = "1/(t - 3)"')], "`support.motion.rate`", "It is not at t = 3 s."),
+    ([(SUPPORT, f"{SUPPORT}\nfriction = 0.2\nkinetic_friction = 0.3")], "`support.kinetic_friction`", "at most"),
+    ([(SUPPORT, f"{SUPPORT}\nrestitution = 1.5")], "`support.restitution`", "[0, 1]"),
+    ([(NUDGE, "attitude = [0, 1, 0]\norientation = [1, 0, 0, 0]")], "`start.attitude`", "one of the two"),
+    ([(NUDGE, 'height = "-1 cm"')], "`start.height`", "must"),
+    ([('kind = "solid-sphere"', 'kind = "disc"'), (NUDGE, "")], "`start.orientation`", "one point"),
+]
+
+
+@pytest.mark.parametrize(("changes", "key", "said"), COMBINED)
+def test_a_bad_file_of_any_kind(
+    here: Command, folder: Path, changes: list[tuple[str, str]], key: str, said: str
+) -> None:
+    text = TEXT
+    for there, instead in changes:
+        assert text.count(there) == 1, there
+        text = text.replace(there, instead)
+    (folder / "bad.toml").write_text(text, encoding="utf-8")
+    done = here("run", "bad.toml", "-o", "out")
+    assert (done.status, done.out, done.files) == (2, "", {"bad.toml"})
+    (message,) = done.err.splitlines()
+    assert message.startswith(f"trundle: bad.toml: {key}")
+    assert said in message
+
+
+def test_a_load_without_a_value_where_the_ball_starts(here: Command, folder: Path) -> None:
+    load = '\n[[loads]]\nkind = "potential"\nformula = "0.01/sqrt(x**2 + y**2)"\n'
+    (folder / "bad.toml").write_text(TEXT.replace('"20 cm"', "0") + load, encoding="utf-8")
+    done = here("run", "bad.toml")
+    assert (done.status, done.out, done.files) == (2, "", {"bad.toml"})
+    assert "`loads[0]` must be finite at the start" in done.err
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["check", "theirs.csv", "-s", "free-turntable-ellipse"], "`support.motion` must say where the support is"),
+        (["sensitivity", "free-turntable-ellipse"], "`support"),
+        (["equilibria", "free-turntable-ellipse"], "`support.motion` must be at rest"),
+        (["steady", "free-turntable-ellipse"], "`support.motion` must be steady"),
+    ],
+)
+def test_rooms_that_do_not_cover_a_free_table_say_so(here: Command, folder: Path, words: list[str], said: str) -> None:
+    rows = "\n".join(f"{0.01 * i},{0.1 + 0.001 * i},{0.002 * i},0.025" for i in range(40))
+    (folder / "theirs.csv").write_text("t,x,y,z\n" + rows, encoding="utf-8")
+    done = here(*words)
+    assert (done.status, done.files) == (2, {"theirs.csv"})
+    assert said in done.err

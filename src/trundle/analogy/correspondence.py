@@ -18,6 +18,8 @@ from ..mechanics.scalars import is_number
 from ..mechanics.surfaces import Plane
 from ..mechanics.system import STANDARD_GRAVITY, RollingSystem, State, Support
 from ..solve.exact import SphereOnPlane
+from ..solve.following import at_start
+from ..solve.samples import ROLLING
 from .particle import ELECTRON_MASS, ELEMENTARY_CHARGE, ChargedParticle
 
 if TYPE_CHECKING:
@@ -229,6 +231,12 @@ def _ball(system: RollingSystem, start: State) -> SphereOnPlane:
         raise OutOfDomainError(
             "A charge in uniform crossed fields corresponds to an isotropic sphere on a plane that is fixed or turns "
             f"steadily, under constant loads and drag in still air. Nothing corresponds to this: {'; '.join(outside)}."
+        )
+    phase = at_start(system, start).law.code
+    if phase != ROLLING:
+        raise OutOfDomainError(
+            f"A charge corresponds to a ball that rolls; this one {('', 'slips', 'falls', 'rests')[phase]} at first. "
+            "Put it down so that it rolls."
         )
     ball = SphereOnPlane.of(system, start)
     if not all(is_number(part) for part in (ball.kappa, ball.phi.re, ball.phi.im, *ball.position, *ball.velocity)):

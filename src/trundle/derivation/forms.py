@@ -8,6 +8,7 @@ and `numbers_of(motion, system)`, which yields its constants in numbers.
 from __future__ import annotations
 
 from importlib import import_module
+from importlib.util import find_spec
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -72,7 +73,7 @@ def form_of(system: RollingSystem, start: State | None) -> tuple[Any, Any]:
     Returns
     -------
     form, module
-        None and None where no closed form covers the system.
+        None and None where no closed form with a derivation here covers the system.
 
     Examples
     --------
@@ -81,6 +82,6 @@ def form_of(system: RollingSystem, start: State | None) -> tuple[Any, Any]:
     'T5'
     """
     for form in CLOSED_FORMS:
-        if not form.outside(system, start):
+        if find_spec(f".{form.__module__.rpartition('.')[2]}", __package__) and not form.outside(system, start):
             return form, module_of(form)
     return None, None

@@ -127,12 +127,12 @@ def introduction(system: RollingSystem) -> str:
     --------
     >>> import trundle as tr
     >>> introduction(tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), tr.Support(tr.Plane())))[:20]
-    'No closed form cover'
+    'No closed form that '
     """
     del system
     return (
-        "No closed form covers this system, so the derivation ends with the equations of motion, which are solved "
-        "numerically. It is the same for every body, support and load."
+        "No closed form that is derived here covers this system, so the derivation ends with the equations of motion. "
+        "It is the same for every body, support and load."
     )
 
 

@@ -132,7 +132,7 @@ def _of_system(system: RollingSystem, start: State | None, name: str, title: str
     form, module = form_of(system, start)
     if form is None:
         if with_numbers:
-            remedy = "No closed form covers it, so it has no constants to put numbers in; leave this out."
+            remedy = "None that is derived here covers it, so there are no constants to put numbers in; leave this out."
             raise InvalidValueError("with_numbers", "needs a closed form", name, remedy)
         from .general import derive_system, introduction
 

@@ -117,7 +117,11 @@ def special_steps(system: RollingSystem) -> Iterator[Step]:
     >>> [step.title for step in special_steps(ball)]
     ['This system', 'Its laws again', 'Its equations of motion']
     """
-    if not system.body.is_isotropic_sphere or not isinstance(system.support.surface, Plane):
+    if (
+        not system.body.is_isotropic_sphere
+        or not isinstance(system.support.surface, Plane)
+        or system.support.motion.own
+    ):
         return
     own = with_symbols(system)
     tilted_axis = system.support.motion.at(0.0).rotation.c.z != 1

@@ -247,6 +247,11 @@ def _check(system: RollingSystem) -> None:
     if not (system.body.is_isotropic_sphere and system.body.shape.axis is None and isinstance(support.surface, Plane)):
         shown = f"{type(system.body.shape).__name__} on {type(support.surface).__name__}"
         raise InvalidValueError("scenario", "must be a ball on a plane", shown)
+    if support.motion.own:
+        remedy = "Give it a `spin`, an `uneven-spin` or a `wobble`."
+        raise InvalidValueError(
+            "support.motion", "must turn the table steadily on the whole", type(support.motion).__name__, remedy
+        )
     if not support.motion.mean_rate:
         raise InvalidValueError("support.motion", "must turn the table", type(support.motion).__name__)
     if support.surface.rim is None:
