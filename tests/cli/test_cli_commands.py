@@ -163,7 +163,12 @@ def test_completion_offers_scenarios_and_files(trundle: Command, folder: Path) -
         words = {"_TRUNDLE_COMPLETE": "complete_bash", "COMP_WORDS": line, "COMP_CWORD": str(line.count(" "))}
         return trundle(env=words).out.split()
 
-    assert offered("trundle run ti") == ["tilted-turntable", "tilted-turntable-put-down", "tiny.toml"]
+    assert offered("trundle run ti") == [
+        "tilted-turntable",
+        "tilted-turntable-put-down",
+        "tilted-turntable-straight",
+        "tiny.toml",
+    ]
     assert offered("trundle run tab") == ["tables/"]
     assert offered("trundle run tables/") == ["tables/mine.toml"]
     assert offered("trundle show level-turntable-n") == ["level-turntable-nudged"]

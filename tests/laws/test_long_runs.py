@@ -82,8 +82,9 @@ def test_energy_of_a_body_on_a_level_plane(name: str) -> None:
 def test_moving_energy_of_an_ellipsoid_on_a_turntable() -> None:
     rate, body = 2.0, ellipsoid(1.5, 0.3, 0.25, 0.2)
     system = tr.RollingSystem(body, tr.Support(tr.Plane(), motion=tr.Spin(rate)))
-    start = system.place((0.5, 0.0), (0.3, 0.6), spin=3.0, orientation=tilted((0.6, 0.8, 0.0), 1.0))
+    start = system.place((0.5, 0.0), (0.3, 0.6), spin=3.0, orientation=tilted((0.6, 0.8, 0.0), 0.4))
     at = taylor.solve(system, start, TIMES)
+    assert not at.events
     energy = energies(system, at)
     orbital = body.mass * (at.position[:, 0] * at.velocity[:, 1] - at.position[:, 1] * at.velocity[:, 0])
     own = np.einsum("nj,nj->n", space_inertia(body, at)[:, 2], at.angular_velocity)

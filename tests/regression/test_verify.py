@@ -243,7 +243,7 @@ def test_friction_that_is_enough(friction: float | None) -> None:
 def test_friction_that_is_not_enough(friction: float, method: str) -> None:
     system = replace(SYSTEM, support=replace(TABLE, friction=friction))
     assert friction < needed_on_a_tilted_table()
-    run = tr.simulate(system, START, duration=10.0, every=0.01, method=method)
+    run = tr.simulate(system, START, duration=2.0, every=0.01, method=method)
     assert (run.data.phase.values == 1).any()
     assert run.card()["friction while slipping"].passed
     assert run.card().passed, str(run.card())
@@ -251,7 +251,8 @@ def test_friction_that_is_not_enough(friction: float, method: str) -> None:
 
 def test_rolling_beyond_the_friction_given_fails() -> None:
     system = replace(SYSTEM, support=replace(TABLE, friction=0.05))
-    figure = verify.card(system, START, solved(), "exact")["friction coefficient needed"]
+    held = solved(method="runge-kutta")
+    figure = verify.card(system, START, held, "runge-kutta")["friction coefficient needed"]
     assert figure.passed is False
     assert "slip" in figure.note
 
@@ -371,20 +372,21 @@ def test_the_text_says_what_failed() -> None:
 # --- motions that magnify a small difference ----------------------------------------------------------------
 
 
-def balanced(above: float) -> Any:
-    """A cylinder at the top of a pipe's inside, all but balanced: every rounding grows some 50-fold a second."""
-    pipe = tr.Support(tr.Cylinder(0.5), tilt="90 deg")
-    system = tr.RollingSystem(tr.Body.hoop(0.1, 1.0), pipe)
+def released(above: float, side: str) -> Any:
+    """A hoop let go on a log or in a pipe, a little off its highest line; on top of a log every rounding grows."""
+    support = tr.Support(tr.Cylinder(0.5, side=side), tilt="90 deg")
+    system = tr.RollingSystem(tr.Body.hoop(0.1, 1.0), support)
     return system, system.place((math.pi - above, 0.0))
 
 
-@pytest.mark.parametrize("above", [0.0, 1e-9, 1e-4])
+@pytest.mark.parametrize(("above", "duration"), [(0.0, 4.0), (1e-9, 4.0), (1e-4, 3.0)])
 @pytest.mark.parametrize("method", ["exact", "taylor"])
-def test_an_unstable_motion_is_allowed_what_it_magnifies(above: float, method: str) -> None:
+def test_an_unstable_motion_is_allowed_what_it_magnifies(above: float, duration: float, method: str) -> None:
     pytest.importorskip("heyoka")
-    system, start = balanced(above)
-    card = tr.simulate(system, start, 4.0, 0.02, method=method).card()
-    assert failures(card) <= {"normal force"}  # the pipe would have to hold it
+    system, start = released(above, "outside")
+    run = tr.simulate(system, start, duration, 0.02, method=method)
+    assert not run.events
+    assert run.card().passed, str(run.card())
 
 
 @pytest.mark.parametrize("name", ["velocity, 1e-9 too fast", "another gravity"])
@@ -392,7 +394,7 @@ def test_what_an_unstable_motion_does_not_explain_still_fails(name: str, monkeyp
     pytest.importorskip("heyoka")
     fault, _ = FAULTS[name]
     honest = methods.solver
-    system, start = balanced(1.0)  # an ordinary swing
+    system, start = released(2.0, "inside")  # an ordinary swing
 
     def solver(method: str) -> Any:
         if method != "exact":

@@ -26,7 +26,7 @@ def friction(case: Case) -> Iterator[Trial]:
     mismatch, f, N = _reaction(case.system, at)
     slipping = slip.ratio > 3
     ahead = at.slip / np.maximum(slip.length, 1e-300)[:, None]
-    mu = -(f * ahead).sum(axis=1) / N
+    mu = -(f * ahead).sum(axis=1) / np.where(N != 0, N, np.nan)
     name = "velocity" if case.theirs.velocity is not None else "position"
     slopes = [case.theirs.slope(name, at.index, 1 if name == "velocity" else 2)]
     if case.theirs.angular_velocity is not None:

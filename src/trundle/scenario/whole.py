@@ -146,7 +146,7 @@ class Document(Table):
         --------
         >>> import trundle as tr
         >>> tr.Scenario.names()[0]
-        'ball-in-a-trough'
+        'ball-in-a-funnel'
         """
         return [name for name in files.names() if files.is_shipped_path(name) == cls.rolls_along_path]
 

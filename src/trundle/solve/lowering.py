@@ -214,9 +214,13 @@ def _grown(operation: str, pairs: list[tuple[Any, Any]]) -> tuple[Any, Any] | No
     ((c, d),) = others
     if operation in ("+", "-"):
         return (a + c, b + d) if operation == "+" else (a - c, b - d)
-    if operation == "*":
-        return (a * d, b * d) if c == 0 else (b * c, b * d)
-    return (a / d, b / d) if c == 0 else None
+    if _is_zero(c):
+        return (a * d, b * d) if operation == "*" else (a / d, b / d)
+    return (b * c, b * d) if operation == "*" and _is_zero(a) else None  # a square of the time is no line
+
+
+def _is_zero(slope: Any) -> bool:
+    return not isinstance(slope, Node) and slope == 0
 
 
 def _value(kind: str, found: Iterator[float], reference: float) -> float:
