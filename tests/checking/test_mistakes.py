@@ -102,8 +102,9 @@ def test_what_ships_passes_on_every_surface(name: str) -> None:
     checked = tr.check(short, scenario)
     assert checked.passed, str(checked)
     ours = [figure for figure in checked.figures if figure.name == "our own run from the same start"]
-    assert all(figure.passed for figure in ours)
-    assert ours or name.startswith("rattleback")  # which magnifies a difference beyond what a comparison can tell
+    assert all(figure.passed is not False for figure in ours)
+    # The rattleback magnifies a difference beyond what a comparison can tell.
+    assert any(figure.passed for figure in ours) or name.startswith("rattleback")
 
 
 SPUN = replace(BALL, omega=-BALL.omega)

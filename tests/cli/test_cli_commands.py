@@ -167,6 +167,7 @@ def test_completion_offers_scenarios_and_files(trundle: Command, folder: Path) -
         "tilted-turntable",
         "tilted-turntable-put-down",
         "tilted-turntable-straight",
+        "tippe-top",
         "tiny.toml",
     ]
     assert offered("trundle run tab") == ["tables/"]

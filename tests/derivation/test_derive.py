@@ -215,7 +215,9 @@ def test_a_wrong_equation_makes_no_derivation() -> None:
 # --- every closed form ----------------------------------------------------------------------------------
 
 
-DERIVED = [form for form in CLOSED_FORMS if form.equation in ("T5", "T6")]  # of the others, the theory page has the steps
+DERIVED = [
+    form for form in CLOSED_FORMS if form.equation in ("T5", "T6")
+]  # of the others, the theory page has the steps
 
 
 @pytest.mark.parametrize("form", DERIVED)

@@ -171,7 +171,7 @@ def test_a_ball_on_a_pushed_box_gains_two_sevenths_of_it() -> None:
     np.testing.assert_allclose(flat(path), gain / 7 * t**2, rtol=0, atol=SOLVER(100, TAYLOR))
     force = path.data.contact_force.values
     np.testing.assert_allclose(force[:, 0] / force[:, 2], 2 / 7 * gain / G, rtol=1e-12)
-    assert (150 - 0.4 * 11 * G) / (10 + 2 / 7) == pytest.approx(gain, abs=5e-4)
+    assert abs((150 - 0.4 * 11 * G) / (10 + 2 / 7) - gain) < 5e-4
     says(name, f"{gain:.3f} m/s", f"{2 / 7 * gain:.3f} m/s", f"{2 / 7 * gain / G:.3f}")
     slipping = changed(name, ("friction = 0.8", "friction = 0.05"))
     np.testing.assert_allclose(flat(slipping), 0.5 * 0.05 * G * t**2, rtol=0, atol=SOLVER(1e4, TAYLOR))

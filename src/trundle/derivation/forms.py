@@ -54,7 +54,7 @@ def module_of(form: type) -> ModuleType:
 
     Examples
     --------
-    >>> [module_of(form).__name__.rpartition(".")[2] for form in CLOSED_FORMS][0]
+    >>> module_of(CLOSED_FORMS[0]).__name__.rpartition(".")[2]
     'sphere_on_plane'
     """
     return module_named(form.__module__.rpartition(".")[2])
