@@ -92,6 +92,23 @@ ODD: dict[str, tuple[tr.RollingSystem, dict[str, Any]]] = {
         ),
         {"spin": 8.0},
     ),
+    "a motor in a ball at rest, on which nothing else acts": (
+        tr.RollingSystem(
+            tr.Body.solid_sphere(0.1, 1.0),
+            tr.Support(tr.Cone(1.1, "outside"), motion=tr.SpinBy("5*sin(4*t)"), friction=0.3),
+            (tr.Motor((3e-4, 9e-4, 3e-4)),),
+            gravity=0.0,
+        ),
+        {"position": (-0.2, 0.1), "velocity": "co-rotating"},
+    ),
+    "two turns by formulas": (
+        on(tr.Cylinder(1.0), motion=tr.Combined((tr.SpinBy("3 + 2*t"), tr.SpinBy("1 + t"))), friction=0.0),
+        {},
+    ),
+    "a half cylinder dropped on a dome": (
+        on(tr.Dome(1.0), tr.Body.half_cylinder(0.2, 1.4), motion=tr.Wobble(-13.0, 0.02), friction=1.0),
+        {"velocity": (-0.4, 0.0), "height": 0.05},
+    ),
     "a coin thrown flat": (
         on(tr.Dome(0.9), tr.Body.disc(0.04, 1.0), friction=0.3),
         {"position": (0.3, 0.0), "velocity": (-0.6, 0.1, 0.6), "attitude": (0.2, 0.0, 0.2)},

@@ -90,9 +90,12 @@ class _Touch:
         return replace(self.state, velocity=_floats(V), angular_velocity=_floats(Omega), support=own)
 
     def scale(self, system: RollingSystem) -> float:
-        """Return a speed of this motion: the fastest at the contact, or what the forces make of it in a moment, m/s."""
+        """Return a speed of this motion: the fastest at the contact, or what all that acts makes of it in a moment, m/s."""
         motion = self.contact.body_motion(system.body.mass, self.state.time, self.V, self.orientation, self.Omega)
-        pull = system.loads_on(motion)[0].norm() / system.body.mass
+        force, torque = system.loads_on(motion)
+        pull = (force.norm() + torque.norm() / self.arm) / system.body.mass
+        support, p = self.contact.support, self.contact.point
+        pull = max(pull, support.material_acceleration(p, support.material_velocity(p)).norm())
         return max(self.speed, math.sqrt(pull * self.arm), 1e-30)
 
 
