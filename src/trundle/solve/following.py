@@ -90,7 +90,7 @@ class _Touch:
         return replace(self.state, velocity=_floats(V), angular_velocity=_floats(Omega), support=own)
 
     def scale(self, system: RollingSystem) -> float:
-        """Return a speed of this motion: the fastest at the contact, or what all that acts makes of it in a moment, m/s."""
+        """Return a speed of this motion: the fastest at the contact, or what all that acts makes of it, m/s."""
         motion = self.contact.body_motion(system.body.mass, self.state.time, self.V, self.orientation, self.Omega)
         force, torque = system.loads_on(motion)
         pull = (force.norm() + torque.norm() / self.arm) / system.body.mass
