@@ -378,3 +378,10 @@ def test_an_axis_of_symmetry_is_found_wherever_it_lies() -> None:
 def test_a_cylinder_that_rolls_straight_has_no_integral_of_a_ball() -> None:
     weighted = system_of(tr.Body.weighted_cylinder(0.05, 0.3, 0.1, 0.04))
     assert named(weighted) == {ENERGY}
+
+
+def test_on_the_axis_the_pair_of_routh_has_nothing_to_say() -> None:
+    bowl = tr.RollingSystem(tr.Body.solid_sphere(0.02, 0.1), tr.Support(tr.Bowl(0.5)))
+    run = tr.simulate(bowl, bowl.place((0.0, 0.0), (0.5, 0.25)), 1.0, 0.1, method="runge-kutta")
+    assert run.card().passed
+    assert not any("Routh" in figure.name for figure in run.card().figures)

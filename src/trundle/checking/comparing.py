@@ -64,6 +64,8 @@ def integrals(system: RollingSystem, at: Motion, tolerance: float) -> Iterator[S
     for integral in invariants_of(system):
         if integral.name.startswith("spin") and not at.turning_known:
             continue  # it would be our own assumption that is found again
+        if not integral.terms(system, _record(system, at)):  # it has nothing to say of this motion
+            continue
         value, size = _value(system, integral, at)
         doubt = np.zeros(at.time.size)
         for name in ("position", "velocity", "angular_velocity"):
@@ -77,7 +79,7 @@ def integrals(system: RollingSystem, at: Motion, tolerance: float) -> Iterator[S
         yield Series(f"drift of the {integral.name}", at.time, residual, size, asked + doubt + doubt[0], asked, note)
 
 
-def _value(system: RollingSystem, integral: Invariant, at: Motion) -> tuple[Array, float]:
+def _record(system: RollingSystem, at: Motion) -> Record:
     state = BodyMotion(
         at.time,
         system.body.mass,
@@ -88,7 +90,11 @@ def _value(system: RollingSystem, integral: Invariant, at: Motion) -> tuple[Arra
         at.contact.normal,
         at.contact.support.angular_velocity,
     )
-    terms = [_rows(term, at.time.size) for term in integral.terms(system, Record(state, at.contact.point))]
+    return Record(state, at.contact.point)
+
+
+def _value(system: RollingSystem, integral: Invariant, at: Motion) -> tuple[Array, float]:
+    terms = [_rows(term, at.time.size) for term in integral.terms(system, _record(system, at))]
     size = max(float(np.abs(term).max()) for term in terms)
     if integral.unit == "rad/s":  # a spin of next to nothing is little beside Ω, not beside itself
         size = max(size, float(np.linalg.norm(at.angular_velocity, axis=1).max()))

@@ -56,7 +56,7 @@ class Event:
     @property
     def final(self) -> bool:
         """Whether the run ended here."""
-        return self.kind in ("rim", "end", "edge", "curved")
+        return self.kind in ("rim", "end", "edge", "curved", "spot")
 
 
 @dataclass(frozen=True)

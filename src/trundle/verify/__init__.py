@@ -161,6 +161,8 @@ def _integrals(system: RollingSystem, at: Samples, method: str) -> Iterator[Card
         phases.add(phase)
         for integral in invariants_of(system, phases=(phase,)):
             terms = [_as_array(term, part.time.size) for term in integral.terms(system, record)]
+            if not terms:  # it has nothing to say of this stretch
+                continue
             drift = _drift(sum(terms), max(float(np.abs(term).max()) for term in terms))
             known = worst.get(integral.name, (0.0, integral, set()))
             worst[integral.name] = max(known[0], drift), integral, known[2] | {phase}

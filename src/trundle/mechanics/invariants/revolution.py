@@ -22,6 +22,7 @@ from ..symmetry import symmetric_potential, without_torque
 from ..system import RollingSystem
 from .base import ROLLING, Invariant, Record
 
+_NEAREST = 1e-4  # that the centre may come to the axis, as a share of its largest distance from it
 _TOLERANCE = 1e-13
 _STEPS = 48  # of the meridian's stretch at least: its dense output is then as good as its steps
 _WIDER = 8  # times that the stretch is widened, each time to twice what it was
@@ -39,13 +40,13 @@ def _has_pair(system: RollingSystem) -> tuple[str, ...]:
 class _Meridian:
     """The linear equation along the meridian, from the latitude of a record's first contact."""
 
-    def __init__(self, system: RollingSystem, distance: Any, height: Any) -> None:
+    def __init__(self, system: RollingSystem, distance: Any, height: Any, nearest: float) -> None:
         import numpy as np
 
         self.surface, self.a = system.support.surface, float(system.body.radius)
         k = float(system.body.inertia_ratio)
         self.share, self.rate = k / (1 + k), float(system.support.motion.steady_rate or 0.0)
-        self.least = 0.5 * float(np.min(distance))
+        self.least = 0.5 * nearest  # of the centre from the axis, where the equation is singular
         self.start = (float(distance[0]), float(height[0]))
         away = np.hypot(distance - self.start[0], height - self.start[1])
         self.size = float(np.max(away))
@@ -75,7 +76,7 @@ class _Meridian:
         from scipy.integrate import solve_ivp
 
         def near_axis(_: float, y: Any) -> float:
-            return float(y[0] - self.least)
+            return float(y[0] + self.a * self.surface.normal(Vector(y[0], 0.0, y[1])).x - self.least)
 
         near_axis.terminal = True  # type: ignore[attr-defined]
         y = [*self.start, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0]
@@ -131,7 +132,10 @@ def _both(solutions: tuple[Any, Any], sigma: Any) -> Any:
 
 
 def _pair(system: RollingSystem, at: Record) -> list[Any]:
-    """Return the terms of ℓ and w carried back along the meridian to the latitude of the record's first contact."""
+    """Return the terms of ℓ and w carried back along the meridian to the latitude of the record's first contact.
+
+    None where the centre comes to the axis, at which the equation along the meridian is singular.
+    """
     import numpy as np
 
     a, r, V = float(system.body.radius), at.motion.position, at.motion.velocity
@@ -141,7 +145,10 @@ def _pair(system: RollingSystem, at: Record) -> list[Any]:
     flat = [np.broadcast_to(np.asarray(part, dtype=float), shape).reshape(-1) for part in parts]
     contact = [np.broadcast_to(np.asarray(x, dtype=float), shape).reshape(-1) for x in at.contact]
     distance = np.hypot(contact[0], contact[1])
-    rows = _Meridian(system, distance, contact[2]).at(distance, contact[2])
+    centre = np.hypot(*(np.broadcast_to(np.asarray(x, dtype=float), shape).reshape(-1) for x in (r.x, r.y)))
+    if centre.min() <= _NEAREST * centre.max():
+        return []
+    rows = _Meridian(system, distance, contact[2], float(centre.min())).at(distance, contact[2])
     A, B, C, D = rows[2:6]
     inverse = np.array([[D, -B], [-C, A]]) / (A * D - B * C)
     columns = [inverse[:, 0] * part for part in flat[:2]] + [inverse[:, 1] * part for part in flat[2:]]
