@@ -12,7 +12,7 @@ from .mechanics import straight
 from .mechanics.algebra import Quaternion, Vector
 from .mechanics.contact import Contact, settle
 from .mechanics.finiteness import check_finite
-from .mechanics.placing import SLIP_TOLERANCE
+from .mechanics.placing import SLIP_TOLERANCE, slips
 from .mechanics.system import RollingSystem, State
 from .scenario import ScenarioFile
 from .solve import methods
@@ -142,12 +142,8 @@ def _check_loads(system: RollingSystem, start: State, contact: Contact) -> None:
 def _check_slip(system: RollingSystem, start: State, contact: Contact) -> None:
     if system.support.friction is not None:
         return
-    V, Omega = Vector(*start.velocity), Vector(*start.angular_velocity)
-    s = contact.slip_velocity(V, Omega)
-    slip = (s - contact.normal * s.dot(contact.normal)).norm()
-    u = contact.support.material_velocity(contact.point)
-    scale = max(V.norm(), Omega.norm() * contact.offset.norm(), u.norm())
-    if slip > SLIP_TOLERANCE * scale:
+    slip = slips(contact, Vector(*start.velocity), Vector(*start.angular_velocity))
+    if slip is not None:
         raise InvalidValueError(
             "start.angular_velocity",
             "must agree with rolling, V + Ω×ρ = u(p), where the support has no `friction`",

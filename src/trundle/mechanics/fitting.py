@@ -48,8 +48,7 @@ def fits(contact: Contact) -> Scalar:
     0.36
     """
     # On n it is 1, because S n = 0 and C maps to the tangent plane; so all of it is the tangential part.
-    first, second, third = (Matrix.identity() + contact.inverse_curvature @ contact.shape_operator).rows
-    return first.dot(second.cross(third))
+    return contact.clearance()
 
 
 def room(contact: Contact) -> tuple[float, Vector]:

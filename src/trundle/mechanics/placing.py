@@ -100,10 +100,9 @@ class Placing:
         if self.attitude is not None:
             angles = checks.components(self.attitude, "angle", "attitude")
             there = begin.rotation.transpose @ (point - begin.origin)
-            first, second = surface.directions(there)
-            n = surface.normal(there)
+            first, n = surface.directions(there)[0], surface.normal(there)
+            # Not the second direction but n × e₁: the two coordinates need not grow at right angles.
             axes = (begin.rotation @ first, begin.rotation @ n.cross(first), begin.rotation @ n)
-            del second  # n × e₁, where the two coordinates do not grow at right angles
             return attitude(*axes, *angles)
         q = _unit_quaternion((1.0, 0.0, 0.0, 0.0) if self.orientation is None else self.orientation)
         if not laid:
@@ -133,7 +132,7 @@ class Placing:
         if gap > 0:
             return V
         rolling = V + n * ((u - V).dot(rho) / n.dot(rho))  # what Ω can match: V·ρ = u·ρ
-        if turning is None or _slips(contact, rolling, turning) is None:
+        if turning is None or slips(contact, rolling, turning) is None:
             return rolling
         return V + n * (u - V - turning.cross(rho)).dot(n)  # nothing opens or closes: n·(V + Ω×ρ − u) = 0
 
@@ -164,7 +163,7 @@ class Placing:
         """Refuse a start that slips where nothing says how rough the support is."""
         if gap > 0 or self.system.support.friction is not None:
             return
-        slip = _slips(contact, V, Omega)
+        slip = slips(contact, V, Omega)
         if slip is not None:
             raise InvalidValueError(
                 "angular_velocity",
@@ -174,8 +173,21 @@ class Placing:
             )
 
 
-def _slips(contact: Contact, V: Vector, Omega: Vector) -> float | None:
-    """Return how fast the contact slips along the support, m/s; None where it is rounding."""
+def slips(contact: Contact, V: Vector, Omega: Vector) -> float | None:
+    """Return how fast the contact slips along the support; None where that is rounding.
+
+    Parameters
+    ----------
+    contact : Contact
+        Of the body.
+    V, Omega : Vector
+        m/s and rad/s.
+
+    Returns
+    -------
+    float or None
+        |s|, without a part along n, m/s.
+    """
     s = contact.slip_velocity(V, Omega)
     along = (s - contact.normal * s.dot(contact.normal)).norm()
     u = contact.support.material_velocity(contact.point)
