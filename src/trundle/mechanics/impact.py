@@ -16,6 +16,7 @@ import numpy as np
 from ..errors import SolverError
 from .algebra import E_X, E_Z, Quaternion, Vector
 from .contact import Contact
+from .onset import onset
 
 if TYPE_CHECKING:
     from .system import RollingSystem
@@ -167,26 +168,15 @@ class _Course:
 
     def _beginning(self) -> Any:
         """Return the direction in which slipping begins: the one that its own friction leads along."""
-        from scipy.optimize import brentq
 
-        def across(angle: float) -> float:
-            hat = np.array([math.cos(angle), math.sin(angle)])
-            along = self.M[:2, 2] - self.mu * self.M[:2, :2] @ hat
-            return float(hat[0] * along[1] - hat[1] * along[0])
+        def growth(c: float, s: float) -> tuple[float, float]:
+            x, z = self.M[:2, 2] - self.mu * self.M[:2, :2] @ (c, s)
+            return float(x), float(z)
 
-        angles = np.linspace(0.0, 2 * math.pi, 181)
-        values = [across(angle) for angle in angles]
-        best: Any = None
-        for i in range(len(angles) - 1):
-            if values[i] * values[i + 1] <= 0:
-                angle = brentq(across, angles[i], angles[i + 1], xtol=1e-15)
-                hat = np.array([math.cos(angle), math.sin(angle)])
-                speed = float(hat @ (self.M[:2, 2] - self.mu * self.M[:2, :2] @ hat))
-                if speed > 0 and (best is None or speed > best[0]):
-                    best = speed, hat
-        if best is None:
+        found = onset(growth)
+        if found is None:
             raise SolverError("A landing jams: no direction of slipping leads on. Use less friction.")
-        return best[1]
+        return np.array(found[1])
 
     def _straight(self, direction: Any) -> Any:
         """Go on with a fixed direction of the impulse to the end of compression, or of the impact."""

@@ -66,6 +66,10 @@ class Law:
         """Complete states (n, ...) to full samples."""
         raise NotImplementedError
 
+    def state(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array) -> State:
+        """Return the state that is meant by its numbers."""
+        return self.record(system, np.array([time]), np.asarray(numbers, dtype=float)[None]).state(0)
+
     def advanced(self, system: RollingSystem, time: float, state: Sequence[float], step: float) -> list[float]:
         """Return the state after a step so short that one of the classical Runge-Kutta method is exact."""
         y = np.asarray(state, dtype=float)

@@ -15,6 +15,7 @@ from .law import WINDOWS, window_times
 _MARGIN = 0.02  # of a stretch that is left out at its ends: slip turns faster and faster before it ends
 _TURNS = 20.0  # by so many radians, at most, slip turns over what is left of a stretch
 _PHASE_A_PANEL = 1.5  # rad of the fastest rotation
+_WIDE = 16  # how many of these a panel holds at first
 _MOST_PANELS = 8000
 _HALVINGS = 40
 
@@ -51,8 +52,11 @@ class Stretch:
         return times[:: max(1, WINDOWS // count)][:count]
 
     def panels(self) -> Array:
-        """Return the beginning and end of each panel of a quadrature over it, (panels, 2), s."""
-        count = int(np.clip(np.ceil(self.length * self.pace / _PHASE_A_PANEL), 1, _MOST_PANELS))
+        """Return the beginning and end of each panel that a quadrature over it begins with, (panels, 2), s.
+
+        Of a ball's own turning its power mostly knows nothing, so they are wide; what is rough in them is cut.
+        """
+        count = int(np.clip(np.ceil(self.length * self.pace / (_WIDE * _PHASE_A_PANEL)), 1, _MOST_PANELS))
         edges = np.linspace(self.begin, self.end, count + 1)
         if self.slips:  # closer and closer towards both ends, where the slip turns fast
             nearer = self.length * 0.5 ** np.arange(1, _HALVINGS)

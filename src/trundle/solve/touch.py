@@ -1,0 +1,114 @@
+"""A body at its contact, and against what its motion there is small or not."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+from ..mechanics.algebra import Quaternion, Vector
+from ..mechanics.contact import Contact, settle
+from ..mechanics.system import RollingSystem, State
+
+_STILL = 1e-12  # share of the speeds at the contact at which slip or turning has all but ended
+
+
+@dataclass(frozen=True)
+class Touch:
+    """A body at its contact: the geometry, how it moves there, and against what that is small or not."""
+
+    state: State
+    contact: Contact
+    orientation: Quaternion
+    V: Vector
+    Omega: Vector
+    slip: Vector
+    gap: float
+    arm: float  # |ρ|, m
+    speed: float  # m/s
+
+    @staticmethod
+    def of(system: RollingSystem, state: State) -> Touch:
+        """Return the contact of a state that touches the support, or is over it."""
+        q, centre = Quaternion(*state.orientation), Vector(*state.position)
+        V, Omega = Vector(*state.velocity), Vector(*state.angular_velocity)
+        contact = settle(system, state.time, centre, q, state.support)
+        gap = (centre + contact.offset - contact.point).dot(contact.normal)
+        arm = contact.offset.norm()
+        u = contact.support.material_velocity(contact.point)
+        speed = max(V.norm(), Omega.norm() * arm, u.norm())
+        return Touch(state, contact, q, V, Omega, contact.slip_velocity(V, Omega), float(gap), arm, float(speed))
+
+    @property
+    def approach(self) -> float:
+        """How fast it comes off the support, m/s; negative: how fast it comes down."""
+        return float(self.slip.dot(self.contact.normal))
+
+    @property
+    def sliding(self) -> Vector:
+        """The part of s along the support, m/s."""
+        return self.slip - self.contact.normal * self.approach
+
+    def moving(self, V: Vector, Omega: Vector, support: tuple[float, ...] | None = None) -> State:
+        """Return the state with other velocities."""
+        own = self.state.support if support is None else support
+        return replace(self.state, velocity=floats(V), angular_velocity=floats(Omega), support=own)
+
+    def scale(self, system: RollingSystem) -> float:
+        """Return a speed of this motion: the fastest at the contact, or what all that acts makes of it, m/s."""
+        motion = self.contact.body_motion(system.body.mass, self.state.time, self.V, self.orientation, self.Omega)
+        force, torque = system.loads_on(motion)
+        pull = (force.norm() + torque.norm() / self.arm) / system.body.mass
+        support, p = self.contact.support, self.contact.point
+        pull = max(pull, support.material_acceleration(p, support.material_velocity(p)).norm())
+        return max(self.speed, math.sqrt(pull * self.arm), 1e-30)
+
+    def still(self, system: RollingSystem) -> float:
+        """Return the speed at which slip has all but ended, m/s."""
+        return _STILL * self.scale(system)
+
+
+def moment(system: RollingSystem, state: State) -> float:
+    """Return a time in which a motion changes: |ρ| over its speed, or over what the forces make of it.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Body, support and loads.
+    state : State
+        At a contact.
+
+    Returns
+    -------
+    float
+        s.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> table = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane()))
+    >>> moment(table, table.place(velocity=(10.0, 0.0)))
+    0.01
+    """
+    at = Touch.of(system, state)
+    return float(at.arm / at.scale(system))
+
+
+def floats(v: Vector) -> tuple[float, float, float]:
+    """Return a vector's components.
+
+    Parameters
+    ----------
+    v : Vector
+        Of numbers.
+
+    Returns
+    -------
+    tuple of float
+        Three.
+
+    Examples
+    --------
+    >>> floats(Vector(1, 2, 3))
+    (1.0, 2.0, 3.0)
+    """
+    return float(v.x), float(v.y), float(v.z)
