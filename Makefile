@@ -1,7 +1,7 @@
 # Everything from a bare machine: Python 3.11 or newer and make are all it needs.
 .POSIX:
 .DELETE_ON_ERROR:
-.PHONY: help demo test bench lint format clean
+.PHONY: help demo test bench lint format clean always
 
 # make PYTHON=/some/python3.12 demo  chooses the interpreter; otherwise the first of these that is new enough.
 PYTHON =
@@ -16,10 +16,10 @@ PYTEST = $(PLAIN) $(BIN)/python -m pytest -n 2 --dist loadscope --color=no
 
 help:
 	@echo 'make demo    install into .venv, then run the shipped tilted turntable into demo/'
-	@echo 'make test    install into .venv, then run every check: tests, documents, lint, types, layers'
+	@echo 'make test    install into .venv, then run every check: tests, documents, lint, types, layers, the web part'
 	@echo 'make bench   install the peers too, then print the ratios of one benchmark run'
-	@echo 'make lint    only ruff, mypy and the order of the layers'
-	@echo 'make format  let ruff write its format into the sources'
+	@echo 'make lint    only ruff, mypy, the order of the layers, and types and lint of the web part'
+	@echo 'make format  let ruff and biome write their format into the sources'
 	@echo 'make clean   remove .venv, demo/ and every cache'
 
 demo: .venv/installed
@@ -27,6 +27,7 @@ demo: .venv/installed
 
 test: .venv/installed-test
 	$(PYTEST)
+	$(PLAIN) $(BIN)/python web/build.py test
 	@$(MAKE) --no-print-directory lint
 
 lint: .venv/installed-test
@@ -34,32 +35,44 @@ lint: .venv/installed-test
 	$(PLAIN) $(BIN)/ruff format --check .
 	$(PLAIN) $(BIN)/mypy --no-color-output
 	$(PLAIN) $(BIN)/lint-imports --no-logo --no-cache
+	$(PLAIN) $(BIN)/python web/build.py lint
 
 format: .venv/installed-test
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
+	$(BIN)/python web/build.py format
 
 bench: .venv/installed-bench
 	$(PLAIN) $(BIN)/python benchmarks/run.py
 
 # The stamps: an installation is repeated only when what it installs has changed.
-.venv/installed: pyproject.toml constraints.txt
+.venv/installed: pyproject.toml constraints.txt hatch_build.py .venv/web
 	@$(PREPARE)
 	@$(INSTALL) -e '.'
 	@$(COMPILE)
-	@touch $@
+	@$(STAMP) $@
 
-.venv/installed-test: pyproject.toml constraints.txt
+.venv/installed-test: pyproject.toml constraints.txt hatch_build.py .venv/web
 	@$(PREPARE)
 	@$(INSTALL) -e '.[test]'
 	@$(COMPILE)
-	@touch .venv/installed $@
+	@$(STAMP) .venv/installed $@
 
-.venv/installed-bench: pyproject.toml constraints.txt
+.venv/installed-bench: pyproject.toml constraints.txt hatch_build.py .venv/web
 	@$(PREPARE)
 	@$(INSTALL) -e '.[test,bench]'
 	@$(COMPILE)
-	@touch .venv/installed .venv/installed-test $@
+	@$(STAMP) .venv/installed .venv/installed-test $@
+
+STAMP = if [ ! -f .venv/web ]; then touch .venv/web; fi; touch
+
+# Newer than an installation as soon as anything that the viewer and the lab page are built from is newer, or they are gone.
+.venv/web: always
+	@if [ ! -f $@ ] || [ ! -f src/trundle/viewer/static/built-from ] || [ -n "$$(find $(WEB) -newer $@ -print)" ]; then \
+	  mkdir -p .venv && touch $@; \
+	fi
+always:
+WEB = web/src web/lab.html web/package.json web/package-lock.json web/.npmrc web/tsconfig.json web/vite.config.ts web/build.py
 
 INSTALL = echo 'Installing trundle and its pinned dependencies into .venv (a minute or two the first time) ...' && \
 	$(PINNED) $(BIN)/python -m pip install --quiet --progress-bar off -c constraints.txt
@@ -88,5 +101,6 @@ PREPARE = \
 	fi
 
 clean:
-	rm -rf .venv demo out dist build .pytest_cache .hypothesis .mypy_cache .ruff_cache .import_linter_cache .benchmarks
+	rm -rf .venv demo out dist build web/node_modules src/trundle/viewer/static
+	rm -rf .pytest_cache .hypothesis .mypy_cache .ruff_cache .import_linter_cache .benchmarks
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

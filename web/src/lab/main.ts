@@ -1,0 +1,4 @@
+import { createViewer } from '../viewer/viewer'
+
+const place = document.querySelector<HTMLElement>('#lab')
+if (place) createViewer(place)

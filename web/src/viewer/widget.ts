@@ -1,0 +1,5 @@
+import { unpack } from './scene'
+import { createViewer } from './viewer'
+
+export { createViewer, unpack }
+export default { render() {} }

@@ -1,0 +1,46 @@
+import { fileURLToPath } from 'node:url'
+import { defineConfig, type Plugin, type UserConfig } from 'vite'
+
+const here = (path: string) => fileURLToPath(new URL(path, import.meta.url))
+const output = process.env.TRUNDLE_STATIC ?? here('../src/trundle/viewer/static')
+
+/** Every browser with modules reads woff2: leave the older copies of KaTeX's fonts out of the bundle. */
+const onlyWoff2: Plugin = {
+  name: 'only-woff2',
+  enforce: 'pre',
+  transform(code, id) {
+    if (!/katex.*\.css/.test(id)) return null
+    return code.replace(/,\s*url\([^)]*\.(?:woff|ttf)\)\s*format\(['"](?:woff|truetype)['"]\)/g, '')
+  },
+}
+
+/** One self-contained module and its style: for the notebook widget and for saved pages. */
+const viewer: UserConfig = {
+  build: {
+    outDir: output,
+    emptyOutDir: true,
+    assetsInlineLimit: Number.MAX_SAFE_INTEGER,
+    lib: { entry: here('src/viewer/widget.ts'), formats: ['es'], fileName: () => 'viewer.js', cssFileName: 'viewer' },
+    rollupOptions: { output: { codeSplitting: false } },
+  },
+}
+
+/** The lab page. Fonts stay files, since its policy forbids data: addresses for them. */
+const lab: UserConfig = {
+  base: './',
+  build: {
+    outDir: output,
+    emptyOutDir: false,
+    assetsInlineLimit: 0,
+    rollupOptions: { input: here('lab.html') },
+  },
+  server: { proxy: { '/api': 'http://127.0.0.1:8765' } },
+}
+
+export default defineConfig(({ mode }) => ({
+  root: here('.'),
+  plugins: [onlyWoff2],
+  define: { 'process.env.NODE_ENV': '"production"' },
+  ...(mode === 'viewer' ? viewer : lab),
+  test: { environment: 'happy-dom', include: ['src/**/*.test.ts'] },
+}))
