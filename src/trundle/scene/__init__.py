@@ -1,0 +1,8 @@
+"""A run as a scene: everything that a viewer needs to draw it, as plain numbers, and as bytes."""
+
+from __future__ import annotations
+
+from .making import scene_of
+from .wire import Scene, pack, unpack
+
+__all__ = ["Scene", "pack", "scene_of", "unpack"]

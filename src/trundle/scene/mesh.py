@@ -1,0 +1,70 @@
+"""Triangles: what body and support have in common as meshes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """A surface of triangles.
+
+    Parameters
+    ----------
+    vertices, normals : (v, 3) array
+        m, and unit vectors away from the material.
+    triangles : (t, 3) array of int
+        Anticlockwise seen from where the normals point to.
+    paint : array (v, 2) or (v, 3)
+        Coordinates that the markings are painted by.
+    """
+
+    vertices: Array
+    normals: Array
+    triangles: NDArray[np.uint32]
+    paint: Array
+
+    def columns(self, name: str, paint: str) -> dict[str, NDArray[Any]]:
+        """Return it as columns, their names beginning alike."""
+        return {
+            f"{name}_vertices": self.vertices.astype(np.float32),
+            f"{name}_normals": self.normals.astype(np.float32),
+            f"{name}_triangles": self.triangles.astype(np.uint32),
+            paint: self.paint.astype(np.float32),
+        }
+
+
+def joined(meshes: list[Mesh]) -> Mesh:
+    """Return several meshes as one."""
+    starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes[:-1])])
+    return Mesh(
+        np.concatenate([mesh.vertices for mesh in meshes]),
+        np.concatenate([mesh.normals for mesh in meshes]),
+        np.concatenate([mesh.triangles + start for mesh, start in zip(meshes, starts, strict=True)]).astype(np.uint32),
+        np.concatenate([mesh.paint for mesh in meshes]),
+    )
+
+
+def grid_triangles(rows: int, columns: int) -> NDArray[np.uint32]:
+    """Return the two triangles of each cell of a grid whose vertices are counted row by row."""
+    corner = np.arange((rows - 1) * columns).reshape(rows - 1, columns)[:, :-1].ravel()
+    a, b, c, d = corner, corner + 1, corner + columns, corner + columns + 1
+    return np.concatenate([np.stack([a, b, c], axis=1), np.stack([b, d, c], axis=1)]).astype(np.uint32)
+
+
+def oriented(vertices: Array, normals: Array, triangles: NDArray[np.uint32]) -> NDArray[np.uint32]:
+    """Return the triangles that are more than a line, each anticlockwise seen from where its normals point to."""
+    p, q, r = (vertices[triangles[:, i]] for i in range(3))
+    area = np.cross(q - p, r - p)
+    size = np.linalg.norm(area, axis=1)
+    extent = float(np.max(np.ptp(vertices, axis=0)))
+    facing = np.sum(area * normals[triangles].mean(axis=1), axis=1)
+    kept = triangles.copy()
+    kept[facing < 0] = kept[facing < 0][:, ::-1]
+    return kept[size > 1e-12 * extent * extent]

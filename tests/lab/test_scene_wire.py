@@ -1,0 +1,72 @@
+"""A scene goes into bytes and comes out again as it was."""
+
+import json
+import struct
+
+import numpy as np
+import pytest
+
+import trundle as tr
+from trundle.scene import Scene, pack, scene_of, unpack
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return scene_of(tr.Scenario.load("level-turntable-nudged").run(duration=2.0))
+
+
+def test_what_is_packed_is_unpacked(scene):
+    again = unpack(pack(scene))
+    assert again.header == json.loads(json.dumps(scene.header))
+    assert list(again.columns) == list(scene.columns)
+    for name, column in scene.columns.items():
+        assert again.columns[name].dtype == column.dtype
+        assert np.array_equal(again.columns[name], column)
+    assert again.units == scene.units
+
+
+def test_the_bytes_are_laid_out_as_the_viewer_reads_them(scene):
+    blob = pack(scene)
+    magic, length, zero = struct.unpack("<8sII", blob[:16])
+    assert (magic, length % 8, zero) == (b"TRUNDLE1", 0, 0)
+    header = json.loads(blob[16 : 16 + length])
+    for name, facts in header["columns"].items():
+        assert facts["offset"] % 8 == 0
+        begin = 16 + length + facts["offset"]
+        count = int(np.prod(facts["shape"]))
+        found = np.frombuffer(blob, "<" + np.dtype(facts["dtype"]).str[1:], count, begin).reshape(facts["shape"])
+        assert np.array_equal(found, scene.columns[name])
+    assert header["columns"]["time"] == {"dtype": "float64", "shape": [201], "offset": 0, "unit": "s"}
+
+
+def test_numbers_that_are_not_finite_become_null():
+    blob = pack(Scene({"ratio": float("nan"), "list": [np.inf, np.float32(0.5)]}, {}))
+    assert unpack(blob).header == {"ratio": None, "list": [None, 0.5]}
+
+
+@pytest.mark.parametrize("change", [lambda b: b[:40], lambda b: b[:-400], lambda b: b"X" + b[1:], lambda b: b""])
+def test_damaged_bytes_are_refused(scene, change):
+    with pytest.raises(tr.TrundleError, match="scene"):
+        unpack(change(pack(scene)))
+
+
+def test_a_damaged_header_is_refused(scene):
+    blob = bytearray(pack(scene))
+    blob[20] = 0
+    with pytest.raises(tr.TrundleError, match="damaged"):
+        unpack(bytes(blob))
+
+
+@pytest.mark.parametrize("samples", [1, 0, -5, 2.5, True, "100"])
+def test_samples_must_be_a_count(samples):
+    run = tr.Scenario.load("ball-under-force").run()
+    with pytest.raises(tr.InvalidValueError, match="samples"):
+        scene_of(run, samples=samples)
+
+
+def test_no_more_samples_than_asked():
+    run = tr.Scenario.load("ball-under-force").run()
+    found = scene_of(run, samples=50).columns["time"]
+    assert found.size == 50
+    assert found[0] == run.data.time.values[0]
+    assert found[-1] == run.data.time.values[-1]
