@@ -1,8 +1,147 @@
-/** A run as the package packs it: a header, and columns of numbers. */
-export interface Scene {
-  header: { format: number; title: string; duration: number }
+/** A run as the package packs it: a header, and columns of numbers over its samples. */
+
+export type Triple = [number, number, number]
+export type Turn = [w: number, x: number, y: number, z: number]
+export type ColumnArray = Float32Array | Float64Array | Uint32Array | Uint8Array
+
+export interface SceneEvent {
+  time: number
+  kind: string
+  text: string
 }
 
-export function unpack(_bytes: ArrayBuffer | DataView | Uint8Array): Scene {
-  throw new Error('not written yet')
+export interface Finding {
+  name: string
+  symbol: string
+  predicted: number | null
+  measured: number | null
+  unit: string
+  difference: number | null
+  note: string
+}
+
+export interface Formula {
+  name: string
+  source: string
+  latex: string
+  numbers_latex: string
+}
+
+export interface BodyHeader {
+  kind: string
+  radius: number
+  name: string
+  mass: number
+  label: string
+}
+
+export interface SupportHeader {
+  kind: string
+  name: string
+  moves: boolean
+  size: number
+  centre?: Triple
+  marks?: 'polar' | 'square'
+  rim: number | null
+  friction: number | null
+}
+
+export interface ColumnHeader {
+  dtype: 'float32' | 'float64' | 'uint32' | 'uint8'
+  shape: number[]
+  offset: number
+  unit: string
+}
+
+export interface SceneHeader {
+  format: number
+  title: string
+  method: string
+  duration: number
+  seconds?: number | null
+  scenario?: unknown
+  scenario_toml?: string
+  columns: Record<string, ColumnHeader>
+  gravity: Triple
+  tilt: number
+  to_world: Turn
+  body: BodyHeader
+  support: SupportHeader
+  events: SceneEvent[]
+  findings?: Finding[]
+  formula?: Formula | null
+  guiding_centre?: boolean
+  card?: unknown
+  /** Of the charge in crossed fields, in the support frame. */
+  E?: Triple
+  B?: Triple
+  turned?: number
+  enclosed_area?: number
+}
+
+/** Vectors are in the inertial support frame, three numbers a sample; orientations are w, x, y, z. */
+export interface Columns {
+  time: Float64Array
+  position: Float32Array
+  contact?: Float32Array
+  velocity?: Float32Array
+  angular_velocity?: Float32Array
+  contact_force?: Float32Array
+  orientation?: Float32Array
+  phase?: Uint8Array
+  support_position?: Float32Array
+  support_orientation?: Float32Array
+  guiding_centre?: Float32Array
+  body_vertices?: Float32Array
+  body_normals?: Float32Array
+  body_triangles?: Uint32Array
+  body_pattern?: Float32Array
+  support_vertices?: Float32Array
+  support_normals?: Float32Array
+  support_triangles?: Uint32Array
+  support_marks?: Float32Array
+}
+
+export interface Scene {
+  readonly header: SceneHeader
+  readonly columns: Columns
+}
+
+/** Codes of the column `phase`. */
+export const PHASE = { rolling: 0, slipping: 1, flight: 2, resting: 3 } as const
+
+const MAGIC = 'TRUNDLE1'
+const START = 16
+const TYPES = { float32: Float32Array, float64: Float64Array, uint32: Uint32Array, uint8: Uint8Array }
+
+/** Read a packed scene. The columns are views of the bytes given, unless these lie askew in memory. */
+export function unpack(bytes: ArrayBuffer | ArrayBufferView): Scene {
+  const whole = aligned(bytes)
+  const magic = whole.length < START ? '' : String.fromCharCode(...whole.subarray(0, MAGIC.length))
+  if (magic !== MAGIC) throw new Error(`A packed scene begins with ${MAGIC}; got ${whole.length} bytes of something else.`)
+  const length = new DataView(whole.buffer, whole.byteOffset).getUint32(MAGIC.length, true)
+  const base = START + length
+  if (base > whole.length) throw new Error(`The scene ends within its header: ${whole.length} of ${base} bytes came.`)
+  const header = JSON.parse(new TextDecoder().decode(whole.subarray(START, base))) as SceneHeader
+  if (header.format !== 1) throw new Error(`This viewer reads scenes of format 1; got ${header.format}.`)
+  const columns: Record<string, ColumnArray> = {}
+  for (const [name, column] of Object.entries(header.columns)) columns[name] = read(whole, base, name, column)
+  if (!columns.time?.length || !columns.position) throw new Error('A scene needs the columns time and position.')
+  return { header, columns: columns as unknown as Columns }
+}
+
+/** Typed arrays must start at a multiple of their element's size: copy what does not. */
+function aligned(bytes: ArrayBuffer | ArrayBufferView): Uint8Array {
+  if (!ArrayBuffer.isView(bytes)) return new Uint8Array(bytes)
+  const view = new Uint8Array(bytes.buffer, bytes.byteOffset, bytes.byteLength)
+  return view.byteOffset % 8 === 0 ? view : view.slice()
+}
+
+function read(whole: Uint8Array, base: number, name: string, { dtype, shape, offset }: ColumnHeader): ColumnArray {
+  const Type = TYPES[dtype]
+  const count = shape.reduce((product, side) => product * side, 1)
+  const start = base + offset
+  const end = start + count * Type.BYTES_PER_ELEMENT
+  if (end > whole.length) throw new Error(`The column ${name} ends at byte ${end} of ${whole.length}.`)
+  return new Type(whole.buffer, whole.byteOffset + start, count)
 }

@@ -1,10 +1,7 @@
-import type { Scene } from './scene'
+import type { Viewer, ViewerOptions } from './contract'
 
-export interface Viewer {
-  setScenes(scenes: Scene[]): void
-  dispose(): void
-}
+export type { Frame, Show, Theme, Tool, Viewer, ViewerEvents, ViewerOptions } from './contract'
 
-export function createViewer(_element: HTMLElement): Viewer {
-  return { setScenes() {}, dispose() {} }
+export function createViewer(_element: HTMLElement, _options: ViewerOptions = {}): Viewer {
+  throw new Error('not written yet')
 }

@@ -1,0 +1,84 @@
+/** What the viewer offers to the pages that hold it. */
+import type { Scene, Triple } from './scene'
+
+export type Frame = 'support' | 'world' | 'corotating'
+export type Tool = 'orbit' | 'drag' | 'velocity' | 'nudge' | 'draw'
+export type Theme = 'light' | 'dark' | 'auto'
+
+export interface Show {
+  velocity: boolean
+  contactForce: boolean
+  angularVelocity: boolean
+  gravity: boolean
+  frictionCone: boolean
+  guidingCentre: boolean
+  trail: boolean
+  axes: boolean
+}
+
+export interface ViewerOptions {
+  theme?: Theme
+  /** The viewer's own bar: play, scrub, frame, arrows. Default yes. */
+  controls?: boolean
+  /** Large type and thick lines, for the back row. */
+  projector?: boolean
+  frame?: Frame
+  show?: Partial<Show>
+}
+
+export interface ViewerEvents {
+  time: { time: number }
+  play: { time: number }
+  pause: { time: number }
+  frame: { frame: Frame }
+  show: { show: Show }
+  /** A place on the support, in its frame: where the first body is dragged to. */
+  dragstart: Place
+  drag: Place
+  dragend: Place
+  /** A velocity drawn as an arrow on the support, in m/s. */
+  arrow: { vx: number; vy: number; vz: number; done: boolean }
+  /** The same while it runs: what is to be added to the velocity at this time. */
+  nudge: { vx: number; vy: number; vz: number; time: number; done: boolean }
+  /** A curve drawn on the support; its points are those of the support's material where the frame is corotating. */
+  sketch: { points: Triple[]; frame: Frame }
+}
+
+export interface Place {
+  x: number
+  y: number
+  z: number
+}
+
+export interface Viewer {
+  /** Several scenes share the support of the first; each has its own body, in the order of `BODY_COLOURS`. */
+  setScenes(scenes: readonly Scene[], options?: { keepTime?: boolean; keepCamera?: boolean }): void
+  play(): void
+  pause(): void
+  seek(time: number): void
+  /** One sample on, or back. */
+  step(by: number): void
+  speed: number
+  loop: boolean
+  readonly time: number
+  readonly duration: number
+  readonly playing: boolean
+  frame: Frame
+  /** Reads as a copy; assign a part to change it: `viewer.show = { ...viewer.show, velocity: true }`. */
+  get show(): Show
+  set show(part: Partial<Show>)
+  tool: Tool
+  get theme(): 'light' | 'dark'
+  set theme(theme: Theme)
+  projector: boolean
+  /** The camera goes with the first body. */
+  follow: boolean
+  resetCamera(): void
+  topView(): void
+  /** A curve drawn by the learner; null takes it away. */
+  setSketch(points: readonly Triple[] | readonly [number, number][] | null, label?: string, frame?: Frame): void
+  /** Subscribe; returns how to unsubscribe. */
+  on<Name extends keyof ViewerEvents>(name: Name, listener: (event: ViewerEvents[Name]) => void): () => void
+  snapshot(): Promise<Blob>
+  dispose(): void
+}
