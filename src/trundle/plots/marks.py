@@ -14,8 +14,9 @@ from matplotlib.patches import Circle, Ellipse
 from matplotlib.path import Path
 
 from .scales import Array, Unit
-from .sheet import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, TABLE, VERMILION
+from .sheet import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, TABLE, VERMILION, Sheet
 
+_LEGEND_SIZES = (9.0, 8.5, 8.0, 7.5, 7.0)  # pt
 _ARROWHEAD = Path([(-0.8, -0.9), (0.0, 1.1), (0.8, -0.9), (0.0, -0.5), (-0.8, -0.9)], closed=True)
 
 
@@ -179,3 +180,22 @@ STYLES: dict[str, dict[str, Any]] = {
 def handles(texts: dict[str, str]) -> list[Line2D]:
     """Return the legend's entries: kind of mark -> its text, in the order given."""
     return [Line2D([], [], label=text, **STYLES[kind]) for kind, text in texts.items()]
+
+
+def legend(sheet: Sheet, texts: dict[str, str], corner: tuple[float, float], columns: int) -> None:
+    """Write a legend with its upper left corner at a place of the sheet, as large as fits beside it."""
+    for size in _LEGEND_SIZES:
+        entry = sheet.legend(
+            handles=handles(texts),
+            loc="upper left",
+            bbox_to_anchor=corner,
+            ncols=columns,
+            borderpad=0.0,
+            borderaxespad=0.0,
+            handlelength=2.2,
+            columnspacing=1.6 if size == _LEGEND_SIZES[0] else 1.0,
+            fontsize=size,
+        )
+        if entry.get_window_extent().x1 <= sheet.bbox.x1 or size == _LEGEND_SIZES[-1]:
+            return
+        entry.remove()

@@ -84,16 +84,8 @@ class Drawing:
         for i, key in enumerate(plan.keys):
             texts = {kind: self.legend[kind] for kind in kinds[i * each : (i + 1) * each]}
             if texts:
-                sheet.legend(
-                    handles=marks.handles(texts),
-                    loc="upper left",
-                    bbox_to_anchor=(key.left / plan.width, key.top / plan.height),
-                    ncols=math.ceil(len(texts) / key.rows),
-                    borderpad=0.0,
-                    borderaxespad=0.0,
-                    handlelength=2.2,
-                    columnspacing=1.6,
-                )
+                corner = (key.left / plan.width, key.top / plan.height)
+                marks.legend(sheet, texts, corner, math.ceil(len(texts) / key.rows))
 
     def _map(self, ax: Axes, panel: Panel, place: Place) -> None:
         ruler = self._frame(ax, panel, place.width)
