@@ -1,8 +1,9 @@
 /** Every route of the lab's server, typed. */
-import { unpack } from '../viewer/scene';
-import type { Scene } from '../viewer/scene';
-import { createLanes } from './lanes';
-import type { Json, Quantity, Scenario } from './scenario';
+
+import type { Scene } from '../viewer/scene'
+import { unpack } from '../viewer/scene'
+import { createLanes } from './lanes'
+import type { Json, Quantity, Scenario } from './scenario'
 
 /** What the package says is wrong, and at which key of the scenario ("support.tilt"). */
 export class ApiError extends Error {
@@ -12,105 +13,105 @@ export class ApiError extends Error {
     readonly kind: string,
     readonly status: number,
   ) {
-    super(message);
-    this.name = 'ApiError';
+    super(message)
+    this.name = 'ApiError'
   }
 }
 
 /** True of what a cancelled request throws: a newer one took its place, nothing went wrong. */
 export function isAbort(error: unknown): boolean {
-  return error instanceof DOMException && error.name === 'AbortError';
+  return error instanceof DOMException && error.name === 'AbortError'
 }
 
 export interface ScenarioEntry {
-  name: string;
-  title: string;
-  summary: string;
-  support: string;
-  body: string;
-  motion: string;
-  exact: boolean;
+  name: string
+  title: string
+  summary: string
+  support: string
+  body: string
+  motion: string
+  exact: boolean
 }
 
 export interface NamedScenario {
-  name: string;
-  toml: string;
-  scenario: Scenario;
+  name: string
+  toml: string
+  scenario: Scenario
 }
 
 /** One line of the verification card. */
-export type CardLine = { [key: string]: Json | undefined };
-export type Card = { [key: string]: Json | undefined };
+export type CardLine = { [key: string]: Json | undefined }
+export type Card = { [key: string]: Json | undefined }
 
 export interface Derivation {
-  title: string;
-  introduction: string;
-  steps: { title: string; text: string; latex: string[]; source: string | null }[];
-  numbers: { name: string; symbol: string; value: number | null; unit: string }[];
+  title: string
+  introduction: string
+  steps: { title: string; text: string; latex: string[]; source: string | null }[]
+  numbers: { name: string; symbol: string; value: number | null; unit: string }[]
 }
 
-export type ExportFormat = 'toml' | 'csv' | 'nc' | 'png' | 'svg' | 'html' | 'glb' | 'gif';
+export type ExportFormat = 'toml' | 'csv' | 'nc' | 'png' | 'svg' | 'html' | 'glb' | 'gif'
 
 export interface Download {
-  blob: Blob;
-  name: string;
+  blob: Blob
+  name: string
 }
 
 export interface Simulated {
-  scene: Scene;
+  scene: Scene
   /** From the request leaving to the columns being ready, here. */
-  milliseconds: number;
+  milliseconds: number
 }
 
 export interface RequestOptions {
   /** Requests of one lane cancel their elders. Default: one lane a route; null: none. Give your own for several at once. */
-  lane?: string | null;
-  signal?: AbortSignal;
+  lane?: string | null
+  signal?: AbortSignal
 }
 
 export interface SimulateOptions extends RequestOptions {
-  samples?: number;
-  card?: boolean;
+  samples?: number
+  card?: boolean
 }
 
 export interface RollRequest {
-  radius: Quantity;
-  curve: { [key: string]: Json | undefined };
+  radius: Quantity
+  curve: { [key: string]: Json | undefined }
 }
 
 export interface Api {
-  scenarios(options?: RequestOptions): Promise<ScenarioEntry[]>;
-  scenario(name: string, options?: RequestOptions): Promise<NamedScenario>;
-  schema(options?: RequestOptions): Promise<Json>;
-  simulate(scenario: Scenario, options?: SimulateOptions): Promise<Simulated>;
-  card(scenario: Scenario, options?: RequestOptions): Promise<Card>;
-  derivation(scenario: Scenario, options?: RequestOptions): Promise<Derivation>;
-  twin(scenario: Scenario, options?: SimulateOptions): Promise<Simulated>;
-  roll(request: RollRequest, options?: SimulateOptions): Promise<Simulated>;
-  export(scenario: Scenario, format: ExportFormat, options?: RequestOptions): Promise<Download>;
-  open(file: Blob, options?: RequestOptions): Promise<{ scenario: Scenario; toml: string }>;
+  scenarios(options?: RequestOptions): Promise<ScenarioEntry[]>
+  scenario(name: string, options?: RequestOptions): Promise<NamedScenario>
+  schema(options?: RequestOptions): Promise<Json>
+  simulate(scenario: Scenario, options?: SimulateOptions): Promise<Simulated>
+  card(scenario: Scenario, options?: RequestOptions): Promise<Card>
+  derivation(scenario: Scenario, options?: RequestOptions): Promise<Derivation>
+  twin(scenario: Scenario, options?: SimulateOptions): Promise<Simulated>
+  roll(request: RollRequest, options?: SimulateOptions): Promise<Simulated>
+  export(scenario: Scenario, format: ExportFormat, options?: RequestOptions): Promise<Download>
+  open(file: Blob, options?: RequestOptions): Promise<{ scenario: Scenario; toml: string }>
   /** Abort what is under way in a lane, or everything. */
-  cancel(lane?: string): void;
+  cancel(lane?: string): void
 }
 
-const UNREACHABLE = 'The lab’s server does not answer. Is `trundle lab` still running?';
+const UNREACHABLE = 'The lab’s server does not answer. Is `trundle lab` still running?'
 
 async function failure(response: Response): Promise<ApiError> {
   try {
-    const { error } = (await response.json()) as { error: { message: string; key: string | null; kind: string } };
-    return new ApiError(error.message, error.key ?? null, error.kind, response.status);
+    const { error } = (await response.json()) as { error: { message: string; key: string | null; kind: string } }
+    return new ApiError(error.message, error.key ?? null, error.kind, response.status)
   } catch {
-    return new ApiError(`The server answered ${response.status} ${response.statusText}.`, null, 'HTTP', response.status);
+    return new ApiError(`The server answered ${response.status} ${response.statusText}.`, null, 'HTTP', response.status)
   }
 }
 
 function fileName(response: Response, fallback: string): string {
-  const disposition = response.headers.get('content-disposition') ?? '';
-  return /filename="?([^";]+)"?/.exec(disposition)?.[1] ?? fallback;
+  const disposition = response.headers.get('content-disposition') ?? ''
+  return /filename="?([^";]+)"?/.exec(disposition)?.[1] ?? fallback
 }
 
 export function createApi(base = '', ask: typeof fetch = (input, init) => fetch(input, init)): Api {
-  const lanes = createLanes();
+  const lanes = createLanes()
 
   async function request<T>(
     path: string,
@@ -119,27 +120,27 @@ export function createApi(base = '', ask: typeof fetch = (input, init) => fetch(
     outer: AbortSignal | undefined,
     read: (response: Response) => Promise<T>,
   ): Promise<T> {
-    const { signal, leave } = lanes.enter(lane, outer);
+    const { signal, leave } = lanes.enter(lane, outer)
     try {
-      const response = await ask(base + path, { ...init, signal });
-      if (!response.ok) throw await failure(response);
-      const value = await read(response);
-      signal.throwIfAborted();
-      return value;
+      const response = await ask(base + path, { ...init, signal })
+      if (!response.ok) throw await failure(response)
+      const value = await read(response)
+      signal.throwIfAborted()
+      return value
     } catch (error) {
-      if (signal.aborted) throw new DOMException('A newer request took its place.', 'AbortError');
-      if (error instanceof ApiError || isAbort(error)) throw error;
-      if (error instanceof TypeError) throw new ApiError(UNREACHABLE, null, 'Network', 0);
-      throw error;
+      if (signal.aborted) throw new DOMException('A newer request took its place.', 'AbortError')
+      if (error instanceof ApiError || isAbort(error)) throw error
+      if (error instanceof TypeError) throw new ApiError(UNREACHABLE, null, 'Network', 0)
+      throw error
     } finally {
-      leave();
+      leave()
     }
   }
 
-  const laneOf = (options: RequestOptions, own: string | null) => (options.lane === undefined ? own : options.lane);
+  const laneOf = (options: RequestOptions, own: string | null) => (options.lane === undefined ? own : options.lane)
 
   function get<T>(path: string, options: RequestOptions = {}): Promise<T> {
-    return request(path, {}, laneOf(options, null), options.signal, (response) => response.json() as Promise<T>);
+    return request(path, {}, laneOf(options, null), options.signal, (response) => response.json() as Promise<T>)
   }
 
   function post<T>(
@@ -149,19 +150,19 @@ export function createApi(base = '', ask: typeof fetch = (input, init) => fetch(
     own: string | null,
     read: (response: Response) => Promise<T>,
   ): Promise<T> {
-    const init = { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(body) };
-    return request(path, init, laneOf(options, own), options.signal, read);
+    const init = { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(body) }
+    return request(path, init, laneOf(options, own), options.signal, read)
   }
 
-  const json = <T>(response: Response) => response.json() as Promise<T>;
+  const json = <T>(response: Response) => response.json() as Promise<T>
 
   function packed(path: string, body: object, options: SimulateOptions, own: string): Promise<Simulated> {
-    const began = performance.now();
-    const { samples, card } = options;
+    const began = performance.now()
+    const { samples, card } = options
     return post(path, { ...body, samples, card }, options, own, async (response) => {
-      const scene = unpack(await response.arrayBuffer());
-      return { scene, milliseconds: performance.now() - began };
-    });
+      const scene = unpack(await response.arrayBuffer())
+      return { scene, milliseconds: performance.now() - began }
+    })
   }
 
   return {
@@ -180,10 +181,16 @@ export function createApi(base = '', ask: typeof fetch = (input, init) => fetch(
         name: fileName(response, `trundle.${format}`),
       })),
     open: (file, options = {}) => {
-      const type = file.type || 'application/octet-stream';
-      const init = { method: 'POST', headers: { 'content-type': type }, body: file };
-      return request('/api/open', init, laneOf(options, 'open'), options.signal, json<{ scenario: Scenario; toml: string }>);
+      const type = file.type || 'application/octet-stream'
+      const init = { method: 'POST', headers: { 'content-type': type }, body: file }
+      return request(
+        '/api/open',
+        init,
+        laneOf(options, 'open'),
+        options.signal,
+        json<{ scenario: Scenario; toml: string }>,
+      )
     },
     cancel: (lane) => lanes.cancel(lane),
-  };
+  }
 }

@@ -1,9 +1,9 @@
 /** Small helpers to make elements. No framework: what is on the page is what was made here. */
 
-type Attribute = string | number | boolean | null | undefined;
-type Handlers = { [E in keyof HTMLElementEventMap as `on${E}`]?: (event: HTMLElementEventMap[E]) => void };
-export type Properties = Handlers & { [name: string]: Attribute | ((event: never) => void) };
-export type Child = Node | string | number | null | undefined | false;
+type Attribute = string | number | boolean | null | undefined
+type Handlers = { [E in keyof HTMLElementEventMap as `on${E}`]?: (event: HTMLElementEventMap[E]) => void }
+export type Properties = Handlers & { [name: string]: Attribute | ((event: never) => void) }
+export type Child = Node | string | number | null | undefined | false
 
 /** Make an element: h('button', { class: 'quiet', onclick: go }, 'Go'). Attributes false or null are left out. */
 export function h<Tag extends keyof HTMLElementTagNameMap>(
@@ -11,10 +11,10 @@ export function h<Tag extends keyof HTMLElementTagNameMap>(
   properties: Properties = {},
   ...children: (Child | Child[])[]
 ): HTMLElementTagNameMap[Tag] {
-  const element = document.createElement(tag);
-  assign(element, properties);
-  element.append(...nodes(children));
-  return element;
+  const element = document.createElement(tag)
+  assign(element, properties)
+  element.append(...nodes(children))
+  return element
 }
 
 /** The same for SVG. */
@@ -23,17 +23,17 @@ export function svg<Tag extends keyof SVGElementTagNameMap>(
   properties: Properties = {},
   ...children: (Child | Child[])[]
 ): SVGElementTagNameMap[Tag] {
-  const element = document.createElementNS('http://www.w3.org/2000/svg', tag);
-  assign(element, properties);
-  element.append(...nodes(children));
-  return element;
+  const element = document.createElementNS('http://www.w3.org/2000/svg', tag)
+  assign(element, properties)
+  element.append(...nodes(children))
+  return element
 }
 
 function assign(element: Element, properties: Properties): void {
   for (const [name, value] of Object.entries(properties)) {
-    if (typeof value === 'function') element.addEventListener(name.slice(2), value as (event: Event) => void);
-    else if (value === true) element.setAttribute(name, '');
-    else if (value !== false && value !== null && value !== undefined) element.setAttribute(name, String(value));
+    if (typeof value === 'function') element.addEventListener(name.slice(2), value as (event: Event) => void)
+    else if (value === true) element.setAttribute(name, '')
+    else if (value !== false && value !== null && value !== undefined) element.setAttribute(name, String(value))
   }
 }
 
@@ -41,12 +41,12 @@ function nodes(children: (Child | Child[])[]): (Node | string)[] {
   return children
     .flat()
     .filter((child) => child !== null && child !== undefined && child !== false)
-    .map((child) => (child instanceof Node ? child : String(child)));
+    .map((child) => (child instanceof Node ? child : String(child)))
 }
 
 /** Put these in place of whatever is inside. */
 export function fill(host: Element, ...children: (Child | Child[])[]): void {
-  host.replaceChildren(...nodes(children));
+  host.replaceChildren(...nodes(children))
 }
 
 /** Listen until the returned function is called. */
@@ -56,26 +56,26 @@ export function listen<E extends keyof WindowEventMap>(
   listener: (event: WindowEventMap[E]) => void,
   options?: AddEventListenerOptions,
 ): () => void {
-  target.addEventListener(name, listener as EventListener, options);
-  return () => target.removeEventListener(name, listener as EventListener, options);
+  target.addEventListener(name, listener as EventListener, options)
+  return () => target.removeEventListener(name, listener as EventListener, options)
 }
 
-let made = 0;
+let made = 0
 /** An id nobody else on the page has, for labels and descriptions. */
 export function uniqueId(word = 'id'): string {
-  made += 1;
-  return `${word}-${made}`;
+  made += 1
+  return `${word}-${made}`
 }
 
 /** Collect how to take things down; the returned function does all of it, last first. */
 export function cleanup(): { add(...undo: (() => void)[]): void; run(): void } {
-  let undos: (() => void)[] = [];
+  let undos: (() => void)[] = []
   return {
     add: (...more) => void undos.push(...more),
     run() {
-      const all = undos.reverse();
-      undos = [];
-      all.forEach((undo) => undo());
+      const all = undos.reverse()
+      undos = []
+      for (const undo of all) undo()
     },
-  };
+  }
 }

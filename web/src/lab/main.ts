@@ -1,4 +1,41 @@
-import { createViewer } from '../viewer/viewer'
+/** The lab page: makes the app and shows the page that the address names. */
+import '@fontsource-variable/inter'
+import '@fontsource/jetbrains-mono/400.css'
+import '@fontsource/jetbrains-mono/600.css'
+import './tokens.css'
+import './base.css'
+import './shell.css'
+import { createApi } from './api'
+import type { App } from './app'
+import { pages } from './registry'
+import { createRouter } from './router'
+import { createSettings } from './settings'
+import { createShell, startShell } from './shell'
+import { createStore } from './store'
+import { FIRST } from './first'
 
-const place = document.querySelector<HTMLElement>('#lab')
-if (place) createViewer(place)
+const settings = createSettings()
+const router = createRouter()
+const shell = createShell(document.body)
+
+const app: App = {
+  api: createApi(),
+  get settings() {
+    return settings.value
+  },
+  get appearance() {
+    return settings.appearance
+  },
+  watchSettings: (listener) => settings.subscribe(listener),
+  changeSettings: (part) => settings.change(part),
+  store: createStore(FIRST),
+  router,
+  navigate: (route, params) => router.navigate(route, params),
+  get route() {
+    return router.route
+  },
+  announce: (text) => shell.announce(text),
+  toast: (text, kind) => shell.toast(text, kind),
+}
+
+startShell(shell, app, pages)

@@ -2,60 +2,60 @@
 
 export interface Route {
   /** "bench", "tour"; empty for the front door. */
-  page: string;
+  page: string
   /** What follows: ["3"] of #/tour/3. */
-  path: string[];
-  params: Readonly<Record<string, string>>;
+  path: string[]
+  params: Readonly<Record<string, string>>
 }
 
 export interface Router {
-  readonly route: Route;
-  navigate(route: string, params?: Record<string, string>): void;
+  readonly route: Route
+  navigate(route: string, params?: Record<string, string>): void
   /** Change the address without a new entry in the history, and without telling anyone. */
-  replace(route: string, params?: Record<string, string>): void;
-  subscribe(listener: (route: Route) => void): () => void;
+  replace(route: string, params?: Record<string, string>): void
+  subscribe(listener: (route: Route) => void): () => void
 }
 
 function unescaped(text: string): string {
   try {
-    return decodeURIComponent(text);
+    return decodeURIComponent(text)
   } catch {
-    return text;
+    return text
   }
 }
 
 export function parseRoute(hash: string): Route {
-  const [way = '', query = ''] = hash.replace(/^#?\/?/, '').split('?', 2);
-  const [page = '', ...path] = way.split('/').filter(Boolean).map(unescaped);
-  return { page, path, params: Object.fromEntries(new URLSearchParams(query)) };
+  const [way = '', query = ''] = hash.replace(/^#?\/?/, '').split('?', 2)
+  const [page = '', ...path] = way.split('/').filter(Boolean).map(unescaped)
+  return { page, path, params: Object.fromEntries(new URLSearchParams(query)) }
 }
 
 export function formatRoute(route: string, params: Record<string, string> = {}): string {
-  const query = new URLSearchParams(params).toString();
-  return `#/${route.replace(/^[#/]+/, '')}${query ? `?${query}` : ''}`;
+  const query = new URLSearchParams(params).toString()
+  return `#/${route.replace(/^[#/]+/, '')}${query ? `?${query}` : ''}`
 }
 
 export function createRouter(): Router {
-  const listeners = new Set<(route: Route) => void>();
-  let route = parseRoute(location.hash);
+  const listeners = new Set<(route: Route) => void>()
+  let route = parseRoute(location.hash)
   window.addEventListener('hashchange', () => {
-    route = parseRoute(location.hash);
-    [...listeners].forEach((listener) => listener(route));
-  });
+    route = parseRoute(location.hash)
+    ;for (const listener of [...listeners]) listener(route)
+  })
   return {
     get route() {
-      return route;
+      return route
     },
     navigate(to, params) {
-      location.hash = formatRoute(to, params);
+      location.hash = formatRoute(to, params)
     },
     replace(to, params) {
-      history.replaceState(history.state, '', formatRoute(to, params));
-      route = parseRoute(location.hash);
+      history.replaceState(history.state, '', formatRoute(to, params))
+      route = parseRoute(location.hash)
     },
     subscribe(listener) {
-      listeners.add(listener);
-      return () => listeners.delete(listener);
+      listeners.add(listener)
+      return () => listeners.delete(listener)
     },
-  };
+  }
 }

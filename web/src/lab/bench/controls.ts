@@ -1,0 +1,204 @@
+/** The panel of controls: built from the layout of the scenario, kept in step with the store. */
+import type { ApiError } from '../api'
+import type { App } from '../app'
+import { cleanup, fill, h, uniqueId } from '../dom'
+import type { Json, Path, Scenario } from '../scenario'
+import { valueAt, withValue } from '../scenario'
+import type { Field } from './field'
+import { createField } from './field'
+import { type Item, layout, type Section } from './layout'
+
+export interface Controls {
+  element: HTMLElement
+  /** How far the sliders of the position reach, in m: the size of the support. */
+  setReach(metres: number): void
+  /** Show what the package says is wrong at its control, or take it away. */
+  complain(error: ApiError | null): void
+  dispose(): void
+}
+
+/** Changes when other controls are needed, not when a value changes. */
+function shapeOf(sections: Section[]): string {
+  return JSON.stringify(sections, (key, value: unknown) => (key === 'entry' || key === 'fallback' ? undefined : value))
+}
+
+export function createControls(app: App): Controls {
+  const { store } = app
+  const undo = cleanup()
+  const alert = h('p', { class: 'alert', role: 'alert', hidden: true })
+  const body = h('div', { class: 'controls-body' })
+  const element = h('div', { class: 'controls' }, alert, body)
+  const folded = new Map<string, boolean>()
+  let fields: Field[] = []
+  let shape = ''
+  let reach = 0.5
+  let wrong: ApiError | null = null
+
+  const unitKey = (path: Path) => path.replace(/\.\d+$/, '').replace(/\.\d+\./, '.')
+
+  function makeField(item: Extract<Item, { type: 'field' }>): HTMLElement {
+    const { path, entry, fallback } = item
+    const field = createField({
+      path,
+      entry,
+      fallback,
+      unit: () => {
+        const unit = app.settings.units[unitKey(path)]
+        return unit !== undefined && (entry.units?.includes(unit) ?? true) ? unit : undefined
+      },
+      keepUnit: (unit) => {
+        app.changeSettings({ units: { ...app.settings.units, [unitKey(path)]: unit } })
+        update(store.scenario)
+      },
+      change: (value, gesture) => {
+        const next = item.set ? item.set(store.scenario, value) : withValue(store.scenario, path, value)
+        store.set(next, { source: 'control', gesture })
+      },
+    })
+    fields.push(field)
+    return field.element
+  }
+
+  function makeChoice(item: Extract<Item, { type: 'choice' }>): HTMLElement {
+    const id = uniqueId('choice')
+    const select = h(
+      'select',
+      { id, onchange: () => store.set(item.set(store.scenario, select.value)) },
+      item.options.map(([value, label]) => h('option', { value }, label)),
+    )
+    select.value = item.value
+    return h('div', { class: 'row', 'data-path': item.path }, h('label', { for: id }, item.label), select)
+  }
+
+  function makeSwitch(item: Extract<Item, { type: 'switch' }>): HTMLElement {
+    const box = h('input', {
+      type: 'checkbox',
+      role: 'switch',
+      checked: item.on,
+      onchange: () => store.set(item.set(store.scenario, box.checked)),
+    })
+    const words = h('span', {}, item.label, item.hint && !item.on ? h('small', {}, ` ${item.hint}`) : null)
+    return h('label', { class: 'switch', 'data-path': item.path }, box, words)
+  }
+
+  function makeText(item: Extract<Item, { type: 'text' }>): HTMLElement {
+    const id = uniqueId('text')
+    const input = h('input', {
+      id,
+      type: 'text',
+      class: 'formula',
+      spellcheck: 'false',
+      autocomplete: 'off',
+      value: String(valueAt(store.scenario, item.path) ?? ''),
+      onchange: () => store.set(withValue(store.scenario, item.path, input.value)),
+    })
+    return h('div', { class: 'row row-text', 'data-path': item.path }, h('label', { for: id }, item.label), input)
+  }
+
+  function makeAdd(item: Extract<Item, { type: 'add' }>): HTMLElement {
+    const select = h(
+      'select',
+      { 'aria-label': item.label, onchange: () => store.set(item.set(store.scenario, select.value)) },
+      h('option', { value: '', selected: true }, `${item.label} …`),
+      item.options.map(([value, label]) => h('option', { value }, label)),
+    )
+    return h('div', { class: 'row' }, select)
+  }
+
+  function make(item: Item): HTMLElement {
+    switch (item.type) {
+      case 'field':
+        return makeField(item)
+      case 'choice':
+        return makeChoice(item)
+      case 'switch':
+        return makeSwitch(item)
+      case 'text':
+        return makeText(item)
+      case 'add':
+        return makeAdd(item)
+      case 'remove':
+        return h(
+          'button',
+          { class: 'quiet small', type: 'button', onclick: () => store.set(item.set(store.scenario)) },
+          item.label,
+        )
+    }
+  }
+
+  function makeSection(section: Section): HTMLElement {
+    const open = !(folded.get(section.id) ?? section.folded ?? false)
+    const details = h(
+      'details',
+      { class: 'section', open, 'data-section': section.id, ontoggle: () => void folded.set(section.id, !details.open) },
+      h('summary', {}, h('h2', {}, section.title)),
+      h('div', { class: 'section-body' }, section.items.map(make)),
+    )
+    return details
+  }
+
+  /** Where the keyboard was, so that new controls do not lose it. */
+  function focusedPath(): string | undefined {
+    const at = document.activeElement
+    if (!at || !body.contains(at)) return undefined
+    return at.closest<HTMLElement>('[data-path]')?.dataset['path']
+  }
+
+  function build(sections: Section[]): void {
+    const path = focusedPath()
+    fields = []
+    fill(body, sections.map(makeSection))
+    if (path) body.querySelector<HTMLElement>(`[data-path="${CSS.escape(path)}"] :is(input, select)`)?.focus()
+  }
+
+  function update(scenario: Scenario): void {
+    const sections = layout(scenario, reach)
+    const now = shapeOf(sections)
+    if (now !== shape) {
+      shape = now
+      build(sections)
+    }
+    for (const field of fields) {
+      const found = valueAt(scenario, field.path)
+      const item = sections.flatMap((section) => section.items).find((one) => one.type === 'field' && one.path === field.path)
+      field.update(found ?? (item?.type === 'field' ? (item.fallback as Json | undefined) : undefined))
+    }
+    place()
+  }
+
+  /** The error at the control of its key, or of the nearest one; above all where none fits. */
+  function place(): void {
+    const key = wrong?.key?.replace(/\[(\d+)\]/g, '.$1') ?? null
+    const hit = key === null ? undefined : nearest(key)
+    for (const field of fields) field.complain(field === hit ? (wrong?.message ?? null) : null)
+    alert.hidden = wrong === null || hit !== undefined
+    alert.textContent = wrong && !hit ? wrong.message : ''
+    hit?.element.closest('details')?.setAttribute('open', '')
+  }
+
+  function nearest(key: string): Field | undefined {
+    return (
+      fields.find((field) => field.path === key) ??
+      fields.find((field) => field.path.startsWith(`${key}.`)) ??
+      fields.find((field) => key.startsWith(`${field.path}.`))
+    )
+  }
+
+  undo.add(store.subscribe(update))
+  update(store.scenario)
+  return {
+    element,
+    setReach(metres) {
+      const next = Math.max(0.05, metres)
+      if (Math.abs(next - reach) < 0.2 * reach) return
+      reach = next
+      shape = ''
+      if (!body.contains(document.activeElement)) update(store.scenario)
+    },
+    complain(error) {
+      wrong = error
+      place()
+    },
+    dispose: () => undo.run(),
+  }
+}

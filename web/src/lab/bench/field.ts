@@ -1,0 +1,234 @@
+/** One number of the scenario: typed with its unit, dragged by a slider, stepped by the arrow keys. */
+import { h, uniqueId } from '../dom'
+import { parse, rounded, stepped, toSI, UNITS, write } from '../quantity'
+import type { Json, Path } from '../scenario'
+import type { Entry } from './catalogue'
+
+export interface FieldOptions {
+  path: Path
+  entry: Entry
+  /** What holds while the scenario does not say. */
+  fallback?: Json | undefined
+  /** The unit that the visitor chose for this place before. */
+  unit(): string | undefined
+  keepUnit(unit: string): void
+  /** A new value; those of one gesture share a word. */
+  change(value: Json, gesture?: string): void
+}
+
+export interface Field {
+  element: HTMLElement
+  path: Path
+  update(value: Json | undefined): void
+  /** Show the package's message at the control, or take it away. */
+  complain(message: string | null): void
+  focus(): void
+}
+
+const NOTCHES = 1000
+
+export function createField(options: FieldOptions): Field {
+  const { entry, path } = options
+  const id = uniqueId('field')
+  const units = entry.units ?? Object.keys(UNITS[entry.kind])
+  let value: Json | undefined = options.fallback
+  let range = { min: entry.min, max: entry.max }
+  let typing = false
+  let gesture = 0
+
+  const input = h('input', {
+    id,
+    class: 'field-number',
+    type: 'text',
+    inputmode: 'text',
+    autocomplete: 'off',
+    spellcheck: 'false',
+    'aria-describedby': `${id}-message`,
+  })
+  const unit = h('select', { class: 'field-unit', 'aria-label': `Unit of ${entry.label}` })
+  const slider = h('input', {
+    class: 'slider',
+    type: 'range',
+    min: 0,
+    max: NOTCHES,
+    step: 1,
+    'aria-label': `${entry.label}, slider`,
+  })
+  const message = h('p', { class: 'field-message', id: `${id}-message`, hidden: true })
+  const hasUnits = units.length > 1 || units[0] !== ''
+  const element = h(
+    'div',
+    { class: 'field', 'data-path': path },
+    h('label', { class: 'field-label', for: id, title: entry.hint ?? null }, entry.label),
+    h('div', { class: 'field-value' }, input, hasUnits && unit),
+    slider,
+    message,
+  )
+
+  /** The unit shown: the visitor's choice, else the one written, else SI. */
+  function shownUnit(): string {
+    const written = parse(value).unit
+    if (written && !units.includes(written)) return written
+    return options.unit() ?? (written || (units[0] ?? ''))
+  }
+
+  function fillUnits(): void {
+    const now = shownUnit()
+    const all = units.includes(now) ? units : [...units, now]
+    if (unit.options.length !== all.length || [...unit.options].some((o, i) => o.value !== all[i]))
+      unit.replaceChildren(...all.map((name) => h('option', { value: name }, name.replaceAll('*', '·').replace('^2', '²'))))
+    unit.value = now
+  }
+
+  /** What the text box shows: the digits as written where they can stay, a conversion where the unit differs. */
+  function digits(): string {
+    const found = parse(value)
+    if (found.number === null || typeof value === 'object') return found.digits
+    const factor = UNITS[entry.kind]
+    const shown = shownUnit()
+    const written = found.unit || (units[0] ?? '')
+    if (shown === written) return found.digits
+    const from = factor[written]
+    const to = factor[shown]
+    return from === undefined || to === undefined ? found.digits : String(rounded((found.number * from) / to, 6))
+  }
+
+  function place(si: number): number {
+    const { min, max } = range
+    if (entry.decades) return Math.log(Math.max(si, min) / min) / Math.log(max / min)
+    return (si - min) / (max - min)
+  }
+
+  function valueOf(place: number): number {
+    const { min, max } = range
+    return entry.decades ? min * (max / min) ** place : min + (max - min) * place
+  }
+
+  function widen(si: number): void {
+    range = { min: entry.min, max: entry.max }
+    if (si > range.max) range.max = si * 1.5
+    if (si < range.min) range.min = entry.decades ? Math.max(si / 2, 1e-12) : si * 1.5
+  }
+
+  function draw(): void {
+    if (hasUnits) fillUnits()
+    if (!typing) input.value = digits()
+    const si = toSI(value, entry.kind)
+    slider.disabled = si === null
+    if (si === null) return
+    if (!slider.matches(':active')) widen(si)
+    const at = Math.min(1, Math.max(0, place(si)))
+    slider.value = String(Math.round(at * NOTCHES))
+    const zero = entry.decades ? 0 : Math.min(1, Math.max(0, place(0)))
+    slider.style.setProperty('--from', `${Math.min(zero, at) * 100}%`)
+    slider.style.setProperty('--to', `${Math.max(zero, at) * 100}%`)
+    slider.setAttribute('aria-valuetext', `${digits()} ${hasUnits ? shownUnit() : ''}`.trim())
+  }
+
+  function commit(next: Json, word?: string): void {
+    value = next
+    options.change(next, word ? `${path}#${word}` : undefined)
+    draw()
+  }
+
+  /** What was typed, with the unit shown where none was. */
+  function typed(): { value: Json; known: boolean } {
+    const found = parse(input.value)
+    if (found.number === null) return { value: input.value.trim(), known: false }
+    const written = found.unit || (hasUnits ? shownUnit() : '')
+    const known = written === '' || written in UNITS[entry.kind]
+    return { value: written === '' ? found.number : `${found.digits} ${written}`, known }
+  }
+
+  input.addEventListener('input', () => {
+    typing = true
+    const { value: next, known } = typed()
+    if (known) commit(next, `typing${gesture}`)
+  })
+  input.addEventListener('change', () => {
+    typing = false
+    gesture += 1
+    const found = parse(input.value)
+    if (found.unit && found.unit in UNITS[entry.kind]) options.keepUnit(found.unit)
+    const { value: next } = typed()
+    if (next !== value) commit(next)
+    else draw()
+  })
+  input.addEventListener('blur', () => {
+    typing = false
+    draw()
+  })
+  input.addEventListener('keydown', (event) => {
+    if (event.key === 'Escape' && typing) {
+      typing = false
+      draw()
+      event.stopPropagation()
+      return
+    }
+    step(event)
+  })
+
+  /** Up and down step by a digit; with Shift ten times as much, with Alt a tenth. */
+  function step(event: KeyboardEvent): void {
+    const direction = { ArrowUp: 1, ArrowDown: -1, PageUp: 1, PageDown: -1 }[event.key]
+    const sideways = event.target === slider ? { ArrowRight: 1, ArrowLeft: -1 }[event.key] : undefined
+    const way = direction ?? sideways
+    if (way === undefined || event.ctrlKey || event.metaKey) return
+    const si = toSI(value, entry.kind)
+    if (si === null) return
+    event.preventDefault()
+    const scale = event.shiftKey || event.key.startsWith('Page') ? 10 : event.altKey ? 0.1 : 1
+    const factor = UNITS[entry.kind][shownUnit()] ?? 1
+    const next = stepped(si / factor, way, scale)
+    typing = false
+    commit(write(next * factor, entry.kind, hasUnits ? shownUnit() : '', 12), 'step')
+    input.value = digits()
+  }
+
+  slider.addEventListener('keydown', step)
+  slider.addEventListener('pointerdown', () => {
+    gesture += 1
+  })
+  slider.addEventListener('input', () => {
+    const shown = hasUnits ? shownUnit() : ''
+    const factor = UNITS[entry.kind][shown] ?? 1
+    const raw = valueOf(Number(slider.value) / NOTCHES) / factor
+    const next = entry.decades ? rounded(raw, 3) : rounded(Math.round(raw / grid(factor)) * grid(factor), 9)
+    commit(write(next * factor, entry.kind, shown, 9), `slide${gesture}`)
+  })
+
+  /** Round numbers for the slider: 1, 2 or 5 in some decade, two hundred or more of them over its range. */
+  function grid(factor: number): number {
+    const fine = (range.max - range.min) / Math.abs(factor) / 200
+    const decade = 10 ** Math.floor(Math.log10(fine))
+    return decade * ([5, 2].find((part) => part * decade <= fine) ?? 1)
+  }
+
+  unit.addEventListener('change', () => {
+    const si = toSI(value, entry.kind)
+    options.keepUnit(unit.value)
+    if (si !== null) commit(write(si, entry.kind, unit.value, 9))
+    else draw()
+  })
+
+  draw()
+  return {
+    element,
+    path,
+    update(next) {
+      const said = next ?? options.fallback
+      if (said === value && !typing) return draw()
+      if (said !== value) typing = false
+      value = said
+      draw()
+    },
+    complain(text) {
+      message.hidden = text === null
+      message.textContent = text ?? ''
+      element.toggleAttribute('data-wrong', text !== null)
+      if (text === null) input.removeAttribute('aria-invalid')
+      else input.setAttribute('aria-invalid', 'true')
+    },
+    focus: () => input.focus(),
+  }
+}

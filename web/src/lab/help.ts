@@ -1,0 +1,77 @@
+/** The help dialog: what one can do, and every key. */
+import { h } from './dom'
+import { icon } from './icons'
+
+const KEYS: [string, [string, string][]][] = [
+  [
+    'Everywhere',
+    [
+      ['?', 'This help'],
+      ['P', 'Projector mode'],
+      ['Shift T', 'Theme: system, light, dark'],
+    ],
+  ],
+  [
+    'On the bench',
+    [
+      ['/', 'Find a scenario'],
+      ['Ctrl Z', 'Undo; with Shift, redo'],
+      ['[ and ]', 'Fold the left and the right panel'],
+      ['L', 'Copy a link to this scenario'],
+      ['O', 'Tool: turn the view'],
+      ['D', 'Tool: put the ball somewhere else'],
+      ['V', 'Tool: draw its first velocity'],
+      ['N', 'Tool: nudge it while it runs'],
+    ],
+  ],
+  [
+    'The film',
+    [
+      ['Space', 'Play, pause'],
+      ['← →', 'A step back, a step on'],
+      ['Home End', 'To the start, to the end'],
+      ['R', 'View from the side again'],
+      ['T', 'View from above'],
+    ],
+  ],
+  [
+    'In a number',
+    [
+      ['↑ ↓', 'A step up or down; with Shift ten, with Alt a tenth'],
+      ['33.3 rpm', 'A number may be typed with a unit: any that the package knows'],
+      ['Esc', 'Back to what it was'],
+    ],
+  ],
+]
+
+function row([keys, what]: [string, string]): HTMLElement {
+  const caps = keys.split(' ').map((key) => (/^(and|or)$/.test(key) ? ` ${key} ` : h('kbd', {}, key)))
+  return h('div', { class: 'help-row' }, h('dt', {}, caps), h('dd', {}, what))
+}
+
+export function openHelp(): void {
+  const close = h('button', { class: 'icon-button', type: 'button', 'aria-label': 'Close' }, icon('close'))
+  const dialog = h(
+    'dialog',
+    { class: 'dialog dialog-help', 'aria-labelledby': 'help-title' },
+    h('header', { class: 'dialog-head' }, h('h2', { id: 'help-title' }, 'How to use the lab'), close),
+    h(
+      'div',
+      { class: 'dialog-body' },
+      h(
+        'p',
+        { class: 'lead' },
+        'Choose a scenario, change a number, and the package computes the motion anew. Every curve and every figure ' +
+          'comes from it; the page only draws. What can be done by hand on the stage can be typed on the left as well.',
+      ),
+      h('div', { class: 'help-groups' }, KEYS.map(([title, rows]) => h('section', {}, h('h3', {}, title), h('dl', {}, rows.map(row))))),
+    ),
+  )
+  close.addEventListener('click', () => dialog.close())
+  dialog.addEventListener('close', () => dialog.remove())
+  dialog.addEventListener('click', (event) => {
+    if (event.target === dialog) dialog.close()
+  })
+  document.body.append(dialog)
+  dialog.showModal()
+}

@@ -1,0 +1,126 @@
+/** Texts such as "33.3 rpm" taken apart and put together. Only the server decides what they mean; this is for sliders. */
+import type { Json } from './scenario'
+
+export type Kind =
+  | 'length'
+  | 'mass'
+  | 'time'
+  | 'angle'
+  | 'velocity'
+  | 'acceleration'
+  | 'angular velocity'
+  | 'force'
+  | 'torque'
+  | 'inertia'
+  | 'damping'
+  | 'quadratic damping'
+  | 'rotational damping'
+  | 'number'
+
+/** Of each kind: the units offered, the SI unit first, and how many SI units each is. */
+export const UNITS: Record<Kind, Record<string, number>> = {
+  length: { m: 1, cm: 0.01, mm: 0.001, in: 0.0254, ft: 0.3048 },
+  mass: { kg: 1, g: 1e-3, oz: 0.028349523125, lb: 0.45359237 },
+  time: { s: 1, ms: 1e-3, min: 60, h: 3600 },
+  angle: { rad: 1, deg: Math.PI / 180, turn: 2 * Math.PI },
+  velocity: { 'm/s': 1, 'cm/s': 0.01, 'mm/s': 0.001, 'km/h': 1 / 3.6, 'ft/s': 0.3048 },
+  acceleration: { 'm/s^2': 1, 'cm/s^2': 0.01 },
+  'angular velocity': { 'rad/s': 1, rpm: Math.PI / 30, 'turn/s': 2 * Math.PI, 'deg/s': Math.PI / 180 },
+  force: { N: 1, mN: 1e-3 },
+  torque: { 'N*m': 1, 'mN*m': 1e-3 },
+  inertia: { 'kg*m^2': 1, 'g*cm^2': 1e-7 },
+  damping: { 'kg/s': 1, 'g/s': 1e-3 },
+  'quadratic damping': { 'kg/m': 1, 'g/m': 1e-3 },
+  'rotational damping': { 'N*m*s': 1, 'mN*m*s': 1e-3 },
+  number: { '': 1 },
+}
+
+const NUMBER = /^\s*([+\-−]?(?:\d[\d_]*\.?[\d_]*|\.\d+)(?:[eE][+\-−]?\d{1,4})?)\s*(.*?)\s*$/s
+const SPELLINGS: Record<string, string> = {
+  '°': 'deg',
+  degree: 'deg',
+  degrees: 'deg',
+  '"': 'in',
+  inch: 'in',
+  inches: 'in',
+  'm/s²': 'm/s^2',
+  '1/s': 'rad/s',
+  'N m': 'N*m',
+  'mN m': 'mN*m',
+}
+
+export interface Written {
+  /** The number, or null where the text is none: a formula, a word, nonsense. */
+  number: number | null
+  /** As it was written: "33.3". */
+  digits: string
+  unit: string
+}
+
+/** Take a quantity apart: a bare number has no unit. */
+export function parse(value: Json | undefined): Written {
+  if (typeof value === 'number') return { number: value, digits: shortest(value), unit: '' }
+  if (typeof value !== 'string') return { number: null, digits: '', unit: '' }
+  const match = NUMBER.exec(value)
+  if (!match) return { number: null, digits: value, unit: '' }
+  const digits = (match[1] ?? '').replace('−', '-')
+  const written = match[2] ?? ''
+  return { number: Number(digits.replaceAll('_', '')), digits, unit: SPELLINGS[written] ?? written }
+}
+
+/** How many SI units the text says, or null where this table does not know: the server may know more. */
+export function toSI(value: Json | undefined, kind: Kind): number | null {
+  const { number, unit } = parse(value)
+  if (number === null || !Number.isFinite(number)) return null
+  const factor = unit === '' ? 1 : UNITS[kind][unit]
+  return factor === undefined ? null : number * factor
+}
+
+/** A quantity in words: 3.487 rad/s as "33.3 rpm". Without a unit it stays a bare number. */
+export function write(si: number, kind: Kind, unit: string, digits = 4): number | string {
+  const factor = UNITS[kind][unit] ?? 1
+  const number = rounded(si / factor, digits)
+  return unit === '' ? number : `${shortest(number)} ${unit}`
+}
+
+/** Rounded to significant digits, without the noise of binary fractions. */
+export function rounded(value: number, digits: number): number {
+  return value === 0 || !Number.isFinite(value) ? 0 : Number(value.toPrecision(digits))
+}
+
+function shortest(value: number): string {
+  return Math.abs(value) >= 1e-4 || value === 0 ? String(value) : value.toExponential()
+}
+
+/** The size of an arrow key's step: a one in the last place but one of what is shown, a tenth of the number at most. */
+export function stepFor(number: number): number {
+  if (number === 0) return 0.1
+  const decade = 10 ** Math.floor(Math.log10(Math.abs(number)))
+  return decade / 10
+}
+
+/** One step up or down, on the grid of steps: 33.3 goes to 34, not to 34.3. */
+export function stepped(number: number, direction: number, scale = 1): number {
+  const step = stepFor(number) * scale
+  const grid = number / step
+  const next = direction > 0 ? Math.floor(grid + 1 + 1e-9) : Math.ceil(grid - 1 - 1e-9)
+  return rounded(next * step, 12)
+}
+
+const NARROW = ' '
+
+/** A number for people: four digits, true minus sign, powers of ten where it is very small or large. */
+export function show(value: number | null | undefined, digits = 4): string {
+  if (value === null || value === undefined || !Number.isFinite(value)) return '–'
+  const size = Math.abs(value)
+  if (value !== 0 && (size < 1e-3 || size >= 1e5)) {
+    const [mantissa = '', exponent = '0'] = value.toExponential(Math.min(digits - 1, 3)).split('e')
+    return `${mantissa.replace('-', '−')}${NARROW}×${NARROW}10${superscript(Number(exponent))}`
+  }
+  return Number(value.toPrecision(digits)).toString().replace('-', '−')
+}
+
+function superscript(number: number): string {
+  const signs: Record<string, string> = { '-': '⁻' }
+  return [...String(number)].map((c) => signs[c] ?? '⁰¹²³⁴⁵⁶⁷⁸⁹'[Number(c)] ?? c).join('')
+}
