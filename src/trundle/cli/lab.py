@@ -1,0 +1,49 @@
+"""The command `trundle lab`: the ball in a browser."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from ..errors import InvalidValueError
+from . import screen
+
+
+def lab(
+    host: Annotated[str, typer.Option(metavar="ADDRESS", help="Where to listen.")] = "127.0.0.1",
+    port: Annotated[
+        int | None,
+        typer.Option(min=0, max=65535, help="Which port; absent: 8765, or any other that is free.", show_default=False),
+    ] = None,
+    no_open: Annotated[bool, typer.Option("--no-open", help="Do not open a browser.")] = False,
+    network: Annotated[
+        bool, typer.Option("--network", help="Let others on the network in, where --host is not this machine alone.")
+    ] = False,
+) -> None:
+    """Serve the lab on this machine and open it in a browser: a turntable to spin and tilt, a ball to put down.
+
+    Everything is computed here, by this package; nothing is asked of any other machine. Ctrl-C ends it.
+    """
+    import gc
+    from contextlib import suppress
+
+    from ..lab.serving import is_loopback, serve
+    from ..lab.settings import DEFAULT_PORT, Settings
+
+    exposed = not is_loopback(host)
+    if exposed and not network:
+        remedy = "Anyone on the network could then use this machine to compute; add --network if that is meant."
+        raise InvalidValueError("--host", "must be an address of this machine alone", host, remedy)
+    if exposed:
+        screen.note(f"trundle: warning: anyone who reaches {host} can now use this machine to compute, unencrypted")
+
+    def told(address: str, taken: int) -> None:
+        if port is None and taken != DEFAULT_PORT:
+            screen.note(f"trundle: port {DEFAULT_PORT} is taken, so this is another")
+        screen.out(f"The lab is at {address} (Ctrl-C ends it)")
+
+    gc.enable()  # unlike other commands, this one lasts
+    with suppress(KeyboardInterrupt):
+        serve(Settings(host=host, exposed=exposed), port, open_browser=not no_open, told=told)
+    screen.out("The lab has ended.")

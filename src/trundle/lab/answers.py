@@ -1,0 +1,388 @@
+"""What the workers compute: each answer is whole, in bytes, or a refusal that says why not."""
+
+from __future__ import annotations
+
+import json
+import logging
+import time
+from collections.abc import Callable, Mapping
+from functools import wraps
+from typing import TYPE_CHECKING, Any, ParamSpec
+
+from ..scenario import files
+from . import limits
+from .cache import Answer
+from .errors import Refusal, refusal_of, refused
+from .requests import JSON, SCENE
+
+if TYPE_CHECKING:
+    from ..geometry import PathScenario
+    from ..simulation import Scenario
+    from ..trajectory import Trajectory
+
+P = ParamSpec("P")
+
+
+def answering(function: Callable[P, Answer]) -> Callable[P, Answer | Refusal]:
+    """Let a function return what the package says is wrong, instead of raising it.
+
+    Parameters
+    ----------
+    function : callable
+        That returns an answer.
+
+    Returns
+    -------
+    callable
+        That returns an answer or a refusal: nothing that it raises has to travel between processes.
+
+    Examples
+    --------
+    >>> text_of("no-such-scenario").status
+    404
+    """
+
+    @wraps(function)
+    def answered(*arguments: P.args, **named: P.kwargs) -> Answer | Refusal:
+        try:
+            return function(*arguments, **named)
+        except Exception as error:
+            refusal = refusal_of(error)
+            if refusal is not None:
+                return refusal
+            logging.getLogger("trundle.lab").exception("a mistake in the lab")
+            return Refusal(500, f"This is a bug in trundle, {type(error).__name__}: {error}", None, "BugError")
+
+    return answered
+
+
+def scenario_from(data: Any) -> Scenario:
+    """Return the scenario that a visitor sent, checked by the package's own model.
+
+    Parameters
+    ----------
+    data : object
+        As JSON gave it.
+
+    Returns
+    -------
+    Scenario
+        It is of reasonable size and length.
+
+    Raises
+    ------
+    ScenarioError
+        If it is not as the format asks, or asks for more than the lab gives.
+
+    Examples
+    --------
+    >>> scenario_from(files.parse(files.read("tilted-turntable"), "")).body.kind
+    'solid-sphere'
+    """
+    from ..simulation import Scenario
+
+    limits.check_size(data)
+    return Scenario.read(data)
+
+
+def path_from(data: Any) -> PathScenario:
+    """Return the path to roll along that a visitor sent; as `scenario_from`."""
+    from ..geometry import PathScenario
+
+    limits.check_size(data)
+    return PathScenario.read(data)
+
+
+def run_of(scenario: Scenario, most: int) -> tuple[Trajectory, float]:
+    """Run a scenario.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Any.
+    most : int
+        How many samples there may be.
+
+    Returns
+    -------
+    run : Trajectory
+        The motion.
+    seconds : float
+        How long it took.
+
+    Examples
+    --------
+    >>> run_of(scenario_from(files.parse(files.read("tilted-turntable"), "")), 5000)[0].method
+    'exact'
+    """
+    limits.check_timing(float(scenario.timing.duration), float(scenario.timing.every), most)
+    began = time.perf_counter()
+    run = scenario.run()
+    return run, time.perf_counter() - began
+
+
+@answering
+def simulate(data: dict[str, Any], samples: int | None = None, card: bool = False) -> Answer:
+    """Run a scenario and pack what a viewer needs.
+
+    Parameters
+    ----------
+    data : dict
+        The scenario; one with [[path]] tables is rolled along its path.
+    samples : int, optional
+        How many to show at most.
+    card : bool
+        Whether to verify it, too.
+
+    Returns
+    -------
+    Answer
+        A packed scene.
+
+    Examples
+    --------
+    >>> simulate(files.parse(files.read("tilted-turntable"), ""), samples=100).body[:8]
+    b'TRUNDLE1'
+    """
+    from ..scene import pack, scene_of
+
+    if files.rolls_along_path(data):
+        from .rolling import rolled_scene
+
+        return Answer(pack(rolled_scene(path_from(data), samples, card)), SCENE)
+    run, seconds = run_of(scenario_from(data), limits.MOST_SAVED)
+    return Answer(pack(scene_of(run, samples, card, seconds=seconds)), SCENE)
+
+
+@answering
+def card(data: dict[str, Any]) -> Answer:
+    """Verify a run of a scenario.
+
+    Parameters
+    ----------
+    data : dict
+        The scenario.
+
+    Returns
+    -------
+    Answer
+        The card, as JSON.
+
+    Examples
+    --------
+    >>> json.loads(card(files.parse(files.read("level-turntable-nudged"), "")).body)["passed"]
+    True
+    """
+    if files.rolls_along_path(data):
+        return _json(path_from(data).run().card().as_dict())
+    run, _ = run_of(scenario_from(data), limits.MOST_SAMPLES)
+    return _json(run.card().as_dict())
+
+
+@answering
+def derivation(data: dict[str, Any]) -> Answer:
+    """Derive the motion of a scenario, step by step.
+
+    Parameters
+    ----------
+    data : dict
+        The scenario.
+
+    Returns
+    -------
+    Answer
+        Title, introduction, steps with their formulas in LaTeX, and the constants in numbers, as JSON.
+
+    Examples
+    --------
+    >>> json.loads(derivation(files.parse(files.read("tilted-turntable"), "")).body)["steps"][0]["title"]
+    "Newton's law"
+    """
+    from .deriving import derivation_of
+
+    return _json(derivation_of(scenario_from(data)))
+
+
+@answering
+def twin(data: dict[str, Any], samples: int | None = None) -> Answer:
+    """Find the charge in crossed fields that moves as the ball of a scenario does.
+
+    Parameters
+    ----------
+    data : dict
+        The scenario.
+    samples : int, optional
+        How many to show at most.
+
+    Returns
+    -------
+    Answer
+        A packed scene of the charge.
+
+    Examples
+    --------
+    >>> twin(files.parse(files.read("tilted-turntable"), "")).body[:8]
+    b'TRUNDLE1'
+    """
+    from ..scene import pack
+    from .charge import charge_scene
+
+    scenario = scenario_from(data)
+    limits.check_timing(float(scenario.timing.duration), float(scenario.timing.every), limits.MOST_SAVED)
+    return Answer(pack(charge_scene(scenario, samples)), SCENE)
+
+
+@answering
+def roll(radius: Any, curve: Mapping[str, Any], samples: int | None = None, card: bool = False) -> Answer:
+    """Roll a ball along a curve on a plane.
+
+    Parameters
+    ----------
+    radius : float or text with a unit
+        Of the ball.
+    curve : mapping
+        One piece of path, or several under `path`; `start` and `title` as in a scenario file.
+    samples : int, optional
+        How many to show at most.
+    card : bool
+        Whether to verify it, too.
+
+    Returns
+    -------
+    Answer
+        A packed scene that says by how much the ball is turned.
+
+    Examples
+    --------
+    >>> roll("25 mm", {"kind": "straight", "turn": "90 deg"}).body[:8]
+    b'TRUNDLE1'
+    """
+    from ..scene import pack
+    from .rolling import path_of, rolled_scene
+
+    return Answer(pack(rolled_scene(path_from(path_of(radius, curve)), samples, card)), SCENE)
+
+
+@answering
+def catalogue() -> Answer:
+    """List the scenarios that ship with the package.
+
+    Returns
+    -------
+    Answer
+        As JSON.
+
+    Examples
+    --------
+    >>> [entry["exact"] for entry in json.loads(catalogue().body) if entry["name"] == "tilted-turntable"]
+    [True]
+    """
+    return _json([_entry(name) for name in files.names()])
+
+
+def _entry(name: str) -> dict[str, Any]:
+    from ..simulation import Scenario
+    from ..solve.exact import closed_form
+
+    tables = files.parse(files.read(name), name)
+    notes = " ".join(str(tables.get("notes", "")).split())
+    summary = notes[: notes.index(". ") + 1] if ". " in notes else notes
+    told = {"name": name, "title": tables["title"], "summary": summary}
+    if files.rolls_along_path(tables):
+        return {**told, "support": "plane", "body": "sphere", "motion": "path", "exact": True}
+    scenario = Scenario.read(tables, name)
+    exact = closed_form(scenario.system(), scenario.start_state()) is not None
+    motion = tables["support"].get("motion", {}).get("kind", "fixed")
+    return {
+        **told,
+        "support": tables["support"]["kind"],
+        "body": tables["body"]["kind"],
+        "motion": motion,
+        "exact": exact,
+    }
+
+
+@answering
+def text_of(name: str) -> Answer:
+    """Return a scenario that ships with the package.
+
+    Parameters
+    ----------
+    name : str
+        One of those listed; no file is looked for otherwise.
+
+    Returns
+    -------
+    Answer
+        Its text, and its tables as JSON.
+
+    Examples
+    --------
+    >>> json.loads(text_of("tilted-turntable").body)["scenario"]["body"]["kind"]
+    'solid-sphere'
+    """
+    if name not in files.names():
+        shown = ascii(name[:80])
+        raise refused(404, f"There is no scenario {shown}. `/api/scenarios` lists them.", None, "NotFoundError")
+    text = files.read(name)
+    return _json({"name": name, "toml": text, "scenario": files.parse(text, name)})
+
+
+@answering
+def schema() -> Answer:
+    """Return the JSON schema of scenario files.
+
+    Returns
+    -------
+    Answer
+        As JSON.
+
+    Examples
+    --------
+    >>> json.loads(schema().body)["title"]
+    'trundle scenario'
+    """
+    from ..scenario import ScenarioFile
+
+    return _json(ScenarioFile.schema())
+
+
+def told(scenario: Scenario | PathScenario) -> dict[str, Any]:
+    """Return a scenario as JSON tables and as TOML.
+
+    Parameters
+    ----------
+    scenario : Scenario or PathScenario
+        Any.
+
+    Returns
+    -------
+    dict
+        `scenario` and `toml`.
+
+    Examples
+    --------
+    >>> told(scenario_from(files.parse(files.read("tilted-turntable"), "")))["scenario"]["body"]["radius"]
+    '25 mm'
+    """
+    text = scenario.to_toml()
+    return {"scenario": files.parse(text, "scenario"), "toml": text}
+
+
+def warm(name: str) -> None:
+    """Answer about a shipped scenario once, so that the next answer finds everything loaded.
+
+    Parameters
+    ----------
+    name : str
+        Of the scenario.
+
+    Examples
+    --------
+    >>> warm("tilted-turntable")
+    """
+    simulate(files.parse(files.read(name), name), samples=50)
+
+
+def _json(value: Any) -> Answer:
+    return Answer(json.dumps(value, ensure_ascii=True, allow_nan=False).encode("ascii"), JSON)

@@ -1,0 +1,143 @@
+"""The lab's application: its routes, and what each of them asks of the workers."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from starlette.exceptions import HTTPException
+from starlette.responses import Response
+
+from . import answers, pages
+from .errors import Refusal, RefusedError, of_validation
+from .pool import LeftError
+from .requests import JSON, AboutScenario, ToDraw, ToRoll, described
+from .security import Guard
+from .service import Lab
+from .settings import Settings
+
+
+def create_app(settings: Settings | None = None) -> FastAPI:
+    """Make the application that serves the lab.
+
+    Parameters
+    ----------
+    settings : Settings, optional
+        How it is run; absent: on this machine only, with the usual bounds.
+
+    Returns
+    -------
+    FastAPI
+        It keeps nothing between requests but a cache: any number of them may serve one lab.
+
+    Examples
+    --------
+    >>> from starlette.testclient import TestClient
+    >>> with TestClient(create_app(), base_url="http://127.0.0.1") as client:
+    ...     client.get("/api/scenarios/tilted-turntable").json()["scenario"]["body"]["radius"]
+    '25 mm'
+    """
+    chosen = settings or Settings()
+    lab = Lab(chosen)
+
+    @asynccontextmanager
+    async def living(_: FastAPI) -> AsyncIterator[None]:
+        starting = asyncio.gather(*(asyncio.to_thread(lane.start) for lane in (lab.quick, lab.slow)))
+        try:
+            yield
+        finally:
+            await asyncio.gather(starting, return_exceptions=True)
+            await asyncio.gather(*(asyncio.to_thread(lane.stop) for lane in (lab.quick, lab.slow)))
+
+    app = FastAPI(
+        title="trundle lab",
+        version="1",
+        lifespan=living,
+        docs_url=None,  # these pages would load scripts from elsewhere
+        redoc_url=None,
+        openapi_url="/api/openapi.json",
+        separate_input_output_schemas=False,
+    )
+    app.state.lab = lab
+    _reading(app, lab)
+    _asking(app, lab)
+    _refusing(app)
+    pages.add_routes(app, chosen)
+    app.add_middleware(Guard, settings=chosen)
+    return app
+
+
+def _reading(app: FastAPI, lab: Lab) -> None:
+    """Add the routes that only read."""
+
+    @app.get("/api/scenarios", **described("The scenarios that ship with trundle."))
+    async def scenarios(request: Request) -> Response:
+        return await lab.answer(request, lab.slow, answers.catalogue)
+
+    @app.get("/api/scenarios/{name}", **described("One of them, as TOML and as JSON.", 404))
+    async def scenario(request: Request, name: str) -> Response:
+        return await lab.answer(request, lab.quick, answers.text_of, name)
+
+    @app.get("/api/schema", **described("The JSON schema of scenario files."))
+    async def schema(request: Request) -> Response:
+        return await lab.answer(request, lab.slow, answers.schema)
+
+
+def _asking(app: FastAPI, lab: Lab) -> None:
+    """Add the routes that compute."""
+
+    @app.post("/api/simulate", **described("Run a scenario: a packed scene.", scene=True))
+    async def simulate(request: Request, asked: ToDraw) -> Response:
+        lane = lab.slow if asked.card else lab.quick
+        return await lab.answer(request, lane, answers.simulate, asked.scenario, asked.samples, asked.card)
+
+    @app.post("/api/card", **described("The verification card of a run, in full precision."))
+    async def card(request: Request, asked: AboutScenario) -> Response:
+        return await lab.answer(request, lab.slow, answers.card, asked.scenario)
+
+    @app.post("/api/derivation", **described("How the motion follows, step by step."))
+    async def derivation(request: Request, asked: AboutScenario) -> Response:
+        return await lab.answer(request, lab.slow, answers.derivation, asked.scenario)
+
+    @app.post("/api/twin", **described("The charge in crossed fields that moves so: a packed scene.", scene=True))
+    async def twin(request: Request, asked: ToDraw) -> Response:
+        return await lab.answer(request, lab.quick, answers.twin, asked.scenario, asked.samples)
+
+    @app.post("/api/roll", **described("Roll a ball along a curve: a packed scene.", scene=True))
+    async def roll(request: Request, asked: ToRoll) -> Response:
+        lane = lab.slow if asked.card else lab.quick
+        return await lab.answer(request, lane, answers.roll, asked.radius, asked.curve, asked.samples, asked.card)
+
+
+def _refusing(app: FastAPI) -> None:
+    """Let every error be told in the one form."""
+
+    @app.exception_handler(RefusedError)
+    async def refused(_: Request, error: RefusedError) -> Response:
+        return _refusal(error.refusal)
+
+    @app.exception_handler(RequestValidationError)
+    async def invalid(_: Request, error: RequestValidationError) -> Response:
+        return _refusal(of_validation(error.errors()))
+
+    @app.exception_handler(HTTPException)
+    async def other(_: Request, error: HTTPException) -> Response:
+        status = 422 if error.status_code == 400 else error.status_code
+        message = {404: "There is no such address here.", 405: "This address is not asked in this way."}
+        told = Refusal(status, message.get(status, str(error.detail)), None, "HTTPError")
+        return _refusal(told, dict(error.headers or {}))
+
+    @app.exception_handler(LeftError)
+    async def left(_: Request, error: LeftError) -> Response:  # noqa: ARG001
+        return Response(status_code=499)  # nobody reads it
+
+    @app.exception_handler(Exception)
+    async def mistake(_: Request, error: Exception) -> Response:
+        return _refusal(Refusal(500, f"This is a bug in trundle, {type(error).__name__}.", None, "BugError"))
+
+
+def _refusal(refusal: Refusal, headers: dict[str, str] | None = None) -> Response:
+    return Response(refusal.body, refusal.status, {**(headers or {}), **dict(refusal.headers)}, JSON)

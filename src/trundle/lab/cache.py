@@ -1,0 +1,103 @@
+"""Answers kept for who asks again: by what was asked, the least recently used go first."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections import OrderedDict
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Answer:
+    """A whole answer, as a worker made it.
+
+    Parameters
+    ----------
+    body : bytes
+        What is sent.
+    media_type : str
+        Its type.
+    filename : str, optional
+        The name under which a browser saves it.
+
+    Examples
+    --------
+    >>> Answer(b"{}", "application/json").filename is None
+    True
+    """
+
+    body: bytes
+    media_type: str
+    filename: str | None = None
+
+
+def key_of(*asked: Any) -> str:
+    """Return a short text that stands for what was asked: the same for the same JSON, whatever the order of its keys.
+
+    Parameters
+    ----------
+    *asked : object
+        What JSON can hold; bytes, too.
+
+    Returns
+    -------
+    str
+        A digest, of this version of trundle.
+
+    Examples
+    --------
+    >>> key_of("run", {"a": 1, "b": 2}) == key_of("run", {"b": 2, "a": 1})
+    True
+    >>> key_of("run", {"a": 1}) == key_of("run", {"a": 1.0})
+    False
+    """
+    from importlib.metadata import version
+
+    digest = hashlib.sha256(version("trundle").encode())
+    for part in asked:
+        content = part if isinstance(part, bytes) else json.dumps(part, sort_keys=True).encode("ascii")
+        digest.update(f"{len(content)}:".encode("ascii") + content)
+    return digest.hexdigest()[:40]
+
+
+class Cache:
+    """A bounded store of answers, for one event loop.
+
+    Parameters
+    ----------
+    largest : int
+        How many bytes it may hold; an answer of more than a quarter of that is not kept.
+
+    Examples
+    --------
+    >>> cache = Cache(100)
+    >>> for name in "abcde":
+    ...     cache.put(name, Answer(bytes(25), "text/plain"))
+    >>> cache.get("a"), cache.get("e") is not None, cache.size
+    (None, True, 100)
+    """
+
+    def __init__(self, largest: int) -> None:
+        self.largest, self.size = largest, 0
+        self._kept: OrderedDict[str, Answer] = OrderedDict()
+
+    def get(self, key: str) -> Answer | None:
+        """Return an answer that is kept."""
+        if key not in self._kept:
+            return None
+        self._kept.move_to_end(key)
+        return self._kept[key]
+
+    def put(self, key: str, answer: Answer) -> None:
+        """Keep an answer; let those go that were not asked for the longest."""
+        if len(answer.body) * 4 > self.largest:
+            return
+        if key in self._kept:
+            self.size -= len(self._kept.pop(key).body)
+        self._kept[key] = answer
+        self.size += len(answer.body)
+        while self.size > self.largest:
+            _, gone = self._kept.popitem(last=False)
+            self.size -= len(gone.body)

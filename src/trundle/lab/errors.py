@@ -1,0 +1,136 @@
+"""What the lab answers where it cannot do what was asked: one form of JSON, and the status that goes with it."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import Any
+
+from ..errors import TrundleError
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """An answer that is an error, as a worker sends it.
+
+    Parameters
+    ----------
+    status : int
+        Of HTTP.
+    message : str
+        For the reader.
+    key : str, optional
+        The key of the scenario that is meant.
+    kind : str
+        The kind of error.
+    headers : tuple of pairs
+        That the answer carries besides.
+
+    Examples
+    --------
+    >>> Refusal(422, "`support.tilt` must be an angle", "support.tilt").body
+    b'{"error": {"message": "`support.tilt` must be an angle", "key": "support.tilt", "kind": "RequestError"}}'
+    """
+
+    status: int
+    message: str
+    key: str | None = None
+    kind: str = "RequestError"
+    headers: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def body(self) -> bytes:
+        """The JSON, in ASCII: what was received may hold half a character."""
+        error = {"message": self.message, "key": self.key, "kind": self.kind}
+        return json.dumps({"error": error}).encode("ascii")
+
+
+class RefusedError(TrundleError):
+    """Carries a refusal through the server."""
+
+    def __init__(self, refusal: Refusal) -> None:
+        super().__init__(refusal.message)
+        self.refusal = refusal
+
+
+def refused(status: int, message: str, key: str | None = None, kind: str = "RequestError") -> RefusedError:
+    """Return a refusal to raise.
+
+    Parameters
+    ----------
+    status, message, key, kind
+        As of `Refusal`.
+
+    Returns
+    -------
+    RefusedError
+        To raise.
+
+    Examples
+    --------
+    >>> refused(413, "too big").refusal.status
+    413
+    """
+    return RefusedError(Refusal(status, message, key, kind))
+
+
+def refusal_of(error: BaseException) -> Refusal | None:
+    """Return what to answer to an error of the package, or None where the error is a mistake of ours.
+
+    Parameters
+    ----------
+    error : BaseException
+        What a computation raised.
+
+    Returns
+    -------
+    Refusal or None
+        With the package's own message.
+
+    Examples
+    --------
+    >>> from trundle.errors import ScenarioError
+    >>> refusal_of(ScenarioError("body.mass", "must be positive", -1)).key
+    'body.mass'
+    """
+    if isinstance(error, RefusedError):
+        return error.refusal
+    if isinstance(error, TrundleError):
+        key = getattr(error, "key", None)
+        return Refusal(422, str(error), str(key) if key else None, type(error).__name__)
+    if isinstance(error, RecursionError):
+        return Refusal(422, "`scenario` nests too deep. A scenario is a page of plain tables.", "scenario")
+    if isinstance(error, MemoryError):
+        return Refusal(422, "This takes more memory than there is. Ask for fewer samples.", "run", "MemoryError")
+    return None
+
+
+def of_validation(errors: Any) -> Refusal:
+    """Return one refusal for what pydantic found wrong with the request around a scenario.
+
+    Parameters
+    ----------
+    errors : sequence of dict
+        As `RequestValidationError.errors()` gives them.
+
+    Returns
+    -------
+    Refusal
+        It names the first.
+
+    Examples
+    --------
+    >>> found = [{"loc": ("body", "samples"), "msg": "Input should be less than or equal to 10000", "type": "x"}]
+    >>> of_validation(found).message
+    '`samples`: input should be less than or equal to 10000.'
+    """
+    first = errors[0]
+    path = [str(part) for part in first["loc"] if part not in ("body", "path", "query")]
+    if first["type"] == "json_invalid":
+        return Refusal(422, f"The request is not valid JSON: {first.get('ctx', {}).get('error', 'it ends early')}.")
+    key = ".".join(path)
+    said = str(first["msg"])
+    said = said[:1].lower() + said[1:]
+    more = f" ({len(errors) - 1} more.)" if len(errors) > 1 else ""
+    subject = f"`{key[:200]}`" if key else "The request"
+    return Refusal(422, f"{subject}: {said}.{more}", key[:200] or None)

@@ -1,0 +1,87 @@
+"""How much a visitor may ask for: each bound with a message that says what to ask for instead."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..errors import ScenarioError
+
+MOST_SAMPLES = 10_000  # of a scene; what a screen can show
+MOST_SAVED = 200_000  # of a file
+LONGEST = 3600.0  # s
+MOST_VALUES = 20_000  # numbers and texts in a scenario; a height field of 100 by 100 fits
+MOST_LOADS = 20
+MOST_PIECES = 500  # of a path
+DEEPEST = 12
+MOST_FRAMES = 150  # of an animation
+
+
+def check_size(data: Any) -> None:
+    """Refuse a scenario of more parts than any page of text has.
+
+    Parameters
+    ----------
+    data : object
+        As JSON gave it.
+
+    Raises
+    ------
+    ScenarioError
+        That names what there is too much of.
+
+    Examples
+    --------
+    >>> check_size({"loads": [{"kind": "force"}]})
+    >>> check_size({"loads": [{}] * 21})
+    Traceback (most recent call last):
+    ...
+    trundle.errors.ScenarioError: `loads` must have at most 20 parts; got 21. The lab computes no more ...
+    """
+    for key, most in (("loads", MOST_LOADS), ("path", MOST_PIECES)):
+        parts = data.get(key) if isinstance(data, dict) else None
+        if isinstance(parts, list) and len(parts) > most:
+            _refuse(key, f"must have at most {most} parts", len(parts))
+    count, level = 0, [data]
+    for _ in range(DEEPEST + 1):
+        deeper: list[Any] = []
+        for part in level:
+            deeper += part.values() if isinstance(part, dict) else part if isinstance(part, list) else ()
+        count += len(deeper)
+        if count > MOST_VALUES:
+            _refuse("scenario", f"must have at most {MOST_VALUES} values", "more")
+        level = deeper
+    if level:
+        _refuse("scenario", f"must nest at most {DEEPEST} deep", "deeper tables")
+
+
+def check_timing(duration: float, every: float, most: int) -> None:
+    """Refuse a run that is too long, or is sampled too often.
+
+    Parameters
+    ----------
+    duration, every : float
+        s.
+    most : int
+        Samples.
+
+    Raises
+    ------
+    ScenarioError
+        That names the key.
+
+    Examples
+    --------
+    >>> check_timing(60.0, 0.01, MOST_SAVED)
+    >>> check_timing(1e6, 100.0, MOST_SAVED)
+    Traceback (most recent call last):
+    ...
+    trundle.errors.ScenarioError: `run.duration` must be at most 3600 s; got 1000000.0. The lab computes no more ...
+    """
+    if duration > LONGEST:
+        _refuse("run.duration", f"must be at most {LONGEST:g} s", duration)
+    if duration / every > most:
+        _refuse("run.every", f"must give at most {most} samples", every)
+
+
+def _refuse(key: str, rule: str, received: Any) -> None:
+    raise ScenarioError(key, rule, received, "The lab computes no more for one request; `trundle run` does.")

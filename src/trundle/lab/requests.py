@@ -1,0 +1,113 @@
+"""What may be asked, and what each route says of itself in the OpenAPI schema."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+from starlette.responses import Response
+
+from .limits import MOST_SAMPLES
+
+SCENE, JSON = "application/octet-stream", "application/json"
+
+
+class _Asked(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+
+
+Tables = Annotated[
+    dict[str, Any],
+    Field(description="A scenario, as its TOML file says it; `/api/schema` describes it.", examples=[]),
+]
+Samples = Annotated[int | None, Field(ge=2, le=MOST_SAMPLES, description="How many samples to show at most.")]
+
+
+class AboutScenario(_Asked):
+    """A question about one scenario."""
+
+    scenario: Tables
+
+
+class ToDraw(AboutScenario):
+    """A scenario to be drawn."""
+
+    samples: Samples = None
+    card: bool = Field(default=False, description="Whether to verify the run, which takes seconds.")
+
+
+class ToRoll(_Asked):
+    """A ball to be rolled along a curve on a plane."""
+
+    radius: float | Annotated[str, Field(max_length=200)] = Field(description="Of the ball: m, or a text with a unit.")
+    curve: dict[str, Any] = Field(description="One piece, as a [[path]] table says it, or several under `path`.")
+    samples: Samples = None
+    card: bool = False
+
+
+class ToExport(AboutScenario):
+    """A scenario to be saved in some format."""
+
+    format: Literal["toml", "csv", "nc", "png", "svg", "html", "glb", "gif"]
+
+
+class Told(BaseModel):
+    """What is wrong."""
+
+    message: str
+    key: str | None
+    kind: str
+
+
+class Wrong(BaseModel):
+    """An answer that is an error."""
+
+    error: Told
+
+
+_MEANINGS = {
+    400: "The request cannot be read.",
+    403: "Asked by a page of another origin.",
+    404: "There is no such thing.",
+    408: "The request did not arrive in time.",
+    413: "The request is too long.",
+    421: "Asked for another host.",
+    422: "What was sent is not as it should be; the message says what.",
+    503: "Too many ask at once.",
+    504: "It takes too long.",
+}
+
+
+def described(summary: str, *more: int, scene: bool = False, media: str | None = None) -> dict[str, Any]:
+    """Return what a route says of itself in the OpenAPI schema.
+
+    Parameters
+    ----------
+    summary : str
+        What it is for.
+    *more : int
+        Statuses besides those that all have.
+    scene : bool
+        Whether it answers with a packed scene.
+    media : str, optional
+        The type of its answer; absent: JSON.
+
+    Returns
+    -------
+    dict
+        Arguments of a FastAPI route.
+
+    Examples
+    --------
+    >>> sorted(described("One of them.", 404)["responses"])[:3]
+    [200, 304, 403]
+    """
+    told: dict[int | str, dict[str, Any]] = {
+        status: {"model": Wrong, "description": _MEANINGS[status]}
+        for status in (403, 408, 413, 421, 422, 503, 504, *more)
+    }
+    kind = media or (SCENE if scene else JSON)
+    schema: dict[str, Any] = {} if kind == JSON else {"schema": {"type": "string", "format": "binary"}}
+    told[200] = {"description": "What was asked for.", "content": {kind: schema}}
+    told[304] = {"description": "The asker has this answer already."}
+    return {"summary": summary, "responses": told, "response_class": Response}

@@ -1,0 +1,256 @@
+"""What stands before every route: who is asked for, who asks, how much they may send, and what a page may load."""
+
+from __future__ import annotations
+
+import asyncio
+import ipaddress
+import socket
+from collections.abc import Awaitable, Callable, MutableMapping
+from typing import Any
+from urllib.parse import urlsplit
+
+from starlette.exceptions import HTTPException
+
+from .errors import Refusal, RefusedError, refused
+from .settings import Settings
+
+Scope = MutableMapping[str, Any]
+Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
+Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
+
+LOOPBACK_NAMES = ("127.0.0.1", "localhost", "::1")
+
+# No inline script, no inline style, nothing from elsewhere. Pictures and films that the page itself makes are blobs.
+CONTENT_SECURITY_POLICY = "; ".join(
+    (
+        "default-src 'none'",
+        "script-src 'self'",
+        "style-src 'self'",
+        "img-src 'self' blob: data:",
+        "media-src 'self' blob:",
+        "font-src 'self'",
+        "connect-src 'self'",
+        "worker-src 'self'",
+        "manifest-src 'self'",
+        "base-uri 'none'",
+        "form-action 'none'",
+        "frame-ancestors 'none'",
+    )
+)
+
+HEADERS = {
+    "content-security-policy": CONTENT_SECURITY_POLICY,
+    "x-content-type-options": "nosniff",
+    "referrer-policy": "no-referrer",
+    "cross-origin-opener-policy": "same-origin",
+    "cross-origin-resource-policy": "same-origin",
+    "permissions-policy": "camera=(), microphone=(), geolocation=()",
+}
+_RAW_HEADERS = [(name.encode(), value.encode()) for name, value in HEADERS.items()]
+
+
+class Guard:
+    """The outermost layer of the application.
+
+    Parameters
+    ----------
+    app : ASGI application
+        What it stands before.
+    settings : Settings
+        Which hosts, and how much.
+
+    Examples
+    --------
+    See `trundle.lab.app.create_app`.
+    """
+
+    def __init__(self, app: Any, settings: Settings) -> None:
+        self.app, self.settings = app, settings
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer a request, or refuse it."""
+        if scope["type"] != "http":
+            if scope["type"] == "websocket":  # the lab has none
+                await send({"type": "websocket.close", "code": 1008})
+                return
+            await self.app(scope, receive, send)
+            return
+        headers = {name.decode("latin-1").lower(): value.decode("latin-1") for name, value in scope["headers"]}
+        sent = _with_headers(send)
+        try:
+            check_host(headers.get("host", ""), self.settings)
+            if scope["method"] not in ("GET", "HEAD", "OPTIONS"):
+                check_origin(headers, scope.get("scheme", "http"))
+            most = self.settings.upload_bytes if scope["path"] == "/api/open" else self.settings.body_bytes
+            check_length(headers.get("content-length"), most)
+        except RefusedError as error:
+            await refuse(error.refusal, sent)
+            return
+        await self.app(scope, _bounded(receive, most, self.settings.reading_time), sent)
+
+
+def check_host(host: str, settings: Settings) -> None:
+    """Refuse a request for another host: a page elsewhere may have had its name point here.
+
+    Parameters
+    ----------
+    host : str
+        The Host header.
+    settings : Settings
+        Where the lab listens.
+
+    Raises
+    ------
+    RefusedError
+        With status 421.
+
+    Examples
+    --------
+    >>> check_host("localhost:8765", Settings(port=8765))
+    >>> check_host("evil.example:8765", Settings(port=8765))
+    Traceback (most recent call last):
+    ...
+    trundle.lab.errors.RefusedError: This server answers for 127.0.0.1, localhost and ::1 only, ...
+    """
+    name, port = _split(host)
+    known = {*LOOPBACK_NAMES, settings.host.lower()}
+    if settings.exposed:  # an address cannot be made to point elsewhere, as a name can
+        known.add(socket.gethostname().lower())
+    right_name = name in known or (settings.exposed and _is_address(name))
+    if right_name and (settings.port is None or port == settings.port):
+        return
+    names = "its own addresses and name" if settings.exposed else "127.0.0.1, localhost and ::1"
+    where = "" if settings.port is None else f", on port {settings.port}"
+    raise refused(421, f"This server answers for {names} only{where}. Take the address that `trundle lab` printed.")
+
+
+def check_origin(headers: dict[str, str], scheme: str) -> None:
+    """Refuse what a page of another origin sends.
+
+    Parameters
+    ----------
+    headers : dict
+        Of the request, names in small letters.
+    scheme : str
+        Of the request.
+
+    Raises
+    ------
+    RefusedError
+        With status 403.
+
+    Examples
+    --------
+    >>> check_origin({"host": "localhost:8765", "origin": "http://localhost:8765"}, "http")
+    >>> check_origin({"host": "localhost:8765", "origin": "https://evil.example"}, "http")
+    Traceback (most recent call last):
+    ...
+    trundle.lab.errors.RefusedError: Only the lab's own page may send this. Open it in a tab of its own.
+    """
+    origin = headers.get("origin")
+    foreign = origin is not None and origin.lower() != f"{scheme}://{headers.get('host', '')}".lower()
+    if foreign or headers.get("sec-fetch-site", "same-origin") not in ("same-origin", "none"):
+        raise refused(403, "Only the lab's own page may send this. Open it in a tab of its own.")
+
+
+def check_length(length: str | None, most: int) -> None:
+    """Refuse a body that says itself that it is too long.
+
+    Parameters
+    ----------
+    length : str or None
+        The Content-Length header.
+    most : int
+        Bytes.
+
+    Raises
+    ------
+    RefusedError
+        With status 413.
+
+    Examples
+    --------
+    >>> check_length("10", 10)
+    """
+    if length is not None and length.isdecimal() and int(length[:20]) > most:
+        raise _too_long(most)
+
+
+async def refuse(refusal: Refusal, send: Send) -> None:
+    """Send a refusal.
+
+    Parameters
+    ----------
+    refusal : Refusal
+        What is said.
+    send : callable
+        Of ASGI.
+
+    Examples
+    --------
+    See `Guard`.
+    """
+    body = refusal.body
+    headers = [(b"content-type", b"application/json"), (b"content-length", str(len(body)).encode())]
+    headers += [(name.encode(), value.encode()) for name, value in refusal.headers]
+    if refusal.status == 413:  # the rest of the body is not read
+        headers.append((b"connection", b"close"))
+    await send({"type": "http.response.start", "status": refusal.status, "headers": headers})
+    await send({"type": "http.response.body", "body": body})
+
+
+def _split(host: str) -> tuple[str, int | None]:
+    try:
+        parts = urlsplit(f"//{host}")
+        name, port = parts.hostname or "", parts.port
+    except ValueError:
+        return "", None
+    plain = not (parts.path or parts.query or parts.fragment or parts.username is not None)
+    return (name.lower(), 80 if port is None else port) if plain else ("", None)
+
+
+def _is_address(name: str) -> bool:
+    try:
+        ipaddress.ip_address(name)
+    except ValueError:
+        return False
+    return True
+
+
+def _too_long(most: int) -> RefusedError:
+    size = f"{most / 2**20:g} MiB" if most >= 2**20 else f"{most / 2**10:g} KiB"
+    return refused(413, f"The request is longer than the {size} that are read. Send less.")
+
+
+def _with_headers(send: Send) -> Send:
+    async def sent(message: MutableMapping[str, Any]) -> None:
+        if message["type"] == "http.response.start":
+            there = {name.lower() for name, _ in message.get("headers", [])}
+            added = [(name, value) for name, value in _RAW_HEADERS if name not in there]
+            message = {**message, "headers": [*message.get("headers", []), *added]}
+        await send(message)
+
+    return sent
+
+
+def _bounded(receive: Receive, most: int, seconds: float) -> Receive:
+    """Return a `receive` that stops reading a body that is too long or too slow."""
+    read, complete = 0, False
+    until = asyncio.get_running_loop().time() + seconds
+
+    async def received() -> MutableMapping[str, Any]:
+        nonlocal read, complete
+        if complete:
+            return await receive()
+        try:
+            async with asyncio.timeout_at(until):
+                message = await receive()
+        except TimeoutError:
+            raise HTTPException(408, "The request did not arrive in time. Send it again.") from None
+        read += len(message.get("body", b""))
+        complete = not message.get("more_body", False)
+        if read > most:
+            raise HTTPException(413, str(_too_long(most)))
+        return message
+
+    return received

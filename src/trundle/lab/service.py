@@ -1,0 +1,89 @@
+"""What one server keeps while it runs, and how it answers: from the cache, or by a worker."""
+
+from __future__ import annotations
+
+import gzip
+from collections.abc import Callable
+from typing import Any
+
+from starlette.requests import Request
+from starlette.responses import Response
+
+from .cache import Answer, Cache, key_of
+from .errors import Refusal, RefusedError
+from .pool import Lane
+from .settings import Settings
+
+_WORDY = ("application/json", "application/toml", "image/svg+xml", "text/csv", "text/html")  # worth compressing
+
+
+class Lab:
+    """What one server keeps while it runs.
+
+    Parameters
+    ----------
+    settings : Settings
+        How it is run.
+
+    Examples
+    --------
+    See `create_app`.
+    """
+
+    def __init__(self, settings: Settings) -> None:
+        self.settings = settings
+        self.cache = Cache(settings.cache_bytes)
+        self.quick = Lane(settings.workers, settings)
+        self.slow = Lane(settings.slow_workers, settings)
+
+    async def answer(
+        self, request: Request, lane: Lane, function: Callable[..., Answer | Refusal], *arguments: Any
+    ) -> Response:
+        """Answer from the cache, or from a worker.
+
+        Parameters
+        ----------
+        request : Request
+            Who asks.
+        lane : Lane
+            Where it is computed.
+        function : callable
+            One of `answers` or `exports`.
+        *arguments : object
+            What JSON can hold, or bytes.
+
+        Returns
+        -------
+        Response
+            With an ETag that stands for what was asked.
+        """
+        key = key_of(function.__name__, *arguments)
+        tag = f'W/"{key}"'
+        if tag in (part.strip() for part in request.headers.get("if-none-match", "").split(",")):
+            return Response(status_code=304, headers={"etag": tag, "cache-control": "no-cache"})
+        found = self.cache.get(key)
+        if found is None:
+            found = await self._computed(key, request, lane, function, arguments)
+        return _response(found, tag, request)
+
+    async def _computed(
+        self, key: str, request: Request, lane: Lane, function: Callable[..., Answer | Refusal], arguments: Any
+    ) -> Answer:
+        found = await lane.run(request, function, *arguments)
+        if isinstance(found, Refusal):
+            raise RefusedError(found)
+        self.cache.put(key, found)
+        return found
+
+
+def _response(found: Answer, tag: str, request: Request) -> Response:
+    headers = {"etag": tag, "cache-control": "no-cache"}
+    body = found.body
+    if found.filename:
+        headers["content-disposition"] = f'attachment; filename="{found.filename}"'
+    if found.media_type.partition(";")[0] in _WORDY and len(body) > 1000:
+        headers["vary"] = "accept-encoding"
+        if "gzip" in request.headers.get("accept-encoding", ""):
+            body = gzip.compress(body, 5)
+            headers["content-encoding"] = "gzip"
+    return Response(body, headers=headers, media_type=found.media_type)

@@ -1,0 +1,159 @@
+"""Running the lab on this machine: a port that is free, the browser once it answers, and an end that leaves nothing."""
+
+from __future__ import annotations
+
+import ipaddress
+import socket
+import threading
+import webbrowser
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from ..errors import InvalidValueError
+from .settings import DEFAULT_PORT, Settings
+
+
+def is_loopback(host: str) -> bool:
+    """Tell whether only this machine can reach an address.
+
+    Parameters
+    ----------
+    host : str
+        A name or an address.
+
+    Returns
+    -------
+    bool
+        False where it cannot be told.
+
+    Examples
+    --------
+    >>> is_loopback("127.0.0.1"), is_loopback("localhost"), is_loopback("0.0.0.0")
+    (True, True, False)
+    """
+    if host.lower() == "localhost":
+        return True
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False
+
+
+def listen(host: str, port: int | None) -> socket.socket:
+    """Take a port.
+
+    Parameters
+    ----------
+    host : str
+        Where to listen.
+    port : int, optional
+        Which; absent: the usual one, or any other that is free.
+
+    Returns
+    -------
+    socket.socket
+        Bound to it.
+
+    Raises
+    ------
+    InvalidValueError
+        If the port is taken, or there is no such host here.
+
+    Examples
+    --------
+    >>> with listen("127.0.0.1", 0) as taken:
+    ...     taken.getsockname()[0]
+    '127.0.0.1'
+    """
+    try:
+        family, _, _, _, address = socket.getaddrinfo(host, port or 0, type=socket.SOCK_STREAM)[0]
+    except (OSError, UnicodeError):
+        raise InvalidValueError("--host", "must be an address of this machine", host) from None
+    for wanted in (DEFAULT_PORT, 0) if port is None else (port,):
+        taken = socket.socket(family, socket.SOCK_STREAM)
+        try:
+            taken.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            taken.bind((address[0], wanted, *address[2:]))
+            taken.listen(512)
+        except OSError as error:
+            taken.close()
+            reason = error.strerror or str(error)
+        else:
+            return taken
+    if port is None:
+        raise InvalidValueError("--host", "must be an address of this machine", host, f"The system says: {reason}.")
+    remedy = f"The system says: {reason}. Leave the port out, and one that is free is found."
+    raise InvalidValueError("--port", "must be a port that is free", port, remedy)
+
+
+def address_of(taken: socket.socket) -> str:
+    """Return what to type into a browser on this machine.
+
+    Parameters
+    ----------
+    taken : socket.socket
+        That the lab listens on.
+
+    Returns
+    -------
+    str
+        Such as ``http://127.0.0.1:8765/``.
+
+    Examples
+    --------
+    >>> with listen("127.0.0.1", 0) as taken:
+    ...     address_of(taken).startswith("http://127.0.0.1:")
+    True
+    """
+    host, port = taken.getsockname()[:2]
+    host = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)  # noqa: S104  shown, not listened on
+    return f"http://{f'[{host}]' if ':' in host else host}:{port}/"
+
+
+def serve(
+    settings: Settings, port: int | None, *, open_browser: bool = True, told: Callable[[str, int], None] | None = None
+) -> None:
+    """Serve the lab until Ctrl-C.
+
+    Parameters
+    ----------
+    settings : Settings
+        How it is run; its port is filled in.
+    port : int, optional
+        Where to listen; absent: the usual port, or any that is free.
+    open_browser : bool
+        Whether to open it in a browser, once it answers.
+    told : callable, optional
+        Told the address and the port once it answers.
+
+    Raises
+    ------
+    InvalidValueError
+        If the port is taken, or there is no such host here.
+    """
+    import uvicorn
+
+    from .app import create_app
+
+    class Server(uvicorn.Server):
+        async def startup(self, sockets: Any = None) -> None:
+            await super().startup(sockets)
+            if self.started and told is not None:
+                told(address, taken.getsockname()[1])
+            if self.started and open_browser:  # some browsers keep their caller
+                threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
+
+    with listen(settings.host, port) as taken:
+        address = address_of(taken)
+        app = create_app(replace(settings, port=taken.getsockname()[1]))
+        config = uvicorn.Config(
+            app,
+            log_level="warning",
+            access_log=False,
+            server_header=False,
+            proxy_headers=False,
+            timeout_graceful_shutdown=2,
+            ws="none",
+        )
+        Server(config).run(sockets=[taken])

@@ -1,0 +1,66 @@
+"""How a lab is run: where it listens, and what it allows a visitor to ask of the machine."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from pathlib import Path
+
+DEFAULT_PORT = 8765
+_MIB = 2**20
+
+
+def _processors() -> int:
+    available = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return max(1, min(available, 8))
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What `create_app` is told.
+
+    Parameters
+    ----------
+    host : str
+        The address that the server listens on.
+    port : int, optional
+        The port that a Host header must name; absent: any.
+    exposed : bool
+        Whether others on the network may come: they then reach it by the machine's address or name.
+    workers, slow_workers : int
+        Processes that answer what takes milliseconds, and what takes seconds.
+    wall_time : float
+        The most that one computation may take, s.
+    patience : float
+        The most that a request waits for a free process, s.
+    grace : float
+        How long a computation goes on whose asker has gone, s: to end a process costs more than a few milliseconds.
+    queue : int
+        How many requests may wait or be computed at once, of each of the two kinds.
+    reading_time : float
+        The most that a request's body may take to arrive, s.
+    cache_bytes, body_bytes, upload_bytes : int
+        The most that the cache holds; of a request; of a file that is opened.
+    static : pathlib.Path
+        The built front end.
+
+    Examples
+    --------
+    >>> Settings().host
+    '127.0.0.1'
+    """
+
+    host: str = "127.0.0.1"
+    port: int | None = None
+    exposed: bool = False
+    workers: int = field(default_factory=_processors)
+    slow_workers: int = 2
+    wall_time: float = 20.0
+    patience: float = 30.0
+    grace: float = 1.0
+    queue: int = 512
+    reading_time: float = 15.0
+    cache_bytes: int = 64 * _MIB
+    body_bytes: int = _MIB // 2
+    upload_bytes: int = 32 * _MIB
+    static: Path = Path(__file__).resolve().parent.parent / "viewer" / "static"

@@ -1,0 +1,37 @@
+"""What makes a worker ready before anyone asks."""
+
+from __future__ import annotations
+
+import signal
+
+_SHOWN = ("tilted-turntable", "level-turntable-nudged", "ball-in-a-trough")
+
+
+def begin() -> None:
+    """Load what answers need, and answer something once.
+
+    Examples
+    --------
+    >>> begin()
+    """
+    import matplotlib.backends.backend_agg  # noqa: F401
+    import xarray  # noqa: F401
+
+    from ..solve import taylor
+    from . import answers
+
+    if taylor.available():
+        import heyoka  # noqa: F401
+    for name in _SHOWN:
+        answers.warm(name)
+
+
+def begin_worker() -> None:
+    """Make a worker ready; what a copy has already costs nothing.
+
+    Examples
+    --------
+    In a worker only: it changes what a signal does.
+    """
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)  # ends at once, also within compiled code
+    begin()
