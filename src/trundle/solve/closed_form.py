@@ -144,12 +144,14 @@ def _values(
 ) -> Callable[[Any], Any]:
     """Return the stops asked for as functions of the time since the start.
 
-    They do not depend on the orientation: every closed form's body is the same from all sides, or turns in its plane.
+    Where they depend on the orientation, the form says how the body stands; most are the same from all sides, or turn
+    in their plane.
     """
-    q, only_bounds = Quaternion(*start.orientation), set(asked) <= _BOUNDS
+    at_start, only_bounds = Quaternion(*start.orientation), set(asked) <= _BOUNDS
 
     def at(t: Any) -> Any:
         r, V, Omega, _ = form.motion_at(t)
+        q = at_start if only_bounds else form.stance(t) or at_start
         own = tuple(of_start + gone for of_start, gone in zip(start.support, form.own_at(t), strict=True))
         contact = touch(system, start.time + t, r, q, own)
         contact = replace(contact, point=r + contact.offset)

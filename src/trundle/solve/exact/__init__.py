@@ -16,6 +16,7 @@ from .. import following
 from .ball_in_leaning_cylinder import BallInLeaningCylinder
 from .ball_in_upright_cylinder import BallInUprightCylinder
 from .base import ClosedForm
+from .chaplygin_ball import ChaplyginBall
 from .cylinder_on_cylinder import CylinderOnCylinder
 from .off_a_dome import OffADome
 from .resting_body import RestingBody
@@ -38,6 +39,7 @@ CLOSED_FORMS: tuple[type[ClosedForm], ...] = (
     SphereOnUnsteadyPlane,
     SphereOnFreePlane,
     SphereOnSphere,
+    ChaplyginBall,
     SlidingSphere,
     SphereInFlight,
     RestingBody,
@@ -122,6 +124,7 @@ __all__ = [
     "CLOSED_FORMS",
     "BallInLeaningCylinder",
     "BallInUprightCylinder",
+    "ChaplyginBall",
     "ClosedForm",
     "CylinderOnCylinder",
     "OffADome",

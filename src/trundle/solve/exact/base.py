@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any, ClassVar, Self
 
 from ...errors import OutOfDomainError
-from ...mechanics.algebra import Vector
+from ...mechanics.algebra import Quaternion, Vector
 from ...mechanics.system import RollingSystem, State
 from ..samples import ROLLING
 
@@ -85,5 +85,10 @@ class ClosedForm:
 
     def straight_turn(self, t: Any) -> tuple[Vector, Any] | None:
         """Return the fixed axis about which the body has turned and the angle, rad, where the position gives them."""
+        del t
+        return None
+
+    def stance(self, t: Any) -> Quaternion | None:
+        """Return an orientation with which the law gives the forces of that time; None where any will do."""
         del t
         return None

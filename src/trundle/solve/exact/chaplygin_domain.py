@@ -1,0 +1,116 @@
+"""What Chaplygin's balls have in common: a sphere about its centre of mass, on a level plane at rest."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ...mechanics.algebra import Matrix, Quaternion, Vector
+from ...mechanics.bodies.inertia import Isotropic, RatioInertia
+from ...mechanics.loads import constant_part
+from ...mechanics.scalars import is_number, is_zero, namespace
+from ...mechanics.shapes import concentric_sphere
+from ...mechanics.surfaces import Plane
+from ...mechanics.system import RollingSystem
+
+Axes = tuple[tuple[float, float, float], ...]
+
+
+def reasons_outside(system: RollingSystem) -> list[str]:
+    """Name what of a system is no ball with its own principal moments, level, at rest and under forces along n.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Any system.
+
+    Returns
+    -------
+    list of str
+        Empty where the closed forms of Chaplygin's ball may apply.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> ball = tr.Body(1.0, tr.Principal(3e-3, 4e-3, 5e-3), tr.Sphere(0.1))
+    >>> reasons_outside(tr.RollingSystem(ball, tr.Support(tr.Plane(), tilt=0.1)))
+    ['gravity or a force pushes along the plane, or a torque acts']
+    """
+    reasons, motion = [], system.support.motion
+    if not concentric_sphere(system.body.shape):
+        reasons.append("the body is no sphere with its centre of mass at its centre")
+    elif isinstance(system.body.inertia, (Isotropic, RatioInertia)):
+        reasons.append("the ball has the same moment of inertia about every axis")
+    if not isinstance(system.support.surface, Plane):
+        reasons.append(f"the surface is a {type(system.support.surface).__name__}, not a Plane")
+    if motion.steady_rate is None or not is_zero(motion.steady_rate):
+        reasons.append("the plane moves")
+    reasons += [f"the load {type(load).__name__} is not constant" for load in system.loads if not load.constant]
+    if not reasons:
+        force, torque, _ = constant_part(system.all_loads, system.body.mass)
+        if any((force.x, force.y, *torque)):
+            reasons.append("gravity or a force pushes along the plane, or a torque acts")
+        if is_number(force.z) and force.z > 0:
+            reasons.append("the plane does not press on the body")
+    return reasons
+
+
+def principal_axes(body: Any) -> tuple[tuple[float, float, float], Axes]:
+    """Return a body's principal moments of inertia and their axes.
+
+    Parameters
+    ----------
+    body : Body
+        With numbers.
+
+    Returns
+    -------
+    moments : tuple of 3 float
+        kg m².
+    axes : tuple of 3 unit vectors
+        In the body frame, right-handed.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> principal_axes(tr.Body(1.0, tr.Principal(3e-3, 4e-3, 5e-3), tr.Sphere(0.1)))[0]
+    (0.003, 0.004, 0.005)
+    """
+    J = np.array([[float(part) for part in row] for row in body.inertia_in_space(Matrix.identity()).rows])
+    if not (J - np.diag(np.diag(J))).any():
+        moments, axes = np.diag(J), np.eye(3)
+    else:
+        moments, axes = np.linalg.eigh(J)
+        axes = axes * np.array([1.0, 1.0, np.sign(np.linalg.det(axes))])
+    first, second, third = (float(moment) for moment in moments)
+    return (first, second, third), tuple((float(x), float(y), float(z)) for x, y, z in axes.T)
+
+
+def stance_of(before: Vector, now: Vector) -> Quaternion:
+    """Return the shortest turn that takes one unit vector to another.
+
+    Parameters
+    ----------
+    before, now : Vector
+        Unit vectors.
+
+    Returns
+    -------
+    Quaternion
+        Half a turn about some axis across, where the two are opposite.
+
+    Examples
+    --------
+    >>> stance_of(Vector(0.0, 0.0, 1.0), Vector(0.0, 0.0, -1.0)).matrix() @ Vector(0.0, 0.0, 1.0)
+    Vector(x=0.0, y=0.0, z=-1.0)
+    """
+    across = min((Vector(1.0, 0.0, 0.0), Vector(0.0, 1.0, 0.0)), key=lambda e: abs(before.dot(e))).cross(before)
+    axis, cosine = before.cross(now), before.dot(now)
+    size = now.dot(now) + cosine
+    xp = namespace(size)
+    opposite = size < 1e-12  # 4e-13 of the turn is left out, by which no force changes that shows
+    w = xp.where(opposite, 0 * size, size)
+    x, y, z = (xp.where(opposite, away + 0 * size, part + 0 * size) for away, part in zip(across, axis, strict=True))
+    length = xp.sqrt(w * w + x * x + y * y + z * z)
+    return Quaternion(w / length, x / length, y / length, z / length)
