@@ -44,10 +44,10 @@ def test_numbers_that_are_not_finite_become_null():
     assert unpack(blob).header == {"ratio": None, "list": [None, 0.5]}
 
 
-@pytest.mark.parametrize("change", [lambda b: b[:40], lambda b: b[:-400], lambda b: b"X" + b[1:], lambda b: b""])
-def test_damaged_bytes_are_refused(scene, change):
+@pytest.mark.parametrize("part", [slice(40), slice(-400), slice(1, None), slice(0)])
+def test_damaged_bytes_are_refused(scene, part):
     with pytest.raises(tr.TrundleError, match="scene"):
-        unpack(change(pack(scene)))
+        unpack(pack(scene)[part])
 
 
 def test_a_damaged_header_is_refused(scene):

@@ -16,8 +16,12 @@ from ..mechanics.bodies import Body
 from ..mechanics.shapes import Disc, Roller, Shape, Torus
 from .mesh import Array, Mesh, grid_triangles, joined, oriented
 
-_ROWS, _AROUND = 40, 64  # intervals of the grid from pole to pole, and round; both halve into quarters
-_COVERED = -1e-9  # `covers` at the edge itself, but for rounding
+_ROWS, _AROUND = (
+    42,
+    64,
+)  # intervals of the grid from pole to pole, and round: the equator is a row of it, and each axis a column
+_COVERED = -1e-13  # `covers` at the edge itself, but for rounding
+_NEARLY = 1e-3  # rad from the pole
 _LENS = 0.02  # half the thickness in the middle of a sharp disc, over its radius
 _RING = 0.8  # moment about the axis over m a² from which on a rim is a ring, and a roller a pipe
 _HOLE = 0.82  # radius of the hole of a ring or pipe, over the outer one
@@ -129,6 +133,7 @@ def _directions(shape: Shape) -> Array:
 def _angles() -> tuple[Array, Array]:
     """Return angle from the pole and longitude of a grid, its seam twice."""
     down, round_ = np.linspace(0.0, np.pi, _ROWS + 1), np.linspace(0.0, 2 * np.pi, _AROUND + 1)
+    down[[1, -2]] = _NEARLY, np.pi - _NEARLY  # the edge of a face that lies across the axis, if there is one
     down, round_ = (part.ravel() for part in np.meshgrid(down, round_, indexing="ij"))
     return down, round_
 
@@ -185,6 +190,7 @@ def _roller(shape: Roller, pipe: bool) -> Mesh:
     if missing.any():
         known = profile[~missing]
         profile[missing] = known[np.argmax(e[missing] @ known.T, axis=1)]
+        profile[-1] = profile[0]  # between two edges that reach equally far, rounding chose
     length = float(shape.radius) * (_SHORT if pipe else _LONG)
     along = np.array([0.0, 0.0, length])
     axis = np.array([0.0, 0.0, 1.0])

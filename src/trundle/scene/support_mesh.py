@@ -119,6 +119,8 @@ def _of_revolution(surface: Surface, window: Window, first: bool) -> Ground:
         if line[0, 0] > 1e-9 * size:  # no axis to count from: a wall is marked by its height
             along = line[:, 1]
         normal = _normals(surface, flat)
+        if len(line) > 2 and not math.isclose(abs(float(normal[0] @ normal[1])), 1.0, abs_tol=0.2):
+            normal[0] = normal[1]  # the apex of a cone
         vertices, normals = (_spun(part, turned) for part in (flat, normal))
         paint = np.stack(np.broadcast_arrays(turns[None, :], along[:, None] / size), axis=-1).reshape(-1, 2)
         meshes.append(
