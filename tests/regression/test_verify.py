@@ -405,3 +405,12 @@ def test_what_an_unstable_motion_does_not_explain_still_fails(name: str, monkeyp
         monkeypatch.setattr(module, "solver", solver)
     card = verify.card(system, start, solver("exact")(system, start, TIMES), "exact")
     assert AGAINST in failures(card), str(card)
+
+
+@pytest.mark.parametrize("heading", [0.0, 37.0, -90.0])
+def test_an_integral_that_is_nothing_for_every_heading_drifts_by_nothing(heading: float) -> None:
+    # A hemisphere that rocks has JΩ·ρ = 0, by terms that cancel at one heading and are all rounding at another.
+    half = tr.Body.hemisphere(radius=0.05, mass=0.25)
+    system = tr.RollingSystem(half, tr.Support(tr.Plane()))
+    turned = system.place(attitude=(math.radians(heading), math.radians(60.0), 0.0))
+    assert tr.simulate(system, turned, duration=2.0, every=0.01).card().passed

@@ -94,11 +94,9 @@ def _record(system: RollingSystem, at: Motion) -> Record:
 
 
 def _value(system: RollingSystem, integral: Invariant, at: Motion) -> tuple[Array, float]:
-    terms = [_rows(term, at.time.size) for term in integral.terms(system, _record(system, at))]
-    size = max(float(np.abs(term).max()) for term in terms)
-    if integral.unit == "rad/s":  # a spin of next to nothing is little beside Ω, not beside itself
-        size = max(size, float(np.linalg.norm(at.angular_velocity, axis=1).max()))
-    return np.asarray(sum(terms), dtype=float), max(size, 1e-300)
+    terms, sizes = integral.sized_terms(system, _record(system, at))
+    size = max(float(np.abs(_rows(term, at.time.size)).max()) for term in sizes)
+    return np.asarray(sum(_rows(term, at.time.size) for term in terms), dtype=float), max(size, 1e-300)
 
 
 def _rows(term: Any, count: int) -> Array:

@@ -160,10 +160,11 @@ def _integrals(system: RollingSystem, at: Samples, method: str) -> Iterator[Card
         record = Record(part.motion(system), Vector.of(part.contact), part.support_own)
         phases.add(phase)
         for integral in invariants_of(system, phases=(phase,)):
-            terms = [_as_array(term, part.time.size) for term in integral.terms(system, record)]
+            terms, sizes = integral.sized_terms(system, record)
             if not terms:  # it has nothing to say of this stretch
                 continue
-            drift = _drift(sum(terms), max(float(np.abs(term).max()) for term in terms))
+            size = max(float(np.abs(_as_array(term, part.time.size)).max()) for term in sizes)
+            drift = _drift(sum(_as_array(term, part.time.size) for term in terms), size)
             known = worst.get(integral.name, (0.0, integral, set()))
             worst[integral.name] = max(known[0], drift), integral, known[2] | {phase}
     for name, (drift, integral, held) in worst.items():

@@ -46,10 +46,18 @@ class Invariant:
     terms: Callable[[RollingSystem, Record], list[Any]]  # their sum is constant; scalars, vectors or arrays
     through_changes: bool = False  # whether landings and other impulses at the contact leave it alone, too
     phases: tuple[str, ...] = ()  # those of the system that it was found for
+    size: Callable[[RollingSystem, Record], Scalar] | None = (
+        None  # of what it is made of, where all its terms may vanish
+    )
 
     def holds(self, system: RollingSystem) -> bool:
         """Tell whether a system that rolls has it."""
         return ROLLING in self.survives(system)
+
+    def sized_terms(self, system: RollingSystem, at: Record) -> tuple[list[Any], list[Any]]:
+        """Return its terms, and all whose size its drift is small beside, or not."""
+        terms = self.terms(system, at)
+        return terms, [*terms, self.size(system, at)] if terms and self.size is not None else terms
 
 
 def products(one: Vector, other: Vector) -> list[Scalar]:

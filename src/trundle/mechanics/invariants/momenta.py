@@ -45,6 +45,10 @@ def _normal_momentum(system: RollingSystem, at: Record) -> list[Scalar]:
     return products(J.c, at.motion.angular_velocity)
 
 
+def _normal_momentum_size(system: RollingSystem, at: Record) -> Scalar:
+    return system.body.inertia_in_space(at.motion.orientation.matrix()).c.norm() * at.motion.angular_velocity.norm()
+
+
 def _has_contact_momentum(system: RollingSystem) -> tuple[str, ...]:
     """Find a sphere about its centre of mass, ρ̇ = 0: d/dt(JΩ − mρ×V) = K − ρ×F, whatever the contact force."""
     radius = getattr(system.body.shape, "radius", None)
@@ -75,6 +79,10 @@ def _jellett(system: RollingSystem, at: Record) -> list[Scalar]:
     return products(spin_momentum(system, at), _offset(system, at))
 
 
+def _jellett_size(system: RollingSystem, at: Record) -> Scalar:
+    return spin_momentum(system, at).norm() * _offset(system, at).norm()
+
+
 def _has_routh(system: RollingSystem) -> tuple[str, ...]:
     """Find a sphere with an axis that rolls on a plane at rest under loads along its normal.
 
@@ -91,11 +99,21 @@ def _has_routh(system: RollingSystem) -> tuple[str, ...]:
 
 def _routh(system: RollingSystem, at: Record) -> list[Scalar]:
     ball: Any = ball_of(system.body)
+    axis, root = at.motion.orientation.matrix() @ ball.axis, _routh_root(system, at)
+    return [part * root for part in products(at.motion.angular_velocity, axis)]
+
+
+def _routh_root(system: RollingSystem, at: Record) -> Scalar:
+    """Return √(J₁J₃ + mρ·Jρ), kg m²."""
+    ball: Any = ball_of(system.body)
     Q, rho = at.motion.orientation.matrix(), _offset(system, at)
     across, about = ball.moments
     squared = across * about + system.body.mass * rho.dot(system.body.inertia_in_space(Q) @ rho)
-    root = namespace(*rho).sqrt(squared)
-    return [part * root for part in products(at.motion.angular_velocity, Q @ ball.axis)]
+    return namespace(*rho).sqrt(squared)
+
+
+def _routh_size(system: RollingSystem, at: Record) -> Scalar:
+    return at.motion.angular_velocity.norm() * _routh_root(system, at)
 
 
 def _has_free_momentum(system: RollingSystem) -> tuple[str, ...]:
@@ -109,6 +127,7 @@ SPIN = Invariant(
     _has_spin,
     lambda _, at: [at.motion.angular_velocity.z],
     through_changes=True,
+    size=lambda _, at: at.motion.angular_velocity.norm(),
 )
 NORMAL_MOMENTUM = Invariant(
     "angular momentum about the normal",
@@ -117,6 +136,7 @@ NORMAL_MOMENTUM = Invariant(
     _has_normal_momentum,
     _normal_momentum,
     through_changes=True,
+    size=_normal_momentum_size,
 )
 # [chaplygin1903]: on a plane at rest V = −Ω×ρ, and it is JΩ + mρ×(Ω×ρ); so written it holds on moving planes, too.
 CONTACT_MOMENTUM = Invariant(
@@ -128,9 +148,11 @@ CONTACT_MOMENTUM = Invariant(
     through_changes=True,
 )
 # [jellett1872], for a body that slips.
-JELLETT = Invariant("integral of Jellett", "JΩ·ρ", "kg m³/s", _has_jellett, _jellett, through_changes=True)
+JELLETT = Invariant(
+    "integral of Jellett", "JΩ·ρ", "kg m³/s", _has_jellett, _jellett, through_changes=True, size=_jellett_size
+)
 # [routh1905].
-ROUTH = Invariant("integral of Routh", "Ω·e √(J₁J₃ + mρ·Jρ)", "kg m²/s", _has_routh, _routh)
+ROUTH = Invariant("integral of Routh", "Ω·e √(J₁J₃ + mρ·Jρ)", "kg m²/s", _has_routh, _routh, size=_routh_size)
 FREE_MOMENTUM = Invariant(
     "angular momentum about the centre of mass",
     "JΩ",
