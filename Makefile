@@ -25,9 +25,11 @@ help:
 demo: .venv/installed
 	$(PLAIN) $(BIN)/trundle run tilted-turntable -o demo
 
+# The web part first: it fetches what the browser tests put into a page to judge it.
 test: .venv/installed-test
-	$(PYTEST)
+	@if [ -f .ci/chromium ]; then sh .ci/chromium; fi
 	$(PLAIN) $(BIN)/python web/build.py test
+	$(PYTEST)
 	@$(MAKE) --no-print-directory lint
 
 lint: .venv/installed-test
