@@ -11,10 +11,10 @@ from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
-from . import answers, pages
+from . import answers, exports, pages
 from .errors import Refusal, RefusedError, of_validation
 from .pool import LeftError
-from .requests import JSON, AboutScenario, ToDraw, ToRoll, described
+from .requests import JSON, OPENED, AboutScenario, ToDraw, ToExport, ToRoll, described
 from .security import Guard
 from .service import Lab
 from .settings import Settings
@@ -64,6 +64,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.lab = lab
     _reading(app, lab)
     _asking(app, lab)
+    _files(app, lab)
     _refusing(app)
     pages.add_routes(app, chosen)
     app.add_middleware(Guard, settings=chosen)
@@ -110,6 +111,22 @@ def _asking(app: FastAPI, lab: Lab) -> None:
     async def roll(request: Request, asked: ToRoll) -> Response:
         lane = lab.slow if asked.card else lab.quick
         return await lab.answer(request, lane, answers.roll, asked.radius, asked.curve, asked.samples, asked.card)
+
+
+def _files(app: FastAPI, lab: Lab) -> None:
+    """Add the routes that give files and take them."""
+    kinds = {kind: {"schema": {"type": "string", "format": "binary"}} for kind in exports.MEDIA.values()}
+    takes = {kind: {"schema": {"type": "string", "format": "binary"}} for kind in OPENED}
+
+    @app.post("/api/export", **described("A scenario, or its run, as a file.", content=kinds))
+    async def export(request: Request, asked: ToExport) -> Response:
+        return await lab.with_folder(request, exports.export, asked.scenario, asked.format)
+
+    body = {"requestBody": {"required": True, "content": takes}}
+
+    @app.post("/api/open", **described("The scenario in a TOML file or a run.nc."), openapi_extra=body)
+    async def opened(request: Request) -> Response:
+        return await lab.with_folder(request, exports.opened, await request.body())
 
 
 def _refusing(app: FastAPI) -> None:

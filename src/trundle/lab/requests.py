@@ -10,6 +10,16 @@ from starlette.responses import Response
 from .limits import MOST_SAMPLES
 
 SCENE, JSON = "application/octet-stream", "application/json"
+OPENED = ("application/toml", "text/plain", "application/x-netcdf", "application/octet-stream")  # by their content
+
+
+EXAMPLE: dict[str, Any] = {
+    "title": "Ball on a record player",
+    "body": {"kind": "solid-sphere", "radius": "20 mm", "mass": "260 g"},
+    "support": {"kind": "plane", "rim": "15 cm", "motion": {"kind": "spin", "rate": "33.3 rpm"}},
+    "start": {"position": ["8 cm", 0], "velocity": [0, "3 cm/s"]},
+    "run": {"duration": "5 s", "every": "20 ms"},
+}
 
 
 class _Asked(BaseModel):
@@ -18,7 +28,7 @@ class _Asked(BaseModel):
 
 Tables = Annotated[
     dict[str, Any],
-    Field(description="A scenario, as its TOML file says it; `/api/schema` describes it.", examples=[]),
+    Field(description="A scenario, as its TOML file says it; `/api/schema` describes it.", examples=[EXAMPLE]),
 ]
 Samples = Annotated[int | None, Field(ge=2, le=MOST_SAMPLES, description="How many samples to show at most.")]
 
@@ -78,7 +88,7 @@ _MEANINGS = {
 }
 
 
-def described(summary: str, *more: int, scene: bool = False, media: str | None = None) -> dict[str, Any]:
+def described(summary: str, *more: int, scene: bool = False, content: dict[str, Any] | None = None) -> dict[str, Any]:
     """Return what a route says of itself in the OpenAPI schema.
 
     Parameters
@@ -89,8 +99,8 @@ def described(summary: str, *more: int, scene: bool = False, media: str | None =
         Statuses besides those that all have.
     scene : bool
         Whether it answers with a packed scene.
-    media : str, optional
-        The type of its answer; absent: JSON.
+    content : dict, optional
+        The types of its answer and their schemas; absent: JSON, or a scene.
 
     Returns
     -------
@@ -106,8 +116,7 @@ def described(summary: str, *more: int, scene: bool = False, media: str | None =
         status: {"model": Wrong, "description": _MEANINGS[status]}
         for status in (403, 408, 413, 421, 422, 503, 504, *more)
     }
-    kind = media or (SCENE if scene else JSON)
-    schema: dict[str, Any] = {} if kind == JSON else {"schema": {"type": "string", "format": "binary"}}
-    told[200] = {"description": "What was asked for.", "content": {kind: schema}}
+    binary = {"schema": {"type": "string", "format": "binary"}}
+    told[200] = {"description": "What was asked for.", "content": content or ({SCENE: binary} if scene else {JSON: {}})}
     told[304] = {"description": "The asker has this answer already."}
     return {"summary": summary, "responses": told, "response_class": Response}

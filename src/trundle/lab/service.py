@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 from collections.abc import Callable
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from starlette.requests import Request
@@ -37,7 +38,12 @@ class Lab:
         self.slow = Lane(settings.slow_workers, settings)
 
     async def answer(
-        self, request: Request, lane: Lane, function: Callable[..., Answer | Refusal], *arguments: Any
+        self,
+        request: Request,
+        lane: Lane,
+        function: Callable[..., Answer | Refusal],
+        *arguments: Any,
+        unkept: tuple[Any, ...] = (),
     ) -> Response:
         """Answer from the cache, or from a worker.
 
@@ -51,6 +57,8 @@ class Lab:
             One of `answers` or `exports`.
         *arguments : object
             What JSON can hold, or bytes.
+        unkept : tuple
+            Further arguments, which the answer does not depend on.
 
         Returns
         -------
@@ -63,12 +71,33 @@ class Lab:
             return Response(status_code=304, headers={"etag": tag, "cache-control": "no-cache"})
         found = self.cache.get(key)
         if found is None:
-            found = await self._computed(key, request, lane, function, arguments)
+            found = await self._computed(key, request, lane, function, (*arguments, *unkept))
         return _response(found, tag, request)
+
+    async def with_folder(
+        self, request: Request, function: Callable[..., Answer | Refusal], *arguments: Any
+    ) -> Response:
+        """Answer as `answer` does, on the slow lane, by a function whose last argument is an empty folder.
+
+        The folder has a name of the server's own and goes with the answer, also where the worker was ended.
+
+        Parameters
+        ----------
+        request, function, *arguments
+            As for `answer`.
+
+        Returns
+        -------
+        Response
+            As of `answer`.
+        """
+        with TemporaryDirectory(prefix="trundle-lab-", ignore_cleanup_errors=True) as folder:
+            return await self.answer(request, self.slow, function, *arguments, unkept=(folder,))
 
     async def _computed(
         self, key: str, request: Request, lane: Lane, function: Callable[..., Answer | Refusal], arguments: Any
     ) -> Answer:
+        """Compute, and keep what came out."""
         found = await lane.run(request, function, *arguments)
         if isinstance(found, Refusal):
             raise RefusedError(found)
