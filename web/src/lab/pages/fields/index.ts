@@ -1,0 +1,178 @@
+/** The turntable beside the crossed fields: shared controls, one clock, and a dictionary with the current numbers. */
+import type { Scene } from '../../../viewer/scene'
+import type { Page } from '../../app'
+import { cleanup, fill, h } from '../../dom'
+import { formula } from '../../math'
+import { show as written } from '../../quantity'
+import type { Scenario } from '../../scenario'
+import { encode } from '../../share'
+import { button, choice, slider } from '../parts/controls'
+import { paragraph } from '../parts/prose'
+import { leaning } from '../parts/scenarios'
+import { dictionary, type Entry, type TableRow } from './dictionary'
+import { createPair } from './pair'
+import '../pages.css'
+import './fields.css'
+
+/** What the header of a charge's scene holds besides a scene's. */
+interface ChargeHeader {
+  E: [number, number, number]
+  B: [number, number, number]
+  charge: number
+  table: TableRow[]
+  apart: number
+}
+
+interface Setting {
+  rate: number
+  tilt: number
+  start: 'down' | 'pushed'
+}
+
+const STARTS = [
+  ['down', 'Put down'],
+  ['pushed', 'Pushed'],
+] as const
+
+export const fields: Page = {
+  id: 'fields',
+  title: 'Crossed fields',
+  mount(host, app) {
+    const undo = cleanup()
+    let setting: Setting = { rate: 33.3, tilt: 0.3, start: 'down' }
+    const values = h('dl', { class: 'field-values' })
+    const body = h('tbody')
+    const apart = h('p', { class: 'apart', role: 'status', 'data-testid': 'apart' })
+    const pair = createPair(app, ({ charge }) => told(charge))
+    undo.add(() => pair.dispose())
+
+    function told(charge: Scene): void {
+      const header = charge.header as unknown as ChargeHeader
+      fill(values, ...fieldValues(header))
+      fill(body, dictionary(header.table).map(line))
+      apart.textContent = `Greatest distance between the two paths: ${written(header.apart, 2)} m. That is rounding.`
+    }
+
+    function change(part: Partial<Setting>): void {
+      setting = { ...setting, ...part }
+      pair.ask(scenarioOf(setting))
+    }
+
+    const controls = h(
+      'div',
+      { class: 'controls' },
+      slider({
+        label: 'Tilt, electric field',
+        min: -0.3,
+        max: 0.3,
+        step: 0.01,
+        value: setting.tilt,
+        words: (tilt) => `${tilt.toFixed(2)}°`.replace('-', '−'),
+        change: (tilt) => change({ tilt }),
+        testid: 'fields-tilt',
+      }).element,
+      slider({
+        label: 'Rate of the table, magnetic field',
+        min: -78,
+        max: 78,
+        step: 0.1,
+        value: setting.rate,
+        words: (rate) => `${rate.toFixed(1)} rpm`.replace('-', '−'),
+        change: (rate) => change({ rate }),
+        testid: 'fields-rate',
+      }).element,
+      choice('Start', STARTS, 'down', (start) => change({ start })).element,
+      button(
+        'Make it yours',
+        () => void encode(scenarioOf(setting)).then((s) => app.navigate('bench', { s })),
+        'quiet',
+      ),
+    )
+    fill(
+      host,
+      h(
+        'div',
+        { class: 'fields' },
+        h(
+          'header',
+          { class: 'fields-head' },
+          h('p', { class: 'kicker' }, 'Term by term'),
+          h('h1', {}, 'The ball and the electron'),
+          paragraph(
+            'The turning of the table is a magnetic field, the slope an electric one. Neither ball nor charge runs down; both drift across, at the same average height, at the same average potential.',
+          ),
+        ),
+        h('div', { class: 'fields-stages' }, pair.element),
+        h('div', { class: 'fields-tools' }, controls, values, apart),
+        h(
+          'div',
+          {
+            class: 'fields-table table-scroll',
+            tabindex: '0',
+            role: 'region',
+            'aria-label': 'What corresponds to what',
+          },
+          table(body),
+        ),
+      ),
+    )
+    change({})
+    return () => undo.run()
+  },
+}
+
+function scenarioOf({ rate, tilt, start }: Setting): Scenario {
+  const scenario = leaning(`${tilt} deg`, `${rate} rpm`)
+  const downward = rate * tilt >= 0
+  const position = ['-4 cm', downward ? '-45 cm' : '45 cm']
+  return {
+    ...scenario,
+    start:
+      start === 'down'
+        ? { position, velocity: ['0 cm/s', '0 cm/s'] }
+        : { position: ['0 cm', downward ? '-35 cm' : '35 cm'], velocity: ['0 cm/s', downward ? '-6 cm/s' : '6 cm/s'] },
+  }
+}
+
+function fieldValues({ E, B, charge }: ChargeHeader): HTMLElement[] {
+  const one = (symbol: string, value: number, unit: string) =>
+    h(
+      'div',
+      {},
+      h('dt', {}, formula(symbol)),
+      h('dd', { class: 'number' }, written(value), h('span', { class: 'unit' }, ` ${unit}`)),
+    )
+  return [one('q', charge, 'C'), one('B', B[2], 'T'), one('E', E[0], 'V/m')]
+}
+
+function table(body: HTMLElement): HTMLElement {
+  return h(
+    'table',
+    { class: 'dictionary', 'data-testid': 'dictionary' },
+    h('caption', { class: 'sr-only' }, 'What of the ball is what of the charge'),
+    h(
+      'thead',
+      {},
+      h(
+        'tr',
+        {},
+        h('th', { scope: 'col' }, h('span', { class: 'sr-only' }, 'quantity')),
+        h('th', { scope: 'col', colspan: 2 }, 'Ball on the table'),
+        h('th', { scope: 'col', colspan: 2 }, 'Charge in the fields'),
+      ),
+    ),
+    body,
+  )
+}
+
+function line({ name, ball, charge, ballValue, chargeValue, same }: Entry): HTMLElement {
+  return h(
+    'tr',
+    { class: same ? null : 'differs' },
+    h('th', { scope: 'row' }, name),
+    h('td', {}, formula(ball)),
+    h('td', { class: 'number' }, ballValue),
+    h('td', {}, formula(charge)),
+    h('td', { class: 'number' }, chargeValue),
+  )
+}

@@ -1,0 +1,69 @@
+/** A ball on its table and a charge in its fields, moving in step: one clock, two stages. */
+import type { Scene } from '../../../viewer/scene'
+import type { App } from '../../app'
+import { cleanup, h } from '../../dom'
+import { createRunner } from '../../runner'
+import type { Scenario } from '../../scenario'
+import { createStage, playUnlessCalm } from '../parts/stage'
+
+export interface Both {
+  ball: Scene
+  charge: Scene
+}
+
+export interface Pair {
+  readonly element: HTMLElement
+  ask(scenario: Scenario): void
+  readonly time: number
+  dispose(): void
+}
+
+export function createPair(app: App, shown: (both: Both) => void, ticked: (time: number) => void = () => {}): Pair {
+  const undo = cleanup()
+  const table = createStage(app, { label: 'The ball on its turning, leaning table', kind: 'half' })
+  const fields = createStage(app, { label: 'The charge in crossed fields', controls: false, kind: 'half' })
+  undo.add(
+    () => table.dispose(),
+    () => fields.dispose(),
+  )
+  let first = true
+
+  const live = createRunner<Scenario, Both>({
+    async run(scenario, signal) {
+      const options = { lane: null, signal }
+      const [ball, charge] = await Promise.all([app.api.simulate(scenario, options), app.api.twin(scenario, options)])
+      return { ball: ball.scene, charge: charge.scene }
+    },
+    done(both) {
+      table.problem(null)
+      const keep = { keepTime: !first, keepCamera: !first }
+      table.viewer.setScenes([both.ball], keep)
+      fields.viewer.setScenes([both.charge], keep)
+      fields.viewer.seek(table.viewer.time)
+      if (first) playUnlessCalm(app, table.viewer)
+      first = false
+      shown(both)
+    },
+    failed: (error) => table.problem(error),
+  })
+  undo.add(() => live.stop())
+  undo.add(
+    table.viewer.on('time', () => {
+      fields.viewer.seek(table.viewer.time)
+      ticked(table.viewer.time)
+    }),
+  )
+  return {
+    element: h(
+      'div',
+      { class: 'sides' },
+      h('section', { class: 'side' }, h('h3', { class: 'side-heading' }, 'Ball on a leaning turntable'), table.element),
+      h('section', { class: 'side' }, h('h3', { class: 'side-heading' }, 'Charge in crossed fields'), fields.element),
+    ),
+    ask: (scenario) => live.ask(scenario),
+    get time() {
+      return table.viewer.time
+    },
+    dispose: () => undo.run(),
+  }
+}

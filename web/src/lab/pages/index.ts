@@ -1,0 +1,5 @@
+/** The pages beside the bench. */
+export { compare } from './compare'
+export { fields } from './fields'
+export { holonomy } from './holonomy'
+export { tour } from './tour'

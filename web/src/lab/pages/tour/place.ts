@@ -1,0 +1,20 @@
+/** What a step of the tour is given to build in, and what it gives back. */
+import type { App } from '../../app'
+import type { Scenario } from '../../scenario'
+import type { Numbers } from '../parts/numbers'
+
+export interface Place {
+  readonly app: App
+  /** For the stage or the stages. */
+  readonly stage: HTMLElement
+  /** Under the stage: the one thing to do. */
+  readonly controls: HTMLElement
+  readonly numbers: Numbers
+  /** Beneath the step's text: what is said once something has been done. */
+  readonly remark: HTMLElement
+  /** What "make it yours" opens on the bench. */
+  offer(scenario: Scenario): void
+}
+
+/** Build a step; the returned function takes it down. */
+export type StepMount = (place: Place) => () => void
