@@ -64,7 +64,11 @@ export function openHelp(): void {
         'Choose a scenario, change a number, and the package computes the motion anew. Every curve and every figure ' +
           'comes from it; the page only draws. What can be done by hand on the stage can be typed on the left as well.',
       ),
-      h('div', { class: 'help-groups' }, KEYS.map(([title, rows]) => h('section', {}, h('h3', {}, title), h('dl', {}, rows.map(row))))),
+      h(
+        'div',
+        { class: 'help-groups' },
+        KEYS.map(([title, rows]) => h('section', {}, h('h3', {}, title), h('dl', {}, rows.map(row)))),
+      ),
     ),
   )
   close.addEventListener('click', () => dialog.close())

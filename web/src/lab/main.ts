@@ -7,12 +7,12 @@ import './base.css'
 import './shell.css'
 import { createApi } from './api'
 import type { App } from './app'
+import { FIRST } from './first'
 import { pages } from './registry'
 import { createRouter } from './router'
 import { createSettings } from './settings'
 import { createShell, startShell } from './shell'
 import { createStore } from './store'
-import { FIRST } from './first'
 
 const settings = createSettings()
 const router = createRouter()

@@ -40,7 +40,7 @@ export function createRouter(): Router {
   let route = parseRoute(location.hash)
   window.addEventListener('hashchange', () => {
     route = parseRoute(location.hash)
-    ;for (const listener of [...listeners]) listener(route)
+    for (const listener of [...listeners]) listener(route)
   })
   return {
     get route() {

@@ -54,7 +54,7 @@ function changed(holder: Holder | undefined, keys: string[], value: Json | undef
   const inner = (copy as Record<string, Json | undefined>)[key]
   const next = rest.length ? (changed(isHolder(inner) ? (inner as Holder) : undefined, rest, value) as Json) : value
   if (next === undefined && Array.isArray(copy)) copy.splice(Number(key), 1)
-  else if (next === undefined) delete copy[key]
+  else if (next === undefined) delete (copy as Table)[key]
   else (copy as Record<string, Json | undefined>)[key] = next
   return copy
 }

@@ -56,9 +56,9 @@ export function createSettings(): SettingsStore {
   const appearance = () => (value.theme === 'system' ? (dark.matches ? 'dark' : 'light') : value.theme)
 
   function apply(): void {
-    document.documentElement.dataset['theme'] = appearance()
+    document.documentElement.dataset.theme = appearance()
     document.documentElement.toggleAttribute('data-projector', value.projector)
-    ;for (const listener of [...listeners]) listener(value)
+    for (const listener of [...listeners]) listener(value)
   }
   dark.addEventListener('change', apply)
   calm.addEventListener('change', apply)

@@ -78,7 +78,7 @@ function isTable(value: unknown): value is Record<string, unknown> {
 /** Has it the tables that a scenario has? What they hold is the server's to check. */
 export function isScenario(value: unknown): value is Scenario {
   if (!isTable(value)) return false
-  if (Array.isArray(value['path'])) return isTable(value['body'])
+  if (Array.isArray(value.path)) return isTable(value.body)
   const { body, support, start, run } = value
-  return isTable(body) && typeof body['kind'] === 'string' && isTable(support) && isTable(start) && isTable(run)
+  return isTable(body) && typeof body.kind === 'string' && isTable(support) && isTable(start) && isTable(run)
 }

@@ -46,7 +46,12 @@ export function startShell(shell: Shell, app: App, pages: Page[]): void {
   const head = document.querySelector<HTMLElement>('.head')!
   const links = pages.map((page) => h('a', { href: `#/${page.id}`, 'data-page': page.id }, page.title))
   const nav = h('nav', { class: 'nav', id: 'nav', 'aria-label': 'Pages' }, links)
-  const menu = h('button', { class: 'icon-button nav-toggle', type: 'button', 'aria-expanded': 'false', 'aria-controls': 'nav' })
+  const menu = h('button', {
+    class: 'icon-button nav-toggle',
+    type: 'button',
+    'aria-expanded': 'false',
+    'aria-controls': 'nav',
+  })
   menu.append(icon('menu'), h('span', { class: 'nav-here' }), h('span', { class: 'sr-only' }, 'Pages'))
   const unfold = (open: boolean) => {
     menu.setAttribute('aria-expanded', String(open))
@@ -67,9 +72,21 @@ export function startShell(shell: Shell, app: App, pages: Page[]): void {
     onclick: () => app.changeSettings({ projector: !app.settings.projector }),
   })
   projector.append(icon('projector'))
-  const help = h('button', { class: 'icon-button', type: 'button', 'aria-label': 'Help', title: 'Help (?)', onclick: openHelp })
+  const help = h('button', {
+    class: 'icon-button',
+    type: 'button',
+    'aria-label': 'Help',
+    title: 'Help (?)',
+    onclick: openHelp,
+  })
   help.append(icon('help'))
-  const home = h('a', { class: 'wordmark', href: '#/bench' }, mark(), h('span', {}, 'trundle'), h('span', { class: 'wordmark-lab' }, 'lab'))
+  const home = h(
+    'a',
+    { class: 'wordmark', href: '#/bench' },
+    mark(),
+    h('span', {}, 'trundle'),
+    h('span', { class: 'wordmark-lab' }, 'lab'),
+  )
   fill(head, home, menu, nav, h('div', { class: 'head-tools' }, theme, projector, help))
 
   const showSettings = () => {
@@ -95,7 +112,9 @@ function nextTheme(app: App): void {
 /** True while keys belong to something that is typed into. */
 export function isTyping(event: KeyboardEvent): boolean {
   const target = event.target as HTMLElement | null
-  return !!target?.closest('input:not([type=range], [type=checkbox], [type=radio]), textarea, select, [contenteditable]')
+  return !!target?.closest(
+    'input:not([type=range], [type=checkbox], [type=radio]), textarea, select, [contenteditable]',
+  )
 }
 
 function shortcuts(app: App): void {
@@ -121,12 +140,12 @@ function showPages(shell: Shell, app: App, pages: Page[], links: HTMLAnchorEleme
     takeDown = undefined
     shown = page
     for (const link of links) {
-      if (link.dataset['page'] === page.id) link.setAttribute('aria-current', 'page')
+      if (link.dataset.page === page.id) link.setAttribute('aria-current', 'page')
       else link.removeAttribute('aria-current')
     }
     document.querySelector('.nav-here')!.textContent = page.title
     document.title = `${page.title} · trundle lab`
-    document.body.dataset['page'] = page.id
+    document.body.dataset.page = page.id
     shell.main.replaceChildren()
     shell.main.className = `page page-${page.id}`
     takeDown = page.mount(shell.main, app)

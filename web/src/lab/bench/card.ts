@@ -15,25 +15,34 @@ interface Line {
 }
 
 function lines(card: Card): Line[] {
-  const figures = card['figures']
+  const figures = card.figures
   if (!Array.isArray(figures)) return []
   const number = (value: Json | undefined) => (typeof value === 'number' ? value : null)
   return figures
-    .filter((one): one is { [key: string]: Json | undefined } => typeof one === 'object' && one !== null && !Array.isArray(one))
+    .filter(
+      (one): one is { [key: string]: Json | undefined } =>
+        typeof one === 'object' && one !== null && !Array.isArray(one),
+    )
     .map((one) => ({
-      name: String(one['name'] ?? ''),
-      value: number(one['value']),
-      unit: String(one['unit'] ?? ''),
-      bound: number(one['bound']),
-      passed: typeof one['passed'] === 'boolean' ? one['passed'] : null,
-      note: String(one['note'] ?? ''),
+      name: String(one.name ?? ''),
+      value: number(one.value),
+      unit: String(one.unit ?? ''),
+      bound: number(one.bound),
+      passed: typeof one.passed === 'boolean' ? one.passed : null,
+      note: String(one.note ?? ''),
     }))
 }
 
 function verdict(passed: boolean | null): HTMLElement {
-  if (passed === null) return h('span', { class: 'verdict verdict-none' }, h('span', { class: 'sr-only' }, 'for information'))
+  if (passed === null)
+    return h('span', { class: 'verdict verdict-none' }, h('span', { class: 'sr-only' }, 'for information'))
   const words = passed ? 'passed' : 'failed'
-  return h('span', { class: `verdict verdict-${words}` }, icon(passed ? 'check' : 'cross'), h('span', { class: 'sr-only' }, words))
+  return h(
+    'span',
+    { class: `verdict verdict-${words}` },
+    icon(passed ? 'check' : 'cross'),
+    h('span', { class: 'sr-only' }, words),
+  )
 }
 
 function line(one: Line): HTMLElement {
@@ -52,12 +61,21 @@ function line(one: Line): HTMLElement {
       'div',
       { class: 'card-more' },
       one.note && h('p', {}, one.note),
-      h('p', { class: 'card-bound' }, `value ${one.value ?? '–'} ${one.unit}`, one.bound === null ? '' : `, bound ${one.bound}`),
+      h(
+        'p',
+        { class: 'card-bound' },
+        `value ${one.value ?? '–'} ${one.unit}`,
+        one.bound === null ? '' : `, bound ${one.bound}`,
+      ),
     ),
   )
 }
 
-export type CardState = { state: 'waiting' } | { state: 'working' } | { state: 'failed'; message: string } | { state: 'there'; card: Card }
+export type CardState =
+  | { state: 'waiting' }
+  | { state: 'working' }
+  | { state: 'failed'; message: string }
+  | { state: 'there'; card: Card }
 
 export interface CardPanel {
   element: HTMLElement
@@ -72,7 +90,10 @@ export function createCard(): CardPanel {
 
   function update(now: CardState): void {
     element.setAttribute('aria-busy', String(now.state === 'working' || now.state === 'waiting'))
-    if (now.state === 'there') return draw(now.card)
+    if (now.state === 'there') {
+      draw(now.card)
+      return
+    }
     badge = now.state === 'failed' ? { text: '!', kind: 'bad' } : { text: '…', kind: 'busy' }
     const words = {
       waiting: 'The card follows when the numbers rest.',
@@ -85,7 +106,10 @@ export function createCard(): CardPanel {
       element.querySelector('.card-summary')!.textContent = words
       return
     }
-    fill(element, now.state === 'failed' ? h('p', { class: 'alert' }, words) : h('p', { class: 'empty working' }, words))
+    fill(
+      element,
+      now.state === 'failed' ? h('p', { class: 'alert' }, words) : h('p', { class: 'empty working' }, words),
+    )
   }
 
   function draw(card: Card): void {
@@ -98,7 +122,7 @@ export function createCard(): CardPanel {
     fill(
       element,
       h('p', { class: `card-summary ${failed ? 'is-bad' : 'is-good'}` }, summary),
-      h('p', { class: 'card-method' }, String(card['method'] ?? '')),
+      h('p', { class: 'card-method' }, String(card.method ?? '')),
       h('div', { class: 'card-lines' }, all.map(line)),
     )
   }

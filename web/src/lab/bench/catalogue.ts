@@ -21,7 +21,13 @@ const rate = (label: string): Entry => ({ label, kind: 'angular velocity', min: 
 const BODY: Record<string, Entry> = {
   radius: { label: 'Radius', kind: 'length', min: 0.002, max: 0.2, decades: true },
   mass: { label: 'Mass', kind: 'mass', min: 0.001, max: 10, decades: true },
-  inertia_ratio: { label: 'Inertia ratio k', kind: 'number', min: 0.01, max: 2 / 3, hint: 'k = I / (m a²): 2/5 solid, 2/3 a thin shell' },
+  inertia_ratio: {
+    label: 'Inertia ratio k',
+    kind: 'number',
+    min: 0.01,
+    max: 2 / 3,
+    hint: 'k = I / (m a²): 2/5 solid, 2/3 a thin shell',
+  },
   rim_radius: size('Radius of the rim', 0.05),
   density: { label: 'Density', kind: 'number', min: 100, max: 20000, decades: true },
   thickness: size('Thickness', 0.05),
@@ -39,7 +45,14 @@ const SUPPORT: Record<string, Entry> = {
   depth: size('Depth', 1),
   ring_radius: { label: 'Radius of the ring', kind: 'length', min: 0.05, max: 2, decades: true },
   tube_radius: { label: 'Radius of the tube', kind: 'length', min: 0.01, max: 1, decades: true },
-  rim: { label: 'Rim', kind: 'length', min: 0.05, max: 5, decades: true, hint: 'the run ends where the contact reaches it' },
+  rim: {
+    label: 'Rim',
+    kind: 'length',
+    min: 0.05,
+    max: 5,
+    decades: true,
+    hint: 'the run ends where the contact reaches it',
+  },
   friction: { label: 'Friction coefficient', kind: 'number', min: 0, max: 1 },
   kinetic_friction: { label: 'While it slips', kind: 'number', min: 0, max: 1 },
   restitution: { label: 'Restitution', kind: 'number', min: 0, max: 1 },
@@ -71,7 +84,12 @@ const LOADS: Record<string, Entry> = {
   'rolling-resistance.offset': { label: 'Rolling resistance', kind: 'length', min: 0, max: 0.002 },
   'pivot-friction.offset': { label: 'Pivot friction', kind: 'length', min: 0, max: 0.005 },
   'rolling-couple.coefficient': { label: 'Rolling couple', kind: 'rotational damping', min: 0, max: 1e-3 },
-  'rolling-couple.pivot_coefficient': { label: 'Its part about the normal', kind: 'rotational damping', min: 0, max: 1e-3 },
+  'rolling-couple.pivot_coefficient': {
+    label: 'Its part about the normal',
+    kind: 'rotational damping',
+    min: 0,
+    max: 1e-3,
+  },
   'magnus.coefficient': { label: 'Magnus force', kind: 'mass', min: -0.01, max: 0.01 },
 }
 
@@ -98,7 +116,13 @@ const VECTORS: Record<string, { label: string; kind: Kind; reach: number; names:
   'motor.value': { label: 'Motor torque', kind: 'torque', reach: 0.05, names: ['x', 'y', 'z'] },
 }
 
-const TABLES: Record<string, Record<string, Entry>> = { body: BODY, support: SUPPORT, 'support.motion': MOTION, start: START, run: RUN }
+const TABLES: Record<string, Record<string, Entry>> = {
+  body: BODY,
+  support: SUPPORT,
+  'support.motion': MOTION,
+  start: START,
+  run: RUN,
+}
 
 /** The entry of a key of a table ("support.motion", "rate"), or undefined where it is no number. */
 export function entry(table: string, key: string): Entry | undefined {

@@ -130,7 +130,12 @@ export function createControls(app: App): Controls {
     const open = !(folded.get(section.id) ?? section.folded ?? false)
     const details = h(
       'details',
-      { class: 'section', open, 'data-section': section.id, ontoggle: () => void folded.set(section.id, !details.open) },
+      {
+        class: 'section',
+        open,
+        'data-section': section.id,
+        ontoggle: () => void folded.set(section.id, !details.open),
+      },
       h('summary', {}, h('h2', {}, section.title)),
       h('div', { class: 'section-body' }, section.items.map(make)),
     )
@@ -141,7 +146,7 @@ export function createControls(app: App): Controls {
   function focusedPath(): string | undefined {
     const at = document.activeElement
     if (!at || !body.contains(at)) return undefined
-    return at.closest<HTMLElement>('[data-path]')?.dataset['path']
+    return at.closest<HTMLElement>('[data-path]')?.dataset.path
   }
 
   function build(sections: Section[]): void {
@@ -160,7 +165,9 @@ export function createControls(app: App): Controls {
     }
     for (const field of fields) {
       const found = valueAt(scenario, field.path)
-      const item = sections.flatMap((section) => section.items).find((one) => one.type === 'field' && one.path === field.path)
+      const item = sections
+        .flatMap((section) => section.items)
+        .find((one) => one.type === 'field' && one.path === field.path)
       field.update(found ?? (item?.type === 'field' ? (item.fallback as Json | undefined) : undefined))
     }
     place()

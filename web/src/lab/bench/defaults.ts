@@ -9,7 +9,12 @@ export const BODIES: Kinds = {
   sphere: { label: 'Ball with any k', keys: { radius: '25 mm', mass: '500 g', inertia_ratio: 0.5 } },
   'eccentric-sphere': {
     label: 'Ball, its centre of mass off',
-    keys: { radius: '25 mm', mass: '100 g', moments: ['2.5e-5 kg*m^2', '2.5e-5 kg*m^2', '2.5e-5 kg*m^2'], centre: [0, 0, '3 mm'] },
+    keys: {
+      radius: '25 mm',
+      mass: '100 g',
+      moments: ['2.5e-5 kg*m^2', '2.5e-5 kg*m^2', '2.5e-5 kg*m^2'],
+      centre: [0, 0, '3 mm'],
+    },
   },
   hemisphere: { label: 'Hemisphere', keys: { radius: '5 cm', mass: '200 g' } },
   disc: { label: 'Coin', keys: { radius: '12 mm', mass: '8 g' } },
@@ -103,6 +108,6 @@ export function withMotion(scenario: Scenario, kind: string): Scenario {
   if (kind === 'fixed') return { ...scenario, support: support as Scenario['support'] }
   const keys = { ...MOTIONS[kind]?.keys }
   const turns = (one: string | undefined) => ['spin', 'uneven-spin', 'wobble', 'free-axle'].includes(one ?? '')
-  if (turns(before?.kind) && turns(kind) && before?.['rate'] !== undefined) keys['rate'] = before['rate']
+  if (turns(before?.kind) && turns(kind) && before?.rate !== undefined) keys.rate = before.rate
   return { ...scenario, support: { ...support, motion: { kind, ...keys } } as Scenario['support'] }
 }

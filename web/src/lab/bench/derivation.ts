@@ -11,7 +11,13 @@ function step(one: Derivation['steps'][number], place: number): HTMLElement {
   return h(
     'li',
     { class: 'step' },
-    h('h3', {}, h('span', { class: 'step-number' }, place + 1), one.title, one.source ? h('span', { class: 'source' }, one.source) : null),
+    h(
+      'h3',
+      {},
+      h('span', { class: 'step-number' }, place + 1),
+      one.title,
+      one.source ? h('span', { class: 'source' }, one.source) : null,
+    ),
     one.text && h('p', {}, one.text),
     one.latex.map((latex) => formula(latex, true)),
   )
@@ -32,7 +38,12 @@ function content(derivation: Derivation): (HTMLElement | null)[] {
             'tbody',
             {},
             numbers.map((one) =>
-              h('tr', {}, h('th', { scope: 'row' }, one.name, ' ', one.symbol ? formula(one.symbol) : null), h('td', {}, `${show(one.value, 5)} ${one.unit}`)),
+              h(
+                'tr',
+                {},
+                h('th', { scope: 'row' }, one.name, ' ', one.symbol ? formula(one.symbol) : null),
+                h('td', {}, `${show(one.value, 5)} ${one.unit}`),
+              ),
             ),
           ),
         ),
@@ -45,7 +56,12 @@ export async function openDerivation(api: Api, scenario: Scenario): Promise<void
   const title = h('h2', { id: 'derivation-title' }, 'Derivation')
   const body = h('div', { class: 'dialog-body', tabindex: '0', role: 'region', 'aria-labelledby': 'derivation-title' })
   fill(body, h('p', { class: 'empty working' }, 'Deriving, and proving each line …'))
-  const dialog = h('dialog', { class: 'dialog drawer', 'aria-labelledby': 'derivation-title' }, h('header', { class: 'dialog-head' }, title, close), body)
+  const dialog = h(
+    'dialog',
+    { class: 'dialog drawer', 'aria-labelledby': 'derivation-title' },
+    h('header', { class: 'dialog-head' }, title, close),
+    body,
+  )
   const gone = new AbortController()
   close.addEventListener('click', () => dialog.close())
   dialog.addEventListener('close', () => {
@@ -62,6 +78,7 @@ export async function openDerivation(api: Api, scenario: Scenario): Promise<void
     title.textContent = derivation.title
     fill(body, content(derivation))
   } catch (error) {
-    if (!isAbort(error)) fill(body, h('p', { class: 'alert', role: 'alert' }, error instanceof Error ? error.message : String(error)))
+    if (!isAbort(error))
+      fill(body, h('p', { class: 'alert', role: 'alert' }, error instanceof Error ? error.message : String(error)))
   }
 }

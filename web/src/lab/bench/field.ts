@@ -76,7 +76,9 @@ export function createField(options: FieldOptions): Field {
     const now = shownUnit()
     const all = units.includes(now) ? units : [...units, now]
     if (unit.options.length !== all.length || [...unit.options].some((o, i) => o.value !== all[i]))
-      unit.replaceChildren(...all.map((name) => h('option', { value: name }, name.replaceAll('*', '·').replace('^2', '²'))))
+      unit.replaceChildren(
+        ...all.map((name) => h('option', { value: name }, name.replaceAll('*', '·').replace('^2', '²'))),
+      )
     unit.value = now
   }
 
@@ -99,7 +101,7 @@ export function createField(options: FieldOptions): Field {
     return (si - min) / (max - min)
   }
 
-  function valueOf(place: number): number {
+  function amountAt(place: number): number {
     const { min, max } = range
     return entry.decades ? min * (max / min) ** place : min + (max - min) * place
   }
@@ -192,7 +194,7 @@ export function createField(options: FieldOptions): Field {
   slider.addEventListener('input', () => {
     const shown = hasUnits ? shownUnit() : ''
     const factor = UNITS[entry.kind][shown] ?? 1
-    const raw = valueOf(Number(slider.value) / NOTCHES) / factor
+    const raw = amountAt(Number(slider.value) / NOTCHES) / factor
     const next = entry.decades ? rounded(raw, 3) : rounded(Math.round(raw / grid(factor)) * grid(factor), 9)
     commit(write(next * factor, entry.kind, shown, 9), `slide${gesture}`)
   })
@@ -217,7 +219,6 @@ export function createField(options: FieldOptions): Field {
     path,
     update(next) {
       const said = next ?? options.fallback
-      if (said === value && !typing) return draw()
       if (said !== value) typing = false
       value = said
       draw()

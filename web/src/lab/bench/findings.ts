@@ -46,10 +46,22 @@ export function createFindings(derive: () => void): Findings {
             'table',
             { class: 'numbers' },
             h('caption', { class: 'sr-only' }, 'What theory predicts, and what the run shows'),
-            h('thead', {}, h('tr', {}, heads.map((head) => h('th', { scope: 'col' }, head || h('span', { class: 'sr-only' }, 'quantity'))))),
+            h(
+              'thead',
+              {},
+              h(
+                'tr',
+                {},
+                heads.map((head) => h('th', { scope: 'col' }, head || h('span', { class: 'sr-only' }, 'quantity'))),
+              ),
+            ),
             h('tbody', {}, findings.map(row)),
           )
-        : h('p', { class: 'empty' }, 'Nothing is predicted for this motion: it is computed, and the card says how well.'),
+        : h(
+            'p',
+            { class: 'empty' },
+            'Nothing is predicted for this motion: it is computed, and the card says how well.',
+          ),
     )
     law.hidden = told === null
     if (!told) return
@@ -57,7 +69,12 @@ export function createFindings(derive: () => void): Findings {
     fill(
       law,
       h('h3', {}, told.name, told.source ? h('span', { class: 'source' }, told.source) : null),
-      h('div', { class: 'formula-lines' }, formula(told.latex, true), told.numbers_latex ? formula(told.numbers_latex, true) : null),
+      h(
+        'div',
+        { class: 'formula-lines' },
+        formula(told.latex, true),
+        told.numbers_latex ? formula(told.numbers_latex, true) : null,
+      ),
       button,
     )
   }
@@ -65,7 +82,9 @@ export function createFindings(derive: () => void): Findings {
 }
 
 /** One sentence for a screen reader, and for the projector: the first finding that says something. */
-export function headline(scene: Scene): { name: string; symbol: string; unit: string; measured: number; predicted: number | null } | null {
+export function headline(
+  scene: Scene,
+): { name: string; symbol: string; unit: string; measured: number; predicted: number | null } | null {
   const found = scene.header.findings?.find((one) => one.measured !== null)
   if (!found || found.measured === null) return null
   const { name, symbol, unit, measured, predicted } = found

@@ -1,5 +1,5 @@
 /** The state at an instant, between two samples, as the samples say it. */
-import type { Scene, Turn, Triple } from '../../viewer/scene'
+import type { Scene, Triple, Turn } from '../../viewer/scene'
 
 export interface Instant {
   time: number

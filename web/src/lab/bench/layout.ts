@@ -16,9 +16,22 @@ export type Item =
       options: [string, string][]
       set: (scenario: Scenario, value: string) => Scenario
     }
-  | { type: 'switch'; path: Path; label: string; on: boolean; hint?: string; set: (scenario: Scenario, on: boolean) => Scenario }
+  | {
+      type: 'switch'
+      path: Path
+      label: string
+      on: boolean
+      hint?: string
+      set: (scenario: Scenario, on: boolean) => Scenario
+    }
   | { type: 'remove'; path: Path; label: string; set: (scenario: Scenario) => Scenario }
-  | { type: 'add'; path: Path; label: string; options: [string, string][]; set: (scenario: Scenario, kind: string) => Scenario }
+  | {
+      type: 'add'
+      path: Path
+      label: string
+      options: [string, string][]
+      set: (scenario: Scenario, kind: string) => Scenario
+    }
 
 export interface Section {
   id: string
@@ -56,7 +69,7 @@ function vector(path: Path, values: Json[], known = path): Item[] {
 }
 
 function formula(table: string, values: Table, label: string): Item[] {
-  return typeof values['formula'] === 'string' ? [{ type: 'text', path: `${table}.formula`, label }] : []
+  return typeof values.formula === 'string' ? [{ type: 'text', path: `${table}.formula`, label }] : []
 }
 
 function bodySection(scenario: Scenario): Section {
@@ -80,11 +93,17 @@ function bodySection(scenario: Scenario): Section {
         ['body.kind', 'sphere'],
         ['body.inertia_ratio', value],
       ])
-    items.push({ type: 'field', path: 'body.inertia_ratio', entry: of, set, ...(fallback !== undefined && { fallback }) })
+    items.push({
+      type: 'field',
+      path: 'body.inertia_ratio',
+      entry: of,
+      set,
+      ...(fallback !== undefined && { fallback }),
+    })
   }
   const kind = body.kind
   items.push(...present('body', body, ROUND.has(kind) ? ['inertia_ratio'] : []))
-  if (typeof body['support_function'] === 'string')
+  if (typeof body.support_function === 'string')
     items.push({ type: 'text', path: 'body.support_function', label: 'Support function' })
   return { id: 'body', title: 'Body', items }
 }
@@ -99,7 +118,7 @@ function supportSection(scenario: Scenario): Section {
     hint,
     set: (now, on) => withValue(now, `support.${key}`, on ? value : undefined),
   })
-  const slips = support['friction'] !== undefined
+  const slips = support.friction !== undefined
   const items: Item[] = [
     {
       type: 'choice',
@@ -113,10 +132,10 @@ function supportSection(scenario: Scenario): Section {
     ...present('support', support, ['tilt', 'rim', 'friction', 'kinetic_friction', 'restitution', 'r', 'x', 'y', 'z']),
     ...formula('support', support, 'Height, in m'),
     optional('rim', 'Has a rim', '50 cm', 'without one it has no end'),
-    ...(support['rim'] !== undefined ? field('support.rim', entry('support', 'rim')) : []),
+    ...(support.rim !== undefined ? field('support.rim', entry('support', 'rim')) : []),
     optional('friction', 'Friction is limited', 0.3, 'otherwise it grips as much as it takes'),
     ...(slips ? field('support.friction', entry('support', 'friction')) : []),
-    ...(slips ? field('support.kinetic_friction', entry('support', 'kinetic_friction'), support['friction'] as Json) : []),
+    ...(slips ? field('support.kinetic_friction', entry('support', 'kinetic_friction'), support.friction as Json) : []),
     ...(slips ? field('support.restitution', entry('support', 'restitution'), 0) : []),
   ]
   return { id: 'support', title: 'Support', items }
@@ -150,7 +169,7 @@ function positionEntries(kind: string, reach: number): [Entry, Entry] {
 function startSection(scenario: Scenario, reach: number): Section {
   const { start, support } = scenario
   const [first, second] = positionEntries(support.kind, reach)
-  const rides = start['velocity'] === 'co-rotating'
+  const rides = start.velocity === 'co-rotating'
   const moves = support.motion !== undefined && support.motion.kind !== 'fixed'
   const items: Item[] = [...field('start.position.0', first, 0), ...field('start.position.1', second, 0)]
   if (moves || rides)
@@ -163,13 +182,13 @@ function startSection(scenario: Scenario, reach: number): Section {
       set: (now, on) => withValue(now, 'start.velocity', on ? 'co-rotating' : ['0 m/s', '0 m/s']),
     })
   if (!rides) {
-    const length = Array.isArray(start['velocity']) ? start['velocity'].length : 2
+    const length = Array.isArray(start.velocity) ? start.velocity.length : 2
     for (let index = 0; index < length; index += 1) items.push(...velocity(index))
   }
-  const turning = Array.isArray(start['angular_velocity'])
-  if (turning) items.push(...vector('start.angular_velocity', start['angular_velocity'] as Json[]))
+  const turning = Array.isArray(start.angular_velocity)
+  if (turning) items.push(...vector('start.angular_velocity', start.angular_velocity as Json[]))
   else items.push(...field('start.spin', entry('start', 'spin'), rides ? undefined : 0))
-  if (support['friction'] !== undefined || start['height'] !== undefined)
+  if (support.friction !== undefined || start.height !== undefined)
     items.push(...field('start.height', entry('start', 'height'), 0))
   items.push(...present('start', start, ['position', 'velocity', 'angular_velocity', 'spin', 'height']))
   return { id: 'start', title: 'Start', items }
@@ -180,8 +199,12 @@ function velocity(index: number): Item[] {
   const of = component('start.velocity', index)
   if (!of) return []
   const set = (now: Scenario, value: Json) => {
-    const known = Array.isArray(now.start['velocity']) ? now.start['velocity'] : ['0 m/s', '0 m/s']
-    return withValue(now, 'start.velocity', known.map((was, place) => (place === index ? value : was)))
+    const known = Array.isArray(now.start.velocity) ? now.start.velocity : ['0 m/s', '0 m/s']
+    return withValue(
+      now,
+      'start.velocity',
+      known.map((was, place) => (place === index ? value : was)),
+    )
   }
   return [{ type: 'field', path: `start.velocity.${index}`, entry: of, fallback: '0 m/s', set }]
 }

@@ -24,7 +24,8 @@ export function groupOf(entry: ScenarioEntry): string {
 
 /** Do all words of the query stand somewhere in what is said of the scenario? */
 export function matches(entry: ScenarioEntry, query: string): boolean {
-  const said = `${entry.name} ${entry.title} ${entry.summary} ${entry.support} ${entry.body} ${entry.motion}`.toLowerCase()
+  const said =
+    `${entry.name} ${entry.title} ${entry.summary} ${entry.support} ${entry.body} ${entry.motion}`.toLowerCase()
   return query
     .toLowerCase()
     .split(/\s+/)
@@ -90,11 +91,16 @@ export async function pickScenario(api: Api, choose: (name: string) => void): Pr
     const found = entries.filter((entry) => matches(entry, search.value.trim()))
     count.textContent = `${found.length} of ${entries.length}`
     const names = [...new Set(['Turntables', ...GROUPS.map(([name]) => name), 'Others'])]
-    const groups = names.map((name): [string, ScenarioEntry[]] => [name, found.filter((entry) => groupOf(entry) === name)])
+    const groups = names.map((name): [string, ScenarioEntry[]] => [
+      name,
+      found.filter((entry) => groupOf(entry) === name),
+    ])
     const shown = groups.filter(([, members]) => members.length > 0)
     fill(
       list,
-      shown.map(([name, members]) => h('section', { class: 'picker-group' }, h('h3', {}, name), h('ul', {}, members.map(card)))),
+      shown.map(([name, members]) =>
+        h('section', { class: 'picker-group' }, h('h3', {}, name), h('ul', {}, members.map(card))),
+      ),
       shown.length === 0 && h('p', { class: 'empty' }, 'No scenario has all these words. Try fewer.'),
     )
   }

@@ -1,0 +1,83 @@
+/** Every change is computed anew: quickly while a hand moves, in full and with the card when it rests. */
+import type { Scene } from '../../viewer/scene'
+import { isAbort } from '../api'
+import type { App } from '../app'
+import { createRunner } from '../runner'
+import type { Scenario } from '../scenario'
+import type { Change } from '../store'
+import type { CardState } from './card'
+
+export interface Listener {
+  scene(scene: Scene, milliseconds: number): void
+  /** The numbers rest. */
+  settled(scene: Scene): void
+  failed(error: unknown): void
+  busy(is: boolean): void
+  card(state: CardState): void
+}
+
+export interface Computing {
+  ask(scenario: Scenario, change: Change): void
+  stop(): void
+}
+
+/** While a hand moves fewer samples do: the eye follows the path, not its points. */
+const QUICK = 1500
+const REST = 600
+
+export function createComputing(app: App, listener: Listener): Computing {
+  let rest: ReturnType<typeof setTimeout> | undefined
+  let shown: { scene: Scene; scenario: Scenario; quick: boolean } | undefined
+
+  const runner = createRunner<{ scenario: Scenario; quick: boolean }, { scene: Scene; milliseconds: number }>({
+    run: ({ scenario, quick }, signal) =>
+      app.api.simulate(scenario, { signal, lane: null, ...(quick && { samples: QUICK }) }),
+    done({ scene, milliseconds }, { scenario, quick }) {
+      shown = { scene, scenario, quick }
+      listener.scene(scene, milliseconds)
+    },
+    failed: (error) => {
+      shown = undefined
+      listener.failed(error)
+    },
+    state: (busy) => listener.busy(busy),
+  })
+
+  async function whenAtRest(scenario: Scenario): Promise<void> {
+    if (!shown || shown.scenario !== scenario) return
+    listener.settled(shown.scene)
+    if (shown.quick && shown.scene.columns.time.length >= QUICK) runner.ask({ scenario, quick: false })
+    if (!scenario.support)
+      return listener.card({ state: 'failed', message: 'A path that is rolled without forces has no card.' })
+    listener.card({ state: 'working' })
+    try {
+      listener.card({ state: 'there', card: await app.api.card(scenario) })
+    } catch (error) {
+      if (!isAbort(error))
+        listener.card({ state: 'failed', message: error instanceof Error ? error.message : String(error) })
+    }
+  }
+
+  function later(scenario: Scenario): void {
+    clearTimeout(rest)
+    rest = setTimeout(() => {
+      // A slow run may still be on its way: its card waits for it.
+      if (shown?.scenario === scenario) void whenAtRest(scenario)
+      else later(scenario)
+    }, REST)
+  }
+
+  return {
+    ask(scenario, change) {
+      app.api.cancel('card')
+      listener.card({ state: 'waiting' })
+      runner.ask({ scenario, quick: change.gesture !== undefined })
+      later(scenario)
+    },
+    stop() {
+      clearTimeout(rest)
+      runner.stop()
+      app.api.cancel('card')
+    },
+  }
+}

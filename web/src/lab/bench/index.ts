@@ -1,0 +1,235 @@
+/** The bench: a scenario, its controls, its motion, and theory beside measurement. */
+import './bench.css'
+import './controls.css'
+import './results.css'
+import './dialogs.css'
+import { ApiError, isAbort } from '../api'
+import type { App, Page } from '../app'
+import { cleanup, fill, h, listen } from '../dom'
+import { icon } from '../icons'
+import type { Scenario } from '../scenario'
+import { createTabs } from '../tabs'
+import { createCard } from './card'
+import { createComputing } from './computing'
+import { createControls } from './controls'
+import { createCurves } from './curves'
+import { openDerivation } from './derivation'
+import { createEvents } from './events'
+import { copyLink, createDownloads, createOpener } from './files'
+import { createFindings, sentence } from './findings'
+import { benchKeys } from './keys'
+import { createLinking } from './linking'
+import { pickScenario } from './picker'
+import { createSheet } from './sheet'
+import { createStage } from './stage'
+
+function mount(host: HTMLElement, app: App): () => void {
+  const undo = cleanup()
+  const { store, api } = app
+  const stage = createStage(app)
+  const controls = createControls(app)
+  const findings = createFindings(() => void openDerivation(api, store.scenario))
+  const curves = createCurves((time) => stage.viewer.seek(time))
+  const card = createCard()
+  const events = createEvents((time) => stage.viewer.seek(time))
+  const linking = createLinking(app)
+  const tabs = createTabs(
+    [
+      { id: 'controls', label: 'Controls', panel: h('div', { class: 'controls-slot' }) },
+      { id: 'numbers', label: 'Numbers', panel: findings.element },
+      { id: 'curves', label: 'Curves', panel: curves.element },
+      { id: 'card', label: 'Card', panel: card.element },
+      { id: 'events', label: 'Events', panel: events.element },
+    ],
+    'Results',
+  )
+  let fresh = true
+
+  const computing = createComputing(app, {
+    scene(scene, milliseconds) {
+      stage.setScene(scene, !fresh)
+      fresh = false
+      stage.took(milliseconds, scene)
+      stage.stale(false)
+      controls.complain(null)
+      controls.setReach(scene.header.support.rim ?? scene.header.support.size)
+      findings.update(scene)
+      curves.update(scene)
+      events.update(scene)
+      tabs.badge('events', scene.header.events.length ? String(scene.header.events.length) : '', 'count')
+    },
+    settled: (scene) => app.announce(sentence(scene)),
+    failed(error) {
+      if (isAbort(error)) return
+      const told = error instanceof ApiError ? error : new ApiError(String(error), null, 'Error', 0)
+      controls.complain(told)
+      stage.stale(true)
+      app.announce(told.message)
+    },
+    busy: (is) => stage.working(is),
+    card(state) {
+      card.update(state)
+      const { text, kind } = card.badge()
+      tabs.badge('card', text, kind)
+    },
+  })
+
+  function opened(scenario: Scenario, source: string): void {
+    fresh = true
+    store.set(scenario, { source })
+  }
+
+  async function take(name: string): Promise<void> {
+    try {
+      const { scenario } = await api.scenario(name)
+      linking.shipped(name, scenario)
+      opened(scenario, 'open')
+    } catch (error) {
+      if (!isAbort(error)) app.toast(error instanceof Error ? error.message : String(error), 'error')
+    }
+  }
+
+  const pick = () => void pickScenario(api, (name) => void take(name))
+  const downloads = createDownloads(app, () => stage.viewer.snapshot())
+  const opener = createOpener(app, (scenario) => opened(scenario, 'open'))
+  const title = h('span', { class: 'bar-title' })
+  const chooser = h('button', {
+    class: 'bar-scenario',
+    type: 'button',
+    'aria-haspopup': 'dialog',
+    title: 'Choose a scenario (/)',
+    onclick: pick,
+  })
+  chooser.append(icon('search'), title)
+  const back = h('button', {
+    class: 'icon-button',
+    type: 'button',
+    'aria-label': 'Undo',
+    title: 'Undo (Ctrl Z)',
+    onclick: () => store.undo(),
+  })
+  back.append(icon('undo'))
+  const again = h('button', {
+    class: 'icon-button',
+    type: 'button',
+    'aria-label': 'Redo',
+    title: 'Redo (Ctrl Shift Z)',
+    onclick: () => store.redo(),
+  })
+  again.append(icon('redo'))
+  const link = h('button', {
+    class: 'button',
+    type: 'button',
+    'aria-label': 'Copy link',
+    title: 'Copy a link (L)',
+    onclick: () => void copyLink(app),
+  })
+  link.append(icon('link'), h('span', { class: 'button-word' }, 'Link'))
+  const bar = h(
+    'div',
+    { class: 'bar' },
+    chooser,
+    h('div', { class: 'bar-tools' }, back, again, opener.element, link, downloads.element),
+  )
+  const notes = h('details', { class: 'notes' })
+
+  const left = h('aside', { class: 'panel panel-left', 'aria-label': 'Controls' }, controls.element)
+  const right = h('aside', { class: 'panel panel-right', 'aria-label': 'Results' }, tabs.list, tabs.panels)
+  const grid = h('div', { class: 'bench' })
+  const folds = [fold(grid, 'left', 'controls', '['), fold(grid, 'right', 'results', ']')] as const
+  const sheet = createSheet(grid)
+  right.prepend(sheet.handle)
+  fill(grid, bar, left, h('div', { class: 'middle' }, notes, stage.element, folds[0], folds[1]), right)
+  fill(host, h('h1', { class: 'sr-only' }, 'Bench'), grid)
+
+  function showScenario(scenario: Scenario): void {
+    title.textContent = scenario.title ?? 'A scenario without a title'
+    const text = scenario.notes?.trim() ?? ''
+    notes.hidden = text === ''
+    const open = notes.open
+    fill(
+      notes,
+      h('summary', {}, 'What to look for'),
+      h(
+        'div',
+        {},
+        text.split(/\n\s*\n/).map((part) => h('p', {}, part.replace(/`/g, ''))),
+      ),
+    )
+    notes.open = open
+    back.disabled = !store.canUndo
+    again.disabled = !store.canRedo
+  }
+
+  /** On a phone the controls are one of the sheet's tabs. */
+  const narrow = matchMedia('(max-width: 56rem)')
+  function arrange(): void {
+    const slot = tabs.panels.querySelector('.controls-slot')!
+    if (narrow.matches) slot.append(controls.element)
+    else left.append(controls.element)
+    tabs.hide('controls', !narrow.matches)
+    if (narrow.matches) tabs.show('controls')
+  }
+  arrange()
+
+  undo.add(
+    listen(narrow, 'change', arrange),
+    store.subscribe((scenario, change) => {
+      if (['undo', 'redo', 'open', 'url'].includes(change.source))
+        fresh ||= change.source !== 'undo' && change.source !== 'redo'
+      showScenario(scenario)
+      computing.ask(scenario, change)
+      linking.changed(scenario)
+    }),
+    stage.viewer.on('time', ({ time }) => curves.at(time)),
+    app.watchSettings((settings) => {
+      curves.restyle()
+      grid.toggleAttribute('data-left-folded', settings.projector)
+      grid.toggleAttribute('data-right-folded', settings.projector)
+    }),
+    app.router.subscribe(() => {
+      if (app.route.page === 'bench' || app.route.page === '')
+        void linking.read(take, (scenario) => opened(scenario, 'url'))
+    }),
+    benchKeys(app, { stage, pick, fold: (side) => folds[side === 'left' ? 0 : 1].click() }),
+    () => controls.dispose(),
+    () => curves.dispose(),
+    () => stage.dispose(),
+    () => downloads.dispose(),
+    () => opener.dispose(),
+    () => computing.stop(),
+    () => linking.stop(),
+  )
+  grid.toggleAttribute('data-left-folded', app.settings.projector)
+  grid.toggleAttribute('data-right-folded', app.settings.projector)
+  showScenario(store.scenario)
+  void linking
+    .read(take, (scenario) => opened(scenario, 'url'))
+    .then((found) => {
+      if (!found) computing.ask(store.scenario, { source: 'first' })
+    })
+  return () => undo.run()
+}
+
+/** The tongue at the edge of the stage that folds a panel away. */
+function fold(grid: HTMLElement, side: 'left' | 'right', what: string, key: string): HTMLButtonElement {
+  const attribute = `data-${side}-folded`
+  const button = h('button', {
+    class: `fold fold-${side}`,
+    type: 'button',
+    title: `Fold the ${what} (${key})`,
+    'aria-label': `Fold the ${what}`,
+    'aria-expanded': 'true',
+  })
+  button.append(icon(side))
+  button.addEventListener('click', () => grid.toggleAttribute(attribute))
+  new MutationObserver(() => button.setAttribute('aria-expanded', String(!grid.hasAttribute(attribute)))).observe(
+    grid,
+    {
+      attributeFilter: [attribute],
+    },
+  )
+  return button
+}
+
+export const bench: Page = { id: 'bench', title: 'Bench', mount }

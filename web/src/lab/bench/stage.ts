@@ -1,0 +1,188 @@
+/** The stage: the viewer, its tools, what is written over it, and what is done on it by hand. */
+import type { Scene } from '../../viewer/scene'
+import type { Tool, Viewer } from '../../viewer/viewer'
+import { createViewer } from '../../viewer/viewer'
+import type { App } from '../app'
+import { cleanup, fill, h } from '../dom'
+import { type IconName, icon } from '../icons'
+import { formula } from '../math'
+import { show } from '../quantity'
+import type { Scenario } from '../scenario'
+import { headline } from './findings'
+import { instantAt } from './instant'
+import { clockMatters, nudged, placed, thrown, whyNotDragged, whyNotNudged } from './placing'
+
+type BenchTool = Exclude<Tool, 'draw'>
+
+const TOOLS: { tool: BenchTool; icon: IconName; label: string; key: string; hint: string }[] = [
+  { tool: 'orbit', icon: 'orbit', label: 'Turn the view', key: 'O', hint: '' },
+  { tool: 'drag', icon: 'hand', label: 'Move the ball', key: 'D', hint: 'Drag the ball to where it should start.' },
+  {
+    tool: 'velocity',
+    icon: 'arrow',
+    label: 'Draw its velocity',
+    key: 'V',
+    hint: 'Drag from the ball: the arrow is its first velocity.',
+  },
+  {
+    tool: 'nudge',
+    icon: 'nudge',
+    label: 'Nudge it',
+    key: 'N',
+    hint: 'Drag from the ball while it runs: it goes on from there.',
+  },
+]
+
+export interface Stage {
+  element: HTMLElement
+  viewer: Viewer
+  setScene(scene: Scene, keepCamera: boolean): void
+  working(busy: boolean): void
+  took(milliseconds: number, scene: Scene): void
+  stale(is: boolean): void
+  useTool(tool: BenchTool): void
+  dispose(): void
+}
+
+export function createStage(app: App): Stage {
+  const undo = cleanup()
+  const { store } = app
+  const host = h('div', { class: 'stage-canvas' })
+  const hint = h('p', { class: 'stage-hint', role: 'status', hidden: true })
+  const time = h('p', { class: 'stage-took' })
+  const big = h('div', { class: 'stage-headline' })
+  const old = h('p', { class: 'stage-stale', hidden: true }, 'The last path that could be computed')
+  const tools = h('div', { class: 'stage-tools', role: 'radiogroup', 'aria-label': 'What the pointer does' })
+  const element = h('section', { class: 'stage', 'aria-label': 'Stage' }, host, tools, big, time, old, hint)
+  const viewer = createViewer(host, { theme: app.appearance, controls: true, projector: app.settings.projector })
+  let scene: Scene | undefined
+  let hasStarted = false
+
+  const buttons = TOOLS.map(({ tool, icon: name, label, key }) => {
+    const button = h('button', {
+      class: 'tool',
+      type: 'button',
+      role: 'radio',
+      title: `${label} (${key})`,
+      'aria-label': label,
+      'data-tool': tool,
+    })
+    button.append(icon(name))
+    button.addEventListener('click', () => useTool(tool))
+    return button
+  })
+  fill(tools, buttons)
+  tools.addEventListener('keydown', (event) => {
+    const way = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key]
+    if (way === undefined) return
+    event.preventDefault()
+    event.stopPropagation()
+    const at = TOOLS.findIndex((one) => one.tool === viewer.tool)
+    const next = (at + way + TOOLS.length) % TOOLS.length
+    useTool(TOOLS[next]!.tool)
+    buttons[next]?.focus()
+  })
+
+  function useTool(tool: BenchTool): void {
+    const why =
+      tool === 'nudge' ? whyNotNudged(store.scenario) : tool === 'orbit' ? null : whyNotDragged(store.scenario)
+    if (why) {
+      app.toast(why)
+      return
+    }
+    viewer.tool = tool
+    const chosen = TOOLS.find((one) => one.tool === tool)
+    buttons.forEach((button, index) => {
+      const on = TOOLS[index]?.tool === tool
+      button.setAttribute('aria-checked', String(on))
+      button.tabIndex = on ? 0 : -1
+    })
+    hint.textContent = chosen?.hint ?? ''
+    hint.hidden = !chosen?.hint
+    if (tool === 'drag' || tool === 'velocity') {
+      viewer.pause()
+      viewer.seek(0)
+    }
+  }
+  useTool('orbit')
+
+  let gestures = 0
+  undo.add(
+    viewer.on('dragstart', () => {
+      gestures += 1
+    }),
+    viewer.on('drag', ({ x, y, z }) =>
+      store.set(placed(store.scenario, [x, y, z]), { source: 'drag', gesture: `drag${gestures}` }),
+    ),
+    viewer.on('dragend', ({ x, y, z }) =>
+      store.set(placed(store.scenario, [x, y, z]), { source: 'drag', gesture: `drag${gestures}` }),
+    ),
+    viewer.on('arrow', ({ vx, vy, done }) => {
+      store.set(thrown(store.scenario, vx, vy), { source: 'drag', gesture: `arrow${gestures}` })
+      if (done) gestures += 1
+    }),
+    viewer.on('nudge', ({ vx, vy, time: when, done }) => {
+      if (done) nudge(vx, vy, when)
+    }),
+  )
+
+  function nudge(vx: number, vy: number, when: number): void {
+    if (!scene) return
+    const before: Scenario = store.scenario
+    store.set(nudged(before, instantAt(scene, when), vx, vy), { source: 'nudge' })
+    const clock = clockMatters(before) ? ' The support begins its motion anew.' : ''
+    app.toast(`Nudged at ${show(when, 3)} s by ${show(Math.hypot(vx, vy), 2)} m/s: this is the new start.${clock}`)
+  }
+
+  function drawHeadline(of: Scene): void {
+    const found = headline(of)
+    const said = of.header.formula?.latex
+    fill(
+      big,
+      found && h('p', { class: 'headline-name' }, found.name),
+      found &&
+        h('p', { class: 'headline-number' }, show(found.measured), h('span', { class: 'unit' }, ` ${found.unit}`)),
+      found &&
+        found.predicted !== null &&
+        h('p', { class: 'headline-predicted' }, `predicted ${show(found.predicted)}`),
+      said ? formula(said) : null,
+    )
+    big.hidden = !found && !said
+  }
+
+  undo.add(
+    app.watchSettings((settings) => {
+      viewer.theme = app.appearance
+      viewer.projector = settings.projector
+    }),
+    () => viewer.dispose(),
+  )
+  return {
+    element,
+    viewer,
+    useTool,
+    setScene(next, keepCamera) {
+      const first = scene === undefined
+      scene = next
+      viewer.setScenes([next], { keepTime: !first && keepCamera, keepCamera: !first && keepCamera })
+      drawHeadline(next)
+      if (!hasStarted && !app.settings.reducedMotion) {
+        hasStarted = true
+        viewer.play()
+      }
+    },
+    working(busy) {
+      element.toggleAttribute('data-busy', busy)
+    },
+    took(milliseconds, { header }) {
+      const method =
+        { exact: 'closed form', taylor: 'Taylor series', 'runge-kutta': 'Runge–Kutta' }[header.method] ?? header.method
+      fill(time, h('span', { class: 'number' }, `${Math.round(milliseconds)} ms`), ` ${method}`)
+    },
+    stale(is) {
+      old.hidden = !is
+      element.toggleAttribute('data-stale', is)
+    },
+    dispose: () => undo.run(),
+  }
+}
