@@ -15,18 +15,10 @@ import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from . import serving
+from .launching import ARGUMENTS, LAPTOP, NAMES
 from .watching import Watch
 
 ROOT = Path(__file__).parents[2]
-NAMES = ("chromium", "chromium-browser", "google-chrome")
-PHONE = {"width": 390, "height": 844}
-LAPTOP = {"width": 1366, "height": 768}
-# WebGL drawn by the processor, and no name resolved: nothing but this machine can be reached.
-ARGUMENTS = (
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-    "--host-resolver-rules=MAP * ~NOTFOUND , EXCLUDE 127.0.0.1",
-)
 PATIENCE = 20_000  # ms, for anything on a busy machine
 
 OpenPage = Callable[..., Page]

@@ -25,7 +25,7 @@ def lab(folder: Path) -> Iterator[str]:
     """Serve the lab on a free port of this machine; yields its origin, without a slash at the end."""
     out, err = folder / "lab.out", folder / "lab.err"
     with out.open("w") as stdout, err.open("w") as stderr:
-        process = subprocess.Popen(  # noqa: S603
+        process = subprocess.Popen(
             [sys.executable, "-m", "trundle", "lab", "--no-open", "--port", "0"],
             env=os.environ | {"PYTHONUNBUFFERED": "1"},
             stdin=subprocess.DEVNULL,

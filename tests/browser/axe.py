@@ -1,0 +1,28 @@
+"""What axe-core finds in a page: what would shut somebody out of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from playwright.sync_api import Page
+
+AXE = Path(__file__).parents[2] / "web" / "node_modules" / "axe-core" / "axe.min.js"
+GRAVE = ("serious", "critical")
+
+
+def violations(page: Page) -> list[str]:
+    """Return what is of serious or critical level, each with the first places where it is."""
+    if not AXE.is_file():
+        raise FileNotFoundError("axe-core is not there: run `python web/build.py test`, as `make test` does first")
+    # By the debugger, which the page's policy against foreign scripts does not bind.
+    page.evaluate(AXE.read_text(encoding="utf-8"))
+    found = page.evaluate("axe.run(document, {resultTypes: ['violations']})")
+    return [
+        f"{one['impact']}: {one['help']} ({one['id']}): "
+        + "; ".join(
+            f"{' '.join(map(str, node['target']))} {node['any'][0]['message'] if node['any'] else ''}"
+            for node in one["nodes"][:4]
+        )
+        for one in found["violations"]
+        if one["impact"] in GRAVE
+    ]

@@ -1,0 +1,14 @@
+"""Which browser, and how it is started."""
+
+from __future__ import annotations
+
+NAMES = ("chromium", "chromium-browser", "google-chrome")
+# WebGL drawn by the processor, and no name resolved: nothing but this machine can be reached.
+ARGUMENTS = (
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--host-resolver-rules=MAP * ~NOTFOUND , EXCLUDE 127.0.0.1",
+)
+PHONE = {"width": 390, "height": 844}
+LAPTOP = {"width": 1366, "height": 768}
+SMALL = {"width": 960, "height": 640}  # the layout of a laptop, and few pixels to draw
