@@ -1,0 +1,67 @@
+/** A saved page: its scenes lie in it, compressed, and so does this script. */
+import type { Theme } from './contract'
+import { type Scene, unpack } from './scene'
+import { createViewer } from './viewer'
+
+/** Bring a saved page to life; in any other document there is nothing to do. */
+export function startSavedPage(root: Document = document): void {
+  const stage = root.querySelector<HTMLElement>('[data-trundle-stage]')
+  const packed = [...root.querySelectorAll<HTMLElement>('script[data-trundle-scene]')]
+  if (!stage || !packed.length) return
+  const note = root.querySelector<HTMLElement>('[data-trundle-note]')
+  Promise.all(packed.map(({ textContent }) => unzipped(textContent ?? '')))
+    .then((scenes) => {
+      note?.remove()
+      show(root, stage, scenes)
+    })
+    .catch((error: unknown) => {
+      if (note) note.textContent = `The motion cannot be shown: ${error instanceof Error ? error.message : error}`
+      throw error
+    })
+}
+
+function show(root: Document, stage: HTMLElement, scenes: Scene[]): void {
+  const host = root.createElement('div')
+  host.className = 'trundle-host'
+  stage.append(host)
+  const viewer = createViewer(host, { theme: themeNow(root), controls: true })
+  viewer.setScenes(scenes)
+  viewer.loop = true
+  offerThemes(root, (theme) => {
+    viewer.theme = theme
+  })
+  if (!matchMedia('(prefers-reduced-motion: reduce)').matches) viewer.play()
+}
+
+async function unzipped(base64: string): Promise<Scene> {
+  const bytes = Uint8Array.from(atob(base64.trim()), (letter) => letter.charCodeAt(0))
+  const whole = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'))
+  return unpack(await new Response(whole).arrayBuffer())
+}
+
+function themeNow(root: Document): 'light' | 'dark' {
+  const chosen = root.documentElement.dataset.theme
+  if (chosen === 'light' || chosen === 'dark') return chosen
+  return matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light'
+}
+
+/** A switch between light and dark; until it is used, the page goes with the system. */
+function offerThemes(root: Document, changed: (theme: Theme) => void): void {
+  const button = root.querySelector<HTMLButtonElement>('[data-trundle-theme]')
+  let chosen = false
+  const put = (theme: 'light' | 'dark') => {
+    root.documentElement.dataset.theme = theme
+    if (button) button.textContent = theme === 'dark' ? 'Light' : 'Dark'
+    changed(theme)
+  }
+  put(themeNow(root))
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', ({ matches }) => {
+    if (!chosen) put(matches ? 'dark' : 'light')
+  })
+  if (!button) return
+  button.hidden = false
+  button.addEventListener('click', () => {
+    chosen = true
+    put(themeNow(root) === 'dark' ? 'light' : 'dark')
+  })
+}
