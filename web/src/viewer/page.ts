@@ -22,7 +22,7 @@ export function startSavedPage(root: Document = document): void {
 
 function show(root: Document, stage: HTMLElement, scenes: Scene[]): void {
   const host = root.createElement('div')
-  host.className = 'trundle-host'
+  host.className = 'tr-host'
   stage.append(host)
   const viewer = createViewer(host, { theme: themeNow(root), controls: true })
   viewer.setScenes(scenes)

@@ -1,4 +1,5 @@
 /** The module that notebooks and saved pages load: an anywidget, and what starts a saved page. */
+import './fonts.css'
 import type { Frame, Show, Theme, Viewer } from './contract'
 import { startSavedPage } from './page'
 import { type Scene, unpack } from './scene'
@@ -16,6 +17,7 @@ interface Traits {
   speed: number
   loop: boolean
   playing: boolean
+  projector: boolean
   height: number
 }
 
@@ -31,13 +33,18 @@ const TELL_EVERY = 250 // ms between two messages about the time, while it plays
 
 function render({ model, el }: { model: Model; el: HTMLElement }): () => void {
   const host = document.createElement('div')
-  host.className = 'trundle-host trundle-widget'
+  host.className = 'tr-host'
   el.append(host)
   const place = () => {
     host.style.height = `${model.get('height')}px`
   }
   place()
-  const viewer = createViewer(host, { theme: themeFor(model, el), controls: true, frame: model.get('frame') })
+  const viewer = createViewer(host, {
+    theme: themeFor(model, el),
+    controls: true,
+    projector: model.get('projector'),
+    frame: model.get('frame'),
+  })
   const load = () => viewer.setScenes(scenesOf(model), { keepTime: true, keepCamera: true })
   load()
   viewer.show = model.get('show')
@@ -74,6 +81,9 @@ function hear(
     height: place,
     theme: () => {
       viewer.theme = themeFor(model, el)
+    },
+    projector: () => {
+      viewer.projector = model.get('projector')
     },
     frame: () => {
       if (viewer.frame !== model.get('frame')) viewer.frame = model.get('frame')
