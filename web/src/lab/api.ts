@@ -99,7 +99,9 @@ const UNREACHABLE = 'The lab’s server does not answer. Is `trundle lab` still 
 async function failure(response: Response): Promise<ApiError> {
   try {
     const { error } = (await response.json()) as { error: { message: string; key: string | null; kind: string } }
-    return new ApiError(error.message, error.key ?? null, error.kind, response.status)
+    // The package begins with the name of the file, which here is only ever "scenario".
+    const message = error.message.replace(/^scenario: /, '')
+    return new ApiError(message, error.key ?? null, error.kind, response.status)
   } catch {
     return new ApiError(`The server answered ${response.status} ${response.statusText}.`, null, 'HTTP', response.status)
   }

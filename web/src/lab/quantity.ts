@@ -65,6 +65,8 @@ export function parse(value: Json | undefined): Written {
   if (!match) return { number: null, digits: value, unit: '' }
   const digits = (match[1] ?? '').replace('−', '-')
   const written = match[2] ?? ''
+  // What begins otherwise is a formula: 3.5*(1 - exp(-t)).
+  if (!/^([\p{L}°"%]|1\/s)?/u.exec(written)?.[0] && written) return { number: null, digits: value, unit: '' }
   return { number: Number(digits.replaceAll('_', '')), digits, unit: SPELLINGS[written] ?? written }
 }
 
@@ -107,15 +109,13 @@ export function stepped(number: number, direction: number, scale = 1): number {
   return rounded(next * step, 12)
 }
 
-const NARROW = ' '
-
 /** A number for people: four digits, true minus sign, powers of ten where it is very small or large. */
 export function show(value: number | null | undefined, digits = 4): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return '–'
   const size = Math.abs(value)
   if (value !== 0 && (size < 1e-3 || size >= 1e5)) {
     const [mantissa = '', exponent = '0'] = value.toExponential(Math.min(digits - 1, 3)).split('e')
-    return `${mantissa.replace('-', '−')}${NARROW}×${NARROW}10${superscript(Number(exponent))}`
+    return `${mantissa.replace('-', '−')}×10${superscript(Number(exponent))}`
   }
   return Number(value.toPrecision(digits)).toString().replace('-', '−')
 }

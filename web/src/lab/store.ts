@@ -2,7 +2,7 @@
 import type { Scenario } from './scenario'
 
 export interface Change {
-  /** What made it: 'control', 'drag', 'undo', 'open', 'url', a page's own word. */
+  /** What made it: 'control', 'drag', 'undo', 'open', 'url', a page's own word; 'first' cannot be undone. */
   source: string
   /** Changes of one gesture (a slider being dragged) share a word, and undo as one. */
   gesture?: string | undefined
@@ -58,7 +58,8 @@ export function createStore(first: Scenario): Store {
     set(scenario, change = { source: 'control' }) {
       if (scenario === current) return
       const continues = change.gesture !== undefined && change.gesture === gesture
-      if (!continues) past = [...past, current].slice(-DEPTH)
+      if (change.source === 'first') past = []
+      else if (!continues) past = [...past, current].slice(-DEPTH)
       future = []
       gesture = change.gesture
       current = scenario

@@ -4,6 +4,7 @@ import { isAbort } from '../api'
 import { fill, h } from '../dom'
 import { icon } from '../icons'
 import { formula } from '../math'
+import { paragraph } from '../pages/parts/prose'
 import { show } from '../quantity'
 import type { Scenario } from '../scenario'
 
@@ -18,7 +19,7 @@ function step(one: Derivation['steps'][number], place: number): HTMLElement {
       one.title,
       one.source ? h('span', { class: 'source' }, one.source) : null,
     ),
-    one.text && h('p', {}, one.text),
+    one.text && paragraph(one.text),
     one.latex.map((latex) => formula(latex, true)),
   )
 }
@@ -26,7 +27,7 @@ function step(one: Derivation['steps'][number], place: number): HTMLElement {
 function content(derivation: Derivation): (HTMLElement | null)[] {
   const numbers = derivation.numbers ?? []
   return [
-    derivation.introduction ? h('p', { class: 'lead' }, derivation.introduction) : null,
+    derivation.introduction ? paragraph(derivation.introduction, 'lead') : null,
     h('ol', { class: 'steps' }, derivation.steps.map(step)),
     numbers.length === 0
       ? null

@@ -12,17 +12,32 @@ export function differenceText(difference: number | null): string {
   return size >= 1e-4 ? `${show(size * 100, 3)} %` : show(size, 2)
 }
 
+/** Two lines a row: what it is, and beneath it the numbers. The roles keep it a table for whoever hears it. */
 function row(finding: Finding): HTMLElement {
   const symbol = finding.symbol ? formula(finding.symbol) : null
+  const unit = finding.unit ? h('span', { class: 'unit' }, finding.unit) : null
   const name = h('span', { class: 'finding-name' }, finding.name)
-  const unit = finding.unit ? h('span', { class: 'unit' }, ` ${finding.unit}`) : null
+  const cell = (text: string, kind?: string) => h('td', { role: 'cell', class: kind }, text)
   return h(
     'tr',
-    {},
-    h('th', { scope: 'row', title: finding.note || null }, name, symbol, unit),
-    h('td', {}, show(finding.predicted)),
-    h('td', {}, show(finding.measured)),
-    h('td', { class: 'difference' }, differenceText(finding.difference)),
+    { role: 'row', title: finding.note || null },
+    h('th', { scope: 'row', role: 'rowheader' }, name, symbol, unit),
+    cell(show(finding.predicted)),
+    cell(show(finding.measured)),
+    cell(differenceText(finding.difference), 'difference'),
+  )
+}
+
+function tableOf(findings: Finding[]): HTMLElement {
+  const heads = ['', 'predicted', 'measured', 'off by'].map((text) =>
+    h('th', { scope: 'col', role: 'columnheader' }, text || h('span', { class: 'sr-only' }, 'quantity')),
+  )
+  return h(
+    'table',
+    { class: 'numbers findings-rows', role: 'table' },
+    h('caption', { class: 'sr-only' }, 'What theory predicts, and what the run shows'),
+    h('thead', { role: 'rowgroup' }, h('tr', { role: 'row' }, heads)),
+    h('tbody', { role: 'rowgroup' }, findings.map(row)),
   )
 }
 
@@ -38,31 +53,8 @@ export function createFindings(derive: () => void): Findings {
 
   function update({ header }: Scene): void {
     const { findings = [], formula: told = null } = header
-    const heads = ['', 'predicted', 'measured', 'off by']
-    fill(
-      table,
-      findings.length > 0
-        ? h(
-            'table',
-            { class: 'numbers' },
-            h('caption', { class: 'sr-only' }, 'What theory predicts, and what the run shows'),
-            h(
-              'thead',
-              {},
-              h(
-                'tr',
-                {},
-                heads.map((head) => h('th', { scope: 'col' }, head || h('span', { class: 'sr-only' }, 'quantity'))),
-              ),
-            ),
-            h('tbody', {}, findings.map(row)),
-          )
-        : h(
-            'p',
-            { class: 'empty' },
-            'Nothing is predicted for this motion: it is computed, and the card says how well.',
-          ),
-    )
+    const none = 'Nothing is predicted for this motion: it is computed, and the card says how well.'
+    fill(table, findings.length > 0 ? tableOf(findings) : h('p', { class: 'empty' }, none))
     law.hidden = told === null
     if (!told) return
     const button = h('button', { class: 'link', type: 'button', onclick: derive }, 'How does this follow?')

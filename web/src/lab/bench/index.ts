@@ -6,6 +6,7 @@ import './dialogs.css'
 import { ApiError, isAbort } from '../api'
 import type { App, Page } from '../app'
 import { cleanup, fill, h, listen } from '../dom'
+import { FIRST, FIRST_NAME } from '../first'
 import { icon } from '../icons'
 import type { Scenario } from '../scenario'
 import { createTabs } from '../tabs'
@@ -79,13 +80,14 @@ function mount(host: HTMLElement, app: App): () => void {
     store.set(scenario, { source })
   }
 
-  async function take(name: string): Promise<void> {
+  async function take(name: string, source = 'open'): Promise<void> {
     try {
       const { scenario } = await api.scenario(name)
       linking.shipped(name, scenario)
-      opened(scenario, 'open')
+      opened(scenario, source)
     } catch (error) {
-      if (!isAbort(error)) app.toast(error instanceof Error ? error.message : String(error), 'error')
+      if (source === 'first') computing.ask(store.scenario, { source })
+      else if (!isAbort(error)) app.toast(error instanceof Error ? error.message : String(error), 'error')
     }
   }
 
@@ -206,7 +208,9 @@ function mount(host: HTMLElement, app: App): () => void {
   void linking
     .read(take, (scenario) => opened(scenario, 'url'))
     .then((found) => {
-      if (!found) computing.ask(store.scenario, { source: 'first' })
+      if (found) return
+      if (store.scenario === FIRST) void take(FIRST_NAME, 'first')
+      else computing.ask(store.scenario, { source: 'first' })
     })
   return () => undo.run()
 }

@@ -1,0 +1,114 @@
+import { beforeEach, expect, it, vi } from 'vitest'
+import type { Json } from '../scenario'
+import { createField } from './field'
+
+const entry = { label: 'Rate', kind: 'angular velocity', min: -10, max: 10, units: ['rpm', 'rad/s', 'turn/s'] } as const
+
+function setUp(value: Json) {
+  const change = vi.fn<(value: Json, gesture?: string) => void>()
+  const chosen: { unit?: string } = {}
+  const field = createField({
+    path: 'support.motion.rate',
+    entry: { ...entry, units: [...entry.units] },
+    unit: () => chosen.unit,
+    keepUnit: (unit) => {
+      chosen.unit = unit
+    },
+    change,
+  })
+  field.update(value)
+  document.body.replaceChildren(field.element)
+  const input = field.element.querySelector<HTMLInputElement>('.field-number')!
+  const unit = field.element.querySelector<HTMLSelectElement>('.field-unit')!
+  const slider = field.element.querySelector<HTMLInputElement>('.slider')!
+  const type = (text: string) => {
+    input.value = text
+    input.dispatchEvent(new Event('input'))
+  }
+  const leave = () => input.dispatchEvent(new Event('change'))
+  const press = (target: HTMLElement, key: string, init: KeyboardEventInit = {}) =>
+    target.dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true, cancelable: true, ...init }))
+  return { field, change, chosen, input, unit, slider, type, leave, press }
+}
+
+beforeEach(() => document.body.replaceChildren())
+
+it('shows the number as it is written, and its unit beside it', () => {
+  const { input, unit, slider } = setUp('33.30 rpm')
+  expect([input.value, unit.value]).toEqual(['33.30', 'rpm'])
+  expect(slider.getAttribute('aria-valuetext')).toBe('33.30 rpm')
+})
+
+it('sends what is typed, with the unit that is shown', () => {
+  const { change, type } = setUp('33.3 rpm')
+  type('45')
+  expect(change).toHaveBeenLastCalledWith('45 rpm', expect.any(String))
+})
+
+it('takes a unit that is typed, and keeps it', () => {
+  const { change, type, leave, chosen, input, unit } = setUp('33.3 rpm')
+  type('2 rad/s')
+  leave()
+  expect(change.mock.calls[0]![0]).toBe('2 rad/s')
+  expect(chosen.unit).toBe('rad/s')
+  expect([input.value, unit.value]).toEqual(['2', 'rad/s'])
+})
+
+it('leaves a unit that it does not know to the server, when the typing is done', () => {
+  const { change, type, leave } = setUp('33.3 rpm')
+  type('2 revolution/hour')
+  expect(change).not.toHaveBeenCalled()
+  leave()
+  expect(change).toHaveBeenCalledWith('2 revolution/hour', undefined)
+})
+
+it('sends nonsense only when the typing is done, so that the package can say what is wrong', () => {
+  const { field, change, type, leave, input } = setUp('33.3 rpm')
+  type('fast')
+  expect(change).not.toHaveBeenCalled()
+  leave()
+  expect(change).toHaveBeenCalledWith('fast', undefined)
+  field.complain('`support.motion.rate` must be an angular velocity')
+  const message = document.getElementById(input.getAttribute('aria-describedby')!)
+  expect(message?.textContent).toContain('must be an angular velocity')
+  expect(input.getAttribute('aria-invalid')).toBe('true')
+  field.complain(null)
+  expect(input.hasAttribute('aria-invalid')).toBe(false)
+})
+
+it('turns the number over when another unit is chosen', () => {
+  const { change, unit, chosen } = setUp('30 rpm')
+  unit.value = 'turn/s'
+  unit.dispatchEvent(new Event('change'))
+  expect(chosen.unit).toBe('turn/s')
+  expect(change).toHaveBeenCalledWith('0.5 turn/s', undefined)
+})
+
+it('steps by the arrow keys, in the box and on the slider', () => {
+  const { change, input, slider, press } = setUp('33.3 rpm')
+  press(input, 'ArrowUp')
+  expect(change.mock.lastCall![0]).toBe('34 rpm')
+  press(slider, 'ArrowLeft')
+  expect(change.mock.lastCall![0]).toBe('33 rpm')
+  press(input, 'ArrowUp', { shiftKey: true })
+  expect(change.mock.lastCall![0]).toBe('40 rpm')
+  press(input, 'ArrowLeft')
+  expect(change).toHaveBeenCalledTimes(3)
+})
+
+it('gives round numbers when the slider is dragged, one gesture a drag', () => {
+  const { change, slider } = setUp('33.3 rpm')
+  for (const place of ['700', '710']) {
+    slider.value = place
+    slider.dispatchEvent(new Event('input'))
+  }
+  const [first, second] = change.mock.calls
+  expect(first![0]).toMatch(/^3[78](\.\d)? rpm$/)
+  expect(first![1]).toBe(second![1])
+})
+
+it('has a formula typed over without a slider', () => {
+  const { input, slider } = setUp('3.4*(1 - exp(-t))')
+  expect(input.value).toBe('3.4*(1 - exp(-t))')
+  expect(slider.disabled).toBe(true)
+})

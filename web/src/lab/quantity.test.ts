@@ -1,0 +1,45 @@
+import { describe, expect, it } from 'vitest'
+import { parse, show, stepped, toSI, write } from './quantity'
+
+describe('a quantity as text', () => {
+  it('is taken apart as it was written', () => {
+    expect(parse('33.3 rpm')).toEqual({ number: 33.3, digits: '33.3', unit: 'rpm' })
+    expect(parse('-4cm')).toEqual({ number: -4, digits: '-4', unit: 'cm' })
+    expect(parse('−2.50 m/s')).toEqual({ number: -2.5, digits: '-2.50', unit: 'm/s' })
+    expect(parse('1e-3 kg*m^2').unit).toBe('kg*m^2')
+    expect(parse('3°').unit).toBe('deg')
+    expect(parse(0.25)).toEqual({ number: 0.25, digits: '0.25', unit: '' })
+    for (const none of ['', 'abc', '-', '2*sin(t)x', undefined, null, ['1 m']]) expect(toSI(none, 'length')).toBeNull()
+  })
+  it('is SI where the unit is known, and left to the server where not', () => {
+    expect(toSI('25 mm', 'length')).toBeCloseTo(0.025, 15)
+    expect(toSI('2 in', 'length')).toBeCloseTo(0.0508, 15)
+    expect(toSI('33.3 rpm', 'angular velocity')).toBeCloseTo(3.48716785, 8)
+    expect(toSI('2 furlong', 'length')).toBeNull()
+    expect(toSI('2 kg', 'length')).toBeNull()
+  })
+  it('is written with few digits, in the unit asked for', () => {
+    expect(write(3.4871678454846706, 'angular velocity', 'rpm')).toBe('33.3 rpm')
+    expect(write(0.1 + 0.2, 'length', '')).toBe(0.3)
+    expect(write(1e-7, 'length', 'm')).toBe('1e-7 m')
+    expect(write(0, 'velocity', 'm/s')).toBe('0 m/s')
+  })
+  it('steps along round numbers', () => {
+    expect(stepped(33.3, 1)).toBe(34)
+    expect(stepped(33.3, -1)).toBe(33)
+    expect(stepped(0, 1)).toBe(0.1)
+    expect(stepped(0.1, -1)).toBe(0.09)
+    expect(stepped(25, 1, 10)).toBe(30)
+    expect(stepped(25, -1, 0.1)).toBe(24.9)
+    expect(stepped(-33.3, 1)).toBe(-33)
+  })
+})
+
+it('numbers are shown for people', () => {
+  expect(show(0.9963336701)).toBe('0.9963')
+  expect(show(-4.2)).toBe('−4.2')
+  expect(show(1.11e-16, 2)).toBe('1.1×10⁻¹⁶')
+  expect(show(0)).toBe('0')
+  expect(show(null)).toBe('–')
+  expect(show(Number.NaN)).toBe('–')
+})

@@ -1,0 +1,18 @@
+import { expect, it } from 'vitest'
+import { formatRoute, parseRoute } from './router'
+
+it('reads pages, steps and parameters from the hash', () => {
+  expect(parseRoute('')).toEqual({ page: '', path: [], params: {} })
+  expect(parseRoute('#/tour/3')).toEqual({ page: 'tour', path: ['3'], params: {} })
+  expect(parseRoute('#/bench?s=a-_b&name=x')).toEqual({ page: 'bench', path: [], params: { s: 'a-_b', name: 'x' } })
+  expect(parseRoute('#/%E0%A4%A/%')).toEqual({ page: '%E0%A4%A', path: ['%'], params: {} })
+})
+
+it('writes what it reads', () => {
+  expect(parseRoute(formatRoute('tour/3', { guess: 'a b&c' }))).toEqual({
+    page: 'tour',
+    path: ['3'],
+    params: { guess: 'a b&c' },
+  })
+  expect(formatRoute('#/bench')).toBe('#/bench')
+})

@@ -1,0 +1,130 @@
+import { expect, it, vi } from 'vitest'
+import { createLanes } from './lanes'
+import { createRunner } from './runner'
+
+interface Job {
+  request: number
+  signal: AbortSignal
+  finish(answer: string): void
+  fail(error: Error): void
+}
+
+function setUp(patience = 100) {
+  const jobs: Job[] = []
+  const done: string[] = []
+  const failed: string[] = []
+  let frames: (() => void)[] = []
+  const clock = { now: 0 }
+  const runner = createRunner<number, string>({
+    patience,
+    run: (request, signal) =>
+      new Promise((finish, fail) => {
+        jobs.push({ request, signal, finish, fail })
+      }),
+    done: (answer) => done.push(answer),
+    failed: (error) => failed.push(String(error)),
+    frame: (callback) => frames.push(callback),
+    now: () => clock.now,
+  })
+  const frame = () => {
+    const due = frames
+    frames = []
+    for (const callback of due) callback()
+  }
+  return { runner, jobs, done, failed, frame, clock }
+}
+
+const settled = () => new Promise((resolve) => setTimeout(resolve))
+
+it('runs only the newest of a frame', () => {
+  const { runner, jobs, frame } = setUp()
+  runner.ask(1)
+  runner.ask(2)
+  runner.ask(3)
+  frame()
+  expect(jobs.map((job) => job.request)).toEqual([3])
+})
+
+it('lets a young job finish and shows it, then runs the newest that waited', async () => {
+  const { runner, jobs, done, frame } = setUp()
+  runner.ask(1)
+  frame()
+  runner.ask(2)
+  runner.ask(3)
+  frame()
+  expect(jobs).toHaveLength(1)
+  jobs[0]!.finish('one')
+  await settled()
+  frame()
+  expect(done).toEqual(['one'])
+  expect(jobs.map((job) => job.request)).toEqual([1, 3])
+})
+
+it('aborts a job that is overdue, and never shows what it says later', async () => {
+  const { runner, jobs, done, failed, frame, clock } = setUp(100)
+  runner.ask(1)
+  frame()
+  clock.now = 150
+  runner.ask(2)
+  frame()
+  expect(jobs[0]!.signal.aborted).toBe(true)
+  expect(jobs.map((job) => job.request)).toEqual([1, 2])
+  jobs[1]!.finish('two')
+  jobs[0]!.finish('one')
+  await settled()
+  expect(done).toEqual(['two'])
+  expect(failed).toEqual([])
+})
+
+it('aborts it when its time is up while a newer one waits', () => {
+  vi.useFakeTimers()
+  const { runner, jobs, frame, clock } = setUp(100)
+  runner.ask(1)
+  frame()
+  runner.ask(2)
+  frame()
+  clock.now = 101
+  vi.advanceTimersByTime(101)
+  expect(jobs[0]!.signal.aborted).toBe(true)
+  expect(jobs).toHaveLength(2)
+  vi.useRealTimers()
+})
+
+it('tells of an error, but not of one that is old', async () => {
+  const { runner, jobs, failed, frame } = setUp()
+  runner.ask(1)
+  frame()
+  runner.ask(2)
+  jobs[0]!.fail(new Error('old'))
+  await settled()
+  frame()
+  jobs[1]!.fail(new Error('new'))
+  await settled()
+  expect(failed).toEqual(['Error: new'])
+})
+
+it('says nothing more once it is stopped', async () => {
+  const { runner, jobs, done, frame } = setUp()
+  runner.ask(1)
+  frame()
+  runner.stop()
+  jobs[0]!.finish('one')
+  await settled()
+  expect(jobs[0]!.signal.aborted).toBe(true)
+  expect(done).toEqual([])
+})
+
+it('keeps one request in a lane, and lanes apart', () => {
+  const lanes = createLanes()
+  const outer = new AbortController()
+  const first = lanes.enter('simulate')
+  const card = lanes.enter('card', outer.signal)
+  const free = lanes.enter(null)
+  const second = lanes.enter('simulate')
+  expect([first, card, free, second].map((one) => one.signal.aborted)).toEqual([true, false, false, false])
+  outer.abort()
+  expect(card.signal.aborted).toBe(true)
+  second.leave()
+  lanes.enter('simulate')
+  expect(second.signal.aborted).toBe(false)
+})
