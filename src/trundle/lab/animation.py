@@ -160,7 +160,7 @@ def _background(scene: Scene, track: Array, pace: str) -> tuple[Any, Any, float,
         FigureCanvasAgg(figure)
         axes = figure.add_axes((0.13, 0.09, 0.84, 0.84 * _INCHES / (_INCHES + 0.25)))
         axes.set(xlim=middle[0] + half * np.array([-1, 1]), ylim=middle[1] + half * np.array([-1, 1]), aspect="equal")
-        axes.set(xlabel="y (m)", ylabel="up the slope, −x (m)") if header["tilt"] else axes.set(
+        axes.set(xlabel="y (m)", ylabel="up, −x (m)") if header["tilt"] else axes.set(
             xlabel="x (m)", ylabel="y (m)"
         )
         if moves:

@@ -82,7 +82,7 @@ def scenario_from(data: Any) -> Scenario:
     from ..simulation import Scenario
 
     limits.check_size(data)
-    return Scenario.read(data)
+    return Scenario.read(data, "")
 
 
 def path_from(data: Any) -> PathScenario:
@@ -90,7 +90,7 @@ def path_from(data: Any) -> PathScenario:
     from ..geometry import PathScenario
 
     limits.check_size(data)
-    return PathScenario.read(data)
+    return PathScenario.read(data, "")
 
 
 def run_of(scenario: Scenario, most: int) -> tuple[Trajectory, float]:

@@ -1,0 +1,191 @@
+"""`trundle lab` as a user runs it: it says where it is, answers, and leaves nothing behind."""
+
+from __future__ import annotations
+
+import http.client
+import json
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tests.lab.conftest import shipped
+
+pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks at processes as Linux shows them")
+
+
+@dataclass
+class Running:
+    """A lab in processes of its own session."""
+
+    process: subprocess.Popen[str]
+    port: int
+    said: str
+
+    def family(self) -> set[int]:
+        """Every process of the session that is not dead."""
+        found = set()
+        for entry in Path("/proc").iterdir():
+            with suppress(OSError, ValueError, IndexError):
+                after = (entry / "stat").read_text().rpartition(")")[2].split()
+                if int(after[3]) == self.process.pid and after[0] not in "ZX":
+                    found.add(int(entry.name))
+        return found
+
+    def ask(self, path: str, asked: Any = None) -> tuple[int, bytes]:
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=60)
+        try:
+            body = None if asked is None else json.dumps(asked)
+            connection.request("GET" if asked is None else "POST", path, body, {"content-type": "application/json"})
+            answer = connection.getresponse()
+            return answer.status, answer.read()
+        finally:
+            connection.close()
+
+    def gone(self, seconds: float) -> bool:
+        return within(seconds, lambda: not self.family())
+
+
+def within(seconds: float, true: Callable[[], bool]) -> bool:
+    until = time.monotonic() + seconds
+    while time.monotonic() < until:
+        if true():
+            return True
+        time.sleep(0.05)
+    return False
+
+
+@contextmanager
+def running(*words: str, env: dict[str, str] | None = None) -> Iterator[Running]:
+    process = subprocess.Popen(  # noqa: S603
+        [sys.executable, "-m", "trundle", "lab", *words],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        start_new_session=True,
+        env={**os.environ, "PYTHONUNBUFFERED": "1", **(env or {})},
+    )
+    try:
+        said = ""
+        while "The lab is at" not in said:
+            line = process.stdout.readline()  # type: ignore[union-attr]
+            if not line:
+                raise AssertionError(f"it ended: {said}")
+            said += line
+        yield Running(process, int(re.findall(r"http://127\.0\.0\.1:(\d+)/", said)[0]), said)
+    finally:
+        with suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_it_answers_and_ends_with_all_its_processes(number: signal.Signals) -> None:
+    with running("--no-open", "--port", "0") as lab:
+        assert lab.ask("/api/scenarios/tilted-turntable")[0] == 200
+        assert lab.ask("/api/simulate", {"scenario": shipped("tilted-turntable")})[1].startswith(b"TRUNDLE1")
+        assert len(lab.family()) > 3
+        os.killpg(lab.process.pid, number)  # as a terminal does
+        told, _ = lab.process.communicate(timeout=20)
+        assert lab.gone(5)
+        if number == signal.SIGINT:
+            assert lab.process.returncode == 0
+            assert told.strip() == "The lab has ended."
+        assert "Traceback" not in told
+
+
+def test_ctrl_c_at_once_ends_it_too() -> None:
+    with running("--no-open", "--port", "0") as lab:
+        os.killpg(lab.process.pid, signal.SIGINT)
+        told, _ = lab.process.communicate(timeout=20)
+        assert "Traceback" not in told
+        assert lab.gone(5)
+
+
+def test_killed_outright_it_leaves_no_process() -> None:
+    with running("--no-open", "--port", "0") as lab:
+        assert lab.ask("/api/scenarios/tilted-turntable")[0] == 200
+        lab.process.kill()
+        assert lab.gone(10)
+
+
+def test_a_long_computation_ends_when_its_client_goes() -> None:
+    long = shipped("rattleback")
+    long["run"] |= {"duration": "3600 s", "every": "0.02 s", "method": "runge-kutta"}
+    with running("--no-open", "--port", "0") as lab:
+        lab.ask("/api/scenarios/tilted-turntable")
+        lab.ask("/api/scenarios")  # both lanes are there
+        before = lab.family()
+        with socket.create_connection(("127.0.0.1", lab.port)) as asker:
+            body = json.dumps({"scenario": long}).encode()
+            head = f"POST /api/simulate HTTP/1.1\r\nHost: 127.0.0.1:{lab.port}\r\nContent-Type: application/json\r\n"
+            asker.sendall(f"{head}Content-Length: {len(body)}\r\n\r\n".encode() + body)
+            time.sleep(0.7)
+            assert before <= lab.family()
+        assert within(6, lambda: not before <= lab.family())  # its grace, then it is killed
+        assert lab.ask("/api/simulate", {"scenario": shipped("tilted-turntable")})[0] == 200
+
+
+def test_the_browser_is_opened_once_it_answers(tmp_path: Path) -> None:
+    seen = tmp_path / "seen"
+    browser = tmp_path / "browser"
+    browser.write_text(
+        f"#!{sys.executable}\nimport sys, urllib.request\n"
+        "try: status = urllib.request.urlopen(sys.argv[1] + 'api/scenarios/tilted-turntable').status\n"
+        "except OSError as error: status = error\n"
+        f"open({str(seen)!r}, 'w').write(f'{{sys.argv[1]}} {{status}}')\n"
+    )
+    browser.chmod(0o700)
+    with running("--port", "0", env={"BROWSER": f"{browser} %s"}) as lab:
+        assert within(20, lambda: seen.exists() and seen.read_text().endswith(" 200"))
+        assert seen.read_text() == f"http://127.0.0.1:{lab.port}/ 200"
+
+
+def test_where_the_usual_port_is_taken_another_is_found() -> None:
+    with socket.socket() as taken:
+        with suppress(OSError):  # taken by whoever
+            taken.bind(("127.0.0.1", 8765))
+            taken.listen()
+        with running("--no-open") as lab:
+            assert lab.port != 8765
+            assert "port 8765 is taken" in lab.said
+            assert lab.ask("/api/scenarios/tilted-turntable")[0] == 200
+
+
+def test_what_cannot_be_is_one_line_and_status_2() -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        for words, said in (
+            (("--port", str(taken.getsockname()[1])), "must be a port that is free"),
+            (("--host", "0.0.0.0"), "add --network"),  # noqa: S104  refused
+            (("--host", "203.0.113.7", "--network"), "must be an address of this machine"),
+            (("--host", "no such host"), "must be an address of this machine"),
+        ):
+            done = subprocess.run(  # noqa: S603
+                [sys.executable, "-m", "trundle", "lab", "--no-open", *words],
+                capture_output=True,
+                text=True,
+                timeout=60,
+                check=False,
+            )
+            assert done.returncode == 2
+            assert said in done.stderr
+            assert "Traceback" not in done.stderr
+
+
+def test_help_loads_no_server() -> None:
+    script = "import sys; from trundle.cli import run; run(['--help']); print(sorted(sys.modules), file=sys.stderr)"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=True)  # noqa: S603
+    assert "lab" in done.stdout
+    for heavy in ("fastapi", "uvicorn", "starlette", "pebble", "pydantic", "numpy"):
+        assert f"'{heavy}'" not in done.stderr
