@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanics.motions import SupportState
 from ..mechanics.system import RollingSystem
-from ..solve.samples import Samples
+from ..solve.exact import ClosedForm, SphereOnPlane
+from ..solve.samples import ROLLING, Samples
+
+if TYPE_CHECKING:
+    from ..trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
@@ -76,6 +80,29 @@ def pose_of(at: Samples, state: SupportState) -> dict[str, NDArray[Any]]:
         "support_position": origin.astype(np.float32),
         "support_orientation": continuous(_quaternions(rotations(state, n))).astype(np.float32),
     }
+
+
+def guiding_centre(run: Trajectory, form: ClosedForm | None, at: Samples) -> dict[str, NDArray[Any]]:
+    """Return the column of the point on the plane about which a ball circles, where a closed form has one throughout.
+
+    Parameters
+    ----------
+    run : Trajectory
+        Gives the start.
+    form : ClosedForm or None
+        Of the phase in which it starts.
+    at : Samples
+        As they are shown.
+
+    Returns
+    -------
+    dict
+        `guiding_centre` or nothing.
+    """
+    if not isinstance(form, SphereOnPlane) or not form.has_guiding_centre or (at.phase != ROLLING).any():
+        return {}
+    x, y = form.guiding_centre(at.time - run.start.time)
+    return {"guiding_centre": np.column_stack(np.broadcast_arrays(x, y, 0.0 * at.time)).astype(np.float32)}
 
 
 def rotations(state: SupportState, count: int) -> Array:

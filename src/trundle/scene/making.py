@@ -7,9 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import InvalidValueError
+from ..solve.exact import closed_form
 from ..solve.samples import Samples
 from .body_mesh import body_mesh
-from .columns import UNITS, columns_of, material, moves, pose_of
+from .columns import UNITS, columns_of, guiding_centre, material, moves, pose_of
+from .findings import findings_of
+from .formulas import formula_of
 from .header import header_of, radius_about_centre
 from .instants import MOST, flying, shown
 from .support_mesh import Ground, ground_of
@@ -57,17 +60,19 @@ def scene_of(
     run = run.in_frame("support")
     at = shown(run, MOST if samples is None else samples)
     body = body_mesh(run.system.body)
+    form = closed_form(run.system, run.start)
     columns = columns_of(at)
     state = at.support(run.system)
     if moves(run.system):
         columns |= pose_of(at, state)
+    columns |= guiding_centre(run, form, at)
     ground = _ground(run, at, material(at, state, at.contact), radius_about_centre(body.vertices))
     header = header_of(run, ground, radius_about_centre(body.vertices))
     columns |= body.columns("body", "body_pattern") | ground.mesh.columns("support", "support_marks")
     header |= {
         "seconds": seconds,
-        "findings": [],
-        "formula": None,
+        "findings": findings_of(run.system, run.start, run.samples, form),
+        "formula": formula_of(run.system, form),
         "guiding_centre": "guiding_centre" in columns,
         "card": run.card().as_dict() if with_card else None,
     }

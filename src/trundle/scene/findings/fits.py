@@ -1,0 +1,180 @@
+"""What a path shows by itself: rates, circles, swings and ends, from samples without a look at the formula."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solve.samples import Samples
+from ...verify.circle import MeasuredCircle, measure
+
+Array = NDArray[np.float64]
+Path = NDArray[np.complex128]
+
+_FITTED = 240  # points, about
+_PHASE = 0.5  # rad of the motion's own pace between two points of a fit
+
+
+@dataclass(frozen=True)
+class Seen:
+    """The stretch of a run that its first phase lasts, at an even step.
+
+    Parameters
+    ----------
+    at : Samples
+        In the support frame.
+    time : (n,) array
+        Since the start, s.
+    """
+
+    at: Samples
+    time: Array
+
+    @staticmethod
+    def of(samples: Samples) -> Seen:
+        """Take what lies before the first event, less a last step that is shorter than the others."""
+        ends = [event.time for event in samples.events if not event.final]
+        count = int(np.searchsorted(samples.time, ends[0])) if ends else samples.time.size
+        time = samples.time[:count] - samples.time[0]
+        if count > 2 and time[-1] - time[-2] < 0.999 * (time[1] - time[0]):
+            count -= 1
+        return Seen(samples.part(slice(0, count)), time[:count])
+
+    @property
+    def step(self) -> float:
+        """Between two samples, s."""
+        return float(self.time[1] - self.time[0]) if self.time.size > 1 else math.inf
+
+    @property
+    def zeta(self) -> Path:
+        """The centre over the plane of the first two axes as x + iy, m."""
+        return self.at.position[:, 0] + 1j * self.at.position[:, 1]
+
+    def every(self, pace: float) -> slice:
+        """Return which samples a fit takes: not too many, and none so far apart that the motion could hide."""
+        stride = max(1, self.time.size // _FITTED)
+        if pace > 0:
+            stride = max(1, min(stride, int(_PHASE / (pace * self.step))))
+        return slice(0, stride * _FITTED * 2, stride)
+
+
+def circle(seen: Seen, pace: float) -> MeasuredCircle | None:
+    """Fit a drifting circle to a path; None where it shows too little of one."""
+    some = seen.every(pace)
+    found = measure(seen.time[some], seen.zeta[some])
+    if found is None or found.rate_error > 1e-5 * abs(found.rate):
+        return None
+    return found
+
+
+def exponent(seen: Seen, pace: float) -> tuple[complex, complex] | None:
+    """Return λ and φ of a path that obeys ζ̈ = λζ̇ + φ: its steps follow each other as d′ = e^{λh} d + c.
+
+    Parameters
+    ----------
+    seen : Seen
+        The path.
+    pace : float
+        About the fastest rate in it, 1/s.
+
+    Returns
+    -------
+    pair of complex or None
+        1/s and m/s²; None where the path does not tell them.
+    """
+    some = seen.every(pace)
+    steps, h = np.diff(seen.zeta[some]), seen.step * (some.step or 1)
+    if steps.size < 4:
+        return None
+    design = np.column_stack([steps[:-1], np.ones(steps.size - 1)])
+    (factor, rest), _, rank, _ = np.linalg.lstsq(design, steps[1:], rcond=1e-12)
+    if rank < 2 or factor == 0:
+        return None
+    rate = complex(np.log(factor) / h)
+    return rate, complex(rest / h * rate / (factor - 1))
+
+
+def two_exponents(seen: Seen, pace: float) -> list[complex]:
+    """Return the two exponents of ζ = A e^{s₁t} + B e^{s₂t} + C, the faster first, 1/s; none where it shows fewer."""
+    stride = max(1, min(seen.time.size // 24, int(_PHASE / (pace * seen.step)) if pace > 0 else 1))
+    z, h = seen.zeta[::stride], seen.step * stride
+    if z.size < 8:
+        return []
+    design = np.column_stack([z[1:-1], z[:-2], np.ones(z.size - 2)])
+    (a, b, _), _, rank, _ = np.linalg.lstsq(design, z[2:], rcond=1e-13)
+    if rank < 2:
+        return []
+    roots = np.roots([1.0, -a, -b])
+    return sorted((complex(np.log(root) / h) for root in roots if root != 0), key=abs, reverse=True)
+
+
+def even_rate(time: Array, values: Array) -> float | None:
+    """Return ν of x = A + B cos νt + C sin νt: of three values at even steps, x₀ + x₂ = 2x₁ cos νh + c."""
+    stride = max(1, values.size // _FITTED)
+    x, h = values[::stride], float(time[1] - time[0]) * stride
+    if x.size < 6:
+        return None
+    design = np.column_stack([x[1:-1], np.ones(x.size - 2)])
+    twice, _ = np.linalg.lstsq(design, x[2:] + x[:-2], rcond=None)[0]
+    return float(math.acos(0.5 * twice) / h) if abs(twice) < 2 else None
+
+
+def acceleration(seen: Seen) -> complex:
+    """Return the acceleration of a path that is a parabola in time, m/s²."""
+    t = seen.time / seen.time[-1]
+    square = np.polynomial.polynomial.polyfit(t, np.column_stack([seen.zeta.real, seen.zeta.imag]), 2)[2]
+    return complex(*square) * 2 / float(seen.time[-1]) ** 2
+
+
+def crossings(time: Array, values: Array) -> Array:
+    """Return when values rise through 0, by a cubic through the four samples about each."""
+    rising = np.flatnonzero((values[:-1] < 0) & (values[1:] >= 0))
+    return np.array([_root(time[max(i - 1, 0) : i + 3], values[max(i - 1, 0) : i + 3], time[i]) for i in rising])
+
+
+def _root(t: Array, x: Array, near: float) -> float:
+    """Return where the polynomial through a few points is 0: that of t as a function of x."""
+    middle = t[0]
+    powers = np.vander(x, len(x))
+    return float(middle + np.linalg.solve(powers, t - middle)[-1]) if np.ptp(x) > 0 else float(near)
+
+
+def swing(time: Array, angle: Array) -> tuple[float | None, float]:
+    """Return the time of one swing, s, if one is seen, and the largest departure from 0, rad."""
+    found = crossings(time, angle)
+    period = float((found[-1] - found[0]) / (len(found) - 1)) if len(found) > 1 else None
+    i = int(np.argmax(np.abs(angle)))
+    if not 0 < i < len(angle) - 1:
+        return period, float(abs(angle[i]))
+    a, b, c = np.abs(angle[i - 1 : i + 2])
+    bend = a - 2 * b + c
+    return period, float(b - (c - a) ** 2 / (8 * bend)) if bend < 0 else float(b)
+
+
+def round_time(time: Array, angle: Array) -> float | None:
+    """Return the time of one round of an angle that grows or falls, s; None where it shows less than one."""
+    turned = np.abs(angle - angle[0]) / (2 * math.pi)
+    rounds = math.floor(float(turned[-1]))
+    if rounds < 1:
+        return None
+    i = int(np.searchsorted(turned, rounds))
+    part = slice(max(i - 2, 0), i + 2)
+    return _root(time[part], turned[part] - rounds, time[i]) / rounds
+
+
+def zero_ahead(time: Array, values: Array) -> float | None:
+    """Return when values that fall to 0 behind the last sample reach it, drawn on through the last few."""
+    if values.size < 3 or not values[-1] < values[-2] < values[-3]:
+        return None
+    if values.size < 4:
+        return float(time[-1] + values[-1] * (time[-1] - time[-2]) / (values[-2] - values[-1]))
+    return _root(time[-4:], values[-4:], time[-1])
+
+
+def slope(time: Array, values: Any) -> Any:
+    """Return the rate of change along a stretch by its two ends."""
+    return (values[-1] - values[0]) / (time[-1] - time[0])
