@@ -20,8 +20,13 @@ const viewer: UserConfig = {
     outDir: output,
     emptyOutDir: true,
     assetsInlineLimit: Number.MAX_SAFE_INTEGER,
-    lib: { entry: here('src/viewer/widget.ts'), formats: ['es'], fileName: () => 'viewer.js', cssFileName: 'viewer' },
-    rollupOptions: { output: { codeSplitting: false } },
+    cssCodeSplit: false,
+    modulePreload: false,
+    rollupOptions: {
+      input: here('src/viewer/widget.ts'),
+      preserveEntrySignatures: 'strict',
+      output: { entryFileNames: 'viewer.js', assetFileNames: 'viewer[extname]', codeSplitting: false },
+    },
   },
 }
 

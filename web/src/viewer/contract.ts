@@ -64,7 +64,7 @@ export interface Viewer {
   readonly duration: number
   readonly playing: boolean
   frame: Frame
-  /** Reads as a copy; assign a part to change it: `viewer.show = { ...viewer.show, velocity: true }`. */
+  /** Live: `viewer.show.velocity = true` and `viewer.show = { velocity: true }` do the same. */
   get show(): Show
   set show(part: Partial<Show>)
   tool: Tool

@@ -118,7 +118,8 @@ const TYPES = { float32: Float32Array, float64: Float64Array, uint32: Uint32Arra
 export function unpack(bytes: ArrayBuffer | ArrayBufferView): Scene {
   const whole = aligned(bytes)
   const magic = whole.length < START ? '' : String.fromCharCode(...whole.subarray(0, MAGIC.length))
-  if (magic !== MAGIC) throw new Error(`A packed scene begins with ${MAGIC}; got ${whole.length} bytes of something else.`)
+  if (magic !== MAGIC)
+    throw new Error(`A packed scene begins with ${MAGIC}; got ${whole.length} bytes of something else.`)
   const length = new DataView(whole.buffer, whole.byteOffset).getUint32(MAGIC.length, true)
   const base = START + length
   if (base > whole.length) throw new Error(`The scene ends within its header: ${whole.length} of ${base} bytes came.`)
@@ -131,13 +132,18 @@ export function unpack(bytes: ArrayBuffer | ArrayBufferView): Scene {
 }
 
 /** Typed arrays must start at a multiple of their element's size: copy what does not. */
-function aligned(bytes: ArrayBuffer | ArrayBufferView): Uint8Array {
+function aligned(bytes: ArrayBuffer | ArrayBufferView): Uint8Array<ArrayBuffer> {
   if (!ArrayBuffer.isView(bytes)) return new Uint8Array(bytes)
-  const view = new Uint8Array(bytes.buffer, bytes.byteOffset, bytes.byteLength)
+  const view = new Uint8Array(bytes.buffer as ArrayBuffer, bytes.byteOffset, bytes.byteLength)
   return view.byteOffset % 8 === 0 ? view : view.slice()
 }
 
-function read(whole: Uint8Array, base: number, name: string, { dtype, shape, offset }: ColumnHeader): ColumnArray {
+function read(
+  whole: Uint8Array<ArrayBuffer>,
+  base: number,
+  name: string,
+  { dtype, shape, offset }: ColumnHeader,
+): ColumnArray {
   const Type = TYPES[dtype]
   const count = shape.reduce((product, side) => product * side, 1)
   const start = base + offset

@@ -1,0 +1,54 @@
+/** What stands behind everything: a soft glow on quiet ground, drawn first and never in front of anything. */
+import { BufferAttribute, BufferGeometry, Color, Mesh, ShaderMaterial } from 'three'
+
+const VERTEX = /* glsl */ `
+varying vec2 place;
+void main() {
+  place = position.xy;
+  gl_Position = vec4(position.xy, 1.0, 1.0);
+}
+`
+
+const FRAGMENT = /* glsl */ `
+uniform vec3 glow, ground;
+varying vec2 place;
+void main() {
+  float off = length((place - vec2(0.0, 0.3)) * vec2(0.8, 0.95));
+  gl_FragColor = vec4(mix(glow, ground, smoothstep(0.0, 1.15, off)), 1.0);
+  #include <colorspace_fragment>
+  // Half a step of noise hides the steps of so gentle a slope.
+  gl_FragColor.rgb += (fract(sin(dot(gl_FragCoord.xy, vec2(12.9898, 78.233))) * 43758.5453) - 0.5) / 255.0;
+}
+`
+
+export class Backdrop {
+  readonly mesh: Mesh<BufferGeometry, ShaderMaterial>
+  private readonly uniforms = { glow: { value: new Color() }, ground: { value: new Color() } }
+
+  constructor() {
+    // One triangle that covers the whole picture.
+    const geometry = new BufferGeometry()
+    geometry.setAttribute('position', new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3))
+    const material = new ShaderMaterial({
+      uniforms: this.uniforms,
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
+      depthTest: false,
+      depthWrite: false,
+      toneMapped: false,
+    })
+    this.mesh = new Mesh(geometry, material)
+    this.mesh.frustumCulled = false
+    this.mesh.renderOrder = -10
+  }
+
+  look(glow: string, ground: string): void {
+    this.uniforms.glow.value.set(glow)
+    this.uniforms.ground.value.set(ground)
+  }
+
+  dispose(): void {
+    this.mesh.geometry.dispose()
+    this.mesh.material.dispose()
+  }
+}

@@ -1,0 +1,91 @@
+/** The bodies: their meshes, painted so that every turn of theirs is seen. */
+import { BufferAttribute, BufferGeometry, Group, Mesh, MeshPhysicalMaterial, SphereGeometry } from 'three'
+import { type BodyPaint, newBodyPaint, paintBody } from './paint'
+import type { Scene } from './scene'
+import type { Palette } from './theme'
+import { Track } from './track'
+
+export class BodyModel {
+  readonly group = new Group()
+  readonly mesh: Mesh<BufferGeometry, MeshPhysicalMaterial>
+  readonly track: Track
+  private readonly paint: BodyPaint = newBodyPaint()
+
+  constructor(
+    readonly scene: Scene,
+    readonly order: number,
+  ) {
+    this.track = new Track(scene)
+    const geometry = bodyGeometry(scene)
+    measure(geometry, this.paint)
+    const material = new MeshPhysicalMaterial({
+      roughness: 0.42,
+      metalness: 0,
+      clearcoat: 0.55,
+      clearcoatRoughness: 0.18,
+    })
+    paintBody(material, this.paint)
+    this.mesh = new Mesh(geometry, material)
+    this.mesh.castShadow = true
+    this.group.add(this.mesh)
+  }
+
+  get radius(): number {
+    return this.scene.header.body.radius
+  }
+
+  colour(palette: Palette): string {
+    return palette.bodies[this.order % palette.bodies.length]!
+  }
+
+  look(palette: Palette): void {
+    this.paint.tint.value.set(this.colour(palette))
+    this.paint.pale.value.set(palette.body.light)
+    this.paint.ink.value.set(palette.body.ink)
+    this.paint.pole.value.set(palette.body.pole)
+  }
+
+  seek(time: number): void {
+    this.track.seek(time)
+    this.track.position(this.group.position)
+    this.track.orientation(this.group.quaternion)
+  }
+
+  dispose(): void {
+    this.group.removeFromParent()
+    this.mesh.geometry.dispose()
+    this.mesh.material.dispose()
+  }
+}
+
+function bodyGeometry({ header, columns }: Scene): BufferGeometry {
+  if (!columns.body_vertices || !columns.body_normals || !columns.body_triangles) {
+    const ball = new SphereGeometry(header.body.radius || 0.03 * header.support.size, 48, 32).rotateX(Math.PI / 2)
+    return ball.setAttribute('pattern', ball.getAttribute('normal').clone())
+  }
+  const geometry = new BufferGeometry()
+  geometry.setAttribute('position', new BufferAttribute(columns.body_vertices, 3))
+  geometry.setAttribute('normal', new BufferAttribute(columns.body_normals, 3))
+  geometry.setAttribute('pattern', new BufferAttribute(columns.body_pattern ?? columns.body_normals, 3))
+  return geometry.setIndex(new BufferAttribute(columns.body_triangles, 1))
+}
+
+function measure(geometry: BufferGeometry, paint: BodyPaint): void {
+  geometry.computeBoundingBox()
+  const place = geometry.getAttribute('position')
+  let girth = 0
+  for (let i = 0; i < place.count; i++) girth = Math.max(girth, Math.hypot(place.getX(i), place.getY(i)))
+  const { min, max } = geometry.boundingBox!
+  paint.girth.value = girth || 1
+  // A disc or a pipe has no equator worth a line: its faces and its rim say how it turns.
+  paint.round_.value = max.z - min.z > 0.55 * girth && roundness(geometry) ? 1 : 0
+}
+
+/** Whether normals turn smoothly from pole to pole, as on a ball or an egg and not on a disc. */
+function roundness(geometry: BufferGeometry): boolean {
+  const normal = geometry.getAttribute('normal')
+  let between = 0
+  for (let i = 0; i < normal.count; i++)
+    if (Math.abs(normal.getZ(i)) > 0.2 && Math.abs(normal.getZ(i)) < 0.95) between++
+  return between > 0.3 * normal.count
+}

@@ -1,0 +1,47 @@
+/** Small helpers that make elements of the page, and the icons of the bar. */
+
+const SVG = 'http://www.w3.org/2000/svg'
+
+export function element<Name extends keyof HTMLElementTagNameMap>(
+  name: Name,
+  className: string,
+  attributes: Record<string, string> = {},
+  ...children: (Node | string)[]
+): HTMLElementTagNameMap[Name] {
+  const made = document.createElement(name)
+  if (className) made.className = className
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value)
+  made.append(...children)
+  return made
+}
+
+/** Drawn on a field of 20 by 20, in strokes. */
+const ICONS = {
+  play: 'M6.5 4.2v11.6L16 10z',
+  pause: 'M6.5 4.5v11M13.5 4.5v11',
+  back: 'M13.5 5 8 10l5.5 5M5.5 5v10',
+  forward: 'M6.5 5 12 10l-5.5 5M14.5 5v10',
+  loop: 'M4 9a5 5 0 0 1 5-4.5h5.5M12 2l2.8 2.5L12 7M16 11a5 5 0 0 1-5 4.5H5.5M8 18l-2.8-2.5L8 13',
+  home: 'M3.5 10 10 4l6.5 6M5.5 8.6V16h9V8.6',
+  top: 'M10 3v7M7 7.5l3 3 3-3M3 15c0-1.7 3.1-3 7-3s7 1.3 7 3-3.1 3-7 3-7-1.3-7-3z',
+  follow: 'M10 6.2a3.8 3.8 0 1 0 0 7.6 3.8 3.8 0 0 0 0-7.6zM10 2v4M10 14v4M2 10h4M14 10h4',
+} as const
+
+export type Icon = keyof typeof ICONS
+
+export function icon(name: Icon): SVGSVGElement {
+  const svg = document.createElementNS(SVG, 'svg')
+  svg.setAttribute('viewBox', '0 0 20 20')
+  svg.setAttribute('class', `tr-icon tr-icon-${name}`)
+  svg.setAttribute('aria-hidden', 'true')
+  const path = document.createElementNS(SVG, 'path')
+  path.setAttribute('d', ICONS[name])
+  svg.append(path)
+  return svg
+}
+
+export function iconButton(name: Icon, label: string, pressed: () => void): HTMLButtonElement {
+  const button = element('button', 'tr-button', { type: 'button', 'aria-label': label, title: label }, icon(name))
+  button.addEventListener('click', pressed)
+  return button
+}

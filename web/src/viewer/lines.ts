@@ -1,0 +1,174 @@
+/** Lines of a width in pixels, with round ends, that can grow with time and fade behind it: ten thousand points in one call. */
+import {
+  BufferAttribute,
+  Color,
+  DoubleSide,
+  InstancedBufferGeometry,
+  InstancedInterleavedBuffer,
+  InterleavedBufferAttribute,
+  Mesh,
+  ShaderMaterial,
+  Vector2,
+} from 'three'
+
+/** In place of a point's time: no line comes here or goes on from here. */
+export const BREAK = 1e30
+
+const VERTEX = /* glsl */ `
+attribute vec4 from;
+attribute vec4 to;
+uniform vec2 resolution;
+uniform float width;
+uniform float now;
+varying float vTime;
+varying vec2 vPlace;
+varying float vLength;
+
+void main() {
+  gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+  if (from.w > 1e29 || to.w > 1e29 || from.w > now) return;
+  float share = to.w > now ? (now - from.w) / max(to.w - from.w, 1e-12) : 1.0;
+  vec4 mp = modelViewMatrix * vec4(from.xyz, 1.0);
+  vec4 mq = modelViewMatrix * vec4(mix(from.xyz, to.xyz, share), 1.0);
+  mp.xyz *= 0.997; // towards the eye, off the surface that it lies on
+  mq.xyz *= 0.997;
+  vec4 p = projectionMatrix * mp;
+  vec4 q = projectionMatrix * mq;
+  const float NEAR = 0.001;
+  if (p.w < NEAR && q.w < NEAR) return;
+  if (p.w < NEAR) p = mix(q, p, (q.w - NEAR) / (q.w - p.w));
+  if (q.w < NEAR) q = mix(p, q, (p.w - NEAR) / (p.w - q.w));
+  vec2 way = (q.xy / q.w - p.xy / p.w) * resolution * 0.5;
+  float pixels = length(way);
+  way = pixels > 1e-4 ? way / pixels : vec2(1.0, 0.0);
+  float reach = 0.5 * width + 1.0;
+  bool end = position.y > 0.5;
+  vec4 corner = end ? q : p;
+  vec2 offset = (vec2(-way.y, way.x) * position.x + way * (end ? 1.0 : -1.0)) * reach;
+  corner.xy += offset / resolution * 2.0 * corner.w;
+  gl_Position = corner;
+  vLength = pixels;
+  vPlace = vec2(position.x * reach, end ? pixels + reach : -reach);
+  vTime = mix(from.w, to.w, end ? share : 0.0);
+}
+`
+
+const FRAGMENT = /* glsl */ `
+uniform vec3 colour;
+uniform vec3 faded;
+uniform float now;
+uniform float fading;
+uniform float least;
+uniform float width;
+uniform float dash;
+varying float vTime;
+varying vec2 vPlace;
+varying float vLength;
+
+void main() {
+  float beyond = max(max(-vPlace.y, vPlace.y - vLength), 0.0);
+  float off = length(vec2(vPlace.x, beyond));
+  float alpha = 1.0 - smoothstep(0.5 * width - 0.5, 0.5 * width + 0.5, off);
+  if (dash > 0.0) alpha *= step(fract(vTime / dash), 0.55);
+  if (alpha < 0.02) discard;
+  float fresh = fading > 0.0 ? mix(least, 1.0, exp(-(now - vTime) / fading)) : 1.0;
+  gl_FragColor = vec4(mix(faded, colour, fresh), alpha);
+  #include <colorspace_fragment>
+}
+`
+
+export interface LineLook {
+  colour: string
+  faded?: string
+  width: number
+}
+
+export class Line {
+  readonly mesh: Mesh<InstancedBufferGeometry, ShaderMaterial>
+  private readonly uniforms = {
+    resolution: { value: new Vector2(1, 1) },
+    width: { value: 2 },
+    now: { value: 1e29 },
+    fading: { value: 0 },
+    least: { value: 1 },
+    dash: { value: 0 },
+    colour: { value: new Color() },
+    faded: { value: new Color() },
+  }
+
+  constructor(order = 1) {
+    const material = new ShaderMaterial({
+      uniforms: this.uniforms,
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
+      // Not blended: overlapping pieces of a half-transparent line would show as beads.
+      alphaToCoverage: true,
+      side: DoubleSide,
+      toneMapped: false,
+    })
+    this.mesh = new Mesh(new InstancedBufferGeometry(), material)
+    this.mesh.frustumCulled = false
+    this.mesh.renderOrder = order
+    this.mesh.visible = false
+  }
+
+  /** Points as x, y, z, t; a point whose t is `BREAK` parts the line. */
+  setPoints(points: Float32Array): void {
+    const count = points.length / 4
+    const geometry = new InstancedBufferGeometry()
+    const corners = new Float32Array([-1, 0, 0, 1, 0, 0, -1, 1, 0, 1, 1, 0])
+    geometry.setAttribute('position', new BufferAttribute(corners, 3))
+    geometry.setIndex([0, 1, 2, 1, 3, 2])
+    const buffer = new InstancedInterleavedBuffer(points, 4)
+    geometry.setAttribute('from', new InterleavedBufferAttribute(buffer, 4, 0))
+    // The next point of the same buffer: offset by one stride.
+    geometry.setAttribute('to', new InterleavedBufferAttribute(buffer, 4, 4))
+    geometry.instanceCount = Math.max(count - 1, 0)
+    this.mesh.geometry.dispose()
+    this.mesh.geometry = geometry
+    this.mesh.visible = count > 1
+  }
+
+  look({ colour, faded, width }: LineLook): void {
+    this.uniforms.colour.value.set(colour)
+    this.uniforms.faded.value.set(faded ?? colour)
+    this.uniforms.width.value = width
+  }
+
+  /** In CSS pixels, as widths are. */
+  resize(width: number, height: number): void {
+    this.uniforms.resolution.value.set(width, height)
+  }
+
+  /** Show it up to a time; older parts fade to the share `least` over so many seconds. */
+  reach(now: number, fading = 0, least = 1): void {
+    this.uniforms.now.value = now
+    this.uniforms.fading.value = fading
+    this.uniforms.least.value = least
+  }
+
+  /** Length of a dash and its gap, in the unit of t; 0 for a whole line. */
+  set dash(length: number) {
+    this.uniforms.dash.value = length
+  }
+
+  dispose(): void {
+    this.mesh.removeFromParent()
+    this.mesh.geometry.dispose()
+    this.mesh.material.dispose()
+  }
+}
+
+/** Points of pieces of a line, joined with breaks between; t is the length along each piece. */
+export function pieces(lines: readonly (readonly number[])[]): Float32Array {
+  const out: number[] = []
+  for (const line of lines) {
+    if (out.length) out.push(0, 0, 0, BREAK)
+    let along = 0
+    for (let i = 0; i + 2 < line.length; i += 3) {
+      if (i > 0) along += Math.hypot(line[i]! - line[i - 3]!, line[i + 1]! - line[i - 2]!, line[i + 2]! - line[i - 1]!)
+      out.push(line[i]!, line[i + 1]!, line[i + 2]!, along)
+    }
+  }
+  return new Float32Array(out)
+}

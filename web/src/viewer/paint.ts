@@ -1,0 +1,161 @@
+/** What is painted on bodies and supports, worked out for each pixel, so that its edges are crisp at any size. */
+import { Color, type MeshStandardMaterial, type Vector4 } from 'three'
+
+type Uniforms = Record<string, { value: unknown }>
+
+const COMMON = /* glsl */ `
+float crisp(float signed_) { // 0 to 1 across the zero of a function, one pixel wide
+  return clamp(signed_ / max(fwidth(signed_), 1e-9) + 0.5, 0.0, 1.0);
+}
+float band(float value, float half_) { return crisp(half_ - abs(value)); }
+// 1 on the whole numbers, a line so many pixels wide; gone where the lines would run together.
+float rule(float value, float pixels) {
+  float width = fwidth(value);
+  float off = abs(fract(value - 0.5) - 0.5) / max(width, 1e-9);
+  return clamp(0.5 * pixels + 0.5 - off, 0.0, 1.0) * (1.0 - smoothstep(0.15, 0.4, width));
+}
+// Alternating 0 and 1 by whole numbers; their mean where they are too fine to see.
+float alternate(float value) {
+  float wave = sin(3.14159265 * value);
+  return mix(crisp(wave), 0.5, smoothstep(0.25, 0.7, fwidth(value)));
+}
+`
+
+/** Gores in two colours round the third body axis, an equator, and the two poles. */
+const BODY = /* glsl */ `
+vec3 painted(vec3 place, vec3 pattern) {
+  float rho = length(place.xy) / girth;
+  // The sine of three times the angle, from its own sine and cosine, which do not leap where the angle does.
+  vec2 way = place.xy / max(length(place.xy), 1e-9);
+  float gore = way.y * (3.0 * way.x * way.x - way.y * way.y);
+  vec3 tone = mix(pale, tint, crisp(gore));
+  float lines = round_ * band(pattern.z, 0.045);
+  tone = mix(tone, ink, lines);
+  float cap = crisp(0.24 - rho);
+  vec3 north = mix(ink, pole, crisp(0.13 - rho));
+  vec3 south = mix(ink, pale, crisp(0.17 - rho));
+  return mix(tone, pattern.z > 0.0 ? north : south, cap);
+}
+`
+
+const SUPPORT = /* glsl */ `
+vec3 painted(vec2 marks, vec3 place) {
+  vec3 tone;
+  if (polar > 0.5) {
+    float turns = marks.x * sectors;
+    tone = mix(base, other, alternate(turns) * contrast);
+    float first = crisp(turns) * crisp(1.0 - turns);
+    tone = mix(tone, accent, first * accented);
+    float lines = max(rule(turns, stroke), rule(marks.y * rings, stroke));
+    tone = mix(tone, line, 0.55 * lines);
+  } else {
+    vec2 cell = place.xy / spacing;
+    float check = abs(alternate(cell.x) - alternate(cell.y));
+    tone = mix(base, other, check * contrast);
+    float fine = max(rule(cell.x, stroke), rule(cell.y, stroke));
+    float coarse = max(rule(cell.x / 5.0, 1.6 * stroke), rule(cell.y / 5.0, 1.6 * stroke));
+    tone = mix(tone, line, max(0.4 * fine, 0.75 * coarse));
+  }
+  float near = 0.0;
+  for (int i = 0; i < 5; i++) {
+    vec3 off = (place - touches[i].xyz) / max(touches[i].w, 1e-9);
+    near = max(near, exp(-3.0 * dot(off, off)) * step(1e-9, touches[i].w));
+  }
+  return tone * (1.0 - shade * near);
+}
+float kept(vec3 place) { // of a plane that has no edge: it is lost in the distance
+  if (fade.w <= 0.0) return 1.0;
+  vec2 off = abs(place.xy - fade.xy) / fade.zw;
+  float edge = polar > 0.5 ? length(off) : max(off.x, off.y);
+  return 1.0 - smoothstep(0.72, 1.0, edge);
+}
+`
+
+export interface BodyPaint {
+  tint: { value: Color }
+  pale: { value: Color }
+  ink: { value: Color }
+  pole: { value: Color }
+  /** Largest distance from the third axis, m. */
+  girth: { value: number }
+  /** 1 for what is round all over, and has an equator. */
+  round_: { value: number }
+}
+
+export function newBodyPaint(): BodyPaint {
+  return {
+    tint: { value: new Color() },
+    pale: { value: new Color() },
+    ink: { value: new Color() },
+    pole: { value: new Color() },
+    girth: { value: 1 },
+    round_: { value: 1 },
+  }
+}
+
+export interface SupportPaint {
+  base: { value: Color }
+  other: { value: Color }
+  line: { value: Color }
+  accent: { value: Color }
+  polar: { value: number }
+  sectors: { value: number }
+  rings: { value: number }
+  contrast: { value: number }
+  accented: { value: number }
+  spacing: { value: number }
+  stroke: { value: number }
+  shade: { value: number }
+  touches: { value: Vector4[] }
+  fade: { value: Vector4 }
+}
+
+export function paintBody(material: MeshStandardMaterial, paint: BodyPaint): void {
+  patch(material, paint as unknown as Uniforms, {
+    key: 'trundle-body',
+    varyings: 'varying vec3 vPattern;\nvarying vec3 vPlace;',
+    attributes: 'attribute vec3 pattern;',
+    vertex: 'vPattern = pattern;\nvPlace = position;',
+    uniforms: 'uniform vec3 tint, pale, ink, pole;\nuniform float girth, round_;',
+    code: BODY,
+    colour: 'diffuseColor.rgb = painted(vPlace, vPattern);',
+  })
+}
+
+export function paintSupport(material: MeshStandardMaterial, paint: SupportPaint): void {
+  patch(material, paint as unknown as Uniforms, {
+    key: 'trundle-support',
+    varyings: 'varying vec2 vMarks;\nvarying vec3 vPlace;',
+    attributes: 'attribute vec2 marks;',
+    vertex: 'vMarks = marks;\nvPlace = position;',
+    uniforms: `uniform vec3 base, other, line, accent;
+uniform float polar, sectors, rings, contrast, accented, spacing, stroke, shade;
+uniform vec4 touches[5];
+uniform vec4 fade;`,
+    code: SUPPORT,
+    colour: 'diffuseColor.rgb = painted(vMarks, vPlace);\ndiffuseColor.a *= kept(vPlace);',
+  })
+}
+
+interface Patch {
+  key: string
+  varyings: string
+  attributes: string
+  vertex: string
+  uniforms: string
+  code: string
+  colour: string
+}
+
+function patch(material: MeshStandardMaterial, uniforms: Uniforms, parts: Patch): void {
+  material.onBeforeCompile = (shader) => {
+    Object.assign(shader.uniforms, uniforms)
+    shader.vertexShader = shader.vertexShader
+      .replace('#include <common>', `#include <common>\n${parts.attributes}\n${parts.varyings}`)
+      .replace('#include <begin_vertex>', `#include <begin_vertex>\n${parts.vertex}`)
+    shader.fragmentShader = shader.fragmentShader
+      .replace('#include <common>', `#include <common>\n${parts.varyings}\n${parts.uniforms}\n${COMMON}\n${parts.code}`)
+      .replace('#include <color_fragment>', `#include <color_fragment>\n${parts.colour}`)
+  }
+  material.customProgramCacheKey = () => parts.key
+}

@@ -1,0 +1,176 @@
+/** What the pointer does on the stage besides turning it: drag the ball, draw a velocity, nudge, draw a guess. */
+import { Vector3 } from 'three'
+import { Arrow } from './arrow'
+import type { Tool, ViewerEvents } from './contract'
+import type { Emitter } from './emitter'
+import { contactNormal } from './normals'
+import { drawnVelocity, pickPlane, pickSupport, Stroke } from './picking'
+import type { Triple } from './scene'
+import type { Stage } from './stage'
+import type { Palette } from './theme'
+import type { World } from './world'
+
+const REACH = 26 // CSS pixels: how near to a ball one must point to take hold of it
+const LEAST = 6 // CSS pixels: a shorter arrow is a click
+
+interface Gesture {
+  move(x: number, y: number): void
+  end(): void
+}
+
+export class Tools {
+  tool: Tool = 'orbit'
+  private gesture: Gesture | null = null
+  private readonly arrow = new Arrow(40)
+  private readonly abort = new AbortController()
+
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly stage: Stage,
+    private readonly world: World,
+    private readonly events: Emitter<ViewerEvents>,
+    private readonly host: { time: () => number; redraw: () => void },
+  ) {
+    stage.root.add(this.arrow.group)
+    const options = { capture: true, signal: this.abort.signal }
+    // On the parent and before the camera's controls, which would turn the stage.
+    const parent = canvas.parentElement ?? canvas
+    parent.addEventListener('pointerdown', (event) => this.down(event), options)
+    parent.addEventListener('pointermove', (event) => this.move(event), options)
+    for (const name of ['pointerup', 'pointercancel'] as const)
+      parent.addEventListener(name, (event) => this.up(event), options)
+  }
+
+  look(palette: Palette): void {
+    this.arrow.look(palette.arrows.velocity)
+  }
+
+  private down(event: PointerEvent): void {
+    if (event.target !== this.canvas || event.button !== 0 || this.tool === 'orbit') return
+    const [x, y] = this.at(event)
+    this.gesture = this.begin(x, y)
+    if (!this.gesture) return
+    event.stopPropagation()
+    event.preventDefault()
+    this.canvas.focus()
+    this.canvas.setPointerCapture(event.pointerId)
+    this.host.redraw()
+  }
+
+  private begin(x: number, y: number): Gesture | null {
+    if (this.tool === 'draw') return this.draw(x, y)
+    if (!this.nearBall(x, y)) return null
+    return this.tool === 'drag' ? this.drag(x, y) : this.throw(this.tool === 'nudge')
+  }
+
+  private move(event: PointerEvent): void {
+    const [x, y] = this.at(event)
+    if (!this.gesture) {
+      this.canvas.dataset.near = String(this.tool !== 'orbit' && (this.tool === 'draw' || this.nearBall(x, y)))
+      return
+    }
+    event.stopPropagation()
+    this.gesture.move(x, y)
+    this.host.redraw()
+  }
+
+  private up(event: PointerEvent): void {
+    if (!this.gesture) return
+    event.stopPropagation()
+    if (this.canvas.hasPointerCapture(event.pointerId)) this.canvas.releasePointerCapture(event.pointerId)
+    this.gesture.end()
+    this.gesture = null
+    this.host.redraw()
+  }
+
+  private at(event: PointerEvent): [number, number] {
+    const box = this.canvas.getBoundingClientRect()
+    return [event.clientX - box.left, event.clientY - box.top]
+  }
+
+  private nearBall(x: number, y: number): boolean {
+    const body = this.world.actors[0]?.body
+    const at = body && this.stage.project(body.group.position)
+    if (!body || !at) return false
+    const large = body.radius / this.stage.metresPerPixel(body.group.position)
+    return Math.hypot(at.x - x, at.y - y) <= Math.max(REACH, 1.2 * large)
+  }
+
+  private drag(x: number, y: number): Gesture {
+    const body = this.world.actors[0]!.body
+    const surface = this.world.support?.surface ?? null
+    const contact = body.track.contact(new Vector3())
+    const lift = body.group.position.clone().sub(contact)
+    // Hold it where it was taken: the ball is not to leap under the pointer.
+    const first = pickSupport(this.stage, surface, x, y, contact.z)
+    const slack = first ? contact.clone().sub(first) : new Vector3()
+    const place = body.group.position.clone()
+    this.events.emit('dragstart', { x: place.x, y: place.y, z: place.z })
+    const tell = (name: 'drag' | 'dragend') => this.events.emit(name, { x: place.x, y: place.y, z: place.z })
+    return {
+      move: (px, py) => {
+        const hit = pickSupport(this.stage, surface, px, py, contact.z)
+        if (!hit) return
+        place.copy(hit).add(slack).add(lift)
+        body.group.position.copy(place)
+        tell('drag')
+      },
+      end: () => tell('dragend'),
+    }
+  }
+
+  private throw(nudge: boolean): Gesture {
+    const { body, arrows } = this.world.actors[0]!
+    const from = body.group.position.clone()
+    const normal = contactNormal(
+      body,
+      this.world.support?.scene ?? body.scene,
+      body.track.contact(new Vector3()),
+      new Vector3(),
+    )
+    const least = LEAST * this.stage.metresPerPixel(from)
+    let velocity = new Vector3()
+    const tell = (done: boolean) => {
+      const { x: vx, y: vy, z: vz } = velocity
+      if (nudge) this.events.emit('nudge', { vx, vy, vz, time: this.host.time(), done })
+      else this.events.emit('arrow', { vx, vy, vz, done })
+    }
+    return {
+      move: (px, py) => {
+        const hit = pickPlane(this.stage, px, py, from, normal)
+        if (!hit) return
+        velocity = drawnVelocity(from, hit, arrows.velocityScale, least)
+        this.arrow.set(from, hit.sub(from), 0.009 * this.world.unit)
+        tell(false)
+      },
+      end: () => {
+        this.arrow.hide()
+        tell(true)
+      },
+    }
+  }
+
+  private draw(x: number, y: number): Gesture | null {
+    const surface = this.world.support?.surface ?? null
+    const stroke = new Stroke(0.01 * this.world.unit)
+    const { frame } = this.world
+    const add = (px: number, py: number) => {
+      const hit = pickSupport(this.stage, surface, px, py)
+      if (hit) stroke.add(frame === 'corotating' ? this.world.toShown(hit) : hit)
+    }
+    const points = () => stroke.points.map(({ x: a, y: b, z: c }): Triple => [a, b, c])
+    add(x, y)
+    return {
+      move: (px, py) => {
+        add(px, py)
+        this.world.sketch.set(points(), '', frame)
+      },
+      end: () => this.events.emit('sketch', { points: points(), frame }),
+    }
+  }
+
+  dispose(): void {
+    this.abort.abort()
+    this.arrow.dispose()
+  }
+}

@@ -1,0 +1,256 @@
+/** Everything that stands on the stage, put together from scenes, and moved to a time. */
+import { Vector3 } from 'three'
+import { BodyArrows, type LegendRow, scalesOf } from './arrows'
+import { BodyModel } from './bodies'
+import type { Frame, Show } from './contract'
+import { newPose, seen, viewOf } from './frames'
+import { directionFor, extent, placesToShow } from './framing'
+import { Axes, Fields, Sketch } from './guides'
+import type { LabelLayer } from './labels'
+import { Line } from './lines'
+import { contactNormal } from './normals'
+import type { Scene } from './scene'
+import type { Stage } from './stage'
+import { SupportModel } from './support'
+import type { Palette } from './theme'
+import { fadingTime, pathPoints } from './trail'
+
+interface Actor {
+  body: BodyModel
+  trail: Line
+  guide: Line | null
+  arrows: BodyArrows
+}
+
+const THICK = 0.0085 // radius of an arrow's shaft, of what is shown
+const LEAST = 0.24 // of an old path's colour that stays
+
+export class World {
+  readonly axes = new Axes()
+  readonly sketch = new Sketch()
+  readonly actors: Actor[] = []
+  support: SupportModel | null = null
+  frame: Frame = 'world'
+  private fields: Fields | null = null
+  private duration = 0
+  private pathFrame: Frame | null = null
+  private readonly material = newPose()
+  private readonly view = newPose()
+  private readonly contact = new Vector3()
+  private readonly normal = new Vector3()
+  private readonly before = new Vector3()
+  private palette!: Palette
+  private widths!: { trail: number; rim: number; guide: number; sketch: number }
+
+  constructor(private readonly stage: Stage) {
+    stage.space.add(this.axes.group, this.sketch.line.mesh)
+  }
+
+  get scenes(): Scene[] {
+    return this.actors.map(({ body }) => body.scene)
+  }
+
+  /** Half of what is shown, m. */
+  get unit(): number {
+    return 1 / this.stage.space.scale.x
+  }
+
+  setScenes(scenes: readonly Scene[], keepScale: boolean): void {
+    this.clear()
+    const [first] = scenes
+    if (!first) return
+    this.rescale(scenes, keepScale)
+    if (!this.support || !sameGround(this.support.scene, first)) {
+      this.support?.dispose()
+      this.support = new SupportModel(first)
+      this.stage.root.add(this.support.group)
+    }
+    const scales = scalesOf(scenes, 0.5 * this.unit)
+    scenes.forEach((scene, i) => {
+      const body = new BodyModel(scene, i)
+      const guide = scene.columns.guiding_centre ? new Line(2) : null
+      this.actors.push({ body, trail: new Line(3), guide, arrows: new BodyArrows(body, scales, this.unit) })
+    })
+    for (const { body, arrows } of this.actors) this.stage.root.add(body.group, arrows.group)
+    this.fields = new Fields(first, 0.45 * this.unit)
+    this.stage.root.add(this.fields.group)
+    this.duration = Math.max(...scenes.map(({ header }) => header.duration))
+    this.pathFrame = null
+    this.look(this.palette, this.widths)
+    this.resize()
+  }
+
+  /** Keep the scale of before where the new runs are about as large, so that the picture stands still. */
+  private rescale(scenes: readonly Scene[], keepScale: boolean): void {
+    const scale = 1 / extent(placesToShow(scenes, this.frame))
+    const ratio = scale / this.stage.space.scale.x
+    if (!keepScale || ratio > 4 || ratio < 0.25) this.stage.space.scale.setScalar(scale)
+  }
+
+  look(palette: Palette, widths: { trail: number; rim: number; guide: number; sketch: number }): void {
+    this.palette = palette
+    this.widths = widths
+    this.axes.look(palette)
+    this.fields?.look(palette)
+    this.sketch.look(palette, widths.sketch)
+    this.support?.look(palette, widths)
+    for (const { body, trail, guide, arrows } of this.actors) {
+      body.look(palette)
+      arrows.look(palette)
+      trail.look({ colour: body.colour(palette), faded: palette.support.base, width: widths.trail })
+      guide?.look({ colour: palette.arrows.guide, faded: palette.support.base, width: widths.guide })
+    }
+  }
+
+  resize(): void {
+    const { width, height } = this.stage
+    this.support?.resize(width, height)
+    this.sketch.line.resize(width, height)
+    for (const { trail, guide } of this.actors) {
+      trail.resize(width, height)
+      guide?.resize(width, height)
+    }
+  }
+
+  resetCamera(top = false): void {
+    const { scenes } = this
+    if (!scenes[0]) return
+    const direction = top ? new Vector3(0, -1e-4, 1) : directionFor(scenes[0], this.frame)
+    this.stage.frame(placesToShow(scenes, this.frame), direction)
+    this.stage.shineOn(this.stage.orbit.target)
+  }
+
+  /** Move everything to a time; `follow`: the camera goes with the first body. */
+  update(time: number, show: Show, labels: LabelLayer, follow: boolean): void {
+    const [lead] = this.actors
+    if (!lead) return
+    if (this.pathFrame !== this.frame) this.layPaths()
+    lead.body.track.seek(time)
+    lead.body.track.supportOrientation(this.material.turn)
+    lead.body.track.supportPosition(this.material.place)
+    this.support?.group.position.copy(this.material.place)
+    this.support?.group.quaternion.copy(this.material.turn)
+    viewOf(this.frame, lead.body.scene.header.to_world, this.material, this.view)
+    this.before.copy(lead.body.group.position).applyMatrix4(this.stage.root.matrixWorld)
+    this.stage.root.quaternion.copy(this.view.turn)
+    this.stage.root.position.copy(this.view.place)
+    for (const actor of this.actors) actor.body.seek(time)
+    this.stage.space.updateMatrixWorld(true)
+    if (follow)
+      this.stage.carry(
+        this.contact.copy(lead.body.group.position).applyMatrix4(this.stage.root.matrixWorld).sub(this.before),
+      )
+    this.decorate(time, show, labels)
+  }
+
+  private decorate(time: number, show: Show, labels: LabelLayer): void {
+    this.stage.camera.updateMatrixWorld()
+    labels.begin((place) => this.stage.project(place))
+    const thick = THICK * this.unit * (this.widths.trail / 4)
+    this.actors.forEach(({ body, trail, guide, arrows }, i) => {
+      trail.mesh.visible = show.trail
+      trail.reach(time, fadingTime(this.duration), LEAST)
+      if (guide) {
+        guide.mesh.visible = show.guidingCentre
+        guide.reach(time, fadingTime(this.duration), LEAST)
+        if (show.guidingCentre && body.track.vector('guiding_centre', this.contact))
+          labels.put('', this.contact, this.palette.arrows.guide, 'guide')
+      }
+      body.track.contact(this.contact)
+      if (show.frictionCone && this.support) contactNormal(body, this.support.scene, this.contact, this.normal)
+      arrows.update(show, labels, this.palette, thick, this.normal)
+      this.shade(i, body)
+      if (this.actors.length > 1)
+        labels.put(body.scene.header.body.label, body.group.position, body.colour(this.palette), 'body')
+    })
+    const toSupport = (place: Vector3) => this.toSupport(place)
+    this.axes.update(show.axes, 0.35 * this.unit, 0.7 * thick, labels, toSupport)
+    this.fields?.update(thick, labels, this.palette)
+    const lies = (this.sketch.frame === 'corotating') === (this.frame === 'corotating')
+    this.placeSketch()
+    this.sketch.update(lies, labels, this.palette, (place) => (this.frame === 'corotating' ? toSupport(place) : place))
+    labels.end()
+  }
+
+  /** A learner's curve lies in the support frame, or on the support's material. */
+  private placeSketch(): void {
+    const parent = this.frame === 'corotating' ? this.stage.space : this.stage.root
+    if (this.sketch.line.mesh.parent !== parent) parent.add(this.sketch.line.mesh)
+  }
+
+  private shade(index: number, body: BodyModel): void {
+    if (!this.support) return
+    body.track.contact(this.contact)
+    const high = body.track.phase === 2 ? 0 : 0.55 * body.radius
+    const place = this.contact
+      .sub(this.material.place)
+      .applyQuaternion(this.view.turn.clone().copy(this.material.turn).conjugate())
+    this.support.shade(index, place.x, place.y, place.z, high)
+  }
+
+  /** Paths lie on the support's material where that is the frame shown, and else stand still in the support frame. */
+  private layPaths(): void {
+    const riding = this.frame === 'corotating'
+    const known = this.pathFrame !== null && (this.pathFrame === 'corotating') === riding
+    this.pathFrame = this.frame
+    if (known) return
+    for (const { body, trail, guide } of this.actors) {
+      const parent = riding ? this.stage.space : this.stage.root
+      trail.setPoints(pathPoints(body.scene, this.frame))
+      parent.add(trail.mesh)
+      if (!guide) continue
+      guide.setPoints(pathPoints(body.scene, this.frame, 'guiding_centre'))
+      parent.add(guide.mesh)
+    }
+  }
+
+  /** From the shown frame, m, to the support frame. */
+  toSupport(place: Vector3): Vector3 {
+    return place.sub(this.view.place).applyQuaternion(this.view.turn.clone().conjugate())
+  }
+
+  /** From the support frame, m, to the shown frame. */
+  toShown(place: Vector3): Vector3 {
+    return seen(this.view, place)
+  }
+
+  /** The first body, in the shown frame, m. */
+  shownPlace(index: number, out: Vector3): Vector3 {
+    const actor = this.actors[index]
+    return actor ? seen(this.view, out.copy(actor.body.group.position)) : out.set(0, 0, 0)
+  }
+
+  legend(show: Show): LegendRow[] {
+    return this.actors[0]?.arrows.legend(show, this.palette) ?? []
+  }
+
+  private clear(): void {
+    for (const { body, trail, guide, arrows } of this.actors) {
+      body.dispose()
+      trail.dispose()
+      guide?.dispose()
+      arrows.dispose()
+    }
+    this.actors.length = 0
+    this.fields?.dispose()
+    this.fields = null
+    for (let i = 0; i < 5; i++) this.support?.shade(i, 0, 0, 0, 0)
+  }
+
+  dispose(): void {
+    this.clear()
+    this.support?.dispose()
+    this.axes.dispose()
+    this.sketch.line.dispose()
+  }
+}
+
+/** Whether two scenes' supports look the same: making one anew takes longer than to compare. */
+function sameGround(one: Scene, other: Scene): boolean {
+  const [a, b] = [one.header.support, other.header.support]
+  if (a.kind !== b.kind || a.moves !== b.moves || a.rim !== b.rim || a.marks !== b.marks || a.size !== b.size)
+    return false
+  const [p, q] = [one.columns.support_vertices, other.columns.support_vertices]
+  if (!p || !q) return p === q
+  return p.length === q.length && p.every((value, i) => value === q[i])
+}
