@@ -16,8 +16,8 @@ const KEYS: [string, [string, string][]][] = [
     [
       ['/', 'Find a scenario'],
       ['Ctrl Z', 'Undo; with Shift, redo'],
-      ['[ and ]', 'Fold the left and the right panel'],
-      ['L', 'Copy a link to this scenario'],
+      [', and .', 'Fold the left and the right panel'],
+      ['S', 'Copy a link to this scenario'],
       ['O', 'Tool: turn the view'],
       ['D', 'Tool: put the ball somewhere else'],
       ['V', 'Tool: draw its first velocity'],
@@ -28,10 +28,15 @@ const KEYS: [string, [string, string][]][] = [
     'The film',
     [
       ['Space', 'Play, pause'],
-      ['← →', 'A step back, a step on'],
+      ['← →', 'A sample back, a sample on; with Shift a twentieth of the run'],
       ['Home End', 'To the start, to the end'],
-      ['R', 'View from the side again'],
-      ['T', 'View from above'],
+      ['[ and ]', 'Slower, faster'],
+      ['L', 'Repeat'],
+      ['F', 'Whose eyes: room, table, riding along'],
+      ['C', 'Camera back to its place'],
+      ['T', 'From above'],
+      ['B', 'The camera goes with the body'],
+      ['1 to 8', 'Arrows, path, axes: shown or not'],
     ],
   ],
   [
@@ -45,7 +50,7 @@ const KEYS: [string, [string, string][]][] = [
 ]
 
 function row([keys, what]: [string, string]): HTMLElement {
-  const caps = keys.split(' ').map((key) => (/^(and|or)$/.test(key) ? ` ${key} ` : h('kbd', {}, key)))
+  const caps = keys.split(' ').map((key) => (/^(and|or|to)$/.test(key) ? ` ${key} ` : h('kbd', {}, key)))
   return h('div', { class: 'help-row' }, h('dt', {}, caps), h('dd', {}, what))
 }
 

@@ -123,7 +123,7 @@ function mount(host: HTMLElement, app: App): () => void {
     class: 'button',
     type: 'button',
     'aria-label': 'Copy link',
-    title: 'Copy a link (L)',
+    title: 'Copy a link (S)',
     onclick: () => void copyLink(app),
   })
   link.append(icon('link'), h('span', { class: 'button-word' }, 'Link'))
@@ -138,10 +138,11 @@ function mount(host: HTMLElement, app: App): () => void {
   const left = h('aside', { class: 'panel panel-left', 'aria-label': 'Controls' }, controls.element)
   const right = h('aside', { class: 'panel panel-right', 'aria-label': 'Results' }, tabs.list, tabs.panels)
   const grid = h('div', { class: 'bench' })
-  const folds = [fold(grid, 'left', 'controls', '['), fold(grid, 'right', 'results', ']')] as const
+  const folds = [fold(grid, 'left', 'controls', ','), fold(grid, 'right', 'results', '.')] as const
   const sheet = createSheet(grid)
   right.prepend(sheet.handle)
-  fill(grid, bar, left, h('div', { class: 'middle' }, notes, stage.element, folds[0], folds[1]), right)
+  const middle = h('div', { class: 'middle' }, stage.element, folds[0], folds[1])
+  fill(grid, bar, left, middle, right)
   fill(host, h('h1', { class: 'sr-only' }, 'Bench'), grid)
 
   function showScenario(scenario: Scenario): void {
@@ -167,8 +168,11 @@ function mount(host: HTMLElement, app: App): () => void {
   const narrow = matchMedia('(max-width: 56rem)')
   function arrange(): void {
     const slot = tabs.panels.querySelector('.controls-slot')!
-    if (narrow.matches) slot.append(controls.element)
-    else left.append(controls.element)
+    if (narrow.matches) slot.append(notes, controls.element)
+    else {
+      left.append(controls.element)
+      middle.prepend(notes)
+    }
     tabs.hide('controls', !narrow.matches)
     if (narrow.matches) tabs.show('controls')
   }

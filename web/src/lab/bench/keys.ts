@@ -12,32 +12,15 @@ interface Actions {
 }
 
 export function benchKeys(app: App, { stage, pick, fold }: Actions): () => void {
-  const { viewer } = stage
   const actions: Record<string, () => void> = {
     '/': pick,
-    '[': () => fold('left'),
-    ']': () => fold('right'),
-    l: () => void copyLink(app),
+    ',': () => fold('left'),
+    '.': () => fold('right'),
+    s: () => void copyLink(app),
     o: () => stage.useTool('orbit'),
     d: () => stage.useTool('drag'),
     v: () => stage.useTool('velocity'),
     n: () => stage.useTool('nudge'),
-    r: () => viewer.resetCamera(),
-    t: () => viewer.topView(),
-    ' ': () => (viewer.playing ? viewer.pause() : viewer.play()),
-    ArrowRight: () => viewer.step(1),
-    ArrowLeft: () => viewer.step(-1),
-    Home: () => viewer.seek(0),
-    End: () => viewer.seek(viewer.duration),
-  }
-  /** Keys that a control under the focus uses itself. */
-  const own = (event: KeyboardEvent) => {
-    const target = event.target as HTMLElement
-    if (event.key === ' ') return target.closest('button, summary, input, a, [role=radio]') !== null
-    return (
-      /^(Arrow|Home|End)/.test(event.key) &&
-      target.closest('input, [role=tablist], [role=radiogroup], [role=slider]') !== null
-    )
   }
   return listen(document, 'keydown', (event: KeyboardEvent) => {
     if (event.defaultPrevented || document.querySelector('dialog[open]')) return
@@ -47,10 +30,27 @@ export function benchKeys(app: App, { stage, pick, fold }: Actions): () => void 
       event.preventDefault()
       return
     }
-    if (event.ctrlKey || event.metaKey || event.altKey || event.shiftKey || isTyping(event) || own(event)) return
-    const action = actions[event.key]
-    if (!action) return
+    if (event.ctrlKey || event.metaKey || event.altKey || isTyping(event) || isOwn(event)) return
+    const action = event.shiftKey ? undefined : actions[event.key]
+    if (action) action()
+    else if (!toViewer(event, stage)) return
     event.preventDefault()
-    action()
   })
+}
+
+/** Does a control under the focus use this key itself? */
+function isOwn(event: KeyboardEvent): boolean {
+  const target = event.target as HTMLElement
+  if (event.key === ' ') return target.closest('button, summary, input, a, [role=radio]') !== null
+  if (!/^(Arrow|Home|End|Page)/.test(event.key)) return false
+  return target.closest('input, [role=tablist], [role=radiogroup], [role=slider], [role=tabpanel]') !== null
+}
+
+/** The viewer knows keys of its own while it has the focus; here it gets them wherever the focus is. */
+function toViewer(event: KeyboardEvent, stage: Stage): boolean {
+  const canvas = stage.element.querySelector<HTMLElement>('[data-testid="stage"]')
+  if (!canvas || stage.element.contains(event.target as Node)) return false
+  const { key, code, shiftKey } = event
+  const again = new KeyboardEvent('keydown', { key, code, shiftKey, bubbles: false, cancelable: true })
+  return !canvas.dispatchEvent(again)
 }

@@ -79,7 +79,7 @@ function bodySection(scenario: Scenario): Section {
     items.push({
       type: 'choice',
       path: 'body.kind',
-      label: 'Body',
+      label: 'Shape',
       value: body.kind,
       options: offered(BODIES, body.kind),
       set: withBody,
@@ -123,7 +123,7 @@ function supportSection(scenario: Scenario): Section {
     {
       type: 'choice',
       path: 'support.kind',
-      label: 'Support',
+      label: 'Surface',
       value: support.kind,
       options: offered(SURFACES, support.kind),
       set: withSurface,
@@ -147,7 +147,7 @@ function motionSection(scenario: Scenario): Section {
     {
       type: 'choice',
       path: 'support.motion.kind',
-      label: 'Motion',
+      label: 'Kind',
       value: motion.kind,
       options: offered(MOTIONS, motion.kind),
       set: withMotion,

@@ -81,7 +81,7 @@ export async function pickScenario(api: Api, choose: (name: string) => void): Pr
         'button',
         { class: 'picker-card', type: 'button', onclick: take, 'data-scenario': entry.name },
         h('strong', {}, entry.title),
-        h('span', { class: 'picker-summary' }, entry.summary),
+        h('span', { class: 'picker-summary' }, entry.summary.replaceAll('`', '')),
         h('span', { class: 'picker-tags' }, entry.exact ? h('span', { class: 'tag tag-exact' }, 'closed form') : null),
       ),
     )

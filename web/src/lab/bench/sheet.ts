@@ -1,7 +1,7 @@
 /** The sheet at the bottom of a phone: pulled up and down by its handle, or stepped by the arrow keys. */
 import { h } from '../dom'
 
-const STOPS = [12, 46, 82]
+const STOPS = [12, 42, 80]
 
 export function createSheet(content: HTMLElement): { handle: HTMLElement; open(): void } {
   let height = STOPS[1]!

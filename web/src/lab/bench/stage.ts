@@ -166,10 +166,8 @@ export function createStage(app: App): Stage {
       scene = next
       viewer.setScenes([next], { keepTime: !first && keepCamera, keepCamera: !first && keepCamera })
       drawHeadline(next)
-      if (!hasStarted && !app.settings.reducedMotion) {
-        hasStarted = true
-        viewer.play()
-      }
+      if (!hasStarted && !app.settings.reducedMotion && viewer.tool === 'orbit') viewer.play()
+      hasStarted = true
     },
     working(busy) {
       element.toggleAttribute('data-busy', busy)
