@@ -41,14 +41,16 @@ void main() {
   vec2 way = (q.xy / q.w - p.xy / p.w) * resolution * 0.5;
   float pixels = length(way);
   way = pixels > 1e-4 ? way / pixels : vec2(1.0, 0.0);
-  float reach = 0.5 * width + 1.0;
+  // Beyond its ends by as much as closes the gap at a bend: little where points are dense and bends slight.
+  float across = 0.5 * width;
+  float beyond = min(across, pixels);
   bool end = position.y > 0.5;
   vec4 corner = end ? q : p;
-  vec2 offset = (vec2(-way.y, way.x) * position.x + way * (end ? 1.0 : -1.0)) * reach;
+  vec2 offset = vec2(-way.y, way.x) * position.x * across + way * (end ? beyond : -beyond);
   corner.xy += offset / resolution * 2.0 * corner.w;
   gl_Position = corner;
   vLength = pixels;
-  vPlace = vec2(position.x * reach, end ? pixels + reach : -reach);
+  vPlace = vec2(position.x * across, end ? pixels + beyond : -beyond);
   vTime = mix(from.w, to.w, end ? share : 0.0);
 }
 `
@@ -67,13 +69,10 @@ varying float vLength;
 
 void main() {
   float beyond = max(max(-vPlace.y, vPlace.y - vLength), 0.0);
-  float off = length(vec2(vPlace.x, beyond));
-  float alpha = 1.0 - smoothstep(0.5 * width - 0.5, 0.5 * width + 0.5, off);
-  if (dash > 0.0) alpha *= step(fract(vTime / dash), 0.55);
-  if (alpha < 0.02) discard;
+  if (beyond > 0.0 && vLength > 0.5 * width && length(vec2(vPlace.x, beyond)) > 0.5 * width) discard;
+  if (dash > 0.0 && fract(vTime / dash) > 0.55) discard;
   float fresh = fading > 0.0 ? mix(least, 1.0, exp(-(now - vTime) / fading)) : 1.0;
-  gl_FragColor = vec4(mix(faded, colour, fresh), alpha);
-  #include <colorspace_fragment>
+  gl_FragColor = vec4(mix(faded, colour, fresh), 1.0); // as the eye sees it: the colours are not linear ones
 }
 `
 
@@ -101,8 +100,7 @@ export class Line {
       uniforms: this.uniforms,
       vertexShader: VERTEX,
       fragmentShader: FRAGMENT,
-      // Not blended: overlapping pieces of a half-transparent line would show as beads.
-      alphaToCoverage: true,
+      // Not blended: overlapping pieces of a half-transparent line would show as beads. Multisampling makes it smooth.
       side: DoubleSide,
       toneMapped: false,
     })
@@ -130,8 +128,8 @@ export class Line {
   }
 
   look({ colour, faded, width }: LineLook): void {
-    this.uniforms.colour.value.set(colour)
-    this.uniforms.faded.value.set(faded ?? colour)
+    this.uniforms.colour.value.set(colour).convertLinearToSRGB()
+    this.uniforms.faded.value.set(faded ?? colour).convertLinearToSRGB()
     this.uniforms.width.value = width
   }
 

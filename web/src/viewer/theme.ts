@@ -27,7 +27,7 @@ export interface Palette {
 const LIGHT: Palette = {
   background: '#e6e8ea',
   glow: '#fbfbfa',
-  support: { base: '#fbfaf6', other: '#eceae3', line: '#b4b1a8', mark: '#f5d48c', edge: '#8b8f94', glass: 0.34 },
+  support: { base: '#faf8f2', other: '#e9e6dd', line: '#b4b1a8', mark: '#f5d48c', edge: '#8b8f94', glass: 0.34 },
   body: { light: '#fdfcf8', ink: '#1a1c1f', pole: '#f0e442' },
   bodies: ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#b37c00'],
   arrows: {
@@ -43,7 +43,7 @@ const LIGHT: Palette = {
     sketch: '#a8478b',
   },
   axes: ['#b03a00', '#00724f', '#00659f'],
-  light: { sky: '#ffffff', ground: '#e2dfd7', ambient: 1.6, key: 2.0, fill: 0.35, shadow: 0.5 },
+  light: { sky: '#ffffff', ground: '#e2dfd7', ambient: 1.5, key: 1.5, fill: 0.35, shadow: 0.5 },
 }
 
 const DARK: Palette = {

@@ -23,7 +23,7 @@ interface Actor {
 }
 
 const THICK = 0.0085 // radius of an arrow's shaft, of what is shown
-const LEAST = 0.24 // of an old path's colour that stays
+const LEAST = 0.34 // of an old path's colour that stays
 
 export class World {
   readonly axes = new Axes()
