@@ -16,6 +16,7 @@ from .mechanics.system import RollingSystem, State
 from .scenario import ScenarioFile
 from .solve.methods import solver
 from .solve.samples import Event, Samples
+from .viewer.viewable import Viewable
 
 if TYPE_CHECKING:
     import xarray
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, repr=False)
-class Trajectory:
+class Trajectory(Viewable):
     """The motion of one body: a dataset over time, with the system and the start that gave it.
 
     Parameters

@@ -17,6 +17,7 @@ from . import CARD_FAILED, constraints, screen, signals
 from .check import check
 from .derive import derive
 from .equilibria import equilibria
+from .export import export
 from .lab import lab
 from .sensitivity import sensitivity
 from .steady import steady
@@ -49,6 +50,7 @@ def command() -> Any:
     app.command("sensitivity", short_help="Rank the shortcomings of a turntable by what they do.")(sensitivity)
     app.command("equilibria", short_help="Where a body stays, put down at rest.")(equilibria)
     app.command("vakonomic", short_help="A negative control: the wrong path of stationary action.")(vakonomic)
+    app.command("export", short_help="Write a run as a page, a model, a picture, a table.")(export)
     app.command("lab", short_help="Open the lab: the ball in a browser.")(lab)
     app.command("steady", short_help="Steady motions, and whether they are stable.")(steady)
     return typer.main.get_command(app)

@@ -1,0 +1,120 @@
+"""`trundle export`: a run in another form, by the ending of the file's name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ..errors import InvalidValueError
+from ..scenario import files
+from . import screen, signals
+
+if TYPE_CHECKING:
+    from ..scene import Scene
+
+# The endings, here in words so that asking for help loads nothing; a test compares them with the table.
+ENDINGS = (".html", ".glb", ".gif", ".png", ".svg", ".csv", ".nc", ".toml")
+_SEVERAL = ".html"
+
+
+def export(
+    runs: Annotated[
+        list[str], typer.Argument(metavar="RUN", help="A run.nc, a scenario's name or a TOML file. .html: several.")
+    ],
+    file: Annotated[str, typer.Argument(metavar="FILE", help="The file to make.")],
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
+) -> None:
+    """Write a run in another form; the ending of FILE says which. A scenario is run first.
+
+    .html: a page that plays it in any browser, without a network, to be mailed; of several runs, all on one stage.
+    .glb: an animated model. .gif: an animation. .png, .svg: the figure of the path. .csv: its numbers. .nc: all of
+    it. .toml: its scenario.
+
+    Exit status: 0, all is well; 2, bad input; 130, interrupted; 1, all else.
+    """
+    from ..files import written_whole
+
+    target = Path(file).expanduser()
+    _check(runs, target)
+    content = _content(runs, target.suffix.lower(), bar=not quiet)
+    with written_whole(target) as temporary:
+        temporary.write_bytes(content)
+    if not quiet:
+        screen.out(f"Wrote {target} ({_size(len(content))})")
+
+
+def _check(names: list[str], target: Path) -> None:
+    """Refuse what cannot be meant before anything is computed."""
+    if target.suffix.lower() not in ENDINGS:
+        raise InvalidValueError("FILE", f"must end in one of {', '.join(ENDINGS)}", str(target))
+    if target.is_dir() or not target.parent.is_dir():
+        rule = "must not be a folder" if target.is_dir() else "must lie in a folder that exists"
+        raise InvalidValueError("FILE", rule, str(target))
+    if len(names) > 1 and target.suffix.lower() != _SEVERAL:
+        remedy = f"Only {_SEVERAL} can hold several."
+        raise InvalidValueError("RUN", "must be one", ", ".join(names), remedy)
+    if any(_same(name, target) for name in names):
+        raise InvalidValueError("FILE", "must not be the run itself", str(target), "Choose another name.")
+
+
+def _same(name: str, target: Path) -> bool:
+    try:
+        return Path(name).samefile(target)
+    except (OSError, ValueError):
+        return False
+
+
+def _content(names: list[str], suffix: str, *, bar: bool) -> bytes:
+    from ..viewer import exports
+
+    if suffix == ".toml" and not _is_run(names[0]):
+        return _scenario(names[0]).to_toml().encode()  # nothing need be computed for it
+    found = [_motion(name, bar=bar) for name in names]
+    if len(found) == 1:
+        return exports.export(found[0][0], suffix, found[0][1])
+    from ..viewer.page import page_of
+
+    return page_of([make_scene(motion, with_card=True) for motion, make_scene in found])
+
+
+def _is_run(name: str) -> bool:
+    return Path(name).suffix.lower() == ".nc"
+
+
+def _scenario(name: str) -> Any:
+    """Return a scenario, or a path to roll along."""
+    from ..geometry import PathScenario
+    from .app import load
+
+    tables = files.parse(files.read(name), name)
+    return PathScenario.read(tables, name) if files.rolls_along_path(tables) else load(name)
+
+
+def _motion(name: str, *, bar: bool) -> tuple[Any, Callable[..., Scene]]:
+    """Return a motion, loaded or computed, and what makes a scene of it."""
+    from ..scene import scene_of
+
+    if _is_run(name):
+        from ..trajectory import Trajectory
+
+        return Trajectory.load(Path(name).expanduser()), scene_of
+    scenario = _scenario(name)
+    if hasattr(scenario, "path"):
+
+        def rolled(_: Any, with_card: bool = False) -> Scene:
+            from ..lab.rolling import rolled_scene
+
+            return rolled_scene(scenario, card=with_card)
+
+        return scenario.run(), rolled
+    with screen.ProgressBar(wanted=bar) as progress:
+        run = scenario.run(progress=progress)
+    signals.check()
+    return run, scene_of
+
+
+def _size(count: int) -> str:
+    return f"{count / 1e6:.1f} MB" if count >= 1e5 else f"{count / 1e3:.1f} kB"

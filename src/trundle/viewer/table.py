@@ -1,0 +1,46 @@
+"""A motion as a table of numbers, which any program reads, `trundle check` among them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def csv_of(data: xarray.Dataset) -> bytes:
+    """Return labelled arrays as CSV: a column for each component, its unit in brackets behind its name.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Over `time` or `distance`.
+
+    Returns
+    -------
+    bytes
+        Every digit is kept; `trundle check` reads it back.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> csv_of(tr.Scenario.load("level-turntable-nudged").run().data).split(b",")[:3]
+    [b'time [s]', b'position_x [m]', b'position_y [m]']
+    """
+    import pandas as pd
+
+    main = "time" if "time" in data.dims else "distance"
+    columns = {_heading(main, data[main]): data[main].values}
+    for name, variable in data.data_vars.items():
+        if variable.dims == (main,):
+            columns[_heading(str(name), variable)] = variable.values
+        elif variable.dims[0] == main:
+            for part in data[variable.dims[1]].values:
+                values = variable.sel({variable.dims[1]: part}).values
+                columns[_heading(f"{name}_{part}", variable)] = values
+    return pd.DataFrame(columns).to_csv(index=False, lineterminator="\r\n").encode()
+
+
+def _heading(name: str, variable: xarray.DataArray) -> str:
+    unit = str(variable.attrs.get("units", "1")).replace(" s-1", "/s")
+    return name if unit == "1" else f"{name} [{unit}]"

@@ -1,0 +1,132 @@
+"""What every run can do to be looked at: a widget, a page, a model."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from ..errors import TrundleError
+from ..files import written_whole
+
+if TYPE_CHECKING:
+    from ..trajectory import Trajectory
+    from .widget import SceneWidget
+
+
+class NoWidgetsError(TrundleError):
+    """A notebook's widget was asked for, and what it needs is not installed."""
+
+
+class Viewable:
+    """The part of a Trajectory that shows it.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> isinstance(tr.Scenario.load("level-turntable-nudged").run(), Viewable)
+    True
+    """
+
+    def view(self, *others: Trajectory, **options: Any) -> SceneWidget:
+        """Show the motion in a notebook: Jupyter, VS Code or marimo.
+
+        Parameters
+        ----------
+        *others : Trajectory
+            More bodies on the same stage, which has the support of this one.
+        **options
+            `frame`, `theme`, `height`, `speed` and more: see `trundle.viewer.widget.SceneWidget`.
+
+        Returns
+        -------
+        SceneWidget
+            Shown where a cell ends with it; where there are no widgets, a picture of the path.
+
+        Raises
+        ------
+        NoWidgetsError
+            If anywidget is not installed; the extra `notebook` brings it.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> with tr.Scenario.load("level-turntable-nudged").run().view(height=300) as widget:
+        ...     widget.height
+        300
+        """
+        try:
+            import anywidget  # noqa: F401
+        except ImportError:
+            raise NoWidgetsError(
+                "`view` needs anywidget, which is not installed here: pip install 'trundle[notebook]'. "
+                "`save_html` needs nothing more, and shows the same in any browser."
+            ) from None
+        from .widget import SceneWidget
+
+        return SceneWidget((cast("Trajectory", self), *others), **options)
+
+    def save_html(self, path: Any, *others: Trajectory) -> Path:
+        """Write one file that plays the motion in any browser, without a network, with its card.
+
+        Parameters
+        ----------
+        path : path
+            Such as ``"scene.html"``; its folder must exist.
+        *others : Trajectory
+            More bodies on the same stage.
+
+        Returns
+        -------
+        pathlib.Path
+            The file, written whole or not at all.
+
+        Raises
+        ------
+        TrundleError
+            If it cannot be written.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> tr.Scenario.load("level-turntable-nudged").run().save_html("scene.html").suffix
+        '.html'
+        """
+        from ..scene import scene_of
+        from .page import page_of
+
+        runs = (cast("Trajectory", self), *others)
+        return _written(Path(path), page_of([scene_of(run, with_card=True) for run in runs]))
+
+    def save_glb(self, path: Any) -> Path:
+        """Write an animated model, glTF 2.0 with y up, for Blender and other programs.
+
+        Parameters
+        ----------
+        path : path
+            Such as ``"scene.glb"``; its folder must exist.
+
+        Returns
+        -------
+        pathlib.Path
+            The file, written whole or not at all.
+
+        Raises
+        ------
+        TrundleError
+            If it cannot be written.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> tr.Scenario.load("level-turntable-nudged").run().save_glb("scene.glb").suffix
+        '.glb'
+        """
+        from .exports import export
+
+        return _written(Path(path), export(cast("Trajectory", self), ".glb"))
+
+
+def _written(target: Path, content: bytes) -> Path:
+    with written_whole(target) as temporary:
+        temporary.write_bytes(content)
+    return target

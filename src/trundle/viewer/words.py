@@ -1,0 +1,209 @@
+"""What a saved page says in words and numbers: summary, formula, findings, card, scenario. All text is escaped."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from html import escape
+from typing import Any
+
+from ..scene import Scene
+from .formulas import mathml
+
+_VERDICTS = {
+    True: '<span class="page-good">holds</span>',
+    False: '<strong class="page-bad">fails</strong>',
+    None: "",
+}
+_METHODS = {"exact": "closed form", "taylor": "Taylor integration", "runge-kutta": "Runge-Kutta integration"}
+
+
+def summary_of(scenes: Sequence[Scene]) -> str:
+    """Return who moves on what, for how long, and how it was computed.
+
+    Parameters
+    ----------
+    scenes : sequence of Scene
+        Of one page.
+
+    Returns
+    -------
+    str
+        Markup.
+    """
+    first = scenes[0].header
+    bodies = [escape(str(scene.header["body"]["label"])) for scene in scenes]
+    methods = dict.fromkeys(_METHODS.get(scene.header["method"], str(scene.header["method"])) for scene in scenes)
+    told = [
+        *(f'<span class="page-body page-body-{i}">{name}</span>' for i, name in enumerate(bodies, start=1)),
+        escape(str(first["support"]["name"])),
+        f"{max(float(scene.header['duration']) for scene in scenes):.6g} s",
+        escape(", ".join(methods)),
+    ]
+    return f'<p class="page-summary">{" <i>·</i> ".join(told)}</p>'
+
+
+def formula_of(scenes: Sequence[Scene]) -> str:
+    """Return the formula that a motion follows, with its numbers put in; nothing where there is none.
+
+    Parameters
+    ----------
+    scenes : sequence of Scene
+        Of one page; the first one's is shown.
+
+    Returns
+    -------
+    str
+        Markup.
+    """
+    formula = scenes[0].header.get("formula")
+    if not formula:
+        return ""
+    lines = "".join(mathml(formula[key], display=True) for key in ("latex", "numbers_latex") if formula.get(key))
+    name = escape(str(formula["name"]))
+    return f'<section class="page-formula"><h2>{name}</h2><div class="page-wide">{lines}</div></section>'
+
+
+def findings_of(scenes: Sequence[Scene]) -> str:
+    """Return what theory predicts beside what was measured on the computed path.
+
+    Parameters
+    ----------
+    scenes : sequence of Scene
+        Of one page.
+
+    Returns
+    -------
+    str
+        Markup; empty where nothing was found.
+    """
+    named = len(scenes) > 1
+    rows = []
+    for scene in scenes:
+        for finding in scene.header.get("findings") or []:
+            who = escape(str(scene.header["body"]["label"]))
+            rows.append(([who] if named else []) + _finding(finding))
+    if not rows:
+        return ""
+    heads = (["Body"] if named else []) + ["", "", "Predicted", "Measured", "Unit", "Apart by"]
+    table = _table(heads, rows, numbers=(len(heads) - 4, len(heads) - 3, len(heads) - 1))
+    return f"<section><h2>Theory and motion</h2>{table}</section>"
+
+
+def _finding(finding: dict[str, Any]) -> list[str]:
+    note = f"<small>{escape(str(finding['note']))}</small>" if finding.get("note") else ""
+    difference = finding.get("difference")
+    return [
+        f"{escape(str(finding['name']))}{note}",
+        mathml(str(finding.get("symbol") or "")),
+        number(finding.get("predicted")),
+        number(finding.get("measured")),
+        escape(str(finding.get("unit") or "")),
+        "" if difference is None else number(difference, 2),
+    ]
+
+
+def card_of(scene: Scene, *, named: bool) -> str:
+    """Return a scene's verification card.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a card or without.
+    named : bool
+        Whether to say whose it is.
+
+    Returns
+    -------
+    str
+        Markup; empty where there is no card.
+    """
+    card = scene.header.get("card")
+    if not card:
+        return ""
+    failed = sum(figure["passed"] is False for figure in card["figures"])
+    verdict = "every check held" if card["passed"] else f"{failed} of the checks failed"
+    state = "good" if card["passed"] else "bad"
+    rows = [_figure(figure) for figure in card["figures"]]
+    table = _table(["", "Check", "Value", "At most", "How"], rows, numbers=(2, 3))
+    who = f" of the {escape(str(scene.header['body']['label']))}" if named else ""
+    head = f'<summary><h2>Verification{who}</h2> <strong class="page-{state}">{verdict}</strong></summary>'
+    method = str(card["method"])
+    told = f"<p>{escape(method[:1].upper() + method[1:])}.</p>"
+    return f"<details{' open' * (not named)}>{head}{told}{table}</details>"
+
+
+def _figure(figure: dict[str, Any]) -> list[str]:
+    passed = figure["passed"]
+    verdict = {True: '<span class="page-good">holds</span>', False: '<strong class="page-bad">fails</strong>'}.get(
+        passed, ""
+    )
+    digits = 6 if passed is None and figure["bound"] is None else 2
+    return [
+        verdict,
+        escape(str(figure["name"])),
+        f"{number(figure['value'], digits)} {escape(str(figure['unit']))}".strip(),
+        number(figure["bound"], 2),
+        escape(str(figure["note"])),
+    ]
+
+
+def scenario_of(scene: Scene, *, named: bool) -> str:
+    """Return the scenario that gives this motion again.
+
+    Parameters
+    ----------
+    scene : Scene
+        Whose scenario.
+    named : bool
+        Whether to say whose it is.
+
+    Returns
+    -------
+    str
+        Markup; empty where the scenario format has no words for it.
+    """
+    text = scene.header.get("scenario_toml")
+    if not text:
+        return ""
+    who = f" of the {escape(str(scene.header['body']['label']))}" if named else ""
+    told = "<p>Saved as <code>my.toml</code>, it gives this motion again: <code>trundle run my.toml</code></p>"
+    return f'<details><summary><h2>Scenario{who}</h2></summary>{told}<pre tabindex="0">{escape(text)}</pre></details>'
+
+
+def number(value: Any, digits: int = 6) -> str:
+    """Return a number as a page shows it.
+
+    Parameters
+    ----------
+    value : float, str or None
+        Text stays as it is, none becomes nothing.
+    digits : int
+        At most.
+
+    Returns
+    -------
+    str
+        With a proper minus, and powers of ten as such.
+
+    Examples
+    --------
+    >>> number(-0.25), number(1.5e-16, 2), number(None)
+    ('−0.25', '1.5·10<sup>−16</sup>', '')
+    """
+    if value is None or isinstance(value, str):
+        return escape(value or "")
+    mantissa, _, power = f"{float(value):.{digits}g}".replace("-", "−").partition("e")
+    if not power:
+        return mantissa
+    sign, size = "−" * power.startswith("−"), power.lstrip("+−0")
+    return f"{mantissa + '·' if mantissa != '1' else ''}10<sup>{sign}{size}</sup>"
+
+
+def _table(heads: Sequence[str], rows: Iterable[Sequence[str]], numbers: Iterable[int]) -> str:
+    right = set(numbers)
+    kind = ['class="page-number"' if i in right else "" for i in range(len(heads))]
+    head = "".join(f'<th scope="col" {kind[i]}>{name}</th>' if name else "<td></td>" for i, name in enumerate(heads))
+    body = "".join("<tr>" + "".join(f"<td {kind[i]}>{c}</td>" for i, c in enumerate(row)) + "</tr>" for row in rows)
+    return (
+        f'<div class="page-wide" tabindex="0"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>'
+    )
