@@ -28,6 +28,8 @@ from .sphere_on_free_plane import SphereOnFreePlane
 from .sphere_on_plane import SphereOnPlane
 from .sphere_on_sphere import SphereOnSphere
 from .sphere_on_unsteady_plane import SphereOnUnsteadyPlane
+from .steady_chaplygin_ball import SteadyChaplyginBall
+from .upright_chaplygin_ball import UprightChaplyginBall
 
 CLOSED_FORMS: tuple[type[ClosedForm], ...] = (
     SphereOnPlane,
@@ -39,7 +41,9 @@ CLOSED_FORMS: tuple[type[ClosedForm], ...] = (
     SphereOnUnsteadyPlane,
     SphereOnFreePlane,
     SphereOnSphere,
+    SteadyChaplyginBall,
     ChaplyginBall,
+    UprightChaplyginBall,
     SlidingSphere,
     SphereInFlight,
     RestingBody,
@@ -137,6 +141,8 @@ __all__ = [
     "SphereOnPlane",
     "SphereOnSphere",
     "SphereOnUnsteadyPlane",
+    "SteadyChaplyginBall",
+    "UprightChaplyginBall",
     "closed_form",
     "form_of_phase",
     "refusals",

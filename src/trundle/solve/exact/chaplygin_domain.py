@@ -14,6 +14,8 @@ from ...mechanics.shapes import concentric_sphere
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem
 
+_EQUAL = 1e-15  # share of a moment by which two that are equal may differ after rounding
+
 Axes = tuple[tuple[float, float, float], ...]
 
 
@@ -85,6 +87,53 @@ def principal_axes(body: Any) -> tuple[tuple[float, float, float], Axes]:
         axes = axes * np.array([1.0, 1.0, np.sign(np.linalg.det(axes))])
     first, second, third = (float(moment) for moment in moments)
     return (first, second, third), tuple((float(x), float(y), float(z)) for x, y, z in axes.T)
+
+
+def two_are_equal(moments: tuple[float, float, float]) -> int | None:
+    """Return which of three moments of inertia differs from two that are equal to rounding.
+
+    Parameters
+    ----------
+    moments : tuple of 3 float
+        kg m².
+
+    Returns
+    -------
+    int or None
+        None where no two are equal.
+
+    Examples
+    --------
+    >>> two_are_equal((2.0, 3.0, 2.0)), two_are_equal((1.0, 2.0, 3.0))
+    (1, None)
+    """
+    for i in range(3):
+        first, second = moments[(i + 1) % 3], moments[(i + 2) % 3]
+        if abs(first - second) <= _EQUAL * max(first, second):
+            return i
+    return None
+
+
+def body_quaternion(axes: Axes) -> Quaternion:
+    """Return the turn from a body's principal axes to its frame.
+
+    Parameters
+    ----------
+    axes : triple of unit vectors
+        As of `principal_axes`.
+
+    Returns
+    -------
+    Quaternion
+        1 where they are the frame's own.
+
+    Examples
+    --------
+    >>> body_quaternion(((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
+    Quaternion(w=1.0, x=0.0, y=0.0, z=0.0)
+    """
+    first, second, third = (Vector(*axis) for axis in axes)
+    return Quaternion.of_matrix(Matrix(first, second, third).transpose)
 
 
 def stance_of(before: Vector, now: Vector) -> Quaternion:

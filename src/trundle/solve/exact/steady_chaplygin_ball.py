@@ -1,0 +1,167 @@
+"""T15c: Chaplygin's ball that turns steadily about one of its principal axes, however that leans: along a line."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from ...mechanics.algebra import E_Z, Quaternion, Vector
+from ...mechanics.loads import constant_part
+from ...mechanics.scalars import Scalar, namespace
+from ...mechanics.system import RollingSystem, State
+from .base import ClosedForm
+from .chaplygin_domain import principal_axes, reasons_outside, two_are_equal
+
+_ASIDE = 1e-14  # share of the momentum that may lie across Ω by rounding
+
+
+@dataclass(frozen=True)
+class SteadyChaplyginBall(ClosedForm):
+    """A ball with its centre of mass at its centre and a constant Ω along a principal axis, or at rest (T15c).
+
+    The plane has nothing to hold against: friction is zero. Every number may be a float, or an array of members.
+
+    Parameters
+    ----------
+    radius : float or array
+        a, m.
+    position : pair of float or array
+        Centre at t = 0 over the plane, m.
+    angular_velocity : triple of float or array
+        Ω, rad/s.
+    normal_force : float or array
+        N, N.
+
+    Examples
+    --------
+    >>> SteadyChaplyginBall(0.1, (0.0, 0.0), (0.0, 3.0, 4.0)).motion_at(2.0)[0]
+    Vector(x=0.6000000000000001, y=0.0, z=0.1)
+    """
+
+    radius: Scalar
+    position: tuple[Scalar, Scalar]
+    angular_velocity: tuple[Scalar, Scalar, Scalar]
+    normal_force: Scalar = 0.0
+
+    name = "Chaplygin's ball about a principal axis"
+    equation = "T15c"
+    source = "Chaplygin, Mat. Sb. 24, 139 (1903); theory page, T15"
+    domain = (
+        "a ball with its centre of mass at its centre that turns about a principal axis, not the middle one, or is at "
+        "rest, on a level plane at rest, under constant forces along the normal"
+    )
+    never = frozenset({"lift", "slip", "curved"})
+
+    @classmethod
+    def of(cls, system: RollingSystem, start: State) -> SteadyChaplyginBall:
+        """Read the closed form's numbers from a system and a start.
+
+        Parameters
+        ----------
+        system : RollingSystem
+            Must lie in the domain.
+        start : State
+            A start that rolls about a principal axis.
+
+        Returns
+        -------
+        SteadyChaplyginBall
+            The motion; its t = 0 is the start's time.
+
+        Raises
+        ------
+        OutOfDomainError
+            If the system or the start lies outside the domain.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> ball = tr.Body(1.0, tr.Principal(3e-3, 4e-3, 5e-3), tr.Sphere(0.1))
+        >>> system = tr.RollingSystem(ball, tr.Support(tr.Plane()))
+        >>> SteadyChaplyginBall.of(system, system.place(spin=3.0)).angular_velocity
+        (0.0, 0.0, 3.0)
+        """
+        cls.check_domain(system, start)
+        force, _, _ = constant_part(system.all_loads, system.body.mass)
+        return cls(system.body.radius, start.position[:2], start.angular_velocity, -float(force.z))
+
+    @classmethod
+    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:
+        """Name what of a system, and of a start where one is given, lies outside the domain.
+
+        Parameters
+        ----------
+        system : RollingSystem
+            Any system.
+        start : State, optional
+            Its start.
+
+        Returns
+        -------
+        list of str
+            Empty where the closed form applies.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> ball = tr.Body(1.0, tr.Principal(3e-3, 4e-3, 5e-3), tr.Sphere(0.1))
+        >>> system = tr.RollingSystem(ball, tr.Support(tr.Plane()))
+        >>> SteadyChaplyginBall.outside(system, system.place(velocity=(1.0, 0.0)))
+        ['the ball turns about its middle axis, where a rounding would decide which way it goes over']
+        """
+        reasons = reasons_outside(system)
+        if start is None or reasons or not any(start.angular_velocity):
+            return reasons
+        Omega = Vector(*start.angular_velocity)
+        own = system.body.inertia_in_space(Quaternion(*start.orientation).matrix()) @ Omega
+        moments = principal_axes(system.body)[0]
+        about = Omega.dot(own) / Omega.dot(Omega)
+        if Omega.cross(own).norm() > _ASIDE * Omega.norm() * own.norm():
+            reasons.append("the ball does not turn about a principal axis")
+        elif two_are_equal(moments) is None and sorted(moments, key=lambda J: abs(J - about))[0] == sorted(moments)[1]:
+            reasons.append("the ball turns about its middle axis, where a rounding would decide which way it goes over")
+        return reasons
+
+    @property
+    def period(self) -> float:
+        """Infinite: it goes along a line, or nowhere."""
+        return math.inf
+
+    def pace(self, duration: float) -> float:  # noqa: ARG002
+        """Return Ω, rad/s."""
+        return float(Vector(*self.angular_velocity).norm())
+
+    def motion_at(self, t: Any) -> tuple[Vector, Vector, Vector, Vector]:
+        """Return position, velocity, angular velocity and contact force together.
+
+        Parameters
+        ----------
+        t : float or array
+            Time since the start, s.
+
+        Returns
+        -------
+        position, velocity, angular_velocity, contact_force : Vector
+            In the inertial support frame, m, m/s, rad/s, N.
+
+        Examples
+        --------
+        >>> SteadyChaplyginBall(0.1, (0.0, 0.0), (0.0, 3.0, 4.0), 9.8).motion_at(2.0)[3]
+        Vector(x=0.0, y=0.0, z=9.8)
+        """
+        (x, y), (p, q, r), a, zero = self.position, self.angular_velocity, self.radius, 0.0 * t
+        V = Vector(a * q + zero, -a * p + zero, zero)
+        return (
+            Vector(x + V.x * t, y + V.y * t, a + zero),
+            V,
+            Vector(p + zero, q + zero, r + zero),
+            Vector(zero, zero, self.normal_force + zero),
+        )
+
+    def straight_turn(self, t: Any) -> tuple[Vector, Any]:
+        """Return the axis and the angle by which the ball has turned."""
+        Omega = Vector(*self.angular_velocity)
+        xp = namespace(Omega.x, Omega.y, Omega.z)
+        speed = xp.sqrt(Omega.dot(Omega))
+        return (Omega / speed if speed else E_Z), speed * t

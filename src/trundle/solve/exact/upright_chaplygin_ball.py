@@ -1,0 +1,319 @@
+"""T15b: Chaplygin's ball of any three moments whose momentum is upright: a free body, by Jacobi's functions of time."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ...mechanics.algebra import E_Z, Quaternion, Vector
+from ...mechanics.loads import constant_part
+from ...mechanics.scalars import Scalar, namespace
+from ...mechanics.system import RollingSystem, State
+from .base import ClosedForm
+from .chaplygin_domain import body_quaternion, principal_axes, reasons_outside, stance_of, two_are_equal
+from .phi import phase
+from .quadrature import PreciseRunning, Running, is_one, one_by_one
+from .upright_polhode import Constants, Now, Polhode, precession
+
+_ASIDE = 1e-14  # share of (J + D)Ω that may lie across n by rounding
+_PIECE = 0.5  # of Jacobi's argument λt: the functions are analytic at least 0.8 off the real axis
+_TURN = 3.0  # rad of precession on a piece, at most
+_MOST_PIECES = 20_000
+_SEPARATRIX = 1e-14  # m₁ so small is one that rounding has made
+
+
+@dataclass(frozen=True)
+class UprightChaplyginBall(ClosedForm):
+    """A ball with its centre of mass at its centre whose momentum about the contact is along n (T15b).
+
+    Then (J + D)Ω = Ln with a constant L, D = ma²: n goes round in the body as the angular momentum of a free one with
+    the moments J + D does, by sn, cn and dn of the time. The precession ψ about n is an integral of the third kind, and
+    the path one quadrature of e^iψ over half a round, which is done to the last digits; any later time costs no more.
+    Every number may be a float, or an array of members.
+
+    Parameters
+    ----------
+    radius, mass : float or array
+        a in m, m in kg.
+    moments : triple of float or array
+        J along the principal axes, kg m², no two equal.
+    position : pair of float or array
+        Centre at t = 0 over the plane, m.
+    orientation : 4 floats or arrays
+        Quaternion from the principal axes to the inertial support frame at t = 0.
+    momentum : float or array
+        L, kg m²/s.
+    body_axes : 4 floats or arrays
+        Quaternion from the principal axes to the body frame.
+    normal_force : float or array
+        N, N.
+
+    Examples
+    --------
+    Ω·n is constant, as the energy is LΩ·n/2:
+
+    >>> ball = UprightChaplyginBall(0.1, 0.64, (2e-3, 3.2e-3, 4.8e-3), (0.0, 0.0), (0.8, 0.6, 0.0, 0.0), 0.08)
+    >>> bool(np.ptp(ball.motion_at(np.linspace(0.0, 9.0, 9))[2].z) < 1e-15)
+    True
+    """
+
+    radius: Scalar
+    mass: Scalar
+    moments: tuple[Scalar, Scalar, Scalar]
+    position: tuple[Scalar, Scalar]
+    orientation: tuple[Scalar, Scalar, Scalar, Scalar]
+    momentum: Scalar
+    body_axes: tuple[Scalar, Scalar, Scalar, Scalar] = (1.0, 0.0, 0.0, 0.0)
+    normal_force: Scalar = 0.0
+
+    name = "Chaplygin's ball with upright momentum"
+    equation = "T15b"
+    source = "Chaplygin, Mat. Sb. 24, 139 (1903); Landau and Lifshitz, Mechanics (1976), section 37, for the free body"
+    domain = (
+        "a ball with its centre of mass at its centre, three different moments of inertia and its momentum about the "
+        "contact along the normal, on a level plane at rest, under constant forces along the normal"
+    )
+    never = frozenset({"lift", "curved"})  # N is constant
+
+    @classmethod
+    def of(cls, system: RollingSystem, start: State) -> UprightChaplyginBall:
+        """Read the closed form's numbers from a system and a start.
+
+        Parameters
+        ----------
+        system : RollingSystem
+            Must lie in the domain.
+        start : State
+            A start that rolls with upright momentum.
+
+        Returns
+        -------
+        UprightChaplyginBall
+            The motion; its t = 0 is the start's time.
+
+        Raises
+        ------
+        OutOfDomainError
+            If the system or the start lies outside the domain.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> ball = tr.Scenario.load("chaplygin-ball")
+        >>> round(UprightChaplyginBall.of(ball.system(), ball.start_state()).momentum, 12)
+        0.08
+        """
+        cls.check_domain(system, start)
+        moments, axes = principal_axes(system.body)
+        turn = body_quaternion(axes)
+        force, _, _ = constant_part(system.all_loads, system.body.mass)
+        q = Quaternion(*start.orientation) * turn
+        return cls(
+            radius=system.body.radius,
+            mass=system.body.mass,
+            moments=moments,
+            position=start.position[:2],
+            orientation=(q.w, q.x, q.y, q.z),
+            momentum=float(_momentum(system, start).z),
+            body_axes=(turn.w, turn.x, turn.y, turn.z),
+            normal_force=-float(force.z),
+        )
+
+    @classmethod
+    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:
+        """Name what of a system, and of a start where one is given, lies outside the domain.
+
+        Parameters
+        ----------
+        system : RollingSystem
+            Any system.
+        start : State, optional
+            Its start.
+
+        Returns
+        -------
+        list of str
+            Empty where the closed form applies.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> ball = tr.Body(1.0, tr.Principal(3e-3, 4e-3, 5e-3), tr.Sphere(0.1))
+        >>> system = tr.RollingSystem(ball, tr.Support(tr.Plane()))
+        >>> UprightChaplyginBall.outside(system, system.place(velocity=(1.0, 0.0), spin=1.0))
+        ['the momentum about the contact is not along the normal']
+        """
+        reasons = reasons_outside(system)
+        if not reasons and two_are_equal(principal_axes(system.body)[0]) is not None:
+            reasons.append("two of the moments of inertia are equal")
+        if start is None or reasons:
+            return reasons
+        L = _momentum(system, start)
+        if not any(start.angular_velocity):
+            reasons.append("the ball does not turn")
+        elif math.hypot(L.x, L.y) > _ASIDE * L.norm():
+            reasons.append("the momentum about the contact is not along the normal")
+        else:
+            moments, axes = principal_axes(system.body)
+            q = Quaternion(*start.orientation) * body_quaternion(axes)
+            form = cls(system.body.radius, system.body.mass, moments, (0.0, 0.0), (q.w, q.x, q.y, q.z), L.z)
+            if Polhode.of(form).complement < _SEPARATRIX:
+                reasons.append("the ball turns about its middle axis or comes to, where a rounding would decide")
+            elif form._pieces > _MOST_PIECES:
+                reasons.append("two moments are so nearly equal that it goes round too slowly to be followed")
+        return reasons
+
+    # The constants of the motion
+
+    @cached_property
+    def _floats(self) -> Constants:
+        return Constants.of(self)
+
+    @property
+    def round_period(self) -> float:
+        """Time in which n goes half round in the body, s: after it Ω is as long as before."""
+        return 2 * math.pi / self._floats.rate
+
+    @property
+    def period(self) -> float:
+        """Infinite: the path is a rosette that does not close."""
+        return math.inf
+
+    def pace(self, duration: float) -> float:  # noqa: ARG002
+        """Return a bound of how fast Ω changes, rad/s."""
+        c = self._floats
+        return abs(self.momentum) / (min(self.moments) + self.mass * self.radius**2) + c.rate
+
+    def repeats(self, stop: str) -> float:
+        """Return the time after which the size of the force repeats."""
+        return self.round_period if stop == "slip" else self.period
+
+    @property
+    def _pieces(self) -> int:
+        """Of the quadrature, over half of `round_period`."""
+        c = self._floats
+        fastest = abs(c.steady) + abs(c.extra) * max(1.0, 1.0 / (1.0 - c.nu))
+        half = math.pi / c.rate
+        return math.ceil(half * max(abs(c.scale) / _PIECE, fastest / _TURN))
+
+    # Precession and path
+
+    @cached_property
+    def _precession(self) -> Running:
+        step = math.pi / self._floats.rate / self._pieces
+        return Running(lambda t: self._floats.at(t, 1.0).precession[None], -self._pieces, self._pieces, step)
+
+    @cached_property
+    def _way(self) -> Running:
+        def turning(t: Any) -> Any:
+            now, psi = self._floats.at(t, 1.0), self._precession.at(t)[0]
+            c, s = np.cos(psi), np.sin(psi)
+            return np.stack([now.along * c - now.across * s, now.along * s + now.across * c])
+
+        step = math.pi / self._floats.rate / self._pieces
+        return Running(turning, -self._pieces, self._pieces, step)
+
+    @cached_property
+    def _round(self) -> complex:
+        """∫(Ω over the plane) over one period of it, from t = 0, with ψ = 0 there."""
+        half = math.pi / self._floats.rate
+        ahead, behind = (complex(*self._way.at(t)) for t in (half, -half))
+        return ahead - np.exp(1j * self._floats.gain) * behind
+
+    @cached_property
+    def _precise(self) -> PreciseRunning:
+        import mpmath
+
+        def turning(t: Any) -> list[Any]:
+            c = Constants.of(self, t)
+            now, psi = c.at(t, 1), precession(c, t)
+            z = mpmath.expj(psi) * mpmath.mpc(now.along, now.across)
+            return [z.real, z.imag]
+
+        return PreciseRunning(turning, 0.5 * _PIECE / abs(self._floats.scale))
+
+    def _state(self, t: Any) -> tuple[Constants, Now, Any, Any, Any, Any]:
+        """Return constants, what repeats, cos ψ and sin ψ, and ∫Ω over the plane."""
+        if _is_mpmath(t):
+            import mpmath
+
+            c = Constants.of(self, t)
+            turn, (x, y) = mpmath.expj(c.psi + precession(c, t)), self._precise.at(t)
+            gone = mpmath.expj(c.psi) * mpmath.mpc(x, y)
+            return c, c.at(t, 1), turn.real, turn.imag, gone.real, gone.imag
+        c = self._floats
+        t = np.asarray(t, dtype=float)
+        y, turned = phase((c.rate, c.rate_rest), t)
+        rounds, rest = np.round((y - turned) / (2 * math.pi)), turned / c.rate
+        parity = 1.0 - 2.0 * (rounds % 2)
+        flips = parity if c.middle else 1.0
+        before = np.exp(1j * (c.psi + phase((c.gain, c.gain_rest), rounds)[1]))  # with the flips in it
+        here, way = np.exp(1j * self._precession.at(rest)[0]), self._way.at(rest)
+        half = 0.5 * c.gain
+        many = rounds if half == 0 else np.sin(phase((half, 0.5 * c.gain_rest), rounds)[1]) / math.sin(half)
+        summed = many * np.exp(1j * (c.psi + phase((half, 0.5 * c.gain_rest), rounds - 1.0)[1])) * self._round
+        gone, turn = summed + before * (way[0] + 1j * way[1]), before * flips * here
+        return c, c.at(rest, parity), turn.real, turn.imag, gone.real, gone.imag
+
+    # The motion
+
+    def motion_at(self, t: Any) -> tuple[Vector, Vector, Vector, Vector]:
+        """Return position, velocity, angular velocity and contact force together.
+
+        Parameters
+        ----------
+        t : float or array
+            Time since the start, s.
+
+        Returns
+        -------
+        position, velocity, angular_velocity, contact_force : Vector
+            In the inertial support frame, m, m/s, rad/s, N.
+
+        Examples
+        --------
+        >>> ball = UprightChaplyginBall(0.1, 0.64, (2e-3, 3.2e-3, 4.8e-3), (0.0, 0.0), (0.8, 0.6, 0.0, 0.0), 0.08)
+        >>> [round(float(part), 12) + 0.0 for part in ball.motion_at(0.0)[1]]
+        [0.032, 0.0, 0.0]
+        """
+        if not is_one(self):
+            return one_by_one(self, t)
+        c, now, cosine, sine, X, Y = self._state(t)
+        Ox, Oy = now.along * cosine - now.across * sine, now.along * sine + now.across * cosine
+        along, across = now.along_rate - now.precession * now.across, now.across_rate + now.precession * now.along
+        a, m, zero = c.radius, c.mass, 0 * Ox
+        fx, fy = along * cosine - across * sine, along * sine + across * cosine
+        return (
+            Vector(c.px + a * Y, c.py - a * X, a + zero),
+            Vector(a * Oy, -a * Ox, zero),
+            Vector(Ox, Oy, c.upright + zero),
+            Vector(m * a * fy, -m * a * fx, c.normal_force + zero),
+        )
+
+    def stance(self, t: Any) -> Quaternion:
+        """Return the orientation, or the same with the other sign."""
+        c, now, cosine, sine, _, _ = self._state(t)
+        leaned = stance_of(E_Z, now.normal).conjugate  # takes n in the body to n; a turn about n is left
+        e = leaned.matrix() @ c.followed
+        size = namespace(cosine).sqrt(e.x * e.x + e.y * e.y)
+        size = size + (size == 0)
+        c2, s2 = (cosine * e.x + sine * e.y) / size, (sine * e.x - cosine * e.y) / size
+        xp = namespace(c2)
+        half = 0.5 * xp.atan2(s2, c2)
+        turn = Quaternion(xp.cos(half), 0.0, 0.0, xp.sin(half))
+        return turn * leaned * Quaternion(*self.body_axes).conjugate
+
+
+def _momentum(system: RollingSystem, start: State) -> Vector:
+    """Return (J + D)Ω, which is Chaplygin's vector but for a part along n."""
+    Q, Omega = Quaternion(*start.orientation).matrix(), Vector(*start.angular_velocity)
+    D = system.body.mass * system.body.radius**2
+    return system.body.inertia_in_space(Q) @ Omega + Omega * D
+
+
+def _is_mpmath(t: Any) -> bool:
+    return type(t).__module__.partition(".")[0] == "mpmath"
