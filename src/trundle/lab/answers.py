@@ -149,7 +149,7 @@ def simulate(data: dict[str, Any], samples: int | None = None, card: bool = Fals
     if files.rolls_along_path(data):
         from .rolling import rolled_scene
 
-        return Answer(pack(rolled_scene(path_from(data), samples, card)), SCENE)
+        return Answer(pack(rolled_scene(path_from(data).run(), samples, card)), SCENE)
     run, seconds = run_of(scenario_from(data), limits.MOST_SAVED)
     return Answer(pack(scene_of(run, samples, card, seconds=seconds)), SCENE)
 
@@ -260,7 +260,7 @@ def roll(radius: Any, curve: Mapping[str, Any], samples: int | None = None, card
     from ..scene import pack
     from .rolling import path_of, rolled_scene
 
-    return Answer(pack(rolled_scene(path_from(path_of(radius, curve)), samples, card)), SCENE)
+    return Answer(pack(rolled_scene(path_from(path_of(radius, curve)).run(), samples, card)), SCENE)
 
 
 @answering

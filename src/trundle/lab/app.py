@@ -45,12 +45,13 @@ def create_app(settings: Settings | None = None) -> FastAPI:
 
     @asynccontextmanager
     async def living(_: FastAPI) -> AsyncIterator[None]:
-        starting = asyncio.gather(*(asyncio.to_thread(lane.start) for lane in (lab.quick, lab.slow)))
+        starting = asyncio.create_task(lab.start())  # the page can be shown meanwhile
         try:
             yield
         finally:
-            await asyncio.gather(starting, return_exceptions=True)
-            await asyncio.gather(*(asyncio.to_thread(lane.stop) for lane in (lab.quick, lab.slow)))
+            starting.cancel()
+            await asyncio.wait({starting})
+            await lab.stop()
 
     app = FastAPI(
         title="trundle lab",
@@ -76,7 +77,7 @@ def _reading(app: FastAPI, lab: Lab) -> None:
 
     @app.get("/api/scenarios", **described("The scenarios that ship with trundle."))
     async def scenarios(request: Request) -> Response:
-        return await lab.answer(request, lab.slow, answers.catalogue)
+        return await lab.shared(request, answers.catalogue)
 
     @app.get("/api/scenarios/{name}", **described("One of them, as TOML and as JSON.", 404))
     async def scenario(request: Request, name: str) -> Response:
@@ -84,7 +85,7 @@ def _reading(app: FastAPI, lab: Lab) -> None:
 
     @app.get("/api/schema", **described("The JSON schema of scenario files."))
     async def schema(request: Request) -> Response:
-        return await lab.answer(request, lab.slow, answers.schema)
+        return await lab.shared(request, answers.schema)
 
 
 def _asking(app: FastAPI, lab: Lab) -> None:

@@ -2,25 +2,18 @@
 
 from __future__ import annotations
 
-import io
 import re
-from collections.abc import Callable
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..scenario import files
 from . import limits
 from .answers import answering, path_from, run_of, scenario_from, told
 from .cache import Answer
 from .errors import refused
-
-if TYPE_CHECKING:
-    import xarray
-
-    from ..geometry import RolledPath
-    from ..trajectory import Trajectory
-
-Motion = Any  # a Trajectory or a RolledPath
 
 MEDIA = {
     "toml": "application/toml",
@@ -32,8 +25,6 @@ MEDIA = {
     "glb": "model/gltf-binary",
     "gif": "image/gif",
 }
-_NOT_OF_A_PATH = ("html", "glb", "gif")
-_SAVED_FIGURE = {"dpi": 150}
 
 
 @answering
@@ -67,14 +58,29 @@ def export(data: dict[str, Any], kind: str, folder: str) -> Answer:
     name = f"{slug(scenario.title)}.{kind}"
     if kind == "toml":
         return Answer(scenario.to_toml().encode(), MEDIA[kind], name)
-    if along_path:
-        if kind in _NOT_OF_A_PATH:
-            message = f"A path has no {kind} of its own. Take png, svg, csv, nc or toml."
-            raise refused(422, message, "format", "OutOfDomainError")
-        motion: Motion = scenario.run()
-    else:
-        motion, _ = run_of(scenario, limits.MOST_SAVED)
-    return Answer(_WRITERS[kind](motion, Path(folder)), MEDIA[kind], name)
+    with _temporary_files_in(folder):
+        return Answer(_written(scenario, kind), MEDIA[kind], name)
+
+
+def _written(scenario: Any, kind: str) -> bytes:
+    from ..viewer.exports import export as write
+
+    if not hasattr(scenario, "timing"):
+        from .rolling import rolled_scene
+
+        return write(scenario.run(), f".{kind}", rolled_scene)
+    run, _ = run_of(scenario, limits.MOST_SAVED)
+    return write(run, f".{kind}")
+
+
+@contextmanager
+def _temporary_files_in(folder: str) -> Iterator[None]:
+    """Let temporary files be made in a folder that the server removes, also where this process is ended."""
+    before, tempfile.tempdir = tempfile.tempdir, folder
+    try:
+        yield
+    finally:
+        tempfile.tempdir = before
 
 
 def slug(title: str) -> str:
@@ -96,111 +102,6 @@ def slug(title: str) -> str:
     ('steel-ball-25-mm-turn', 'trundle')
     """
     return re.sub(r"[^a-z0-9]+", "-", title.lower()[:80]).strip("-") or "trundle"
-
-
-def table_of(motion: Motion) -> xarray.Dataset:
-    """Return a motion as labelled arrays, in the support frame."""
-    return motion.dataset() if hasattr(motion, "dataset") else motion.in_frame("support").data
-
-
-def csv(motion: Trajectory | RolledPath, folder: Path) -> bytes:  # noqa: ARG001
-    """Return a table with a column for each component, its unit in brackets behind its name.
-
-    Parameters
-    ----------
-    motion : Trajectory or RolledPath
-        Any.
-    folder : pathlib.Path
-        Not used.
-
-    Returns
-    -------
-    bytes
-        Every digit is kept; `trundle check` reads it back.
-
-    Examples
-    --------
-    >>> import trundle as tr
-    >>> run = tr.Scenario.load("tilted-turntable").run(duration=1.0, every=0.5)
-    >>> csv(run, Path()).decode().splitlines()[1][:20]
-    '0.0,-0.97,-3.68,0.02'
-    """
-    import pandas as pd
-
-    data = table_of(motion)
-    main = "time" if "time" in data.dims else "distance"
-    columns = {_heading(main, data[main]): data[main].values}
-    for name, variable in data.data_vars.items():
-        if variable.dims == (main,):
-            columns[_heading(str(name), variable)] = variable.values
-        elif variable.dims[0] == main:
-            for part in data[variable.dims[1]].values:
-                values = variable.sel({variable.dims[1]: part}).values
-                columns[_heading(f"{name}_{part}", variable)] = values
-    text = io.StringIO()
-    pd.DataFrame(columns).to_csv(text, index=False, lineterminator="\r\n")
-    return text.getvalue().encode()
-
-
-def _heading(name: str, variable: xarray.DataArray) -> str:
-    unit = str(variable.attrs.get("units", "1")).replace(" s-1", "/s")
-    return name if unit == "1" else f"{name} [{unit}]"
-
-
-def _saved(motion: Motion, folder: Path) -> bytes:
-    return motion.save(folder / "run.nc").read_bytes()
-
-
-def _figure(kind: str) -> Callable[[Motion, Path], bytes]:
-    def drawn(motion: Motion, folder: Path) -> bytes:  # noqa: ARG001
-        made = io.BytesIO()
-        motion.plot().savefig(made, format=kind, **(_SAVED_FIGURE if kind == "png" else {}))
-        return made.getvalue()
-
-    return drawn
-
-
-def _page(motion: Motion, folder: Path) -> bytes:
-    viewer: Any = _viewer()
-    from ..scene import scene_of
-
-    target = folder / "scene.html"
-    viewer.save_html(scene_of(motion), target)
-    return target.read_bytes()
-
-
-def _model(motion: Motion, folder: Path) -> bytes:  # noqa: ARG001
-    viewer: Any = _viewer()
-    from ..scene import scene_of
-
-    return bytes(viewer.glb(scene_of(motion)))
-
-
-def _viewer() -> Any:
-    from importlib import import_module
-
-    try:
-        return import_module("trundle.viewer")
-    except ImportError:
-        message = "This copy of trundle has no viewer built into it. `pip install .` builds it."
-        raise refused(422, message, "format", "OutOfDomainError") from None
-
-
-def _animation(motion: Motion, folder: Path) -> bytes:  # noqa: ARG001
-    from .animation import gif
-
-    return gif(motion)
-
-
-_WRITERS: dict[str, Callable[[Motion, Path], bytes]] = {
-    "csv": csv,
-    "nc": _saved,
-    "png": _figure("png"),
-    "svg": _figure("svg"),
-    "html": _page,
-    "glb": _model,
-    "gif": _animation,
-}
 
 
 @answering

@@ -13,7 +13,6 @@ MOST_VALUES = 20_000  # numbers and texts in a scenario; a height field of 100 b
 MOST_LOADS = 20
 MOST_PIECES = 500  # of a path
 DEEPEST = 12
-MOST_FRAMES = 150  # of an animation
 
 
 def check_size(data: Any) -> None:

@@ -10,7 +10,7 @@ from starlette.responses import Response
 from .limits import MOST_SAMPLES
 
 SCENE, JSON = "application/octet-stream", "application/json"
-OPENED = ("application/toml", "text/plain", "application/x-netcdf", "application/octet-stream")  # by their content
+OPENED = ("text/plain", "application/octet-stream")  # and any other: what it is, its content tells
 
 
 EXAMPLE: dict[str, Any] = {

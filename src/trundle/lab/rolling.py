@@ -14,7 +14,7 @@ from .bare import sphere_scene
 from .limits import MOST_SAMPLES
 
 if TYPE_CHECKING:
-    from ..geometry import PathScenario, RolledPath
+    from ..geometry import RolledPath
     from ..scene import Scene
 
 _FINEST = math.radians(3.0)  # turned between two samples: what an eye takes for smooth
@@ -62,16 +62,16 @@ def path_of(radius: Any, curve: Mapping[str, Any]) -> dict[str, Any]:
     return {"title": "A ball rolled along a path", **curve, "body": {"radius": radius}}
 
 
-def rolled_scene(scenario: PathScenario, samples: int | None = None, card: bool = False) -> Scene:
+def rolled_scene(rolled: RolledPath, samples: int | None = None, with_card: bool = False) -> Scene:
     """Return a scene of a ball rolled along a path at an even pace.
 
     Parameters
     ----------
-    scenario : PathScenario
+    rolled : RolledPath
         Ball and path.
     samples : int, optional
         How many to show; absent: as many as look smooth.
-    card : bool
+    with_card : bool
         Whether to verify it.
 
     Returns
@@ -84,11 +84,10 @@ def rolled_scene(scenario: PathScenario, samples: int | None = None, card: bool 
     Examples
     --------
     >>> from ..geometry import PathScenario
-    >>> scene = rolled_scene(PathScenario.load("roll-x-then-y"))
+    >>> scene = rolled_scene(PathScenario.load("roll-x-then-y").run())
     >>> [round(float(part), 6) + 0.0 for part in scene.header["stages"][-1]["north_pole"]]
     [1.0, 0.0, 0.0]
     """
-    rolled = scenario.run()
     smooth = 1 + math.ceil(min(rolled.length / rolled.radius / _FINEST, MOST_SAMPLES))
     count = samples or min(max(smooth, _FEWEST), MOST_SAMPLES - len(rolled.pieces))
     at = rolled.sampled(rolled.length / max(count - 1, 1))
@@ -102,12 +101,12 @@ def rolled_scene(scenario: PathScenario, samples: int | None = None, card: bool 
         "orientation": at.orientation,
     }
     header = {
-        "title": scenario.title,
-        "scenario": tomllib.loads(rolled.scenario),
+        "title": rolled.title,
+        "scenario": tomllib.loads(rolled.scenario) if rolled.scenario else None,
         "scenario_toml": rolled.scenario,
         "findings": _findings(rolled),
         "formula": _formula(rolled),
-        "card": rolled.card().as_dict() if card else None,
+        "card": rolled.card().as_dict() if with_card else None,
         **_turned(rolled, pace),
     }
     return sphere_scene(rolled.radius, columns, header)

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import asyncio
 import gzip
 from collections.abc import Callable
+from functools import partial
 from tempfile import TemporaryDirectory
 from typing import Any
 
 from starlette.requests import Request
 from starlette.responses import Response
 
+from . import answers
 from .cache import Answer, Cache, key_of
 from .errors import Refusal, RefusedError
 from .pool import Lane
@@ -36,6 +39,17 @@ class Lab:
         self.cache = Cache(settings.cache_bytes)
         self.quick = Lane(settings.workers, settings)
         self.slow = Lane(settings.slow_workers, settings)
+        self._coming: dict[str, asyncio.Task[Answer]] = {}
+
+    async def start(self) -> None:
+        """Start the workers, and prepare what every page asks for first."""
+        for lane in (self.slow, self.quick):
+            await asyncio.to_thread(lane.start)
+        await self.prepare(answers.catalogue)
+
+    async def stop(self) -> None:
+        """End the workers, whatever they do."""
+        await asyncio.gather(*(asyncio.to_thread(lane.stop) for lane in (self.quick, self.slow)))
 
     async def answer(
         self,
@@ -74,6 +88,44 @@ class Lab:
             found = await self._computed(key, request, lane, function, (*arguments, *unkept))
         return _response(found, tag, request)
 
+    async def shared(self, request: Request, function: Callable[..., Answer | Refusal], *arguments: Any) -> Response:
+        """Answer as `answer` does, by a computation that all who ask meanwhile wait for, and that none of them ends.
+
+        Parameters
+        ----------
+        request, function, *arguments
+            As for `answer`.
+
+        Returns
+        -------
+        Response
+            As of `answer`.
+        """
+        key = key_of(function.__name__, *arguments)
+        if self.cache.get(key) is None:
+            await self.prepare(function, *arguments)
+        return await self.answer(request, self.slow, function, *arguments)
+
+    async def prepare(self, function: Callable[..., Answer | Refusal], *arguments: Any) -> None:
+        """Compute what will be asked for, once, on the slow lane.
+
+        Parameters
+        ----------
+        function, *arguments
+            As for `answer`.
+        """
+        key = key_of(function.__name__, *arguments)
+        if key not in self._coming:
+            work = asyncio.create_task(self._computed(key, None, self.slow, function, arguments))
+            self._coming[key] = work
+            work.add_done_callback(partial(self._came, key))
+        await asyncio.wait({self._coming[key]})
+
+    def _came(self, key: str, work: asyncio.Task[Answer]) -> None:
+        del self._coming[key]
+        if not work.cancelled():
+            work.exception()  # who asks next is told
+
     async def with_folder(
         self, request: Request, function: Callable[..., Answer | Refusal], *arguments: Any
     ) -> Response:
@@ -95,7 +147,7 @@ class Lab:
             return await self.answer(request, self.slow, function, *arguments, unkept=(folder,))
 
     async def _computed(
-        self, key: str, request: Request, lane: Lane, function: Callable[..., Answer | Refusal], arguments: Any
+        self, key: str, request: Request | None, lane: Lane, function: Callable[..., Answer | Refusal], arguments: Any
     ) -> Answer:
         """Compute, and keep what came out."""
         found = await lane.run(request, function, *arguments)
