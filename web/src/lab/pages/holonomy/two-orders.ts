@@ -46,7 +46,7 @@ export function mountTwoOrders(host: HTMLElement, app: App): () => void {
     host,
     h(
       'div',
-      { class: 'spread' },
+      { class: 'lesson spread' },
       h(
         'div',
         { class: 'spread-text' },

@@ -24,12 +24,15 @@ export function slider(options: SliderOptions): Slider {
   const id = uniqueId('slider')
   const { min, max, step, value, words, change, label, testid } = options
   const output = h('output', { for: id, class: 'number' })
-  const input = h('input', { id, type: 'range', min, max, step, value, 'data-testid': testid })
+  const input = h('input', { id, class: 'slider', type: 'range', min, max, step, value, 'data-testid': testid })
   function told(): void {
     const now = Number(input.value)
     output.textContent = words(now)
     input.setAttribute('aria-valuetext', words(now))
-    input.style.setProperty('--share', String((now - min) / (max - min)))
+    const at = (place: number) => `${(100 * (place - min)) / (Number(input.max) - min)}%`
+    const zero = Math.max(min, Math.min(0, Number(input.max)))
+    input.style.setProperty('--from', at(Math.min(now, zero)))
+    input.style.setProperty('--to', at(Math.max(now, zero)))
   }
   input.addEventListener('input', () => {
     told()
@@ -37,7 +40,7 @@ export function slider(options: SliderOptions): Slider {
   })
   told()
   return {
-    element: h('div', { class: 'slider' }, h('label', { for: id }, label), output, input),
+    element: h('div', { class: 'dial' }, h('label', { for: id }, label), output, input),
     input,
     set(next) {
       input.value = String(next)
@@ -90,13 +93,15 @@ export function choice<Value extends string>(
 
 export type ButtonKind = 'primary' | 'plain' | 'quiet'
 
+const KINDS: Readonly<Record<ButtonKind, string>> = { primary: 'primary', plain: 'button', quiet: 'quiet' }
+
 export function button(
   words: string,
   press: () => void,
   kind: ButtonKind = 'plain',
   testid?: string,
 ): HTMLButtonElement {
-  return h('button', { type: 'button', class: `button button-${kind}`, onclick: press, 'data-testid': testid }, words)
+  return h('button', { type: 'button', class: KINDS[kind], onclick: press, 'data-testid': testid }, words)
 }
 
 /** A switch among others: on or off. */

@@ -75,6 +75,16 @@ export function headingRate(scene: Scene): number | null {
   return lasted > 0 ? total / lasted : null
 }
 
+/** How fast the guiding centre goes along, first sample to last, m/s; 0 where the scene has none. */
+export function driftSeen(scene: Scene): number {
+  const centre = column(scene, 'guiding_centre')
+  const times = column(scene, 'time')
+  const last = times.length - 1
+  if (last < 1 || centre.length === 0) return 0
+  const [a, b] = [vectorAt(centre, 0), vectorAt(centre, last)]
+  return Math.hypot(b[0] - a[0], b[1] - a[1]) / ((times[last] ?? 1) - (times[0] ?? 0))
+}
+
 /** Greatest distance between two paths at equal samples, m. */
 export function apart(one: Scene, other: Scene): number {
   const [a, b] = [column(one, 'position'), column(other, 'position')]

@@ -26,9 +26,9 @@ export interface StageOptions {
 
 export function createStage(app: App, { label, controls = true, kind = 'large' }: StageOptions): Stage {
   const undo = cleanup()
-  const view = h('div', { class: 'stage-view' })
-  const message = h('p', { class: 'stage-problem', role: 'alert', hidden: true })
-  const element = h('div', { class: `stage stage-${kind}`, role: 'group', 'aria-label': label }, view, message)
+  const view = h('div', { class: 'theatre-view' })
+  const message = h('p', { class: 'theatre-problem', role: 'alert', hidden: true })
+  const element = h('div', { class: `theatre theatre-${kind}`, role: 'group', 'aria-label': label }, view, message)
   const viewer = createViewer(view, { theme: app.appearance, controls, projector: app.settings.projector })
   undo.add(() => viewer.dispose())
   undo.add(

@@ -1,22 +1,32 @@
 /** Step 7: the ball and the charge, moving in step. */
+
+import { show } from '../../quantity'
 import type { Scenario } from '../../scenario'
+import { chargeOf } from '../fields/charge'
 import { createPair } from '../fields/pair'
 import { slider } from '../parts/controls'
-import { apart, finding } from '../parts/measure'
+import { driftSeen, finding } from '../parts/measure'
 import { rowOf } from '../parts/numbers'
 import { leaning } from '../parts/scenarios'
 import type { StepMount } from './place'
 
-export const mountFields: StepMount = ({ app, stage, controls, numbers, remark, offer }) => {
+export const mountFields: StepMount = ({ app, stage, controls, numbers, worked, remark, offer }) => {
   const pair = createPair(app, ({ ball, charge }) => {
-    const drift = finding(ball, 'v_d')
-    const own = finding(charge, 'v_d', 'E/B', 'v_E')
-    numbers.set([rowOf(drift, 100, 'cm/s'), own && { ...rowOf(own, 100, 'cm/s')!, name: 'drift of the charge' }])
-    const most = apart(ball, charge)
-    remark.textContent =
-      most < 1e-6
-        ? 'Ball and charge never part: the paths are the same to within a micrometre.'
-        : `Apart by up to ${most} m.`
+    const { drift, apart } = chargeOf(charge)
+    numbers.set([
+      rowOf(finding(ball, '|v_d|'), 100, 'cm/s'),
+      drift
+        ? {
+            name: 'the charge’s drift',
+            symbol: 'E/B',
+            predicted: 100 * Math.hypot(...drift),
+            measured: 100 * driftSeen(charge),
+            unit: 'cm/s',
+          }
+        : undefined,
+    ])
+    worked(ball)
+    remark.textContent = `Never. Their paths, each by its own formulas, differ by ${show(apart, 2)} m: rounding.`
   })
   stage.append(pair.element)
   let tilt = 0.3

@@ -90,6 +90,7 @@ function showStep(host: HTMLElement, app: App, number: number): () => void {
   const stage = h('div', { class: 'tour-stage' })
   const controls = h('div', { class: 'tour-controls' })
   const remark = h('div', { class: 'tour-remark', role: 'status' })
+  const worked = h('div', { class: 'worked' })
   let offered: Scenario | null = null
 
   const yours = button(
@@ -104,7 +105,7 @@ function showStep(host: HTMLElement, app: App, number: number): () => void {
     host,
     h(
       'div',
-      { class: 'tour', 'data-step': number },
+      { class: 'lesson tour', 'data-step': number },
       progress(number),
       h(
         'article',
@@ -116,6 +117,7 @@ function showStep(host: HTMLElement, app: App, number: number): () => void {
           stage,
           h('div', { class: 'tour-do' }, h('p', { class: 'task' }, text.task), controls, remark),
           numbers.element,
+          worked,
         ),
         asked(text),
       ),
@@ -129,6 +131,10 @@ function showStep(host: HTMLElement, app: App, number: number): () => void {
     controls,
     numbers,
     remark,
+    worked(scene) {
+      const latex = scene?.header.formula?.numbers_latex
+      fill(worked, latex ? formula(latex, true) : null)
+    },
     offer(scenario) {
       offered = scenario
       yours.hidden = false
@@ -189,22 +195,18 @@ function asked({ question, answer }: StepText): HTMLElement {
 
 function back(number: number): HTMLElement {
   if (number === 1) return h('span')
-  return h(
-    'a',
-    { class: 'button button-plain', href: `#/tour/${number - 1}`, title: 'Back (B)', rel: 'prev' },
-    '← Back',
-  )
+  return h('a', { class: 'button', href: `#/tour/${number - 1}`, title: 'Back (B)', rel: 'prev' }, '← Back')
 }
 
 function next(number: number): HTMLElement {
   if (number === LAST) {
-    return h('a', { class: 'button button-plain', href: '#/holonomy' }, 'Roll by hand →')
+    return h('a', { class: 'button', href: '#/holonomy' }, 'Roll by hand →')
   }
   const { short } = TEXTS[number]!
   return h(
     'a',
     {
-      class: 'button button-primary',
+      class: 'primary',
       href: `#/tour/${number + 1}`,
       title: 'Next (N)',
       rel: 'next',

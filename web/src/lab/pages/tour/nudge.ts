@@ -10,7 +10,7 @@ import { createStage, playUnlessCalm, simulating } from '../parts/stage'
 import type { StepMount } from './place'
 import { metres } from './turntable'
 
-export const mountNudge: StepMount = ({ app, stage: host, controls, numbers, remark, offer }) => {
+export const mountNudge: StepMount = ({ app, stage: host, controls, numbers, worked, remark, offer }) => {
   const stage = createStage(app, { label: 'A ball put down on a turning table' })
   host.append(stage.element)
   let shown: Scene | null = null
@@ -21,6 +21,7 @@ export const mountNudge: StepMount = ({ app, stage: host, controls, numbers, rem
     shown = scene
     playUnlessCalm(app, stage.viewer)
     numbers.set([rowOf(finding(scene, '\\varrho'), 100, 'cm'), rowOf(finding(scene, '\\Omega_c'))])
+    worked(scene)
     remark.textContent = nudged
       ? 'It comes back to where it was nudged.'
       : 'It stays, spinning on the spot. Now nudge it.'

@@ -1,4 +1,6 @@
 /** Step 3: a level push, at a height that can be chosen. */
+import { toSI } from '../../quantity'
+import type { Scenario } from '../../scenario'
 import { slider } from '../parts/controls'
 import { column, finding, vectorAt } from '../parts/measure'
 import { rowOf } from '../parts/numbers'
@@ -6,20 +8,29 @@ import { pushed } from '../parts/scenarios'
 import { createStage, playUnlessCalm, simulating } from '../parts/stage'
 import type { StepMount } from './place'
 
-export const mountPush: StepMount = ({ app, stage: host, controls, numbers, remark, offer }) => {
+export const mountPush: StepMount = ({ app, stage: host, controls, numbers, worked, remark, offer }) => {
   const stage = createStage(app, { label: 'A ball that is pushed along a level table' })
   host.append(stage.element)
   let first = true
 
-  const live = simulating(app, stage, (scene) => {
+  const live = simulating(app, stage, (scene, asked) => {
     stage.viewer.setScenes([scene], { keepTime: !first, keepCamera: !first })
     stage.viewer.show = { ...stage.viewer.show, contactForce: true, velocity: true }
     if (first) playUnlessCalm(app, stage.viewer)
     first = false
-    const reaction = finding(scene, 'R_x')
-    const gained = finding(scene, '\\dot V_x')
     const sideways = vectorAt(column(scene, 'contact_force'), 0)[0]
-    numbers.set([rowOf(reaction, 1000, 'mN'), rowOf(gained)])
+    const gained = rowOf(finding(scene, '|\\varphi|'))
+    numbers.set([
+      {
+        name: 'reaction of the table',
+        symbol: 'R_x',
+        predicted: 1000 * reactionBy(asked),
+        measured: 1000 * sideways,
+        unit: 'mN',
+      },
+      gained && { ...gained, symbol: '\\dot V_x' },
+    ])
+    worked(scene)
     remark.textContent = saying(sideways)
   })
 
@@ -45,6 +56,16 @@ export const mountPush: StepMount = ({ app, stage: host, controls, numbers, rema
     live.stop()
     stage.dispose()
   }
+}
+
+/** The formula on the page with the push that was asked for, N: what the run is held to. */
+function reactionBy({ body, loads }: Scenario): number {
+  const part = (kind: string, i: number, unit: 'force' | 'torque') => {
+    const value = loads?.find((load) => load.kind === kind)?.value
+    return Array.isArray(value) ? (toSI(value[i], unit) ?? 0) : 0
+  }
+  const radius = toSI(body.radius, 'length') ?? 1
+  return (5 / 7) * (part('torque', 1, 'torque') / radius) - (2 / 7) * part('force', 0, 'force')
 }
 
 /** Which way the table pushes, and what that means. The smallest step of the slider moves it by 3.6 mN. */

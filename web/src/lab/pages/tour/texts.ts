@@ -36,7 +36,7 @@ export const TEXTS: readonly StepText[] = [
       'Both times the ball comes to the same spot. The pole does not: once it points east, once north. No formula in $x$ and $y$ can say how the ball lies; one must know which way it came. The constraint looks like the cylinder’s, but it *cannot be integrated*: it is nonholonomic.',
     ],
     task: 'Roll both balls and watch the poles.',
-    formulas: ['\\vec V - a\\,\\vec\\Omega\\times\\hat n = 0'],
+    formulas: ['\\mathbf{V} - a\\,\\mathbf{\\Omega}\\times\\hat n = 0'],
     question: 'Roll the ball round a square of four quarter turns, home to where it began. Is the north pole on top?',
     answer: [
       'No. It was on top at the start and again at the third corner, but at home it points south: the ball has turned by 120° about a diagonal. Any orientation at all can be reached by a suitable loop.',
@@ -46,7 +46,7 @@ export const TEXTS: readonly StepText[] = [
     short: 'Push',
     title: 'Push it, and the table pushes back',
     text: [
-      'The constraint cannot be integrated, but it can be *differentiated*. Put that into Newton’s law and its partner for rotation, and the unknown reaction $\\vec R$ of the table drops out. No multipliers.',
+      'The constraint cannot be integrated, but it can be *differentiated*. Put that into Newton’s law and its partner for rotation, and the unknown reaction $\\mathbf{R}$ of the table drops out. No multipliers.',
       'Pushed at its centre, a ball gains only five sevenths of what a sliding block would: the table pulls back with two sevenths of the push, and that is what turns the ball. Push higher, and the push itself helps to turn it.',
     ],
     task: 'Raise the push. At what height does the table neither pull nor push?',
@@ -62,12 +62,13 @@ export const TEXTS: readonly StepText[] = [
     short: 'Turntable',
     title: 'The table turns, the ball goes in circles',
     text: [
-      'Now the table turns at $\\omega$, and the ball must keep up with whatever is under it: $\\dot{\\vec r} - a\\,\\vec\\Omega\\times\\hat n = \\omega\\,\\hat n\\times\\vec r$. Eliminate as before, and what is left is a steady motion *round a circle*.',
+      'Now the table turns at $\\omega$, and the ball must keep up with whatever is under it: $\\dot{\\mathbf{r}} - a\\,\\mathbf{\\Omega}\\times\\hat n = \\omega\\,\\hat n\\times\\mathbf{r}$. Eliminate as before, and what is left is a steady motion *round a circle*.',
       'The circle may lie anywhere and have any size: that is up to the start. Its rate is not. A solid ball goes at two sevenths of the table’s rate, whatever its size and mass, and takes three and a half turns of the table for a round.',
     ],
     task: 'Change the table’s rate, or drag the ball to another start. What stays the same?',
     formulas: [
-      '\\dot{\\vec r} = \\frac{\\omega}{1 + ma^2/I}\\;\\hat n\\times(\\vec r - \\vec r_0) \\;=\\; \\tfrac27\\,\\omega\\;\\hat n\\times(\\vec r - \\vec r_0)',
+      '\\dot{\\mathbf{r}} = \\frac{\\omega}{1 + ma^2/I}\\;\\hat n\\times(\\mathbf{r} - \\mathbf{r}_0)',
+      '\\Omega_c = \\tfrac27\\,\\omega \\quad\\text{where } I = \\tfrac25\\,ma^2',
     ],
     question: 'A hollow ball has its mass further out. Does it go round faster or slower than a solid one?',
     answer: [
@@ -98,7 +99,7 @@ export const TEXTS: readonly StepText[] = [
     ],
     task: 'Draw the ball’s path on the table, or pick a guess. Then let go.',
     formulas: [
-      '\\dot{\\vec r} = \\Omega_c\\;\\hat\\imath\\times\\Big[\\vec r - \\vec r_0 + \\frac{ma^2/I}{\\omega}\\,g\\,t\\,\\hat k\\,\\sin\\alpha\\Big]',
+      '\\dot{\\mathbf{r}} = \\Omega_c\\;\\hat\\imath\\times\\Big[\\mathbf{r} - \\mathbf{r}_0 + \\frac{ma^2/I}{\\omega}\\,g\\,t\\,\\hat k\\,\\sin\\alpha\\Big]',
       'v_d = \\frac{ma^2}{I}\\,\\frac{g\\sin\\alpha}{\\omega}',
     ],
     question: 'The table turns twice as fast. Does the ball drift faster or slower?',
@@ -111,11 +112,12 @@ export const TEXTS: readonly StepText[] = [
     title: 'An electron would do the same',
     text: [
       'Put a charge in a magnetic field along the normal and an electric field down the slope. It circles; the field tries to drag it along; it drifts *across*, at the same average potential, as the ball keeps its average height.',
-      'This is no likeness but one and the same equation, term by term: $qB/m$ stands where $\\tfrac27\\omega$ stood, and $qE/m$ in place of the slope’s pull, $\\tfrac57\\,g\\sin\\alpha$.',
+      'This is no likeness but one and the same equation, term by term: $-qB/m$ stands where $\\tfrac27\\omega$ stood, and $qE/m$ in place of the slope’s pull, $\\tfrac57\\,g\\sin\\alpha$.',
     ],
     task: 'Tilt the table further and watch the fields follow. Do the two ever part?',
     formulas: [
-      '\\ddot{\\vec r} = \\Omega_c\\,\\hat n\\times\\dot{\\vec r} + \\tfrac57\\,\\vec g_\\parallel \\qquad\\longleftrightarrow\\qquad \\ddot{\\vec r} = -\\tfrac{q}{m}\\,\\vec B\\times\\dot{\\vec r} + \\tfrac{q}{m}\\,\\vec E',
+      '\\ddot{\\mathbf{r}} = \\Omega_c\\,\\hat n\\times\\dot{\\mathbf{r}} + \\tfrac57\\,\\mathbf{g}_\\parallel',
+      '\\ddot{\\mathbf{r}} = -\\tfrac{q}{m}\\,\\mathbf{B}\\times\\dot{\\mathbf{r}} + \\tfrac{q}{m}\\,\\mathbf{E}',
     ],
     question: 'The ball is thrown level, exactly at the drift. What path does it take?',
     answer: [

@@ -15,7 +15,7 @@ import { AFTER_THE_GUESS } from './texts'
 const START: Point = [-0.04, -0.45]
 const RIM = 0.5
 
-export const mountTilt: StepMount = ({ app, stage: host, controls, numbers, remark, offer }) => {
+export const mountTilt: StepMount = ({ app, stage: host, controls, numbers, worked, remark, offer }) => {
   const stage = createStage(app, { label: 'A ball put down on a leaning, turning table' })
   const { viewer } = stage
   host.append(stage.element)
@@ -79,8 +79,9 @@ export const mountTilt: StepMount = ({ app, stage: host, controls, numbers, rema
 
   function tell(): void {
     if (!scene || !revealed || remark.childElementCount) return
-    const drift = finding(scene, 'v_d')
-    numbers.set([rowOf(drift, 100, 'cm/s'), rowOf(finding(scene, '\\Omega_c'))])
+    const drift = finding(scene, '|v_d|')
+    numbers.set([rowOf(drift, 100, 'cm/s'), rowOf(finding(scene, '\\arg v_d'))])
+    worked(scene)
     const words = inWords(judge(sketch, pathOf(scene), 1))
     fill(
       remark,
@@ -99,6 +100,7 @@ export const mountTilt: StepMount = ({ app, stage: host, controls, numbers, rema
     again.hidden = true
     fill(remark)
     numbers.set([])
+    worked(null)
     viewer.setSketch(null)
     hide()
   }

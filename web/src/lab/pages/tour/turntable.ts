@@ -1,6 +1,5 @@
 /** Step 4: a level turntable. The circle's rate is two sevenths of the table's. */
 
-import { toSI } from '../../quantity'
 import type { Scenario } from '../../scenario'
 import { withValue } from '../../scenario'
 import { choice, slider } from '../parts/controls'
@@ -10,12 +9,15 @@ import { LEVEL } from '../parts/scenarios'
 import { createStage, playUnlessCalm, simulating } from '../parts/stage'
 import type { StepMount } from './place'
 
+/** How far out a ball may be put on a table of 50 cm, m. */
+const EDGE = 0.48
+
 const BALLS = [
   ['solid-sphere', 'Solid ball'],
   ['hollow-sphere', 'Hollow ball'],
 ] as const
 
-export const mountTurntable: StepMount = ({ app, stage: host, controls, numbers, offer }) => {
+export const mountTurntable: StepMount = ({ app, stage: host, controls, numbers, worked, offer }) => {
   const stage = createStage(app, { label: 'A ball on a turning table' })
   host.append(stage.element)
   let scenario: Scenario = LEVEL
@@ -25,13 +27,9 @@ export const mountTurntable: StepMount = ({ app, stage: host, controls, numbers,
     stage.viewer.setScenes([scene], { keepTime: !first, keepCamera: !first })
     if (first) playUnlessCalm(app, stage.viewer)
     first = false
-    const circle = finding(scene, '\\Omega_c')
-    const table = toSI(asked.support.motion?.rate, 'angular velocity')
-    const share = table && circle ? rowOf(circle, 1 / table, '') : undefined
-    numbers.set([
-      rowOf(circle),
-      share && { ...share, name: 'of the table’s rate', symbol: '\\Omega_c/\\omega', ...fraction(asked) },
-    ])
+    const share = rowOf(finding(scene, '\\Omega_c/\\omega'))
+    numbers.set([rowOf(finding(scene, '\\Omega_c')), share && { ...share, ...fraction(asked) }])
+    worked(scene)
   })
 
   const rate = slider({
@@ -55,7 +53,9 @@ export const mountTurntable: StepMount = ({ app, stage: host, controls, numbers,
 
   stage.viewer.tool = 'drag'
   const off = stage.viewer.on('drag', ({ x, y }) => {
-    change('start.position', [metres(x), metres(y)])
+    // Not over the edge: a ball that starts there leaves at once.
+    const inside = Math.min(1, EDGE / Math.hypot(x, y))
+    change('start.position', [metres(x * inside), metres(y * inside)])
   })
   offer(scenario)
   live.ask(scenario)
