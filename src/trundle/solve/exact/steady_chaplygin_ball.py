@@ -1,4 +1,4 @@
-"""T15c: Chaplygin's ball that turns steadily about one of its principal axes, however that leans: along a line."""
+"""T15d: Chaplygin's ball that turns steadily about one of its principal axes, however that leans: along a line."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _ASIDE = 1e-14  # share of the momentum that may lie across Ω by rounding
 
 @dataclass(frozen=True)
 class SteadyChaplyginBall(ClosedForm):
-    """A ball with its centre of mass at its centre and a constant Ω along a principal axis, or at rest (T15c).
+    """A ball with its centre of mass at its centre and a constant Ω along a principal axis, or at rest (T15d).
 
     The plane has nothing to hold against: friction is zero. Every number may be a float, or an array of members.
 
@@ -45,7 +45,7 @@ class SteadyChaplyginBall(ClosedForm):
     normal_force: Scalar = 0.0
 
     name = "Chaplygin's ball about a principal axis"
-    equation = "T15c"
+    equation = "T15d"
     source = "Chaplygin, Mat. Sb. 24, 139 (1903); theory page, T15"
     domain = (
         "a ball with its centre of mass at its centre that turns about a principal axis, not the middle one, or is at "

@@ -1,4 +1,4 @@
-"""T15b: Chaplygin's ball of any three moments whose momentum is upright: a free body, by Jacobi's functions of time."""
+"""T15c: Chaplygin's ball of any three moments whose momentum is upright: a free body, by Jacobi's functions of time."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _SEPARATRIX = 1e-14  # m₁ so small is one that rounding has made
 
 @dataclass(frozen=True)
 class UprightChaplyginBall(ClosedForm):
-    """A ball with its centre of mass at its centre whose momentum about the contact is along n (T15b).
+    """A ball with its centre of mass at its centre whose momentum about the contact is along n (T15c).
 
     Then (J + D)Ω = Ln with a constant L, D = ma²: n goes round in the body as the angular momentum of a free one with
     the moments J + D does, by sn, cn and dn of the time. The precession ψ about n is an integral of the third kind, and
@@ -71,7 +71,7 @@ class UprightChaplyginBall(ClosedForm):
     normal_force: Scalar = 0.0
 
     name = "Chaplygin's ball with upright momentum"
-    equation = "T15b"
+    equation = "T15c"
     source = "Chaplygin, Mat. Sb. 24, 139 (1903); Landau and Lifshitz, Mechanics (1976), section 37, for the free body"
     domain = (
         "a ball with its centre of mass at its centre, three different moments of inertia and its momentum about the "
