@@ -10,6 +10,7 @@ export function math(host: HTMLElement, latex: string, display = false): void {
     displayMode: display,
     output: 'htmlAndMathml',
     throwOnError: false,
+    fleqn: true,
     strict: false,
     trust: false,
   })
@@ -19,5 +20,15 @@ export function math(host: HTMLElement, latex: string, display = false): void {
 export function formula(latex: string, display = false): HTMLElement {
   const element = h(display ? 'div' : 'span', { class: display ? 'math-block' : 'math' })
   math(element, latex, display)
+  if (display) watch(element)
   return element
+}
+
+/** A formula wider than its place can be scrolled, so it must be reached by keyboard. */
+function watch(element: HTMLElement): void {
+  if (typeof ResizeObserver !== 'function') return
+  new ResizeObserver(() => {
+    if (element.scrollWidth > element.clientWidth) element.tabIndex = 0
+    else element.removeAttribute('tabindex')
+  }).observe(element)
 }

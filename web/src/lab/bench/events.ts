@@ -27,7 +27,7 @@ export function createEvents(seek: (time: number) => void): Events {
                   'button',
                   { class: `event event-${event.kind}`, type: 'button', onclick: () => seek(event.time) },
                   h('span', { class: 'event-time' }, `${show(event.time)} s`),
-                  h('span', {}, event.text),
+                  h('span', {}, event.text.replace(/ at t = \S+ s$/, '')),
                 ),
               ),
             ),

@@ -18,13 +18,12 @@ import { openDerivation } from './derivation'
 import { createEvents } from './events'
 import { copyLink, createDownloads, createOpener } from './files'
 import { createFindings, sentence } from './findings'
-import { benchKeys } from './keys'
 import { createLinking } from './linking'
 import { pickScenario } from './picker'
 import { createSheet } from './sheet'
 import { createStage } from './stage'
 
-function mount(host: HTMLElement, app: App): () => void {
+function _mount(host: HTMLElement, app: App): () => void {
   const undo = cleanup()
   const { store, api } = app
   const stage = createStage(app)
@@ -45,11 +44,13 @@ function mount(host: HTMLElement, app: App): () => void {
     'Results',
   )
   let fresh = true
+  let restart = false
 
   const computing = createComputing(app, {
     scene(scene, milliseconds) {
-      stage.setScene(scene, !fresh)
+      stage.setScene(scene, { camera: !fresh, time: !fresh && !restart })
       fresh = false
+      restart = false
       stage.took(milliseconds, scene)
       stage.stale(false)
       controls.complain(null)
@@ -77,6 +78,7 @@ function mount(host: HTMLElement, app: App): () => void {
 
   function opened(scenario: Scenario, source: string): void {
     fresh = true
+    stage.useTool('orbit')
     store.set(scenario, { source })
   }
 
@@ -87,7 +89,7 @@ function mount(host: HTMLElement, app: App): () => void {
       opened(scenario, source)
     } catch (error) {
       if (source === 'first') computing.ask(store.scenario, { source })
-      else if (!isAbort(error)) app.toast(error instanceof Error ? error.message : String(error), 'error')
+      if (!isAbort(error)) app.toast(error instanceof Error ? error.message : String(error), 'error')
     }
   }
 
@@ -195,23 +197,8 @@ function mount(host: HTMLElement, app: App): () => void {
     }),
     app.router.subscribe(() => {
       if (app.route.page === 'bench' || app.route.page === '')
-        void linking.read(take, (scenario) => opened(scenario, 'url'))
-    }),
-    benchKeys(app, { stage, pick, fold: (side) => folds[side === 'left' ? 0 : 1].click() }),
-    () => controls.dispose(),
-    () => curves.dispose(),
-    () => stage.dispose(),
-    () => downloads.dispose(),
-    () => opener.dispose(),
-    () => computing.stop(),
-    () => linking.stop(),
-  )
-  grid.toggleAttribute('data-left-folded', app.settings.projector)
-  grid.toggleAttribute('data-right-folded', app.settings.projector)
-  showScenario(store.scenario)
-  void linking
-    .read(take, (scenario) => opened(scenario, 'url'))
-    .then((found) => {
+        const first = 'first'
+  void linking.read((name) => take(name, first), (scenario) => opened(scenario, first)).then((found) => {
       if (found) return
       if (store.scenario === FIRST) void take(FIRST_NAME, 'first')
       else computing.ask(store.scenario, { source: 'first' })
@@ -240,4 +227,4 @@ function fold(grid: HTMLElement, side: 'left' | 'right', what: string, key: stri
   return button
 }
 
-export const bench: Page = { id: 'bench', title: 'Bench', mount }
+export const _bench: Page = { id: 'bench', title: 'Bench', mount: _mount }

@@ -8,6 +8,7 @@ import { type IconName, icon } from '../icons'
 import { formula } from '../math'
 import { show } from '../quantity'
 import type { Scenario } from '../scenario'
+import { pathOf } from './ahead'
 import { headline } from './findings'
 import { instantAt } from './instant'
 import { clockMatters, nudged, placed, thrown, whyNotDragged, whyNotNudged } from './placing'
@@ -36,7 +37,7 @@ const TOOLS: { tool: BenchTool; icon: IconName; label: string; key: string; hint
 export interface Stage {
   element: HTMLElement
   viewer: Viewer
-  setScene(scene: Scene, keepCamera: boolean): void
+  setScene(scene: Scene, keep: { camera: boolean; time: boolean }): void
   working(busy: boolean): void
   took(milliseconds: number, scene: Scene): void
   stale(is: boolean): void
@@ -134,6 +135,13 @@ export function createStage(app: App): Stage {
     app.toast(`Nudged at ${show(when, 3)} s by ${show(Math.hypot(vx, vy), 2)} m/s: this is the new start.${clock}`)
   }
 
+  /** While it stands still the whole path is there, dashed; while it runs the ball draws it. */
+  function drawAhead(): void {
+    const still = !viewer.playing
+    viewer.setSketch(scene && still ? pathOf(scene, viewer.frame) : null, '', viewer.frame)
+  }
+  undo.add(viewer.on('play', drawAhead), viewer.on('pause', drawAhead), viewer.on('frame', drawAhead))
+
   function drawHeadline(of: Scene): void {
     const found = headline(of)
     const said = of.header.formula?.latex
@@ -161,11 +169,14 @@ export function createStage(app: App): Stage {
     element,
     viewer,
     useTool,
-    setScene(next, keepCamera) {
+    setScene(next, keep) {
       const first = scene === undefined
       scene = next
-      viewer.setScenes([next], { keepTime: !first && keepCamera, keepCamera: !first && keepCamera })
+      const was = viewer.playing
+      viewer.setScenes([next], { keepTime: !first && keep.time, keepCamera: !first && keep.camera })
+      if (was && !viewer.playing) viewer.play()
       drawHeadline(next)
+      drawAhead()
       if (!hasStarted && !app.settings.reducedMotion && viewer.tool === 'orbit') viewer.play()
       hasStarted = true
     },
