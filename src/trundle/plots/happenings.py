@@ -19,7 +19,6 @@ FEW = 6  # events of a kind that are all marked; of more, the first few and the 
 _FINAL = {
     "rim": "ran off the rim",
     "end": "reached the end of the surface",
-    "edge": "tipped over its edge",
     "curved": "no longer fitted the surface",
     "spot": "had to stop",
 }
@@ -104,7 +103,7 @@ def happenings_of(run: Trajectory) -> list[Happening]:
             continue
         if kind == "event":
             event = events[-1]
-            said = _FINAL.get(event.kind, event.text.split(" (")[0].split(" at ")[0])
+            said = _FINAL.get(event.kind, event.text.split(" (")[0].split(" at ")[0].split(", which")[0])
         else:
             said = _SAID[kind]
         found.append(_grouped(kind, times, said))

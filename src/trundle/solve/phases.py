@@ -26,7 +26,7 @@ _MANY, _MANY_WITHIN = 50, 1e-3  # events, and the share of the time in which the
 _ENDS = {
     "rim": "ran off the rim ({rim:g} m from the axis)",
     "end": "came to {end}",
-    "edge": "tipped onto the edge of its round side, which its shape does not cover",
+    "edge": "{left}, which its shape does not cover",
     "curved": "came where the support is as hollow as the body is round: 1 + C S is singular",
     "spot": "stopped rolling while it still spins about the normal, which is not covered",
 }
@@ -160,7 +160,7 @@ def end(system: RollingSystem, name: str, state: State) -> Event:
     Parameters
     ----------
     system : RollingSystem
-        Names the rim and the end of the surface.
+        Names the rim, the end of the surface and what the shape covers.
     name : str
         The stop: "rim", "end", "edge", "curved" or "spot".
     state : State
@@ -179,7 +179,7 @@ def end(system: RollingSystem, name: str, state: State) -> Event:
     'ran off the rim (0.5 m from the axis) at t = 1.25 s'
     """
     surface = system.support.surface
-    said = _ENDS[name].format(rim=float(surface.rim or 0.0), end=surface.end)
+    said = _ENDS[name].format(rim=float(surface.rim or 0.0), end=surface.end, left=system.body.shape.left)
     return Event(state.time, name, f"{said} at t = {state.time:.9g} s", state, state)
 
 

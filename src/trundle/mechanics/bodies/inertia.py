@@ -145,7 +145,7 @@ class Tensor:
 
     Examples
     --------
-    The rattleback of Kane and Levinson:
+    The rattleback of Kane and Levinson along their axes, whose third points down:
 
     >>> round(Tensor(2e-4, 1.6e-3, 1.7e-3, xy=-2e-5).principal_turn, 6)
     0.014282

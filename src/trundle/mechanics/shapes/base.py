@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 from .. import checks
 from ..algebra import Matrix, Vector
@@ -13,6 +13,7 @@ class Shape:
     """A convex body's surface, known by the point where its outward normal is ν (theory page, section 2)."""
 
     axis: Vector | None = None  # of a body that touches along a line, in the body frame: it rolls across it, straight
+    left: ClassVar[str] = "tipped onto the edge of its round side"  # what a body did that left what the shape covers
 
     def support_map(self, nu: Vector) -> Vector:
         """Return X(ν), the body-frame point with outward unit normal ν, in m from the centre of mass."""

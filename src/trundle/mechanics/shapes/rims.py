@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from .. import checks
 from ..algebra import Matrix, Vector
@@ -16,6 +16,7 @@ FLAT = 1e-6  # rad; a disc this near to lying flat touches on its face, which is
 class _Rim(Shape):
     """What disc and torus have in common: the circle of radius a across the third axis."""
 
+    left: ClassVar[str] = "came to lie flat on its face"
     radius: Scalar
     centre: Vector | None
 
