@@ -6,14 +6,18 @@ import { h } from './dom'
 /** Put a formula into an element: drawn for the eye, and as MathML for the ear. */
 export function math(host: HTMLElement, latex: string, display = false): void {
   host.replaceChildren()
-  katex.render(latex, host, {
-    displayMode: display,
-    output: 'htmlAndMathml',
-    throwOnError: false,
-    fleqn: true,
-    strict: false,
-    trust: false,
-  })
+  try {
+    katex.render(latex, host, {
+      displayMode: display,
+      output: 'htmlAndMathml',
+      fleqn: true,
+      strict: false,
+      trust: false,
+    })
+  } catch {
+    // What KaTeX cannot set is shown as it is written: its own way of saying so needs inline styles.
+    host.replaceChildren(h('code', {}, latex))
+  }
 }
 
 /** A new element with the formula in it. */

@@ -183,8 +183,8 @@ function _mount(host: HTMLElement, app: App): () => void {
   undo.add(
     listen(narrow, 'change', arrange),
     store.subscribe((scenario, change) => {
-      if (['undo', 'redo', 'open', 'url'].includes(change.source))
-        fresh ||= change.source !== 'undo' && change.source !== 'redo'
+      if (change.source === 'undo' || change.source === 'redo') fresh = false
+      if (change.source === 'nudge') restart = true
       showScenario(scenario)
       computing.ask(scenario, change)
       linking.changed(scenario)
@@ -197,12 +197,30 @@ function _mount(host: HTMLElement, app: App): () => void {
     }),
     app.router.subscribe(() => {
       if (app.route.page === 'bench' || app.route.page === '')
-        const first = 'first'
-  void linking.read((name) => take(name, first), (scenario) => opened(scenario, first)).then((found) => {
-      if (found) return
-      if (store.scenario === FIRST) void take(FIRST_NAME, 'first')
-      else computing.ask(store.scenario, { source: 'first' })
-    })
+        void linking.read(take, (scenario) => opened(scenario, 'url'))
+    }),
+    benchKeys(app, { stage, pick, fold: (side) => folds[side === 'left' ? 0 : 1].click() }),
+    () => controls.dispose(),
+    () => curves.dispose(),
+    () => stage.dispose(),
+    () => downloads.dispose(),
+    () => opener.dispose(),
+    () => computing.stop(),
+    () => linking.stop(),
+  )
+  grid.toggleAttribute('data-left-folded', app.settings.projector)
+  grid.toggleAttribute('data-right-folded', app.settings.projector)
+  showScenario(store.scenario)
+  const first = 'first'
+  const said = linking.read(
+    (name) => take(name, first),
+    (scenario) => opened(scenario, first),
+  )
+  void said.then((found) => {
+    if (found) return
+    if (store.scenario === FIRST) void take(FIRST_NAME, first)
+    else computing.ask(store.scenario, { source: first })
+  })
   return () => undo.run()
 }
 
