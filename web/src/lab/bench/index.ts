@@ -18,6 +18,7 @@ import { openDerivation } from './derivation'
 import { createEvents } from './events'
 import { copyLink, createDownloads, createOpener } from './files'
 import { createFindings, sentence } from './findings'
+import { benchKeys } from './keys'
 import { createLinking } from './linking'
 import { pickScenario } from './picker'
 import { createSheet } from './sheet'
@@ -245,4 +246,4 @@ function fold(grid: HTMLElement, side: 'left' | 'right', what: string, key: stri
   return button
 }
 
-export const _bench: Page = { id: 'bench', title: 'Bench', mount: _mount }
+export const bench: Page = { id: 'bench', title: 'Bench', mount: _mount }
