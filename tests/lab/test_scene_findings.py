@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import trundle as tr
+from trundle.scenario.files import is_shipped_path, names
 from trundle.scene import scene_of
 from trundle.scene.findings import Finding, findings_of
-from trundle.scenario.files import is_shipped_path, names
 from trundle.solve.exact import closed_form
 
 BALL = {"solid": tr.Body.solid_sphere(0.025, 0.51), "hollow": tr.Body.hollow_sphere(0.025, 0.51)}
@@ -259,3 +259,11 @@ def test_the_guiding_centre_is_the_middle_of_the_circle():
     away = np.linalg.norm(columns["position"][:, :2] - columns["guiding_centre"][:, :2], axis=1)
     assert np.ptp(away) < 1e-5 * np.max(away)
     assert np.all(columns["guiding_centre"][:, 2] == 0)
+
+
+def test_a_ball_with_three_moments():
+    body = tr.Body.eccentric_sphere(0.1, 0.64, (2e-3, 2e-3, 4e-3), (0.0, 0.0, 0.0))
+    start = {"velocity": (0.3, 0.1), "spin": 8.0, "orientation": (0.9, 0.3, 0.1, 0.0)}
+    rows = found(simulated(tr.Support(tr.Plane()), start, body))
+    for name in ("Time of one nutation", "Speed from one nutation to the next"):
+        assert rows[name]["measured"] == pytest.approx(rows[name]["predicted"], rel=1e-4)

@@ -70,3 +70,28 @@ def test_no_more_samples_than_asked():
     assert found.size == 50
     assert found[0] == run.data.time.values[0]
     assert found[-1] == run.data.time.values[-1]
+
+
+def test_the_card_comes_only_when_asked_for():
+    run = tr.Scenario.load("ball-under-force").run()
+    assert scene_of(run).header["card"] is None
+    header = unpack(pack(scene_of(run, with_card=True, seconds=0.25))).header
+    assert header["card"] == json.loads(json.dumps(run.card().as_dict()))
+    assert header["seconds"] == 0.25
+
+
+def test_a_run_is_shown_alike_whatever_frame_it_is_told_in():
+    run = tr.Scenario.load("tilted-turntable-put-down").run(duration=2.0)
+    one, other = scene_of(run), scene_of(run.in_frame("corotating"))
+    for name, column in one.columns.items():
+        assert np.allclose(column, other.columns[name], rtol=0, atol=1e-6 * max(1.0, float(np.max(np.abs(column))))), (
+            name
+        )
+
+
+def test_the_world_is_turned_about_the_second_axis():
+    header = scene_of(tr.Scenario.load("tilted-turntable-put-down").run(duration=1.0)).header
+    w, x, y, z = header["to_world"]
+    assert (x, z) == (0, 0)
+    assert 2 * np.arctan2(y, w) == pytest.approx(header["tilt"], rel=1e-12)
+    assert header["gravity"] == [0, 0, -9.80665]

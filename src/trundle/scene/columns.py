@@ -59,11 +59,13 @@ def moves(system: RollingSystem) -> bool:
     return system.support.motion.steady_rate != 0.0
 
 
-def pose_of(at: Samples, state: SupportState) -> dict[str, NDArray[Any]]:
+def pose_of(system: RollingSystem, at: Samples, state: SupportState) -> dict[str, NDArray[Any]]:
     """Return the columns of a moving support's pose.
 
     Parameters
     ----------
+    system : RollingSystem
+        Gives the support's motion.
     at : Samples
         As they are shown.
     state : SupportState
@@ -74,11 +76,12 @@ def pose_of(at: Samples, state: SupportState) -> dict[str, NDArray[Any]]:
     dict
         `support_position` and `support_orientation`, of the support's material.
     """
-    n = at.time.size
+    n, rate = at.time.size, system.support.motion.steady_rate
+    turned = _quaternions(rotations(state, n)) if rate is None else _about_third_axis(float(rate) * at.time)
     origin = np.broadcast_to(state.origin.array(), (n, 3))
     return {
         "support_position": origin.astype(np.float32),
-        "support_orientation": continuous(_quaternions(rotations(state, n))).astype(np.float32),
+        "support_orientation": continuous(turned).astype(np.float32),
     }
 
 
@@ -115,6 +118,11 @@ def material(at: Samples, state: SupportState, points: Array) -> Array:
     """Return where points are in the support's own frame, (n, 3), m."""
     turn = rotations(state, at.time.size)
     return np.einsum("nji,nj->ni", turn, points - state.origin.array())
+
+
+def _about_third_axis(angle: Array) -> Array:
+    half = 0.5 * angle
+    return np.column_stack([np.cos(half), 0.0 * half, 0.0 * half, np.sin(half)])
 
 
 def _quaternions(matrices: Array) -> Array:

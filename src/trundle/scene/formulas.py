@@ -12,8 +12,10 @@ from ..plots.scales import as_ratio
 from ..solve.exact import (
     BallInLeaningCylinder,
     BallInUprightCylinder,
+    ChaplyginBall,
     ClosedForm,
     CylinderOnCylinder,
+    OffADome,
     SlidingSphere,
     SphereComingToRest,
     SphereInFlight,
@@ -22,6 +24,7 @@ from ..solve.exact import (
     SphereOnPlane,
     SphereOnSphere,
     SphereOnUnsteadyPlane,
+    UprightChaplyginBall,
 )
 
 Lines = list[tuple[str, str]]  # a formula, and the same in numbers
@@ -149,12 +152,13 @@ def _sphere_on_plane(form: SphereOnPlane, system: RollingSystem) -> Lines:
         return _circle(form, system)
     k, push, lines = float(form.inertia_ratio), complex(form.phi.re, form.phi.im), []
     if form.drag:
-        lines.append(
-            (
-                r"\ddot\zeta = (i\kappa - \gamma)\,\dot\zeta + \varphi,\quad \kappa = \frac{k}{1+k}\,\omega",
-                rf"\kappa = {quantity(form.kappa, 'rad/s')}",
+        turning = r"\ddot\zeta = (i\kappa - \gamma)\,\dot\zeta + \varphi,\quad \kappa = \frac{k}{1+k}\,\omega"
+        if form.kappa:
+            lines.append((turning, rf"\kappa = {quantity(form.kappa, 'rad/s')}"))
+        else:
+            lines.append(
+                (r"\dot V = \varphi - \gamma V", rf"|\varphi| = {quantity(abs(push), 'm/s^2')}" if push else "")
             )
-        )
         heavy = rf"{_decimal(form.mass)}\cdot(1 + {number(k)})"
         found = (
             rf"\gamma = \frac{{{_decimal(form.drag)}}}{{{heavy}}}\,\mathrm{{s^{{-1}}}} = {quantity(form.gamma, '1/s')}"
@@ -162,9 +166,8 @@ def _sphere_on_plane(form: SphereOnPlane, system: RollingSystem) -> Lines:
         lines.append((r"\gamma = \frac{c}{m(1+k)}", found))
         if push:
             speed = abs(push / complex(-float(form.gamma), float(form.kappa)))
-            lines.append(
-                (r"|\dot\zeta| \to |\varphi/(i\kappa - \gamma)|", rf"|\dot\zeta| \to {quantity(speed, 'm/s')}")
-            )
+            formula = r"|V| \to |\varphi/(i\kappa - \gamma)|" if form.kappa else r"|V| \to |\varphi|/\gamma"
+            lines.append((formula, rf"|V| \to {quantity(speed, 'm/s')}"))
         return lines
     if not push:
         speed = math.hypot(*map(float, form.velocity))
@@ -267,10 +270,20 @@ def _upright(form: BallInUprightCylinder, system: RollingSystem) -> Lines:
 def _sphere(form: SphereOnSphere, system: RollingSystem) -> Lines:
     if form.side < 0:
         return _pendulum(form.pendulum, system)
+    if system.support.friction is not None:
+        return _slipping_dome(form, float(system.support.friction))
     cosine = float(form.lift_cosine)
     formula = r"\cos\theta_l = \frac{2\cos\theta_0 + (1+k)\,\ell\dot\theta_0^2/g}{3+k}"
     angle = rf",\quad \theta_l = {quantity(math.degrees(math.acos(cosine)), 'deg')}" if abs(cosine) <= 1 else ""
     return [(formula, rf"\cos\theta_l = {_decimal(cosine)}{angle}")]
+
+
+def _slipping_dome(form: SphereOnSphere, friction: float) -> Lines:
+    k, above = float(form.inertia_ratio), -math.cos(float(form.angle))
+    speed = float(form.mass) * float(form.length) * float(form.angular_rate) ** 2 / float(form.pull)
+    slips = OffADome(k, friction, speed - 2 * (1 - above) / (1 + k)).slips_at
+    formula = r"(3+k)\,\mu\cos\theta_s - k\sin\theta_s = \mu\,\big[2\cos\theta_0 + (1+k)\,\ell\dot\theta_0^2/g\big]"
+    return [(formula, rf"\mu = {_decimal(friction)},\quad \theta_s = {quantity(math.degrees(slips), 'deg')}")]
 
 
 def _sliding(form: SlidingSphere, system: RollingSystem) -> Lines:
@@ -311,6 +324,18 @@ def _stopping(form: SphereComingToRest, system: RollingSystem) -> Lines:
     return lines
 
 
+def _chaplygin(form: ChaplyginBall, system: RollingSystem) -> Lines:
+    del system
+    momentum = quantity(form.momentum.norm(), r"kg\,m^2/s")
+    return [(r"M = J\Omega + m a^2\,n\times(\Omega\times n)", f"|M| = {momentum}")]
+
+
+def _chaplygin_upright(form: UprightChaplyginBall, system: RollingSystem) -> Lines:
+    del system
+    momentum = quantity(form.momentum, r"kg\,m^2/s")
+    return [(r"(J + m a^2)\,\Omega = L\,n", f"L = {momentum}")]
+
+
 _FORMULAS: dict[type, Callable[[Any, RollingSystem], Lines]] = {
     SphereOnPlane: _sphere_on_plane,
     SphereInMovingAir: _moving_air,
@@ -323,4 +348,6 @@ _FORMULAS: dict[type, Callable[[Any, RollingSystem], Lines]] = {
     SlidingSphere: _sliding,
     SphereInFlight: _flight,
     SphereComingToRest: _stopping,
+    ChaplyginBall: _chaplygin,
+    UprightChaplyginBall: _chaplygin_upright,
 }

@@ -64,7 +64,7 @@ def scene_of(
     columns = columns_of(at)
     state = at.support(run.system)
     if moves(run.system):
-        columns |= pose_of(at, state)
+        columns |= pose_of(run.system, at, state)
     columns |= guiding_centre(run, form, at)
     ground = _ground(run, at, material(at, state, at.contact), radius_about_centre(body.vertices))
     header = header_of(run, ground, radius_about_centre(body.vertices))

@@ -10,11 +10,12 @@ import numpy as np
 
 from ..mechanics.algebra import Vector
 from ..mechanics.surfaces import Plane, Surface
-from ..plots.ground import Window, heights, meridians, window_of
+from ..plots.ground import Window, meridians, window_of
 from .mesh import Array, Mesh, grid_triangles, joined, oriented
 
 _AROUND, _ALONG = 120, 48  # cells of a surface of revolution round its axis and along its outline
 _SIDE = 64  # cells along a side of a field
+_FAR = 3.0  # times as far as a run comes, and an edge is not shown
 _PROJECTIONS = 4  # of Newton's steps that bring a vertex onto the surface
 
 
@@ -195,28 +196,34 @@ def _box(vertices: Array) -> tuple[float, tuple[float, float, float]]:
 
 def _field(surface: Surface, window: Window) -> Ground:
     """Return a surface over the plane that is not one of revolution."""
-    if getattr(surface, "grid", None) is None and _ends_within(surface, window):
-        return _star(surface, window)
+    if getattr(surface, "grid", None) is None:
+        reach = float(np.max(np.hypot(*np.array([window.low[:2], window.high[:2]]).T)))
+        edge = _edge(surface, _FAR * reach)
+        if np.max(edge) < _FAR * reach:  # it ends all round, not far away: all of it is shown
+            return _star(surface, edge)
+        if np.min(edge) < reach:
+            return _star(surface, np.minimum(edge, reach))
     x, y = (np.linspace(window.low[i], window.high[i], _SIDE + 1) for i in (0, 1))
     return _over(surface, *np.meshgrid(x, y))
 
 
-def _ends_within(surface: Surface, window: Window) -> bool:
-    field = heights(surface, window, 24)
-    return field is None or not np.isfinite(field[2]).all()
-
-
-def _star(surface: Surface, window: Window) -> Ground:
-    """Return a mesh about the axis up to where the surface ends in each direction, found by halving."""
+def _edge(surface: Surface, reach: float) -> Array:
+    """Return how far from the axis a surface goes in each direction, found by halving, m; at most `reach`."""
     angle = np.linspace(0.0, 2 * np.pi, _AROUND + 1)
-    reach = float(np.max(np.hypot(*np.array([window.low[:2], window.high[:2]]).T)))
     low, high = np.zeros_like(angle), np.full_like(angle, reach)
+    low = np.where(_exists(surface, reach * np.cos(angle), reach * np.sin(angle)), reach, low)
     for _ in range(50):
         middle = 0.5 * (low + high)
         there = _exists(surface, middle * np.cos(angle), middle * np.sin(angle))
         low, high = np.where(there, middle, low), np.where(there, high, middle)
+    return low
+
+
+def _star(surface: Surface, edge: Array) -> Ground:
+    """Return a mesh about the axis up to a distance from it in each direction."""
+    angle = np.linspace(0.0, 2 * np.pi, _AROUND + 1)
     share = np.sin(np.linspace(0.0, 0.5 * np.pi, _ALONG + 1))[:, None]
-    return _over(surface, share * low * np.cos(angle), share * low * np.sin(angle))
+    return _over(surface, share * edge * np.cos(angle), share * edge * np.sin(angle))
 
 
 def _exists(surface: Surface, x: Array, y: Array) -> Array:

@@ -9,6 +9,7 @@ from ...mechanics.system import RollingSystem, State
 from ...solve.exact import (
     BallInLeaningCylinder,
     BallInUprightCylinder,
+    ChaplyginBall,
     ClosedForm,
     CylinderOnCylinder,
     SlidingSphere,
@@ -19,9 +20,10 @@ from ...solve.exact import (
     SphereOnPlane,
     SphereOnSphere,
     SphereOnUnsteadyPlane,
+    UprightChaplyginBall,
 )
 from ...solve.samples import Samples
-from . import ends, plane, round, witnesses  # noqa: A004  what goes round
+from . import chaplygin, ends, plane, round, witnesses  # noqa: A004  what goes round
 from .finding import Finding
 from .fits import Seen
 
@@ -73,6 +75,8 @@ def _of_form(system: RollingSystem, samples: Samples, form: ClosedForm | None, s
             yield from round.along_cylinder(form, seen)
         case SphereOnSphere():
             yield from round.on_sphere(form, system, seen, samples)
+        case ChaplyginBall() | UprightChaplyginBall():
+            yield from chaplygin.nodding(form, seen)
         case SlidingSphere():
             yield from ends.gripping(form, system, samples)
         case SphereInFlight():

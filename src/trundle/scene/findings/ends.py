@@ -98,6 +98,6 @@ def landing(form: SphereInFlight, seen: Seen, samples: Samples) -> Iterator[Find
     ahead = form.motion_at(predicted)[0]
     way = math.hypot(float(ahead.x) - float(form.position[0]), float(ahead.y) - float(form.position[1]))
     if way:
-        there = np.polynomial.polynomial.polyval(lands, course)[:2]
+        there = np.asarray(np.polynomial.polynomial.polyval(lands, course[:, :2]))
         gone = float(np.linalg.norm(there - samples.position[0, :2]))
         yield Finding("Distance to there", "d_l", way, gone, "m")
