@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import tomllib
+from copy import deepcopy
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -64,7 +65,7 @@ def _parsed(text: str) -> dict[str, Any]:
 
 
 def _tables(text: str) -> dict[str, Any] | None:
-    return _parsed(text) if text else None
+    return deepcopy(_parsed(text)) if text else None  # so that nobody changes what is kept
 
 
 def _body(system: RollingSystem, words: dict[str, Any], radius: float) -> dict[str, Any]:
