@@ -25,7 +25,7 @@ from .samples import FLIGHT, SLIPPING, Array, Progress, Samples
 
 _PHASE_A_STEP = 0.05  # rad of the motion's own phase between two looks at what may end it
 _AT_ONCE = 100_000
-_PERIODS_WORTH_A_MONODROMY = 2.0
+_PERIODS_WORTH_A_MONODROMY = 10.0  # to work one out takes ten times as long as to follow two circles
 _BOUNDS = {"rim", "end", "edge", "curved"}  # which the place of the contact decides
 
 
