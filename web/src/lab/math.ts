@@ -13,6 +13,8 @@ export function math(host: HTMLElement, latex: string, display = false): void {
       fleqn: true,
       strict: false,
       trust: false,
+      // An arrow over a letter needs an inline style, which the policy forbids; bold says vector as well.
+      macros: { '\\vec': '\\boldsymbol{#1}' },
     })
   } catch {
     // What KaTeX cannot set is shown as it is written: its own way of saying so needs inline styles.

@@ -42,7 +42,7 @@ function content(derivation: Derivation): (HTMLElement | null)[] {
               h(
                 'tr',
                 {},
-                h('th', { scope: 'row' }, one.name, ' ', one.symbol ? formula(one.symbol) : null),
+                h('th', { scope: 'row' }, one.name || 'with the symbol', ' ', one.symbol ? formula(one.symbol) : null),
                 h('td', {}, `${show(one.value, 5)} ${one.unit}`),
               ),
             ),

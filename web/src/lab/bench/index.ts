@@ -53,7 +53,7 @@ function _mount(host: HTMLElement, app: App): () => void {
       fresh = false
       restart = false
       stage.took(milliseconds, scene)
-      stage.stale(false)
+      stage.stale(null)
       controls.complain(null)
       controls.setReach(scene.header.support.rim ?? scene.header.support.size)
       findings.update(scene)
@@ -66,7 +66,7 @@ function _mount(host: HTMLElement, app: App): () => void {
       if (isAbort(error)) return
       const told = error instanceof ApiError ? error : new ApiError(String(error), null, 'Error', 0)
       controls.complain(told)
-      stage.stale(true)
+      stage.stale(told.message)
       app.announce(told.message)
     },
     busy: (is) => stage.working(is),
@@ -115,7 +115,7 @@ function _mount(host: HTMLElement, app: App): () => void {
   })
   back.append(icon('undo'))
   const again = h('button', {
-    class: 'icon-button',
+    class: 'icon-button redo',
     type: 'button',
     'aria-label': 'Redo',
     title: 'Redo (Ctrl Shift Z)',

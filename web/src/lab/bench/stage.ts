@@ -40,7 +40,8 @@ export interface Stage {
   setScene(scene: Scene, keep: { camera: boolean; time: boolean }): void
   working(busy: boolean): void
   took(milliseconds: number, scene: Scene): void
-  stale(is: boolean): void
+  /** What is drawn is not what is asked for: why, or null where it is. */
+  stale(why: string | null): void
   useTool(tool: BenchTool): void
   dispose(): void
 }
@@ -53,8 +54,9 @@ export function createStage(app: App): Stage {
   const time = h('p', { class: 'stage-took' })
   const big = h('div', { class: 'stage-headline' })
   const old = h('p', { class: 'stage-stale', hidden: true }, 'The last path that could be computed')
+  const empty = h('p', { class: 'stage-empty working' }, 'Computing the motion …')
   const tools = h('div', { class: 'stage-tools', role: 'radiogroup', 'aria-label': 'What the pointer does' })
-  const element = h('section', { class: 'stage', 'aria-label': 'Stage' }, host, tools, big, time, old, hint)
+  const element = h('section', { class: 'stage', 'aria-label': 'Stage' }, host, empty, tools, big, time, old, hint)
   const viewer = createViewer(host, { theme: app.appearance, controls: true, projector: app.settings.projector })
   let scene: Scene | undefined
   let hasStarted = false
@@ -172,6 +174,7 @@ export function createStage(app: App): Stage {
     setScene(next, keep) {
       const first = scene === undefined
       scene = next
+      empty.hidden = true
       const was = viewer.playing
       viewer.setScenes([next], { keepTime: !first && keep.time, keepCamera: !first && keep.camera })
       if (was && !viewer.playing) viewer.play()
@@ -188,9 +191,12 @@ export function createStage(app: App): Stage {
         { exact: 'closed form', taylor: 'Taylor series', 'runge-kutta': 'Runge–Kutta' }[header.method] ?? header.method
       fill(time, h('span', { class: 'number' }, `${Math.round(milliseconds)} ms`), ` ${method}`)
     },
-    stale(is) {
-      old.hidden = !is
-      element.toggleAttribute('data-stale', is)
+    stale(why) {
+      old.hidden = why === null || scene === undefined
+      element.toggleAttribute('data-stale', why !== null)
+      if (scene || why === null) return
+      empty.classList.remove('working')
+      empty.textContent = why
     },
     dispose: () => undo.run(),
   }
