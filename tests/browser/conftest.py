@@ -7,21 +7,20 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, expect, sync_playwright
 
 from . import serving
-from .launching import ARGUMENTS, LAPTOP, NAMES
+from .launching import ARGUMENTS, NAMES, PATIENCE
+from .visiting import Visitor
 from .watching import Watch
 
 ROOT = Path(__file__).parents[2]
-PATIENCE = 20_000  # ms, for anything on a busy machine
-
-OpenPage = Callable[..., Page]
+expect.set_options(timeout=PATIENCE)
 _report = pytest.StashKey[pytest.TestReport]()
 
 
@@ -46,9 +45,7 @@ def chromium() -> str:
         pytest.skip(f"no browser: {told.read_text().strip()}")
     if os.environ.get("CI", "").lower() in ("1", "true") and not named and shutil.which("apt-get"):
         pytest.fail("there is no Chromium, and nobody tried to install it: run .ci/chromium first, as `make test` does")
-    pytest.skip(
-        "no browser: install Chromium or Chrome, or name it in TRUNDLE_CHROMIUM (.ci/chromium does it on Debian)"
-    )
+    pytest.skip("no browser: install Chromium or Chrome, or name it in TRUNDLE_CHROMIUM (on Debian, .ci/chromium does)")
 
 
 @pytest.fixture(scope="session")
@@ -74,38 +71,22 @@ def watch(lab: str) -> Watch:
 
 
 @pytest.fixture
-def open_page(
+def visitor(
     browser: Browser, lab: str, watch: Watch, request: pytest.FixtureRequest, tmp_path: Path
-) -> Iterator[OpenPage]:
-    """Open a page of the lab: `open_page("#/tour", size=PHONE)`. Each gets a profile of its own.
-
-    Motion is reduced unless asked for otherwise, so that a processor that draws by itself is not kept busy by tests
-    that do not look at motion.
-    """
-    contexts = []
-
-    def opened(route: str = "", *, size: Any = LAPTOP, reduced_motion: Any = "reduce", **options: Any) -> Page:
-        context = browser.new_context(viewport=size, reduced_motion=reduced_motion, **options)
-        contexts.append(context)
-        context.set_default_timeout(PATIENCE)
-        watch.over(context)
-        page = context.new_page()
-        page.goto(f"{lab}/{route}")
-        return page
-
-    yield opened
-    if request.node.stash.get(_report, None) and request.node.stash[_report].failed:
-        pictures = [tmp_path / f"failed-{at}.png" for at in range(len(contexts))]
-        for context, picture in zip(contexts, pictures, strict=True):
-            if context.pages:
-                context.pages[-1].screenshot(path=picture)
-        print("What it looked like:", *pictures)
-    for context in contexts:
-        context.close()
+) -> Iterator[Visitor]:
+    """Opens pages of the lab, which close with the test; nothing may have gone wrong in them."""
+    visiting = Visitor(browser, lab, watch)
+    yield visiting
+    report = request.node.stash.get(_report, None)
+    if report is not None and report.failed:
+        print("What it looked like:", *visiting.pictures(tmp_path))
+    visiting.leave()
     assert watch.left() == []
 
 
-@pytest.fixture
-def page(open_page: OpenPage) -> Page:
-    """The front page at the size of a laptop."""
-    return open_page()
+@pytest.fixture(scope="module")
+def staying(browser: Browser, lab: str) -> Iterator[Visitor]:
+    """A visitor who stays for all tests of a module; each of them must ask its watch whether something went wrong."""
+    visiting = Visitor(browser, lab, Watch((lab + "/",)))
+    yield visiting
+    visiting.leave()

@@ -12,3 +12,4 @@ ARGUMENTS = (
 PHONE = {"width": 390, "height": 844}
 LAPTOP = {"width": 1366, "height": 768}
 SMALL = {"width": 960, "height": 640}  # the layout of a laptop, and few pixels to draw
+PATIENCE = 20_000  # ms, for anything on a busy machine

@@ -38,7 +38,7 @@ def lab(folder: Path) -> Iterator[str]:
         _end(process)
     said = err.read_text()
     if process.returncode not in (0, 143) or "Traceback" in said:
-        raise LabError(f"trundle lab ended with {process.returncode} and said:\n{said}")
+        raise LabError(f"trundle lab ended with {process.returncode} and said:\n{said[-3000:]}")
 
 
 def _address(process: subprocess.Popen[bytes], out: Path, err: Path) -> str:

@@ -1,0 +1,68 @@
+"""Every scenario that ships is drawn in the lab, and moves."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from playwright.sync_api import expect
+
+import trundle as tr
+from trundle.scenario import files
+
+from .bench import Bench, Stage, eventually
+from .launching import SMALL
+from .visiting import Visitor
+
+TOLD = 2e-5  # m: what is drawn has single precision and is told to a hundredth of a millimetre
+SEEN = 30  # a difference in colour that an eye sees; the channels go to 255
+
+
+@pytest.fixture(scope="module")
+def bench(staying: Visitor) -> Bench:
+    return Bench(staying.open(size=SMALL))
+
+
+def end_of(name: str) -> tuple[float, ...]:
+    """Where the body's centre is at last, seen by somebody who stands beside the support."""
+    tables = files.parse(files.read(name), name)
+    if files.rolls_along_path(tables):
+        from trundle.geometry import PathScenario
+
+        rolled = PathScenario.read(tables).run()
+        return tuple(float(value) for value in rolled.stages.position[-1])
+    run = tr.Scenario.load(name).run().in_frame("world")
+    return tuple(float(value) for value in run.data.position.values[-1])
+
+
+@pytest.mark.parametrize("name", files.names())
+def test_a_scenario_is_drawn_as_it_is_computed(name: str, bench: Bench, staying: Visitor) -> None:
+    bench.open(f"#/bench?name={name}")
+    stage, page = bench.stage, bench.page
+    expect(page.locator(".bar-title")).to_have_text(files.title_of(name))
+    expected = end_of(name)
+
+    def ends() -> None:
+        page.keyboard.press("End")
+        assert stage.drawn().place[: len(expected)] == pytest.approx(expected, abs=TOLD)
+
+    eventually(page, ends)
+
+    page.keyboard.press("Home")
+    eventually(page, lambda: starts(stage))
+    first = stage.middle()
+    assert len(np.unique(first.reshape(-1, 3), axis=0)) > 100, "the stage is blank"
+
+    page.keyboard.press("Space")
+
+    def moves() -> None:
+        assert stage.drawn().time > 0.0
+        assert np.mean(np.abs(stage.middle() - first).max(axis=2) > SEEN) > 1e-4, "nothing moves on the stage"
+
+    eventually(page, moves)
+    if stage.drawn().playing:
+        page.keyboard.press("Space")
+    assert staying.watch.left() == []
+
+
+def starts(stage: Stage) -> None:
+    assert stage.drawn().time == 0.0

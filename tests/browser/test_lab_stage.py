@@ -1,0 +1,152 @@
+"""What is done by hand on the stage: move the ball, draw its velocity, nudge it while it runs."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from playwright.sync_api import expect
+
+import trundle as tr
+
+from .bench import Bench, eventually
+from .visiting import Visitor
+
+NAME = "level-turntable-nudged"
+
+
+@pytest.fixture
+def bench(visitor: Visitor) -> Bench:
+    """A level turntable, seen from above: right on the screen is the first axis, up is the second."""
+    shown = Bench(visitor.open(f"#/bench?name={NAME}"))
+    shown.stage.canvas.focus()
+    shown.page.keyboard.press("Home")
+    shown.page.keyboard.press("t")
+    return shown
+
+
+def start(bench: Bench) -> tuple[np.ndarray, np.ndarray]:
+    """Position and velocity, m and m/s, at the start of the scenario that the address holds."""
+    state = tr.Scenario.read(bench.scenario()).start_state()
+    return np.array(state.position[:2]), np.array(state.velocity[:2])
+
+
+def tool(bench: Bench, name: str) -> None:
+    button = bench.page.get_by_role("radio", name=name)
+    button.click()
+    expect(button).to_be_checked()
+
+
+def test_the_ball_is_dragged_to_another_start(bench: Bench) -> None:
+    tool(bench, "Move the ball")
+    x, y = bench.stage.ball()
+    bench.stage.drag((-60.0, -40.0))
+
+    def moved() -> None:
+        place, velocity = start(bench)
+        assert place[0] < 0.19, "left on the screen is down the first axis"
+        assert place[1] > 0.01, "up on the screen is along the second axis"
+        assert velocity == pytest.approx([0.0, 0.1], abs=1e-9), "the velocity stays"
+        assert bench.stage.drawn().place[:2] == pytest.approx(place, abs=1e-3)
+        now = bench.stage.ball()
+        assert now == pytest.approx((x - 60, y - 40), abs=6), "the ball lies where it was let go"
+
+    eventually(bench.page, moved)
+    expect(bench.box("start.position.0")).not_to_have_value("20")
+
+
+def test_its_velocity_is_drawn_as_an_arrow(bench: Bench) -> None:
+    tool(bench, "Draw its velocity")
+    bench.stage.drag((0.0, 70.0))
+
+    def thrown() -> None:
+        place, velocity = start(bench)
+        assert place == pytest.approx([0.2, 0.0], abs=1e-9), "the start stays"
+        assert velocity[1] < -0.01, "down on the screen is against the second axis"
+        assert abs(velocity[0]) < 0.1 * abs(velocity[1])
+
+    eventually(bench.page, thrown)
+    run = bench.run()
+    assert abs(run.data.velocity.sel(axis="y").values[0] - start(bench)[1][1]) < 1e-12
+
+
+def test_a_nudge_restarts_from_the_state_that_is_shown(bench: Bench) -> None:
+    """The state of the run at that time, and the nudge: where it is, how it lies and how it turns are the run's own."""
+    before = bench.run()
+    bench.page.keyboard.press("Space")
+    eventually(bench.page, lambda: passed(bench, 0.5))
+    bench.page.keyboard.press("Space")
+    paused = bench.stage.drawn()
+    tool(bench, "Nudge it")
+    bench.stage.drag((50.0, 0.0))
+
+    def nudged() -> None:
+        tables = bench.scenario()
+        then = before.at([paused.time]).data.isel(time=0)
+        place, velocity = start(bench)
+        assert place == pytest.approx(then.position.values[:2], abs=1e-4)
+        added = velocity - then.velocity.values[:2]
+        assert added[0] > 0.01
+        assert abs(added[1]) < 0.1 * added[0]
+        lies = np.array(tables["start"]["orientation"])
+        assert abs(lies @ then.orientation.values) == pytest.approx(1.0, abs=1e-5)
+        assert tables["start"]["spin"] == pytest.approx(float(then.angular_velocity.values[2]), abs=1e-4)
+
+    eventually(bench.page, nudged)
+
+
+def passed(bench: Bench, seconds: float) -> None:
+    assert bench.stage.drawn().time > seconds
+
+
+def test_a_ball_in_a_tube_says_why_it_cannot_be_dragged(visitor: Visitor) -> None:
+    bench = Bench(visitor.open("#/bench?name=loop-the-loop"))
+    bench.page.get_by_role("radio", name="Nudge it").click()
+    expect(bench.page.get_by_text("Nudging is for balls on a table.")).to_be_visible()
+
+
+def test_the_view_turns_comes_near_and_is_put_back(bench: Bench) -> None:
+    page, stage = bench.page, bench.stage
+    page.keyboard.press("r")
+    page.wait_for_timeout(150)
+    first = stage.middle()
+    box = stage.canvas.bounding_box()
+    assert box
+    x, y = box["x"] + 0.3 * box["width"], box["y"] + 0.3 * box["height"]
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 90, y + 10, steps=4)
+    page.mouse.up()
+    eventually(page, lambda: differs(bench, first))
+    page.mouse.wheel(0, -400)
+    page.keyboard.press("r")
+    eventually(page, lambda: alike(bench, first))
+
+
+def share(bench: Bench, picture: np.ndarray) -> float:
+    return float(np.mean(np.abs(bench.stage.middle() - picture).max(axis=2) > 30))
+
+
+def differs(bench: Bench, picture: np.ndarray) -> None:
+    assert share(bench, picture) > 0.005
+
+
+def alike(bench: Bench, picture: np.ndarray) -> None:
+    assert share(bench, picture) < 0.001
+
+
+def test_each_frame_tells_the_place_as_the_package_does(bench: Bench) -> None:
+    run = tr.Scenario.load(NAME).run()
+    page = bench.page
+    page.keyboard.press("End")
+    for name, frame in (("Support", "support"), ("World", "world"), ("Corotating", "corotating")):
+        choose_frame(bench, name)
+        last = run.in_frame(frame).data.position.values[-1]
+        eventually(page, lambda last=last: stands_at(bench, last))
+
+
+def choose_frame(bench: Bench, name: str) -> None:
+    raise NotImplementedError(name)
+
+
+def stands_at(bench: Bench, place: np.ndarray) -> None:
+    assert bench.stage.drawn().place == pytest.approx(tuple(place), abs=2e-5)

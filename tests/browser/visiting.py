@@ -1,0 +1,50 @@
+"""Somebody who opens pages of the lab."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from playwright.sync_api import Browser, BrowserContext, Page
+
+from .launching import LAPTOP, PATIENCE
+from .watching import Watch
+
+
+@dataclass
+class Visitor:
+    """Opens pages, each with a profile of its own: nothing kept, nothing cached."""
+
+    browser: Browser
+    lab: str
+    watch: Watch
+    contexts: list[BrowserContext] = field(default_factory=list)
+
+    def open(self, route: str = "", *, size: Any = LAPTOP, reduced_motion: Any = "reduce", **options: Any) -> Page:
+        """Open a page of the lab: `open("#/tour", size=PHONE)`.
+
+        Motion is reduced unless asked for otherwise: a processor that draws by itself is not to be kept busy by tests
+        that do not look at motion.
+        """
+        context = self.browser.new_context(viewport=size, reduced_motion=reduced_motion, **options)
+        self.contexts.append(context)
+        context.set_default_timeout(PATIENCE)
+        self.watch.over(context)
+        page = context.new_page()
+        page.goto(f"{self.lab}/{route}")
+        return page
+
+    def pictures(self, folder: Path) -> list[Path]:
+        """What is seen in each page now."""
+        pages = [context.pages[-1] for context in self.contexts if context.pages]
+        paths = [folder / f"page-{at}.png" for at in range(len(pages))]
+        for page, path in zip(pages, paths, strict=True):
+            page.screenshot(path=path)
+        return paths
+
+    def leave(self) -> None:
+        """Close everything."""
+        for context in self.contexts:
+            context.close()
+        self.contexts.clear()
