@@ -101,8 +101,14 @@ def facts_of(run: Trajectory) -> Facts:
 
 def support_states(run: Trajectory) -> SupportState:
     """Return pose and twist of the support at each sample."""
-    samples = run.samples
-    return run.system.support.motion.at(samples.time, *samples.support_own)
+    motion = run.system.support.motion
+    own = [np.asarray(run.data[name].values, dtype=float) for name in own_variables(run)]
+    return motion.at(np.asarray(run.data["time"].values, dtype=float), *own)
+
+
+def own_variables(run: Trajectory) -> list[str]:
+    """Return the names of the variables that hold the coordinates of the support's own motion."""
+    return [f"support_{name}" for name in run.system.support.motion.own]
 
 
 def _size(run: Trajectory) -> float:

@@ -12,7 +12,7 @@ from trundle.mechanics.algebra import Quaternion, Vector
 from trundle.mechanics.attitude import attitude_of
 from trundle.mechanics.contact import normal_at
 
-from .facts import NOTHING, Facts, guiding_centre, support_states
+from .facts import NOTHING, Facts, guiding_centre, own_variables, support_states
 from .happenings import FLIGHT, SLIPPING, part_in
 from .scales import Array, Unit, unit_for
 
@@ -97,7 +97,8 @@ def _array(data: Any, name: str) -> Array:
 
 def _forces(run: Trajectory, facts: Facts, time: Array, support: Any) -> list[Series]:
     R = _array(support, "contact_force")
-    normal = normal_at(run.system, time, Vector.of(_array(support, "contact")), run.samples.support_own).array()
+    own = tuple(_array(support, name) for name in own_variables(run))
+    normal = normal_at(run.system, time, Vector.of(_array(support, "contact")), own).array()
     normal = np.broadcast_to(normal, R.shape)
     N = np.einsum("ni,ni->n", R, normal)
     f = np.linalg.norm(R - N[:, None] * normal, axis=1)
