@@ -31,7 +31,7 @@ export const fields: Page = {
   title: 'Crossed fields',
   mount(host, app) {
     const undo = cleanup()
-    let setting: Setting = { rate: 33.3, tilt: 0.3, start: 'down' }
+    let setting: Setting = { rate: 33.3, tilt: 0.2, start: 'down' }
     const values = h('dl', { class: 'field-values' })
     const body = h('tbody')
     const apart = h('p', { class: 'apart', role: 'status', 'data-testid': 'apart' })
@@ -114,15 +114,14 @@ export const fields: Page = {
 }
 
 function scenarioOf({ rate, tilt, start }: Setting): Scenario {
-  const scenario = leaning(`${tilt} deg`, `${rate} rpm`)
-  const downward = rate * tilt >= 0
-  const position = ['-4 cm', downward ? '-45 cm' : '45 cm']
+  const scenario = leaning(tilt, rate)
+  if (start === 'down') return scenario
+  const side = rate * tilt >= 0 ? -1 : 1
+  // Against the drift, so that the path crosses itself.
   return {
     ...scenario,
-    start:
-      start === 'down'
-        ? { position, velocity: ['0 cm/s', '0 cm/s'] }
-        : { position: ['0 cm', downward ? '-35 cm' : '35 cm'], velocity: ['0 cm/s', downward ? '-6 cm/s' : '6 cm/s'] },
+    title: 'Steel ball pushed on a slightly tilted turntable',
+    start: { position: ['0 cm', `${35 * side} cm`], velocity: ['0 cm/s', `${6 * side} cm/s`] },
   }
 }
 

@@ -4,6 +4,7 @@ import type { App } from '../../app'
 import { cleanup, h } from '../../dom'
 import { button } from '../parts/controls'
 import { createStage, type Stage } from '../parts/stage'
+import { createTransport } from '../parts/transport'
 import { createPoleMap, type PoleMap } from './pole'
 import { poleWhile, type Rolled, roll, rolledOf } from './rolling'
 import { between, inWords, piecesOf, type Turn } from './turns'
@@ -43,7 +44,9 @@ export function createOrders(app: App, done: (outcome: Outcome) => void): Orders
   const sides = [createSide(app, 'First order'), createSide(app, 'Second order')] as const
   const [first, second] = sides
   const controller = new AbortController()
+  const transport = createTransport(first.stage.viewer, [second.stage.viewer])
   let outcome: Outcome | null = null
+  undo.add(() => transport.dispose())
   undo.add(() => controller.abort())
 
   for (const side of sides) {
@@ -61,12 +64,9 @@ export function createOrders(app: App, done: (outcome: Outcome) => void): Orders
   }
 
   function play(): void {
-    for (const { stage } of sides) {
-      stage.viewer.loop = false
-      stage.viewer.seek(0)
-      if (app.settings.reducedMotion) stage.viewer.seek(stage.viewer.duration)
-      else stage.viewer.play()
-    }
+    const { viewer } = first.stage
+    viewer.seek(app.settings.reducedMotion ? viewer.duration : 0)
+    if (!app.settings.reducedMotion) viewer.play()
     announce()
   }
 
@@ -87,6 +87,7 @@ export function createOrders(app: App, done: (outcome: Outcome) => void): Orders
       outcome = { first: rolledOf(a), second: rolledOf(b), difference: rolledOf(c) }
       show(first, a)
       show(second, b)
+      transport.refresh()
     } catch (error) {
       if (!controller.signal.aborted) first.stage.problem(error)
     }
@@ -102,7 +103,7 @@ export function createOrders(app: App, done: (outcome: Outcome) => void): Orders
   }
 
   return {
-    stages: h('div', { class: 'sides' }, first.element, second.element),
+    stages: h('div', { class: 'sides' }, first.element, second.element, transport.element),
     controls: h('div', { class: 'buttons' }, button('Roll both', play, 'primary', 'roll-both')),
     set,
     dispose: () => undo.run(),

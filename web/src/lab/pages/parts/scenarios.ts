@@ -1,5 +1,5 @@
 /** The scenarios that these pages start from; they are those that ship, cut down to what a page needs. */
-import type { Quantity, Scenario } from '../../scenario'
+import type { Scenario } from '../../scenario'
 
 const STEEL = { kind: 'solid-sphere', radius: '25 mm', mass: '510 g' }
 const TURNING = { kind: 'spin', rate: '33.3 rpm' }
@@ -42,12 +42,14 @@ export const PUT_DOWN: Scenario = {
   start: { position: ['20 cm', '0 cm'], velocity: ['0 m/s', '0 m/s'] },
 }
 
-export function leaning(tilt: Quantity = '0.3 deg', rate: Quantity = '33.3 rpm'): Scenario {
+/** Put down at that end of the table from which the drift leads across it. Tilt in degrees, rate in rpm. */
+export function leaning(tilt = 0.3, rate = 33.3): Scenario {
+  const side = rate * tilt >= 0 ? -45 : 45
   return {
     title: 'Steel ball put down gently on a slightly tilted turntable',
     body: STEEL,
-    support: { kind: 'plane', tilt, rim: '0.5 m', motion: { kind: 'spin', rate } },
-    start: { position: ['-4 cm', '-45 cm'], velocity: ['0 m/s', '0 m/s'] },
+    support: { kind: 'plane', tilt: `${tilt} deg`, rim: '0.5 m', motion: { kind: 'spin', rate: `${rate} rpm` } },
+    start: { position: ['-4 cm', `${side} cm`], velocity: ['0 m/s', '0 m/s'] },
     run: { duration: '24 s', every: '10 ms', method: 'auto' },
   }
 }

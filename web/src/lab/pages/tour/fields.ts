@@ -29,7 +29,7 @@ export const mountFields: StepMount = ({ app, stage, controls, numbers, worked, 
     remark.textContent = `Never. Their paths, each by its own formulas, differ by ${show(apart, 2)} m: rounding.`
   })
   stage.append(pair.element)
-  let tilt = 0.3
+  let tilt = 0.15
   const lean = slider({
     label: 'Tilt of the table, electric field',
     min: -0.3,
@@ -46,7 +46,7 @@ export const mountFields: StepMount = ({ app, stage, controls, numbers, worked, 
   controls.append(lean.element)
 
   function ask(): void {
-    const scenario: Scenario = leaning(`${tilt} deg`)
+    const scenario: Scenario = leaning(tilt)
     offer(scenario)
     pair.ask(scenario)
   }

@@ -81,7 +81,7 @@ describe('what is said', () => {
     ]
     const off = judge(downhill, arches, 1)
     expect(off.guessed).toBe('downhill')
-    expect(inWords(off)).toMatch(/^You sent the ball downhill; it went sideways.* \d+ cm apart/)
+    expect(inWords(off)).toMatch(/^You sent the ball downhill; it went sideways.* \d+\s?cm apart/)
   })
 
   it('knows the path when it is drawn', () => {

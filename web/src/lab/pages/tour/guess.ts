@@ -95,7 +95,7 @@ export function inWords({ mean, share, guessed, happened }: Judgement): string {
 
 export function centimetres(metres: number): string {
   const value = metres * 100
-  return `${value < 1 ? value.toFixed(1) : value.toFixed(0)} cm`
+  return `${value < 1 ? value.toFixed(1) : value.toFixed(0)}\u00a0cm`
 }
 
 function apart(a: Point, b: Point): number {

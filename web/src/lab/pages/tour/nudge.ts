@@ -13,6 +13,7 @@ import { metres } from './turntable'
 export const mountNudge: StepMount = ({ app, stage: host, controls, numbers, worked, remark, offer }) => {
   const stage = createStage(app, { label: 'A ball put down on a turning table' })
   host.append(stage.element)
+  stage.viewer.loop = true
   let shown: Scene | null = null
   let nudged = false
 

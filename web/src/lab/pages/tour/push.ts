@@ -7,10 +7,15 @@ import { rowOf } from '../parts/numbers'
 import { pushed } from '../parts/scenarios'
 import { createStage, playUnlessCalm, simulating } from '../parts/stage'
 import type { StepMount } from './place'
+import { createPushDiagram } from './push-diagram'
+
+/** Of the force, N. */
+const PUSH = 0.1
 
 export const mountPush: StepMount = ({ app, stage: host, controls, numbers, worked, remark, offer }) => {
   const stage = createStage(app, { label: 'A ball that is pushed along a level table' })
   host.append(stage.element)
+  stage.viewer.loop = true
   let first = true
 
   const live = simulating(app, stage, (scene, asked) => {
@@ -30,6 +35,7 @@ export const mountPush: StepMount = ({ app, stage: host, controls, numbers, work
       },
       gained && { ...gained, symbol: '\\dot V_x' },
     ])
+    diagram.set(heightOf(asked), sideways / PUSH)
     worked(scene)
     remark.textContent = saying(sideways)
   })
@@ -44,7 +50,8 @@ export const mountPush: StepMount = ({ app, stage: host, controls, numbers, work
     change: ask,
     testid: 'push-height',
   })
-  controls.append(height.element)
+  const diagram = createPushDiagram()
+  controls.append(height.element, diagram.element)
 
   function ask(share: number): void {
     const scenario = pushed(share)
@@ -56,6 +63,13 @@ export const mountPush: StepMount = ({ app, stage: host, controls, numbers, work
     live.stop()
     stage.dispose()
   }
+}
+
+/** The height of the push in radii: its torque over force and radius. */
+function heightOf({ body, loads }: Scenario): number {
+  const torque = loads?.find(({ kind }) => kind === 'torque')?.value
+  const radius = toSI(body.radius, 'length') ?? 1
+  return Array.isArray(torque) ? (toSI(torque[1], 'torque') ?? 0) / (PUSH * radius) : 0
 }
 
 /** The formula on the page with the push that was asked for, N: what the run is held to. */

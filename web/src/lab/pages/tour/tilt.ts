@@ -18,7 +18,10 @@ const RIM = 0.5
 export const mountTilt: StepMount = ({ app, stage: host, controls, numbers, worked, remark, offer }) => {
   const stage = createStage(app, { label: 'A ball put down on a leaning, turning table' })
   const { viewer } = stage
+  const slope = h('p', { class: 'slope-mark' }, 'downhill →')
+  stage.element.append(slope)
   host.append(stage.element)
+  const tour = host.closest('.tour')
   let scene: Scene | null = null
   let sketch: Point[] = []
   let revealed = false
@@ -34,7 +37,10 @@ export const mountTilt: StepMount = ({ app, stage: host, controls, numbers, work
     viewer.pause()
     viewer.seek(0)
     viewer.topView()
-    viewer.show = { ...viewer.show, trail: false, guidingCentre: false, gravity: true }
+    viewer.show = { ...viewer.show, trail: false, guidingCentre: false }
+    stage.element.classList.add('bare')
+    tour?.classList.add('guessing')
+    slope.hidden = false
     viewer.tool = 'draw'
   }
 
@@ -68,7 +74,8 @@ export const mountTilt: StepMount = ({ app, stage: host, controls, numbers, work
     again.hidden = false
     again.focus()
     viewer.tool = 'orbit'
-    viewer.show = { ...viewer.show, trail: true, guidingCentre: true, gravity: true }
+    viewer.show = { ...viewer.show, trail: true, guidingCentre: true }
+    stage.element.classList.remove('bare')
     viewer.loop = false
     viewer.speed = 2
     viewer.seek(app.settings.reducedMotion ? viewer.duration : 0)
@@ -82,6 +89,7 @@ export const mountTilt: StepMount = ({ app, stage: host, controls, numbers, work
     const drift = finding(scene, '|v_d|')
     numbers.set([rowOf(drift, 100, 'cm/s'), rowOf(finding(scene, '\\arg v_d'))])
     worked(scene)
+    tour?.classList.remove('guessing')
     const words = inWords(judge(sketch, pathOf(scene), 1))
     fill(
       remark,

@@ -20,6 +20,7 @@ const BALLS = [
 export const mountTurntable: StepMount = ({ app, stage: host, controls, numbers, worked, offer }) => {
   const stage = createStage(app, { label: 'A ball on a turning table' })
   host.append(stage.element)
+  stage.viewer.loop = true
   let scenario: Scenario = LEVEL
   let first = true
 
