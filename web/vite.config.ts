@@ -47,5 +47,10 @@ export default defineConfig(({ mode }) => ({
   plugins: [onlyWoff2],
   define: { 'process.env.NODE_ENV': '"production"' },
   ...(mode === 'viewer' ? viewer : lab),
-  test: { environment: 'happy-dom', include: ['src/**/*.test.ts'] },
+  test: {
+    projects: [
+      { extends: true, test: { name: 'viewer', include: ['src/viewer/**/*.test.ts'], environment: 'node' } },
+      { extends: true, test: { name: 'lab', include: ['src/lab/**/*.test.ts'], environment: 'happy-dom' } },
+    ],
+  },
 }))

@@ -54,6 +54,17 @@ export function scalesOf(scenes: readonly Scene[], length: number): Scales {
   }
 }
 
+/** The scales of before where they still do: an arrow is not to change its length when only its run has changed a little. */
+export function steadyScales(before: Scales | null, now: Scales): Scales {
+  if (!before) return now
+  const kept = { ...now }
+  for (const kind of ARROW_KINDS) {
+    const ratio = before[kind].length / now[kind].length
+    if (ratio > 1 / 3 && ratio < 3) kept[kind] = before[kind]
+  }
+  return kept
+}
+
 function weight({ header }: Scene): number {
   return header.body.mass * Math.hypot(...header.gravity)
 }
@@ -65,19 +76,20 @@ export class BodyArrows {
   private readonly vector = new Vector3()
   private readonly contact = new Vector3()
   private readonly weight = new Vector3()
-  private readonly longest: number
+  private scales!: Scales
+  private unit = 1
 
-  constructor(
-    readonly body: BodyModel,
-    private readonly scales: Scales,
-    private readonly unit: number,
-  ) {
-    const { header } = body.scene
+  constructor(readonly body: BodyModel) {
     const made = ARROW_KINDS.map((kind, i) => [kind, new Arrow(20 + i)] as const)
     this.arrows = Object.fromEntries(made) as Record<ArrowKind, Arrow>
     for (const arrow of Object.values(this.arrows)) this.group.add(arrow.group)
     this.group.add(this.cone.group)
-    this.longest = 1.2 * unit
+  }
+
+  load(scales: Scales, unit: number): void {
+    this.scales = scales
+    this.unit = unit
+    const { header } = this.body.scene
     // The header has gravity in the world frame; all else is drawn in the support frame.
     const [w, x, y, z] = header.to_world
     this.weight.set(...header.gravity).multiplyScalar(header.body.mass)
@@ -98,6 +110,7 @@ export class BodyArrows {
     const { track } = this.body
     track.contact(this.contact)
     const centre = this.body.group.position
+    const longest = 1.2 * this.unit
     for (const kind of ARROW_KINDS) {
       const arrow = this.arrows[kind]
       const vector = show[kind] ? this.read(kind) : null
@@ -106,7 +119,7 @@ export class BodyArrows {
         continue
       }
       vector.multiplyScalar(this.scales[kind].length)
-      if (vector.length() > this.longest) vector.setLength(this.longest)
+      if (vector.length() > longest) vector.setLength(longest)
       arrow.set(kind === 'contactForce' ? this.contact : centre, vector, thick)
       if (arrow.group.visible) labels.put(ARROWS[kind].symbol, arrow.tip, palette.arrows[kind], 'arrow')
     }

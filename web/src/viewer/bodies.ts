@@ -1,20 +1,22 @@
 /** The bodies: their meshes, painted so that every turn of theirs is seen. */
 import { BufferAttribute, BufferGeometry, Group, Mesh, MeshPhysicalMaterial, SphereGeometry } from 'three'
 import { type BodyPaint, newBodyPaint, paintBody } from './paint'
-import type { Scene } from './scene'
+import { type Scene, sameNumbers } from './scene'
 import type { Palette } from './theme'
 import { Track } from './track'
 
 export class BodyModel {
   readonly group = new Group()
   readonly mesh: Mesh<BufferGeometry, MeshPhysicalMaterial>
-  readonly track: Track
+  scene: Scene
+  track: Track
   private readonly paint: BodyPaint = newBodyPaint()
 
   constructor(
-    readonly scene: Scene,
+    scene: Scene,
     readonly order: number,
   ) {
+    this.scene = scene
     this.track = new Track(scene)
     const geometry = bodyGeometry(scene)
     measure(geometry, this.paint)
@@ -28,6 +30,17 @@ export class BodyModel {
     this.mesh = new Mesh(geometry, material)
     this.mesh.castShadow = true
     this.group.add(this.mesh)
+  }
+
+  /** Take another run: material and program stay, since to make these anew takes longer than all else. */
+  load(scene: Scene): void {
+    const before = this.scene.columns
+    this.scene = scene
+    this.track = new Track(scene)
+    if (sameNumbers(before.body_vertices, scene.columns.body_vertices)) return
+    this.mesh.geometry.dispose()
+    this.mesh.geometry = bodyGeometry(scene)
+    measure(this.mesh.geometry, this.paint)
   }
 
   get radius(): number {

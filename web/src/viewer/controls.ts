@@ -2,7 +2,7 @@
 import { ARROWS, type ArrowKind } from './arrows'
 import type { Frame, Show, Viewer } from './contract'
 import { element, icon, iconButton } from './elements'
-import { FRAME_NAMES, FRAMES } from './frames'
+import { FRAME_NAMES, FRAMES, framesOf } from './frames'
 import { nextSpeed, SPEEDS } from './player'
 import { shortNumber } from './quantities'
 import type { Scene, SceneEvent } from './scene'
@@ -141,9 +141,9 @@ export class Controls {
     this.places = duration < 0.5 ? 4 : duration < 20 ? 2 : 1
     this.total.textContent = `/ ${shortNumber(duration)} s`
     const headers = scenes.map(({ header }) => header)
-    this.frames.get('corotating')!.hidden = !headers.some(({ support }) => support.moves)
-    this.frames.get('support')!.hidden = !headers.some(({ tilt }) => tilt !== 0)
-    this.segments.hidden = [...this.frames.values()].filter((button) => !button.hidden).length < 2
+    const offered = framesOf(scenes)
+    for (const [frame, button] of this.frames) button.hidden = !offered.includes(frame)
+    this.segments.hidden = offered.length < 2
     this.switches.get('frictionCone')!.hidden = !headers.some(({ support }) => support.friction !== null)
     this.switches.get('guidingCentre')!.hidden = !scenes.some(({ columns }) => columns.guiding_centre)
     this.switches.get('contactForce')!.hidden = !scenes.some(({ columns }) => columns.contact_force)

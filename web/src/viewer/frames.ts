@@ -1,7 +1,7 @@
 /** Who looks: how places of the inertial support frame are turned and moved into the frame that is shown. */
 import { Quaternion, Vector3 } from 'three'
 import type { Frame } from './contract'
-import type { Turn } from './scene'
+import type { Scene, Turn } from './scene'
 
 export const FRAMES: readonly Frame[] = ['world', 'support', 'corotating']
 
@@ -35,6 +35,13 @@ export function seen(view: Pose, place: Vector3): Vector3 {
 
 export function newPose(): Pose {
   return { turn: new Quaternion(), place: new Vector3() }
+}
+
+/** The frames that differ for some of these scenes: a level table has its axis upwards, a fixed one carries nobody. */
+export function framesOf(scenes: readonly Scene[]): Frame[] {
+  const tilted = scenes.some(({ header }) => header.tilt !== 0)
+  const moving = scenes.some(({ header }) => header.support.moves)
+  return FRAMES.filter((frame) => frame === 'world' || (frame === 'support' ? tilted : moving))
 }
 
 export function nextFrame(frame: Frame): Frame {

@@ -1,7 +1,7 @@
 /** Short words that stand beside things on the stage, as text of the page: crisp, and of the page's typeface. */
 import type { Vector3 } from 'three'
 
-export type LabelKind = 'arrow' | 'axis' | 'body' | 'sketch' | 'guide'
+export type LabelKind = 'arrow' | 'axis' | 'body' | 'sketch' | 'guide' | 'spot'
 
 export class LabelLayer {
   readonly element: HTMLElement

@@ -46,7 +46,8 @@ vec3 painted(vec2 marks, vec3 place) {
     tone = mix(base, other, alternate(turns) * contrast);
     float first = crisp(turns) * crisp(1.0 - turns);
     tone = mix(tone, accent, first * accented);
-    float lines = max(rule(turns, stroke), rule(marks.y * rings, stroke));
+    float ring = flatness > 0.5 ? length(place.xy) / spacing : marks.y * rings;
+    float lines = max(rule(turns, stroke), rule(ring, stroke));
     tone = mix(tone, line, 0.55 * lines);
   } else {
     vec2 cell = place.xy / spacing;
@@ -104,6 +105,8 @@ export interface SupportPaint {
   contrast: { value: number }
   accented: { value: number }
   spacing: { value: number }
+  /** 1 where rings are at round distances from the axis. */
+  flatness: { value: number }
   stroke: { value: number }
   shade: { value: number }
   touches: { value: Vector4[] }
@@ -129,7 +132,7 @@ export function paintSupport(material: MeshStandardMaterial, paint: SupportPaint
     attributes: 'attribute vec2 marks;',
     vertex: 'vMarks = marks;\nvPlace = position;',
     uniforms: `uniform vec3 base, other, line, accent;
-uniform float polar, sectors, rings, contrast, accented, spacing, stroke, shade;
+uniform float polar, sectors, rings, contrast, accented, spacing, flatness, stroke, shade;
 uniform vec4 touches[5];
 uniform vec4 fade;`,
     code: SUPPORT,

@@ -38,14 +38,13 @@ export class Player {
 
   /**
    * Go on to the instant `now` (ms) of the page's clock; tells whether the end was reached and play stopped.
-   * After a long absence, as of a hidden page, it goes on from where it was instead of leaping.
+   * After a long absence, as of a hidden page, it goes on from about where it was instead of leaping.
    */
   tick(now: number): boolean {
     if (!this.playing) return false
     const passed = this.last === null ? 0 : Math.max(0, now - this.last)
     this.last = now
-    if (passed > LONG_ABSENCE) return false
-    this.time += (passed / 1000) * this.speed
+    this.time += (Math.min(passed, LONGEST_FRAME) / 1000) * this.speed
     if (this.time < this.end) return false
     if (this.loop) {
       this.time = this.begin + ((this.time - this.begin) % this.duration)
@@ -61,7 +60,7 @@ export class Player {
   }
 }
 
-const LONG_ABSENCE = 1000 // ms
+const LONGEST_FRAME = 400 // ms
 
 export const SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10] as const
 

@@ -1,6 +1,42 @@
 import { expect, test } from 'vitest'
+import { circling, packed } from './fixture'
 import { unpack } from './scene'
 
-test('what is not a scene is refused', () => {
-  expect(() => unpack(new Uint8Array(4))).toThrow()
+test('header and columns come out as they went in', () => {
+  const scene = unpack(circling(5))
+  expect(scene.header.title).toBe('Ball in a circle, Ω')
+  expect([...scene.columns.time]).toEqual([0, 0.5, 1, 1.5, 2])
+  expect(scene.columns.position[3]).toBeCloseTo(Math.cos(0.5), 6)
+  expect(scene.columns.phase).toBeInstanceOf(Uint8Array)
+  expect(scene.columns.guiding_centre).toBeUndefined()
+})
+
+test('bytes may lie anywhere in a buffer, as those of a notebook’s message do', () => {
+  const blob = circling(3)
+  const askew = new Uint8Array(blob.length + 3)
+  askew.set(blob, 3)
+  const view = new DataView(askew.buffer, 3, blob.length)
+  expect([...unpack(view).columns.position]).toEqual([...unpack(blob.buffer as ArrayBuffer).columns.position])
+})
+
+test('columns start at multiples of eight bytes whatever stands before them', () => {
+  const scene = unpack(
+    packed({
+      phase: { data: Uint8Array.of(2, 1, 0), shape: [3] },
+      time: { data: Float64Array.of(0, 0.1, 0.2), shape: [3] },
+      position: { data: new Float32Array(9).fill(7), shape: [3, 3] },
+    }),
+  )
+  expect([...scene.columns.time]).toEqual([0, 0.1, 0.2])
+  expect([...(scene.columns.phase ?? [])]).toEqual([2, 1, 0])
+})
+
+test('what is no scene, or only part of one, is refused', () => {
+  const blob = circling(4)
+  expect(() => unpack(new Uint8Array(4))).toThrow(/begins with TRUNDLE1/)
+  expect(() => unpack(blob.slice(0, 40))).toThrow(/within its header/)
+  expect(() => unpack(blob.slice(0, blob.length - 8))).toThrow(/support_orientation ends at byte/)
+  expect(() => unpack(packed({ time: { data: Float64Array.of(0), shape: [1] } }))).toThrow(/time and position/)
+  const newer = packed({ time: { data: Float64Array.of(0), shape: [1] } }, { format: 2 })
+  expect(() => unpack(newer)).toThrow(/format 1; got 2/)
 })

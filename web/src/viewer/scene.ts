@@ -151,3 +151,10 @@ function read(
   if (end > whole.length) throw new Error(`The column ${name} ends at byte ${end} of ${whole.length}.`)
   return new Type(whole.buffer, whole.byteOffset + start, count)
 }
+
+/** Whether two columns hold the same numbers; two that are absent may stand for different things. */
+export function sameNumbers(one: ColumnArray | undefined, other: ColumnArray | undefined): boolean {
+  if (!one || !other || one.length !== other.length) return false
+  for (let i = 0; i < one.length; i++) if (one[i] !== other[i]) return false
+  return true
+}

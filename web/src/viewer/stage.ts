@@ -28,6 +28,7 @@ export class Stage {
   readonly root = new Group()
   width = 1
   height = 1
+  private sharpness = 1
   private readonly sky = new HemisphereLight()
   private readonly key = new DirectionalLight()
   private readonly fill = new DirectionalLight()
@@ -75,10 +76,16 @@ export class Stage {
   resize(width: number, height: number): void {
     this.width = Math.max(1, width)
     this.height = Math.max(1, height)
-    this.renderer.setPixelRatio(Math.min(globalThis.devicePixelRatio || 1, MOST_PIXELS_PER_POINT))
+    this.sharpen(this.sharpness)
     this.renderer.setSize(this.width, this.height, false)
     this.camera.aspect = this.width / this.height
     this.camera.updateProjectionMatrix()
+  }
+
+  /** Draw with a share of the screen's pixels to a side. */
+  sharpen(share: number): void {
+    this.sharpness = share
+    this.renderer.setPixelRatio(share * Math.min(globalThis.devicePixelRatio || 1, MOST_PIXELS_PER_POINT))
   }
 
   /** Look at points (m, shown frame) from a direction, near enough to fill the stage. */

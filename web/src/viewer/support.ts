@@ -1,6 +1,7 @@
 /** The support: its mesh with markings that show how it turns, an edge where it has one, and glass seen from behind. */
 import {
   BackSide,
+  Box3,
   BufferAttribute,
   BufferGeometry,
   Color,
@@ -9,52 +10,90 @@ import {
   LatheGeometry,
   Mesh,
   MeshStandardMaterial,
+  type Object3D,
+  PlaneGeometry,
   Vector2,
+  Vector3,
   Vector4,
 } from 'three'
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js'
 import { Line, pieces } from './lines'
 import { paintSupport, type SupportPaint } from './paint'
+import { lengthWords } from './quantities'
 import { edgesOf } from './rim'
-import type { Scene } from './scene'
+import { type Scene, sameNumbers } from './scene'
 import type { Palette } from './theme'
 
-const MOST_TOUCHES = 5
+export const MOST_TOUCHES = 5
+
+type Part = Mesh<BufferGeometry, MeshStandardMaterial>
 
 export class SupportModel {
   /** Holds all that is fixed to the support's material. */
   readonly group = new Group()
-  readonly surface: Mesh<BufferGeometry, MeshStandardMaterial> | null = null
   private readonly rim = new Line(1)
-  private readonly meshes: Mesh<BufferGeometry, MeshStandardMaterial>[] = []
-  private readonly paint: SupportPaint
+  private readonly paint: SupportPaint = newPaint()
+  private readonly front = this.part(FrontSide)
+  private readonly back = this.part(BackSide)
+  private readonly side = this.part(FrontSide)
+  private scene: Scene | null = null
+  /** What its markings measure, in words. */
+  note = ''
 
-  constructor(readonly scene: Scene) {
-    const { header, columns } = scene
-    this.paint = newPaint(scene)
+  constructor(root: Object3D) {
     this.group.add(this.rim.mesh)
-    if (!columns.support_vertices || !columns.support_normals || !columns.support_triangles) return
-    const geometry = geometryOf(scene)
-    const plane = header.support.kind === 'plane'
-    const boundless = plane && header.support.rim === null
-    this.surface = this.add(geometry, 'front', boundless)
-    this.add(geometry, 'back', boundless)
-    if (plane && header.support.rim !== null) this.add(skirt(header.support.rim), 'front', false)
-    if (!boundless) this.rim.setPoints(pieces(edgesOf(columns.support_vertices, columns.support_triangles)))
-    else this.paint.fade.value.copy(extentOf(geometry))
+    root.add(this.group)
   }
 
-  private add(
-    geometry: BufferGeometry,
-    side: 'front' | 'back',
-    clear: boolean,
-  ): Mesh<BufferGeometry, MeshStandardMaterial> {
-    const back = side === 'back'
+  /** What a pointer meets; null where a scene has no support. */
+  get surface(): Part | null {
+    return this.front.visible ? this.front : null
+  }
+
+  /** Take the support of a scene, unless it is the one that is there. */
+  load(scenes: readonly Scene[]): void {
+    const scene = scenes[0]!
+    const before = this.scene
+    this.scene = scene
+    const sheet = endless(scene)
+    if (!sheet && before && sameGround(before, scene)) return
+    const { support } = scene.header
+    const { support_vertices: vertices, support_normals: normals, support_triangles: triangles } = scene.columns
+    const there = vertices !== undefined && normals !== undefined && triangles !== undefined
+    const plane = support.kind === 'plane'
+    const boundless = plane && support.rim === null
+    repaint(this.paint, scene)
+    for (const part of [this.front, this.back, this.side]) part.visible = there && part !== this.side
+    this.rim.setPoints(new Float32Array())
+    if (!there) return
+    const geometry = sheet ? sheetUnder(scenes) : geometryOf(scene)
+    this.measure(geometry, plane, support.marks === 'square')
+    this.replace(this.front, geometry, boundless)
+    this.replace(this.back, geometry, true)
+    this.side.visible = plane && !boundless
+    if (plane && support.rim !== null) this.replace(this.side, skirt(support.rim), false)
+    if (boundless) this.paint.fade.value.copy(extentOf(geometry))
+    else this.rim.setPoints(pieces(edgesOf(vertices, triangles)))
+  }
+
+  /** Markings at round distances, and what they are in words. */
+  private measure(geometry: BufferGeometry, plane: boolean, square: boolean): void {
+    geometry.computeBoundingBox()
+    const { min, max } = geometry.boundingBox!
+    const spacing = roundLength((square ? 0.07 : 0.15) * Math.max(max.x - min.x, max.y - min.y))
+    this.paint.spacing.value = spacing
+    this.paint.flatness.value = plane ? 1 : 0
+    const words = square ? 'squares of' : 'rings every'
+    this.note = plane || square ? `${words} ${lengthWords(spacing)}` : ''
+  }
+
+  private part(side: typeof FrontSide | typeof BackSide): Part {
+    const back = side === BackSide
     const material = new MeshStandardMaterial({
       roughness: 0.85,
       metalness: 0,
-      side: back ? BackSide : FrontSide,
-      transparent: back || clear,
+      side,
+      transparent: back,
       depthWrite: !back,
       // Lines that lie on the surface win.
       polygonOffset: true,
@@ -62,12 +101,19 @@ export class SupportModel {
       polygonOffsetUnits: 1,
     })
     paintSupport(material, this.paint)
-    const mesh = new Mesh(geometry, material)
+    const mesh = new Mesh(new BufferGeometry(), material)
     mesh.receiveShadow = !back
     mesh.renderOrder = back ? 4 : 0
-    this.meshes.push(mesh)
     this.group.add(mesh)
     return mesh
+  }
+
+  private replace(part: Part, geometry: BufferGeometry, clear: boolean): void {
+    part.geometry.dispose()
+    part.geometry = geometry
+    if (part.material.transparent === clear) return
+    part.material.transparent = clear
+    part.material.needsUpdate = true
   }
 
   look(palette: Palette, widths: { rim: number }): void {
@@ -78,7 +124,7 @@ export class SupportModel {
     this.paint.accent.value.set(support.mark)
     this.paint.stroke.value = widths.rim * 0.8
     this.rim.look({ colour: support.edge, width: widths.rim })
-    for (const mesh of this.meshes) if (mesh.material.side === BackSide) mesh.material.opacity = support.glass
+    this.back.material.opacity = support.glass
   }
 
   resize(width: number, height: number): void {
@@ -93,31 +139,47 @@ export class SupportModel {
   dispose(): void {
     this.group.removeFromParent()
     this.rim.dispose()
-    for (const mesh of this.meshes) {
-      mesh.geometry.dispose()
-      mesh.material.dispose()
+    for (const part of [this.front, this.back, this.side]) {
+      part.geometry.dispose()
+      part.material.dispose()
     }
   }
 }
 
-function newPaint({ header }: Scene): SupportPaint {
-  const { support } = header
+/** Whether two scenes' supports look the same: to make one anew takes longer than to compare. */
+function sameGround(one: Scene, other: Scene): boolean {
+  const [a, b] = [one.header.support, other.header.support]
+  if (a.kind !== b.kind || a.moves !== b.moves || a.rim !== b.rim || a.marks !== b.marks || a.size !== b.size)
+    return false
+  return sameNumbers(one.columns.support_vertices, other.columns.support_vertices)
+}
+
+function newPaint(): SupportPaint {
   return {
     base: { value: new Color() },
     other: { value: new Color() },
     line: { value: new Color() },
     accent: { value: new Color() },
-    polar: { value: support.marks === 'square' ? 0 : 1 },
+    polar: { value: 1 },
     sectors: { value: 12 },
     rings: { value: 4 },
-    contrast: { value: support.moves ? 1 : 0.45 },
-    accented: { value: support.moves ? 1 : 0 },
-    spacing: { value: roundLength(0.12 * support.size) },
+    contrast: { value: 1 },
+    accented: { value: 1 },
+    spacing: { value: 1 },
+    flatness: { value: 0 },
     stroke: { value: 1.3 },
     shade: { value: 0.6 },
     touches: { value: Array.from({ length: MOST_TOUCHES }, () => new Vector4(0, 0, 0, 0)) },
     fade: { value: new Vector4(0, 0, 0, 0) },
   }
+}
+
+/** What stands still is marked more quietly than what moves. */
+function repaint(paint: SupportPaint, { header: { support } }: Scene): void {
+  paint.polar.value = support.marks === 'square' ? 0 : 1
+  paint.contrast.value = support.moves ? 1 : 0.45
+  paint.accented.value = support.moves ? 1 : 0
+  paint.fade.value.set(0, 0, 0, 0)
 }
 
 function geometryOf({ columns }: Scene): BufferGeometry {
@@ -158,6 +220,30 @@ function skirt(rim: number): BufferGeometry {
     marks[2 * i + 1] = 0.9
   }
   return whole.setAttribute('marks', new BufferAttribute(marks, 2))
+}
+
+/** A plane without an edge that does not turn: any part of it looks alike, so that one can show as much as one likes. */
+function endless({ header: { support } }: Scene): boolean {
+  return support.kind === 'plane' && support.rim === null && support.marks === 'square' && !support.moves
+}
+
+/** A rectangle of such a plane under all paths, with much room about them. */
+function sheetUnder(scenes: readonly Scene[]): BufferGeometry {
+  const box = new Box3()
+  const place = new Vector3()
+  for (const { columns, header } of scenes) {
+    const { position } = columns
+    for (let i = 0; i + 2 < position.length; i += 3) {
+      place.fromArray(position, i).setZ(0)
+      if (Number.isFinite(place.x + place.y)) box.expandByPoint(place)
+    }
+    box.expandByScalar(1.5 * header.body.radius)
+  }
+  const size = box.getSize(place)
+  const pad = 0.9 * Math.max(size.x, size.y)
+  const [left, right, front, rear] = [box.min.x - pad, box.max.x + pad, box.min.y - pad, box.max.y + pad]
+  const sheet = new PlaneGeometry(right - left, rear - front).translate((left + right) / 2, (front + rear) / 2, 0)
+  return sheet.setAttribute('marks', sheet.getAttribute('uv').clone())
 }
 
 function extentOf(geometry: BufferGeometry): Vector4 {

@@ -51,8 +51,6 @@ export class Tools {
     this.gesture = this.begin(x, y)
     if (!this.gesture) return
     event.stopPropagation()
-    event.preventDefault()
-    this.canvas.focus()
     this.canvas.setPointerCapture(event.pointerId)
     this.host.redraw()
   }
@@ -112,7 +110,7 @@ export class Tools {
         const hit = pickSupport(this.stage, surface, px, py, contact.z)
         if (!hit) return
         place.copy(hit).add(slack).add(lift)
-        body.group.position.copy(place)
+        this.world.hold(place)
         tell('drag')
       },
       end: () => tell('dragend'),
@@ -124,7 +122,7 @@ export class Tools {
     const from = body.group.position.clone()
     const normal = contactNormal(
       body,
-      this.world.support?.scene ?? body.scene,
+      this.world.scenes[0] ?? body.scene,
       body.track.contact(new Vector3()),
       new Vector3(),
     )

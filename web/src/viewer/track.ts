@@ -117,17 +117,12 @@ export function quaternionAt(column: ArrayLike<number>, index: number, out: Quat
 
 /** From one orientation to another at a steady rate, the shorter way. */
 export function slerp(from: Quaternion, to: Quaternion, share: number, out: Quaternion): Quaternion {
-  let [x, y, z, w] = [to.x, to.y, to.z, to.w]
-  let cosine = from.x * x + from.y * y + from.z * z + from.w * w
-  if (cosine < 0) [cosine, x, y, z, w] = [-cosine, -x, -y, -z, -w]
-  let [a, b] = [1 - share, share]
-  if (cosine < 0.99999) {
-    const angle = Math.acos(cosine)
-    const sine = Math.sin(angle)
-    a = Math.sin(a * angle) / sine
-    b = Math.sin(b * angle) / sine
-  }
-  return out.set(a * from.x + b * x, a * from.y + b * y, a * from.z + b * z, a * from.w + b * w).normalize()
+  const cosine = from.dot(to)
+  const angle = Math.acos(Math.min(Math.abs(cosine), 1))
+  const near = angle < 1e-3 // where sines would be divided by nearly nothing
+  const a = near ? 1 - share : Math.sin((1 - share) * angle) / Math.sin(angle)
+  const b = (near ? share : Math.sin(share * angle) / Math.sin(angle)) * (cosine < 0 ? -1 : 1)
+  return out.set(a * from.x + b * to.x, a * from.y + b * to.y, a * from.z + b * to.z, a * from.w + b * to.w).normalize()
 }
 
 /**
@@ -142,23 +137,31 @@ export function hermite(
   share: number,
   out: Vector3,
 ): Vector3 {
-  const [i, h] = [3 * index, times[index + 1]! - times[index]!]
-  const cubic = agree(place, velocity, i, h)
-  const [s, u] = [share, 1 - share]
-  const found: number[] = [0, 0, 0]
-  for (let axis = 0; axis < 3; axis++) {
-    const [p, q] = [place[i + axis]!, place[i + 3 + axis]!]
-    const [v, w] = [velocity[i + axis]! * h, velocity[i + 3 + axis]! * h]
-    found[axis] = cubic ? u * u * (1 + 2 * s) * p + s * s * (3 - 2 * s) * q + s * u * (u * v - s * w) : u * p + s * q
+  // Plain numbers: this runs for each of ten thousand points of a path whenever a run is new.
+  const i = 3 * index
+  const h = times[index + 1]! - times[index]!
+  const u = 1 - share
+  let [a, b, c, d] = [u, share, 0, 0]
+  if (agree(place, velocity, i, h)) {
+    a = u * u * (1 + 2 * share)
+    b = share * share * (3 - 2 * share)
+    c = share * u * u * h
+    d = -share * share * u * h
   }
-  return out.fromArray(found)
+  return out.set(
+    a * place[i]! + b * place[i + 3]! + c * velocity[i]! + d * velocity[i + 3]!,
+    a * place[i + 1]! + b * place[i + 4]! + c * velocity[i + 1]! + d * velocity[i + 4]!,
+    a * place[i + 2]! + b * place[i + 5]! + c * velocity[i + 2]! + d * velocity[i + 5]!,
+  )
 }
 
 function agree(place: ArrayLike<number>, velocity: ArrayLike<number>, i: number, h: number): boolean {
-  let [off, size] = [0, 0]
-  for (let axis = 0; axis < 3; axis++) {
-    const [v, w] = [velocity[i + axis]! * h, velocity[i + 3 + axis]! * h]
-    off = Math.max(off, Math.abs(place[i + 3 + axis]! - place[i + axis]! - 0.5 * (v + w)))
+  let off = 0
+  let size = 0
+  for (let axis = i; axis < i + 3; axis++) {
+    const v = velocity[axis]! * h
+    const w = velocity[axis + 3]! * h
+    off = Math.max(off, Math.abs(place[axis + 3]! - place[axis]! - 0.5 * (v + w)))
     size = Math.max(size, Math.abs(v), Math.abs(w))
   }
   return off <= 0.15 * size

@@ -7,6 +7,7 @@ import { PHASE, type Scene, type Turn } from './scene'
 import { Track } from './track'
 
 const MOST_POINTS = 10_000
+const MOST_BREAKS = 1000
 const MOST_BETWEEN = 6 // points put between two samples that lie far apart
 
 /**
@@ -19,14 +20,22 @@ export function pathPoints(scene: Scene, frame: Frame, of: 'body' | 'guiding_cen
   const track = new Track(scene)
   const { time, phase } = scene.columns
   const parts = Math.min(MOST_BETWEEN, Math.max(1, Math.floor(MOST_POINTS / Math.max(time.length, 1))))
-  const out: number[] = []
+  const out = new Float32Array(4 * (time.length * parts + MOST_BREAKS))
+  let filled = 0
+  const put = (x: number, y: number, z: number, t: number) => {
+    if (filled + 4 > out.length) return
+    out[filled++] = x
+    out[filled++] = y
+    out[filled++] = z
+    out[filled++] = t
+  }
   const place = new Vector3()
   const toMaterial = frame === 'corotating' ? materialFrame() : null
   let before: number | undefined
   for (let i = 0; i < time.length; i++) {
     const flying = of === 'body' && phase?.[i] === PHASE.flight
     // Between touching and flying it goes from the contact to the centre, which is no path.
-    if (before !== undefined && Number(flying) !== before) out.push(0, 0, 0, BREAK)
+    if (before !== undefined && Number(flying) !== before) put(0, 0, 0, BREAK)
     before = Number(flying)
     const steps = i + 1 < time.length ? parts : 1
     for (let k = 0; k < steps; k++) {
@@ -37,10 +46,10 @@ export function pathPoints(scene: Scene, frame: Frame, of: 'body' | 'guiding_cen
       } else if (flying) track.position(place)
       else track.contact(place)
       toMaterial?.(track, place)
-      if (Number.isFinite(place.x + place.y + place.z)) out.push(place.x, place.y, place.z, t)
+      if (Number.isFinite(place.x + place.y + place.z)) put(place.x, place.y, place.z, t)
     }
   }
-  return new Float32Array(out)
+  return out.slice(0, filled)
 }
 
 const LEVEL: Turn = [1, 0, 0, 0]

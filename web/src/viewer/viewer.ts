@@ -6,9 +6,10 @@ import { Controls, pressed } from './controls'
 import { element } from './elements'
 import { Emitter } from './emitter'
 import { Fallback } from './fallback'
-import { nextFrame } from './frames'
+import { framesOf, nextFrame } from './frames'
 import { LabelLayer } from './labels'
 import { Legend } from './legend'
+import { Pace } from './pace'
 import { Player } from './player'
 import type { Scene, Triple } from './scene'
 import { Stage } from './stage'
@@ -37,8 +38,10 @@ export function createViewer(host: HTMLElement, options: ViewerOptions = {}): Vi
 class StageViewer implements Viewer {
   private readonly events = new Emitter<ViewerEvents>()
   private readonly player = new Player()
+  private readonly pace = new Pace()
   private readonly labels: LabelLayer
   private readonly legend = new Legend()
+  private readonly note = element('p', 'tr-note')
   private readonly frameElement: HTMLElement
   private readonly canvas: HTMLCanvasElement
   private readonly root: HTMLElement
@@ -68,7 +71,7 @@ class StageViewer implements Viewer {
     this.live = this.liveShow({ ...SHOWN, ...options.show })
     this.canvas = element('canvas', 'tr-canvas', { 'data-testid': 'stage', tabindex: '0', role: 'img' })
     this.labels = new LabelLayer(document)
-    this.frameElement = element('div', 'tr-stage', {}, this.canvas, this.labels.element, this.legend.element)
+    this.frameElement = element('div', 'tr-stage', {}, this.canvas, this.labels.element, this.legend.element, this.note)
     this.root = element('div', 'tr-viewer', {}, this.frameElement)
     host.append(this.root)
     this.stage = this.openStage()
@@ -134,9 +137,9 @@ class StageViewer implements Viewer {
   }
 
   private nextFrame(): void {
-    const riding = this.scenes.some(({ header }) => header.support.moves)
-    const next = nextFrame(this.frame)
-    this.frame = next === 'corotating' && !riding ? nextFrame(next) : next
+    let next = nextFrame(this.frame)
+    while (!framesOf(this.scenes).includes(next)) next = nextFrame(next)
+    this.frame = next
   }
 
   setScenes(scenes: readonly Scene[], options: { keepTime?: boolean; keepCamera?: boolean } = {}): void {
@@ -149,6 +152,7 @@ class StageViewer implements Viewer {
     this.world?.setScenes(scenes, keep)
     this.fallback?.setScenes(scenes, this.frame)
     this.controls?.setScenes(scenes, this.player.begin)
+    this.note.textContent = this.world?.support?.note ?? ''
     this.describe()
     if (!keep && scenes.length) this.resetCamera()
     this.controls?.refresh()
@@ -166,6 +170,8 @@ class StageViewer implements Viewer {
     if (this.playing) return
     this.player.play()
     if (!this.playing) return
+    this.world?.hold(null)
+    this.stage?.sharpen(this.pace.share)
     this.events.emit('play', { time: this.time })
     this.controls?.refresh()
     this.invalidate()
@@ -178,6 +184,8 @@ class StageViewer implements Viewer {
   }
 
   private stopped(): void {
+    this.pace.rest()
+    this.stage?.sharpen(1)
     this.events.emit('pause', { time: this.time })
     this.controls?.refresh()
     this.invalidate()
@@ -185,6 +193,7 @@ class StageViewer implements Viewer {
 
   seek(time: number): void {
     this.player.seek(time)
+    this.world?.hold(null)
     this.events.emit('time', { time: this.time })
     this.invalidate()
   }
@@ -366,6 +375,7 @@ class StageViewer implements Viewer {
 
   private tick(now: number): void {
     const ran = this.playing
+    if (ran && this.pace.frame(now)) this.stage?.sharpen(this.pace.share)
     const ended = this.player.tick(now)
     if (ran) this.events.emit('time', { time: this.time })
     this.draw()

@@ -1,29 +1,22 @@
 /** Everything that stands on the stage, put together from scenes, and moved to a time. */
 import { Vector3 } from 'three'
-import { BodyArrows, type LegendRow, scalesOf } from './arrows'
-import { BodyModel } from './bodies'
+import { Actor } from './actor'
+import { type LegendRow, type Scales, scalesOf, steadyScales } from './arrows'
+import type { BodyModel } from './bodies'
 import type { Frame, Show } from './contract'
 import { newPose, seen, viewOf } from './frames'
 import { directionFor, extent, placesToShow } from './framing'
 import { Axes, Fields, Sketch } from './guides'
 import type { LabelLayer } from './labels'
-import { Line } from './lines'
 import { contactNormal } from './normals'
 import type { Scene } from './scene'
 import type { Stage } from './stage'
-import { SupportModel } from './support'
+import { MOST_TOUCHES, SupportModel } from './support'
 import type { Palette } from './theme'
-import { fadingTime, pathPoints } from './trail'
-
-interface Actor {
-  body: BodyModel
-  trail: Line
-  guide: Line | null
-  arrows: BodyArrows
-}
+import { fadingTime } from './trail'
 
 const THICK = 0.0085 // radius of an arrow's shaft, of what is shown
-const LEAST = 0.34 // of an old path's colour that stays
+const SMALL = 6 // CSS pixels: a body of a smaller radius is hard to see
 
 export class World {
   readonly axes = new Axes()
@@ -32,7 +25,9 @@ export class World {
   support: SupportModel | null = null
   frame: Frame = 'world'
   private fields: Fields | null = null
+  private scales: Scales | null = null
   private duration = 0
+  private held: Vector3 | null = null
   private pathFrame: Frame | null = null
   private readonly material = newPose()
   private readonly view = newPose()
@@ -46,6 +41,11 @@ export class World {
     stage.space.add(this.axes.group, this.sketch.line.mesh)
   }
 
+  /** Show the first body at a place of the support frame, until there is a run from there. */
+  hold(place: Vector3 | null): void {
+    this.held = place?.clone() ?? null
+  }
+
   get scenes(): Scene[] {
     return this.actors.map(({ body }) => body.scene)
   }
@@ -56,22 +56,20 @@ export class World {
   }
 
   setScenes(scenes: readonly Scene[], keepScale: boolean): void {
-    this.clear()
     const [first] = scenes
+    this.held = null
+    for (const actor of this.actors.splice(scenes.length)) actor.dispose()
     if (!first) return
     this.rescale(scenes, keepScale)
-    if (!this.support || !sameGround(this.support.scene, first)) {
-      this.support?.dispose()
-      this.support = new SupportModel(first)
-      this.stage.root.add(this.support.group)
-    }
+    this.support ??= new SupportModel(this.stage.root)
+    this.support.load(scenes)
     const scales = scalesOf(scenes, 0.5 * this.unit)
+    this.scales = keepScale ? steadyScales(this.scales, scales) : scales
     scenes.forEach((scene, i) => {
-      const body = new BodyModel(scene, i)
-      const guide = scene.columns.guiding_centre ? new Line(2) : null
-      this.actors.push({ body, trail: new Line(3), guide, arrows: new BodyArrows(body, scales, this.unit) })
+      this.actors[i] ??= new Actor(scene, i, this.stage.root)
+      this.actors[i]!.load(scene, this.scales!, this.unit)
     })
-    for (const { body, arrows } of this.actors) this.stage.root.add(body.group, arrows.group)
+    this.fields?.dispose()
     this.fields = new Fields(first, 0.45 * this.unit)
     this.stage.root.add(this.fields.group)
     this.duration = Math.max(...scenes.map(({ header }) => header.duration))
@@ -94,22 +92,14 @@ export class World {
     this.fields?.look(palette)
     this.sketch.look(palette, widths.sketch)
     this.support?.look(palette, widths)
-    for (const { body, trail, guide, arrows } of this.actors) {
-      body.look(palette)
-      arrows.look(palette)
-      trail.look({ colour: body.colour(palette), faded: palette.support.base, width: widths.trail })
-      guide?.look({ colour: palette.arrows.guide, faded: palette.support.base, width: widths.guide })
-    }
+    for (const actor of this.actors) actor.look(palette, widths)
   }
 
   resize(): void {
     const { width, height } = this.stage
     this.support?.resize(width, height)
     this.sketch.line.resize(width, height)
-    for (const { trail, guide } of this.actors) {
-      trail.resize(width, height)
-      guide?.resize(width, height)
-    }
+    for (const actor of this.actors) actor.resize(width, height)
   }
 
   resetCamera(top = false): void {
@@ -135,6 +125,7 @@ export class World {
     this.stage.root.quaternion.copy(this.view.turn)
     this.stage.root.position.copy(this.view.place)
     for (const actor of this.actors) actor.body.seek(time)
+    if (this.held) lead.body.group.position.copy(this.held)
     this.stage.space.updateMatrixWorld(true)
     if (follow)
       this.stage.carry(
@@ -147,22 +138,19 @@ export class World {
     this.stage.camera.updateMatrixWorld()
     labels.begin((place) => this.stage.project(place))
     const thick = THICK * this.unit * (this.widths.trail / 4)
-    this.actors.forEach(({ body, trail, guide, arrows }, i) => {
-      trail.mesh.visible = show.trail
-      trail.reach(time, fadingTime(this.duration), LEAST)
-      if (guide) {
-        guide.mesh.visible = show.guidingCentre
-        guide.reach(time, fadingTime(this.duration), LEAST)
-        if (show.guidingCentre && body.track.vector('guiding_centre', this.contact))
-          labels.put('', this.contact, this.palette.arrows.guide, 'guide')
+    this.actors.forEach((actor, i) => {
+      const { body } = actor
+      actor.reach(time, fadingTime(this.duration), show)
+      if (actor.guided && show.guidingCentre && body.track.vector('guiding_centre', this.contact)) {
+        labels.put('', this.contact, this.palette.arrows.guide, 'guide')
       }
       body.track.contact(this.contact)
-      if (show.frictionCone && this.support) contactNormal(body, this.support.scene, this.contact, this.normal)
-      arrows.update(show, labels, this.palette, thick, this.normal)
+      if (show.frictionCone) contactNormal(body, this.scenes[0]!, this.contact, this.normal)
+      actor.arrows.update(show, labels, this.palette, thick, this.normal)
       this.shade(i, body)
-      if (this.actors.length > 1)
-        labels.put(body.scene.header.body.label, body.group.position, body.colour(this.palette), 'body')
+      this.name(actor, labels)
     })
+    for (let i = this.actors.length; i < MOST_TOUCHES; i++) this.support?.shade(i, 0, 0, 0, 0)
     const toSupport = (place: Vector3) => this.toSupport(place)
     this.axes.update(show.axes, 0.35 * this.unit, 0.7 * thick, labels, toSupport)
     this.fields?.update(thick, labels, this.palette)
@@ -170,6 +158,14 @@ export class World {
     this.placeSketch()
     this.sketch.update(lies, labels, this.palette, (place) => (this.frame === 'corotating' ? toSupport(place) : place))
     labels.end()
+  }
+
+  /** Several bodies are named; one that is too small to be seen gets a ring round it. */
+  private name({ body }: Actor, labels: LabelLayer): void {
+    const colour = body.colour(this.palette)
+    const { position } = body.group
+    if (body.radius < SMALL * this.stage.metresPerPixel(position)) labels.put('', position, colour, 'spot')
+    if (this.actors.length > 1) labels.put(body.scene.header.body.label, position, colour, 'body')
   }
 
   /** A learner's curve lies in the support frame, or on the support's material. */
@@ -194,14 +190,7 @@ export class World {
     const known = this.pathFrame !== null && (this.pathFrame === 'corotating') === riding
     this.pathFrame = this.frame
     if (known) return
-    for (const { body, trail, guide } of this.actors) {
-      const parent = riding ? this.stage.space : this.stage.root
-      trail.setPoints(pathPoints(body.scene, this.frame))
-      parent.add(trail.mesh)
-      if (!guide) continue
-      guide.setPoints(pathPoints(body.scene, this.frame, 'guiding_centre'))
-      parent.add(guide.mesh)
-    }
+    for (const actor of this.actors) actor.layPaths(this.frame, riding ? this.stage.space : this.stage.root)
   }
 
   /** From the shown frame, m, to the support frame. */
@@ -224,33 +213,11 @@ export class World {
     return this.actors[0]?.arrows.legend(show, this.palette) ?? []
   }
 
-  private clear(): void {
-    for (const { body, trail, guide, arrows } of this.actors) {
-      body.dispose()
-      trail.dispose()
-      guide?.dispose()
-      arrows.dispose()
-    }
-    this.actors.length = 0
-    this.fields?.dispose()
-    this.fields = null
-    for (let i = 0; i < 5; i++) this.support?.shade(i, 0, 0, 0, 0)
-  }
-
   dispose(): void {
-    this.clear()
+    for (const actor of this.actors) actor.dispose()
+    this.fields?.dispose()
     this.support?.dispose()
     this.axes.dispose()
     this.sketch.line.dispose()
   }
-}
-
-/** Whether two scenes' supports look the same: making one anew takes longer than to compare. */
-function sameGround(one: Scene, other: Scene): boolean {
-  const [a, b] = [one.header.support, other.header.support]
-  if (a.kind !== b.kind || a.moves !== b.moves || a.rim !== b.rim || a.marks !== b.marks || a.size !== b.size)
-    return false
-  const [p, q] = [one.columns.support_vertices, other.columns.support_vertices]
-  if (!p || !q) return p === q
-  return p.length === q.length && p.every((value, i) => value === q[i])
 }

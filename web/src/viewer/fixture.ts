@@ -1,0 +1,68 @@
+/** Scenes for the tests, packed by hand as docs and package say, so that reading is tested against something else. */
+import type { SceneHeader } from './scene'
+
+type Data = Float32Array | Float64Array | Uint32Array | Uint8Array
+
+const NAMES = new Map<unknown, string>([
+  [Float32Array, 'float32'],
+  [Float64Array, 'float64'],
+  [Uint32Array, 'uint32'],
+  [Uint8Array, 'uint8'],
+])
+
+export function packed(
+  columns: Record<string, { data: Data; shape: number[] }>,
+  header: Partial<SceneHeader> = {},
+): Uint8Array {
+  const described: Record<string, unknown> = {}
+  let offset = 0
+  for (const [name, { data, shape }] of Object.entries(columns)) {
+    described[name] = { dtype: NAMES.get(data.constructor), shape, offset, unit: 'm' }
+    offset += 8 * Math.ceil(data.byteLength / 8)
+  }
+  let text = JSON.stringify({ ...HEADER, ...header, columns: described })
+  while (new TextEncoder().encode(text).length % 8) text += ' '
+  const head = new TextEncoder().encode(text)
+  const blob = new Uint8Array(16 + head.length + offset)
+  blob.set(new TextEncoder().encode('TRUNDLE1'))
+  new DataView(blob.buffer).setUint32(8, head.length, true)
+  blob.set(head, 16)
+  let at = 16 + head.length
+  for (const { data } of Object.values(columns)) {
+    blob.set(new Uint8Array(data.buffer, data.byteOffset, data.byteLength), at)
+    at += 8 * Math.ceil(data.byteLength / 8)
+  }
+  return blob
+}
+
+const HEADER = {
+  format: 1,
+  title: 'Ball in a circle, Ω',
+  method: 'exact',
+  duration: 2,
+  gravity: [0, 0, -9.81],
+  tilt: 0,
+  to_world: [1, 0, 0, 0],
+  body: { kind: 'solid-sphere', radius: 0.1, name: 'Solid sphere', mass: 0.5, label: 'Solid sphere, k = 2/5' },
+  support: { kind: 'plane', name: 'Turning plane', moves: true, size: 1, marks: 'polar', rim: 1, friction: 0.3 },
+  events: [],
+}
+
+/** A ball that runs round a circle of radius 1 at rate 1 while the table turns at rate `turn`, in n samples over 2 s. */
+export function circling(n: number, turn = 1.5): Uint8Array {
+  const time = Float64Array.from({ length: n }, (_, i) => (2 * i) / (n - 1))
+  const rows = (of: (t: number) => number[]) => Float32Array.from(Array.from(time, of).flat())
+  return packed({
+    time: { data: time, shape: [n] },
+    position: { data: rows((t) => [Math.cos(t), Math.sin(t), 0.1]), shape: [n, 3] },
+    contact: { data: rows((t) => [Math.cos(t), Math.sin(t), 0]), shape: [n, 3] },
+    velocity: { data: rows((t) => [-Math.sin(t), Math.cos(t), 0]), shape: [n, 3] },
+    orientation: { data: rows((t) => [Math.cos(t / 2), 0, 0, Math.sin(t / 2)]), shape: [n, 4] },
+    phase: { data: new Uint8Array(n), shape: [n] },
+    support_position: { data: new Float32Array(3 * n), shape: [n, 3] },
+    support_orientation: {
+      data: rows((t) => [Math.cos((turn * t) / 2), 0, 0, Math.sin((turn * t) / 2)]),
+      shape: [n, 4],
+    },
+  })
+}
