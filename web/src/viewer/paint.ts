@@ -1,5 +1,5 @@
 /** What is painted on bodies and supports, worked out for each pixel, so that its edges are crisp at any size. */
-import { Color, type MeshStandardMaterial, type Vector4 } from 'three'
+import { Color, type Material, type Vector4 } from 'three'
 
 type Uniforms = Record<string, { value: unknown }>
 
@@ -59,8 +59,9 @@ vec3 painted(vec2 marks, vec3 place) {
   }
   float near = 0.0;
   for (int i = 0; i < 5; i++) {
-    vec3 off = (place - touches[i].xyz) / max(touches[i].w, 1e-9);
-    near = max(near, exp(-3.0 * dot(off, off)) * step(1e-9, touches[i].w));
+    if (touches[i].w <= 0.0) continue;
+    vec3 off = (place - touches[i].xyz) / touches[i].w;
+    near = max(near, exp(-3.0 * dot(off, off)));
   }
   return tone * (1.0 - shade * near);
 }
@@ -113,7 +114,7 @@ export interface SupportPaint {
   fade: { value: Vector4 }
 }
 
-export function paintBody(material: MeshStandardMaterial, paint: BodyPaint): void {
+export function paintBody(material: Material, paint: BodyPaint): void {
   patch(material, paint as unknown as Uniforms, {
     key: 'trundle-body',
     varyings: 'varying vec3 vPattern;\nvarying vec3 vPlace;',
@@ -125,7 +126,7 @@ export function paintBody(material: MeshStandardMaterial, paint: BodyPaint): voi
   })
 }
 
-export function paintSupport(material: MeshStandardMaterial, paint: SupportPaint): void {
+export function paintSupport(material: Material, paint: SupportPaint): void {
   patch(material, paint as unknown as Uniforms, {
     key: 'trundle-support',
     varyings: 'varying vec2 vMarks;\nvarying vec3 vPlace;',
@@ -150,7 +151,7 @@ interface Patch {
   colour: string
 }
 
-function patch(material: MeshStandardMaterial, uniforms: Uniforms, parts: Patch): void {
+function patch(material: Material, uniforms: Uniforms, parts: Patch): void {
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, uniforms)
     shader.vertexShader = shader.vertexShader

@@ -9,7 +9,7 @@ import {
   Group,
   LatheGeometry,
   Mesh,
-  MeshStandardMaterial,
+  MeshLambertMaterial,
   type Object3D,
   PlaneGeometry,
   Vector2,
@@ -26,7 +26,7 @@ import type { Palette } from './theme'
 
 export const MOST_TOUCHES = 5
 
-type Part = Mesh<BufferGeometry, MeshStandardMaterial>
+type Part = Mesh<BufferGeometry, MeshLambertMaterial>
 
 export class SupportModel {
   /** Holds all that is fixed to the support's material. */
@@ -89,9 +89,7 @@ export class SupportModel {
 
   private part(side: typeof FrontSide | typeof BackSide): Part {
     const back = side === BackSide
-    const material = new MeshStandardMaterial({
-      roughness: 0.85,
-      metalness: 0,
+    const material = new MeshLambertMaterial({
       side,
       transparent: back,
       depthWrite: !back,
