@@ -65,7 +65,7 @@ export function startShell(shell: Shell, app: App, pages: Page[]): void {
 
   const theme = h('button', { class: 'icon-button', type: 'button', onclick: () => nextTheme(app) })
   const projector = h('button', {
-    class: 'icon-button',
+    class: 'icon-button head-projector',
     type: 'button',
     'aria-label': 'Projector mode',
     title: 'Projector mode (P)',

@@ -262,9 +262,34 @@ function runSection(scenario: Scenario): Section {
   }
 }
 
+const PIECE: Record<string, Entry> = {
+  length: { label: 'Length', kind: 'length', min: 0, max: 0.5 },
+  heading: { label: 'Heading', kind: 'angle', min: -Math.PI, max: Math.PI, units: ['deg', 'rad', 'turn'] },
+  turn: { label: 'Turn of the ball', kind: 'angle', min: 0, max: 2 * Math.PI, units: ['deg', 'rad', 'turn'] },
+  radius: { label: 'Radius of the arc', kind: 'length', min: 0.001, max: 0.5, decades: true },
+  angle: {
+    label: 'Angle of the arc',
+    kind: 'angle',
+    min: -2 * Math.PI,
+    max: 2 * Math.PI,
+    units: ['deg', 'rad', 'turn'],
+  },
+}
+
+/** A ball that is rolled along a path, without forces, has pieces instead of a support and a start. */
+function pathSection(scenario: Scenario): Section {
+  const pieces = (scenario as unknown as { path?: Table[] }).path ?? []
+  const items = pieces.flatMap((piece, place) =>
+    Object.keys(PIECE)
+      .filter((key) => key in piece && !Array.isArray(piece[key]))
+      .flatMap((key) => field(`path.${place}.${key}`, { ...PIECE[key]!, label: `${place + 1}. ${PIECE[key]!.label}` })),
+  )
+  return { id: 'path', title: 'Pieces of the path', items }
+}
+
 /** All sections of a scenario; `reach` is how far the sliders of the position go, in m. */
 export function layout(scenario: Scenario, reach: number): Section[] {
-  if (!scenario.support) return [bodySection(scenario)]
+  if (!scenario.support) return [bodySection(scenario), pathSection(scenario)]
   return [
     bodySection(scenario),
     supportSection(scenario),
