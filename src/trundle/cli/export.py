@@ -72,11 +72,13 @@ def _content(names: list[str], suffix: str, *, bar: bool) -> bytes:
 
     if suffix == ".toml" and not _is_run(names[0]):
         return _scenario(names[0]).to_toml().encode()  # nothing need be computed for it
-    found = [_motion(name, bar=bar) for name in names]
-    if len(found) == 1:
-        return exports.export(found[0][0], suffix, found[0][1])
-    from ..viewer.page import page_of
+    if len(names) == 1:
+        motion, make_scene = _motion(names[0], bar=bar)
+        return exports.export(motion, suffix, make_scene)
+    from ..viewer.page import check_count, page_of
 
+    check_count(len(names))
+    found = [_motion(name, bar=bar) for name in names]
     return page_of([make_scene(motion, with_card=True) for motion, make_scene in found])
 
 
@@ -103,13 +105,9 @@ def _motion(name: str, *, bar: bool) -> tuple[Any, Callable[..., Scene]]:
         return Trajectory.load(Path(name).expanduser()), scene_of
     scenario = _scenario(name)
     if hasattr(scenario, "path"):
+        from ..lab.rolling import rolled_scene
 
-        def rolled(_: Any, with_card: bool = False) -> Scene:
-            from ..lab.rolling import rolled_scene
-
-            return rolled_scene(scenario, card=with_card)
-
-        return scenario.run(), rolled
+        return scenario.run(), rolled_scene
     with screen.ProgressBar(wanted=bar) as progress:
         run = scenario.run(progress=progress)
     signals.check()

@@ -165,8 +165,8 @@ def rising(time: Array) -> NDArray[np.bool_]:
 
     Examples
     --------
-    >>> rising(np.array([20.0, 20.0000001, 20.1]))
-    array([ True, False,  True])
+    >>> rising(np.array([0.0, 20.0, 20.0000001]))
+    array([ True,  True, False])
     """
     seconds = (np.asarray(time) - time[0]).astype(np.float32)
     return np.concatenate([[True], np.diff(np.maximum.accumulate(seconds)) > 0])

@@ -49,8 +49,7 @@ def page_of(scenes: Sequence[Scene]) -> bytes:
     >>> page[:15], b"Content-Security-Policy" in page
     (b'<!doctype html>', True)
     """
-    if not 1 <= len(scenes) <= MOST_SCENES:
-        raise InvalidValueError("runs", f"must be 1 to {MOST_SCENES} on one page", len(scenes))
+    check_count(len(scenes))
     script, style = _script(built("viewer.js")), _style(built("viewer.css"), _own("page.css"))
     title = title_of(scenes)
     parts = {
@@ -69,6 +68,27 @@ def page_of(scenes: Sequence[Scene]) -> bytes:
     template = Template(_own("page.html"))
     whole = template.substitute(parts, size="00.0 MB")
     return template.substitute(parts, size=_size(len(whole.encode()))).encode()
+
+
+def check_count(count: int) -> None:
+    """Refuse more scenes on one stage than can be told apart.
+
+    Parameters
+    ----------
+    count : int
+        How many there are to be.
+
+    Raises
+    ------
+    InvalidValueError
+        If there are none, or too many.
+
+    Examples
+    --------
+    >>> check_count(1)
+    """
+    if not 1 <= count <= MOST_SCENES:
+        raise InvalidValueError("runs", f"must be 1 to {MOST_SCENES} on one stage", count)
 
 
 def title_of(scenes: Sequence[Scene]) -> str:

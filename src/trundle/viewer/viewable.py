@@ -50,9 +50,10 @@ class Viewable:
         Examples
         --------
         >>> import trundle as tr
-        >>> with tr.Scenario.load("level-turntable-nudged").run().view(height=300) as widget:
-        ...     widget.height
+        >>> widget = tr.Scenario.load("level-turntable-nudged").run().view(height=300)
+        >>> widget.height
         300
+        >>> widget.close()
         """
         try:
             import anywidget  # noqa: F401

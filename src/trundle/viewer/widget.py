@@ -13,6 +13,7 @@ from ..errors import InvalidValueError, UnknownNameError
 from ..frames import FRAMES
 from ..scene import pack, scene_of
 from .bundle import built
+from .page import check_count
 
 if TYPE_CHECKING:
     from ..trajectory import Trajectory
@@ -57,7 +58,7 @@ class SceneWidget(anywidget.AnyWidget):
     _css = traitlets.Unicode().tag(sync=True)
     scenes = traitlets.List(traitlets.Bytes(), help="packed scenes").tag(sync=True)
     theme = traitlets.Unicode("auto").tag(sync=True)
-    frame = traitlets.Unicode("support").tag(sync=True)
+    frame = traitlets.Unicode("world").tag(sync=True)
     show = traitlets.Dict(value_trait=traitlets.Bool(), key_trait=traitlets.Unicode()).tag(sync=True)
     time = traitlets.Float(0.0).tag(sync=True)
     speed = traitlets.Float(1.0).tag(sync=True)
@@ -71,6 +72,7 @@ class SceneWidget(anywidget.AnyWidget):
         for name in traits:
             if name not in known or name == "scenes":
                 raise UnknownNameError("option of view", name, [other for other in known if other != "scenes"])
+        check_count(len(runs))
         packed = [pack(scene_of(run)) for run in runs]
         super().__init__(_esm=built("viewer.js"), _css=built("viewer.css"), scenes=packed, **traits)
         self._runs = tuple(runs)
