@@ -65,7 +65,7 @@ const DARK: Palette = {
     sketch: '#f0e442',
   },
   axes: ['#ff9257', '#3fc79a', '#6cc0ee'],
-  light: { sky: '#ffffff', ground: '#30353b', ambient: 1.25, key: 2.3, fill: 0.5, shadow: 0.75 },
+  light: { sky: '#ffffff', ground: '#30353b', ambient: 1.45, key: 2.2, fill: 0.5, shadow: 0.75 },
 }
 
 export function paletteOf(theme: 'light' | 'dark'): Palette {
