@@ -71,7 +71,9 @@ async function simulateAll(app: App, table: Table, signal: AbortSignal): Promise
   const scenes = await Promise.all(
     CONTESTANTS.map((one) => app.api.simulate(one.scenario(table), { lane: null, signal, samples: 1001 })),
   )
-  return new Map(CONTESTANTS.map(({ id, name }, i) => [id, named(scenes[i]!.scene, name)]))
+  return new Map(
+    CONTESTANTS.map(({ id, name, wrong }, i) => [id, named(scenes[i]!.scene, wrong ? 'Intuition (wrong)' : name)]),
+  )
 }
 
 /** The label that the stage writes beside the body. */
@@ -201,7 +203,11 @@ function row(
     ),
     h('td', { class: 'number' }, one.ratio),
     h('td', { class: 'number' }, one.wrong ? '–' : predicted(one.share)),
-    h('td', { class: 'number' }, measured === null || omega === 0 ? '–' : written(measured / omega)),
+    h(
+      'td',
+      { class: 'number' },
+      measured === null || omega === 0 ? '–' : (measured / omega).toFixed(4).replace('-', '−'),
+    ),
     h('td', { class: 'number' }, measured === null ? '–' : [written(measured), h('span', { class: 'unit' }, ' rad/s')]),
   )
 }

@@ -148,8 +148,8 @@ function table(body: HTMLElement): HTMLElement {
         'tr',
         {},
         h('th', { scope: 'col' }, h('span', { class: 'sr-only' }, 'quantity')),
-        h('th', { scope: 'col', colspan: 2 }, 'Ball on the table'),
-        h('th', { scope: 'col', colspan: 2 }, 'Charge in the fields'),
+        h('th', { scope: 'col' }, 'Ball on the table'),
+        h('th', { scope: 'col' }, 'Charge in the fields'),
       ),
     ),
     body,
@@ -161,9 +161,11 @@ function line({ name, ball, charge, ballValue, chargeValue, same }: Entry): HTML
     'tr',
     { class: same ? null : 'differs' },
     h('th', { scope: 'row' }, name),
-    h('td', {}, formula(ball)),
-    h('td', { class: 'number' }, ballValue),
-    h('td', {}, formula(charge)),
-    h('td', { class: 'number' }, chargeValue),
+    h('td', {}, side(ball, ballValue)),
+    h('td', {}, side(charge, chargeValue)),
   )
+}
+
+function side(latex: string, value: string): HTMLElement {
+  return h('div', { class: 'entry' }, formula(latex), h('span', { class: 'number' }, value))
 }

@@ -37,7 +37,11 @@ export function createAngles(): Angles {
       'figure',
       { class: 'angles' },
       chart,
-      h('figcaption', {}, 'Each loop that you try leaves a dot; the line is the rule for small ones.'),
+      h(
+        'figcaption',
+        {},
+        'The angle turned, over the area enclosed. Each loop that you try leaves a dot; the line is the rule for small ones.',
+      ),
     ),
     add(shape, area, angle) {
       const key = `${shape} ${area.toFixed(4)}`

@@ -6,17 +6,23 @@ import { show as written } from '../../quantity'
 import { createRunner } from '../../runner'
 import { isTyping } from '../../shell'
 import { button } from '../parts/controls'
-import { createNumbers } from '../parts/numbers'
+import { createNumbers, type Row } from '../parts/numbers'
 import { paragraph } from '../parts/prose'
 import { createStage } from '../parts/stage'
 import { createPoleMap } from './pole'
-import { componentsOf, degrees, directionInWords, poleWhile, RADIUS, roll, rolledOf } from './rolling'
+import { componentsOf, degrees, directionInWords, poleWhile, RADIUS, type Rolled, roll, rolledOf } from './rolling'
 import { type Piece, type Place, piecesOf, TURN_NAMES, type Turn } from './turns'
 
 /** Nearer points of a drag are not worth a piece of path, m. */
 const GRAIN = 0.0015
 const MOST_PIECES = 1500
 const SECONDS_A_PIECE = 0.7
+/** Up to here the area rule holds to a tenth or so, rad. */
+const SMALL = 0.5
+/** Of what the camera takes in at the start, m; beyond it the view is set anew. */
+const IN_VIEW = 5 * RADIUS
+/** A way to either side: what the camera is set by before anything has been rolled. */
+const ABOUT: readonly Turn[] = ['E', 'E', 'W', 'W', 'N', 'N', 'S', 'S', 'W', 'W', 'E', 'E', 'S', 'S']
 const KEYS: Readonly<Record<string, Turn>> = { ArrowRight: 'E', ArrowUp: 'N', ArrowLeft: 'W', ArrowDown: 'S' }
 
 export function mountHand(host: HTMLElement, app: App): () => void {
@@ -31,6 +37,7 @@ export function mountHand(host: HTMLElement, app: App): () => void {
   let pieces: Piece[] = []
   let scene: Scene | null = null
   let at: Place = [0, 0]
+  let framed = false
   /** Where the last drag point lies, which may not have been answered yet. */
   let reached: Place = [0, 0]
 
@@ -49,10 +56,11 @@ export function mountHand(host: HTMLElement, app: App): () => void {
   function shown(found: Scene, from: 'turn' | 'drag'): void {
     const stages = rolledOf(found).stages
     const before = stages[stages.length - 2]?.time ?? 0
-    const first = scene === null
+    const inside = framed && Math.hypot(...reached) < IN_VIEW
     scene = found
     stage.problem(null)
-    viewer.setScenes([found], { keepCamera: !first })
+    viewer.setScenes([found], { keepCamera: inside })
+    framed = inside
     viewer.loop = false
     // The server sets the pace by the whole way; the last piece shall take the same time however long that is.
     viewer.speed = (viewer.duration - before) / SECONDS_A_PIECE
@@ -75,14 +83,7 @@ export function mountHand(host: HTMLElement, app: App): () => void {
     numbers.set([
       { name: 'turned since the start', predicted: null, measured: degrees(rolled.turned) },
       { name: 'about', predicted: null, measured: componentsOf(rolled.turned_axis) },
-      home && rolled.enclosed_area !== null
-        ? {
-            name: 'small loops: area over radius squared',
-            symbol: '-A/a^2',
-            predicted: degrees(rolled.small_loop_angle ?? 0),
-            measured: `${degrees(rolled.turned_about_normal)} about the vertical`,
-          }
-        : undefined,
+      ...(home ? areaRows(rolled) : []),
     ])
     app.announce(`North pole ${directionInWords(rolled.north_pole)}. ${place.textContent}`)
   }
@@ -109,18 +110,20 @@ export function mountHand(host: HTMLElement, app: App): () => void {
     live.ask({ pieces, from: 'turn' })
   }
 
-  /** A ball that has not rolled yet: the first samples of a short way, shown at its beginning. */
+  /** A ball that has not rolled yet: a way that is not taken, shown at its beginning. */
   async function restart(): Promise<void> {
     live.stop()
     pieces = []
     at = reached = [0, 0]
+    scene = null
     try {
-      const found = await roll(app, piecesOf(['E']), { samples: 50 })
-      scene = null
+      const found = await roll(app, piecesOf(ABOUT), { samples: 200 })
+      if (pieces.length) return
       viewer.setScenes([found])
       viewer.pause()
       viewer.seek(0)
       viewer.tool = 'drag'
+      framed = true
       pole.set([0, 0, 1])
       place.textContent = 'At home, north pole up.'
       place.classList.remove('home')
@@ -213,4 +216,21 @@ function layout(
 
 function inRadii(length: number): string {
   return written(Number((length / RADIUS).toFixed(3))) ?? '0'
+}
+
+/** The rule for small loops is set beside the angle only where the loop is small. */
+function areaRows({ enclosed_area, small_loop_angle, turned_about_normal }: Rolled): Row[] {
+  if (enclosed_area === null || small_loop_angle === null) return []
+  const area: Row = {
+    name: 'area enclosed, anticlockwise',
+    symbol: 'A/a^2',
+    predicted: null,
+    measured: enclosed_area / RADIUS ** 2,
+  }
+  if (Math.abs(small_loop_angle) > SMALL) return [area]
+  const turned = degrees(turned_about_normal)
+  return [
+    area,
+    { name: 'turned about the vertical', symbol: '-A/a^2', predicted: degrees(small_loop_angle), measured: turned },
+  ]
 }

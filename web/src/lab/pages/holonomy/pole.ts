@@ -16,10 +16,10 @@ export function createPoleMap(label = 'North pole'): PoleMap {
   const rim = svg('circle', { r: SIZE, class: 'pole-rim' })
   const letters = (
     [
-      ['N', 0, -SIZE - 6],
-      ['E', SIZE + 8, 4],
-      ['S', 0, SIZE + 14],
-      ['W', -SIZE - 8, 4],
+      ['N', 0, -SIZE - 9],
+      ['E', SIZE + 13, 4],
+      ['S', 0, SIZE + 17],
+      ['W', -SIZE - 14, 4],
     ] as const
   ).map(([text, x, y]) => svg('text', { x, y, class: 'pole-letter' }, text))
   const map = svg(

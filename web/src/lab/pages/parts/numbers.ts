@@ -27,6 +27,7 @@ export function rowOf(found: Finding | undefined, scale = 1, unit = found?.unit)
 
 export function createNumbers(caption = 'Theory beside measurement'): Numbers {
   const body = h('tbody')
+  const theory = h('th', { scope: 'col' }, 'predicted')
   const element = h(
     'table',
     { class: 'versus', 'data-testid': 'numbers' },
@@ -37,7 +38,11 @@ export function createNumbers(caption = 'Theory beside measurement'): Numbers {
   return {
     element,
     set(rows) {
-      fill(body, ...rows.filter((row) => row !== undefined).map(line))
+      const given = rows.filter((row) => row !== undefined)
+      const predicted = given.some((row) => row.predicted !== null)
+      // Nothing is predicted of what is only read off: no heading over an empty column.
+      fill(theory, predicted ? 'predicted' : '')
+      fill(body, ...given.map(line))
     },
   }
 }
@@ -47,7 +52,7 @@ function line({ name, symbol, predicted, measured, unit }: Row): HTMLElement {
     'tr',
     { 'data-symbol': symbol },
     h('th', { scope: 'row' }, h('span', { class: 'versus-name' }, name), symbol ? formula(symbol) : null),
-    cell(predicted, unit),
+    predicted === null ? h('td') : cell(predicted, unit),
     cell(measured, unit),
   )
 }

@@ -26,7 +26,7 @@ export const mountFields: StepMount = ({ app, stage, controls, numbers, worked, 
         : undefined,
     ])
     worked(ball)
-    remark.textContent = `Never. Their paths, each by its own formulas, differ by ${show(apart, 2)} m: rounding.`
+    remark.textContent = `Ball and charge never part: their paths, each by its own formulas, differ by ${show(apart, 2)} m, which is rounding.`
   })
   stage.append(pair.element)
   let tilt = 0.15
