@@ -71,10 +71,11 @@ function line(one: Line): HTMLElement {
   )
 }
 
+/** `none`: there is nothing to verify; `failed`: the verification itself did not come to an end. */
 export type CardState =
   | { state: 'waiting' }
   | { state: 'working' }
-  | { state: 'failed'; message: string }
+  | { state: 'failed' | 'none'; message: string }
   | { state: 'there'; card: Card }
 
 export interface CardPanel {
@@ -94,22 +95,21 @@ export function createCard(): CardPanel {
       draw(now.card)
       return
     }
-    badge = now.state === 'failed' ? { text: '!', kind: 'bad' } : { text: '…', kind: 'busy' }
-    const words = {
-      waiting: 'The card follows when the numbers rest.',
-      working: 'Solving again by another route, and comparing …',
-      failed: now.state === 'failed' ? now.message : '',
-    }[now.state]
-    const shown = element.querySelector('.card-lines')
-    if (shown && now.state !== 'failed') {
-      element.setAttribute('data-old', '')
-      element.querySelector('.card-summary')!.textContent = words
+    if (now.state === 'failed' || now.state === 'none') {
+      const wrong = now.state === 'failed'
+      badge = wrong ? { text: '!', kind: 'bad' } : { text: '', kind: 'busy' }
+      fill(element, h('p', { class: wrong ? 'alert' : 'empty' }, now.message))
       return
     }
-    fill(
-      element,
-      now.state === 'failed' ? h('p', { class: 'alert' }, words) : h('p', { class: 'empty working' }, words),
-    )
+    badge = { text: '…', kind: 'busy' }
+    const words =
+      now.state === 'waiting'
+        ? 'The card follows when the numbers rest.'
+        : 'Solving again by another route, and comparing …'
+    if (element.querySelector('.card-lines')) {
+      element.setAttribute('data-old', '')
+      element.querySelector('.card-summary')!.textContent = words
+    } else fill(element, h('p', { class: 'empty working' }, words))
   }
 
   function draw(card: Card): void {

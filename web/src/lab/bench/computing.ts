@@ -38,6 +38,8 @@ export function createComputing(app: App, listener: Listener): Computing {
     },
     failed: (error) => {
       shown = undefined
+      clearTimeout(rest)
+      listener.card({ state: 'none', message: 'There is a card when the scenario can be run.' })
       listener.failed(error)
     },
     state: (busy) => listener.busy(busy),
@@ -47,8 +49,10 @@ export function createComputing(app: App, listener: Listener): Computing {
     if (!shown || shown.scenario !== scenario) return
     listener.settled(shown.scene)
     if (shown.quick && shown.scene.columns.time.length >= QUICK) runner.ask({ scenario, quick: false })
-    if (!scenario.support)
-      return listener.card({ state: 'failed', message: 'A path that is rolled without forces has no card.' })
+    if (!scenario.support) {
+      listener.card({ state: 'none', message: 'A path that is rolled without forces has no card.' })
+      return
+    }
     listener.card({ state: 'working' })
     try {
       listener.card({ state: 'there', card: await app.api.card(scenario) })

@@ -17,9 +17,10 @@ export interface Controls {
   dispose(): void
 }
 
-/** Changes when other controls are needed, not when a value changes. */
+/** Changes when other controls are needed, not when a value changes: a slider being dragged must stay. */
 function shapeOf(sections: Section[]): string {
-  return JSON.stringify(sections, (key, value: unknown) => (key === 'entry' || key === 'fallback' ? undefined : value))
+  const passing = new Set(['entry', 'fallback', 'value', 'place'])
+  return JSON.stringify(sections, (key, value: unknown) => (passing.has(key) ? undefined : value))
 }
 
 export function createControls(app: App): Controls {
@@ -30,6 +31,8 @@ export function createControls(app: App): Controls {
   const element = h('div', { class: 'controls' }, alert, body)
   const folded = new Map<string, boolean>()
   let fields: Field[] = []
+  let places = new Map<Path, Path>()
+  const selects = new Map<Path, HTMLSelectElement>()
   let shape = ''
   let reach = 0.5
   let wrong: ApiError | null = null
@@ -67,6 +70,7 @@ export function createControls(app: App): Controls {
       item.options.map(([value, label]) => h('option', { value }, label)),
     )
     select.value = item.value
+    selects.set(item.path, select)
     return h('div', { class: 'row', 'data-path': item.path }, h('label', { for: id }, item.label), select)
   }
 
@@ -152,6 +156,7 @@ export function createControls(app: App): Controls {
   function build(sections: Section[]): void {
     const path = focusedPath()
     fields = []
+    selects.clear()
     fill(body, sections.map(makeSection))
     if (path) body.querySelector<HTMLElement>(`[data-path="${CSS.escape(path)}"] :is(input, select)`)?.focus()
   }
@@ -163,12 +168,15 @@ export function createControls(app: App): Controls {
       shape = now
       build(sections)
     }
-    for (const field of fields) {
-      const found = valueAt(scenario, field.path)
-      const item = sections
-        .flatMap((section) => section.items)
-        .find((one) => one.type === 'field' && one.path === field.path)
-      field.update(found ?? (item?.type === 'field' ? (item.fallback as Json | undefined) : undefined))
+    const items = sections.flatMap((section) => section.items)
+    places = new Map()
+    for (const item of items) {
+      if (item.type === 'choice') selects.get(item.path)!.value = item.value
+      if (item.type !== 'field') continue
+      const at = item.place ?? item.path
+      places.set(item.path, at)
+      const field = fields.find((one) => one.path === item.path)
+      field?.update(valueAt(scenario, at) ?? (item.fallback as Json | undefined))
     }
     place()
   }
@@ -184,10 +192,11 @@ export function createControls(app: App): Controls {
   }
 
   function nearest(key: string): Field | undefined {
+    const at = (field: Field) => places.get(field.path) ?? field.path
     return (
-      fields.find((field) => field.path === key) ??
-      fields.find((field) => field.path.startsWith(`${key}.`)) ??
-      fields.find((field) => key.startsWith(`${field.path}.`))
+      fields.find((field) => at(field) === key) ??
+      fields.find((field) => at(field).startsWith(`${key}.`)) ??
+      fields.find((field) => key.startsWith(`${at(field)}.`))
     )
   }
 

@@ -35,6 +35,8 @@ export function createField(options: FieldOptions): Field {
   let range = { min: entry.min, max: entry.max }
   let typing = false
   let gesture = 0
+  /** What held when the typing began: Escape goes back to it. */
+  let before: Json | undefined
 
   const input = h('input', {
     id,
@@ -143,6 +145,7 @@ export function createField(options: FieldOptions): Field {
   }
 
   input.addEventListener('input', () => {
+    if (!typing) before = value
     typing = true
     const { value: next, known } = typed()
     if (known) commit(next, `typing${gesture}`)
@@ -163,7 +166,8 @@ export function createField(options: FieldOptions): Field {
   input.addEventListener('keydown', (event) => {
     if (event.key === 'Escape' && typing) {
       typing = false
-      draw()
+      if (before !== undefined && before !== value) commit(before, `typing${gesture}`)
+      else draw()
       event.stopPropagation()
       return
     }

@@ -24,7 +24,10 @@ function row(finding: Finding): HTMLElement {
     h('th', { scope: 'row', role: 'rowheader' }, name, symbol, unit),
     cell(show(finding.predicted)),
     cell(show(finding.measured)),
-    cell(differenceText(finding.difference), 'difference'),
+    cell(
+      differenceText(finding.difference),
+      Math.abs(finding.difference ?? 1) < 1e-3 ? 'difference agrees' : 'difference',
+    ),
   )
 }
 
@@ -57,7 +60,9 @@ export function createFindings(derive: () => void): Findings {
     fill(table, findings.length > 0 ? tableOf(findings) : h('p', { class: 'empty' }, none))
     law.hidden = told === null
     if (!told) return
-    const button = h('button', { class: 'link', type: 'button', onclick: derive }, 'How does this follow?')
+    // A path rolled without forces is geometry: there is no law of motion to derive.
+    const derived = header.scenario === undefined || 'support' in Object(header.scenario)
+    const button = derived && h('button', { class: 'link', type: 'button', onclick: derive }, 'How does this follow?')
     fill(
       law,
       h('h3', {}, told.name, told.source ? h('span', { class: 'source' }, told.source) : null),

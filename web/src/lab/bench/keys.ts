@@ -16,6 +16,7 @@ export function benchKeys(app: App, { stage, pick, fold }: Actions): () => void 
     '/': pick,
     ',': () => fold('left'),
     '.': () => fold('right'),
+    r: () => stage.viewer.resetCamera(),
     s: () => void copyLink(app),
     o: () => stage.useTool('orbit'),
     d: () => stage.useTool('drag'),

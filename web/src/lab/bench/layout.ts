@@ -1,4 +1,5 @@
 /** Which controls a scenario has, in words only: sections of fields, choices, switches. */
+import { parse } from '../quantity'
 import type { Json, Path, Scenario, Table } from '../scenario'
 import { withValue, withValues } from '../scenario'
 import type { Entry } from './catalogue'
@@ -6,7 +7,15 @@ import { component, entry, keysOf, loadEntry } from './catalogue'
 import { ANGULAR, BODIES, LOADS, MOTIONS, ROUND, SURFACES, withBody, withMotion, withSurface } from './defaults'
 
 export type Item =
-  | { type: 'field'; path: Path; entry: Entry; fallback?: Json; set?: (scenario: Scenario, value: Json) => Scenario }
+  | {
+      type: 'field'
+      path: Path
+      entry: Entry
+      fallback?: Json
+      /** Where it stands in the scenario, if the path is only its name here. */
+      place?: Path
+      set?: (scenario: Scenario, value: Json) => Scenario
+    }
   | { type: 'text'; path: Path; label: string; hint?: string }
   | {
       type: 'choice'
@@ -209,11 +218,34 @@ function velocity(index: number): Item[] {
   return [{ type: 'field', path: `start.velocity.${index}`, entry: of, fallback: '0 m/s', set }]
 }
 
+/** The drag that has its own slider: the one load of its kind that says nothing but a coefficient. */
+function mainDrag(loads: (Table & { kind: string })[]): number {
+  return loads.findIndex((load) => load.kind === 'drag' && load.air === undefined)
+}
+
+/** Drag is always on offer; at nought there is no such load. */
+function dragOf(loads: (Table & { kind: string })[]): Item {
+  const at = mainDrag(loads)
+  const set = (now: Scenario, value: Json) => {
+    const known = now.loads ?? []
+    const index = mainDrag(known)
+    const none = parse(value).number === 0
+    const load = { kind: 'drag', coefficient: value }
+    const next = known.flatMap((one, place) => (place !== index ? [one] : none ? [] : [load]))
+    if (index < 0 && !none) next.push(load)
+    return withValue(now, 'loads', next.length ? (next as Json) : undefined)
+  }
+  const of = loadEntry('drag', 'coefficient') as Entry
+  const item = { type: 'field' as const, path: 'loads.drag', entry: of, fallback: '0 g/s', set }
+  return at < 0 ? item : { ...item, place: `loads.${at}.coefficient` }
+}
+
 function loadsSection(scenario: Scenario): Section {
   const loads = scenario.loads ?? []
   const gravity: Entry = { label: 'Gravity', kind: 'acceleration', min: 0, max: 25 }
-  const items: Item[] = field('gravity', gravity, 9.80665)
+  const items: Item[] = [...field('gravity', gravity, 9.80665), dragOf(loads)]
   loads.forEach((load, place) => {
+    if (place === mainDrag(loads)) return
     for (const [key, value] of Object.entries(load)) {
       const path = `loads.${place}.${key}`
       if (Array.isArray(value)) items.push(...vector(path, value, `${load.kind}.${key}`))
@@ -231,7 +263,9 @@ function loadsSection(scenario: Scenario): Section {
     type: 'add',
     path: 'loads',
     label: 'Add a load',
-    options: Object.entries(LOADS).map(([kind, { label }]) => [kind, label]),
+    options: Object.entries(LOADS)
+      .filter(([kind]) => kind !== 'drag')
+      .map(([kind, { label }]) => [kind, label]),
     set: (now, kind) => withValue(now, 'loads', [...(now.loads ?? []), { kind, ...LOADS[kind]?.keys }] as Json),
   })
   return { id: 'loads', title: 'Gravity, drag, other loads', items }

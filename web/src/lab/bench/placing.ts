@@ -21,7 +21,7 @@ function component(scenario: Scenario, key: string, index: number): Json | undef
   return Array.isArray(vector) ? vector[index] : undefined
 }
 
-const length = (metres: number, unit: string): Quantity => write(rounded(metres, 4), 'length', unit || 'm', 4)
+const length = (metres: number, unit: string): Quantity => write(metres, 'length', unit || 'm', 4)
 
 /** The scenario with its start at a place of the support frame, in the coordinates that the surface has. */
 export function placed(scenario: Scenario, [x, y, z]: Triple): Scenario {
@@ -35,7 +35,7 @@ export function placed(scenario: Scenario, [x, y, z]: Triple): Scenario {
   return withValue(scenario, 'start.position', [length(x, units[0] ?? 'cm'), length(y, units[1] ?? 'cm')])
 }
 
-const degrees = (radians: number): Quantity => write(rounded(radians, 4), 'angle', 'deg', 4)
+const degrees = (radians: number): Quantity => write(radians, 'angle', 'deg', 4)
 
 /** The angle about the axis, and the one around the tube: 0 where a body comes to rest, growing outwards. */
 function tubeAngles(support: Table, [x, y, z]: Triple): Json[] {
@@ -47,7 +47,7 @@ function tubeAngles(support: Table, [x, y, z]: Triple): Json[] {
 /** The scenario with another first velocity, along x and y. */
 export function thrown(scenario: Scenario, vx: number, vy: number): Scenario {
   const units = [0, 1].map((index) => unitOf(component(scenario, 'velocity', index), 'm/s'))
-  const pair = [vx, vy].map((speed, index) => write(rounded(speed, 3), 'velocity', units[index] || 'm/s', 3))
+  const pair = [vx, vy].map((speed, index) => write(speed, 'velocity', units[index] || 'm/s', 3))
   const next = withValue(scenario, 'start.velocity', pair)
   if (!Array.isArray(scenario.start.angular_velocity) || scenario.support.friction !== undefined) return next
   // Nothing slips here, so an angular velocity that went with the old velocity would contradict the new one.
