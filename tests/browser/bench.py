@@ -109,7 +109,8 @@ class Stage:
         """Where the first body's centre is on the screen."""
         box = self.canvas.bounding_box()
         said = self.host.evaluate("element => ({...element.dataset})")
-        assert box and "screenX" in said, "the viewer does not say where its body is on the screen"
+        assert box, "the canvas is not shown"
+        assert "screenX" in said, "the viewer does not say where its body is on the screen"
         return box["x"] + float(said["screenX"]), box["y"] + float(said["screenY"])
 
     def drag(self, by: tuple[float, float]) -> None:

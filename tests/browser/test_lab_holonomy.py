@@ -101,6 +101,7 @@ def test_two_orders_side_by_side(visitor: Visitor) -> None:
     expect(page.get_by_test_id("stage")).to_have_count(2)
     for name, turns in (("One east, one north", ("EN", "NE")), ("Two east, one north", ("EEN", "NEE"))):
         page.get_by_role("radio", name=name).check()
+        page.get_by_role("button", name="Roll both").click()
         for at, way in enumerate(turns):
             end = rolled(way)
             eventually(page, lambda end=end, at=at: points(page, end.north_pole, at))

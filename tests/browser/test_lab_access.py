@@ -1,0 +1,217 @@
+"""Nobody is shut out: axe-core, the keyboard alone, less motion, no WebGL, no network."""
+
+from __future__ import annotations
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from .axe import violations
+from .bench import Bench, Stage, as_shown, eventually
+from .launching import ARGUMENTS, LAPTOP, PHONE
+from .screenshots import OPENED, PAGES
+from .visiting import Visitor
+
+# The tour's steps are of one make: the first, one with choices, the guess, the one with two stages.
+JUDGED = [name for name in PAGES if name not in ("tour-2", "tour-3", "tour-5", "bench-coin")]
+
+
+def settle(page: Page) -> None:
+    expect(page.get_by_test_id("stage").first).to_be_visible()
+    expect(page.locator('[data-bodies]:not([data-bodies="0"])').first).to_be_attached()
+    page.wait_for_timeout(300)
+
+
+def judge(page: Page) -> None:
+    """At both widths, light and dark."""
+    found = {}
+    for size in (LAPTOP, PHONE):
+        page.set_viewport_size(size)  # type: ignore[arg-type]
+        for scheme in ("light", "dark"):
+            page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+            page.wait_for_timeout(250)
+            if wrong := violations(page):
+                found[f"{scheme}, {size['width']} wide"] = wrong
+    assert not found, "\n".join(f"{where}: {one}" for where, all_ in found.items() for one in all_)
+
+
+@pytest.mark.parametrize("name", JUDGED)
+def test_axe_finds_nothing_grave(name: str, visitor: Visitor) -> None:
+    page = visitor.open(PAGES[name])
+    settle(page)
+    judge(page)
+
+
+@pytest.mark.parametrize("name", OPENED)
+def test_axe_finds_nothing_grave_in_what_opens(name: str, visitor: Visitor) -> None:
+    page = visitor.open("#/bench")
+    settle(page)
+    OPENED[name](page)
+    page.wait_for_timeout(800)
+    judge(page)
+
+
+def test_axe_finds_nothing_grave_in_an_error(visitor: Visitor) -> None:
+    visitor.watch.allow("status of 422")
+    bench = Bench(visitor.open("#/bench"))
+    box = bench.box("body.radius")
+    box.fill("-25 mm")
+    box.press("Enter")
+    expect(box).to_have_attribute("aria-invalid", "true")
+    judge(bench.page)
+
+
+ACTIVE = """() => {
+    const one = document.activeElement
+    const style = getComputedStyle(one)
+    const label = one.labels?.[0]?.textContent
+    const name = one.getAttribute('aria-label') ?? label ?? one.textContent
+    const box = one.getBoundingClientRect()
+    return {
+        name: name.trim(),
+        tag: one.tagName,
+        seen: box.width > 0 && box.height > 0,
+        marked: (style.outlineStyle !== 'none' && parseFloat(style.outlineWidth) > 0) || style.boxShadow !== 'none',
+    }
+}"""
+
+
+def tab_to(page: Page, name: str, tag: str = "", most: int = 120) -> None:
+    """Press Tab until something of this name has the focus; whatever had it on the way must have shown it."""
+    for _ in range(most):
+        page.keyboard.press("Tab")
+        now = page.evaluate(ACTIVE)
+        if now["tag"] == "BODY":
+            continue
+        assert now["seen"], f"the focus went to something that cannot be seen: {now}"
+        assert now["marked"], f"the focus on {now} is not shown"
+        if now["name"].startswith(name) and tag in now["tag"]:
+            return
+    pytest.fail(f"no way by Tab to {name!r}")
+
+
+def test_everything_by_keyboard_alone(visitor: Visitor) -> None:
+    bench = Bench(visitor.open("#/bench?name=level-turntable-nudged"))
+    page, stage = bench.page, bench.stage
+    page.keyboard.press("Tab")
+    assert page.evaluate(ACTIVE)["name"] == "Skip to the page"
+
+    tab_to(page, "Rate", "INPUT")
+    page.keyboard.press("Control+A")
+    page.keyboard.type("45 rpm")
+    page.keyboard.press("Enter")
+    eventually(page, lambda: predicted(bench, 2 / 7 * 4.71238898))
+    page.keyboard.press("ArrowUp")
+    eventually(page, lambda: predicted(bench, 2 / 7 * 4.81710874))  # 46 rpm
+    page.keyboard.press("Tab")  # the unit
+    page.keyboard.press("Tab")  # the slider
+    page.keyboard.press("ArrowLeft")
+    eventually(page, lambda: predicted(bench, 2 / 7 * 4.71238898))
+
+    tab_to(page, "Play")
+    page.keyboard.press("Enter")
+    eventually(page, lambda: plays(stage, True))
+    page.keyboard.press("Enter")
+    eventually(page, lambda: plays(stage, False))
+    tab_to(page, "Time", "INPUT")
+    page.keyboard.press("End")
+    eventually(page, lambda: at_time(stage, 20.0))
+
+    while page.evaluate(ACTIVE)["name"] != "Tour":
+        page.keyboard.press("Shift+Tab")
+    page.keyboard.press("Enter")
+    expect(page.get_by_text("Step 1 of 7")).to_be_visible()
+    assert page.evaluate("document.querySelector('main').contains(document.activeElement)"), "the focus is lost"
+
+
+def predicted(bench: Bench, rate: float) -> None:
+    assert bench.found(r"\Omega_c")[0] == as_shown(rate)
+
+
+def plays(stage: Stage, playing: bool) -> None:
+    assert stage.drawn().playing is playing
+
+
+def at_time(stage: Stage, time: float) -> None:
+    assert stage.drawn().time == pytest.approx(time)
+
+
+def test_the_keys_of_the_film(visitor: Visitor) -> None:
+    bench = Bench(visitor.open("#/bench?name=level-turntable-nudged"))
+    page, stage = bench.page, bench.stage
+    page.keyboard.press("Space")
+    eventually(page, lambda: plays(stage, True))
+    page.keyboard.press("Space")
+    eventually(page, lambda: plays(stage, False))
+    page.keyboard.press("Home")
+    for _ in range(3):
+        page.keyboard.press("ArrowRight")
+    eventually(page, lambda: at_time(stage, 0.03))
+    page.keyboard.press("ArrowLeft")
+    eventually(page, lambda: at_time(stage, 0.02))
+    page.keyboard.press("End")
+    eventually(page, lambda: at_time(stage, 20.0))
+
+
+@pytest.mark.parametrize("route", ["#/bench", "#/tour/4", "#/compare", "#/fields"])
+def test_less_motion_is_respected_and_else_it_plays_by_itself(route: str, visitor: Visitor) -> None:
+    calm, lively = visitor.open(route), visitor.open(route, reduced_motion="no-preference")
+    settle(calm)
+    settle(lively)
+    eventually(lively, lambda: runs(lively))
+    calm.wait_for_timeout(300)
+    said = calm.locator("[data-playing]").first
+    assert said.get_attribute("data-playing") == "false"
+    before = said.get_attribute("data-time")
+    calm.wait_for_timeout(300)
+    assert said.get_attribute("data-time") == before
+
+
+def runs(page: Page) -> None:
+    said = page.locator("[data-playing]").first
+    assert said.get_attribute("data-playing") == "true"
+    assert float(said.get_attribute("data-time") or 0) > 0.05
+
+
+def test_once_open_it_asks_nobody_but_the_lab(visitor: Visitor) -> None:
+    """A walk through all pages: everything asked for is of the lab's origin (which every other test watches, too)."""
+    page = visitor.open()
+    for name in ("Tour", "Holonomy", "Compare", "Crossed fields", "Bench"):
+        page.get_by_role("link", name=name, exact=True).click()
+        settle(page)
+    own = [address for address in visitor.watch.requests if address.startswith(visitor.lab + "/")]
+    assert len(own) > 10
+    assert all(
+        address.startswith((visitor.lab + "/", "blob:" + visitor.lab, "data:")) for address in visitor.watch.requests
+    )
+
+
+def test_without_webgl_the_path_is_drawn_and_the_reason_told(visitor: Visitor, chromium: str) -> None:
+    kind = visitor.browser.browser_type
+    plain = kind.launch(executable_path=chromium, args=[*ARGUMENTS[2:], "--disable-3d-apis"])
+    try:
+        page = plain.new_page(viewport=LAPTOP)  # type: ignore[arg-type]
+        page.goto(f"{visitor.lab}/#/bench?name=level-turntable-nudged")
+        expect(page.get_by_text("WebGL")).to_be_visible()
+        expect(page.locator(".stage svg path, .stage svg polyline").first).to_be_visible()
+    finally:
+        plain.close()
+
+
+def test_projector_mode_has_large_type(visitor: Visitor) -> None:
+    bench = Bench(visitor.open("#/bench", size={"width": 1920, "height": 1080}))
+    page = bench.page
+    before = page.evaluate("parseFloat(getComputedStyle(document.body).fontSize)")
+    page.keyboard.press("p")
+    expect(page.get_by_role("button", name="Projector mode")).to_have_attribute("aria-pressed", "true")
+    assert page.evaluate("parseFloat(getComputedStyle(document.body).fontSize)") >= 1.25 * before
+    page.reload()
+    expect(page.get_by_role("button", name="Projector mode")).to_have_attribute("aria-pressed", "true")
+
+
+@pytest.mark.parametrize("size", [PHONE, LAPTOP, {"width": 3840, "height": 2160}])
+@pytest.mark.parametrize("route", ["#/bench", "#/tour/6", "#/holonomy", "#/compare", "#/fields"])
+def test_no_page_is_wider_than_its_window(route: str, size: dict, visitor: Visitor) -> None:
+    page = visitor.open(route, size=size)
+    settle(page)
+    wide = page.evaluate("document.documentElement.scrollWidth - innerWidth")
+    assert wide <= 0, f"{wide} pixels must be scrolled to the side"
