@@ -13,7 +13,7 @@ const SWITCHES: readonly { show: keyof Show; symbol: string; name: string }[] = 
   { show: 'velocity', symbol: 'V', name: 'Velocity' },
   { show: 'contactForce', symbol: 'R', name: 'Contact force' },
   { show: 'angularVelocity', symbol: 'Ω', name: 'Angular velocity' },
-  { show: 'gravity', symbol: 'mg', name: 'Weight' },
+  { show: 'gravity', symbol: 'mg', name: 'Weight, mg' },
   { show: 'frictionCone', symbol: 'Cone', name: 'Friction cone' },
   { show: 'guidingCentre', symbol: 'Centre', name: 'Guiding centre' },
   { show: 'trail', symbol: 'Path', name: 'Path' },
