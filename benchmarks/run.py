@@ -17,7 +17,18 @@ import traceback
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 
-NAMES = ("path", "trajectory", "bodies", "ensembles", "reuse", "long_run", "orientation", "start_up", "members")
+NAMES = (
+    "path",
+    "trajectory",
+    "bodies",
+    "ensembles",
+    "reuse",
+    "long_run",
+    "orientation",
+    "start_up",
+    "members",
+    "lab_load",
+)
 PACKAGES = ("numpy", "scipy", "heyoka", "numba", "llvmlite", "jax", "diffrax", "mpmath", "xarray", "matplotlib")
 WIDTHS = (52, 10, 9, 7)
 

@@ -93,7 +93,7 @@ def path_from(data: Any) -> PathScenario:
     return PathScenario.read(data, "")
 
 
-def run_of(scenario: Scenario, most: int) -> tuple[Trajectory, float]:
+def run_of(scenario: Scenario, most: int, wanted: int | None = None) -> tuple[Trajectory, float]:
     """Run a scenario.
 
     Parameters
@@ -102,6 +102,8 @@ def run_of(scenario: Scenario, most: int) -> tuple[Trajectory, float]:
         Any.
     most : int
         How many samples there may be.
+    wanted : int, optional
+        How many are of use: with fewer than the scenario's own, only those are computed.
 
     Returns
     -------
@@ -115,9 +117,10 @@ def run_of(scenario: Scenario, most: int) -> tuple[Trajectory, float]:
     >>> run_of(scenario_from(files.parse(files.read("tilted-turntable"), "")), 5000)[0].method
     'exact'
     """
-    limits.check_timing(float(scenario.timing.duration), float(scenario.timing.every), most)
+    duration, every = float(scenario.timing.duration), float(scenario.timing.every)
+    limits.check_timing(duration, every, most)
     began = time.perf_counter()
-    run = scenario.run()
+    run = scenario.run(every=every if wanted is None else max(every, duration / (wanted - 1)))
     return run, time.perf_counter() - began
 
 
@@ -150,7 +153,7 @@ def simulate(data: dict[str, Any], samples: int | None = None, card: bool = Fals
         from .rolling import rolled_scene
 
         return Answer(pack(rolled_scene(path_from(data).run(), samples, card)), SCENE)
-    run, seconds = run_of(scenario_from(data), limits.MOST_SAVED)
+    run, seconds = run_of(scenario_from(data), limits.MOST_SAVED, samples)
     return Answer(pack(scene_of(run, samples, card, seconds=seconds)), SCENE)
 
 

@@ -6,6 +6,7 @@ import hashlib
 import json
 from collections import OrderedDict
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 
@@ -53,13 +54,18 @@ def key_of(*asked: Any) -> str:
     >>> key_of("run", {"a": 1}) == key_of("run", {"a": 1.0})
     False
     """
-    from importlib.metadata import version
-
-    digest = hashlib.sha256(version("trundle").encode())
+    digest = hashlib.sha256(_version().encode())
     for part in asked:
         content = part if isinstance(part, bytes) else json.dumps(part, sort_keys=True).encode("ascii")
         digest.update(f"{len(content)}:".encode("ascii") + content)
     return digest.hexdigest()[:40]
+
+
+@lru_cache
+def _version() -> str:
+    from importlib.metadata import version  # half a millisecond, each time
+
+    return version("trundle")
 
 
 class Cache:

@@ -38,14 +38,16 @@ class Lane:
         Processes.
     settings : Settings
         The bounds.
+    niceness : int
+        By how much its processes stand back for those of others.
 
     Examples
     --------
     See `trundle.lab.app.create_app`.
     """
 
-    def __init__(self, workers: int, settings: Settings) -> None:
-        self.workers, self.settings = workers, settings
+    def __init__(self, workers: int, settings: Settings, niceness: int = 0) -> None:
+        self.workers, self.settings, self.niceness = workers, settings, niceness
         self._free = asyncio.Semaphore(workers)
         self._asked: set[asyncio.Task[Any]] = set()
         self._running: set[asyncio.Task[Any]] = set()
@@ -56,7 +58,7 @@ class Lane:
         """Start the processes; returns when they are there, which takes a second or two."""
         with self._lock:
             if self._pool is None or not self._pool.active:
-                broken, self._pool = self._pool, _new_pool(self.workers)
+                broken, self._pool = self._pool, _new_pool(self.workers, self.niceness)
                 if broken is not None:
                     threading.Thread(target=_end, args=(broken,), daemon=True).start()
 
@@ -165,7 +167,7 @@ async def _left(request: Request) -> None:
         pass
 
 
-def _new_pool(workers: int) -> ProcessPool:
+def _new_pool(workers: int, niceness: int) -> ProcessPool:
     """Start processes that are warm: copies of one that has imported everything, where there are such copies."""
     kinds = multiprocessing.get_all_start_methods()
     context = multiprocessing.get_context("forkserver" if "forkserver" in kinds else "spawn")
@@ -173,7 +175,9 @@ def _new_pool(workers: int) -> ProcessPool:
         context.set_forkserver_preload([PRELOADED])
     from .warm import begin_worker
 
-    pool = ProcessPool(workers, max_tasks=TASKS_OF_A_PROCESS, initializer=begin_worker, context=context)
+    pool = ProcessPool(
+        workers, max_tasks=TASKS_OF_A_PROCESS, initializer=begin_worker, initargs=(niceness,), context=context
+    )
     if not pool.active:  # asking starts it
         raise RuntimeError("no process could be started")
     return pool

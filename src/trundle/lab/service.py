@@ -38,7 +38,7 @@ class Lab:
         self.settings = settings
         self.cache = Cache(settings.cache_bytes)
         self.quick = Lane(settings.workers, settings)
-        self.slow = Lane(settings.slow_workers, settings)
+        self.slow = Lane(settings.slow_workers, settings, niceness=5)
         self._coming: dict[str, asyncio.Task[Answer]] = {}
 
     async def start(self) -> None:

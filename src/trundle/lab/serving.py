@@ -154,6 +154,7 @@ def serve(
             server_header=False,
             proxy_headers=False,
             timeout_graceful_shutdown=2,
+            timeout_keep_alive=60,
             ws="none",
         )
         Server(config).run(sockets=[taken])

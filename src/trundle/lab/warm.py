@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 
 _SHOWN = ("tilted-turntable", "level-turntable-nudged", "ball-in-a-trough")
@@ -26,12 +27,19 @@ def begin() -> None:
         answers.warm(name)
 
 
-def begin_worker() -> None:
+def begin_worker(niceness: int = 0) -> None:
     """Make a worker ready; what a copy has already costs nothing.
+
+    Parameters
+    ----------
+    niceness : int
+        By how much it stands back for others where the processors are busy.
 
     Examples
     --------
     In a worker only: it changes what a signal does.
     """
     signal.signal(signal.SIGTERM, signal.SIG_DFL)  # ends at once, also within compiled code
+    if niceness and hasattr(os, "nice"):
+        os.nice(niceness)
     begin()
