@@ -6,6 +6,7 @@ import { FrictionCone } from './cone'
 import type { Show } from './contract'
 import type { LabelLayer } from './labels'
 import { type ArrowScale, arrowScale, steadyNumber, typicalSize } from './quantities'
+import { materialVelocity, supportTwist, type Twist } from './riding'
 import type { Scene } from './scene'
 import type { Palette } from './theme'
 
@@ -76,7 +77,10 @@ export class BodyArrows {
   private readonly vector = new Vector3()
   private readonly contact = new Vector3()
   private readonly weight = new Vector3()
+  private readonly material = new Vector3()
   private scales!: Scales
+  /** How the support moves, where the observer rides on it. */
+  private twist: Twist | null = null
   private unit = 1
 
   constructor(readonly body: BodyModel) {
@@ -104,6 +108,11 @@ export class BodyArrows {
   look(palette: Palette): void {
     for (const kind of ARROW_KINDS) this.arrows[kind].look(palette.arrows[kind])
     this.cone.look(palette)
+  }
+
+  /** Velocities are those that the observer sees: one who rides on the support, or one who stands still. */
+  ride(time: number | null): void {
+    this.twist = time === null ? null : supportTwist(this.body.track, time)
   }
 
   update(show: Show, labels: LabelLayer, palette: Palette, thick: number, up: Vector3): void {
@@ -151,7 +160,10 @@ export class BodyArrows {
     const { track } = this.body
     if (kind === 'gravity') return this.vector.copy(this.weight)
     const column = { velocity: 'velocity', contactForce: 'contact_force', angularVelocity: 'angular_velocity' } as const
-    return track.vector(column[kind], this.vector)
+    const vector = track.vector(column[kind], this.vector)
+    if (!vector || !this.twist || kind === 'contactForce') return vector
+    if (kind === 'angularVelocity') return vector.sub(this.twist.turning)
+    return vector.sub(materialVelocity(this.twist, this.body.group.position, this.material))
   }
 
   dispose(): void {

@@ -20,6 +20,7 @@ export class BodyModel {
     this.track = new Track(scene)
     const geometry = bodyGeometry(scene)
     measure(geometry, this.paint)
+    this.paint.plain.value = scene.header.body.kind === 'charge' ? 1 : 0
     const material = new MeshPhysicalMaterial({
       roughness: 0.42,
       metalness: 0,
@@ -37,6 +38,7 @@ export class BodyModel {
     const before = this.scene.columns
     this.scene = scene
     this.track = new Track(scene)
+    this.paint.plain.value = scene.header.body.kind === 'charge' ? 1 : 0
     if (sameNumbers(before.body_vertices, scene.columns.body_vertices)) return
     this.mesh.geometry.dispose()
     this.mesh.geometry = bodyGeometry(scene)

@@ -6,9 +6,9 @@ import type { Scene, Turn } from './scene'
 export const FRAMES: readonly Frame[] = ['world', 'support', 'corotating']
 
 export const FRAME_NAMES: Record<Frame, { short: string; long: string }> = {
-  world: { short: 'World', long: 'Beside the table, the vertical upwards' },
-  support: { short: 'Table', long: 'Beside the table, its axis upwards' },
-  corotating: { short: 'Riding', long: 'On the table, turning with it' },
+  world: { short: 'World', long: 'Beside the support, the vertical upwards' },
+  support: { short: 'Support', long: 'Beside the support, its axis upwards' },
+  corotating: { short: 'Riding', long: 'On the support, moving with it' },
 }
 
 /** Where the support's material is, seen in the support frame. */

@@ -24,6 +24,7 @@ float alternate(float value) {
 /** Gores in two colours round the third body axis, an equator, and the two poles. */
 const BODY = /* glsl */ `
 vec3 painted(vec3 place, vec3 pattern) {
+  if (plain > 0.5) return tint;
   float rho = length(place.xy) / girth;
   // The sine of three times the angle, from its own sine and cosine, which do not leap where the angle does.
   vec2 way = place.xy / max(length(place.xy), 1e-9);
@@ -82,6 +83,8 @@ export interface BodyPaint {
   girth: { value: number }
   /** 1 for what is round all over, and has an equator. */
   round_: { value: number }
+  /** 1 for what does not roll, as a charge. */
+  plain: { value: number }
 }
 
 export function newBodyPaint(): BodyPaint {
@@ -92,6 +95,7 @@ export function newBodyPaint(): BodyPaint {
     pole: { value: new Color() },
     girth: { value: 1 },
     round_: { value: 1 },
+    plain: { value: 0 },
   }
 }
 
@@ -120,7 +124,7 @@ export function paintBody(material: Material, paint: BodyPaint): void {
     varyings: 'varying vec3 vPattern;\nvarying vec3 vPlace;',
     attributes: 'attribute vec3 pattern;',
     vertex: 'vPattern = pattern;\nvPlace = position;',
-    uniforms: 'uniform vec3 tint, pale, ink, pole;\nuniform float girth, round_;',
+    uniforms: 'uniform vec3 tint, pale, ink, pole;\nuniform float girth, round_, plain;',
     code: BODY,
     colour: 'diffuseColor.rgb = painted(vPlace, vPattern);',
   })

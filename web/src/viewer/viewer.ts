@@ -12,6 +12,7 @@ import { Legend } from './legend'
 import { Pace } from './pace'
 import { Player } from './player'
 import type { Scene, Triple } from './scene'
+import { liveShow } from './shown'
 import { Stage } from './stage'
 import { paletteOf, watchTheme, widthsOf } from './theme'
 import { Tools } from './tools'
@@ -19,17 +20,6 @@ import { sampleBefore } from './track'
 import { World } from './world'
 
 export type { Frame, Show, Theme, Tool, Viewer, ViewerEvents, ViewerOptions } from './contract'
-
-const SHOWN: Show = {
-  velocity: false,
-  contactForce: false,
-  angularVelocity: false,
-  gravity: false,
-  frictionCone: false,
-  guidingCentre: false,
-  trail: true,
-  axes: false,
-}
 
 export function createViewer(host: HTMLElement, options: ViewerOptions = {}): Viewer {
   return new StageViewer(host, options)
@@ -68,8 +58,13 @@ class StageViewer implements Viewer {
     options: ViewerOptions,
   ) {
     this.shownFrame = options.frame ?? 'world'
-    this.live = this.liveShow({ ...SHOWN, ...options.show })
-    this.canvas = element('canvas', 'tr-canvas', { 'data-testid': 'stage', tabindex: '0', role: 'img' })
+    this.live = liveShow(options.show ?? {}, () => this.showChanged())
+    this.canvas = element('canvas', 'tr-canvas', {
+      'data-testid': 'stage',
+      tabindex: '0',
+      role: 'img',
+      'aria-label': '3-D picture, empty',
+    })
     this.labels = new LabelLayer(document)
     this.frameElement = element('div', 'tr-stage', {}, this.canvas, this.labels.element, this.legend.element, this.note)
     this.root = element('div', 'tr-viewer', {}, this.frameElement)
@@ -100,18 +95,6 @@ class StageViewer implements Viewer {
     }
   }
 
-  private liveShow(values: Show): Show {
-    const changed = () => this.showChanged()
-    return new Proxy(values, {
-      set(target, name, value) {
-        if (!(name in SHOWN)) throw new Error(`show has ${Object.keys(SHOWN).join(', ')}; got ${String(name)}`)
-        target[name as keyof Show] = Boolean(value)
-        changed()
-        return true
-      },
-    })
-  }
-
   private watchSize(): ResizeObserver | null {
     if (typeof ResizeObserver === 'undefined') return null
     const watcher = new ResizeObserver(() => this.resize())
@@ -122,8 +105,16 @@ class StageViewer implements Viewer {
   private listen(): void {
     const { signal } = this.abort
     this.root.addEventListener('keydown', (event) => this.key(event), { signal })
+    this.frameElement.addEventListener('wheel', (event) => this.wheel(event), { signal, capture: true })
     this.canvas.addEventListener('webglcontextlost', (event) => event.preventDefault(), { signal })
     this.canvas.addEventListener('webglcontextrestored', () => this.invalidate(), { signal })
+  }
+
+  /** On a page that scrolls, the wheel scrolls it until somebody has taken hold of the stage. */
+  private wheel(event: WheelEvent): void {
+    const page = document.scrollingElement
+    const scrolls = page !== null && page.scrollHeight > page.clientHeight + 1
+    if (scrolls && document.activeElement !== this.canvas && !event.ctrlKey) event.stopPropagation()
   }
 
   private key(event: KeyboardEvent): void {

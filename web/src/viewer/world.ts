@@ -146,6 +146,7 @@ export class World {
       }
       body.track.contact(this.contact)
       if (show.frictionCone) contactNormal(body, this.scenes[0]!, this.contact, this.normal)
+      actor.arrows.ride(this.frame === 'corotating' ? time : null)
       actor.arrows.update(show, labels, this.palette, thick, this.normal)
       this.shade(i, body)
       this.name(actor, labels)
