@@ -88,6 +88,7 @@ export function createField(options: FieldOptions): Field {
   function digits(): string {
     const found = parse(value)
     if (found.number === null || typeof value === 'object') return found.digits
+    if (typeof value === 'number' && !hasUnits) return String(rounded(value, 6))
     const factor = UNITS[entry.kind]
     const shown = shownUnit()
     const written = found.unit || (units[0] ?? '')

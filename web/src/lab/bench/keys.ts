@@ -52,6 +52,6 @@ function toViewer(event: KeyboardEvent, stage: Stage): boolean {
   const canvas = stage.element.querySelector<HTMLElement>('[data-testid="stage"]')
   if (!canvas || stage.element.contains(event.target as Node)) return false
   const { key, code, shiftKey } = event
-  const again = new KeyboardEvent('keydown', { key, code, shiftKey, bubbles: false, cancelable: true })
+  const again = new KeyboardEvent('keydown', { key, code, shiftKey, bubbles: true, cancelable: true })
   return !canvas.dispatchEvent(again)
 }

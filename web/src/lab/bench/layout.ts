@@ -218,20 +218,21 @@ function velocity(index: number): Item[] {
   return [{ type: 'field', path: `start.velocity.${index}`, entry: of, fallback: '0 m/s', set }]
 }
 
-/** The drag that has its own slider: the one load of its kind that says nothing but a coefficient. */
+/** The drag that has its own slider. */
 function mainDrag(loads: (Table & { kind: string })[]): number {
-  return loads.findIndex((load) => load.kind === 'drag' && load.air === undefined)
+  return loads.findIndex((load) => load.kind === 'drag')
 }
 
-/** Drag is always on offer; at nought there is no such load. */
+/** Drag is always on offer; at nought there is no such load, unless it says more than a coefficient. */
 function dragOf(loads: (Table & { kind: string })[]): Item {
   const at = mainDrag(loads)
   const set = (now: Scenario, value: Json) => {
     const known = now.loads ?? []
     const index = mainDrag(known)
     const none = parse(value).number === 0
-    const load = { kind: 'drag', coefficient: value }
-    const next = known.flatMap((one, place) => (place !== index ? [one] : none ? [] : [load]))
+    const load = { kind: 'drag', ...known[index], coefficient: value }
+    const goes = none && Object.keys(load).length === 2
+    const next = known.flatMap((one, place) => (place !== index ? [one] : goes ? [] : [load]))
     if (index < 0 && !none) next.push(load)
     return withValue(now, 'loads', next.length ? (next as Json) : undefined)
   }
