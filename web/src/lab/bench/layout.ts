@@ -230,7 +230,7 @@ function dragOf(loads: (Table & { kind: string })[]): Item {
     const known = now.loads ?? []
     const index = mainDrag(known)
     const none = parse(value).number === 0
-    const load = { kind: 'drag', ...known[index], coefficient: value }
+    const load = { ...known[index], kind: 'drag', coefficient: value }
     const goes = none && Object.keys(load).length === 2
     const next = known.flatMap((one, place) => (place !== index ? [one] : goes ? [] : [load]))
     if (index < 0 && !none) next.push(load)
