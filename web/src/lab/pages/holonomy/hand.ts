@@ -14,8 +14,9 @@ import { componentsOf, degrees, directionInWords, poleWhile, RADIUS, type Rolled
 import { type Piece, type Place, piecesOf, TURN_NAMES, type Turn } from './turns'
 
 /** Nearer points of a drag are not worth a piece of path, m. */
-const GRAIN = 0.0015
-const MOST_PIECES = 1500
+const GRAIN = 0.002
+/** The server rolls along no more. */
+const MOST_PIECES = 500
 const SECONDS_A_PIECE = 0.7
 /** Up to here the area rule holds to a tenth or so, rad. */
 const SMALL = 0.5
@@ -38,6 +39,7 @@ export function mountHand(host: HTMLElement, app: App): () => void {
   let scene: Scene | null = null
   let at: Place = [0, 0]
   let framed = false
+  let warned = false
   /** Where the last drag point lies, which may not have been answered yet. */
   let reached: Place = [0, 0]
 
@@ -82,14 +84,23 @@ export function mountHand(host: HTMLElement, app: App): () => void {
     place.classList.toggle('home', home)
     numbers.set([
       { name: 'turned since the start', predicted: null, measured: degrees(rolled.turned) },
-      { name: 'about', predicted: null, measured: componentsOf(rolled.turned_axis) },
+      rolled.turned > 1e-6
+        ? { name: 'about the axis (east, north, up)', predicted: null, measured: componentsOf(rolled.turned_axis) }
+        : undefined,
       ...(home ? areaRows(rolled) : []),
     ])
     app.announce(`North pole ${directionInWords(rolled.north_pole)}. ${place.textContent}`)
   }
 
+  function full(): boolean {
+    if (pieces.length < MOST_PIECES) return false
+    if (!warned) app.toast('That is a long way already. Start again for another.')
+    warned = true
+    return true
+  }
+
   function turn(which: Turn): void {
-    if (pieces.length >= MOST_PIECES) return
+    if (full()) return
     pieces = [...pieces, ...piecesOf([which])]
     const way = { E: [1, 0], N: [0, 1], W: [-1, 0], S: [0, -1] }[which]
     reached = [reached[0] + way[0]! * RADIUS * (Math.PI / 2), reached[1] + way[1]! * RADIUS * (Math.PI / 2)]
@@ -97,14 +108,14 @@ export function mountHand(host: HTMLElement, app: App): () => void {
   }
 
   function drag(x: number, y: number): void {
-    if (Math.hypot(x - reached[0], y - reached[1]) < GRAIN || pieces.length >= MOST_PIECES) return
+    if (Math.hypot(x - reached[0], y - reached[1]) < GRAIN || full()) return
     reached = [x, y]
     pieces = [...pieces, { kind: 'straight', to: [x, y] }]
     live.ask({ pieces, from: 'drag' })
   }
 
   function homeward(): void {
-    if (Math.hypot(...reached) < 1e-9 || pieces.length >= MOST_PIECES) return
+    if (Math.hypot(...reached) < 1e-9 || full()) return
     reached = [0, 0]
     pieces = [...pieces, { kind: 'straight', to: [0, 0] }]
     live.ask({ pieces, from: 'turn' })
@@ -114,6 +125,7 @@ export function mountHand(host: HTMLElement, app: App): () => void {
   async function restart(): Promise<void> {
     live.stop()
     pieces = []
+    warned = false
     at = reached = [0, 0]
     scene = null
     try {
@@ -225,7 +237,7 @@ function areaRows({ enclosed_area, small_loop_angle, turned_about_normal }: Roll
     name: 'area enclosed, anticlockwise',
     symbol: 'A/a^2',
     predicted: null,
-    measured: enclosed_area / RADIUS ** 2,
+    measured: Number((enclosed_area / RADIUS ** 2).toFixed(6)) + 0,
   }
   if (Math.abs(small_loop_angle) > SMALL) return [area]
   const turned = degrees(turned_about_normal)

@@ -75,5 +75,6 @@ function signed(part: number): string {
 }
 
 export function degrees(angle: number, digits = 2): string {
-  return `${((angle * 180) / Math.PI).toFixed(digits)}°`.replace('-', '−')
+  const text = ((angle * 180) / Math.PI).toFixed(digits)
+  return `${Number(text) === 0 ? text.replace('-', '') : text.replace('-', '−')}°`
 }

@@ -72,7 +72,7 @@ function rows({ first, second, difference }: Outcome): Row[] {
     one('first pole', directionInWords(first.north_pole)),
     one('second pole', directionInWords(second.north_pole)),
     one('turned against each other', degrees(difference.turned)),
-    one('about the axis', componentsOf(difference.turned_axis)),
+    one('about the axis (east, north, up)', componentsOf(difference.turned_axis)),
     one(
       'area between the two ways',
       `${((difference.enclosed_area ?? 0) / RADIUS ** 2).toFixed(3)} a²`.replace('-', '−'),

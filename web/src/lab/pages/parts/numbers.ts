@@ -27,12 +27,12 @@ export function rowOf(found: Finding | undefined, scale = 1, unit = found?.unit)
 
 export function createNumbers(caption = 'Theory beside measurement'): Numbers {
   const body = h('tbody')
-  const theory = h('th', { scope: 'col' }, 'predicted')
+  const heads = h('tr')
   const element = h(
     'table',
     { class: 'versus', 'data-testid': 'numbers' },
     h('caption', { class: 'sr-only' }, caption),
-    h('thead', {}, h('tr', {}, h('td'), h('th', { scope: 'col' }, 'predicted'), h('th', { scope: 'col' }, 'measured'))),
+    h('thead', {}, heads),
     body,
   )
   return {
@@ -41,10 +41,14 @@ export function createNumbers(caption = 'Theory beside measurement'): Numbers {
       const given = rows.filter((row) => row !== undefined)
       const predicted = given.some((row) => row.predicted !== null)
       // Nothing is predicted of what is only read off: no heading over an empty column.
-      fill(theory, predicted ? 'predicted' : '')
+      fill(heads, h('td'), predicted ? head('predicted') : h('td'), head('measured'))
       fill(body, ...given.map(line))
     },
   }
+}
+
+function head(words: string): HTMLElement {
+  return h('th', { scope: 'col' }, words)
 }
 
 function line({ name, symbol, predicted, measured, unit }: Row): HTMLElement {

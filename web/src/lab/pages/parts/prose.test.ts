@@ -26,7 +26,7 @@ describe('text with formulas', () => {
 
   it('becomes elements', () => {
     const made = paragraph('So $v = \\omega r$ and *nothing* else.')
-    expect(made.querySelector('[role=math] .katex')).not.toBeNull()
+    expect(made.querySelector('.math .katex')).not.toBeNull()
     expect(made.querySelector('em')?.textContent).toBe('nothing')
   })
 })

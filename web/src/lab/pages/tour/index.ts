@@ -212,6 +212,6 @@ function next(number: number): HTMLElement {
       rel: 'next',
       'data-testid': 'next',
     },
-    `Next: ${short} →`,
+    h('span', {}, 'Next', h('span', { class: 'tour-next' }, `: ${short}`), ' →'),
   )
 }
