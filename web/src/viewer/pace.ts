@@ -9,7 +9,8 @@ export class Pace {
   frame(now: number): boolean {
     const passed = this.last === null ? 0 : now - this.last
     this.last = now
-    this.slow = passed > SLOW ? this.slow + 1 : Math.max(0, this.slow - 1)
+    if (passed <= SLOW) this.slow = Math.max(0, this.slow - 1)
+    else this.slow += passed > 3 * SLOW ? 3 : 1
     if (this.slow < PATIENCE || this.share <= LEAST) return false
     this.share = Math.max(LEAST, 0.75 * this.share)
     this.slow = 0

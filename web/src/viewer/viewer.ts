@@ -202,11 +202,9 @@ class StageViewer implements Viewer {
   get time(): number {
     return this.player.time
   }
-
   get duration(): number {
     return this.player.duration
   }
-
   get playing(): boolean {
     return this.player.playing
   }
@@ -214,7 +212,6 @@ class StageViewer implements Viewer {
   get speed(): number {
     return this.player.speed
   }
-
   set speed(speed: number) {
     this.player.speed = Math.min(Math.max(Number.isFinite(speed) ? speed : 1, 0.01), 100)
     this.controls?.refresh()
@@ -223,7 +220,6 @@ class StageViewer implements Viewer {
   get loop(): boolean {
     return this.player.loop
   }
-
   set loop(loop: boolean) {
     this.player.loop = loop
     this.controls?.refresh()
@@ -232,7 +228,6 @@ class StageViewer implements Viewer {
   get frame(): Frame {
     return this.shownFrame
   }
-
   set frame(frame: Frame) {
     if (frame === this.shownFrame) return
     this.shownFrame = frame
@@ -282,7 +277,6 @@ class StageViewer implements Viewer {
   get projector(): boolean {
     return this.large
   }
-
   set projector(large: boolean) {
     this.large = large
     this.look()
@@ -301,7 +295,6 @@ class StageViewer implements Viewer {
   get follow(): boolean {
     return this.followed
   }
-
   set follow(follow: boolean) {
     this.followed = follow
     this.controls?.refresh()
@@ -310,7 +303,6 @@ class StageViewer implements Viewer {
   resetCamera(): void {
     this.aim(false)
   }
-
   topView(): void {
     this.aim(true)
   }
