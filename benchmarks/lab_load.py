@@ -54,7 +54,7 @@ class Seen:
 def rows() -> Iterator[Row]:
     """Run the class, and say how it went."""
     with served() as (process, port):
-        seen, before, after = asyncio.run(_class(process, port))
+        seen, before, after, used = asyncio.run(_class(process, port))
     every = sorted(seen.computed + seen.again)
     check(len(every) > CLIENTS, "the clients must have been answered")
     rate = (
@@ -65,6 +65,8 @@ def rows() -> Iterator[Row]:
     yield Row("computed, 95 of 100 within", _share(computed, 0.95), most=SLOWEST, raw=_times(computed), kind="time")
     yield Row("computed, half within", _share(computed, 0.5), raw=f"{len(computed)} of them", kind="time")
     yield Row("from the cache, half within", _share(again, 0.5), raw=_times(again), kind="time")
+    busy = f"of the server's processes together: {used / DURATION:.2f} processors, on average"
+    yield Row("processor time for one answer", used / len(every), raw=busy, kind="time")
     sizes = f"{before / 2**20:.0f} MiB, {after / 2**20:.0f} MiB (all processes, shared pages once)"
     yield Row("memory after / before", after / before, most=GROWTH, raw=sizes)
 
@@ -96,20 +98,20 @@ def served() -> Iterator[tuple[subprocess.Popen[str], int]]:
         process.wait()
 
 
-async def _class(process: subprocess.Popen[str], port: int) -> tuple[Seen, float, float]:
+async def _class(process: subprocess.Popen[str], port: int) -> tuple[Seen, float, float, float]:
     tables = {name: json.loads(await ask(port, f"/api/scenarios/{name}"))["scenario"] for name in SCENARIOS}
     await ask(port, "/api/scenarios")
     known = [changed(tables, random.Random(number)) for number in range(20)]  # noqa: S311
     seen = Seen()
     clients = [asyncio.create_task(client(port, tables, known, seen, number)) for number in range(CLIENTS)]
     await asyncio.sleep(SETTLING)
-    before, seen.counting = memory(process.pid), True
+    before, used, seen.counting = memory(process.pid), processor(process.pid), True
     await asyncio.sleep(DURATION)
-    after, seen.counting = memory(process.pid), False
+    after, used, seen.counting = memory(process.pid), processor(process.pid) - used, False
     for task in clients:
         task.cancel()
     await asyncio.gather(*clients, return_exceptions=True)
-    return seen, before, after
+    return seen, before, after, used
 
 
 async def client(port: int, tables: dict[str, Any], known: list[bytes], seen: Seen, number: int) -> None:
@@ -176,9 +178,24 @@ async def exchange(
 
 def memory(session: int) -> float:
     """Return the memory of all processes of a session, bytes; what they share counts once."""
-    total = 0.0
+    total = 0
+    for entry, _ in processes(session):
+        with suppress(OSError):
+            found = re.search(r"^Pss:\s+(\d+)", (entry / "smaps_rollup").read_text(), re.MULTILINE)
+            total += 1024 * int(found[1]) if found else 0
+    return float(total)
+
+
+def processor(session: int) -> float:
+    """Return the processor time that all processes of a session have taken so far, with those that they waited for, s."""
+    ticks = sum(sum(map(int, facts[11:15])) for _, facts in processes(session))
+    return ticks / os.sysconf("SC_CLK_TCK")
+
+
+def processes(session: int) -> Iterator[tuple[Path, list[str]]]:
+    """The processes of a session, each with what /proc says in its `stat` behind the name."""
     for entry in Path("/proc").iterdir():
-        with suppress(OSError, ValueError, IndexError, TypeError):
-            if int((entry / "stat").read_text().rpartition(")")[2].split()[3]) == session:
-                total += 1024 * int(re.search(r"^Pss:\s+(\d+)", (entry / "smaps_rollup").read_text(), re.MULTILINE)[1])  # type: ignore[index]
-    return total
+        with suppress(OSError, ValueError, IndexError):
+            facts = (entry / "stat").read_text().rpartition(")")[2].split()
+            if int(facts[3]) == session:
+                yield entry, facts
