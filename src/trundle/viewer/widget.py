@@ -34,7 +34,8 @@ SHOWN = (
 class SceneWidget(anywidget.AnyWidget):
     """Runs that play on one stage, in a notebook.
 
-    Each trait can be set while it is shown, and follows what is done with the mouse.
+    Each trait can be set while it is shown, and follows what is done with the mouse. While it plays, `time` tells
+    where it is; `seek` goes elsewhere.
 
     Parameters
     ----------
@@ -76,6 +77,23 @@ class SceneWidget(anywidget.AnyWidget):
         packed = [pack(scene_of(run)) for run in runs]
         super().__init__(_esm=built("viewer.js"), _css=built("viewer.css"), scenes=packed, **traits)
         self._runs = tuple(runs)
+
+    def seek(self, time: float) -> None:
+        """Go to an instant, whether it plays or not.
+
+        Parameters
+        ----------
+        time : float
+            s; where it lies outside the run, its beginning or end is shown.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> widget = tr.Scenario.load("level-turntable-nudged").run().view(playing=False)
+        >>> widget.seek(1.5)
+        >>> widget.close()
+        """
+        self.send({"seek": float(time)})
 
     def __repr__(self) -> str:
         titles = ", ".join(run.title or "a run" for run in self._runs)

@@ -25,8 +25,8 @@ interface Model {
   get<Name extends keyof Traits>(name: Name): Traits[Name]
   set<Name extends keyof Traits>(name: Name, value: Traits[Name]): void
   save_changes(): void
-  on(event: string, listener: () => void): void
-  off(event: string, listener: () => void): void
+  on(event: string, listener: (message: unknown) => void): void
+  off(event: string, listener: (message: unknown) => void): void
 }
 
 const TELL_EVERY = 250 // ms between two messages about the time, while it plays
@@ -108,9 +108,18 @@ function hear(
   }
   viewer.speed = model.get('speed')
   viewer.loop = model.get('loop')
-  return Object.entries(listeners).map(([name, listener]) => {
-    model.on(`change:${name}`, listener)
-    return () => model.off(`change:${name}`, listener)
+  // A message of its own: while it plays, a trait set by Python is overtaken by what was said here a moment before.
+  const asked = (message: unknown) => {
+    const { seek } = message as { seek?: unknown }
+    if (typeof seek === 'number') viewer.seek(seek)
+  }
+  const events: [string, (message: unknown) => void][] = [
+    ...Object.entries(listeners).map(([name, listener]) => [`change:${name}`, listener] as [string, () => void]),
+    ['msg:custom', asked],
+  ]
+  return events.map(([name, listener]) => {
+    model.on(name, listener)
+    return () => model.off(name, listener)
   })
 }
 
