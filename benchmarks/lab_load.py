@@ -187,7 +187,7 @@ def memory(session: int) -> float:
 
 
 def processor(session: int) -> float:
-    """Return the processor time that all processes of a session have taken so far, with those that they waited for, s."""
+    """Return the processor time that all processes of a session, and those they waited for, have taken so far, s."""
     ticks = sum(sum(map(int, facts[11:15])) for _, facts in processes(session))
     return ticks / os.sysconf("SC_CLK_TCK")
 
