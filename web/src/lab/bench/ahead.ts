@@ -2,7 +2,7 @@
 import type { Scene, Triple } from '../../viewer/scene'
 import type { Frame } from '../../viewer/viewer'
 
-const MOST = 1200
+const MOST = 4000
 
 type Turn = readonly [number, number, number, number]
 
@@ -14,7 +14,7 @@ function turnedBack([w, x, y, z]: Turn, [a, b, c]: Triple): Triple {
   return [a + 2 * (q * f - r * e), b + 2 * (r * d - p * f), c + 2 * (p * e - q * d)]
 }
 
-/** The contact's path as some hundred points, in the inertial frame or in that of the support's material. */
+/** The contact's path thinned out where there are very many points, in the inertial frame or in that of the support's material. */
 export function pathOf({ columns }: Scene, frame: Frame): Triple[] {
   const path = columns.contact ?? columns.position
   const { support_orientation: turns, support_position: places } = columns
