@@ -120,7 +120,7 @@ function layout(stage: HTMLElement, tools: HTMLElement, body: HTMLElement): HTML
             'tr',
             {},
             h('th', { scope: 'col' }, 'Shown'),
-            h('th', { scope: 'col' }, formula('k')),
+            h('th', { scope: 'col' }, formula('k'), h('span', { class: 'sr-only' }, 'inertia ratio')),
             h('th', { scope: 'col' }, formula('\\Omega_c/\\omega'), ' predicted'),
             h('th', { scope: 'col' }, 'measured'),
             h('th', { scope: 'col' }, formula('\\Omega_c'), ' measured'),

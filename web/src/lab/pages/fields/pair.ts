@@ -56,8 +56,8 @@ export function createPair(app: App, shown: (both: Both) => void, ticked: (time:
     element: h(
       'div',
       { class: 'sides' },
-      h('section', { class: 'side' }, h('h3', { class: 'side-heading' }, 'Ball on a leaning turntable'), table.element),
-      h('section', { class: 'side' }, h('h3', { class: 'side-heading' }, 'Charge in crossed fields'), fields.element),
+      h('section', { class: 'side' }, h('h2', { class: 'side-heading' }, 'Ball on a leaning turntable'), table.element),
+      h('section', { class: 'side' }, h('h2', { class: 'side-heading' }, 'Charge in crossed fields'), fields.element),
       transport.element,
     ),
     ask: (scenario) => live.ask(scenario),

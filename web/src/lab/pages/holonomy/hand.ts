@@ -177,7 +177,7 @@ function pad(turn: (which: Turn) => void): HTMLElement {
       {
         type: 'button',
         class: `button pad-${which}`,
-        'aria-label': `A quarter turn ${TURN_NAMES[which]}`,
+        'aria-label': `${which}, a quarter turn ${TURN_NAMES[which]}`,
         'data-testid': `roll-${which}`,
         onclick: () => turn(which),
       },

@@ -32,7 +32,7 @@ interface Side {
 
 function createSide(app: App, label: string): Side & { element: HTMLElement } {
   const stage = createStage(app, { label, controls: false, kind: 'half' })
-  const heading = h('h3', { class: 'side-heading' }, label)
+  const heading = h('h2', { class: 'side-heading' }, label)
   const pole = createPoleMap()
   const element = h('section', { class: 'side' }, heading, stage.element, pole.element)
   return { stage, heading, pole, scene: null, element }
