@@ -24,13 +24,15 @@ export const compare: Page = {
     const on = new Set(['solid', 'hollow', 'hoop', 'puck'])
     let table: Table = { rate: 33.3, tilt: 0, push: 10 }
     let found: Found = new Map()
+    let shown = table
     let framed = false
 
     const live = createRunner<Table, Found>({
       run: (asked, signal) => simulateAll(app, asked, signal),
-      done(answer) {
+      done(answer, asked) {
         stage.problem(null)
         found = answer
+        shown = asked
         draw()
       },
       failed: (error) => stage.problem(error),
@@ -44,7 +46,7 @@ export const compare: Page = {
       framed ||= scenes.length > 0
       fill(
         body,
-        CONTESTANTS.map((one) => row(one, found.get(one.id), table, on, toggled)),
+        CONTESTANTS.map((one) => row(one, found.get(one.id), shown, on, toggled)),
       )
     }
 
@@ -178,7 +180,7 @@ function row(
   toggled: (id: string, shown: boolean) => void,
 ): HTMLElement {
   const omega = (table.rate * Math.PI) / 30
-  const measured = scene ? measuredRate(one, scene) : null
+  const measured = scene ? measuredRate(one, scene, table.tilt) : null
   const shown = on.has(one.id)
   const colour = shown ? [...CONTESTANTS].filter(({ id }) => on.has(id)).findIndex(({ id }) => id === one.id) : -1
   const box = h('input', {
@@ -222,7 +224,8 @@ function predicted(share: string): string {
 }
 
 /** The server's finding where it has one; else by how much the direction of motion turned, which is 0 on a straight way. */
-function measuredRate(one: Contestant, scene: Scene): number | null {
-  if (one.id === 'puck' || one.wrong) return headingRate(scene)
+function measuredRate(one: Contestant, scene: Scene, tilt: number): number | null {
+  // Down a slope what slides flies a parabola: there is no rate to speak of.
+  if (one.id === 'puck' || one.wrong) return tilt ? null : headingRate(scene)
   return finding(scene, '\\Omega_c')?.measured ?? null
 }
