@@ -34,10 +34,21 @@ def mathml(latex: str, *, display: bool = False) -> str:
 
     found = [kind for kind in vars(exceptions).values() if isinstance(kind, type) and issubclass(kind, Exception)]
     refusals: tuple[type[Exception], ...] = (IndexError, KeyError, *found)
-    # The converter takes the text of \text{} for markup.
-    safe = latex.replace("<", r"\lt ").replace(">", r"\gt ")
-    safe = re.sub(r"\\(arg|sgn)(?![a-zA-Z])", r"\\operatorname{\1}", safe)  # which it does not know
+    safe = _for_converter(latex)
     try:
         return converter.convert(safe, display="block" if display else "inline")
     except refusals:
         return f"<code>{escape(latex)}</code>"
+
+
+def _for_converter(latex: str) -> str:
+    """Say in other words what the converter does not know, or takes for markup."""
+    text = latex.replace("<", r"\lt ").replace(">", r"\gt ").replace("{aligned}", "{split}")
+    text = re.sub(r"\\(arg|sgn)(?![a-zA-Z])", r"\\operatorname{\1}", text)
+    text = re.sub(r"\\(sin|cos)(?![a-zA-Z])(\^\d)?", r"\\,\\\1\2\\,", text)  # which it sets without room
+    return re.sub(r"\\math(?:rm|sf)\{((?:[^{}]|\{[^{}]*\})*)\}", lambda found: _upright(found[1]), text)
+
+
+def _upright(unit: str) -> str:
+    """Return upright letters as text, so that a unit of one letter is upright, too."""
+    return "{" + re.sub(r"(\\[a-zA-Z]+|\\.)|([a-zA-Z/]+)", lambda m: m[1] or rf"\text{{{m[2]}}}", unit) + "}"

@@ -16,7 +16,7 @@ from string import Template
 from ..errors import InvalidValueError
 from ..scene import Scene, pack
 from .bundle import built
-from .words import card_of, findings_of, formula_of, scenario_of, summary_of
+from .words import card_of, findings_of, formula_of, names_of, scenario_of, summary_of
 
 MOST_SCENES = 5  # bodies that can be told apart on one stage
 
@@ -52,6 +52,7 @@ def page_of(scenes: Sequence[Scene]) -> bytes:
     check_count(len(scenes))
     script, style = _script(built("viewer.js")), _style(built("viewer.css"), _own("page.css"))
     title = title_of(scenes)
+    names = names_of(scenes) if len(scenes) > 1 else [""]
     parts = {
         "policy": _policy(script, style),
         "version": escape(version("trundle")),
@@ -59,8 +60,8 @@ def page_of(scenes: Sequence[Scene]) -> bytes:
         "summary": summary_of(scenes),
         "formula": formula_of(scenes),
         "findings": findings_of(scenes),
-        "cards": "".join(card_of(scene, named=len(scenes) > 1) for scene in scenes),
-        "scenarios": "".join(scenario_of(scene, named=len(scenes) > 1) for scene in scenes),
+        "cards": "".join(map(card_of, scenes, names)),
+        "scenarios": "".join(map(scenario_of, scenes, names)),
         "scenes": "\n".join(_data(scene) for scene in scenes),
         "style": style,
         "script": script,

@@ -17,6 +17,31 @@ _VERDICTS = {
 _METHODS = {"exact": "closed form", "taylor": "Taylor integration", "runge-kutta": "Runge-Kutta integration"}
 
 
+def names_of(scenes: Sequence[Scene]) -> list[str]:
+    """Return what to call the bodies of a page: what they are, unless that is the same of all.
+
+    Parameters
+    ----------
+    scenes : sequence of Scene
+        Of one page.
+
+    Returns
+    -------
+    list of str
+        Not escaped; one may still be twice.
+
+    Examples
+    --------
+    >>> ball = {"body": {"label": "Ball"}}
+    >>> names_of([Scene({**ball, "title": title}, {}) for title in ("Nudged", "Put down")])
+    ['Nudged', 'Put down']
+    """
+    labels = [str(scene.header["body"]["label"]) for scene in scenes]
+    if len(set(labels)) == len(labels):
+        return labels
+    return [str(scene.header["title"] or label) for scene, label in zip(scenes, labels, strict=True)]
+
+
 def summary_of(scenes: Sequence[Scene]) -> str:
     """Return who moves on what, for how long, and how it was computed.
 
@@ -31,7 +56,7 @@ def summary_of(scenes: Sequence[Scene]) -> str:
         Markup.
     """
     first = scenes[0].header
-    bodies = [escape(str(scene.header["body"]["label"])) for scene in scenes]
+    bodies = [escape(name) for name in names_of(scenes)]
     methods = dict.fromkeys(_METHODS.get(scene.header["method"], str(scene.header["method"])) for scene in scenes)
     told = [
         *(f'<span class="page-body page-body-{i}">{name}</span>' for i, name in enumerate(bodies, start=1)),
@@ -78,10 +103,9 @@ def findings_of(scenes: Sequence[Scene]) -> str:
     """
     named = len(scenes) > 1
     rows = []
-    for scene in scenes:
-        for finding in scene.header.get("findings") or []:
-            who = escape(str(scene.header["body"]["label"]))
-            rows.append(([who] if named else []) + _finding(finding))
+    for scene, name in zip(scenes, names_of(scenes), strict=True):
+        found = scene.header.get("findings") or []
+        rows += [([escape(name)] if named else []) + _finding(finding) for finding in found]
     if not rows:
         return ""
     heads = (["Body"] if named else []) + ["", "", "Predicted", "Measured", "Unit", "Apart by"]
@@ -102,15 +126,15 @@ def _finding(finding: dict[str, Any]) -> list[str]:
     ]
 
 
-def card_of(scene: Scene, *, named: bool) -> str:
+def card_of(scene: Scene, name: str = "") -> str:
     """Return a scene's verification card.
 
     Parameters
     ----------
     scene : Scene
         With a card or without.
-    named : bool
-        Whether to say whose it is.
+    name : str
+        Whose it is, where there are several.
 
     Returns
     -------
@@ -125,11 +149,11 @@ def card_of(scene: Scene, *, named: bool) -> str:
     state = "good" if card["passed"] else "bad"
     rows = [_figure(figure) for figure in card["figures"]]
     table = _table(["", "Check", "Value", "At most", "How"], rows, numbers=(2, 3))
-    who = f" of the {escape(str(scene.header['body']['label']))}" if named else ""
+    who = f": {escape(name)}" if name else ""
     head = f'<summary><h2>Verification{who}</h2> <strong class="page-{state}">{verdict}</strong></summary>'
     method = str(card["method"])
     told = f"<p>{escape(method[:1].upper() + method[1:])}.</p>"
-    return f"<details{' open' * (not named)}>{head}{told}{table}</details>"
+    return f"<details{' open' * (not name)}>{head}{told}{table}</details>"
 
 
 def _figure(figure: dict[str, Any]) -> list[str]:
@@ -147,15 +171,15 @@ def _figure(figure: dict[str, Any]) -> list[str]:
     ]
 
 
-def scenario_of(scene: Scene, *, named: bool) -> str:
+def scenario_of(scene: Scene, name: str = "") -> str:
     """Return the scenario that gives this motion again.
 
     Parameters
     ----------
     scene : Scene
         Whose scenario.
-    named : bool
-        Whether to say whose it is.
+    name : str
+        Whose it is, where there are several.
 
     Returns
     -------
@@ -165,7 +189,7 @@ def scenario_of(scene: Scene, *, named: bool) -> str:
     text = scene.header.get("scenario_toml")
     if not text:
         return ""
-    who = f" of the {escape(str(scene.header['body']['label']))}" if named else ""
+    who = f": {escape(name)}" if name else ""
     told = "<p>Saved as <code>my.toml</code>, it gives this motion again: <code>trundle run my.toml</code></p>"
     return f'<details><summary><h2>Scenario{who}</h2></summary>{told}<pre tabindex="0">{escape(text)}</pre></details>'
 
