@@ -1,6 +1,6 @@
 /** One body with all that belongs to it: its path, its guiding centre's path, its arrows. Kept from run to run. */
 import type { Object3D } from 'three'
-import { BodyArrows, type Scales } from './arrows'
+import { BodyArrows } from './arrows'
 import { BodyModel } from './bodies'
 import type { Frame, Show } from './contract'
 import { Line } from './lines'
@@ -20,11 +20,6 @@ export class Actor {
     this.body = new BodyModel(scene, order)
     this.arrows = new BodyArrows(this.body)
     root.add(this.body.group, this.arrows.group, this.trail.mesh, this.guide.mesh)
-  }
-
-  load(scene: Scene, scales: Scales, unit: number): void {
-    this.body.load(scene)
-    this.arrows.load(scales, unit)
   }
 
   /** Whether the run has a guiding centre. */

@@ -6,7 +6,7 @@ import { FrictionCone } from './cone'
 import type { Show } from './contract'
 import type { LabelLayer } from './labels'
 import { type ArrowScale, arrowScale, steadyNumber, typicalSize } from './quantities'
-import { materialVelocity, supportTwist, type Twist } from './riding'
+import { materialVelocity, supportTwist, type Twist, typicalRidingSpeed } from './riding'
 import type { Scene } from './scene'
 import type { Palette } from './theme'
 
@@ -32,8 +32,8 @@ export interface LegendRow {
 
 export type Scales = Record<ArrowKind, ArrowScale & { size: number }>
 
-/** Scales that all bodies of a comparison share; `length` is how long, m, a large arrow should be. */
-export function scalesOf(scenes: readonly Scene[], length: number): Scales {
+/** Scales that all bodies of a comparison share; `length` is how long, m, a large arrow should be; `riding`: who sees them. */
+export function scalesOf(scenes: readonly Scene[], length: number, riding: boolean): Scales {
   const largest = (of: (scene: Scene) => number) => Math.max(0, ...scenes.map(of))
   const force = Math.max(
     largest((s) => typicalSize(s.columns.contact_force)),
@@ -42,10 +42,7 @@ export function scalesOf(scenes: readonly Scene[], length: number): Scales {
   const made = (size: number, unit: string) => ({ ...arrowScale(size, unit, length), size })
   const forces = made(force, 'N')
   return {
-    velocity: made(
-      largest((s) => typicalSize(s.columns.velocity)),
-      'm/s',
-    ),
+    velocity: made(largest(riding ? typicalRidingSpeed : (s) => typicalSize(s.columns.velocity)), 'm/s'),
     angularVelocity: made(
       largest((s) => typicalSize(s.columns.angular_velocity)),
       'rad/s',

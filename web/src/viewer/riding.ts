@@ -1,6 +1,8 @@
 /** How the support moves, read off its poses: what somebody who rides on it does not see of a body's motion. */
 import { Quaternion, Vector3 } from 'three'
-import type { Track } from './track'
+import { typicalSize } from './quantities'
+import type { Scene } from './scene'
+import { Track } from './track'
 
 export interface Twist {
   /** Angular velocity, rad/s, and the velocity of the support's material at its origin, m/s, in the support frame. */
@@ -36,4 +38,24 @@ export function supportTwist(track: Track, time: number): Twist {
 /** The velocity of the support's material at a place of the support frame. */
 export function materialVelocity({ turning, drift, origin }: Twist, place: Vector3, out: Vector3): Vector3 {
   return out.copy(place).sub(origin).cross(turning).negate().add(drift)
+}
+
+const SOME = 200
+
+/** A typical large speed of a body as somebody sees it who rides on the support, m/s. */
+export function typicalRidingSpeed(scene: Scene): number {
+  if (!scene.columns.velocity) return 0
+  const track = new Track(scene)
+  const found = new Float32Array(3 * SOME)
+  const place = new Vector3()
+  const velocity = new Vector3()
+  const material = new Vector3()
+  for (let i = 0; i < SOME; i++) {
+    const time = track.begin + ((track.end - track.begin) * i) / (SOME - 1)
+    const twist = supportTwist(track, time)
+    track.position(place)
+    track.vector('velocity', velocity)
+    velocity.sub(materialVelocity(twist, place, material)).toArray(found, 3 * i)
+  }
+  return typicalSize(found)
 }

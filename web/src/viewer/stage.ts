@@ -26,6 +26,8 @@ export class Stage {
   readonly space = new Group()
   /** Of the support frame. */
   readonly root = new Group()
+  /** Whether somebody has moved the camera since it was placed. */
+  moved = false
   width = 1
   height = 1
   private sharpness = 1
@@ -45,6 +47,9 @@ export class Stage {
     this.orbit.minDistance = 0.05
     this.orbit.maxDistance = 30
     this.orbit.addEventListener('change', changed)
+    this.orbit.addEventListener('start', () => {
+      this.moved = true
+    })
     this.space.add(this.root)
     this.scene.add(this.backdrop.mesh, this.space, this.sky, this.key, this.key.target, this.fill, this.fill.target)
     this.setUpShadow()
@@ -95,6 +100,7 @@ export class Stage {
     this.orbit.target.copy(fit.target)
     this.camera.position.copy(fit.eye)
     this.orbit.update()
+    this.moved = false
   }
 
   /** Put the light over a place of the shown frame (scaled). */

@@ -85,7 +85,16 @@ export function watchTheme(theme: Theme, changed: (theme: 'light' | 'dark') => v
   return () => query.removeEventListener('change', tell)
 }
 
-/** CSS pixels. */
-export function widthsOf(projector: boolean): { trail: number; rim: number; guide: number; sketch: number } {
-  return projector ? { trail: 6.5, rim: 3, guide: 3.5, sketch: 6 } : { trail: 3.6, rim: 1.6, guide: 2, sketch: 3.6 }
+export interface Widths {
+  trail: number
+  rim: number
+  guide: number
+  sketch: number
+}
+
+/** CSS pixels; they grow with the page's type, as on a very large screen. */
+export function widthsOf(projector: boolean, page: Element): Widths {
+  const grown = Number.parseFloat(getComputedStyle(page).fontSize) / 16 || 1
+  const [trail, rim, guide, sketch] = projector ? [5, 2.4, 3, 5] : [3.6, 1.6, 2, 3.6]
+  return { trail: trail * grown, rim: rim * grown, guide: guide * grown, sketch: sketch * grown }
 }

@@ -51,6 +51,7 @@ class StageViewer implements Viewer {
   private shownFrame: Frame
   private followed = false
   private placed = false
+  private fromTop = false
   private readonly place = new Vector3()
 
   constructor(
@@ -83,6 +84,7 @@ class StageViewer implements Viewer {
     this.large = options.projector ?? false
     this.theme = options.theme ?? 'auto'
     this.watcher = this.watchSize()
+    this.resize()
     this.listen()
     this.controls?.refresh()
   }
@@ -287,7 +289,7 @@ class StageViewer implements Viewer {
     this.root.dataset.theme = this.drawnTheme
     this.root.toggleAttribute('data-projector', this.large)
     this.stage?.look(palette)
-    this.world?.look(palette, widthsOf(this.large))
+    this.world?.look(palette, widthsOf(this.large, document.documentElement))
     this.tools?.look(palette)
     this.invalidate()
   }
@@ -310,6 +312,7 @@ class StageViewer implements Viewer {
   private aim(top: boolean): void {
     this.world?.update(this.time, this.live, this.labels, false)
     this.world?.resetCamera(top)
+    this.fromTop = top
     this.placed = true
     this.invalidate()
   }
@@ -340,11 +343,10 @@ class StageViewer implements Viewer {
   private resize(): void {
     const { clientWidth, clientHeight } = this.frameElement
     if (!this.stage || !clientWidth || !clientHeight) return
-    const before = this.stage.camera.aspect
     this.stage.resize(clientWidth, clientHeight)
+    this.world?.look(paletteOf(this.drawnTheme), widthsOf(this.large, document.documentElement))
     this.world?.resize()
-    // A stage that was not laid out yet, or has turned from broad to tall, is framed anew.
-    if (this.scenes.length && Math.abs(Math.log(before / this.stage.camera.aspect)) > 0.25) this.aim(false)
+    if (this.scenes.length && !this.stage.moved) this.aim(this.fromTop)
     this.draw() // now: a resized canvas is blank until drawn
   }
 

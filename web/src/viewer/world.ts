@@ -12,7 +12,7 @@ import { contactNormal } from './normals'
 import type { Scene } from './scene'
 import type { Stage } from './stage'
 import { MOST_TOUCHES, SupportModel } from './support'
-import type { Palette } from './theme'
+import type { Palette, Widths } from './theme'
 import { fadingTime } from './trail'
 
 const THICK = 0.0085 // radius of an arrow's shaft, of what is shown
@@ -35,7 +35,7 @@ export class World {
   private readonly normal = new Vector3()
   private readonly before = new Vector3()
   private palette!: Palette
-  private widths!: { trail: number; rim: number; guide: number; sketch: number }
+  private widths!: Widths
 
   constructor(private readonly stage: Stage) {
     stage.space.add(this.axes.group, this.sketch.line.mesh)
@@ -63,11 +63,10 @@ export class World {
     this.rescale(scenes, keepScale)
     this.support ??= new SupportModel(this.stage.root)
     this.support.load(scenes)
-    const scales = scalesOf(scenes, 0.5 * this.unit)
-    this.scales = keepScale ? steadyScales(this.scales, scales) : scales
+    if (!keepScale) this.scales = null
     scenes.forEach((scene, i) => {
       this.actors[i] ??= new Actor(scene, i, this.stage.root)
-      this.actors[i]!.load(scene, this.scales!, this.unit)
+      this.actors[i]!.body.load(scene)
     })
     this.fields?.dispose()
     this.fields = new Fields(first, 0.45 * this.unit)
@@ -85,7 +84,7 @@ export class World {
     if (!keepScale || ratio > 4 || ratio < 0.25) this.stage.space.scale.setScalar(scale)
   }
 
-  look(palette: Palette, widths: { trail: number; rim: number; guide: number; sketch: number }): void {
+  look(palette: Palette, widths: Widths): void {
     this.palette = palette
     this.widths = widths
     this.axes.look(palette)
@@ -189,8 +188,11 @@ export class World {
   private layPaths(): void {
     const riding = this.frame === 'corotating'
     const known = this.pathFrame !== null && (this.pathFrame === 'corotating') === riding
+    if (this.pathFrame !== null && !known) this.scales = null // another observer sees other speeds
     this.pathFrame = this.frame
     if (known) return
+    this.scales = steadyScales(this.scales, scalesOf(this.scenes, 0.5 * this.unit, riding))
+    for (const { arrows } of this.actors) arrows.load(this.scales, this.unit)
     for (const actor of this.actors) actor.layPaths(this.frame, riding ? this.stage.space : this.stage.root)
   }
 
