@@ -244,7 +244,6 @@ class StageViewer implements Viewer {
   get show(): Show {
     return this.live
   }
-
   set show(part: Partial<Show>) {
     Object.assign(this.live, part)
   }
@@ -258,7 +257,6 @@ class StageViewer implements Viewer {
   get tool(): Tool {
     return this.tools?.tool ?? 'orbit'
   }
-
   set tool(tool: Tool) {
     if (this.tools) this.tools.tool = tool
     this.canvas.dataset.tool = tool
