@@ -10,13 +10,14 @@ AXE = Path(__file__).parents[2] / "web" / "node_modules" / "axe-core" / "axe.min
 GRAVE = ("serious", "critical")
 
 
-def violations(page: Page) -> list[str]:
-    """Return what is of serious or critical level, each with the first places where it is."""
+def violations(page: Page, part: str = "body") -> list[str]:
+    """Return what is of serious or critical level in a part of the page, each with the first places where it is."""
     if not AXE.is_file():
         raise FileNotFoundError("axe-core is not there: run `python web/build.py test`, as `make test` does first")
     # By the debugger, which the page's policy against foreign scripts does not bind.
-    page.evaluate(AXE.read_text(encoding="utf-8"))
-    found = page.evaluate("axe.run(document, {resultTypes: ['violations']})")
+    if not page.evaluate("'axe' in window"):
+        page.evaluate(AXE.read_text(encoding="utf-8"))
+    found = page.evaluate("part => axe.run(part, {resultTypes: ['violations']})", part)
     return [
         f"{one['impact']}: {one['help']} ({one['id']}): "
         + "; ".join(

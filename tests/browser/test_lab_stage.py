@@ -9,6 +9,7 @@ from playwright.sync_api import expect
 import trundle as tr
 
 from .bench import Bench, eventually
+from .launching import SMALL
 from .visiting import Visitor
 
 NAME = "level-turntable-nudged"
@@ -21,6 +22,8 @@ def bench(visitor: Visitor) -> Bench:
     shown.stage.canvas.focus()
     shown.page.keyboard.press("Home")
     shown.page.keyboard.press("t")
+    shown.page.get_by_role("button", name="Path", exact=True).click()  # it has the ball's colour
+    shown.page.wait_for_timeout(200)
     return shown
 
 
@@ -134,18 +137,14 @@ def alike(bench: Bench, picture: np.ndarray) -> None:
     assert share(bench, picture) < 0.001
 
 
-def test_each_frame_tells_the_place_as_the_package_does(bench: Bench) -> None:
-    run = tr.Scenario.load(NAME).run()
-    page = bench.page
-    page.keyboard.press("End")
-    for name, frame in (("Support", "support"), ("World", "world"), ("Corotating", "corotating")):
-        choose_frame(bench, name)
-        last = run.in_frame(frame).data.position.values[-1]
-        eventually(page, lambda last=last: stands_at(bench, last))
-
-
-def choose_frame(bench: Bench, name: str) -> None:
-    raise NotImplementedError(name)
+@pytest.mark.parametrize(("name", "frame"), [("Table", "support"), ("Riding", "corotating"), ("World", "world")])
+def test_each_frame_shows_the_place_as_the_package_does(name: str, frame: str, visitor: Visitor) -> None:
+    bench = Bench(visitor.open("#/bench?name=tilted-turntable-put-down", size=SMALL))
+    last = tr.Scenario.load("tilted-turntable-put-down").run().in_frame(frame).data.position.values[-1]
+    bench.page.get_by_role("button", name=name, exact=True).click()
+    bench.page.keyboard.press("End")
+    eventually(bench.page, lambda: stands_at(bench, last))
+    assert bench.stage.drawn().frame == frame
 
 
 def stands_at(bench: Bench, place: np.ndarray) -> None:
