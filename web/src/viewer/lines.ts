@@ -20,6 +20,7 @@ attribute vec4 to;
 uniform vec2 resolution;
 uniform float width;
 uniform float now;
+uniform float fading;
 varying float vTime;
 varying vec2 vPlace;
 varying float vLength;
@@ -30,8 +31,10 @@ void main() {
   float share = to.w > now ? (now - from.w) / max(to.w - from.w, 1e-12) : 1.0;
   vec4 mp = modelViewMatrix * vec4(from.xyz, 1.0);
   vec4 mq = modelViewMatrix * vec4(mix(from.xyz, to.xyz, share), 1.0);
-  mp.xyz *= 0.997; // towards the eye, off the surface that it lies on
-  mq.xyz *= 0.997;
+  // Towards the eye, off the surface that it lies on; what is new lies over what is old.
+  float lift = 0.9975 - (fading > 0.0 ? 0.001 * exp((from.w - now) / fading) : 0.0);
+  mp.xyz *= lift;
+  mq.xyz *= lift;
   vec4 p = projectionMatrix * mp;
   vec4 q = projectionMatrix * mq;
   const float NEAR = 0.001;
