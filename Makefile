@@ -24,6 +24,7 @@ help:
 
 demo: .venv/installed
 	$(PLAIN) $(BIN)/trundle run tilted-turntable -o demo
+	@echo 'To spin the table yourself, open the lab: $(BIN)/trundle lab'
 
 # The web part first: it fetches what the browser tests put into a page to judge it.
 test: .venv/installed-test
