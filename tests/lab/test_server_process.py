@@ -95,34 +95,35 @@ def test_it_answers_and_ends_with_all_its_processes(number: signal.Signals) -> N
         assert lab.ask("/api/simulate", {"scenario": shipped("tilted-turntable")})[1].startswith(b"TRUNDLE1")
         assert len(lab.family()) > 3
         os.killpg(lab.process.pid, number)  # as a terminal does
-        told, _ = lab.process.communicate(timeout=20)
-        assert lab.gone(5)
-        if number == signal.SIGINT:
-            assert lab.process.returncode == 0
-            assert told.strip() == "The lab has ended."
+        told, _ = lab.process.communicate(timeout=60)
+        assert lab.gone(20)
+        assert lab.process.returncode == 0
+        assert told.endswith("The lab has ended.\n")
 
 
-def test_ctrl_c_at_once_ends_it_too() -> None:
+def test_ctrl_c_at_once_and_again_ends_it_too() -> None:
     with running("--no-open", "--port", "0") as lab:
-        os.killpg(lab.process.pid, signal.SIGINT)
-        told, _ = lab.process.communicate(timeout=20)
+        for _ in range(3):
+            os.killpg(lab.process.pid, signal.SIGINT)
+            time.sleep(0.05)
+        told, _ = lab.process.communicate(timeout=60)
         assert "Traceback" not in told
-        assert lab.gone(5)
+        assert lab.gone(20)
 
 
 def test_killed_outright_it_leaves_no_process() -> None:
     with running("--no-open", "--port", "0") as lab:
-        assert lab.ask("/api/scenarios/tilted-turntable")[0] == 200
+        assert lab.ask("/api/simulate", {"scenario": shipped("tilted-turntable")})[0] == 200
         lab.process.kill()
-        assert lab.gone(10)
+        assert lab.gone(30)
 
 
 def test_a_long_computation_ends_when_its_client_goes() -> None:
     long = shipped("rattleback")
     long["run"] |= {"duration": "3600 s", "every": "0.02 s", "method": "runge-kutta"}
     with running("--no-open", "--port", "0") as lab:
-        lab.ask("/api/scenarios/tilted-turntable")
-        lab.ask("/api/scenarios")  # both lanes are there
+        lab.ask("/api/simulate", {"scenario": shipped("tilted-turntable")})
+        lab.ask("/api/card", {"scenario": shipped("roll-x-then-y")})  # both lanes are there
         before = lab.family()
         with socket.create_connection(("127.0.0.1", lab.port)) as asker:
             body = json.dumps({"scenario": long}).encode()
@@ -130,7 +131,7 @@ def test_a_long_computation_ends_when_its_client_goes() -> None:
             asker.sendall(f"{head}Content-Length: {len(body)}\r\n\r\n".encode() + body)
             time.sleep(0.7)
             assert before <= lab.family()
-        assert within(6, lambda: not before <= lab.family())  # its grace, then it is killed
+        assert within(20, lambda: not before <= lab.family())  # its grace, then it is killed
         assert lab.ask("/api/simulate", {"scenario": shipped("tilted-turntable")})[0] == 200
 
 

@@ -81,7 +81,7 @@ def _reading(app: FastAPI, lab: Lab) -> None:
 
     @app.get("/api/scenarios/{name}", **described("One of them, as TOML and as JSON.", 404))
     async def scenario(request: Request, name: str) -> Response:
-        return await lab.answer(request, lab.quick, answers.text_of, name)
+        return await lab.at_once(request, answers.text_of, name)
 
     @app.get("/api/schema", **described("The JSON schema of scenario files."))
     async def schema(request: Request) -> Response:

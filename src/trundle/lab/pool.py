@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import multiprocessing
+import signal
 import threading
 from collections.abc import Callable
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
+from multiprocessing import forkserver, resource_tracker
+from multiprocessing.process import BaseProcess
 from typing import TYPE_CHECKING, Any
 
 from pebble import ProcessExpired, ProcessPool
@@ -53,21 +56,22 @@ class Lane:
         self._running: set[asyncio.Task[Any]] = set()
         self._lock = threading.Lock()
         self._pool: ProcessPool | None = None
+        self._context: Any = None
 
     def start(self) -> None:
         """Start the processes; returns when they are there, which takes a second or two."""
         with self._lock:
             if self._pool is None or not self._pool.active:
-                broken, self._pool = self._pool, _new_pool(self.workers, self.niceness)
-                if broken is not None:
-                    threading.Thread(target=_end, args=(broken,), daemon=True).start()
+                if self._pool is not None:
+                    threading.Thread(target=_end, args=(self._pool, self._context), daemon=True).start()
+                self._pool, self._context = _new_pool(self.workers, self.niceness)
 
     def stop(self) -> None:
         """End the processes, whatever they do."""
         with self._lock:
             pool, self._pool = self._pool, None
         if pool is not None:
-            _end(pool)
+            _end(pool, self._context)
 
     async def run(self, request: Request | None, function: Callable[..., Any], *arguments: Any) -> Any:
         """Compute something in a process of the lane.
@@ -167,23 +171,49 @@ async def _left(request: Request) -> None:
         pass
 
 
-def _new_pool(workers: int, niceness: int) -> ProcessPool:
-    """Start processes that are warm: copies of one that has imported everything, where there are such copies."""
-    kinds = multiprocessing.get_all_start_methods()
-    context = multiprocessing.get_context("forkserver" if "forkserver" in kinds else "spawn")
-    if "forkserver" in kinds:
-        context.set_forkserver_preload([PRELOADED])
+class _Context:
+    """How processes are made: as copies of one that has imported everything, where there are such copies."""
+
+    def __init__(self) -> None:
+        copies = "forkserver" in multiprocessing.get_all_start_methods()
+        self._context = multiprocessing.get_context("forkserver" if copies else "spawn")
+        self.made: list[BaseProcess] = []
+        if copies:
+            self._context.set_forkserver_preload([PRELOADED])
+            resource_tracker.ensure_running()
+            before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # Ctrl-C is the server's to hear
+            try:
+                forkserver.ensure_running()
+            finally:
+                signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._context, name)
+
+    def Process(self, *arguments: Any, **named: Any) -> BaseProcess:
+        """Make a process, and remember it while it lives."""
+        made: BaseProcess = self._context.Process(*arguments, **named)  # type: ignore[attr-defined]
+        self.made = [*(process for process in self.made if process.is_alive()), made]
+        return made
+
+
+def _new_pool(workers: int, niceness: int) -> tuple[ProcessPool, _Context]:
     from .warm import begin_worker
 
+    context: Any = _Context()
     pool = ProcessPool(
         workers, max_tasks=TASKS_OF_A_PROCESS, initializer=begin_worker, initargs=(niceness,), context=context
     )
     if not pool.active:  # asking starts it
         raise RuntimeError("no process could be started")
-    return pool
+    return pool, context
 
 
-def _end(pool: ProcessPool) -> None:
+def _end(pool: ProcessPool, context: _Context) -> None:
+    """End a pool; its processes first, since one that is still starting would complain that the pool has gone."""
     with suppress(RuntimeError):
         pool.stop()
+        for process in context.made:
+            with suppress(OSError, ValueError, AttributeError):
+                process.kill()
         pool.join()

@@ -43,9 +43,8 @@ class Lab:
 
     async def start(self) -> None:
         """Start the workers, and prepare what every page asks for first."""
-        for lane in (self.slow, self.quick):
-            await asyncio.to_thread(lane.start)
-        await self.prepare(answers.catalogue)
+        await asyncio.to_thread(self.quick.start)
+        await asyncio.gather(self.prepare(answers.catalogue), asyncio.to_thread(self.slow.start))
 
     async def stop(self) -> None:
         """End the workers, whatever they do."""
@@ -88,6 +87,25 @@ class Lab:
             found = await self._computed(key, request, lane, function, (*arguments, *unkept))
         return _response(found, tag, request)
 
+    async def at_once(self, request: Request, function: Callable[..., Answer | Refusal], *arguments: Any) -> Response:
+        """Answer as `answer` does, in a thread of this process: for what only reads a file of the package's own.
+
+        Parameters
+        ----------
+        request, function, *arguments
+            As for `answer`.
+
+        Returns
+        -------
+        Response
+            As of `answer`; it waits for no worker.
+        """
+        found = await asyncio.to_thread(function, *arguments)
+        if isinstance(found, Refusal):
+            raise RefusedError(found)
+        self.cache.put(key_of(function.__name__, *arguments), found)
+        return await self.answer(request, self.quick, function, *arguments)
+
     async def shared(self, request: Request, function: Callable[..., Answer | Refusal], *arguments: Any) -> Response:
         """Answer as `answer` does, by a computation that all who ask meanwhile wait for, and that none of them ends.
 
@@ -104,10 +122,10 @@ class Lab:
         key = key_of(function.__name__, *arguments)
         if self.cache.get(key) is None:
             await self.prepare(function, *arguments)
-        return await self.answer(request, self.slow, function, *arguments)
+        return await self.answer(request, self.quick, function, *arguments)
 
     async def prepare(self, function: Callable[..., Answer | Refusal], *arguments: Any) -> None:
-        """Compute what will be asked for, once, on the slow lane.
+        """Compute what will be asked for, once.
 
         Parameters
         ----------
@@ -116,7 +134,7 @@ class Lab:
         """
         key = key_of(function.__name__, *arguments)
         if key not in self._coming:
-            work = asyncio.create_task(self._computed(key, None, self.slow, function, arguments))
+            work = asyncio.create_task(self._computed(key, None, self.quick, function, arguments))
             self._coming[key] = work
             work.add_done_callback(partial(self._came, key))
         await asyncio.wait({self._coming[key]})
