@@ -27,6 +27,7 @@ SHOWN = (
     "frictionCone",
     "guidingCentre",
     "trail",
+    "ahead",
     "axes",
 )
 

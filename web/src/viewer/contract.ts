@@ -13,6 +13,8 @@ export interface Show {
   frictionCone: boolean
   guidingCentre: boolean
   trail: boolean
+  /** The rest of the path, that is still to come, thin and pale: for a film that stands still. */
+  ahead: boolean
   axes: boolean
 }
 

@@ -9,6 +9,7 @@ const SHOWN: Show = {
   frictionCone: false,
   guidingCentre: false,
   trail: true,
+  ahead: false,
   axes: false,
 }
 

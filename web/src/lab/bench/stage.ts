@@ -8,7 +8,6 @@ import { type IconName, icon } from '../icons'
 import { formula } from '../math'
 import { show } from '../quantity'
 import type { Scenario } from '../scenario'
-import { pathOf } from './ahead'
 import { headline } from './findings'
 import { instantAt } from './instant'
 import { clockMatters, nudged, placed, thrown, whyNotDragged, whyNotNudged } from './placing'
@@ -137,12 +136,11 @@ export function createStage(app: App): Stage {
     app.toast(`Nudged at ${show(when, 3)} s by ${show(Math.hypot(vx, vy), 2)} m/s: this is the new start.${clock}`)
   }
 
-  /** While it stands still the whole path is there, dashed; while it runs the ball draws it. */
+  /** While it stands still the whole path is there; while it runs the ball draws it. */
   function drawAhead(): void {
-    const still = !viewer.playing
-    viewer.setSketch(scene && still ? pathOf(scene, viewer.frame) : null, '', viewer.frame)
+    viewer.show.ahead = !viewer.playing
   }
-  undo.add(viewer.on('play', drawAhead), viewer.on('pause', drawAhead), viewer.on('frame', drawAhead))
+  undo.add(viewer.on('play', drawAhead), viewer.on('pause', drawAhead))
 
   function drawHeadline(of: Scene): void {
     const found = headline(of)
