@@ -32,9 +32,15 @@ export function formula(latex: string, display = false): HTMLElement {
 
 /** A formula wider than its place can be scrolled, so it must be reached by keyboard. */
 function watch(element: HTMLElement): void {
-  if (typeof ResizeObserver !== 'function') return
-  new ResizeObserver(() => {
-    if (element.scrollWidth > element.clientWidth) element.tabIndex = 0
-    else element.removeAttribute('tabindex')
-  }).observe(element)
+  if (typeof ResizeObserver === 'function') new ResizeObserver(() => reachable(element)).observe(element)
 }
+
+function reachable(element: HTMLElement): void {
+  if (element.scrollWidth > element.clientWidth) element.tabIndex = 0
+  else element.removeAttribute('tabindex')
+}
+
+// A font that comes late widens what is inside, and not the box that is watched.
+document.fonts?.addEventListener('loadingdone', () => {
+  for (const element of document.querySelectorAll<HTMLElement>('.math-block')) reachable(element)
+})

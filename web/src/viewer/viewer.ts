@@ -122,9 +122,9 @@ class StageViewer implements Viewer {
   private key(event: KeyboardEvent): void {
     if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return
     const target = event.target as HTMLElement
-    const own = target !== this.canvas
-    // Buttons, sliders and lists have keys of their own.
-    if (own && /^( |Enter|Arrow.*|Home|End)$/.test(event.key)) return
+    // Buttons have keys of their own; sliders and lists have more.
+    const own = target.matches('input, select, textarea') ? /^( |Enter|Arrow.*|Home|End)$/ : /^( |Enter)$/
+    if (target !== this.canvas && own.test(event.key)) return
     const ends = { begin: this.player.begin, nextFrame: () => this.nextFrame() }
     if (pressed(this, event.key, event.shiftKey, ends)) event.preventDefault()
   }
