@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import tomllib
 
 import numpy as np
@@ -183,6 +184,7 @@ def test_what_is_seen_on_the_tour_is_taken_to_the_bench(visitor: Visitor) -> Non
     step(page, 4)
     page.get_by_test_id("table-rate").fill("45")
     page.get_by_test_id("make-it-yours").click()
+    page.wait_for_url(re.compile(r"#/bench\?"))
     bench = Bench(page)
     assert tr.Scenario.read(bench.scenario()).system().support.motion.rate == pytest.approx(1.5 * math.pi)
     eventually(page, lambda: found(bench, 2 / 7 * 1.5 * math.pi))
