@@ -37,6 +37,7 @@ def judge(page: Page, part: str = "body", sizes: tuple[dict, ...] = (LAPTOP, PHO
         for scheme in ("light", "dark"):
             page.emulate_media(color_scheme=scheme, reduced_motion="reduce")  # type: ignore[arg-type]
             page.wait_for_timeout(250)  # colours change by and by
+            page.evaluate("new Promise(drawn => requestAnimationFrame(() => requestAnimationFrame(drawn)))")
             found += [f"{scheme}, {size['width']} wide: {one}" for one in violations(page, part)]
         wide = page.evaluate("document.documentElement.scrollWidth - innerWidth")
         if wide > 0:

@@ -32,6 +32,7 @@ export function formula(latex: string, display = false): HTMLElement {
 
 /** A formula wider than its place can be scrolled, so it must be reached by keyboard. */
 function watch(element: HTMLElement): void {
+  queueMicrotask(() => reachable(element)) // by then it stands in the page
   if (typeof ResizeObserver === 'function') new ResizeObserver(() => reachable(element)).observe(element)
 }
 
