@@ -267,3 +267,9 @@ def test_a_ball_with_three_moments():
     rows = found(simulated(tr.Support(tr.Plane()), start, body))
     for name in ("Time of one nutation", "Speed from one nutation to the next"):
         assert rows[name]["measured"] == pytest.approx(rows[name]["predicted"], rel=1e-4)
+
+
+def test_an_integral_that_is_nothing_by_chance_is_off_by_nothing():
+    half = tr.RollingSystem(tr.Body.hemisphere(radius=0.05, mass=0.25), tr.Support(tr.Plane()))
+    start = half.place(attitude=(math.radians(-90.0), math.radians(60.0), 0.0))  # JΩ·ρ = 0, of terms that all vanish
+    assert found(tr.simulate(half, start, 2.0, 0.01))["Integral of Jellett"]["difference"] < 1e-12

@@ -165,19 +165,15 @@ def _finding(
 
 
 def _formula(rolled: RolledPath) -> dict[str, str] | None:
+    from ..scene.formulas import decimal
+
     area, small = rolled.enclosed_area, rolled.small_loop_angle
     if area is None or small is None:
         return None
-    numbers = rf"\psi \approx -\frac{{{_latex(area)}\,\mathrm{{m^2}}}}{{({_latex(rolled.radius)}\,\mathrm{{m}})^2}}"
+    numbers = rf"\psi \approx -\frac{{{decimal(area)}\,\mathrm{{m^2}}}}{{({decimal(rolled.radius)}\,\mathrm{{m}})^2}}"
     return {
         "name": "Turn about the normal by a small loop",
         "source": "G4",
         "latex": r"\psi \approx -\frac{A}{a^2}",
-        "numbers_latex": rf"{numbers} = {_latex(small)}\,\mathrm{{rad}}",
+        "numbers_latex": rf"{numbers} = {decimal(small)}\,\mathrm{{rad}}",
     }
-
-
-def _latex(value: float) -> str:
-    """Return a number to four digits, its power of ten written out."""
-    mantissa, _, power = f"{value:.4g}".partition("e")
-    return rf"{mantissa}\times 10^{{{int(power)}}}" if power else mantissa

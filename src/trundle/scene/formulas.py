@@ -93,10 +93,29 @@ def number(value: Any, digits: int = 4) -> str:
     if ratio and value:
         sign, above, below = ratio.groups()
         return rf"{sign}\tfrac{{{above}}}{{{below}}}"
-    return _decimal(value, digits)
+    return decimal(value, digits)
 
 
-def _decimal(value: Any, digits: int = 4) -> str:
+def decimal(value: Any, digits: int = 4) -> str:
+    r"""Write a number in LaTeX, never as a fraction.
+
+    Parameters
+    ----------
+    value : float
+        The number.
+    digits : int
+        That are shown.
+
+    Returns
+    -------
+    str
+        Its power of ten written out.
+
+    Examples
+    --------
+    >>> decimal(0.4), decimal(-1.5e-7)
+    ('0.4', '-1.5\\times 10^{-7}')
+    """
     text = f"{float(value) + 0.0:.{digits}g}"
     mantissa, _, power = text.partition("e")
     return rf"{mantissa}\times 10^{{{int(power)}}}" if power else mantissa
@@ -123,8 +142,8 @@ def quantity(value: Any, unit: str) -> str:
     ('0.25\\,\\mathrm{m/s^2}', '3^\\circ')
     """
     if unit == "deg":
-        return rf"{_decimal(value)}^\circ"
-    return rf"{_decimal(value)}\,\mathrm{{{unit}}}"
+        return rf"{decimal(value)}^\circ"
+    return rf"{decimal(value)}\,\mathrm{{{unit}}}"
 
 
 def _stacked(lines: Any) -> str:
@@ -159,9 +178,9 @@ def _sphere_on_plane(form: SphereOnPlane, system: RollingSystem) -> Lines:
             lines.append(
                 (r"\dot V = \varphi - \gamma V", rf"|\varphi| = {quantity(abs(push), 'm/s^2')}" if push else "")
             )
-        heavy = rf"{_decimal(form.mass)}\cdot(1 + {number(k)})"
+        heavy = rf"{decimal(form.mass)}\cdot(1 + {number(k)})"
         found = (
-            rf"\gamma = \frac{{{_decimal(form.drag)}}}{{{heavy}}}\,\mathrm{{s^{{-1}}}} = {quantity(form.gamma, '1/s')}"
+            rf"\gamma = \frac{{{decimal(form.drag)}}}{{{heavy}}}\,\mathrm{{s^{{-1}}}} = {quantity(form.gamma, '1/s')}"
         )
         lines.append((r"\gamma = \frac{c}{m(1+k)}", found))
         if push:
@@ -174,7 +193,7 @@ def _sphere_on_plane(form: SphereOnPlane, system: RollingSystem) -> Lines:
         return [(r"\zeta = \zeta_0 + \dot\zeta_0\,t", rf"|\dot\zeta_0| = {quantity(speed, 'm/s')}")]
     if system.loads:
         formula = r"\dot V = \frac{F + K\times n/a}{m(1+k)}"
-        heavy = rf"{_decimal(form.mass)}\,\mathrm{{kg}}\cdot(1 + {number(k)})"
+        heavy = rf"{decimal(form.mass)}\,\mathrm{{kg}}\cdot(1 + {number(k)})"
         force = abs(push) * float(form.mass) * (1 + k)
         return [(formula, rf"|\dot V| = \frac{{{quantity(force, 'N')}}}{{{heavy}}} = {quantity(abs(push), 'm/s^2')}")]
     tilt = abs(math.degrees(float(system.support.tilt)))
@@ -243,8 +262,8 @@ def _pendulum(form: CylinderOnCylinder, system: RollingSystem) -> Lines:
     del system
     pull, heavy = math.hypot(*map(float, form.force)), float(form.mass) * (1 + float(form.inertia_ratio))
     square = pull / (heavy * float(form.length))
-    below = rf"{_decimal(form.mass)}\cdot(1 + {number(form.inertia_ratio)})\cdot {_decimal(form.length)}"
-    shown = rf"\nu^2 = \frac{{{_decimal(pull)}}}{{{below}}}\,\mathrm{{s^{{-2}}}} = {quantity(square, '1/s^2')}"
+    below = rf"{decimal(form.mass)}\cdot(1 + {number(form.inertia_ratio)})\cdot {decimal(form.length)}"
+    shown = rf"\nu^2 = \frac{{{decimal(pull)}}}{{{below}}}\,\mathrm{{s^{{-2}}}} = {quantity(square, '1/s^2')}"
     lines = [(r"\ddot\theta = -\nu^2\sin\theta,\quad \nu^2 = \frac{G}{m(1+k)\,\ell}", shown)]
     period = float(form.period)
     if math.isfinite(period):
@@ -257,7 +276,7 @@ def _pendulum(form: CylinderOnCylinder, system: RollingSystem) -> Lines:
 def _along(form: BallInLeaningCylinder, system: RollingSystem) -> Lines:
     q = math.sqrt(_share(form))
     formula = r"\dot z - iq\sigma = W_0\,e^{iq(\theta - \theta_0)} + \dots,\quad q = \sqrt{\frac{k}{1+k}}"
-    return [*_pendulum(form.pendulum, system), (formula, f"q = {_decimal(q)}")]
+    return [*_pendulum(form.pendulum, system), (formula, f"q = {decimal(q)}")]
 
 
 def _upright(form: BallInUprightCylinder, system: RollingSystem) -> Lines:
@@ -275,7 +294,7 @@ def _sphere(form: SphereOnSphere, system: RollingSystem) -> Lines:
     cosine = float(form.lift_cosine)
     formula = r"\cos\theta_l = \frac{2\cos\theta_0 + (1+k)\,\ell\dot\theta_0^2/g}{3+k}"
     angle = rf",\quad \theta_l = {quantity(math.degrees(math.acos(cosine)), 'deg')}" if abs(cosine) <= 1 else ""
-    return [(formula, rf"\cos\theta_l = {_decimal(cosine)}{angle}")]
+    return [(formula, rf"\cos\theta_l = {decimal(cosine)}{angle}")]
 
 
 def _slipping_dome(form: SphereOnSphere, friction: float) -> Lines:
@@ -283,7 +302,7 @@ def _slipping_dome(form: SphereOnSphere, friction: float) -> Lines:
     speed = float(form.mass) * float(form.length) * float(form.angular_rate) ** 2 / float(form.pull)
     slips = OffADome(k, friction, speed - 2 * (1 - above) / (1 + k)).slips_at
     formula = r"(3+k)\,\mu\cos\theta_s - k\sin\theta_s = \mu\,\big[2\cos\theta_0 + (1+k)\,\ell\dot\theta_0^2/g\big]"
-    return [(formula, rf"\mu = {_decimal(friction)},\quad \theta_s = {quantity(math.degrees(slips), 'deg')}")]
+    return [(formula, rf"\mu = {decimal(friction)},\quad \theta_s = {quantity(math.degrees(slips), 'deg')}")]
 
 
 def _sliding(form: SlidingSphere, system: RollingSystem) -> Lines:

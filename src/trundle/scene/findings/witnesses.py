@@ -55,14 +55,14 @@ def integrals(system: RollingSystem, start: State, samples: Samples) -> Iterator
     for integral in invariants_of(system, tuple(sorted(_NAMES[code] for code in phases))):
         if struck and not integral.through_changes:
             continue
-        first = integral.terms(system, at_start) if integral.name not in _SEVERAL else []
+        first, sizes = integral.sized_terms(system, at_start) if integral.name not in _SEVERAL else ([], [])
         if not first or any(isinstance(term, Vector) or np.ndim(term) for term in first):
             continue  # of several numbers no one can be shown
-        later = integral.terms(system, record)
-        values = [np.broadcast_to(np.asarray(term, dtype=float), some.time.shape) for term in later]
-        total, predicted = np.sum(values, axis=0), float(sum(first))
+        later, meanwhile = integral.sized_terms(system, record)
+        total = np.broadcast_to(np.asarray(sum(later), dtype=float), some.time.shape)
+        predicted = float(sum(first))
         worst = float(total[np.argmax(np.abs(total - predicted))])
-        size = max(float(np.max(np.abs(values))), *(abs(float(term)) for term in first))
+        size = max(float(np.max(np.abs(part))) for part in (*sizes, *meanwhile))
         name = integral.name[0].upper() + integral.name[1:]
         note = f"{integral.formula} stays the same: at the start, and where it is furthest from that"
         yield Finding(name, _SYMBOLS.get(integral.name, "I"), predicted, worst, integral.unit, note, size or None)
