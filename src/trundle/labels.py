@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -139,13 +140,18 @@ def attributes(title: str, method: str) -> dict[str, Any]:
     >>> attributes("A ball", "exact")["frame"]
     'support'
     """
-    from importlib.metadata import version
-
     packages = ["trundle", "numpy", *{"taylor": ["heyoka"], "runge-kutta": ["scipy"]}.get(method, [])]
     return {
         "title": title,
         "method": method,
         "tolerance": tolerance_of(method),
         "frame": "support",
-        "source": ", ".join(f"{package} {version(package)}" for package in packages),
+        "source": ", ".join(f"{package} {_version(package)}" for package in packages),
     }
+
+
+@cache  # looked up in the files of the installation
+def _version(package: str) -> str:
+    from importlib.metadata import version
+
+    return version(package)

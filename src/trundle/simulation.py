@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import Any
 
 from . import labels
@@ -93,9 +92,7 @@ def _described(system: RollingSystem, start: State, times: Any, method: str, tit
     length = float(times[-1] - start.time)
     step = float(times[1] - times[0]) if times.size > 2 else length
     try:
-        described = ScenarioFile.describe(
-            system, replace(start, time=0.0), duration=length, every=step, method=method, title=title
-        )
+        described = ScenarioFile.describe(system, start, duration=length, every=step, method=method, title=title)
     except ScenarioError:
         return title, ""
     return described.title, described.to_toml()
@@ -198,9 +195,10 @@ class Scenario(ScenarioFile):
         >>> tr.Scenario.load("tilted-turntable").run(duration=1.0, every=0.5).data.time.values.tolist()
         [0.0, 0.5, 1.0]
         """
+        system = self.system()
         return simulate(
-            self.system(),
-            self.start_state(),
+            system,
+            self._placed(system),
             float(self.timing.duration) if duration is None else duration,
             float(self.timing.every) if every is None else every,
             self.timing.method if method is None else method,

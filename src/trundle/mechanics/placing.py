@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InvalidValueError, did_you_mean
@@ -39,25 +40,27 @@ class Placing:
     roll: Any
     attitude: Any
     height: Any
+    time: Any
+    support: Any
 
     def state(self) -> State:
         """Return the start, checked."""
         from .system import State
 
         system, surface = self.system, self.system.support.surface
-        check_finite(system, 0.0, 0.0)
-        own = system.support.motion.own_start()
-        begin = system.support.motion.at(0.0, *own)
+        time, own = self._now, self._own
+        check_finite(system, time, time)
+        begin = system.support.motion.at(time, *own)
         u, v = (
             checks.real(part, kind, f"position[{i}]")
             for i, (part, kind) in enumerate(zip(_pair(self.position, "position"), surface.coordinates, strict=True))
         )
         gap = checks.non_negative(self.height, "length", "height")
         fitting.check_place(surface, u, v, self.position)
-        q = self._orientation(begin, begin.carried(surface.point(u, v)), own)
-        contact = self._contact(begin.carried(surface.point(u, v)), q, own)
+        q = self._orientation(begin, begin.carried(surface.point(u, v)))
+        contact = self._contact(begin.carried(surface.point(u, v)), q)
         offset = begin.rotation.transpose @ contact.offset
-        contact = self._contact(begin.carried(surface.under(u, v, offset)), q, own)
+        contact = self._contact(begin.carried(surface.under(u, v, offset)), q)
         system.check_rim(contact, self.position)
         fitting.check_start(system, contact, q, self.position)
         turning = self._given_turning(contact, gap)
@@ -65,14 +68,31 @@ class Placing:
         Omega = self._following_turning(contact, V) if turning is None else turning
         self._check_no_slip(contact, V, Omega, gap)
         centre = contact.centre + contact.normal * gap
-        start = State(_triple(centre), _triple(V), _triple(Omega), tuple(q), support=tuple(map(float, own)))
+        start = State(_triple(centre), _triple(V), _triple(Omega), tuple(q), time, tuple(map(float, own)))
         straight.check_start(system, start)
         return start
 
-    def _contact(self, point: Vector, q: Quaternion, own: tuple[Scalar, ...]) -> Contact:
+    @cached_property
+    def _now(self) -> float:
+        return checks.real(self.time, "time", "time") + 0.0
+
+    @cached_property
+    def _own(self) -> tuple[Scalar, ...]:
+        """Return the coordinates of the support's own motion, as given or as the motion itself starts."""
+        motion = self.system.support.motion
+        if self.support is None:
+            return motion.own_start()
+        given = None if isinstance(self.support, (str, bytes)) or not hasattr(self.support, "__len__") else self.support
+        if given is None or len(given) != len(motion.own):
+            asked = ", ".join(motion.own) or "nothing: this support's motion is a function of the time alone"
+            raise InvalidValueError("support", f"must hold {asked}", self.support, "Leave it out, or give each.")
+        kinds = zip(given, motion.own_kinds, strict=True)
+        return tuple(checks.real(part, kind, f"support[{i}]") for i, (part, kind) in enumerate(kinds))
+
+    def _contact(self, point: Vector, q: Quaternion) -> Contact:
         """Return the contact there, or say that the body would touch on a side that its shape does not cover."""
         try:
-            contact = touch(self.system, 0.0, point, q, own)
+            contact = touch(self.system, self._now, point, q, self._own)
             covered = self.system.body.shape.covers(-(q.matrix().transpose @ contact.normal))
         except (ArithmeticError, ValueError):
             covered = 0.0
@@ -87,7 +107,7 @@ class Placing:
             "has `attitude` (heading, 90°, turn).",
         ) from None
 
-    def _orientation(self, begin: SupportState, point: Vector, own: tuple[Scalar, ...]) -> Quaternion:
+    def _orientation(self, begin: SupportState, point: Vector) -> Quaternion:
         """Return q from `orientation`, from `attitude`, or as a cylinder is laid down."""
         laid = self.system.body.shape.axis is not None and self.orientation is None and self.attitude is None
         if not laid and not is_zero(self.roll):
@@ -108,7 +128,9 @@ class Placing:
         if not laid:
             return q
         turned = checks.real(self.roll, "angle", "roll")
-        return straight.facing(touch(self.system, 0.0, point, q, own), begin, surface, self.velocity, turned)
+        return straight.facing(
+            touch(self.system, self._now, point, q, self._own), begin, surface, self.velocity, turned
+        )
 
     def _velocity(self, contact: Contact, there: Vector, gap: float, turning: Vector | None) -> Vector:
         """Return V from its components along the surface; one along n that is not given follows from the contact."""

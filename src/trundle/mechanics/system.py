@@ -196,6 +196,8 @@ class RollingSystem:
         roll: Any = 0.0,
         attitude: Any = None,
         height: Any = 0.0,
+        time: Any = 0.0,
+        support: Any = None,
     ) -> State:
         """Put the body down so that it rolls from the first instant; or so that it slips, or falls.
 
@@ -222,6 +224,11 @@ class RollingSystem:
             that heads along the first direction has (0, π/2, 0).
         height : float or quantity
             Of the body over the support, along the normal, m; above 0 it falls, and does not turn unless told to.
+        time : float or quantity
+            When, on the clock of the support's motion and of loads that vary, s.
+        support : sequence of floats or quantities, optional
+            The coordinates of the support's own motion, such as angle and rate of a free axle, rad and rad/s; absent:
+            as the motion itself starts.
 
         Returns
         -------
@@ -243,7 +250,9 @@ class RollingSystem:
         """
         from .placing import Placing
 
-        placing = Placing(self, position, velocity, spin, angular_velocity, orientation, roll, attitude, height)
+        placing = Placing(
+            self, position, velocity, spin, angular_velocity, orientation, roll, attitude, height, time, support
+        )
         return placing.state()
 
     def check_rim(self, contact: Contact, position: Any) -> None:

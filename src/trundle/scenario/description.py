@@ -28,7 +28,7 @@ def describe(system: RollingSystem, start: State) -> Words:
     system : RollingSystem
         One system.
     start : State
-        Its start, at time 0.
+        Its start.
 
     Returns
     -------
@@ -71,13 +71,8 @@ def _support(support: Support) -> Words:
 
 def _start(system: RollingSystem, start: State) -> Words:
     """Return the shortest words that put the body where it is, to the last digit where there are such."""
-    if start.time != 0:
-        raise ScenarioError("start.time", "must be 0: a scenario starts its clock", start.time)
-    if tuple(start.support) != tuple(system.support.motion.own_start()):
-        remedy = "Start it from `system.place(...)`, or give the motion another rate."
-        raise ScenarioError("start.support", "must be as the motion itself starts", start.support, remedy)
     q = Quaternion(*start.orientation)
-    contact = settle(system, 0.0, Vector(*start.position), q, start.support)
+    contact = settle(system, start.time, Vector(*start.position), q, start.support)
     best = _nearest(system, start, _Seen(system, start, contact))
     if best.refused is not None:
         error = best.refused
@@ -140,7 +135,7 @@ class _Seen:
         return turn @ first, turn @ second, self.contact.normal
 
     def place(self, digits: int | None) -> Words:
-        """Return where the body is."""
+        """Return where the body is, and when."""
         contact, turn = self.contact, self.contact.support.rotation
         there = turn.transpose @ (contact.point - contact.support.origin)
         at = self.system.support.surface.put_down_at(there, turn.transpose @ contact.offset)
@@ -148,6 +143,16 @@ class _Seen:
         gap = float((Vector(*self.start.position) + contact.offset - contact.point).dot(contact.normal))
         if gap > SLIP_TOLERANCE * contact.offset.norm():
             words["height"] = _rounded([gap], digits)[0]
+        return {**words, **self._when}
+
+    @property
+    def _when(self) -> Words:
+        """Return the instant, and where the support stands then, where that does not follow from it."""
+        words: Words = {}
+        if self.start.time != 0:
+            words["time"] = number_of(self.start.time, "start.time")
+        if tuple(self.start.support) != tuple(self.system.support.motion.own_start()):
+            words["support"] = numbers_of(self.start.support, "start.support")
         return words
 
     @property

@@ -64,7 +64,7 @@ class ScenarioFile(Document):
         system : RollingSystem
             One system (no arrays of members).
         start : State
-            Its start, at time 0.
+            Its start.
         duration, every : float
             Length of the run and time between samples, s.
         method : str
@@ -103,12 +103,16 @@ class ScenarioFile(Document):
     def _check(self) -> Self:
         from ..mechanics.finiteness import check_finite
 
-        kinds = self.support.build().surface.coordinates
+        system = self.system()
+        kinds = system.support.surface.coordinates
         for i, (part, kind) in enumerate(zip(self.start.position, kinds, strict=True)):
             Measure(kind)(part, f"start.position[{i}]")
+        for i, (part, kind) in enumerate(zip(self.start.support or (), system.support.motion.own_kinds, strict=False)):
+            Measure(kind)(part, f"start.support[{i}]")
+        begin = float(self.start.time)
         with _named_in(""):
-            check_finite(self.system(), 0.0, float(self.timing.duration))
-        self.start_state()  # it knows whether the body fits there, and whether the start rolls
+            check_finite(system, begin, begin + float(self.timing.duration))
+        self._placed(system)  # it knows whether the body fits there, and whether the start rolls
         return self
 
     # --- what it describes -------------------------------------------------------------------------------
@@ -140,7 +144,7 @@ class ScenarioFile(Document):
             return RollingSystem(body, support, loads, float(self.gravity))
 
     def start_state(self) -> State:
-        """Return the state at time 0.
+        """Return the state in which the run starts.
 
         Returns
         -------
@@ -158,7 +162,9 @@ class ScenarioFile(Document):
         >>> tr.Scenario.load("level-turntable-put-down").start_state().velocity
         (0.0, 0.0, 0.0)
         """
-        system = self.system()
+        return self._placed(self.system())
+
+    def _placed(self, system: RollingSystem) -> State:
         with _named_in("start", self.start):
             return system.place(**self.start.arguments())
 

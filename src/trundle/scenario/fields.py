@@ -147,7 +147,14 @@ class Measure:
 
 @dataclass(frozen=True)
 class Coordinate(Measure):
-    """The type of a coordinate of a surface, a length or an angle; which, the surface says later.
+    """The type of a coordinate of one of two kinds; which, the surface or the motion says later.
+
+    Parameters
+    ----------
+    kind, sign, check, example
+        As of a `Measure`.
+    otherwise : str
+        The other kind.
 
     Examples
     --------
@@ -155,13 +162,15 @@ class Coordinate(Measure):
     (0.1, 3.141593)
     """
 
+    otherwise: str = "angle"
+
     def __call__(self, value: Any, key: str = "") -> Quantity:
         """Return the checked number."""
         try:
             return super().__call__(value, key)
         except InvalidValueError:
             try:
-                return Measure("angle")(value, key)
+                return Measure(self.otherwise)(value, key)
             except InvalidValueError:
                 pass
             raise

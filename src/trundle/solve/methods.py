@@ -103,11 +103,10 @@ def run(
     >>> run("auto", system, start, np.array([0.0, 1.0]))[0]
     'taylor'
     """
-    chosen = choose(method, system, start)
-    if method == "auto" and chosen == "exact":
+    if method == "auto":
         with suppress(OutOfDomainError):
-            return chosen, solver(chosen)(system, start, times, tolerance_of(chosen), progress)
-        chosen = _numerical(system)
+            return "exact", solver("exact")(system, start, times, tolerance_of("exact"), progress)
+    chosen = _numerical(system) if method == "auto" else choose(method, system, start)
     return chosen, solver(chosen)(system, start, times, tolerance_of(chosen), progress)
 
 

@@ -61,6 +61,11 @@ class Motion:
     free: bool = False  # whether the axle's acceleration is an unknown of the contact law
     inertia: Scalar  # of a free axle, kg m²
 
+    @property
+    def own_kinds(self) -> tuple[str, ...]:
+        """What kind of quantity each of these coordinates is: one of `trundle.units.UNITS`."""
+        return tuple("angular velocity" if name.startswith("rate") else "angle" for name in self.own)
+
     def axle_torque(self, time: Scalar, own: tuple[Scalar, ...]) -> Scalar:  # noqa: ARG002
         """Return what drives or brakes a free axle besides the body, N m."""
         return 0.0

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from ...errors import InvalidValueError
 from ..fields import written
-from .values import Angle, Angle3, Duration, Height, Place2, Rate, Rate3, Step, Table, Turn4, Velocity
+from .values import Angle, Angle3, Duration, Height, Instant, Own, Place2, Rate, Rate3, Step, Table, Turn4, Velocity
 
 Method = Literal["auto", "exact", "taylor", "runge-kutta"]
 
@@ -27,6 +27,8 @@ class Start(Table):
     attitude: Angle3 | None = Field(default=None, description="Heading, lean and turn, instead of orientation.")
     roll: Angle = Field(default=0.0, description="Of a cylinder: how far it has rolled on since its mark was on top.")
     height: Height = Field(default=0.0, description="Over the support, along the normal: above 0 it falls.")
+    time: Instant = Field(default=0.0, description="On the clock of the support's motion, where the run starts.")
+    support: Own | None = Field(default=None, description="Angle, and rate, of a support that turns by itself.")
 
     @model_validator(mode="after")
     def _check(self) -> Start:

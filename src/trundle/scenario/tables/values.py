@@ -89,6 +89,10 @@ Velocity = Annotated[
     tuple[float, float] | tuple[float, float, float] | str, Measures(Measure("velocity"), 2, "co-rotating", most=3)
 ]
 Angle3 = Annotated[tuple[float, float, float], Measures(Measure("angle", example='"90 deg"'), 3)]
+Instant = Annotated[float, Measure("time", example='"2 s"')]
+Own = Annotated[
+    tuple[float, ...], Measures(Coordinate("angle", example='"30 deg"', otherwise="angular velocity"), 1, most=8)
+]
 Height = Annotated[float, Measure("length", "not negative", example='"5 cm"')]
 Angle = Annotated[float, Measure("angle")]
 Share = Annotated[float, Measure("number", example="0.01")]
