@@ -214,6 +214,7 @@ export function createControls(app: App): Controls {
     complain(error) {
       wrong = error
       place()
+      if (error === null) for (const field of fields) field.accept()
     },
     dispose: () => undo.run(),
   }

@@ -112,3 +112,68 @@ it('has a formula typed over without a slider', () => {
   expect(input.value).toBe('3.4*(1 - exp(-t))')
   expect(slider.disabled).toBe(true)
 })
+
+/** As the page does: the value goes to the server, which refuses it. */
+function refuse({ field, type, leave, change }: ReturnType<typeof setUp>, text: string) {
+  type(text)
+  leave()
+  field.update(change.mock.lastCall![0])
+  field.complain('`support.motion.rate` must be an angular velocity')
+}
+
+it('goes back to its own unit after one that was refused: the next number is read in it', () => {
+  const set = setUp('33.3 rpm')
+  refuse(set, '5 kg')
+  expect(set.change).toHaveBeenLastCalledWith('5 kg', undefined)
+  expect([set.input.value, set.unit.value]).toEqual(['5 kg', 'rpm'])
+  expect(set.field.element.querySelector('.field-message')?.textContent).toContain('angular velocity')
+  expect([...set.unit.options].map(({ value }) => value)).toEqual(['rpm', 'rad/s', 'turn/s'])
+  set.type('45')
+  expect(set.change).toHaveBeenLastCalledWith('45 rpm', expect.any(String))
+  set.field.update('45 rpm')
+  expect([set.input.value, set.unit.value]).toEqual(['45', 'rpm'])
+})
+
+it('keeps its unit after nonsense, too', () => {
+  const set = setUp('33.3 rpm')
+  refuse(set, 'fast')
+  expect([set.input.value, set.unit.value]).toEqual(['fast', 'rpm'])
+  set.type('45')
+  expect(set.change).toHaveBeenLastCalledWith('45 rpm', expect.any(String))
+})
+
+it('goes back to the last good value with Escape, from the refused one and from what is typed over it', () => {
+  const set = setUp('33.3 rpm')
+  set.type('45')
+  set.leave()
+  set.field.update('45 rpm')
+  set.field.accept()
+  refuse(set, '5 kg')
+  set.press(set.input, 'Escape')
+  expect(set.change.mock.lastCall![0]).toBe('45 rpm')
+  refuse(set, '6 kg')
+  set.type('7')
+  set.press(set.input, 'Escape')
+  expect(set.change.mock.lastCall![0]).toBe('45 rpm')
+  expect([set.input.value, set.unit.value]).toEqual(['45', 'rpm'])
+})
+
+it('does not take a refused value for good when the answer to an older one comes after it', () => {
+  const set = setUp('33.3 rpm')
+  set.type('5 kg')
+  set.leave()
+  set.field.update('5 kg')
+  set.field.accept()
+  set.field.complain('`support.motion.rate` must be an angular velocity')
+  set.press(set.input, 'Escape')
+  expect(set.change.mock.lastCall![0]).toBe('33.3 rpm')
+})
+
+it('keeps a unit that only the package knows, once it was accepted', () => {
+  const set = setUp('33.3 rpm')
+  set.type('2 revolution/hour')
+  set.leave()
+  set.field.update('2 revolution/hour')
+  set.field.accept()
+  expect([set.input.value, set.unit.value]).toEqual(['2', 'revolution/hour'])
+})

@@ -22,6 +22,8 @@ export interface Field {
   update(value: Json | undefined): void
   /** Show the package's message at the control, or take it away. */
   complain(message: string | null): void
+  /** What the control holds could be computed: the value to go back to from one that is refused. */
+  accept(): void
   focus(): void
 }
 
@@ -35,8 +37,11 @@ export function createField(options: FieldOptions): Field {
   let range = { min: entry.min, max: entry.max }
   let typing = false
   let gesture = 0
-  /** What held when the typing began: Escape goes back to it. */
+  /** What Escape goes back to: while something is typed, what held before; after a refusal, the last good value. */
   let before: Json | undefined
+  /** The last value that was accepted, and the one before it, since an answer may be that of an older value. */
+  let good: { now: Json | undefined; earlier: Json | undefined } | undefined
+  let refused = false
 
   const input = h('input', {
     id,
@@ -67,9 +72,14 @@ export function createField(options: FieldOptions): Field {
     message,
   )
 
-  /** The unit shown: the visitor's choice, else the one written, else SI. */
+  /** Was the value refused, in a unit that is none for this place, or as no number at all? */
+  function misfit(): boolean {
+    return refused && toSI(value, entry.kind) === null
+  }
+
+  /** The unit shown: the visitor's choice, else the one written, else SI; never that of a value that was refused. */
   function shownUnit(): string {
-    const written = parse(value).unit
+    const written = parse(misfit() ? good?.now : value).unit
     if (written && !units.includes(written)) return written
     return options.unit() ?? (written || (units[0] ?? ''))
   }
@@ -87,6 +97,7 @@ export function createField(options: FieldOptions): Field {
   /** What the text box shows: the digits as written where they can stay, a conversion where the unit differs. */
   function digits(): string {
     const found = parse(value)
+    if (misfit()) return typeof value === 'string' ? value : found.digits
     if (found.number === null || typeof value === 'object') return found.digits
     if (typeof value === 'number' && !hasUnits) return String(rounded(value, 6))
     const factor = UNITS[entry.kind]
@@ -146,7 +157,7 @@ export function createField(options: FieldOptions): Field {
   }
 
   input.addEventListener('input', () => {
-    if (!typing) before = value
+    if (!typing) before = refused ? good?.now : value
     typing = true
     const { value: next, known } = typed()
     if (known) commit(next, `typing${gesture}`)
@@ -165,9 +176,10 @@ export function createField(options: FieldOptions): Field {
     draw()
   })
   input.addEventListener('keydown', (event) => {
-    if (event.key === 'Escape' && typing) {
+    if (event.key === 'Escape' && (typing || refused)) {
+      const back = typing ? before : good?.now
       typing = false
-      if (before !== undefined && before !== value) commit(before, `typing${gesture}`)
+      if (back !== undefined && back !== value) commit(back, `typing${gesture}`)
       else draw()
       event.stopPropagation()
       return
@@ -226,9 +238,17 @@ export function createField(options: FieldOptions): Field {
       const said = next ?? options.fallback
       if (said !== value) typing = false
       value = said
+      good ??= { now: said, earlier: said }
       draw()
     },
+    accept() {
+      if (!typing && good?.now !== value) good = { now: value, earlier: good?.now }
+    },
     complain(text) {
+      const was = misfit()
+      refused = text !== null
+      if (refused && good?.now === value) good = { now: good?.earlier, earlier: good?.earlier }
+      if (misfit() !== was) draw()
       message.hidden = text === null
       message.textContent = text ?? ''
       element.toggleAttribute('data-wrong', text !== null)
