@@ -160,6 +160,9 @@ def test_a_small_loop_turns_the_ball_by_its_area(lab: TestClient) -> None:
     assert scene.header["enclosed_area"] == pytest.approx(area)
     assert scene.header["turned_about_normal"] == pytest.approx(-area / 0.1**2, rel=1e-3)
     assert scene.header["formula"]["source"] == "G4"
+    about = next(row for row in scene.header["findings"] if row["symbol"] == r"\psi")
+    assert abs(about["measured"] - about["predicted"]) == pytest.approx(about["difference"] * area / 0.1**2, rel=1e-2)
+    assert 0 < about["difference"] < 1e-3
     still, moved = scene.columns["position"][[0, -1]]
     assert np.allclose(still, moved, atol=1e-7)
     speed = np.linalg.norm(scene.columns["velocity"], axis=1)
@@ -169,6 +172,10 @@ def test_a_small_loop_turns_the_ball_by_its_area(lab: TestClient) -> None:
 def test_a_path_scenario_is_simulated_too(lab: TestClient) -> None:
     scene = unpack(ask(lab, "simulate", scenario=shipped("roll-x-then-y")).content)
     assert scene.header["kind"] == "rolled"
+    of_a_run = unpack(ask(lab, "simulate", scenario=shipped("tilted-turntable"), samples=50).content).header
+    assert of_a_run.keys() <= scene.header.keys()
+    assert of_a_run["support"].keys() == scene.header["support"].keys()
+    assert of_a_run["body"].keys() == scene.header["body"].keys()
     rolled = tr.PathScenario.load("roll-x-then-y").run()
     assert np.allclose(scene.columns["orientation"][-1], rolled.stages.orientation[-1], atol=1e-6) or np.allclose(
         scene.columns["orientation"][-1], -rolled.stages.orientation[-1], atol=1e-6

@@ -261,7 +261,6 @@ def test_no_name_that_came_reaches_the_file_system(tmp_path: Path) -> None:
 WATCHED = """
 import json, sys, tempfile
 from trundle.lab import answers, exports
-from trundle.lab.rolling import path_of
 from trundle.scenario import files
 
 MARK = "marked-4711"

@@ -105,7 +105,7 @@ def _motion(name: str, *, bar: bool) -> tuple[Any, Callable[..., Scene]]:
         return Trajectory.load(Path(name).expanduser()), scene_of
     scenario = _scenario(name)
     if hasattr(scenario, "path"):
-        from ..lab.rolling import rolled_scene
+        from ..geometry.scene import rolled_scene
 
         return scenario.run(), rolled_scene
     with screen.ProgressBar(wanted=bar) as progress:

@@ -150,7 +150,7 @@ def simulate(data: dict[str, Any], samples: int | None = None, card: bool = Fals
     from ..scene import pack, scene_of
 
     if files.rolls_along_path(data):
-        from .rolling import rolled_scene
+        from ..geometry.scene import rolled_scene
 
         return Answer(pack(rolled_scene(path_from(data).run(), samples, card)), SCENE)
     run, seconds = run_of(scenario_from(data), limits.MOST_SAVED, samples)
@@ -260,8 +260,9 @@ def roll(radius: Any, curve: Mapping[str, Any], samples: int | None = None, card
     >>> roll("25 mm", {"kind": "straight", "turn": "90 deg"}).body[:8]
     b'TRUNDLE1'
     """
+    from ..geometry.scene import rolled_scene
     from ..scene import pack
-    from .rolling import path_of, rolled_scene
+    from .curves import path_of
 
     return Answer(pack(rolled_scene(path_from(path_of(radius, curve)).run(), samples, card)), SCENE)
 

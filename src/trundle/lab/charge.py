@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .bare import Array, sphere_scene
+from ..scene.header import body_table
+from ..scene.sphere import Array, sphere_scene
 from .limits import MOST_SAMPLES
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ def charge_scene(scenario: Scenario, samples: int | None = None) -> Scene:
     header = {
         "kind": "charge",
         "title": f"{pair.title}: the charge in crossed fields" if pair.title else "A charge in crossed fields",
-        "body": {"kind": "charge", "radius": radius, "name": "Charge", "mass": particle.mass, "label": "Charge"},
+        "body": body_table("charge", "Charge", radius, particle.mass),
         "E": [ex, ey, 0.0],
         "B": [0.0, 0.0, b],
         "charge": particle.charge,

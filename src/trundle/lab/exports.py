@@ -66,7 +66,7 @@ def _written(scenario: Any, kind: str) -> bytes:
     from ..viewer.exports import export as write
 
     if not hasattr(scenario, "timing"):
-        from .rolling import rolled_scene
+        from ..geometry.scene import rolled_scene
 
         return write(scenario.run(), f".{kind}", rolled_scene)
     run, _ = run_of(scenario, limits.MOST_SAVED)

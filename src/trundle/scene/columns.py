@@ -29,7 +29,7 @@ UNITS = {
     "body_vertices": "m",
     "support_vertices": "m",
 }
-_VECTORS = ("position", "contact", "velocity", "angular_velocity", "contact_force")
+VECTORS = ("position", "contact", "velocity", "angular_velocity", "contact_force")
 
 
 def columns_of(at: Samples) -> dict[str, NDArray[Any]]:
@@ -45,7 +45,7 @@ def columns_of(at: Samples) -> dict[str, NDArray[Any]]:
     dict
         `time` in float64, vectors and orientation in float32, the phase in uint8.
     """
-    vectors = {name: getattr(at, name).astype(np.float32) for name in _VECTORS}
+    vectors = {name: getattr(at, name).astype(np.float32) for name in VECTORS}
     return {
         "time": np.asarray(at.time, dtype=np.float64),
         **vectors,

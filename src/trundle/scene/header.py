@@ -40,22 +40,95 @@ def header_of(run: Trajectory, ground: Ground, radius: float) -> dict[str, Any]:
     dict
         Plain values.
     """
-    system, scenario = run.system, _tables(run.scenario)
+    system, scenario = run.system, tables(run.scenario)
     tilt, times = float(system.support.tilt), run.data["time"].values
-    gravity = [0.0, 0.0, -float(system.gravity)]
-    return {
+    return header_with(
+        run.title or title_of(system),
+        float(times[-1] - times[0]),
+        _body(system, (scenario or {}).get("body", {}), radius),
+        _support(system, (scenario or {}).get("support", {}), ground),
+        method=run.method,
+        scenario=scenario,
+        scenario_toml=run.scenario,
+        gravity=[0.0, 0.0, -float(system.gravity)],
+        tilt=tilt,
+        to_world=[math.cos(0.5 * tilt), 0.0, math.sin(0.5 * tilt), 0.0],
+        events=[{"time": event.time, "kind": event.kind, "text": event.text} for event in run.events],
+    )
+
+
+def header_with(
+    title: str, duration: float, body: dict[str, Any], support: dict[str, Any], **told: Any
+) -> dict[str, Any]:
+    """Return a header with every key that scenes have.
+
+    Parameters
+    ----------
+    title : str
+        Of the scene.
+    duration : float
+        s.
+    body, support : dict
+        As `body_table` and `support_table` make them.
+    **told
+        Other keys. Those absent are as for what is exact, has no weight, is not tilted, and of which nothing is found.
+
+    Returns
+    -------
+    dict
+        Plain values.
+
+    Examples
+    --------
+    >>> header_with("Still", 1.0, {}, {}, tilt=0.1)["tilt"], header_with("Still", 1.0, {}, {})["gravity"]
+    (0.1, [0.0, 0.0, 0.0])
+    """
+    plain = {
         "format": FORMAT,
-        "title": run.title or title_of(system),
-        "method": run.method,
-        "duration": float(times[-1] - times[0]),
-        "scenario": scenario,
-        "scenario_toml": run.scenario,
-        "gravity": gravity,
-        "tilt": tilt,
-        "to_world": [math.cos(0.5 * tilt), 0.0, math.sin(0.5 * tilt), 0.0],
-        "body": _body(system, (scenario or {}).get("body", {}), radius),
-        "support": _support(system, (scenario or {}).get("support", {}), ground),
-        "events": [{"time": event.time, "kind": event.kind, "text": event.text} for event in run.events],
+        "title": title,
+        "method": "exact",
+        "duration": duration,
+        "seconds": None,
+        "scenario": None,
+        "scenario_toml": "",
+        "gravity": [0.0, 0.0, 0.0],
+        "tilt": 0.0,
+        "to_world": [1.0, 0.0, 0.0, 0.0],
+        "body": body,
+        "support": support,
+        "events": [],
+        "findings": [],
+        "formula": None,
+        "guiding_centre": False,
+        "card": None,
+    }
+    return plain | told
+
+
+def body_table(kind: str, name: str, radius: float, mass: float | None = None, more: str = "") -> dict[str, Any]:
+    """Return what a header says of a body; its label is the name and what more there is to it."""
+    return {"kind": kind, "radius": radius, "name": name, "mass": mass, "label": name + more}
+
+
+def support_table(
+    kind: str,
+    name: str,
+    ground: Ground,
+    *,
+    moves: bool = False,
+    rim: float | None = None,
+    friction: float | None = None,
+) -> dict[str, Any]:
+    """Return what a header says of a support; of its ground, all but the mesh."""
+    return {
+        "kind": kind,
+        "name": name,
+        "moves": moves,
+        "size": ground.size,
+        "centre": list(ground.centre),
+        "marks": ground.marks,
+        "rim": rim,
+        "friction": friction,
     }
 
 
@@ -64,7 +137,8 @@ def _parsed(text: str) -> dict[str, Any]:
     return tomllib.loads(text)
 
 
-def _tables(text: str) -> dict[str, Any] | None:
+def tables(text: str) -> dict[str, Any] | None:
+    """Return the tables of a scenario, or None where there is no scenario."""
     return deepcopy(_parsed(text)) if text else None  # so that nobody changes what is kept
 
 
@@ -73,7 +147,7 @@ def _body(system: RollingSystem, words: dict[str, Any], radius: float) -> dict[s
     kind = str(words.get("kind", noun_of(body)))
     name = kind.replace("-", " ").capitalize()
     ratio = f", k = {as_ratio(float(body.inertia_ratio))}" if body.is_isotropic_sphere else ""
-    return {"kind": kind, "radius": radius, "name": name, "mass": float(body.mass), "label": f"{name}{ratio}"}
+    return body_table(kind, name, radius, float(body.mass), ratio)
 
 
 def _support(system: RollingSystem, words: dict[str, Any], ground: Ground) -> dict[str, Any]:
@@ -84,16 +158,14 @@ def _support(system: RollingSystem, words: dict[str, Any], ground: Ground) -> di
     lies = kind == "cylinder" and abs(float(support.tilt)) > 1.5
     leaning = "level" if lies else "tilted" if float(support.tilt) else ""
     name = " ".join([*(part for part in (", ".join(p for p in (way, leaning) if p),) if part), kind.replace("-", " ")])
-    return {
-        "kind": kind,
-        "name": name.capitalize(),
-        "moves": support.motion.steady_rate != 0.0,
-        "size": ground.size,
-        "centre": list(ground.centre),
-        "marks": ground.marks,
-        "rim": None if support.surface.rim is None else float(support.surface.rim),
-        "friction": None if support.friction is None else float(support.friction),
-    }
+    return support_table(
+        kind,
+        name.capitalize(),
+        ground,
+        moves=support.motion.steady_rate != 0.0,
+        rim=None if support.surface.rim is None else float(support.surface.rim),
+        friction=None if support.friction is None else float(support.friction),
+    )
 
 
 def radius_about_centre(vertices: Any) -> float:

@@ -1,4 +1,4 @@
-"""Scenes that are no run of a scenario: a small sphere over a plane at rest, moved as its columns say."""
+"""Scenes that are no run of a system: a sphere over a plane at rest, moved as its columns say."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from ..mechanics.bodies import Body
 from ..mechanics.surfaces import Plane
-from ..scene import Scene
-from ..scene.body_mesh import body_mesh
-from ..scene.columns import UNITS, continuous
-from ..scene.support_mesh import ground_of
+from .body_mesh import body_mesh
+from .columns import UNITS, VECTORS, continuous
+from .header import body_table, header_with, support_table
+from .support_mesh import ground_of
+from .wire import Scene
 
 Array = NDArray[np.float64]
-VECTORS = ("position", "contact", "velocity", "angular_velocity", "contact_force")
 
 
 def sphere_scene(radius: float, columns: dict[str, Array], header: dict[str, Any]) -> Scene:
@@ -52,35 +52,12 @@ def sphere_scene(radius: float, columns: dict[str, Array], header: dict[str, Any
     moved["phase"] = np.zeros(n, dtype=np.uint8)
     body = body_mesh(Body.solid_sphere(radius, 1.0))
     ground = ground_of(Plane(), False, contact, radius)
-    meshes = body.columns("body", "body_pattern") | ground.mesh.columns("support", "support_marks")
-    name = "Sphere"
+    moved |= body.columns("body", "body_pattern") | ground.mesh.columns("support", "support_marks")
     told = {
-        "format": 1,
-        "kind": "rolled",
-        "method": "exact",
         "duration": float(columns["time"][-1] - columns["time"][0]),
-        "seconds": None,
-        "scenario": None,
-        "scenario_toml": "",
-        "gravity": [0.0, 0.0, 0.0],
-        "tilt": 0.0,
-        "to_world": [1.0, 0.0, 0.0, 0.0],
-        "body": {"kind": "sphere", "radius": radius, "name": name, "mass": None, "label": name},
-        "support": {
-            "kind": "plane",
-            "name": "Plane",
-            "moves": False,
-            "size": ground.size,
-            "centre": list(ground.centre),
-            "marks": ground.marks,
-            "rim": None,
-            "friction": None,
-        },
-        "events": [],
-        "findings": [],
-        "formula": None,
+        "body": body_table("sphere", "Sphere", radius),
+        "support": support_table("plane", "Plane", ground),
         "guiding_centre": "guiding_centre" in columns,
-        "card": None,
     }
-    units = {key: unit for key, unit in UNITS.items() if key in moved or key in meshes}
-    return Scene({**told, **header}, moved | meshes, units)
+    units = {key: unit for key, unit in UNITS.items() if key in moved}
+    return Scene(header_with(**{**told, **header}), moved, units)

@@ -3,63 +3,22 @@
 from __future__ import annotations
 
 import math
-import tomllib
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from ..errors import ScenarioError
-from .bare import sphere_scene
-from .limits import MOST_SAMPLES
-
-if TYPE_CHECKING:
-    from ..geometry import RolledPath
-    from ..scene import Scene
+from ..scene import Scene
+from ..scene.findings import Finding
+from ..scene.formulas import quantity
+from ..scene.header import tables
+from ..scene.instants import MOST
+from ..scene.sphere import sphere_scene
+from .rolled import RolledPath
 
 _FINEST = math.radians(3.0)  # turned between two samples: what an eye takes for smooth
 _FEWEST = 200
 _PACE = 0.25  # turns of the ball in a second, unless that makes a scene too short or too long
 _SHORTEST, _LONGEST = 2.0, 30.0  # s
-
-
-def path_of(radius: Any, curve: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a ball and a curve as the tables of a scenario file.
-
-    Parameters
-    ----------
-    radius : float or text with a unit
-        Of the ball.
-    curve : mapping
-        One piece, as a [[path]] table says it; or several in a list, `path`, beside `start`, `title` and `notes`.
-
-    Returns
-    -------
-    dict
-        As `PathScenario.read` takes it.
-
-    Raises
-    ------
-    ScenarioError
-        If there is a key that a curve does not have.
-
-    Examples
-    --------
-    >>> path_of("25 mm", {"kind": "straight", "turn": "90 deg"})["path"]
-    [{'kind': 'straight', 'turn': '90 deg'}]
-    """
-    if "kind" in curve:
-        return {"title": "A ball rolled along a curve", "body": {"radius": radius}, "path": [dict(curve)]}
-    known = ("path", "start", "title", "notes")
-    for key in curve:
-        if key not in known:
-            raise ScenarioError(
-                f"curve.{key[:60]}", "is no key of a curve", curve[key], f"There are: {', '.join(known)}."
-            )
-    if "path" not in curve:
-        remedy = 'Give pieces, for instance [{"kind": "straight", "turn": "90 deg"}].'
-        raise ScenarioError("curve.path", "must be given", "nothing", remedy)
-    return {"title": "A ball rolled along a path", **curve, "body": {"radius": radius}}
 
 
 def rolled_scene(rolled: RolledPath, samples: int | None = None, with_card: bool = False) -> Scene:
@@ -83,13 +42,13 @@ def rolled_scene(rolled: RolledPath, samples: int | None = None, with_card: bool
 
     Examples
     --------
-    >>> from ..geometry import PathScenario
-    >>> scene = rolled_scene(PathScenario.load("roll-x-then-y").run())
+    >>> import trundle as tr
+    >>> scene = rolled_scene(tr.PathScenario.load("roll-x-then-y").run())
     >>> [round(float(part), 6) + 0.0 for part in scene.header["stages"][-1]["north_pole"]]
     [1.0, 0.0, 0.0]
     """
-    smooth = 1 + math.ceil(min(rolled.length / rolled.radius / _FINEST, MOST_SAMPLES))
-    count = samples or min(max(smooth, _FEWEST), MOST_SAMPLES - len(rolled.pieces))
+    smooth = 1 + math.ceil(min(rolled.length / rolled.radius / _FINEST, MOST))
+    count = samples or min(max(smooth, _FEWEST), MOST - len(rolled.pieces))
     at = rolled.sampled(rolled.length / max(count - 1, 1))
     pace = rolled.length / min(max(rolled.length / rolled.radius / (2 * math.pi * _PACE), _SHORTEST), _LONGEST)
     velocity = pace * np.column_stack([np.cos(at.heading), np.sin(at.heading), np.zeros_like(at.heading)])
@@ -101,8 +60,9 @@ def rolled_scene(rolled: RolledPath, samples: int | None = None, with_card: bool
         "orientation": at.orientation,
     }
     header = {
+        "kind": "rolled",
         "title": rolled.title,
-        "scenario": tomllib.loads(rolled.scenario) if rolled.scenario else None,
+        "scenario": tables(rolled.scenario),
         "scenario_toml": rolled.scenario,
         "findings": _findings(rolled),
         "formula": _formula(rolled),
@@ -141,39 +101,22 @@ def _turned(rolled: RolledPath, pace: float) -> dict[str, Any]:
 
 def _findings(rolled: RolledPath) -> list[dict[str, Any]]:
     small, turn = rolled.small_loop_angle, rolled.rotation
-    rows = [_finding("Angle by which the ball is turned", r"\theta", None, turn.angle, "rad", "about one axis")]
+    found = [Finding("Angle by which the ball is turned", r"\theta", None, turn.angle, "rad", "about one axis")]
     if small is not None:
         note = "predicted for a loop that is small beside the ball"
-        rows.append(_finding("Of it, about the normal", r"\psi", small, turn.about_normal, "rad", note))
-        rows.append(_finding("Enclosed area", "A", None, rolled.enclosed_area, "m²", "anticlockwise is positive"))
-    return rows
-
-
-def _finding(
-    name: str, symbol: str, predicted: float | None, measured: float | None, unit: str, note: str
-) -> dict[str, Any]:
-    difference = (measured - predicted) / abs(predicted) if predicted and measured is not None else None
-    return {
-        "name": name,
-        "symbol": symbol,
-        "predicted": predicted,
-        "measured": measured,
-        "unit": unit,
-        "difference": difference,
-        "note": note,
-    }
+        found.append(Finding("Of it, about the normal", r"\psi", small, turn.about_normal, "rad", note))
+        found.append(Finding("Enclosed area", "A", None, rolled.enclosed_area, "m²", "anticlockwise is positive"))
+    return [one.as_dict() for one in found]
 
 
 def _formula(rolled: RolledPath) -> dict[str, str] | None:
-    from ..scene.formulas import decimal
-
     area, small = rolled.enclosed_area, rolled.small_loop_angle
     if area is None or small is None:
         return None
-    numbers = rf"\psi \approx -\frac{{{decimal(area)}\,\mathrm{{m^2}}}}{{({decimal(rolled.radius)}\,\mathrm{{m}})^2}}"
+    numbers = rf"\psi \approx -\frac{{{quantity(area, 'm^2')}}}{{({quantity(rolled.radius, 'm')})^2}}"
     return {
         "name": "Turn about the normal by a small loop",
         "source": "G4",
         "latex": r"\psi \approx -\frac{A}{a^2}",
-        "numbers_latex": rf"{numbers} = {decimal(small)}\,\mathrm{{rad}}",
+        "numbers_latex": rf"{numbers} = {quantity(small, 'rad')}",
     }
