@@ -14,10 +14,10 @@ from starlette.testclient import TestClient
 from tests.lab.conftest import shipped
 
 import trundle as tr
-from trundle.lab.exports import MEDIA
 from trundle.viewer.exports import FORMATS
 
 NAME = "level-turntable-nudged"
+KINDS = sorted(ending.removeprefix(".") for ending in FORMATS)
 
 
 def exported(lab: TestClient, kind: str, name: str = NAME) -> bytes:
@@ -25,7 +25,7 @@ def exported(lab: TestClient, kind: str, name: str = NAME) -> bytes:
     if kind == "html" and answer.status_code == 422 and answer.json()["error"]["kind"] == "NotBuiltError":
         pytest.skip("the viewer is not built into this copy: python web/build.py bundle")
     assert answer.status_code == 200, answer.text[:500]
-    assert answer.headers["content-type"].startswith(MEDIA[kind].partition(";")[0])
+    assert answer.headers["content-type"].startswith(FORMATS[f".{kind}"].media_type.partition(";")[0])
     assert answer.headers["content-disposition"].endswith(f'.{kind}"')
     return answer.content
 
@@ -77,10 +77,13 @@ def test_an_animation_moves(lab: TestClient) -> None:
     assert all((np.abs(frames[i] - frames[i - 1]).sum(axis=-1) > 60).sum() > 50 for i in (1, 2))
 
 
-def test_the_forms_are_the_viewers() -> None:
-    assert {f".{kind}": media for kind, media in MEDIA.items()} == {
-        suffix: form.media_type for suffix, form in FORMATS.items()
-    }
+def test_what_may_be_asked_for_is_what_can_be_made(lab: TestClient) -> None:
+    """The schema says it, and a form that is none is refused with those that are."""
+    asked = lab.get("/api/openapi.json").json()["components"]["schemas"]["ToExport"]["properties"]["format"]
+    assert sorted(asked["enum"]) == KINDS
+    error = lab.post("/api/export", json={"scenario": shipped(NAME), "format": "mp4"}).json()["error"]
+    assert error["key"] == "format"
+    assert all(kind in error["message"] for kind in KINDS)
 
 
 def test_a_model_is_one_that_other_programs_read(lab: TestClient) -> None:
@@ -96,7 +99,7 @@ def test_a_page_holds_the_whole_run_and_asks_nobody(lab: TestClient) -> None:
     assert tr.Scenario.load(NAME).title in page
 
 
-@pytest.mark.parametrize("kind", sorted(MEDIA))
+@pytest.mark.parametrize("kind", KINDS)
 def test_a_path_is_exported_too(lab: TestClient, kind: str) -> None:
     assert len(exported(lab, kind, "roll-x-then-y")) > 100
 

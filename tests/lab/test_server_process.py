@@ -189,3 +189,12 @@ def test_help_loads_no_server() -> None:
     assert "lab" in done.stdout
     for heavy in ("fastapi", "uvicorn", "starlette", "pebble", "pydantic", "numpy"):
         assert f"'{heavy}'" not in done.stderr
+
+
+def test_the_server_itself_loads_nothing_that_computes_or_draws() -> None:
+    """That is for the workers."""
+    script = "import sys, trundle.lab.app; print(sorted(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=True)  # noqa: S603
+    assert "'fastapi'" in done.stdout
+    for heavy in ("numpy", "scipy", "matplotlib", "pygltflib", "xarray", "PIL", "sympy", "trundle.scene"):
+        assert f"'{heavy}'" not in done.stdout

@@ -262,6 +262,7 @@ WATCHED = """
 import json, sys, tempfile
 from trundle.lab import answers, exports
 from trundle.scenario import files
+from trundle.viewer.exports import FORMATS
 
 MARK = "marked-4711"
 opened, leaked = [], []
@@ -290,7 +291,7 @@ named = {**whole, "title": f"../../tmp/{MARK}.nc", "notes": f"/tmp/{MARK}", "run
 for scenario in (named, marked(whole), {**whole, "file": f"/tmp/{MARK}"}, {**whole, "support": f"/tmp/{MARK}"}):
     for function in (answers.simulate, answers.card, answers.derivation, answers.twin):
         function(scenario)
-    for kind in exports.MEDIA:
+    for kind in (ending.removeprefix(".") for ending in FORMATS):
         with tempfile.TemporaryDirectory() as folder:
             exports.export(scenario, kind, folder)
 answers.text_of(f"../{MARK}")

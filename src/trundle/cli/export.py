@@ -10,13 +10,12 @@ import typer
 
 from ..errors import InvalidValueError
 from ..scenario import files
+from ..viewer import exports
 from . import screen, signals
 
 if TYPE_CHECKING:
     from ..scene import Scene
 
-# The endings, here in words so that asking for help loads nothing; a test compares them with the table.
-ENDINGS = (".html", ".glb", ".gif", ".png", ".svg", ".csv", ".nc", ".toml")
 _SEVERAL = ".html"
 
 
@@ -48,8 +47,8 @@ def export(
 
 def _check(names: list[str], target: Path) -> None:
     """Refuse what cannot be meant before anything is computed."""
-    if target.suffix.lower() not in ENDINGS:
-        raise InvalidValueError("FILE", f"must end in one of {', '.join(ENDINGS)}", str(target))
+    if target.suffix.lower() not in exports.FORMATS:
+        raise InvalidValueError("FILE", f"must end in one of {', '.join(exports.FORMATS)}", str(target))
     if target.is_dir() or not target.parent.is_dir():
         rule = "must not be a folder" if target.is_dir() else "must lie in a folder that exists"
         raise InvalidValueError("FILE", rule, str(target))
@@ -68,8 +67,6 @@ def _same(name: str, target: Path) -> bool:
 
 
 def _content(names: list[str], suffix: str, *, bar: bool) -> bytes:
-    from ..viewer import exports
-
     if suffix == ".toml" and not _is_run(names[0]):
         return _scenario(names[0]).to_toml().encode()  # nothing need be computed for it
     if len(names) == 1:

@@ -11,6 +11,7 @@ from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
+from ..viewer.exports import FORMATS
 from . import answers, exports, pages
 from .errors import Refusal, RefusedError, of_validation
 from .pool import LeftError
@@ -116,7 +117,8 @@ def _asking(app: FastAPI, lab: Lab) -> None:
 
 def _files(app: FastAPI, lab: Lab) -> None:
     """Add the routes that give files and take them."""
-    kinds = {kind: {"schema": {"type": "string", "format": "binary"}} for kind in exports.MEDIA.values()}
+    media_types = {form.media_type for form in FORMATS.values()}
+    kinds = {kind: {"schema": {"type": "string", "format": "binary"}} for kind in sorted(media_types)}
     takes = {kind: {"schema": {"type": "string", "format": "binary"}} for kind in OPENED}
 
     @app.post("/api/export", **described("A scenario, or its run, as a file.", content=kinds))

@@ -10,21 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from ..scenario import files
+from ..viewer.exports import FORMATS
 from . import limits
 from .answers import answering, path_from, run_of, scenario_from, told
 from .cache import Answer
 from .errors import refused
-
-MEDIA = {
-    "toml": "application/toml",
-    "csv": "text/csv; charset=utf-8",
-    "nc": "application/x-netcdf",
-    "png": "image/png",
-    "svg": "image/svg+xml",
-    "html": "text/html; charset=utf-8",
-    "glb": "model/gltf-binary",
-    "gif": "image/gif",
-}
 
 
 @answering
@@ -36,7 +26,7 @@ def export(data: dict[str, Any], kind: str, folder: str) -> Answer:
     data : dict
         The scenario; one with [[path]] tables is rolled along its path.
     kind : str
-        One of `MEDIA`.
+        A key of `FORMATS`, without its dot.
     folder : str
         An empty folder for what must be a file on the way.
 
@@ -55,11 +45,11 @@ def export(data: dict[str, Any], kind: str, folder: str) -> Answer:
     """
     along_path = files.rolls_along_path(data)
     scenario: Any = path_from(data) if along_path else scenario_from(data)
-    name = f"{slug(scenario.title)}.{kind}"
+    name, media_type = f"{slug(scenario.title)}.{kind}", FORMATS[f".{kind}"].media_type
     if kind == "toml":
-        return Answer(scenario.to_toml().encode(), MEDIA[kind], name)
+        return Answer(scenario.to_toml().encode(), media_type, name)
     with _temporary_files_in(folder):
-        return Answer(_written(scenario, kind), MEDIA[kind], name)
+        return Answer(_written(scenario, kind), media_type, name)
 
 
 def _written(scenario: Any, kind: str) -> bytes:

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 from starlette.responses import Response
 
+from ..viewer.exports import FORMATS
 from .limits import MOST_SAMPLES
+
+if TYPE_CHECKING:
+    Ending = str
+else:
+    Ending = Literal[tuple(ending.removeprefix(".") for ending in FORMATS)]
 
 SCENE, JSON = "application/octet-stream", "application/json"
 OPENED = ("text/plain", "application/octet-stream")  # and any other: what it is, its content tells
@@ -58,7 +64,7 @@ class ToRoll(_Asked):
 class ToExport(AboutScenario):
     """A scenario to be saved in some format."""
 
-    format: Literal["toml", "csv", "nc", "png", "svg", "html", "glb", "gif"]
+    format: Ending
 
 
 class Told(BaseModel):

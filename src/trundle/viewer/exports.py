@@ -1,19 +1,23 @@
-"""The forms in which a motion can be handed on, by the ending of the file's name: one table for command and lab."""
+"""The forms in which a motion can be handed on, by the ending of the file's name: one table for command and lab.
+
+Each form loads what it needs when it is made: the table itself costs a server, or a help text, nothing.
+"""
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..errors import TrundleError, UnknownNameError
-from ..scene import Scene, scene_of
+
+if TYPE_CHECKING:
+    from ..scene import Scene
 
 Motion = Any  # a Trajectory; or a path that was rolled, with how it becomes a scene
-MakeScene = Callable[..., Scene]
+MakeScene = Callable[..., "Scene"]
 
 
 @dataclass(frozen=True)
@@ -35,7 +39,7 @@ class Format:
     write: Callable[[Motion, MakeScene], bytes]
 
 
-def export(motion: Motion, suffix: str, make_scene: MakeScene = scene_of) -> bytes:
+def export(motion: Motion, suffix: str, make_scene: MakeScene | None = None) -> bytes:
     """Return a motion in another form.
 
     Parameters
@@ -45,7 +49,7 @@ def export(motion: Motion, suffix: str, make_scene: MakeScene = scene_of) -> byt
     suffix : str
         One of the keys of `FORMATS`, such as ".html".
     make_scene : callable, optional
-        Takes the motion and `with_card`, returns a scene; needed for what is no Trajectory.
+        Takes the motion and `with_card`, returns a scene; absent: `trundle.scene.scene_of`, which takes a Trajectory.
 
     Returns
     -------
@@ -67,7 +71,9 @@ def export(motion: Motion, suffix: str, make_scene: MakeScene = scene_of) -> byt
     """
     if suffix.lower() not in FORMATS:
         raise UnknownNameError("form to export", suffix, FORMATS)
-    return FORMATS[suffix.lower()].write(motion, make_scene)
+    from ..scene import scene_of
+
+    return FORMATS[suffix.lower()].write(motion, make_scene or scene_of)
 
 
 def _html(motion: Motion, make_scene: MakeScene) -> bytes:
@@ -104,6 +110,8 @@ def _toml(motion: Motion, _: MakeScene) -> bytes:
 
 
 def _nc(motion: Motion, _: MakeScene) -> bytes:
+    import tempfile
+
     with tempfile.TemporaryDirectory(prefix="trundle-") as folder:
         return motion.save(Path(folder) / "run.nc").read_bytes()
 
