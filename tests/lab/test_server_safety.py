@@ -180,7 +180,15 @@ BAD: list[tuple[dict[str, Any], str | None, str]] = [
     ({"scenario": changed(body={"radius": float("nan")})}, "body.radius", "finite"),
     ({"scenario": changed(body={"radius": 10**400})}, "body.radius", "finite"),
     ({"scenario": changed(title="\ud800")}, "title", "without control characters"),
-    ({"scenario": {"\ud800\n": 1, **shipped(NAME)}}, None, "valid string"),
+    ({"scenario": {"\ud800\n": 1, **shipped(NAME)}}, r"'\ud800\n'", r"is no key of the file; got '\ud800\n'. There"),
+    (
+        {"scenario": changed(body={"\ud800": 1})},
+        r"body.'\ud800'",
+        r"is no key of [body]; got '\ud800'. There are: kind",
+    ),
+    ({"scenario": changed(run={"method": "\ud800"})}, "run.method", r"got '\ud800'. There are: auto, exact"),
+    ({"scenario": changed(body={"kind": "\ud800"})}, "body.kind", r"got '\ud800'. There are: solid-sphere"),
+    ({"scenario": shipped(NAME), "\ud800": 1}, None, r"must be text of whole characters; got '\ud800'. Leave out"),
     (
         {"scenario": changed(loads=[{"kind": "force", "value": ["open('/etc/passwd')*t", 0, 0]}])},
         "loads[0].value[0]",
@@ -239,9 +247,13 @@ def test_a_roll_names_its_bad_key(lab: TestClient) -> None:
         ({"kind": "straight", "length": "0 m"}, "path[0].length"),
         ({"path": [{"kind": "arc", "radius": "1 m"}]}, "path[0].angle"),
         ({"file": "/etc/passwd"}, "curve.file"),
+        ({"\ud800": 1}, r"curve.'\ud800'"),
+        ({"path": [{"kind": "straight", "turn": "90 deg", "\ud800": 1}]}, r"path[0].'\ud800'"),
         ({}, "curve.path"),
     ):
-        assert error_of(lab.post("/api/roll", json={"radius": "25 mm", "curve": curve}))["key"] == key
+        asked = json.dumps({"radius": "25 mm", "curve": curve})
+        answer = lab.post("/api/roll", content=asked, headers={"content-type": "application/json"})
+        assert error_of(answer)["key"] == key
 
 
 def test_no_name_that_came_reaches_the_file_system(tmp_path: Path) -> None:

@@ -76,6 +76,9 @@ def test_what_is_read_is_what_is_rolled() -> None:
         ({**WHOLE, "path": []}, "`path` must have at least one piece; got []"),
         ({**WHOLE, "path": {"kind": "straight"}}, "`path` must be a list of tables"),
         ({**WHOLE, "support": {}}, "`support` is no key of the file"),
+        ({**WHOLE, "\ud800": 1}, r"`'\ud800'` is no key of the file; got '\ud800'. There are: title"),
+        ({**WHOLE, "body": {"radius": 0.1, "a.\udfff": 1}}, r"`body.'a.\udfff'` is no key of [body]; got 'a.\udfff'."),
+        ({**WHOLE, "body": {"radius": 0.1, 1: 1}}, "`body[1]` is no key: keys are text; got 1. Put it in quotes."),
         (with_piece(length=1), '`path[0].kind` must be given; got nothing. Say which, for instance: kind = "straight"'),
         (
             with_piece(kind="strait"),

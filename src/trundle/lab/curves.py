@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..errors import ScenarioError
+from ..scenario.complaints import quoted
 
 
 def path_of(radius: Any, curve: Mapping[str, Any]) -> dict[str, Any]:
@@ -38,9 +39,8 @@ def path_of(radius: Any, curve: Mapping[str, Any]) -> dict[str, Any]:
     known = ("path", "start", "title", "notes")
     for key in curve:
         if key not in known:
-            raise ScenarioError(
-                f"curve.{key[:60]}", "is no key of a curve", curve[key], f"There are: {', '.join(known)}."
-            )
+            path = f"curve.{quoted(key)}"
+            raise ScenarioError(path, "is no key of a curve", curve[key], f"There are: {', '.join(known)}.")
     if "path" not in curve:
         remedy = 'Give pieces, for instance [{"kind": "straight", "turn": "90 deg"}].'
         raise ScenarioError("curve.path", "must be given", "nothing", remedy)

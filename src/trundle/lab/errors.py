@@ -130,6 +130,9 @@ def of_validation(errors: Any) -> Refusal:
         return Refusal(422, f"The request is not valid JSON: {first.get('ctx', {}).get('error', 'it ends early')}.")
     key = ".".join(path)
     said = str(first["msg"])
+    if first["type"] == "string_unicode":
+        got = ascii(first["input"])[:60]
+        said = f"must be text of whole characters; got {got}. Leave out what is half a character: \\ud800 to \\udfff"
     said = said[:1].lower() + said[1:]
     more = f" ({len(errors) - 1} more.)" if len(errors) > 1 else ""
     subject = f"`{key[:200]}`" if key else "The request"

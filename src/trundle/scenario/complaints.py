@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, get_args, get_origin
+from typing import Any, Literal, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
@@ -76,7 +76,7 @@ def path_of(beside: str, name: str) -> str:
 
 
 def _translate(detail: Any, model: type[BaseModel]) -> Complaint:
-    path, table, key = _locate(detail["loc"], model)
+    path, table, key, inside = _locate(detail["loc"], model)
     kind, received = detail["type"], detail["input"]
     if kind == "value_error" and isinstance(detail["ctx"]["error"], InvalidValueError):
         told = detail["ctx"]["error"]
@@ -84,17 +84,16 @@ def _translate(detail: Any, model: type[BaseModel]) -> Complaint:
     if kind == "missing":
         return Complaint(path, "must be given", Nothing(), _how_to_add(_keys(table)[key], key, model), missing=True)
     if kind == "extra_forbidden":
-        known = list(_keys(table))
-        place = f"[{path.rpartition('.')[0]}]" if "." in path else "the file"
-        remedy = f"{did_you_mean(key, known)} {_there_are(known)}".strip()
-        return Complaint(path, f"is no key of {place}", received, remedy, unknown=True)
+        return _no_key(path, key, received, table)
+    if kind == "string_unicode" and inside is not None:  # half a character in a key, for which no key is looked at
+        return _no_key(_join(path, quoted(received)), received, received, inside)
     if kind == "union_tag_not_found":
         known = list(_kinds(path, model))
         remedy = f'Say which, for instance: kind = "{known[0]}". {_there_are(known)}'
         return Complaint(_join(path, "kind"), "must be given", Nothing(), remedy, missing=True)
     if kind == "union_tag_invalid":
         return _not_one_of(_join(path, "kind"), received.get("kind"), _kinds(path, model))
-    if kind == "literal_error":
+    if kind in ("literal_error", "string_unicode") and get_origin(_keys(table)[key].annotation) is Literal:
         offered = get_args(_keys(table)[key].annotation)
         known = list(offered) if key != "kind" else list(_kinds(path.rpartition(".")[0], model))
         return _not_one_of(path, received, known)
@@ -104,12 +103,21 @@ def _translate(detail: Any, model: type[BaseModel]) -> Complaint:
 
 _SHAPES = {
     "string_type": ("must be text", "Put it in quotes."),
+    "string_unicode": ("must be text of whole characters", "Leave out what is half a character: \\ud800 to \\udfff."),
+    "invalid_key": ("is no key: keys are text", "Put it in quotes."),
     "bool_type": ("must be true or false", "Write it without quotes."),
     "tuple_type": ("must be a list of tables", "Head each with [[{path}]]."),
     "model_type": ("must be a table", "Head it with [{path}] and give its keys below."),
     "model_attributes_type": ("must be a table", "Head it with [{path}] and give its keys below."),
     "dict_type": ("must be a table", "Head it with [{path}] and give its keys below."),
 }
+
+
+def _no_key(path: str, key: str, received: Any, table: type[BaseModel]) -> Complaint:
+    known = list(_keys(table))
+    place = f"[{path.removesuffix(quoted(key)).removesuffix('.')}]" if path != quoted(key) else "the file"
+    remedy = f"{did_you_mean(key, known)} {_there_are(known)}".strip()
+    return Complaint(path, f"is no key of {place}", received, remedy, unknown=True)
 
 
 def _not_one_of(path: str, received: Any, known: Any) -> Complaint:
@@ -126,10 +134,13 @@ def _kinds(path: str, model: Any) -> Mapping[str, type[BaseModel]]:
     return model.kinds[re.sub(r"\[\d+\]", "", path)]
 
 
-def _locate(loc: tuple[int | str, ...], model: type[BaseModel]) -> tuple[str, type[BaseModel], str]:
-    """Return the path of a pydantic location, the table class that holds its last key, and that key.
+def _locate(
+    loc: tuple[int | str, ...], model: type[BaseModel]
+) -> tuple[str, type[BaseModel], str, type[BaseModel] | None]:
+    """Return the path of a pydantic location, the table class that holds its last key, that key, and its own class.
 
-    Where a table has several kinds, pydantic puts the kind into the location; a reader knows of no such part.
+    The last is None where the key is no table's. Where a table has several kinds, pydantic puts the kind into the
+    location; a reader knows of no such part.
     """
     path, key, table = "", "", model
     inside: type[BaseModel] | None = model  # holds the keys that come next; None: the next part is a kind
@@ -139,9 +150,9 @@ def _locate(loc: tuple[int | str, ...], model: type[BaseModel]) -> tuple[str, ty
         elif inside is None:
             inside = _kinds(path, model)[part]
         else:
-            table, key, path = inside, part, _join(path, _quoted(part))
+            table, key, path = inside, part, _join(path, quoted(part))
             inside = _table_of(table, key, path, model)
-    return path, table, key
+    return path, table, key, inside
 
 
 def _table_of(table: type[BaseModel], key: str, path: str, model: Any) -> type[BaseModel] | None:
@@ -164,7 +175,7 @@ def _join(path: str, key: str) -> str:
     return path + key if not path or not key or key.startswith("[") else f"{path}.{key}"
 
 
-def _quoted(key: str) -> str:
+def quoted(key: str) -> str:
     """Return a key as it may be printed: what is no bare key comes quoted, cut and escaped."""
     return key if re.fullmatch(r"[A-Za-z0-9_-]{1,60}", key) else repr(key[:60])
 
