@@ -11,6 +11,9 @@ from starlette.testclient import TestClient
 from tests.lab.conftest import shipped
 
 import trundle as tr
+from trundle.derivation.naming import derive_scenario_numbers
+from trundle.lab import create_app
+from trundle.lab.deriving import rows_of
 from trundle.scenario import ScenarioFile, files
 from trundle.scene import unpack
 
@@ -41,6 +44,15 @@ def test_a_scenario_comes_as_it_is_written_and_as_tables(lab: TestClient) -> Non
 
 def test_the_schema_is_the_packages_own(lab: TestClient) -> None:
     assert lab.get("/api/schema").json() == json.loads(json.dumps(ScenarioFile.schema()))
+
+
+def test_it_says_whether_a_worker_has_answered_yet(lab: TestClient) -> None:
+    unstarted = TestClient(create_app(), base_url="http://127.0.0.1")
+    assert unstarted.get("/api/ready").json() == {"ready": False}
+    ask(lab, "simulate", scenario=shipped("tilted-turntable"), samples=50)
+    answer = lab.get("/api/ready")
+    assert answer.json() == {"ready": True}
+    assert answer.headers["cache-control"] == "no-store"  # it is not to be remembered
 
 
 @pytest.mark.parametrize("name", ["level-turntable-nudged", "ball-in-a-trough", "ball-in-a-funnel"])
@@ -113,7 +125,30 @@ def test_the_derivation_is_told_step_by_step(lab: TestClient) -> None:
     assert all(step["latex"] for step in told["steps"] if "closed form" not in step["title"])
     numbers = {number["symbol"]: number["value"] for number in told["numbers"]}
     assert numbers[r"\kappa"] == pytest.approx(2 / 7 * 33.3 * 2 * np.pi / 60)
+    names = {number["symbol"]: number["name"] for number in told["numbers"]}
+    assert names[r"\varrho"] == "radius of the circle"
+    assert names[r"\operatorname{Im} v_{d}"] == "velocity at which the circle drifts, along the second axis"
     assert numbers[r"\operatorname{Re} \varphi"] == pytest.approx(9.80665 * np.sin(np.radians(3)) / 1.4)
+
+
+def test_every_number_of_a_derivation_has_a_name_of_its_own() -> None:
+    seen = set()
+    for name in files.names():
+        if files.rolls_along_path(files.parse(files.read(name), name)):
+            continue
+        rows = [row for one in derive_scenario_numbers(name) for row in rows_of(one, str(one.symbol))]
+        nameless = [row["symbol"] for row in rows if not row["name"] or row["name"].startswith(",")]
+        assert nameless == [], name
+        assert len({row["name"] for row in rows}) == len(rows), name
+        seen |= {row["symbol"] for row in rows}
+    assert {"varrho", "v_d", "lambda_0", "theta_0", "T"} <= {symbol.rpartition(" ")[2] for symbol in seen}
+
+
+def test_a_time_that_never_ends_is_not_among_the_numbers(lab: TestClient) -> None:
+    """Without weight nothing swings: JSON has no infinity."""
+    still = {**shipped("cylinder-in-cylinder"), "gravity": 0, "start": {"position": ["30 deg", 0]}}
+    told = ask(lab, "derivation", scenario=still).json()
+    assert [number["symbol"] for number in told["numbers"]] == ["m", "a", "k", "b", r"\ell", r"\theta_{0}"]
 
 
 def test_where_nothing_closed_covers_it_the_general_law_is_derived(lab: TestClient) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -47,10 +48,13 @@ from .symbols import (
     n,
     omega,
     p,
+    period,
     phi,
     theta,
+    theta_0,
     thetaddot,
     thetadot,
+    thetadot_0,
     x,
     y,
 )
@@ -251,7 +255,7 @@ def numbers_of(motion: Any, system: RollingSystem) -> Iterator[Number]:
     Yields
     ------
     Number
-        Those that are not zero.
+        Those that are finite and not zero.
 
     Examples
     --------
@@ -266,10 +270,10 @@ def numbers_of(motion: Any, system: RollingSystem) -> Iterator[Number]:
     size = (motion.force[0] ** 2 + motion.force[1] ** 2) ** 0.5
     given = [(m, motion.mass, "kg"), (a, motion.radius, "m"), (k, motion.inertia_ratio, "")]
     given += [(b, motion.track_radius, "m"), (ell, motion.length, "m"), (g, system.gravity, "m/s²")]
-    given += [(G, size, "N"), (omega, motion.rate, "rad/s"), (sp.Symbol("theta_0"), motion.angle, "rad")]
-    given.append((sp.Symbol("thetadot_0"), motion.angular_rate, "rad/s"))
+    given += [(G, size, "N"), (omega, motion.rate, "rad/s"), (theta_0, motion.angle, "rad")]
+    given.append((thetadot_0, motion.angular_rate, "rad/s"))
     given.append((lam_0, (size / (motion.mass * (1 + motion.inertia_ratio) * motion.length)) ** 0.5, "1/s"))
-    given.append((sp.Symbol("T"), motion.period, "s"))
+    given.append((period, motion.period, "s"))
     for symbol, value, unit in given:
-        if value != 0:
+        if value != 0 and math.isfinite(value):
             yield Number(symbol, float(value), unit)

@@ -28,6 +28,7 @@ p, pdot, rho, rhodot, u, udot, rdot = map(vector, ("p", "pdot", "rho", "rhodot",
 
 b, ell, G, lam_0 = sp.symbols("b ell G lambda_0", positive=True)
 theta, thetadot, thetaddot, phi = sp.symbols("theta thetadot thetaddot phi", real=True)
+theta_0, thetadot_0, period = sp.symbols("theta_0 thetadot_0 T")
 N, R_theta, par = sp.symbols("N R_theta mu", real=True)
 e_z, e_r, e_theta = map(vector, ("ehat_z", "ehat_r", "ehat_theta"))
 
@@ -39,6 +40,10 @@ MEANINGS = {
     b: ("radius of the cylinder that it rolls on", "m"),
     ell: ("distance of its centre from that cylinder's axis", "m"),
     theta: ("angle of its centre about that axis, from the lowest line", "rad"),
+    theta_0: ("angle of its centre at the start, from the lowest line", "rad"),
+    thetadot_0: ("rate at which its centre goes round at the start", "rad/s"),
+    lam_0: ("rate of small swings", "1/s"),
+    period: ("time of one swing, or of once round", "s"),
     phi: ("angle by which the body has turned", "rad"),
     g: ("acceleration of free fall", "m/s²"),
     alpha: ("tilt: the angle between the normal and the vertical", "rad"),
@@ -66,4 +71,6 @@ MEANINGS = {
     kappa: ("rate of the circle", "rad/s"),
     gamma: ("rate at which drag slows the body", "1/s"),
     varphi: ("acceleration that the loads give, as a complex number", "m/s²"),
+    v_d: ("velocity at which the circle drifts, as a complex number", "m/s"),
+    varrho: ("radius of the circle", "m"),
 }

@@ -5,8 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from ..derivation.steps import Number
     from ..simulation import Scenario
 
+_COMPLEX = ", as a complex number"
 _OF_THE_FORM = ("The path", "The closed form is a solution")
 
 
@@ -47,23 +49,43 @@ def derivation_of(scenario: Scenario) -> dict[str, Any]:
         for step in told["steps"]
     ]
     numbers = [
-        row for made, shown in zip(found.numbers, told["numbers"], strict=True) for row in _rows(made, shown["latex"])
+        row for made, shown in zip(found.numbers, told["numbers"], strict=True) for row in rows_of(made, shown["latex"])
     ]
     return {"title": told["title"], "introduction": told["introduction"], "steps": steps, "numbers": numbers}
 
 
-def _rows(number: Any, symbol: str) -> list[dict[str, Any]]:
-    """Return one row for a number, two for a complex one: its parts lie along the first and the second axis."""
+def rows_of(number: Number, symbol: str) -> list[dict[str, Any]]:
+    r"""Return one row for a number, two for a complex one: its parts lie along the first and the second axis.
+
+    Parameters
+    ----------
+    number : Number
+        Of a derivation.
+    symbol : str
+        Its symbol in LaTeX.
+
+    Returns
+    -------
+    list of dict
+        Each `name`, `symbol`, `value` and `unit`.
+
+    Examples
+    --------
+    >>> from ..derivation.steps import Number
+    >>> from ..derivation.symbols import v_d
+    >>> [row["name"] for row in rows_of(Number(v_d, 1.0 + 2.0j, "m/s"), "v_d")][0]
+    'velocity at which the circle drifts, along the first axis'
+    """
     from ..derivation.symbols import MEANINGS
 
-    name = MEANINGS.get(number.symbol, ("", ""))[0].removesuffix(", as a complex number")
+    name = MEANINGS.get(number.symbol, ("", ""))[0].removesuffix(_COMPLEX)
     unit = "" if number.unit == "1" else number.unit
     if not isinstance(number.value, complex):
         return [{"name": name, "symbol": symbol, "value": float(number.value), "unit": unit}]
     parts = (("Re", "first", number.value.real), ("Im", "second", number.value.imag))
     return [
         {
-            "name": f"{name}, along the {which} axis".removeprefix(", "),
+            "name": f"{name}, along the {which} axis",
             "symbol": rf"\operatorname{{{part}}} {symbol}",
             "value": value,
             "unit": unit,
