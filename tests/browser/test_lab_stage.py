@@ -102,10 +102,10 @@ def passed(bench: Bench, seconds: float) -> None:
     assert bench.stage.drawn().time > seconds
 
 
-def test_a_ball_in_a_tube_says_why_it_cannot_be_dragged(visitor: Visitor) -> None:
-    bench = Bench(visitor.open("#/bench?name=loop-the-loop"))
+def test_what_cannot_be_nudged_says_why(visitor: Visitor) -> None:
+    bench = Bench(visitor.open("#/bench?name=coin-rolling-upright", size=SMALL))
     bench.page.get_by_role("radio", name="Nudge it").click()
-    expect(bench.page.get_by_text("Nudging is for balls on a table.")).to_be_visible()
+    expect(bench.page.get_by_text("Nudging is for balls whose centre of mass is in the middle.")).to_be_visible()
 
 
 def test_the_view_turns_comes_near_and_is_put_back(bench: Bench) -> None:

@@ -38,18 +38,30 @@ export interface ViewerEvents {
   dragstart: Place
   drag: Place
   dragend: Place
-  /** A velocity drawn as an arrow on the support, in m/s. */
-  arrow: { vx: number; vy: number; vz: number; done: boolean }
+  /** A velocity drawn as an arrow along the support, in m/s. */
+  arrow: Drawn
   /** The same while it runs: what is to be added to the velocity at this time. */
-  nudge: { vx: number; vy: number; vz: number; time: number; done: boolean }
+  nudge: Drawn & { time: number }
   /** A curve drawn on the support; its points are those of the support's material where the frame is corotating. */
   sketch: { points: Triple[]; frame: Frame }
 }
 
+/** Of the body, in the support frame, m. */
 export interface Place {
   x: number
   y: number
   z: number
+  /** Where it touches there. */
+  contact: Triple
+}
+
+export interface Drawn {
+  vx: number
+  vy: number
+  vz: number
+  /** Of the support where the body is, towards the body. */
+  normal: Triple
+  done: boolean
 }
 
 export interface Viewer {

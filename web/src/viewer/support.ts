@@ -50,6 +50,11 @@ export class SupportModel {
     return this.front.visible ? this.front : null
   }
 
+  /** The same from its two sides, of which each is met only from where it is seen. */
+  get sides(): readonly Part[] {
+    return this.front.visible ? [this.front, this.back] : []
+  }
+
   /** Take the support of a scene, unless it is the one that is there. */
   load(scenes: readonly Scene[]): void {
     const scene = scenes[0]!

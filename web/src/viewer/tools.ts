@@ -4,7 +4,7 @@ import { Arrow } from './arrow'
 import type { Tool, ViewerEvents } from './contract'
 import type { Emitter } from './emitter'
 import { contactNormal } from './normals'
-import { drawnVelocity, pickPlane, pickSupport, Stroke } from './picking'
+import { drawnVelocity, type Hit, pickNear, pickPlane, pickSupport, Stroke, sideAt } from './picking'
 import type { Triple } from './scene'
 import type { Stage } from './stage'
 import type { Palette } from './theme'
@@ -95,25 +95,43 @@ export class Tools {
   }
 
   private drag(x: number, y: number): Gesture {
-    const body = this.world.actors[0]!.body
-    const surface = this.world.support?.surface ?? null
+    const { body } = this.world.actors[0]!
     const contact = body.track.contact(new Vector3())
-    const lift = body.group.position.clone().sub(contact)
-    // Hold it where it was taken: the ball is not to leap under the pointer.
-    const first = pickSupport(this.stage, surface, x, y, contact.z)
-    const slack = first ? contact.clone().sub(first) : new Vector3()
     const place = body.group.position.clone()
-    this.events.emit('dragstart', { x: place.x, y: place.y, z: place.z })
-    const tell = (name: 'drag' | 'dragend') => this.events.emit(name, { x: place.x, y: place.y, z: place.z })
+    const lift = place.clone().sub(contact)
+    const find = this.finder(x, y, contact)
+    const tell = (name: 'dragstart' | 'drag' | 'dragend') =>
+      this.events.emit(name, { x: place.x, y: place.y, z: place.z, contact: contact.toArray() })
+    tell('dragstart')
     return {
       move: (px, py) => {
-        const hit = pickSupport(this.stage, surface, px, py, contact.z)
+        const hit = find(px, py)
         if (!hit) return
-        place.copy(hit).add(slack).add(lift)
+        contact.copy(hit.place)
+        place.copy(contact).add(this.flat ? lift : hit.normal.multiplyScalar(lift.length()))
         this.world.hold(place)
         tell('drag')
       },
       end: () => tell('dragend'),
+    }
+  }
+
+  private get flat(): boolean {
+    return this.world.scenes[0]?.header.support.kind === 'plane'
+  }
+
+  /** Where the pointer moves a contact to. It is held where it was taken: the ball is not to leap under the pointer. */
+  private finder(x: number, y: number, contact: Vector3): (px: number, py: number) => Hit | null {
+    const { stage } = this
+    const at = stage.project(contact) ?? { x, y }
+    const side = sideAt(stage, this.world.support?.sides ?? [], at.x, at.y, contact)
+    const { z: height } = contact
+    return (px, py) => {
+      const [ax, ay] = [px + at.x - x, py + at.y - y]
+      const hit = side && pickNear(stage, side, ax, ay, contact)
+      if (hit || !(this.flat || !this.world.support?.surface)) return hit
+      const place = pickSupport(stage, null, ax, ay, height)
+      return place && { place, normal: new Vector3(0, 0, 1) }
     }
   }
 
@@ -129,9 +147,9 @@ export class Tools {
     const least = LEAST * this.stage.metresPerPixel(from)
     let velocity = new Vector3()
     const tell = (done: boolean) => {
-      const { x: vx, y: vy, z: vz } = velocity
-      if (nudge) this.events.emit('nudge', { vx, vy, vz, time: this.host.time(), done })
-      else this.events.emit('arrow', { vx, vy, vz, done })
+      const drawn = { vx: velocity.x, vy: velocity.y, vz: velocity.z, normal: normal.toArray(), done }
+      if (nudge) this.events.emit('nudge', { ...drawn, time: this.host.time() })
+      else this.events.emit('arrow', drawn)
     }
     return {
       move: (px, py) => {

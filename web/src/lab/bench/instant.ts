@@ -1,14 +1,18 @@
 /** The state at an instant, between two samples, as the samples say it. */
-import type { Scene, Triple, Turn } from '../../viewer/scene'
+import { PHASE, type Scene, type Triple, type Turn } from '../../viewer/scene'
+import type { Pose, Spot } from './surfaces'
 
-export interface Instant {
+export interface Instant extends Spot {
   time: number
-  position: Triple
-  contact: Triple
   velocity: Triple
   angularVelocity: Triple
   orientation: Turn
+  /** How high over the support it flies, m; absent while it touches. */
+  height?: number | undefined
 }
+
+/** A body that leaves the support just now still touches, for single precision, m. */
+const LEAST = 1e-6
 
 /** Index of the last sample at or before a time. */
 export function indexAt(times: Float64Array, time: number): number {
@@ -37,14 +41,33 @@ export function instantAt(scene: Scene, time: number): Instant {
       return a + (b - a) * part
     })
 
-  const q = columns.orientation ? mixed(columns.orientation, 4) : [1, 0, 0, 0]
-  const size = Math.hypot(...q) || 1
+  const turn = (column: Float32Array | undefined): Turn => {
+    const q = column ? mixed(column, 4) : [1, 0, 0, 0]
+    const size = Math.hypot(...q) || 1
+    return q.map((one) => one / size) as Turn
+  }
+
+  const position = mixed(columns.position, 3) as Triple
+  const contact = mixed(columns.contact ?? columns.position, 3) as Triple
+  const flies = columns.phase?.[part < 1 ? index : next] === PHASE.flight
+  const above = Math.hypot(...position.map((one, axis) => one - contact[axis]!)) - scene.header.body.radius
+  const support: Pose | undefined = columns.support_orientation && {
+    place: mixed(columns.support_position, 3) as Triple,
+    turn: turn(columns.support_orientation),
+  }
   return {
     time,
-    position: mixed(columns.position, 3) as Triple,
-    contact: mixed(columns.contact ?? columns.position, 3) as Triple,
+    position,
+    contact,
+    support,
+    height: flies && above > LEAST ? above : undefined,
     velocity: mixed(columns.velocity, 3) as Triple,
     angularVelocity: mixed(columns.angular_velocity, 3) as Triple,
-    orientation: q.map((one) => one / size) as Turn,
+    orientation: turn(columns.orientation),
   }
+}
+
+/** The support's pose when the run begins. */
+export function startPose(scene: Scene): Pose | undefined {
+  return instantAt(scene, scene.columns.time[0] ?? 0).support
 }

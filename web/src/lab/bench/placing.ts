@@ -1,83 +1,100 @@
 /** Starts by hand: where the ball was dragged, the velocity drawn, and a restart from the middle of a run. */
+import { Quaternion, Vector3 } from 'three'
 import type { Triple } from '../../viewer/scene'
-import { parse, rounded, toSI, UNITS, write } from '../quantity'
+import { type Kind, parse, rounded, UNITS, write } from '../quantity'
 import type { Json, Quantity, Scenario, Table } from '../scenario'
 import { withValue } from '../scenario'
 import { ROUND } from './defaults'
 import type { Instant } from './instant'
+import { coordinates, directions, looksAlike, type Own, own, type Pose, type Spot, sayable } from './surfaces'
 
 /** Why the ball cannot be dragged here, or null where it can. */
 export function whyNotDragged(scenario: Scenario): string | null {
   return scenario.support ? null : 'A ball that is rolled along a path starts where the path does.'
 }
 
-function unitOf(value: Json | undefined, fallback: string): string {
-  const unit = parse(value).unit
-  return unit in UNITS.length || unit in UNITS.velocity ? unit : fallback
-}
+/** Without what is left of a zero that was turned to and fro. */
+const clean = (value: number): number => (Math.abs(value) < 1e-12 ? 0 : value)
 
-function component(scenario: Scenario, key: string, index: number): Json | undefined {
+/** The quantity in the unit in which the start says it now. */
+function worded(scenario: Scenario, key: string, index: number, si: number, kind: Kind, usual: string): Quantity {
   const vector = scenario.start[key]
-  return Array.isArray(vector) ? vector[index] : undefined
+  const { unit } = parse(Array.isArray(vector) ? vector[index] : undefined)
+  return write(clean(si), kind, unit in UNITS[kind] ? unit : usual, key === 'velocity' ? 3 : 4)
 }
 
-const length = (metres: number, unit: string): Quantity => write(metres, 'length', unit || 'm', 4)
+const ANGLES: Record<string, readonly [boolean, boolean]> = { cylinder: [true, false], 'torus-track': [true, true] }
 
-/** The scenario with its start at a place of the support frame, in the coordinates that the surface has. */
-export function placed(scenario: Scenario, [x, y, z]: Triple): Scenario {
-  const { kind } = scenario.support
-  if (kind === 'torus-track') return withValue(scenario, 'start.position', tubeAngles(scenario.support, [x, y, z]))
-  if (kind === 'cylinder') {
-    const unit = unitOf(component(scenario, 'position', 1), 'cm')
-    return withValue(scenario, 'start.position', [degrees(Math.atan2(y, x)), length(z, unit)])
-  }
-  const units = [0, 1].map((index) => unitOf(component(scenario, 'position', index), 'cm'))
-  return withValue(scenario, 'start.position', [length(x, units[0] ?? 'cm'), length(y, units[1] ?? 'cm')])
+/** The scenario with its start at a place on the support, in the coordinates that the surface has. */
+export function placed(scenario: Scenario, spot: Spot, start?: Pose): Scenario {
+  const angles = ANGLES[scenario.support.kind] ?? [false, false]
+  const pair = coordinates(scenario.support, own(scenario, spot, start)).map((si, index) =>
+    angles[index]
+      ? worded(scenario, 'position', index, si, 'angle', 'deg')
+      : worded(scenario, 'position', index, si, 'length', 'cm'),
+  )
+  return withValue(scenario, 'start.position', pair)
 }
 
-const degrees = (radians: number): Quantity => write(radians, 'angle', 'deg', 4)
-
-/** The angle about the axis, and the one around the tube: 0 where a body comes to rest, growing outwards. */
-function tubeAngles(support: Table, [x, y, z]: Triple): Json[] {
-  const outwards = Math.hypot(x, y) - (toSI(support.ring_radius, 'length') ?? 0)
-  const down = support.side === 'outside' ? z : -z
-  return [degrees(Math.atan2(y, x)), degrees(Math.atan2(outwards, down))]
+/** The components of a velocity of the support frame along the surface, as a start says them. */
+function along(scenario: Scenario, there: Own, velocity: Vector3): [number, number] {
+  const [first, second] = directions(scenario.support, there)
+  const turned = velocity.clone().applyQuaternion(there.turn)
+  return [turned.dot(first), turned.dot(second)]
 }
 
-/** The scenario with another first velocity, along x and y. */
-export function thrown(scenario: Scenario, vx: number, vy: number): Scenario {
-  const units = [0, 1].map((index) => unitOf(component(scenario, 'velocity', index), 'm/s'))
-  const pair = [vx, vy].map((speed, index) => write(speed, 'velocity', units[index] || 'm/s', 3))
-  const next = withValue(scenario, 'start.velocity', pair)
+/** The scenario with another first velocity, drawn along the surface. */
+export function thrown(scenario: Scenario, spot: Spot, velocity: Triple, start?: Pose): Scenario {
+  const there = own(scenario, spot, start)
+  const before = scenario.start.velocity
+  const pair: Json[] = along(scenario, there, new Vector3(...velocity)).map((speed, index) =>
+    worded(scenario, 'velocity', index, speed, 'velocity', 'm/s'),
+  )
+  const third = Array.isArray(before) && before.length === 3 ? before.slice(2) : []
+  const next = withValue(scenario, 'start.velocity', [...pair, ...third])
   if (!Array.isArray(scenario.start.angular_velocity) || scenario.support.friction !== undefined) return next
   // Nothing slips here, so an angular velocity that went with the old velocity would contradict the new one.
   return withValue(next, 'start.angular_velocity', undefined)
 }
 
-const exact = (value: number): number => rounded(value, 9)
+const exact = (value: number): number => rounded(clean(value), 9)
 
 /**
  * The scenario that goes on from an instant, its velocity changed by a nudge. Where the support grips as much
  * as it takes the ball rolls on at once, with the spin it had; else the nudge goes through its centre and
- * leaves its turning as it was. Only for balls on a plane: elsewhere a place is said otherwise.
+ * leaves its turning as it was.
  */
-export function nudged(scenario: Scenario, at: Instant, vx: number, vy: number): Scenario {
-  const [x, y, z] = at.position
-  const [u, v, w] = at.velocity
-  const flies = z - at.contact[2] > 1.02 * Math.abs(z) && z > 0
+export function nudged(scenario: Scenario, at: Instant, by: Triple, begin?: Pose): Scenario {
+  const there = own(scenario, at, begin)
+  const velocity = new Vector3(...at.velocity)
+  const upwards = velocity.clone().applyQuaternion(there.turn).dot(there.normal)
+  const [w, x, y, z] = at.orientation
+  const q = new Quaternion(x, y, z, w).premultiply(there.begin)
+  const turning = new Vector3(...at.angularVelocity)
+  const flies = at.height !== undefined
+  const parts = along(scenario, there, velocity.add(new Vector3(...by)))
   const start: Table = {
-    position: [exact(x), exact(y)],
-    velocity: [exact(u + vx), exact(v + vy), ...(flies ? [exact(w)] : [])],
-    orientation: at.orientation.map(exact),
+    position: coordinates(scenario.support, there).map(exact),
+    velocity: [...parts, ...(flies ? [upwards] : [])].map(exact),
+    orientation: [q.w, q.x, q.y, q.z].map(exact),
   }
-  if (scenario.support.friction === undefined) start.spin = exact(at.angularVelocity[2])
-  else start.angular_velocity = at.angularVelocity.map(exact)
+  if (flies) start.height = exact(at.height ?? 0)
+  if (flies || scenario.support.friction !== undefined)
+    start.angular_velocity = turning.applyQuaternion(there.begin).toArray().map(exact)
+  else start.spin = exact(turning.applyQuaternion(there.turn).dot(there.normal))
   return { ...scenario, start }
+}
+
+/** Why no run can start where the ball is, or null where one can. */
+export function whyNotHere(scenario: Scenario, spot: Spot, begin?: Pose): string | null {
+  if (sayable(scenario.support, own(scenario, spot, begin))) return null
+  return 'No run can start here: a start says its place by x and y, and the surface overhangs.'
 }
 
 /** Why a run cannot be nudged, or null where it can. */
 export function whyNotNudged(scenario: Scenario): string | null {
-  if (scenario.support?.kind !== 'plane') return 'Nudging is for balls on a table.'
+  const why = whyNotDragged(scenario)
+  if (why) return why
   if (!ROUND.has(scenario.body.kind)) return 'Nudging is for balls whose centre of mass is in the middle.'
   return null
 }
@@ -85,9 +102,5 @@ export function whyNotNudged(scenario: Scenario): string | null {
 /** Does the support's motion depend on the clock, so that a restart begins it anew? */
 export function clockMatters(scenario: Scenario): boolean {
   const kind = scenario.support?.motion?.kind ?? 'fixed'
-  return !['fixed', 'spin'].includes(kind)
-}
-
-export function speedOf([x, y, z]: Triple): number {
-  return Math.hypot(x, y, z)
+  return kind !== 'fixed' && !(kind === 'spin' && looksAlike(scenario))
 }

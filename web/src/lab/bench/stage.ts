@@ -1,5 +1,6 @@
 /** The stage: the viewer, its tools, what is written over it, and what is done on it by hand. */
-import type { Scene } from '../../viewer/scene'
+import type { Place } from '../../viewer/contract'
+import type { Scene, Triple } from '../../viewer/scene'
 import type { Tool, Viewer } from '../../viewer/viewer'
 import { createViewer } from '../../viewer/viewer'
 import type { App } from '../app'
@@ -9,8 +10,13 @@ import { formula } from '../math'
 import { show } from '../quantity'
 import type { Scenario } from '../scenario'
 import { headline } from './findings'
-import { instantAt } from './instant'
-import { clockMatters, nudged, placed, thrown, whyNotDragged, whyNotNudged } from './placing'
+import { instantAt, startPose } from './instant'
+import { clockMatters, nudged, placed, thrown, whyNotDragged, whyNotHere, whyNotNudged } from './placing'
+
+/** "0.42 ms", "1.3 s". */
+function duration(seconds: number): string {
+  return seconds < 1 ? `${show(1000 * seconds, 2)} ms` : `${show(seconds, 2)} s`
+}
 
 type BenchTool = Exclude<Tool, 'draw'>
 
@@ -38,6 +44,7 @@ export interface Stage {
   viewer: Viewer
   setScene(scene: Scene, keep: { camera: boolean; time: boolean }): void
   working(busy: boolean): void
+  /** How long computing it took, and how long it was under way altogether. */
   took(milliseconds: number, scene: Scene): void
   /** What is drawn is not what is asked for: why, or null where it is. */
   stale(why: string | null): void
@@ -113,27 +120,40 @@ export function createStage(app: App): Stage {
     viewer.on('dragstart', () => {
       gestures += 1
     }),
-    viewer.on('drag', ({ x, y, z }) =>
-      store.set(placed(store.scenario, [x, y, z]), { source: 'drag', gesture: `drag${gestures}` }),
-    ),
-    viewer.on('dragend', ({ x, y, z }) =>
-      store.set(placed(store.scenario, [x, y, z]), { source: 'drag', gesture: `drag${gestures}` }),
-    ),
-    viewer.on('arrow', ({ vx, vy, done }) => {
-      store.set(thrown(store.scenario, vx, vy), { source: 'drag', gesture: `arrow${gestures}` })
+    viewer.on('drag', put),
+    viewer.on('dragend', put),
+    viewer.on('arrow', ({ vx, vy, vz, normal, done }) => {
+      if (!scene) return
+      const spot = { ...instantAt(scene, viewer.time), normal }
+      const next = thrown(store.scenario, spot, [vx, vy, vz], startPose(scene))
+      store.set(next, { source: 'drag', gesture: `arrow${gestures}` })
       if (done) gestures += 1
     }),
-    viewer.on('nudge', ({ vx, vy, time: when, done }) => {
-      if (done) nudge(vx, vy, when)
+    viewer.on('nudge', ({ vx, vy, vz, time: when, done }) => {
+      if (done) nudge([vx, vy, vz], when)
     }),
   )
 
-  function nudge(vx: number, vy: number, when: number): void {
+  function put({ x, y, z, contact }: Place): void {
+    if (!scene) return
+    const spot = { position: [x, y, z] as Triple, contact, support: instantAt(scene, viewer.time).support }
+    if (whyNotHere(store.scenario, spot, startPose(scene))) return
+    const next = placed(store.scenario, spot, startPose(scene))
+    store.set(next, { source: 'drag', gesture: `drag${gestures}` })
+  }
+
+  function nudge(by: Triple, when: number): void {
     if (!scene) return
     const before: Scenario = store.scenario
-    store.set(nudged(before, instantAt(scene, when), vx, vy), { source: 'nudge' })
+    const [at, begin] = [instantAt(scene, when), startPose(scene)]
+    const why = whyNotHere(before, at, begin)
+    if (why) {
+      app.toast(why)
+      return
+    }
+    store.set(nudged(before, at, by, begin), { source: 'nudge' })
     const clock = clockMatters(before) ? ' The support begins its motion anew.' : ''
-    app.toast(`Nudged at ${show(when, 3)} s by ${show(Math.hypot(vx, vy), 2)} m/s: this is the new start.${clock}`)
+    app.toast(`Nudged at ${show(when, 3)} s by ${show(Math.hypot(...by), 2)} m/s: this is the new start.${clock}`)
   }
 
   /** While it stands still the whole path is there; while it runs the ball draws it. */
@@ -187,7 +207,12 @@ export function createStage(app: App): Stage {
     took(milliseconds, { header }) {
       const method =
         { exact: 'closed form', taylor: 'Taylor series', 'runge-kutta': 'Runge–Kutta' }[header.method] ?? header.method
-      fill(time, h('span', { class: 'number' }, `${Math.round(milliseconds)} ms`), ` ${method}`)
+      const whole = duration(milliseconds / 1000)
+      const computed = typeof header.seconds === 'number' ? duration(header.seconds) : null
+      fill(time, h('span', { class: 'number' }, computed ?? whole), ` ${method}`)
+      time.title = computed
+        ? `Computed in ${computed}. From the question to the picture: ${whole}.`
+        : `From the question to the picture: ${whole}.`
     },
     stale(why) {
       old.hidden = why === null || scene === undefined

@@ -1,0 +1,70 @@
+"""By hand on a curved support: the pointer meets the surface, and the start says the place in its coordinates."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from playwright.sync_api import expect
+
+import trundle as tr
+
+from .bench import Bench, eventually
+from .launching import SMALL
+from .visiting import Visitor
+
+
+@pytest.fixture
+def bench(visitor: Visitor) -> Bench:
+    """A turning bowl, seen from above: right on the screen is the first axis, up is the second."""
+    shown = Bench(visitor.open("#/bench?name=ball-in-a-turning-bowl", size=SMALL))
+    shown.page.get_by_role("button", name="Path", exact=True).click()  # it has the ball's colour
+    shown.stage.canvas.focus()
+    shown.page.keyboard.press("Home")
+    shown.page.keyboard.press("t")
+    shown.page.wait_for_timeout(200)
+    return shown
+
+
+def tool(bench: Bench, name: str) -> None:
+    button = bench.page.get_by_role("radio", name=name)
+    button.click()
+    expect(button).to_be_checked()
+
+
+def test_a_ball_in_a_bowl_is_dragged_up_its_side_and_nudged_while_it_runs(bench: Bench) -> None:
+    tool(bench, "Move the ball")
+    x, y = bench.stage.ball()
+    bench.stage.drag((-60.0, -50.0))
+
+    def moved() -> None:
+        start = tr.Scenario.read(bench.scenario()).start_state()
+        assert start.position[0] < 0.12, "left on the screen is down the first axis"
+        assert start.position[1] > 0.02, "up on the screen is along the second axis"
+        assert bench.stage.drawn().place == pytest.approx(start.position, abs=1e-4), "it lies on the bowl"
+        assert bench.stage.ball() == pytest.approx((x - 60, y - 50), abs=6), "it lies where it was let go"
+
+    eventually(bench.page, moved)
+    before = bench.run()
+    bench.page.keyboard.press("Space")
+    eventually(bench.page, lambda: passed(bench, 0.4))
+    bench.page.keyboard.press("Space")
+    then = before.at([bench.stage.drawn().time]).data.isel(time=0)
+    tool(bench, "Nudge it")
+    bench.stage.drag((40.0, 0.0))
+
+    def nudged() -> None:
+        start = tr.Scenario.read(bench.scenario()).start_state()
+        assert start.position == pytest.approx(then.position.values, abs=1e-4), "it goes on from where it was"
+        normal = (then.position.values - then.contact.values) / 0.01
+        spins = [float(np.dot(turning, normal)) for turning in (start.angular_velocity, then.angular_velocity.values)]
+        assert spins[0] == pytest.approx(spins[1], abs=1e-3), "with the spin that it had"
+        added = np.array(start.velocity) - then.velocity.values
+        assert added[0] > 0.01, "right on the screen is along the first axis"
+        assert abs(added[1]) < 0.1 * added[0]
+        assert added @ normal == pytest.approx(0.0, abs=1e-4), "along the bowl"
+
+    eventually(bench.page, nudged)
+
+
+def passed(bench: Bench, seconds: float) -> None:
+    assert bench.stage.drawn().time > seconds
