@@ -115,7 +115,7 @@ def test_gravity_points_down_the_y_axis(tmp_path: Path) -> None:
     assert np.allclose(down, [0.0, -1.0, 0.0], atol=1e-7)
 
 
-@pytest.mark.parametrize("name", ["tilted-turntable", "eulers-disc", "ball-in-a-funnel"])
+@pytest.mark.parametrize("name", ["tilted-turntable", "eulers-disc", "ball-in-a-funnel", "cylinder-on-incline"])
 def test_every_accessor_says_the_truth(name: str, tmp_path: Path) -> None:
     _, model = saved(name, tmp_path)
     for view in model.file.bufferViews:
@@ -134,6 +134,32 @@ def test_every_accessor_says_the_truth(name: str, tmp_path: Path) -> None:
         if model.motion(node):
             assert len(np.unique(colours, axis=0)) > 1, "nothing is painted, so its turning is not seen"
         assert model.numbers(mesh.indices).max() < len(places)
+
+
+def test_a_sheet_is_a_board_of_squares_of_a_round_length(tmp_path: Path) -> None:
+    """A plane without an edge: it is painted square by square, so that a ball over it is seen to get on."""
+    run, model = saved("bouncing-ball-with-backspin", tmp_path)
+    mesh = model.mesh("support")
+    places, colours = (model.numbers(one) for one in (mesh.attributes.POSITION, mesh.attributes.COLOR_0))
+    corners = model.numbers(mesh.indices).reshape(-1, 3)
+    assert (np.ptp(colours[corners], axis=1) == 0).all(), "no colour runs into another"
+    across = np.cross(*(places[corners[:, i]] - places[corners[:, 0]] for i in (1, 2)))
+    assert (across[:, 2] > 0).all()
+    low, high = places.min(axis=0), places.max(axis=0)
+    assert across[:, 2].sum() / 2 == pytest.approx(np.prod((high - low)[:2]), rel=1e-5), "nothing is left out"
+    gone = run.data.position.values[:, :2]
+    assert (low[:2] < gone.min(axis=0)).all()
+    assert (high[:2] > gone.max(axis=0)).all()
+    sides = np.diff(np.unique(places[:, 0].round(6)))[1:-1]
+    assert len(sides) >= 5
+    side = float(np.median(sides))
+    assert np.allclose(sides, side, rtol=1e-4)
+    assert round(side / 10 ** np.floor(np.log10(side) + 1e-6), 3) in (1, 2, 5)
+    middles = places[corners].mean(axis=1)[:, :2]
+    odd = np.floor(middles / side).sum(axis=1) % 2 == 1
+    one, other = (np.unique(colours[corners[rule, 0]], axis=0) for rule in (odd, ~odd))
+    assert len(one) == len(other) == 1
+    assert np.abs(one - other).max() > 0.05
 
 
 def test_the_container_is_as_the_format_says() -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import InvalidValueError
+from ..mechanics.surfaces import Plane
 from ..solve.exact import closed_form
 from ..solve.samples import Samples
 from .body_mesh import body_mesh
@@ -80,6 +81,8 @@ def scene_of(
 
 
 def _ground(run: Trajectory, at: Samples, contact: np.ndarray, radius: float) -> Ground:
-    motion, touching = run.system.support.motion, ~flying(at)
-    turns = moves(run.system) and motion.turns
-    return ground_of(run.system.support.surface, turns, contact[touching] if touching.any() else contact, radius)
+    support, touching = run.system.support, ~flying(at)
+    turns = moves(run.system) and support.motion.turns
+    # Below a flight there is a plane too, seen to be flown over.
+    some = touching.any() and not isinstance(support.surface, Plane)
+    return ground_of(support.surface, turns, contact[touching] if some else contact, radius)

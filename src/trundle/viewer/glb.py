@@ -10,6 +10,7 @@ import pygltflib as gltf
 from numpy.typing import NDArray
 
 from ..mechanics.algebra import Quaternion
+from ..plots.scales import round_step
 from ..scene import Scene
 
 Array = NDArray[Any]
@@ -23,6 +24,7 @@ _BASE, _OTHER, _MARK = "#d9d6cc", "#c2beb2", "#e69f00"
 _STRIPE = 0.16  # half the width of a meridian stripe, as a share of the body
 _POLE = 0.95
 _SECTORS = 12
+_SQUARES = 14  # of a board, along its longer side, at most
 
 
 def glb_of(scene: Scene) -> bytes:
@@ -65,25 +67,33 @@ class Writer:
         """Return the whole file."""
         turn = _UP * Quaternion(*self.scene.header["to_world"])
         self.file.nodes = [gltf.Node(name="world", rotation=_xyzw(np.array([tuple(turn)]))[0].tolist(), children=[])]
-        body = self._mesh("body", _body_colours(self.columns["body_pattern"]))
-        support = self._mesh("support", _support_colours(self.columns["support_marks"], self._polar()))
+        body = self._mesh("body", *self._parts("body"), _body_colours(self.columns["body_pattern"]))
+        support = self._support()
         self._path()
         self._animate([(body, "position", "orientation"), (support, "support_position", "support_orientation")])
         self.file.buffers = [gltf.Buffer(byteLength=len(self.blob))]
         self.file.set_binary_blob(bytes(self.blob))
         return b"".join(self.file.save_to_bytes())
 
-    def _polar(self) -> bool:
-        return self.scene.header["support"].get("marks", "polar") == "polar"
+    def _support(self) -> int:
+        told = self.scene.header["support"]
+        polar = told.get("marks", "polar") == "polar"
+        if told["kind"] == "plane" and not polar:  # a rectangle, which has too few corners to be painted by them
+            return self._mesh("support", *board(self.columns["support_vertices"]))
+        return self._mesh("support", *self._parts("support"), _support_colours(self.columns["support_marks"], polar))
 
-    def _mesh(self, name: str, colours: Array) -> int:
-        """Add a mesh of the scene as a node below the world; returns the node."""
+    def _parts(self, name: str) -> tuple[Array, Array, Array]:
+        vertices, normals, triangles = (self.columns[f"{name}_{part}"] for part in ("vertices", "normals", "triangles"))
+        return vertices, normals, triangles
+
+    def _mesh(self, name: str, vertices: Array, normals: Array, triangles: Array, colours: Array) -> int:
+        """Add a mesh as a node below the world; returns the node."""
         attributes = gltf.Attributes(
-            POSITION=self._put(self.columns[f"{name}_vertices"], gltf.ARRAY_BUFFER, bounds=True),
-            NORMAL=self._put(_unit(self.columns[f"{name}_normals"]), gltf.ARRAY_BUFFER),
+            POSITION=self._put(vertices, gltf.ARRAY_BUFFER, bounds=True),
+            NORMAL=self._put(_unit(normals), gltf.ARRAY_BUFFER),
             COLOR_0=self._put(colours, gltf.ARRAY_BUFFER),
         )
-        corners = self.columns[f"{name}_triangles"].astype(np.uint32).ravel()
+        corners = triangles.astype(np.uint32).ravel()
         indices = self._put(corners, gltf.ELEMENT_ARRAY_BUFFER)
         material = self._material(name, 0.35 if name == "body" else 0.8, both_sides=name == "support")
         return self._node(name, gltf.Primitive(attributes=attributes, indices=indices, material=material))
@@ -170,6 +180,45 @@ def rising(time: Array) -> NDArray[np.bool_]:
     """
     seconds = (np.asarray(time) - time[0]).astype(np.float32)
     return np.concatenate([[True], np.diff(np.maximum.accumulate(seconds)) > 0])
+
+
+def board(sheet: Array) -> tuple[Array, Array, Array, Array]:
+    """Return a sheet of a plane as a board whose squares have a round length and meet at the origin.
+
+    Parameters
+    ----------
+    sheet : array (v, 3)
+        The corners of a rectangle along the first two axes, m.
+
+    Returns
+    -------
+    vertices, normals, triangles, colours : arrays
+        Each square has corners of its own, so that colours do not run into each other.
+
+    Examples
+    --------
+    >>> vertices, _, triangles, _ = board(np.array([[-1.0, -0.2, 0.0], [1.0, 0.2, 0.0]]))
+    >>> len(vertices), len(triangles)
+    (80, 40)
+    """
+    low, high = np.min(sheet, axis=0).astype(float), np.max(sheet, axis=0).astype(float)
+    side = round_step(float(np.max(high - low)), _SQUARES)
+    x, y = (_cuts(low[i], high[i], side) for i in (0, 1))
+    left, front = (part.ravel() for part in np.meshgrid(x[:-1], y[:-1]))
+    right, back = (part.ravel() for part in np.meshgrid(x[1:], y[1:]))
+    corners = [np.stack(part, axis=1).ravel() for part in ([left, right, right, left], [front, front, back, back])]
+    vertices = np.column_stack([*corners, np.full(4 * left.size, low[2])]).astype(np.float32)
+    triangles = (4 * np.arange(left.size)[:, None] + np.array([0, 1, 2, 0, 2, 3])).reshape(-1, 3)
+    odd = (np.floor((left + right) / (2 * side)) + np.floor((front + back) / (2 * side))) % 2 == 1
+    colours = _painted([(np.repeat(odd, 4), _OTHER)], _BASE, len(vertices))
+    return vertices, np.broadcast_to([0.0, 0.0, 1.0], vertices.shape), triangles, colours
+
+
+def _cuts(low: float, high: float, side: float) -> Array:
+    """Return where a board is cut along an axis: at its ends, and at whole numbers of squares between them."""
+    whole = side * np.arange(math.ceil(low / side), math.floor(high / side) + 1)
+    inside = whole[(whole > low + 1e-6 * side) & (whole < high - 1e-6 * side)]
+    return np.concatenate([[low], inside, [high]])
 
 
 def _xyzw(quaternions: Array) -> Array:
