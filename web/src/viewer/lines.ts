@@ -1,10 +1,14 @@
-/** Lines of a width in pixels, with round ends, that can grow with time and fade behind it: ten thousand points in one call. */
+/**
+ * Lines of a width in pixels, with round ends, that can grow with time and fade behind it: ten thousand points in one call.
+ *
+ * Not by instances of a piece: where the processor draws, as in a virtual machine, each instance costs as much as a call.
+ */
 import {
   BufferAttribute,
+  BufferGeometry,
   Color,
   DoubleSide,
-  InstancedBufferGeometry,
-  InstancedInterleavedBuffer,
+  InterleavedBuffer,
   InterleavedBufferAttribute,
   Mesh,
   ShaderMaterial,
@@ -47,13 +51,15 @@ void main() {
   // Beyond its ends by as much as closes the gap at a bend: little where points are dense and bends slight.
   float across = 0.5 * width;
   float beyond = min(across, pixels);
-  bool end = position.y > 0.5;
+  int at = gl_VertexID & 3;
+  float side = (at & 1) == 0 ? -1.0 : 1.0;
+  bool end = at > 1;
   vec4 corner = end ? q : p;
-  vec2 offset = vec2(-way.y, way.x) * position.x * across + way * (end ? beyond : -beyond);
+  vec2 offset = vec2(-way.y, way.x) * side * across + way * (end ? beyond : -beyond);
   corner.xy += offset / resolution * 2.0 * corner.w;
   gl_Position = corner;
   vLength = pixels;
-  vPlace = vec2(position.x * across, end ? pixels + beyond : -beyond);
+  vPlace = vec2(side * across, end ? pixels + beyond : -beyond);
   vTime = mix(from.w, to.w, end ? share : 0.0);
 }
 `
@@ -86,7 +92,7 @@ export interface LineLook {
 }
 
 export class Line {
-  readonly mesh: Mesh<InstancedBufferGeometry, ShaderMaterial>
+  readonly mesh: Mesh<BufferGeometry, ShaderMaterial>
   private readonly uniforms = {
     resolution: { value: new Vector2(1, 1) },
     width: { value: 2 },
@@ -107,7 +113,7 @@ export class Line {
       side: DoubleSide,
       toneMapped: false,
     })
-    this.mesh = new Mesh(new InstancedBufferGeometry(), material)
+    this.mesh = new Mesh(new BufferGeometry(), material)
     this.mesh.frustumCulled = false
     this.mesh.renderOrder = order
     this.mesh.visible = false
@@ -116,15 +122,11 @@ export class Line {
   /** Points as x, y, z, t; a point whose t is `BREAK` parts the line. */
   setPoints(points: Float32Array): void {
     const count = points.length / 4
-    const geometry = new InstancedBufferGeometry()
-    const corners = new Float32Array([-1, 0, 0, 1, 0, 0, -1, 1, 0, 1, 1, 0])
-    geometry.setAttribute('position', new BufferAttribute(corners, 3))
-    geometry.setIndex([0, 1, 2, 1, 3, 2])
-    const buffer = new InstancedInterleavedBuffer(points, 4)
+    const geometry = new BufferGeometry()
+    const buffer = new InterleavedBuffer(fourfold(points), 4)
     geometry.setAttribute('from', new InterleavedBufferAttribute(buffer, 4, 0))
-    // The next point of the same buffer: offset by one stride.
-    geometry.setAttribute('to', new InterleavedBufferAttribute(buffer, 4, 4))
-    geometry.instanceCount = Math.max(count - 1, 0)
+    geometry.setAttribute('to', new InterleavedBufferAttribute(buffer, 4, 16)) // the next point of the same buffer
+    geometry.setIndex(new BufferAttribute(quads(Math.max(count - 1, 0)), 1))
     this.mesh.geometry.dispose()
     this.mesh.geometry = geometry
     this.mesh.visible = count > 1
@@ -158,6 +160,23 @@ export class Line {
     this.mesh.geometry.dispose()
     this.mesh.material.dispose()
   }
+}
+
+/** Each point four times, once for each corner of the piece that begins there: the shader knows them by their number. */
+function fourfold(points: Float32Array): Float32Array {
+  const out = new Float32Array(4 * points.length)
+  for (let i = 0; i < points.length; i += 4) {
+    const point = points.subarray(i, i + 4)
+    for (let corner = 0; corner < 4; corner++) out.set(point, 4 * i + 4 * corner)
+  }
+  return out
+}
+
+/** The corners of so many pieces, two triangles each. */
+function quads(count: number): Uint32Array {
+  const out = new Uint32Array(6 * count)
+  for (let i = 0; i < count; i++) out.set([4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 1, 4 * i + 3, 4 * i + 2], 6 * i)
+  return out
 }
 
 /** Points of pieces of a line, joined with breaks between; t is the length along each piece. */
