@@ -4,12 +4,12 @@ import { defineConfig, type Plugin, type UserConfig } from 'vite'
 const here = (path: string) => fileURLToPath(new URL(path, import.meta.url))
 const output = process.env.TRUNDLE_STATIC ?? here('../src/trundle/viewer/static')
 
-/** Every browser with modules reads woff2: leave the older copies of KaTeX's fonts out of the bundle. */
+/** Every browser with WebGL 2 reads woff2: leave the older copies of fonts out of the bundle. */
 const onlyWoff2: Plugin = {
   name: 'only-woff2',
   enforce: 'pre',
   transform(code, id) {
-    if (!/katex.*\.css/.test(id)) return null
+    if (!/\.css($|\?)/.test(id)) return null
     return code.replace(/,\s*url\([^)]*\.(?:woff|ttf)\)\s*format\(['"](?:woff|truetype)['"]\)/g, '')
   },
 }

@@ -206,3 +206,16 @@ def test_formulas_are_markup_that_says_the_same() -> None:
 )
 def test_numbers_are_set_as_in_print(value: Any, digits: int, shown: str) -> None:
     assert number(value, digits) == shown
+
+
+def test_the_fonts_of_the_lab_are_there_in_one_form_only() -> None:
+    """What has WebGL 2 reads woff2: older copies would only make the package larger."""
+    assets = bundle.STATIC / "assets"
+    if not assets.is_dir():
+        pytest.skip("the viewer is not built into this copy: python web/build.py bundle")
+    fonts = [path.suffix for path in assets.iterdir() if path.suffix in (".woff2", ".woff", ".ttf", ".otf")]
+    assert len(fonts) > 10
+    assert set(fonts) == {".woff2"}
+    for style in assets.glob("*.css"):
+        named = [name.strip("'\"") for name in re.findall(r"url\(([^)]*)\)", style.read_text(encoding="utf-8"))]
+        assert [name for name in named if not name.startswith("data:") and not (assets / name).is_file()] == []
