@@ -9,7 +9,7 @@ from contextlib import asynccontextmanager
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
-from starlette.responses import Response
+from starlette.responses import JSONResponse, Response
 
 from ..viewer.exports import FORMATS
 from . import answers, exports, pages
@@ -83,6 +83,10 @@ def _reading(app: FastAPI, lab: Lab) -> None:
     @app.get("/api/scenarios/{name}", **described("One of them, as TOML and as JSON.", 404))
     async def scenario(request: Request, name: str) -> Response:
         return await lab.at_once(request, answers.text_of, name)
+
+    @app.get("/api/ready", **described("Whether a worker has answered yet: until then they are starting."))
+    async def ready() -> Response:
+        return JSONResponse({"ready": lab.ready}, headers={"cache-control": "no-store"})
 
     @app.get("/api/schema", **described("The JSON schema of scenario files."))
     async def schema(request: Request) -> Response:

@@ -197,6 +197,11 @@ class _Context:
         return made
 
 
+def preload() -> None:
+    """Start the process that the workers are copies of, where there are copies: it loads while others do."""
+    _Context()
+
+
 def _new_pool(workers: int, niceness: int) -> tuple[ProcessPool, _Context]:
     from .warm import begin_worker
 

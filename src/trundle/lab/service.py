@@ -39,6 +39,7 @@ class Lab:
         self.cache = Cache(settings.cache_bytes)
         self.quick = Lane(settings.workers, settings)
         self.slow = Lane(settings.slow_workers, settings, niceness=5)
+        self.ready = False  # has a worker answered yet?
         self._coming: dict[str, asyncio.Task[Answer]] = {}
 
     async def start(self) -> None:
@@ -169,6 +170,7 @@ class Lab:
     ) -> Answer:
         """Compute, and keep what came out."""
         found = await lane.run(request, function, *arguments)
+        self.ready = True
         if isinstance(found, Refusal):
             raise RefusedError(found)
         self.cache.put(key, found)

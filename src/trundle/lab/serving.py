@@ -134,32 +134,35 @@ def serve(
     InvalidValueError
         If the port is taken, or there is no such host here.
     """
-    import uvicorn
-
-    from .app import create_app
-
-    class Server(uvicorn.Server):
-        @contextmanager
-        def capture_signals(self) -> Iterator[None]:
-            """End in order at each signal: cut short by a second Ctrl-C, it would leave the workers."""
-            before = {number: signal.signal(number, self._ending) for number in (signal.SIGINT, signal.SIGTERM)}
-            try:
-                yield
-            finally:
-                for number, handler in before.items():
-                    signal.signal(number, handler)
-
-        def _ending(self, number: int, frame: Any) -> None:  # noqa: ARG002
-            self.should_exit = True
-
-        async def startup(self, sockets: Any = None) -> None:
-            await super().startup(sockets)
-            if self.started and told is not None:
-                told(address, taken.getsockname()[1])
-            if self.started and open_browser:  # some browsers keep their caller
-                threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
+    from .pool import preload
 
     with listen(settings.host, port) as taken:
+        preload()  # before what follows, which takes a second to import, too
+        import uvicorn
+
+        from .app import create_app
+
+        class Server(uvicorn.Server):
+            @contextmanager
+            def capture_signals(self) -> Iterator[None]:
+                """End in order at each signal: cut short by a second Ctrl-C, it would leave the workers."""
+                before = {number: signal.signal(number, self._ending) for number in (signal.SIGINT, signal.SIGTERM)}
+                try:
+                    yield
+                finally:
+                    for number, handler in before.items():
+                        signal.signal(number, handler)
+
+            def _ending(self, number: int, frame: Any) -> None:  # noqa: ARG002
+                self.should_exit = True
+
+            async def startup(self, sockets: Any = None) -> None:
+                await super().startup(sockets)
+                if self.started and told is not None:
+                    told(address, taken.getsockname()[1])
+                if self.started and open_browser:  # some browsers keep their caller
+                    threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
+
         address = address_of(taken)
         app = create_app(replace(settings, port=taken.getsockname()[1]))
         config = uvicorn.Config(

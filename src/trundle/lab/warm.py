@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import os
 import signal
+from functools import cache
 
 _SHOWN = ("tilted-turntable", "level-turntable-nudged", "ball-in-a-trough")
 
 
+@cache
 def begin() -> None:
-    """Load what answers need, and answer something once.
+    """Load what answers need, and answer something once; a copy of a process that has done so need not.
 
     Examples
     --------

@@ -83,6 +83,8 @@ export interface Api {
   scenarios(options?: RequestOptions): Promise<ScenarioEntry[]>
   scenario(name: string, options?: RequestOptions): Promise<NamedScenario>
   schema(options?: RequestOptions): Promise<Json>
+  /** Has a worker answered yet, or are they starting? */
+  ready(options?: RequestOptions): Promise<{ ready: boolean }>
   simulate(scenario: Scenario, options?: SimulateOptions): Promise<Simulated>
   card(scenario: Scenario, options?: RequestOptions): Promise<Card>
   derivation(scenario: Scenario, options?: RequestOptions): Promise<Derivation>
@@ -171,6 +173,7 @@ export function createApi(base = '', ask: typeof fetch = (input, init) => fetch(
     scenarios: (options) => get('/api/scenarios', options),
     scenario: (name, options) => get(`/api/scenarios/${encodeURIComponent(name)}`, options),
     schema: (options) => get('/api/schema', options),
+    ready: (options) => get('/api/ready', options),
     simulate: (scenario, options = {}) => packed('/api/simulate', { scenario }, options, 'simulate'),
     card: (scenario, options = {}) => post('/api/card', { scenario }, options, 'card', json<Card>),
     derivation: (scenario, options = {}) =>

@@ -13,6 +13,7 @@ import { pages } from './registry'
 import { createRouter } from './router'
 import { createSettings } from './settings'
 import { createShell, startShell } from './shell'
+import { tellWhileStarting } from './starting'
 import { createStore } from './store'
 
 const settings = createSettings()
@@ -40,3 +41,4 @@ const app: App = {
 }
 
 startShell(shell, app, pages)
+void tellWhileStarting(app.api, (text) => shell.hold(text))

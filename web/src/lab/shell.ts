@@ -15,6 +15,8 @@ export interface Shell {
   main: HTMLElement
   announce(text: string): void
   toast(text: string, kind?: 'info' | 'error'): void
+  /** A message that stays until it is taken away. */
+  hold(text: string): () => void
 }
 
 /** The frame without any page in it; `start` fills it. */
@@ -33,6 +35,11 @@ export function createShell(body: HTMLElement): Shell {
     main,
     announce(text) {
       live.textContent = text
+    },
+    hold(text) {
+      const one = h('p', { class: 'toast working' }, text)
+      toasts.append(one)
+      return () => one.remove()
     },
     toast(text, kind = 'info') {
       const one = h('p', { class: `toast toast-${kind}` }, text)
