@@ -1,9 +1,10 @@
 /** How sharp a moving picture may be: where frames come too slowly it is drawn with fewer pixels; a still one never is. */
 export class Pace {
-  /** Of the full number of pixels to a side. */
-  share = 1
   private slow = 0
   private last: number | null = null
+
+  /** Begin with a share of the full number of pixels to a side. */
+  constructor(public share = 1) {}
 
   /** A frame is to be drawn at `now`, ms; tells whether the share has changed. */
   frame(now: number): boolean {

@@ -60,7 +60,7 @@ vec3 painted(vec2 marks, vec3 place) {
   }
   float near = 0.0;
   for (int i = 0; i < 5; i++) {
-    if (touches[i].w <= 0.0) continue;
+    if (i >= touching) break;
     vec3 off = (place - touches[i].xyz) / touches[i].w;
     near = max(near, exp(-3.0 * dot(off, off)));
   }
@@ -114,6 +114,8 @@ export interface SupportPaint {
   flatness: { value: number }
   stroke: { value: number }
   shade: { value: number }
+  /** How many of these are in use. */
+  touching: { value: number }
   touches: { value: Vector4[] }
   fade: { value: Vector4 }
 }
@@ -138,6 +140,7 @@ export function paintSupport(material: Material, paint: SupportPaint): void {
     vertex: 'vMarks = marks;\nvPlace = position;',
     uniforms: `uniform vec3 base, other, line, accent;
 uniform float polar, sectors, rings, contrast, accented, spacing, flatness, stroke, shade;
+uniform int touching;
 uniform vec4 touches[5];
 uniform vec4 fade;`,
     code: SUPPORT,

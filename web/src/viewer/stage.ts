@@ -12,6 +12,7 @@ import {
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
 import { Backdrop } from './backdrop'
 import { type Fit, fitted } from './camera'
+import { drawsByProcessor, driverOf } from './drawing'
 import type { Palette } from './theme'
 
 const MOST_PIXELS_PER_POINT = 2
@@ -28,6 +29,8 @@ export class Stage {
   readonly root = new Group()
   /** Whether somebody has moved the camera since it was placed. */
   moved = false
+  /** No graphics card draws, but the processor: less is asked of it. */
+  readonly byProcessor: boolean
   width = 1
   height = 1
   private sharpness = 1
@@ -38,6 +41,7 @@ export class Stage {
 
   constructor(canvas: HTMLCanvasElement, changed: () => void) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: false, powerPreference: 'high-performance' })
+    this.byProcessor = drawsByProcessor(driverOf(this.renderer.getContext()))
     this.renderer.shadowMap.enabled = true
     this.renderer.shadowMap.type = PCFShadowMap
     this.camera.up.set(0, 0, 1) // before the controls, which take it once
@@ -58,7 +62,7 @@ export class Stage {
   private setUpShadow(): void {
     this.sky.position.set(0, 0, 1)
     this.key.castShadow = true
-    this.key.shadow.mapSize.set(2048, 2048)
+    this.key.shadow.mapSize.setScalar(this.byProcessor ? 512 : 2048)
     this.key.shadow.radius = 4
     this.key.shadow.normalBias = 0.004
     this.key.shadow.bias = -0.0004
@@ -81,7 +85,7 @@ export class Stage {
   resize(width: number, height: number): void {
     this.width = Math.max(1, width)
     this.height = Math.max(1, height)
-    this.sharpen(this.sharpness)
+    this.usePixels()
     this.renderer.setSize(this.width, this.height, false)
     this.camera.aspect = this.width / this.height
     this.camera.updateProjectionMatrix()
@@ -89,7 +93,17 @@ export class Stage {
 
   /** Draw with a share of the screen's pixels to a side. */
   sharpen(share: number): void {
+    if (share === this.sharpness) return
     this.sharpness = share
+    this.usePixels()
+  }
+
+  get sharp(): number {
+    return this.sharpness
+  }
+
+  private usePixels(): void {
+    const share = this.sharpness
     this.renderer.setPixelRatio(share * Math.min(globalThis.devicePixelRatio || 1, MOST_PIXELS_PER_POINT))
   }
 

@@ -136,7 +136,9 @@ export class SupportModel {
 
   /** Darken the surface where bodies touch it: places in the support's own frame, and how wide. */
   shade(index: number, x: number, y: number, z: number, radius: number): void {
-    this.paint.touches.value[index]?.set(x, y, z, radius)
+    const { touches, touching } = this.paint
+    touches.value[index]?.set(x, y, z, radius)
+    touching.value = touches.value.reduce((most, { w }, at) => (w > 0 ? at + 1 : most), 0)
   }
 
   dispose(): void {
@@ -172,6 +174,7 @@ function newPaint(): SupportPaint {
     flatness: { value: 0 },
     stroke: { value: 1.3 },
     shade: { value: 0.6 },
+    touching: { value: 0 },
     touches: { value: Array.from({ length: MOST_TOUCHES }, () => new Vector4(0, 0, 0, 0)) },
     fade: { value: new Vector4(0, 0, 0, 0) },
   }

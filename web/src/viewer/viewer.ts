@@ -25,10 +25,14 @@ export function createViewer(host: HTMLElement, options: ViewerOptions = {}): Vi
   return new StageViewer(host, options)
 }
 
+const COARSE = 0.6 // of the pixels to a side, while something changes
+const CALM = 250 // ms without a change
+
 class StageViewer implements Viewer {
   private readonly events = new Emitter<ViewerEvents>()
   private readonly player = new Player()
-  private readonly pace = new Pace()
+  private readonly pace: Pace
+  private calm: ReturnType<typeof setTimeout> | undefined
   private readonly labels: LabelLayer
   private readonly legend = new Legend()
   private readonly note = element('p', 'tr-note')
@@ -71,6 +75,7 @@ class StageViewer implements Viewer {
     this.root = element('div', 'tr-viewer', {}, this.frameElement)
     host.append(this.root)
     this.stage = this.openStage()
+    this.pace = new Pace(this.stage?.byProcessor ? COARSE : 1)
     this.fallback = this.stage ? null : new Fallback(document)
     if (this.fallback) this.frameElement.replaceChildren(this.fallback.element)
     this.world = this.stage && new World(this.stage)
@@ -361,9 +366,23 @@ class StageViewer implements Viewer {
     if (ran && this.pace.frame(now)) this.stage?.sharpen(this.pace.share)
     const ended = this.player.tick(now)
     if (ran) this.events.emit('time', { time: this.time })
+    this.hurry()
     this.draw()
     if (ended) this.stopped()
     if (this.playing) this.invalidate()
+  }
+
+  /** Where the processor draws, whatever changes is drawn coarsely, and sharply as soon as it rests. */
+  private hurry(): void {
+    if (!this.stage?.byProcessor) return
+    this.stage.sharpen(this.pace.share)
+    clearTimeout(this.calm)
+    if (!this.playing) this.calm = setTimeout(() => this.sharpen(), CALM)
+  }
+
+  private sharpen(): void {
+    this.stage?.sharpen(1)
+    this.draw()
   }
 
   private draw(): void {
@@ -378,7 +397,16 @@ class StageViewer implements Viewer {
   /** What is drawn, in attributes of the host: for tests, and for whoever wants to style by it. */
   private tell(): void {
     const { x, y, z } = this.world?.shownPlace(0, this.place) ?? this.place
-    const said = { time: this.time, playing: this.playing, frame: this.frame, x, y, z, bodies: this.scenes.length }
+    const said = {
+      time: this.time,
+      playing: this.playing,
+      frame: this.frame,
+      x,
+      y,
+      z,
+      bodies: this.scenes.length,
+      sharp: this.stage?.sharp ?? 1,
+    }
     for (const [name, value] of Object.entries(said)) {
       this.host.dataset[name] = typeof value === 'number' ? String(Number(value.toPrecision(9))) : String(value)
     }
@@ -387,6 +415,7 @@ class StageViewer implements Viewer {
   dispose(): void {
     this.abort.abort()
     if (this.pending) cancelAnimationFrame(this.pending)
+    clearTimeout(this.calm)
     this.unwatch()
     this.watcher?.disconnect()
     this.tools?.dispose()
