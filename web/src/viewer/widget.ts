@@ -3,6 +3,7 @@ import './fonts.css'
 import type { Frame, Show, Theme, Viewer } from './contract'
 import { startSavedPage } from './page'
 import { type Scene, unpack } from './scene'
+import { liftFonts } from './shadow'
 import { createViewer } from './viewer'
 
 export { createViewer, unpack }
@@ -35,6 +36,7 @@ function render({ model, el }: { model: Model; el: HTMLElement }): () => void {
   const host = document.createElement('div')
   host.className = 'tr-host'
   el.append(host)
+  liftFonts(host)
   const place = () => {
     host.style.height = `${model.get('height')}px`
   }
