@@ -105,6 +105,11 @@ class Stage:
         }
         return np.asarray(Image.open(BytesIO(self.page.screenshot(clip=clip))).convert("RGB"), dtype=int)  # type: ignore[arg-type]
 
+    def at_rest(self) -> np.ndarray:
+        """The middle of the picture once it is drawn with all its pixels: what moves may be drawn with fewer."""
+        expect(self.host).to_have_attribute("data-sharp", "1")
+        return self.middle()
+
     def ball(self) -> tuple[float, float]:
         """Where the first body is on the screen: found as an eye finds it, by its blue stripes."""
         box = self.canvas.bounding_box()

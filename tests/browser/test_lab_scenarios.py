@@ -38,7 +38,9 @@ def end_of(name: str) -> tuple[float, ...]:
 def test_a_scenario_is_drawn_as_it_is_computed(name: str, bench: Bench, staying: Visitor) -> None:
     bench.open(f"#/bench?name={name}")
     stage, page = bench.stage, bench.page
-    expect(page.locator(".bar-title")).to_have_text(files.title_of(name))
+    title = files.title_of(name)
+    expect(page.locator(".bar-title")).to_have_text(title)
+    expect(page.locator("section.stage")).to_have_attribute("data-shown", title)
     expected = end_of(name)
 
     def ends() -> None:
@@ -46,19 +48,20 @@ def test_a_scenario_is_drawn_as_it_is_computed(name: str, bench: Bench, staying:
         assert stage.drawn().place[: len(expected)] == pytest.approx(expected, abs=TOLD)
 
     eventually(page, ends)
+    last = stage.at_rest()
 
     page.keyboard.press("Home")
     eventually(page, lambda: starts(stage))
-    first = stage.middle()
-    assert len(np.unique(first.reshape(-1, 3), axis=0)) > 100, "the stage is blank"
+
+    def moved() -> None:
+        first = stage.at_rest()
+        assert len(np.unique(first.reshape(-1, 3), axis=0)) > 100, "the stage is blank"
+        assert np.mean(np.abs(last - first).max(axis=2) > SEEN) > 1e-4, "nothing has moved on the stage"
+
+    eventually(page, moved)
 
     page.keyboard.press("Space")
-
-    def moves() -> None:
-        assert stage.drawn().time > 0.0
-        assert np.mean(np.abs(stage.middle() - first).max(axis=2) > SEEN) > 1e-4, "nothing moves on the stage"
-
-    eventually(page, moves)
+    eventually(page, lambda: runs(stage))
     if stage.drawn().playing:
         page.keyboard.press("Space")
     assert staying.watch.left() == []
@@ -66,3 +69,7 @@ def test_a_scenario_is_drawn_as_it_is_computed(name: str, bench: Bench, staying:
 
 def starts(stage: Stage) -> None:
     assert stage.drawn().time == 0.0
+
+
+def runs(stage: Stage) -> None:
+    assert stage.drawn().time > 0.0

@@ -195,6 +195,7 @@ export function createStage(app: App): Stage {
       empty.hidden = true
       const was = viewer.playing
       viewer.setScenes([next], { keepTime: !first && keep.time, keepCamera: !first && keep.camera })
+      element.dataset.shown = next.header.title // for tests: a title changes before its path is there
       if (was && !viewer.playing) viewer.play()
       drawHeadline(next)
       drawAhead()
