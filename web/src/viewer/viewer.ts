@@ -9,7 +9,7 @@ import { Fallback } from './fallback'
 import { framesOf, nextFrame } from './frames'
 import { LabelLayer } from './labels'
 import { Legend } from './legend'
-import { Pace } from './pace'
+import { Haste, Pace } from './pace'
 import { Player } from './player'
 import type { Scene, Triple } from './scene'
 import { liveShow } from './shown'
@@ -32,6 +32,7 @@ class StageViewer implements Viewer {
   private readonly events = new Emitter<ViewerEvents>()
   private readonly player = new Player()
   private readonly pace: Pace
+  private readonly haste = new Haste()
   private calm: ReturnType<typeof setTimeout> | undefined
   private readonly labels: LabelLayer
   private readonly legend = new Legend()
@@ -366,18 +367,18 @@ class StageViewer implements Viewer {
     if (ran && this.pace.frame(now)) this.stage?.sharpen(this.pace.share)
     const ended = this.player.tick(now)
     if (ran) this.events.emit('time', { time: this.time })
-    this.hurry()
+    this.hurry(now)
     this.draw()
     if (ended) this.stopped()
     if (this.playing) this.invalidate()
   }
 
-  /** Where the processor draws, whatever changes is drawn coarsely, and sharply as soon as it rests. */
-  private hurry(): void {
-    if (!this.stage?.byProcessor) return
+  /** Where the processor draws, changes that follow each other are drawn coarsely, and the last one again when it rests. */
+  private hurry(now: number): void {
+    if (!this.stage?.byProcessor || this.playing || !this.haste.change(now)) return
     this.stage.sharpen(this.pace.share)
     clearTimeout(this.calm)
-    if (!this.playing) this.calm = setTimeout(() => this.sharpen(), CALM)
+    this.calm = setTimeout(() => this.sharpen(), CALM)
   }
 
   private sharpen(): void {
