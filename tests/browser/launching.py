@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
-# WebGL drawn by the processor, and no name resolved: nothing but this machine can be reached.
+# WebGL drawn by the processor, the rest of the page by the quicker way for one, and no name resolved: nothing but this
+# machine can be reached.
 ARGUMENTS = (
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
+    "--disable-gpu-rasterization",
+    "--disable-gpu-compositing",
     "--host-resolver-rules=MAP * ~NOTFOUND , EXCLUDE 127.0.0.1",
 )
 PHONE = {"width": 390, "height": 844}
