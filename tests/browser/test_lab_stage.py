@@ -79,6 +79,7 @@ def test_a_nudge_restarts_from_the_state_that_is_shown(bench: Bench) -> None:
     bench.page.keyboard.press("Space")
     eventually(bench.page, lambda: passed(bench, 0.5))
     bench.page.keyboard.press("Space")
+    eventually(bench.page, lambda: stands(bench))
     paused = bench.stage.drawn()
     tool(bench, "Nudge it")
     bench.stage.drag((50.0, 0.0))
@@ -96,6 +97,10 @@ def test_a_nudge_restarts_from_the_state_that_is_shown(bench: Bench) -> None:
         assert tables["start"]["spin"] == pytest.approx(float(then.angular_velocity.values[2]), abs=1e-4)
 
     eventually(bench.page, nudged)
+
+
+def stands(bench: Bench) -> None:
+    assert not bench.stage.drawn().playing
 
 
 def passed(bench: Bench, seconds: float) -> None:

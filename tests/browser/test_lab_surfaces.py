@@ -48,6 +48,7 @@ def test_a_ball_in_a_bowl_is_dragged_up_its_side_and_nudged_while_it_runs(bench:
     bench.page.keyboard.press("Space")
     eventually(bench.page, lambda: passed(bench, 0.4))
     bench.page.keyboard.press("Space")
+    eventually(bench.page, lambda: stands(bench))
     then = before.at([bench.stage.drawn().time]).data.isel(time=0)
     tool(bench, "Nudge it")
     bench.stage.drag((40.0, 0.0))
@@ -68,3 +69,7 @@ def test_a_ball_in_a_bowl_is_dragged_up_its_side_and_nudged_while_it_runs(bench:
 
 def passed(bench: Bench, seconds: float) -> None:
     assert bench.stage.drawn().time > seconds
+
+
+def stands(bench: Bench) -> None:
+    assert not bench.stage.drawn().playing

@@ -74,14 +74,17 @@ def pose_of(system: RollingSystem, at: Samples, state: SupportState) -> dict[str
     Returns
     -------
     dict
-        `support_position` and `support_orientation`, of the support's material.
+        `support_position` and `support_orientation`, of the support's material; in `support_own` the coordinates of a
+        motion of its own.
     """
     n, rate = at.time.size, system.support.motion.steady_rate
+    own = {"support_own": np.asarray(at.own, dtype=np.float64)} if at.own.shape[1] else {}
     turned = _quaternions(rotations(state, n)) if rate is None else _about_third_axis(float(rate) * at.time)
     origin = np.broadcast_to(state.origin.array(), (n, 3))
     return {
         "support_position": origin.astype(np.float32),
         "support_orientation": continuous(turned).astype(np.float32),
+        **own,
     }
 
 

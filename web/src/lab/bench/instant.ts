@@ -7,6 +7,8 @@ export interface Instant extends Spot {
   velocity: Triple
   angularVelocity: Triple
   orientation: Turn
+  /** The coordinates of the support's own motion, such as angle and rate of a free axle. */
+  own: number[]
   /** How high over the support it flies, m; absent while it touches. */
   height?: number | undefined
 }
@@ -34,7 +36,7 @@ export function instantAt(scene: Scene, time: number): Instant {
   const gap = (columns.time[next] ?? 0) - from
   const part = gap > 0 ? Math.min(1, Math.max(0, (time - from) / gap)) : 0
 
-  const mixed = (column: Float32Array | undefined, width: number): number[] =>
+  const mixed = (column: Float32Array | Float64Array | undefined, width: number): number[] =>
     Array.from({ length: width }, (_, axis) => {
       const a = column?.[index * width + axis] ?? 0
       const b = column?.[next * width + axis] ?? 0
@@ -64,6 +66,7 @@ export function instantAt(scene: Scene, time: number): Instant {
     velocity: mixed(columns.velocity, 3) as Triple,
     angularVelocity: mixed(columns.angular_velocity, 3) as Triple,
     orientation: turn(columns.orientation),
+    own: mixed(columns.support_own, (columns.support_own?.length ?? 0) / columns.time.length),
   }
 }
 

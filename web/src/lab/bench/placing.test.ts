@@ -13,6 +13,7 @@ const at: Instant = {
   velocity: [0.3, 0, 0],
   angularVelocity: [1, 2, 3],
   orientation: [0.5, 0.5, 0.5, 0.5],
+  own: [],
 }
 
 const lies = (contact: Triple): Spot => ({ position: contact, contact, normal: [0, 0, 1] })
@@ -52,13 +53,15 @@ it('goes on from the instant of a nudge: rolling with its spin, or slipping with
   expect(nudged(slipping, at, [0, 0, 0]).start).toMatchObject({ velocity: [0.3, 0], angular_velocity: [1, 2, 3] })
 })
 
-it('says where a nudge makes no sense, and where the clock begins anew', () => {
+it('says where a nudge makes no sense, and where the clock matters', () => {
   expect(whyNotNudged(FIRST)).toBeNull()
   expect(whyNotNudged(on({ kind: 'bowl', radius: '40 cm' }))).toBeNull()
   expect(whyNotNudged({ ...FIRST, body: { kind: 'disc' } })).toContain('balls')
   expect(clockMatters(FIRST)).toBe(false)
   expect(clockMatters(on({ kind: 'plane', motion: { kind: 'spin-by', rate: 't' } }))).toBe(true)
   expect(clockMatters(on({ kind: 'height-field', formula: 'x*y', motion: { kind: 'spin', rate: 1 } }))).toBe(true)
+  expect(clockMatters({ ...FIRST, loads: [{ kind: 'force', value: [0, '0.1*sin(3*t)', 0] }] })).toBe(true)
+  expect(clockMatters({ ...FIRST, loads: [{ kind: 'torque', value: [0, '0.1 N m', 0] }] })).toBe(false)
 })
 
 // A ball of 10 cm in a bowl of 50 cm, 30° up its side: by hand, (b sin α, b(1 − cos α)) and the normal (−sin α, cos α).
@@ -110,12 +113,22 @@ it('goes on in flight from its height, with all of its turning', () => {
 const half = Math.SQRT1_2
 const quarter: Pose = { place: [0, 0, 0], turn: [half, 0, 0, half] }
 
-it('puts it where the support’s material was when the run began, unless the surface looks alike all round', () => {
+it('goes on by the clock of what moves, in the coordinates of the support as it stands then', () => {
   const hills = on({ kind: 'height-field', formula: '0.1*x', motion: { kind: 'spin', rate: 1 } })
   const turned: Instant = { ...at, contact: [0, 0.2, 0], position: [0, 0.2, 0.025], support: quarter }
   const { start } = nudged(hills, turned, [0, 0.1, 0])
-  expect(start).toMatchObject({ position: [0.2, 0], velocity: [0.1, -0.3] })
-  expect(start.orientation).toEqual([half, half, 0, 0].map((one) => expect.closeTo(one, 8)))
+  expect(start).toMatchObject({ time: 2, position: [0.2, 0], velocity: [0.1, -0.3], orientation: at.orientation })
+  const free = on({ kind: 'plane', motion: { kind: 'free-axle', inertia: 1, rate: 1 } })
+  const own = { ...turned, own: [0.5, 1.25] }
+  expect(nudged(free, own, [0, 0, 0]).start).toMatchObject({ time: 2, support: [0.5, 1.25], spin: 3 })
+})
+
+it('leaves the clock alone where nothing goes by it', () => {
   const table = on({ kind: 'plane', motion: { kind: 'spin', rate: 1 } })
-  expect(nudged(table, turned, [0, 0.1, 0]).start).toMatchObject({ position: [0, 0.2], velocity: [0.3, 0.1], spin: 3 })
+  const turned: Instant = { ...at, contact: [0, 0.2, 0], position: [0, 0.2, 0.025], support: quarter }
+  const { start } = nudged(table, turned, [0, 0.1, 0])
+  expect(start).toMatchObject({ position: [0, 0.2], velocity: [0.3, 0.1], spin: 3 })
+  expect(start).not.toHaveProperty('time')
+  const later = { ...table, start: { ...table.start, time: '3 s' } }
+  expect(nudged(later, turned, [0, 0, 0], quarter).start).toMatchObject({ time: '3 s', position: [0.2, 0] })
 })

@@ -62,10 +62,11 @@ const exact = (value: number): number => rounded(clean(value), 9)
 /**
  * The scenario that goes on from an instant, its velocity changed by a nudge. Where the support grips as much
  * as it takes the ball rolls on at once, with the spin it had; else the nudge goes through its centre and
- * leaves its turning as it was.
+ * leaves its turning as it was. What moves by the clock goes on by it.
  */
 export function nudged(scenario: Scenario, at: Instant, by: Triple, begin?: Pose): Scenario {
-  const there = own(scenario, at, begin)
+  const clock = clockMatters(scenario)
+  const there = own(scenario, at, clock ? at.support : begin)
   const velocity = new Vector3(...at.velocity)
   const upwards = velocity.clone().applyQuaternion(there.turn).dot(there.normal)
   const [w, x, y, z] = at.orientation
@@ -78,6 +79,9 @@ export function nudged(scenario: Scenario, at: Instant, by: Triple, begin?: Pose
     velocity: [...parts, ...(flies ? [upwards] : [])].map(exact),
     orientation: [q.w, q.x, q.y, q.z].map(exact),
   }
+  if (clock) start.time = exact(at.time)
+  else if (scenario.start.time !== undefined) start.time = scenario.start.time
+  if (clock && at.own.length) start.support = at.own.map(exact)
   if (flies) start.height = exact(at.height ?? 0)
   if (flies || scenario.support.friction !== undefined)
     start.angular_velocity = turning.applyQuaternion(there.begin).toArray().map(exact)
@@ -99,8 +103,9 @@ export function whyNotNudged(scenario: Scenario): string | null {
   return null
 }
 
-/** Does the support's motion depend on the clock, so that a restart begins it anew? */
+/** Does it matter when a run starts, since the support or a load is not what it was at the start? */
 export function clockMatters(scenario: Scenario): boolean {
   const kind = scenario.support?.motion?.kind ?? 'fixed'
-  return kind !== 'fixed' && !(kind === 'spin' && looksAlike(scenario))
+  const varies = /\bt\b/.test(JSON.stringify(scenario.loads ?? []))
+  return varies || (kind !== 'fixed' && !(kind === 'spin' && looksAlike(scenario)))
 }

@@ -11,7 +11,7 @@ import { show } from '../quantity'
 import type { Scenario } from '../scenario'
 import { headline } from './findings'
 import { instantAt, startPose } from './instant'
-import { clockMatters, nudged, placed, thrown, whyNotDragged, whyNotHere, whyNotNudged } from './placing'
+import { nudged, placed, thrown, whyNotDragged, whyNotHere, whyNotNudged } from './placing'
 
 /** "0.42 ms", "1.3 s". */
 function duration(seconds: number): string {
@@ -152,8 +152,7 @@ export function createStage(app: App): Stage {
       return
     }
     store.set(nudged(before, at, by, begin), { source: 'nudge' })
-    const clock = clockMatters(before) ? ' The support begins its motion anew.' : ''
-    app.toast(`Nudged at ${show(when, 3)} s by ${show(Math.hypot(...by), 2)} m/s: this is the new start.${clock}`)
+    app.toast(`Nudged at ${show(when, 3)} s by ${show(Math.hypot(...by), 2)} m/s: this is the new start.`)
   }
 
   /** While it stands still the whole path is there; while it runs the ball draws it. */
