@@ -4,32 +4,57 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterator
 
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Page, expect
 
 import trundle as tr
+from trundle.scenario import files
 
 from .bench import Bench, as_shown, circle_rate, drift, eventually
+from .launching import SMALL
 from .visiting import Visitor
 
 RATE = "support.motion.rate"
 
 
-def level(visitor: Visitor) -> Bench:
-    return Bench(visitor.open("#/bench?name=level-turntable-nudged"))
+@pytest.fixture(scope="module")
+def page(staying: Visitor) -> Page:
+    """One page for all: to make one anew takes longer than what is tried in it."""
+    return staying.open(size=SMALL)
 
 
-def leaning(visitor: Visitor) -> Bench:
-    return Bench(visitor.open("#/bench?name=tilted-turntable"))
+@pytest.fixture(autouse=True)
+def unhurt(staying: Visitor) -> Iterator[None]:
+    """Nothing may have gone wrong in the page."""
+    yield
+    assert staying.watch.left() == []
+
+
+def level(page: Page) -> Bench:
+    return opened(page, "level-turntable-nudged")
+
+
+def leaning(page: Page) -> Bench:
+    return opened(page, "tilted-turntable")
+
+
+def opened(page: Page, name: str) -> Bench:
+    bench = Bench(page)
+    bench.open("#/compare")
+    bench.open(f"#/bench?name={name}")
+    expect(page.locator("section.stage")).to_have_attribute("data-shown", files.title_of(name))
+    bench.tab("Numbers")
+    return bench
 
 
 def end_of(run: tr.Trajectory) -> tuple[float, ...]:
     return tuple(float(value) for value in run.in_frame("world").data.position.values[-1])
 
 
-def test_a_dragged_rate_shows_the_circle_that_the_package_computes(visitor: Visitor) -> None:
-    bench = level(visitor)
+def test_a_dragged_rate_shows_the_circle_that_the_package_computes(page: Page) -> None:
+    bench = level(page)
     bench.slide(RATE, 0.9)
 
     def agrees() -> None:
@@ -42,8 +67,8 @@ def test_a_dragged_rate_shows_the_circle_that_the_package_computes(visitor: Visi
     assert circle_rate(bench.run()) > 1.5  # the slider ends at 10 rad/s, and the circle has two sevenths of that
 
 
-def test_a_dragged_tilt_shows_the_drift_that_the_package_computes(visitor: Visitor) -> None:
-    bench = leaning(visitor)
+def test_a_dragged_tilt_shows_the_drift_that_the_package_computes(page: Page) -> None:
+    bench = leaning(page)
     bench.slide("support.tilt", 0.3)
 
     def agrees() -> None:
@@ -55,8 +80,8 @@ def test_a_dragged_tilt_shows_the_drift_that_the_package_computes(visitor: Visit
     eventually(bench.page, agrees)
 
 
-def test_the_drawn_path_follows_a_slider(visitor: Visitor) -> None:
-    bench = level(visitor)
+def test_the_drawn_path_follows_a_slider(page: Page) -> None:
+    bench = level(page)
     bench.slide("start.velocity.1", 0.62)
     bench.stage.canvas.focus()
 
@@ -71,8 +96,9 @@ def test_the_drawn_path_follows_a_slider(visitor: Visitor) -> None:
 @pytest.mark.parametrize(
     ("typed", "rate"), [("45 rpm", 1.5 * math.pi), ("2 rad/s", 2.0), ("0.5 turn/s", math.pi), ("-78", -2.6 * math.pi)]
 )
-def test_a_value_may_be_typed_with_its_unit(typed: str, rate: float, visitor: Visitor) -> None:
-    bench = level(visitor)
+def test_a_value_may_be_typed_with_its_unit(typed: str, rate: float, page: Page) -> None:
+    bench = level(page)
+    bench.control(RATE).get_by_role("combobox").select_option("rpm")  # what a bare number is in
     box = bench.box(RATE)
     box.fill(typed)
     box.press("Enter")
@@ -85,8 +111,8 @@ def test_a_value_may_be_typed_with_its_unit(typed: str, rate: float, visitor: Vi
     eventually(bench.page, agrees)
 
 
-def test_a_unit_may_be_changed_and_the_motion_stays(visitor: Visitor) -> None:
-    bench = level(visitor)
+def test_a_unit_may_be_changed_and_the_motion_stays(page: Page) -> None:
+    bench = level(page)
     bench.control(RATE).get_by_role("combobox").select_option("rad/s")
     expect(bench.box(RATE)).to_have_value(re.compile(r"3\.4871[67]\d*"))
 
@@ -107,10 +133,10 @@ def test_a_unit_may_be_changed_and_the_motion_stays(visitor: Visitor) -> None:
     ],
 )
 def test_a_bad_value_is_answered_at_its_control_and_the_last_path_stays(
-    path: str, typed: str, said: str, visitor: Visitor
+    path: str, typed: str, said: str, page: Page, staying: Visitor
 ) -> None:
-    visitor.watch.allow(r"status of 422")
-    bench = level(visitor)
+    staying.watch.allow(r"status of 422")
+    bench = level(page)
     before = end_of(bench.run())
     box = bench.box(path)
     good = f"{box.input_value()} {bench.control(path).get_by_role('combobox').input_value()}"
@@ -141,8 +167,6 @@ def words_for(path: str, typed: str) -> str:
     """The package's own words for a bad value at a key of the scenario."""
     import tomllib
 
-    from trundle.scenario import files
-
     tables = tomllib.loads(files.read("level-turntable-nudged"))
     table = tables
     *way, key = path.split(".")
@@ -155,7 +179,7 @@ def words_for(path: str, typed: str) -> str:
 
 
 def test_undo_and_redo_go_along_the_changes(visitor: Visitor) -> None:
-    bench = level(visitor)
+    bench = Bench(visitor.open("#/bench?name=level-turntable-nudged", size=SMALL))  # with no past
     box = bench.box(RATE)
     for rate in ("45", "78"):
         box.fill(rate)
@@ -174,8 +198,8 @@ def rate_shown(bench: Bench, rate: float) -> None:
     assert bench.found(r"\Omega_c")[0] == as_shown(2 / 7 * rate)
 
 
-def test_the_card_is_the_packages_own(visitor: Visitor) -> None:
-    bench = level(visitor)
+def test_the_card_is_the_packages_own(page: Page) -> None:
+    bench = level(page)
     bench.tab("Card")
     panel = bench.page.get_by_role("tabpanel", name="Card")
     figures = tr.Scenario.load("level-turntable-nudged").run().card().figures
@@ -185,8 +209,8 @@ def test_the_card_is_the_packages_own(visitor: Visitor) -> None:
         expect(panel).to_contain_text(figure.name)
 
 
-def test_the_derivation_ends_with_the_numbers_of_this_scenario(visitor: Visitor) -> None:
-    bench = level(visitor)
+def test_the_derivation_ends_with_the_numbers_of_this_scenario(page: Page) -> None:
+    bench = level(page)
     bench.tab("Numbers")
     bench.page.get_by_role("button", name="How does this follow?").click()
     dialog = bench.page.get_by_role("dialog")

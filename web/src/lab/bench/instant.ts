@@ -70,6 +70,15 @@ export function instantAt(scene: Scene, time: number): Instant {
   }
 }
 
+/** The state at the sample next to a time: to go on from it loses nothing, as it would from between two samples. */
+export function sampleAt(scene: Scene, time: number): Instant {
+  const times = scene.columns.time
+  const before = indexAt(times, time)
+  const after = Math.min(before + 1, times.length - 1)
+  const nearer = Math.abs(times[after]! - time) < Math.abs(time - times[before]!) ? after : before
+  return instantAt(scene, times[nearer]!)
+}
+
 /** The support's pose when the run begins. */
 export function startPose(scene: Scene): Pose | undefined {
   return instantAt(scene, scene.columns.time[0] ?? 0).support

@@ -10,7 +10,7 @@ import { formula } from '../math'
 import { show } from '../quantity'
 import type { Scenario } from '../scenario'
 import { headline } from './findings'
-import { instantAt, startPose } from './instant'
+import { instantAt, sampleAt, startPose } from './instant'
 import { nudged, placed, thrown, whyNotDragged, whyNotHere, whyNotNudged } from './placing'
 
 /** "0.42 ms", "1.3 s". */
@@ -145,14 +145,14 @@ export function createStage(app: App): Stage {
   function nudge(by: Triple, when: number): void {
     if (!scene) return
     const before: Scenario = store.scenario
-    const [at, begin] = [instantAt(scene, when), startPose(scene)]
+    const [at, begin] = [sampleAt(scene, when), startPose(scene)]
     const why = whyNotHere(before, at, begin)
     if (why) {
       app.toast(why)
       return
     }
     store.set(nudged(before, at, by, begin), { source: 'nudge' })
-    app.toast(`Nudged at ${show(when, 3)} s by ${show(Math.hypot(...by), 2)} m/s: this is the new start.`)
+    app.toast(`Nudged at ${show(at.time, 3)} s by ${show(Math.hypot(...by), 2)} m/s: this is the new start.`)
   }
 
   /** While it stands still the whole path is there; while it runs the ball draws it. */
