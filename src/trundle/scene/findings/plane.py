@@ -93,6 +93,11 @@ def _pushed(form: SphereOnPlane, system: RollingSystem, seen: Seen) -> Iterator[
     turned = math.degrees(cmath.phase(push) + cmath.phase(found / push))
     note = "from the first axis towards the second"
     yield Finding("Its direction", r"\arg\varphi", math.degrees(cmath.phase(push)), turned, "°", note, 360.0)
+    applied, along = complex(*map(float, form.force[:2])), push / abs(push)
+    reaction, seen_so = (((float(form.mass) * a - applied) / along).real for a in (push, found))
+    note = "along the acceleration; negative: it holds the ball back"
+    scale = max(abs(applied), float(form.mass) * abs(push))
+    yield Finding("Reaction of the support", r"R_\parallel", reaction, seen_so, "N", note, scale)
 
 
 def _braked(form: SphereOnPlane, seen: Seen) -> Iterator[Finding]:
