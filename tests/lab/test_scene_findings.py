@@ -185,7 +185,7 @@ def test_a_landing():
 
 @pytest.mark.parametrize(("name", "reaction"), [("ball-under-force", -2 / 7 * 0.1), ("ball-under-torque", 5 / 7 * 0.1)])
 def test_the_table_holds_a_ball_back_by_two_sevenths_and_drives_one_by_five(name, reaction):
-    """The lecture's reaction of the table, to a force at the centre and to a torque: 0.1 N, and 0.1 N times the radius."""
+    """The lecture's reaction, to a force of 0.1 N at the centre, and to a torque of 0.1 N times the radius."""
     row = found(tr.Scenario.load(name).run())["Reaction of the support"]
     assert row["predicted"] == pytest.approx(reaction, rel=1e-14)
     assert row["measured"] == pytest.approx(reaction, rel=1e-12)
