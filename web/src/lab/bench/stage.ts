@@ -163,7 +163,7 @@ export function createStage(app: App): Stage {
 
   function drawHeadline(of: Scene): void {
     const found = headline(of)
-    const said = of.header.formula?.latex
+    const said = of.header.method === 'exact' ? of.header.formula?.latex : undefined // the law itself is too long
     fill(
       big,
       found && h('p', { class: 'headline-name' }, found.name),
