@@ -44,6 +44,10 @@ def test_a_ball_in_a_bowl_is_dragged_up_its_side_and_nudged_while_it_runs(bench:
         assert bench.stage.ball() == pytest.approx((x - 60, y - 50), abs=6), "it lies where it was let go"
 
     eventually(bench.page, moved)
+    bench.page.wait_for_timeout(
+        1000
+    )  # a hand that moves is followed with fewer samples; at rest all of them are asked for
+    bench.settle()
     before = bench.run()
     bench.page.keyboard.press("Space")
     eventually(bench.page, lambda: passed(bench, 0.4))
@@ -58,7 +62,9 @@ def test_a_ball_in_a_bowl_is_dragged_up_its_side_and_nudged_while_it_runs(bench:
         assert start.position == pytest.approx(then.position.values, abs=1e-6), "it goes on from where it was"
         normal = (then.position.values - then.contact.values) / 0.01
         spins = [float(np.dot(turning, normal)) for turning in (start.angular_velocity, then.angular_velocity.values)]
-        assert spins[0] == pytest.approx(spins[1], abs=1e-5), "with the spin that it had"
+        # The page takes the normal from two places in single precision, a ball's radius apart.
+        rounding = 4 * 2.0**-24 * np.linalg.norm(then.position) / 0.01 * np.linalg.norm(then.angular_velocity)
+        assert spins[0] == pytest.approx(spins[1], abs=float(rounding)), "with the spin that it had"
         added = np.array(start.velocity) - then.velocity.values
         assert added[0] > 0.01, "right on the screen is along the first axis"
         assert abs(added[1]) < 0.1 * added[0]
