@@ -404,6 +404,15 @@ def test_the_numbers_name_every_load() -> None:
     assert "restitution e = 0.5" in numbers
 
 
+@pytest.mark.parametrize("combined", [False, True])
+def test_the_rate_of_a_free_table_is_the_one_that_the_run_starts_with(combined: bool) -> None:
+    axle = tr.FreeAxle(0.02, 5.0)
+    motion = tr.Combined((tr.Shake((0.002, 0.0, 0.0), 30.0), axle)) if combined else axle
+    system = tr.RollingSystem(BALL, tr.Support(tr.Plane(), motion=motion))
+    assert "at first 5 rad/s" in key_numbers(system, system.place((0.1, 0.0)).support)
+    assert "at first 3 rad/s" in key_numbers(system, system.place((0.1, 0.0), support=(0.5, 3.0)).support)
+
+
 def test_a_surface_of_ones_own_is_drawn() -> None:
     from trundle.mechanics.surfaces import Surface
 

@@ -77,7 +77,7 @@ def facts_of(run: Trajectory) -> Facts:
     stays = support.motion.steady_rate is not None or _stays(run)
     return Facts(
         title="".join(letter if letter.isprintable() else " " for letter in str(given)) if given else title_of(system),
-        numbers=key_numbers(system),
+        numbers=key_numbers(system, run.start.support),
         radius=_size(run),
         round=isinstance(shape, Sphere) and (wall or not straight),
         tilt=float(support.tilt),

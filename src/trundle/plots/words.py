@@ -182,13 +182,15 @@ _PLACES: tuple[tuple[type, tuple[str, str]], ...] = (
 )
 
 
-def key_numbers(system: RollingSystem) -> str:
+def key_numbers(system: RollingSystem, own: tuple[float, ...] | None = None) -> str:
     """Write the line of key numbers: of the support's motion, its surface, the body, friction and the loads.
 
     Parameters
     ----------
     system : RollingSystem
         What moved.
+    own : tuple of float, optional
+        The coordinates of the support's own motion at the start; absent: as the motion itself starts.
 
     Returns
     -------
@@ -205,7 +207,8 @@ def key_numbers(system: RollingSystem) -> str:
     """
     support = system.support
     wall = isinstance(support.surface, surfaces.Cylinder)
-    parts = _moving(support.motion, ground_of(support.surface))
+    first = tuple(map(float, support.motion.own_start())) if own is None else own
+    parts = _moving(support.motion, ground_of(support.surface), first)
     parts += _of_surface(support.surface)
     if support.tilt and not wall:
         parts.append(f"tilt {_degrees(support.tilt)}")
@@ -219,15 +222,15 @@ def key_numbers(system: RollingSystem) -> str:
     return SEPARATOR.join(parts + [text for load in system.loads for text in _of_load(load)])
 
 
-def _moving(motion: Motion, what: str) -> list[str]:
+def _moving(motion: Motion, what: str, own: tuple[float, ...]) -> list[str]:
     if isinstance(motion, motions.Combined):
-        return [text for part in motion.parts for text in _moving(part, what)]
+        return [text for part in motion.parts for text in _moving(part, what, own)]
     if motion.steady_rate is not None:
         return [f"{what} {_rate(float(motion.steady_rate))}"] if motion.steady_rate else []
     if isinstance(motion, motions.SpinBy):
         return [f"{what} {_formula(motion.rate, 'ω', 'rad/s')}"]
     if isinstance(motion, motions.FreeAxle):
-        return [f"free {what} of {short(float(motion.inertia), 3)} kg m², at first {_rate(float(motion.rate))}"]
+        return [f"free {what} of {short(float(motion.inertia), 3)} kg m², at first {_rate(own[-1])}"]
     if isinstance(motion, motions.UnevenSpin):
         uneven = f"uneven by {short(100 * float(motion.variation), 3)} %"
         return [f"{what} {_rate(float(motion.rate))}", uneven]

@@ -1,5 +1,5 @@
 /** Starts by hand: where the ball was dragged, the velocity drawn, and a restart from the middle of a run. */
-import { Quaternion, Vector3 } from 'three'
+import { Vector3 } from 'three'
 import type { Triple } from '../../viewer/scene'
 import { type Kind, parse, rounded, UNITS, write } from '../quantity'
 import type { Json, Quantity, Scenario, Table } from '../scenario'
@@ -69,22 +69,19 @@ export function nudged(scenario: Scenario, at: Instant, by: Triple, begin?: Pose
   const there = own(scenario, at, clock ? at.support : begin)
   const velocity = new Vector3(...at.velocity)
   const upwards = velocity.clone().applyQuaternion(there.turn).dot(there.normal)
-  const [w, x, y, z] = at.orientation
-  const q = new Quaternion(x, y, z, w).premultiply(there.begin)
   const turning = new Vector3(...at.angularVelocity)
   const flies = at.height !== undefined
   const parts = along(scenario, there, velocity.add(new Vector3(...by)))
   const start: Table = {
     position: coordinates(scenario.support, there).map(exact),
     velocity: [...parts, ...(flies ? [upwards] : [])].map(exact),
-    orientation: [q.w, q.x, q.y, q.z].map(exact),
+    orientation: at.orientation.map(exact),
   }
   if (clock) start.time = exact(at.time)
   else if (scenario.start.time !== undefined) start.time = scenario.start.time
   if (clock && at.own.length) start.support = at.own.map(exact)
   if (flies) start.height = exact(at.height ?? 0)
-  if (flies || scenario.support.friction !== undefined)
-    start.angular_velocity = turning.applyQuaternion(there.begin).toArray().map(exact)
+  if (flies || scenario.support.friction !== undefined) start.angular_velocity = at.angularVelocity.map(exact)
   else start.spin = exact(turning.applyQuaternion(there.turn).dot(there.normal))
   return { ...scenario, start }
 }

@@ -25,9 +25,8 @@ export interface Own {
   position: Vector3
   contact: Vector3
   normal: Vector3
-  /** Takes vectors of the support frame at that instant to this frame, and to the support frame at the start. */
+  /** Takes vectors of the support frame to this frame. */
   turn: Quaternion
-  begin: Quaternion
 }
 
 const TURNING = new Set(['fixed', 'spin', 'uneven-spin', 'spin-by', 'free-axle'])
@@ -48,7 +47,7 @@ export function own(scenario: Scenario, spot: Spot, start: Pose = STILL): Own {
   const there = (triple: Triple) => vector(triple).sub(vector(pose.place)).applyQuaternion(turn)
   const [position, contact] = [there(spot.position), there(spot.contact)]
   const normal = spot.normal ? vector(spot.normal).applyQuaternion(turn) : position.clone().sub(contact)
-  return { position, contact, normal: normal.normalize(), turn, begin: quaternion(start.turn).multiply(turn) }
+  return { position, contact, normal: normal.normalize(), turn }
 }
 
 /** The two coordinates, in m or rad. */
