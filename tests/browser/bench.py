@@ -152,6 +152,27 @@ class Bench:
         self.page.evaluate("route => { location.hash = route }", route)
         self.settle()
 
+    def tool(self, name: str) -> None:
+        """Choose what the pointer does on the stage."""
+        button = self.page.get_by_role("radio", name=name)
+        button.click()
+        expect(button).to_be_checked()
+
+    def play_past(self, seconds: float) -> Drawn:
+        """Play until so much of the run has passed, and pause; what is drawn then."""
+        self.page.keyboard.press("Space")
+
+        def passed() -> None:
+            assert self.stage.drawn().time > seconds
+
+        def stands() -> None:
+            assert not self.stage.drawn().playing
+
+        eventually(self.page, passed)
+        self.page.keyboard.press("Space")
+        eventually(self.page, stands)
+        return self.stage.drawn()
+
     def control(self, path: str) -> Locator:
         """The control of a key of the scenario: "support.tilt"."""
         return self.page.locator(f'.controls [data-path="{path}"]')

@@ -30,11 +30,11 @@ def settle(page: Page) -> None:
 
 
 def judge(page: Page, part: str = "body", sizes: tuple[dict, ...] = (LAPTOP, PHONE)) -> None:
-    """Light and dark, on a phone dark only; at none of the widths may the page have to be scrolled to the side."""
+    """Light and dark; at none of the widths may the page have to be scrolled to the side."""
     found = []
     for size in sizes:
         page.set_viewport_size(size)  # type: ignore[arg-type]
-        for scheme in ("dark",) if size is PHONE else ("light", "dark"):
+        for scheme in ("light", "dark"):
             page.emulate_media(color_scheme=scheme, reduced_motion="reduce")  # type: ignore[arg-type]
             page.wait_for_timeout(250)  # colours change by and by
             page.evaluate("new Promise(drawn => requestAnimationFrame(() => requestAnimationFrame(drawn)))")

@@ -38,14 +38,8 @@ def start(bench: Bench) -> tuple[np.ndarray, np.ndarray]:
     return np.array(state.position[:2]), np.array(state.velocity[:2])
 
 
-def tool(bench: Bench, name: str) -> None:
-    button = bench.page.get_by_role("radio", name=name)
-    button.click()
-    expect(button).to_be_checked()
-
-
 def test_the_ball_is_dragged_to_another_start(bench: Bench) -> None:
-    tool(bench, "Move the ball")
+    bench.tool("Move the ball")
     x, y = bench.stage.ball()
     bench.stage.drag((-60.0, -40.0))
 
@@ -63,7 +57,7 @@ def test_the_ball_is_dragged_to_another_start(bench: Bench) -> None:
 
 
 def test_its_velocity_is_drawn_as_an_arrow(bench: Bench) -> None:
-    tool(bench, "Draw its velocity")
+    bench.tool("Draw its velocity")
     bench.stage.drag((0.0, 70.0))
 
     def thrown() -> None:
@@ -80,12 +74,8 @@ def test_its_velocity_is_drawn_as_an_arrow(bench: Bench) -> None:
 def test_a_nudge_restarts_from_the_state_that_is_shown(bench: Bench) -> None:
     """The state of the run at that time, and the nudge: where it is, how it lies and how it turns are the run's own."""
     before = bench.run()
-    bench.page.keyboard.press("Space")
-    eventually(bench.page, lambda: passed(bench, 0.5))
-    bench.page.keyboard.press("Space")
-    eventually(bench.page, lambda: stands(bench))
-    paused = bench.stage.drawn()
-    tool(bench, "Nudge it")
+    paused = bench.play_past(0.5)
+    bench.tool("Nudge it")
     bench.stage.drag((50.0, 0.0))
 
     def nudged() -> None:
@@ -106,12 +96,8 @@ def test_a_nudge_restarts_from_the_state_that_is_shown(bench: Bench) -> None:
 def test_a_nudge_keeps_the_clock_and_the_turn_of_a_table_that_turns_freely(visitor: Visitor) -> None:
     bench = from_above(visitor, "free-turntable-ellipse")
     before = bench.run()
-    bench.page.keyboard.press("Space")
-    eventually(bench.page, lambda: passed(bench, 0.5))
-    bench.page.keyboard.press("Space")
-    eventually(bench.page, lambda: stands(bench))
-    paused = bench.stage.drawn()
-    tool(bench, "Nudge it")
+    paused = bench.play_past(0.5)
+    bench.tool("Nudge it")
     bench.stage.drag((50.0, 0.0))
 
     def nudged() -> None:
@@ -126,14 +112,6 @@ def test_a_nudge_keeps_the_clock_and_the_turn_of_a_table_that_turns_freely(visit
         assert abs(added[1]) < 0.1 * added[0]
 
     eventually(bench.page, nudged)
-
-
-def stands(bench: Bench) -> None:
-    assert not bench.stage.drawn().playing
-
-
-def passed(bench: Bench, seconds: float) -> None:
-    assert bench.stage.drawn().time > seconds
 
 
 def test_what_cannot_be_nudged_says_why(visitor: Visitor) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from playwright.sync_api import expect
 
 import trundle as tr
 
@@ -25,14 +24,8 @@ def bench(visitor: Visitor) -> Bench:
     return shown
 
 
-def tool(bench: Bench, name: str) -> None:
-    button = bench.page.get_by_role("radio", name=name)
-    button.click()
-    expect(button).to_be_checked()
-
-
 def test_a_ball_in_a_bowl_is_dragged_up_its_side_and_nudged_while_it_runs(bench: Bench) -> None:
-    tool(bench, "Move the ball")
+    bench.tool("Move the ball")
     x, y = bench.stage.ball()
     bench.stage.drag((-60.0, -50.0))
 
@@ -49,12 +42,8 @@ def test_a_ball_in_a_bowl_is_dragged_up_its_side_and_nudged_while_it_runs(bench:
     )  # a hand that moves is followed with fewer samples; at rest all of them are asked for
     bench.settle()
     before = bench.run()
-    bench.page.keyboard.press("Space")
-    eventually(bench.page, lambda: passed(bench, 0.4))
-    bench.page.keyboard.press("Space")
-    eventually(bench.page, lambda: stands(bench))
-    then = before.data.sel(time=bench.stage.drawn().time, method="nearest")
-    tool(bench, "Nudge it")
+    then = before.data.sel(time=bench.play_past(0.4).time, method="nearest")
+    bench.tool("Nudge it")
     bench.stage.drag((40.0, 0.0))
 
     def nudged() -> None:
@@ -71,11 +60,3 @@ def test_a_ball_in_a_bowl_is_dragged_up_its_side_and_nudged_while_it_runs(bench:
         assert added @ normal == pytest.approx(0.0, abs=1e-4), "along the bowl"
 
     eventually(bench.page, nudged)
-
-
-def passed(bench: Bench, seconds: float) -> None:
-    assert bench.stage.drawn().time > seconds
-
-
-def stands(bench: Bench) -> None:
-    assert not bench.stage.drawn().playing
