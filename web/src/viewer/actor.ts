@@ -31,9 +31,8 @@ export class Actor {
   }
 
   layPaths(frame: Frame, parent: Object3D): void {
-    const points = pathPoints(this.body.scene, frame)
-    this.trail.setPoints(points)
-    this.ahead.setPoints(points)
+    this.trail.setPoints(pathPoints(this.body.scene, frame))
+    this.ahead.sharePoints(this.trail)
     this.guide.setPoints(this.guided ? pathPoints(this.body.scene, frame, 'guiding_centre') : new Float32Array())
     parent.add(this.ahead.mesh, this.trail.mesh, this.guide.mesh)
   }

@@ -1,11 +1,11 @@
-/** What stands behind everything: a soft glow on quiet ground, drawn first and never in front of anything. */
+/** What stands behind everything: a soft glow on quiet ground, drawn only where nothing stands before it. */
 import { BufferAttribute, BufferGeometry, Color, Mesh, ShaderMaterial } from 'three'
 
 const VERTEX = /* glsl */ `
 varying vec2 place;
 void main() {
   place = position.xy;
-  gl_Position = vec4(position.xy, 1.0, 1.0);
+  gl_Position = vec4(position.xy, 1.0, 1.0); // as far away as there is
 }
 `
 
@@ -33,13 +33,12 @@ export class Backdrop {
       uniforms: this.uniforms,
       vertexShader: VERTEX,
       fragmentShader: FRAGMENT,
-      depthTest: false,
       depthWrite: false,
       toneMapped: false,
     })
     this.mesh = new Mesh(geometry, material)
     this.mesh.frustumCulled = false
-    this.mesh.renderOrder = -10
+    this.mesh.renderOrder = 3 // after all that is solid, which then saves its pixels; glass comes later
   }
 
   look(glow: string, ground: string): void {

@@ -64,9 +64,16 @@ export interface Drawn {
   done: boolean
 }
 
+export interface SceneOptions {
+  keepTime?: boolean
+  keepCamera?: boolean
+  /** Nothing changes any more for now: to be drawn in full at once, also where each pixel is dear. */
+  rests?: boolean
+}
+
 export interface Viewer {
   /** Several scenes share the support of the first; each has its own body, in the order of `BODY_COLOURS`. */
-  setScenes(scenes: readonly Scene[], options?: { keepTime?: boolean; keepCamera?: boolean }): void
+  setScenes(scenes: readonly Scene[], options?: SceneOptions): void
   play(): void
   pause(): void
   seek(time: number): void

@@ -7,8 +7,17 @@ export function drawsByProcessor(driver: string): boolean {
   return PROCESSORS.test(driver)
 }
 
+/** Whether the processor draws here; to ask takes a canvas of its own, so that a stage can be made as fits the answer. */
+export function askWhoDraws(): boolean {
+  const gl = document.createElement('canvas').getContext('webgl2', { antialias: false, depth: false })
+  if (!gl) return false
+  const answer = drawsByProcessor(driverOf(gl))
+  gl.getExtension('WEBGL_lose_context')?.loseContext()
+  return answer
+}
+
 /** The driver's own words for itself; empty where the browser does not tell. */
-export function driverOf(gl: WebGLRenderingContext | WebGL2RenderingContext): string {
+function driverOf(gl: WebGLRenderingContext | WebGL2RenderingContext): string {
   const told = gl.getExtension('WEBGL_debug_renderer_info')
   const name: unknown = gl.getParameter(told ? told.UNMASKED_RENDERER_WEBGL : gl.RENDERER)
   return typeof name === 'string' ? name : ''

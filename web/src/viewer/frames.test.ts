@@ -32,15 +32,24 @@ test('the world frame has the vertical upwards: down the slope is down', () => {
 })
 
 test('the path on the turning table is the path turned back', () => {
-  const scene = unpack(circling(41, 1.5))
+  const scene = unpack(circling(8, 1.5))
   const points = pathPoints(scene, 'corotating')
-  expect(points.length).toBeGreaterThan(4 * 41)
   for (let i = 0; i < points.length; i += 4) {
     const [x, y, , t] = points.subarray(i, i + 4)
     // Round a circle at rate 1, on a table that turns at 1.5: backwards at 0.5.
     expect(x).toBeCloseTo(Math.cos(-0.5 * t!), 4)
     expect(y).toBeCloseTo(Math.sin(-0.5 * t!), 4)
   }
+})
+
+test('points are put between samples where a path bends, and only there', () => {
+  const few = pathPoints(unpack(circling(6)), 'support')
+  expect(few.length).toBeGreaterThan(4 * 5 * 4) // 0.4 rad from sample to sample
+  for (let i = 4; i < few.length; i += 4) {
+    const turned = Math.atan2(few[i + 1]!, few[i]!) - Math.atan2(few[i - 3]!, few[i - 4]!)
+    expect(turned).toBeLessThan(0.11)
+  }
+  expect(pathPoints(unpack(circling(41)), 'support').length).toBe(4 * 41)
 })
 
 test('a ball that rides along with the table stays where it is on it', () => {

@@ -132,6 +132,13 @@ export class Line {
     this.mesh.visible = count > 1
   }
 
+  /** Take the points of another line, which go to the graphics card only once. */
+  sharePoints(other: Line): void {
+    this.mesh.geometry.dispose()
+    this.mesh.geometry = other.mesh.geometry
+    this.mesh.visible = other.mesh.visible
+  }
+
   look({ colour, faded, width }: LineLook): void {
     this.uniforms.colour.value.set(colour).convertLinearToSRGB()
     this.uniforms.faded.value.set(faded ?? colour).convertLinearToSRGB()
@@ -166,16 +173,25 @@ export class Line {
 function fourfold(points: Float32Array): Float32Array {
   const out = new Float32Array(4 * points.length)
   for (let i = 0; i < points.length; i += 4) {
-    const point = points.subarray(i, i + 4)
-    for (let corner = 0; corner < 4; corner++) out.set(point, 4 * i + 4 * corner)
+    const [x, y, z, t] = [points[i]!, points[i + 1]!, points[i + 2]!, points[i + 3]!]
+    for (let at = 4 * i; at < 4 * i + 16; at += 4) {
+      out[at] = x
+      out[at + 1] = y
+      out[at + 2] = z
+      out[at + 3] = t
+    }
   }
   return out
 }
 
+const CORNERS = [0, 1, 2, 1, 3, 2]
+
 /** The corners of so many pieces, two triangles each. */
 function quads(count: number): Uint32Array {
   const out = new Uint32Array(6 * count)
-  for (let i = 0; i < count; i++) out.set([4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 1, 4 * i + 3, 4 * i + 2], 6 * i)
+  for (let i = 0; i < count; i++) {
+    for (let k = 0; k < 6; k++) out[6 * i + k] = 4 * i + CORNERS[k]!
+  }
   return out
 }
 

@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest'
-import { Haste, Pace } from './pace'
+import { Pace } from './pace'
 
 test('a quick machine keeps all its pixels', () => {
   const pace = new Pace()
@@ -23,12 +23,4 @@ test('a pause is no slow frame', () => {
     pace.rest()
   }
   expect(pace.share).toBe(1)
-})
-
-test('a change by itself is drawn in full, a hand that drags is followed in haste', () => {
-  const haste = new Haste()
-  for (let i = 0; i < 20; i++) expect(haste.change(300 * i)).toBe(false)
-  const dragged = Array.from({ length: 8 }, (_, i) => haste.change(10_000 + 60 * i))
-  expect(dragged).toEqual([false, false, false, false, true, true, true, true])
-  expect(haste.change(12_000)).toBe(false)
 })

@@ -28,19 +28,3 @@ export class Pace {
 const SLOW = 42 // ms
 const PATIENCE = 5 // frames
 const LEAST = 0.42
-
-/** Whether changes follow each other so closely that none of them is looked at for long. */
-export class Haste {
-  private count = 0
-  private last = Number.NEGATIVE_INFINITY
-
-  /** Something has changed at `now`, ms. One change, even one that is drawn in two or three goes, is no haste. */
-  change(now: number): boolean {
-    this.count = now - this.last < SOON ? this.count + 1 : 0
-    this.last = now
-    return this.count >= MANY
-  }
-}
-
-const SOON = 200 // ms
-const MANY = 4

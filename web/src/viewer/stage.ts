@@ -12,10 +12,11 @@ import {
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
 import { Backdrop } from './backdrop'
 import { type Fit, fitted } from './camera'
-import { drawsByProcessor, driverOf } from './drawing'
+import { askWhoDraws } from './drawing'
 import type { Palette } from './theme'
 
 const MOST_PIXELS_PER_POINT = 2
+const SMOOTHED = 1.5 // pixels per point that smooth edges as they are shrunk, where nothing else does
 const ANGLE = 30 // of view, degrees
 
 export class Stage {
@@ -40,8 +41,10 @@ export class Stage {
   private readonly backdrop = new Backdrop()
 
   constructor(canvas: HTMLCanvasElement, changed: () => void) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: false, powerPreference: 'high-performance' })
-    this.byProcessor = drawsByProcessor(driverOf(this.renderer.getContext()))
+    this.byProcessor = askWhoDraws()
+    // Multisampling doubles what each pixel costs the processor, of a coarse picture too.
+    const antialias = !this.byProcessor
+    this.renderer = new WebGLRenderer({ canvas, antialias, alpha: false, powerPreference: 'high-performance' })
     this.renderer.shadowMap.enabled = true
     this.renderer.shadowMap.type = PCFShadowMap
     this.camera.up.set(0, 0, 1) // before the controls, which take it once
@@ -91,7 +94,7 @@ export class Stage {
     this.camera.updateProjectionMatrix()
   }
 
-  /** Draw with a share of the screen's pixels to a side. */
+  /** Draw with a share of the pixels to a side. */
   sharpen(share: number): void {
     if (share === this.sharpness) return
     this.sharpness = share
@@ -103,8 +106,9 @@ export class Stage {
   }
 
   private usePixels(): void {
-    const share = this.sharpness
-    this.renderer.setPixelRatio(share * Math.min(globalThis.devicePixelRatio || 1, MOST_PIXELS_PER_POINT))
+    const screen = Math.min(globalThis.devicePixelRatio || 1, MOST_PIXELS_PER_POINT)
+    const full = this.byProcessor && this.sharpness === 1 ? Math.max(screen, SMOOTHED) : screen
+    this.renderer.setPixelRatio(this.sharpness * full)
   }
 
   /** Look at points (m, shown frame) from a direction, near enough to fill the stage. */

@@ -1,7 +1,7 @@
 /** The viewer: one stage with its bar, for the lab page, the notebook and saved pages. */
 import './viewer.css'
 import { Vector3 } from 'three'
-import type { Frame, Show, Theme, Tool, Viewer, ViewerEvents, ViewerOptions } from './contract'
+import type { Frame, SceneOptions, Show, Theme, Tool, Viewer, ViewerEvents, ViewerOptions } from './contract'
 import { Controls, pressed } from './controls'
 import { element } from './elements'
 import { Emitter } from './emitter'
@@ -9,9 +9,9 @@ import { Fallback } from './fallback'
 import { framesOf, nextFrame } from './frames'
 import { LabelLayer } from './labels'
 import { Legend } from './legend'
-import { Haste, Pace } from './pace'
 import { Player } from './player'
 import type { Scene, Triple } from './scene'
+import { Sharpness } from './sharpness'
 import { liveShow } from './shown'
 import { Stage } from './stage'
 import { paletteOf, watchTheme, widthsOf } from './theme'
@@ -25,15 +25,9 @@ export function createViewer(host: HTMLElement, options: ViewerOptions = {}): Vi
   return new StageViewer(host, options)
 }
 
-const COARSE = 0.6 // of the pixels to a side, while something changes
-const CALM = 250 // ms without a change
-
 class StageViewer implements Viewer {
   private readonly events = new Emitter<ViewerEvents>()
   private readonly player = new Player()
-  private readonly pace: Pace
-  private readonly haste = new Haste()
-  private calm: ReturnType<typeof setTimeout> | undefined
   private readonly labels: LabelLayer
   private readonly legend = new Legend()
   private readonly note = element('p', 'tr-note')
@@ -42,6 +36,7 @@ class StageViewer implements Viewer {
   private readonly root: HTMLElement
   private readonly fallback: Fallback | null
   private readonly stage: Stage | null
+  private readonly sharpness: Sharpness | null
   private readonly world: World | null
   private readonly tools: Tools | null
   private readonly controls: Controls | null
@@ -76,7 +71,7 @@ class StageViewer implements Viewer {
     this.root = element('div', 'tr-viewer', {}, this.frameElement)
     host.append(this.root)
     this.stage = this.openStage()
-    this.pace = new Pace(this.stage?.byProcessor ? COARSE : 1)
+    this.sharpness = this.stage && new Sharpness(this.stage, () => this.draw())
     this.fallback = this.stage ? null : new Fallback(document)
     if (this.fallback) this.frameElement.replaceChildren(this.fallback.element)
     this.world = this.stage && new World(this.stage)
@@ -141,7 +136,7 @@ class StageViewer implements Viewer {
     this.frame = next
   }
 
-  setScenes(scenes: readonly Scene[], options: { keepTime?: boolean; keepCamera?: boolean } = {}): void {
+  setScenes(scenes: readonly Scene[], options: SceneOptions = {}): void {
     this.scenes = scenes
     const begin = Math.min(...scenes.map(({ columns }) => columns.time[0] ?? 0))
     const end = Math.max(...scenes.map(({ columns }) => columns.time[columns.time.length - 1] ?? 0))
@@ -155,6 +150,7 @@ class StageViewer implements Viewer {
     this.describe()
     if (!keep && scenes.length) this.resetCamera()
     this.controls?.refresh()
+    if (options.rests) this.sharpness?.rest()
     this.invalidate()
   }
 
@@ -170,7 +166,6 @@ class StageViewer implements Viewer {
     this.player.play()
     if (!this.playing) return
     this.world?.hold(null)
-    this.stage?.sharpen(this.pace.share)
     this.events.emit('play', { time: this.time })
     this.controls?.refresh()
     this.invalidate()
@@ -183,8 +178,6 @@ class StageViewer implements Viewer {
   }
 
   private stopped(): void {
-    this.pace.rest()
-    this.stage?.sharpen(1)
     this.events.emit('pause', { time: this.time })
     this.controls?.refresh()
     this.invalidate()
@@ -337,6 +330,7 @@ class StageViewer implements Viewer {
   async snapshot(): Promise<Blob> {
     const { stage } = this
     if (!stage) throw new Error('A snapshot needs WebGL, which this browser lacks.')
+    stage.sharpen(1)
     this.draw() // the canvas keeps its picture only until the browser has shown it
     const made = new Promise<Blob>((done, failed) => {
       this.canvas.toBlob((blob) => (blob ? done(blob) : failed(new Error('The browser made no picture.'))), 'image/png')
@@ -351,6 +345,7 @@ class StageViewer implements Viewer {
     this.world?.look(paletteOf(this.drawnTheme), widthsOf(this.large, document.documentElement))
     this.world?.resize()
     if (this.scenes.length && !this.stage.moved) this.aim(this.fromTop)
+    this.sharpness?.changed()
     this.draw() // now: a resized canvas is blank until drawn
   }
 
@@ -364,26 +359,13 @@ class StageViewer implements Viewer {
 
   private tick(now: number): void {
     const ran = this.playing
-    if (ran && this.pace.frame(now)) this.stage?.sharpen(this.pace.share)
+    if (ran) this.sharpness?.frame(now)
+    else this.sharpness?.changed()
     const ended = this.player.tick(now)
     if (ran) this.events.emit('time', { time: this.time })
-    this.hurry(now)
     this.draw()
     if (ended) this.stopped()
     if (this.playing) this.invalidate()
-  }
-
-  /** Where the processor draws, changes that follow each other are drawn coarsely, and the last one again when it rests. */
-  private hurry(now: number): void {
-    if (!this.stage?.byProcessor || this.playing || !this.haste.change(now)) return
-    this.stage.sharpen(this.pace.share)
-    clearTimeout(this.calm)
-    this.calm = setTimeout(() => this.sharpen(), CALM)
-  }
-
-  private sharpen(): void {
-    this.stage?.sharpen(1)
-    this.draw()
   }
 
   private draw(): void {
@@ -416,7 +398,7 @@ class StageViewer implements Viewer {
   dispose(): void {
     this.abort.abort()
     if (this.pending) cancelAnimationFrame(this.pending)
-    clearTimeout(this.calm)
+    this.sharpness?.dispose()
     this.unwatch()
     this.watcher?.disconnect()
     this.tools?.dispose()

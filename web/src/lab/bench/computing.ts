@@ -8,7 +8,8 @@ import type { Change } from '../store'
 import type { CardState } from './card'
 
 export interface Listener {
-  scene(scene: Scene, milliseconds: number): void
+  /** `again`: of the scenario that is shown already, in full. */
+  scene(scene: Scene, milliseconds: number, again: boolean): void
   /** The numbers rest. */
   settled(scene: Scene): void
   failed(error: unknown): void
@@ -33,8 +34,9 @@ export function createComputing(app: App, listener: Listener): Computing {
     run: ({ scenario, quick }, signal) =>
       app.api.simulate(scenario, { signal, lane: null, ...(quick && { samples: QUICK }) }),
     done({ scene, milliseconds }, { scenario, quick }) {
+      const again = shown?.scenario === scenario
       shown = { scene, scenario, quick }
-      listener.scene(scene, milliseconds)
+      listener.scene(scene, milliseconds, again)
     },
     failed: (error) => {
       shown = undefined

@@ -49,8 +49,8 @@ function _mount(host: HTMLElement, app: App): () => void {
   let restart = false
 
   const computing = createComputing(app, {
-    scene(scene, milliseconds) {
-      stage.setScene(scene, { camera: !fresh, time: !fresh && !restart })
+    scene(scene, milliseconds, again) {
+      stage.setScene(scene, { camera: !fresh, time: !fresh && !restart, rests: again })
       fresh = false
       restart = false
       stage.took(milliseconds, scene)

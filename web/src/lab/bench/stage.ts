@@ -42,7 +42,7 @@ const TOOLS: { tool: BenchTool; icon: IconName; label: string; key: string; hint
 export interface Stage {
   element: HTMLElement
   viewer: Viewer
-  setScene(scene: Scene, keep: { camera: boolean; time: boolean }): void
+  setScene(scene: Scene, keep: { camera: boolean; time: boolean; rests: boolean }): void
   working(busy: boolean): void
   /** How long computing it took, and how long it was under way altogether. */
   took(milliseconds: number, scene: Scene): void
@@ -193,7 +193,7 @@ export function createStage(app: App): Stage {
       scene = next
       empty.hidden = true
       const was = viewer.playing
-      viewer.setScenes([next], { keepTime: !first && keep.time, keepCamera: !first && keep.camera })
+      viewer.setScenes([next], { keepTime: !first && keep.time, keepCamera: !first && keep.camera, rests: keep.rests })
       element.dataset.shown = next.header.title // for tests: a title changes before its path is there
       if (was && !viewer.playing) viewer.play()
       drawHeadline(next)
