@@ -1,5 +1,6 @@
 /** The stage: renderer, camera, lights. It draws when it is told to, and knows nothing of runs. */
 import {
+  BasicShadowMap,
   DirectionalLight,
   Group,
   HemisphereLight,
@@ -46,7 +47,7 @@ export class Stage {
     const antialias = !this.byProcessor
     this.renderer = new WebGLRenderer({ canvas, antialias, alpha: false, powerPreference: 'high-performance' })
     this.renderer.shadowMap.enabled = true
-    this.renderer.shadowMap.type = PCFShadowMap
+    this.renderer.shadowMap.type = this.byProcessor ? BasicShadowMap : PCFShadowMap
     this.camera.up.set(0, 0, 1) // before the controls, which take it once
     this.camera.position.set(1, -3, 2)
     this.orbit = new OrbitControls(this.camera, canvas)

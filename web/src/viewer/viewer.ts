@@ -151,7 +151,9 @@ class StageViewer implements Viewer {
     if (!keep && scenes.length) this.resetCamera()
     this.controls?.refresh()
     if (options.rests) this.sharpness?.rest()
-    this.invalidate()
+    // At once: the picture is made while the page does what else there is to do for the new runs.
+    if (this.playing) this.invalidate()
+    else this.drawNow()
   }
 
   private describe(): void {
@@ -355,6 +357,13 @@ class StageViewer implements Viewer {
       this.pending = 0
       this.tick(now)
     })
+  }
+
+  private drawNow(): void {
+    if (this.abort.signal.aborted) return
+    cancelAnimationFrame(this.pending)
+    this.pending = 0
+    this.tick(performance.now())
   }
 
   private tick(now: number): void {

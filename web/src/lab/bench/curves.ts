@@ -182,15 +182,22 @@ export function createCurves(seek: (time: number) => void): Curves {
   )
   let scene: Scene | undefined
   let dirty = false
-  const visible = () => element.offsetParent !== null
+  let now = 0
+  // Told by an observer: to ask the element would have the whole page laid out, at every change.
+  let visible = false
 
   /** Hidden curves wait until they are seen: a slider that is dragged has better things to do. */
   function drawIfSeen(): void {
-    if (!scene || !dirty || !visible()) return
+    if (!scene || !dirty || !visible) return
     dirty = false
     for (const chart of charts) chart.draw(scene)
   }
-  const watch = new ResizeObserver(drawIfSeen)
+  const watch = new ResizeObserver(([entry]) => {
+    const appears = !visible && entry !== undefined && entry.contentRect.width > 0
+    visible = entry !== undefined && entry.contentRect.width > 0
+    drawIfSeen()
+    if (appears) for (const chart of charts) chart.at(now)
+  })
   watch.observe(element)
   return {
     element,
@@ -200,7 +207,8 @@ export function createCurves(seek: (time: number) => void): Curves {
       drawIfSeen()
     },
     at(time) {
-      if (visible()) for (const chart of charts) chart.at(time)
+      now = time
+      if (visible) for (const chart of charts) chart.at(time)
     },
     restyle() {
       dirty = true

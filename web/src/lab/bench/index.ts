@@ -6,6 +6,7 @@ import './dialogs.css'
 import './phone.css'
 import { ApiError, isAbort } from '../api'
 import type { App, Page } from '../app'
+import { createAfterwards } from '../afterwards'
 import { cleanup, fill, h, listen } from '../dom'
 import { FIRST, FIRST_NAME } from '../first'
 import { icon } from '../icons'
@@ -45,22 +46,28 @@ function _mount(host: HTMLElement, app: App): () => void {
     ],
     'Results',
   )
+  const afterwards = createAfterwards()
   let fresh = true
   let restart = false
+  let idle = true
 
   const computing = createComputing(app, {
     scene(scene, milliseconds, again) {
       stage.setScene(scene, { camera: !fresh, time: !fresh && !restart, rests: again })
       fresh = false
       restart = false
-      stage.took(milliseconds, scene)
       stage.stale(null)
       controls.complain(null)
-      controls.setReach(scene.header.support.rim ?? scene.header.support.size)
-      findings.update(scene)
-      curves.update(scene)
-      events.update(scene)
-      tabs.badge('events', scene.header.events.length ? String(scene.header.events.length) : '', 'count')
+      // The path first: to lay out the numbers takes as long as to draw it.
+      afterwards.run(() => {
+        stage.took(milliseconds, scene)
+        controls.setReach(scene.header.support.rim ?? scene.header.support.size)
+        findings.update(scene)
+        curves.update(scene)
+        events.update(scene)
+        tabs.badge('events', scene.header.events.length ? String(scene.header.events.length) : '', 'count')
+        stage.working(!idle)
+      })
     },
     settled: (scene) => app.announce(sentence(scene)),
     failed(error) {
@@ -70,7 +77,10 @@ function _mount(host: HTMLElement, app: App): () => void {
       stage.stale(told.message)
       app.announce(told.message)
     },
-    busy: (is) => stage.working(is),
+    busy(is) {
+      idle = !is
+      if (is || !afterwards.waiting) stage.working(is)
+    },
     card(state) {
       card.update(state)
       const { text, kind } = card.badge()
@@ -208,6 +218,7 @@ function _mount(host: HTMLElement, app: App): () => void {
     () => downloads.dispose(),
     () => opener.dispose(),
     () => computing.stop(),
+    () => afterwards.stop(),
     () => linking.stop(),
   )
   grid.toggleAttribute('data-left-folded', app.settings.projector)
