@@ -9,6 +9,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import re
 import shlex
@@ -18,6 +19,7 @@ import subprocess
 import sys
 import tempfile
 import tomllib
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +34,8 @@ WHOLE_SCENARIO = {"body", "support", "start", "run"}
 WHOLE_PATH = {"body", "path"}
 # What a reader types to install or change trundle; a test must not.
 NOT_RUN = {"cd", "git", "pip", "python3"}
+SHELL = frozenset("|<>&;$*?~")  # what only a shell understands
+PLAIN = {"NO_COLOR": "1", "COLUMNS": "120"}
 TIME_LIMIT = 120  # s, for one command of a document
 
 os.environ["MPLBACKEND"] = "Agg"  # no window, here and in every command that a document runs
@@ -82,10 +86,10 @@ def check(command: str, status: int, shown: list[str]) -> str | None:
         return f"the Makefile has no target {unknown}" if unknown else None
     if words[0] in NOT_RUN:
         return None
-    done = run(command)
-    printed = done.stdout + done.stderr
-    if done.returncode != status:
-        return f"$ {command}\nexited with {done.returncode}, not {status}, and printed:\n{printed}"
+    in_process = words[0] == "trundle" and SHELL.isdisjoint(command)
+    ended, printed = run_here(words[1:]) if in_process else run_in_shell(command)
+    if ended != status:
+        return f"$ {command}\nexited with {ended}, not {status}, and printed:\n{printed}"
     rest = iter(printed.splitlines())
     for line in shown:
         pattern = re.escape(line).replace(re.escape("..."), ".*")
@@ -94,19 +98,32 @@ def check(command: str, status: int, shown: list[str]) -> str | None:
     return None
 
 
-def run(command: str) -> subprocess.CompletedProcess[str]:
+def run_here(words: list[str]) -> tuple[int, str]:
+    """Run trundle's command in this process, which has everything loaded; return its exit status and what it printed."""
+    from trundle.cli import run
+
+    printed = io.StringIO()
+    with pytest.MonkeyPatch.context() as here, redirect_stdout(printed), redirect_stderr(printed):
+        for name, value in PLAIN.items():
+            here.setenv(name, value)
+        status = run(words)
+    return status, printed.getvalue()
+
+
+def run_in_shell(command: str) -> tuple[int, str]:
     """Run one command of a document as a reader's shell would, the environment's own scripts first."""
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    return subprocess.run(  # noqa: S602  a shell, because documents show redirections
+    done = subprocess.run(  # noqa: S602  a shell, because documents show redirections
         command,
         shell=True,
-        env=os.environ | {"PATH": path, "NO_COLOR": "1", "COLUMNS": "120"},
+        env=os.environ | {"PATH": path} | PLAIN,
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
         timeout=TIME_LIMIT,
         check=False,
     )
+    return done.returncode, done.stdout + done.stderr
 
 
 def enter_folder(namespace: dict[str, Any]) -> None:
