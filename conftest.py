@@ -99,7 +99,7 @@ def check(command: str, status: int, shown: list[str]) -> str | None:
 
 
 def run_here(words: list[str]) -> tuple[int, str]:
-    """Run trundle's command in this process, which has everything loaded; return its exit status and what it printed."""
+    """Run trundle's command in this process, where all is loaded; return its exit status and what it printed."""
     from trundle.cli import run
 
     printed = io.StringIO()

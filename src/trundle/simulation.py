@@ -195,10 +195,9 @@ class Scenario(ScenarioFile):
         >>> tr.Scenario.load("tilted-turntable").run(duration=1.0, every=0.5).data.time.values.tolist()
         [0.0, 0.5, 1.0]
         """
-        system = self.system()
         return simulate(
-            system,
-            self._placed(system),
+            self.system(),
+            self.start_state(),
             float(self.timing.duration) if duration is None else duration,
             float(self.timing.every) if every is None else every,
             self.timing.method if method is None else method,

@@ -203,8 +203,7 @@ def _as_far_as_may_be(system: RollingSystem, at: Motion) -> tuple[Array, str]:
 
 def _run(system: RollingSystem, at: Motion, step: Array, count: int) -> tuple[Samples, str]:
     state = _start(system, at, step)
-    method = methods.choose("auto", system, state)
-    samples = methods.solver(method)(system, state, at.time[:count], methods.tolerance_of(method))
+    method, samples = methods.run("auto", system, state, at.time[:count])
     ended = sum(event.final for event in samples.events)
     return samples.part(slice(0, samples.time.size - ended)), method  # the last is where the support ends
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 from pydantic import Field, model_validator
@@ -112,7 +113,7 @@ class ScenarioFile(Document):
         begin = float(self.start.time)
         with _named_in(""):
             check_finite(system, begin, begin + float(self.timing.duration))
-        self._placed(system)  # it knows whether the body fits there, and whether the start rolls
+        self.start_state()  # placing it tells whether the body fits there, and whether the start rolls
         return self
 
     # --- what it describes -------------------------------------------------------------------------------
@@ -136,12 +137,7 @@ class ScenarioFile(Document):
         >>> tr.Scenario.load("hollow-ball-turntable").system().body.mass
         0.0027
         """
-        from ..mechanics.system import RollingSystem
-
-        with _named_in(""):
-            body, support = self.body.build(), self.support.build()
-            loads = tuple(load.build(support.motion.mean_rate) for load in self.applied_loads)
-            return RollingSystem(body, support, loads, float(self.gravity))
+        return self._system
 
     def start_state(self) -> State:
         """Return the state in which the run starts.
@@ -162,11 +158,23 @@ class ScenarioFile(Document):
         >>> tr.Scenario.load("level-turntable-put-down").start_state().velocity
         (0.0, 0.0, 0.0)
         """
-        return self._placed(self.system())
+        return self._start
 
-    def _placed(self, system: RollingSystem) -> State:
+    # What it describes is frozen as it is itself: once is enough for the check, for the run and for whoever asks.
+
+    @cached_property
+    def _system(self) -> RollingSystem:
+        from ..mechanics.system import RollingSystem
+
+        with _named_in(""):
+            body, support = self.body.build(), self.support.build()
+            loads = tuple(load.build(support.motion.mean_rate) for load in self.applied_loads)
+            return RollingSystem(body, support, loads, float(self.gravity))
+
+    @cached_property
+    def _start(self) -> State:
         with _named_in("start", self.start):
-            return system.place(**self.start.arguments())
+            return self._system.place(**self.start.arguments())
 
     # --- for editors ----------------------------------------------------------------------------------------
 

@@ -68,7 +68,7 @@ def at_start(system: RollingSystem, start: State) -> Next:
         return _struck(system, start)
     if at.approach > SLIP_TOLERANCE * at.speed:
         return _fly(system, start)
-    return _touching(system, start)
+    return _touching(system, at)
 
 
 def after(system: RollingSystem, law: Law, stop: str, time: float, numbers: Any) -> Next:
@@ -104,7 +104,7 @@ def after(system: RollingSystem, law: Law, stop: str, time: float, numbers: Any)
     if stop in ("grip", "stop"):
         before = _come_to_it(system, law, time, numbers, stop)
         time = before.time
-    follows = _touching(system, before, gave_way=stop)
+    follows = _touching(system, Touch.of(system, before), gave_way=stop)
     kind, said = _NAMES[type(follows.law).code] if type(follows.law).code != law.code else ("slip", _TURNED)
     if stop == "grip" and isinstance(follows.law, SlippingLaw):
         kind, said = "slip", _TURNED
@@ -210,7 +210,7 @@ def _struck(system: RollingSystem, before: State) -> Next:
     cut = "; the bounces to come are lower than a millionth of the body and were cut" if off > 0 else ""
     kind = "settle" if off > 0 else "land"
     event = Event(time, kind, f"{said}{cut} at t = {time:.9g} s", before, after)
-    follows = _touching(system, after)
+    follows = _touching(system, Touch.of(system, after))
     return replace(follows, events=(event, *follows.events))
 
 
@@ -238,13 +238,12 @@ def _come_to_it(system: RollingSystem, law: Law, time: float, numbers: Any, stop
     return replace(at.moving(at.contact.rolling_velocity(Omega), Omega), time=time + wait)
 
 
-def _touching(system: RollingSystem, state: State, gave_way: str = "") -> Next:
+def _touching(system: RollingSystem, at: Touch, gave_way: str = "") -> Next:
     """Return the phase of a body that touches and stays: slipping where it slips, else what its forces ask for.
 
     Where static friction or the resistance has just given way, "slip" or "start", rounding no longer decides it.
     """
-    at = Touch.of(system, state)
-    support, limit = system.support, SLIP_TOLERANCE * at.speed
+    state, support, limit = at.state, system.support, SLIP_TOLERANCE * at.speed
     if support.friction == 0:
         law: Law = SlidingFreely()
         return Next(law, state.time, law.pack(system, state))
