@@ -21,8 +21,8 @@ from .conftest import Command
 HEAVY = ("heyoka", "xarray", "matplotlib", "sympy", "scipy", "pint", "rich")
 
 
-def on_a_terminal(words: list[str], folder: Path, columns: int = 100) -> str:
-    """Return what the command prints when its output is a terminal."""
+def on_a_terminal(words: list[str], folder: Path, columns: int = 100, until: str = "") -> str:
+    """Return what the command prints when its output is a terminal; `until`: it is ended once it has printed this."""
     leader, follower = pty.openpty()
     env = {**os.environ, "TERM": "xterm-256color", "COLUMNS": str(columns)}
     env.pop("NO_COLOR", None)
@@ -44,6 +44,8 @@ def on_a_terminal(words: list[str], folder: Path, columns: int = 100) -> str:
         if not piece:
             break
         pieces.append(piece)
+        if until and re.search(until, b"".join(pieces).decode(errors="replace")):
+            process.terminate()
     os.close(leader)
     process.wait()
     return b"".join(pieces).decode()
