@@ -347,8 +347,7 @@ class StageViewer implements Viewer {
     this.world?.look(paletteOf(this.drawnTheme), widthsOf(this.large, document.documentElement))
     this.world?.resize()
     if (this.scenes.length && !this.stage.moved) this.aim(this.fromTop)
-    this.sharpness?.changed()
-    this.draw() // now: a resized canvas is blank until drawn
+    this.drawNow() // a resized canvas is blank until drawn
   }
 
   private invalidate(): void {

@@ -193,11 +193,11 @@ export function createStage(app: App): Stage {
       scene = next
       empty.hidden = true
       const was = viewer.playing
+      drawAhead()
       viewer.setScenes([next], { keepTime: !first && keep.time, keepCamera: !first && keep.camera, rests: keep.rests })
       element.dataset.shown = next.header.title // for tests: a title changes before its path is there
       if (was && !viewer.playing) viewer.play()
       drawHeadline(next)
-      drawAhead()
       if (!hasStarted && !app.settings.reducedMotion && viewer.tool === 'orbit') viewer.play()
       hasStarted = true
     },
