@@ -109,6 +109,14 @@ class Stage:
         """With which share of its pixels the picture is drawn: what changes may be drawn with fewer."""
         return self.host.get_attribute("data-sharp") or ""
 
+    def seen_after(self, key: str) -> tuple[np.ndarray, str]:
+        """The middle of the picture that a key leads to, and how sharp it is drawn."""
+        self.page.keyboard.press(key)
+        self.page.evaluate("() => new Promise(frame => requestAnimationFrame(() => requestAnimationFrame(frame)))")
+        sharp = self.sharpness()
+        picture = self.middle()
+        return picture, sharp if self.sharpness() == sharp else "both"
+
     def ball(self) -> tuple[float, float]:
         """Where the first body is on the screen: found as an eye finds it, by its blue stripes."""
         box = self.canvas.bounding_box()

@@ -6,17 +6,18 @@ import json
 import struct
 import tomllib
 import xml.etree.ElementTree as ET
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
-from playwright.sync_api import expect
+from playwright.sync_api import Browser, expect
 
 import trundle as tr
 from trundle.scenario import files
 
-from .bench import Bench, Stage, eventually
+from .bench import Bench, Stage, eventually, linked
 from .launching import SMALL
 from .visiting import Visitor
 from .watching import Watch
@@ -24,7 +25,7 @@ from .watching import Watch
 NAME = "level-turntable-nudged"
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def scenario() -> tr.Scenario:
     """A short run that does not ship."""
     tables = tomllib.loads(files.read(NAME))
@@ -33,11 +34,21 @@ def scenario() -> tr.Scenario:
     return tr.Scenario.read(tables)
 
 
-def fetch(visitor: Visitor, scenario: tr.Scenario, kind: str, folder: Path) -> Path:
-    """Open the scenario by link, choose a kind from the menu, and keep the file under the name that it comes with."""
-    from .bench import linked
+@pytest.fixture(scope="module")
+def bench(staying: Visitor, scenario: tr.Scenario) -> Bench:
+    """The scenario, opened by link, in one page for all."""
+    return Bench(staying.open(linked(tomllib.loads(scenario.to_toml())), size=SMALL, accept_downloads=True))
 
-    bench = Bench(visitor.open(linked(tomllib.loads(scenario.to_toml())), size=SMALL, accept_downloads=True))
+
+@pytest.fixture(autouse=True)
+def unhurt(staying: Visitor) -> Iterator[None]:
+    """Nothing may have gone wrong in the page."""
+    yield
+    assert staying.watch.left() == []
+
+
+def fetch(bench: Bench, kind: str, folder: Path) -> Path:
+    """Choose a kind from the menu, and keep the file under the name that it comes with."""
     bench.page.get_by_role("button", name="Download").click()
     with bench.page.expect_download(timeout=90_000) as download:
         bench.page.locator(f'[data-format="{kind}"]').click()
@@ -46,15 +57,15 @@ def fetch(visitor: Visitor, scenario: tr.Scenario, kind: str, folder: Path) -> P
     return path
 
 
-def test_toml(visitor: Visitor, scenario: tr.Scenario, tmp_path: Path) -> None:
-    path = fetch(visitor, scenario, "toml", tmp_path)
+def test_toml(bench: Bench, scenario: tr.Scenario, tmp_path: Path) -> None:
+    path = fetch(bench, "toml", tmp_path)
     assert path.suffix == ".toml"
     assert tr.Scenario.loads(path.read_text(encoding="utf-8")) == scenario
     assert tr.Scenario.load(path).run().data.equals(scenario.run().data)
 
 
-def test_csv(visitor: Visitor, scenario: tr.Scenario, tmp_path: Path) -> None:
-    path = fetch(visitor, scenario, "csv", tmp_path)
+def test_csv(bench: Bench, scenario: tr.Scenario, tmp_path: Path) -> None:
+    path = fetch(bench, "csv", tmp_path)
     assert path.suffix == ".csv"
     table = np.genfromtxt(path, delimiter=",", names=True, comments="#")
     data = scenario.run().data
@@ -66,8 +77,8 @@ def test_csv(visitor: Visitor, scenario: tr.Scenario, tmp_path: Path) -> None:
         assert table[column] == pytest.approx(data.position.sel(axis=axis).values, abs=1e-12)
 
 
-def test_netcdf(visitor: Visitor, scenario: tr.Scenario, tmp_path: Path) -> None:
-    path = fetch(visitor, scenario, "nc", tmp_path)
+def test_netcdf(bench: Bench, scenario: tr.Scenario, tmp_path: Path) -> None:
+    path = fetch(bench, "nc", tmp_path)
     assert path.suffix == ".nc"
     loaded, run = tr.Trajectory.load(path), scenario.run()
     for name in run.data.data_vars:
@@ -76,31 +87,31 @@ def test_netcdf(visitor: Visitor, scenario: tr.Scenario, tmp_path: Path) -> None
     assert loaded.card().passed
 
 
-def test_png_figure(visitor: Visitor, scenario: tr.Scenario, tmp_path: Path) -> None:
-    with Image.open(fetch(visitor, scenario, "png", tmp_path)) as picture:
+def test_png_figure(bench: Bench, tmp_path: Path) -> None:
+    with Image.open(fetch(bench, "png", tmp_path)) as picture:
         assert picture.format == "PNG"
         assert min(picture.size) >= 500
         assert len(picture.convert("RGB").getcolors(maxcolors=10_000_000) or ()) > 50
 
 
-def test_svg_figure(visitor: Visitor, scenario: tr.Scenario, tmp_path: Path) -> None:
-    root = ET.parse(fetch(visitor, scenario, "svg", tmp_path)).getroot()  # noqa: S314
+def test_svg_figure(bench: Bench, tmp_path: Path) -> None:
+    root = ET.parse(fetch(bench, "svg", tmp_path)).getroot()  # noqa: S314
     assert root.tag == "{http://www.w3.org/2000/svg}svg"
     assert len(list(root.iter("{http://www.w3.org/2000/svg}path"))) > 5
 
 
-def test_picture_of_the_stage(visitor: Visitor, scenario: tr.Scenario, tmp_path: Path) -> None:
-    with Image.open(fetch(visitor, scenario, "stage", tmp_path)) as picture:
+def test_picture_of_the_stage(bench: Bench, tmp_path: Path) -> None:
+    with Image.open(fetch(bench, "stage", tmp_path)) as picture:
         assert picture.format == "PNG"
         assert len(picture.convert("RGB").getcolors(maxcolors=10_000_000) or ()) > 500
 
 
-def test_self_contained_page(visitor: Visitor, scenario: tr.Scenario, tmp_path: Path) -> None:
+def test_self_contained_page(bench: Bench, browser: Browser, scenario: tr.Scenario, tmp_path: Path) -> None:
     """It opens from a file, asks for nothing, plays, and shows the body where the package says that it is."""
-    path = fetch(visitor, scenario, "html", tmp_path)
+    path = fetch(bench, "html", tmp_path)
     assert path.suffix == ".html"
     watch = Watch(("file:",))
-    context = visitor.browser.new_context(viewport=SMALL, reduced_motion="reduce", offline=True)
+    context = browser.new_context(viewport=SMALL, reduced_motion="reduce", offline=True)
     watch.over(context)
     page = context.new_page()
     page.goto(path.as_uri())
@@ -126,9 +137,9 @@ def goes(stage: Stage) -> None:
     assert stage.drawn().time > 0.1
 
 
-def test_glb(visitor: Visitor, scenario: tr.Scenario, tmp_path: Path) -> None:
+def test_glb(bench: Bench, tmp_path: Path) -> None:
     """The header, the chunks and the animation, read as the glTF 2.0 specification lays them out."""
-    content = fetch(visitor, scenario, "glb", tmp_path).read_bytes()
+    content = fetch(bench, "glb", tmp_path).read_bytes()
     magic, version, length = struct.unpack_from("<4sII", content)
     assert (magic, version, length) == (b"glTF", 2, len(content))
     size, kind = struct.unpack_from("<I4s", content, 12)
@@ -146,8 +157,8 @@ def test_glb(visitor: Visitor, scenario: tr.Scenario, tmp_path: Path) -> None:
     assert last == pytest.approx(3.0, abs=1e-6)
 
 
-def test_gif(visitor: Visitor, scenario: tr.Scenario, tmp_path: Path) -> None:
-    with Image.open(fetch(visitor, scenario, "gif", tmp_path)) as film:
+def test_gif(bench: Bench, tmp_path: Path) -> None:
+    with Image.open(fetch(bench, "gif", tmp_path)) as film:
         assert film.format == "GIF"
         assert film.n_frames > 10
         first = np.asarray(film.convert("RGB"), dtype=int)

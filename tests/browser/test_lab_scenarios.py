@@ -50,7 +50,7 @@ def test_a_scenario_is_drawn_as_it_is_computed(name: str, bench: Bench, staying:
     eventually(page, ends)
 
     def moved() -> None:
-        (last, sharp), (first, as_sharp) = (seen_after(key, stage) for key in ("End", "Home"))
+        (last, sharp), (first, as_sharp) = (stage.seen_after(key) for key in ("End", "Home"))
         assert as_sharp == sharp, "one of the pictures is coarser than the other"
         assert len(np.unique(first.reshape(-1, 3), axis=0)) > 100, "the stage is blank"
         assert np.mean(np.abs(last - first).max(axis=2) > SEEN) > 1e-4, "nothing has moved on the stage"
@@ -63,15 +63,6 @@ def test_a_scenario_is_drawn_as_it_is_computed(name: str, bench: Bench, staying:
     if stage.drawn().playing:
         page.keyboard.press("Space")
     assert staying.watch.left() == []
-
-
-def seen_after(key: str, stage: Stage) -> tuple[np.ndarray, str]:
-    """The middle of the picture that a key leads to, and how sharp it is drawn."""
-    stage.page.keyboard.press(key)
-    stage.page.evaluate("() => new Promise(frame => requestAnimationFrame(() => requestAnimationFrame(frame)))")
-    sharp = stage.sharpness()
-    picture = stage.middle()
-    return picture, sharp if stage.sharpness() == sharp else "both"
 
 
 def starts(stage: Stage) -> None:
