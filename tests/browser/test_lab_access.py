@@ -7,7 +7,7 @@ from playwright.sync_api import Page, expect
 
 from .axe import violations
 from .bench import Bench, Stage, as_shown, eventually
-from .launching import ARGUMENTS, LAPTOP, PHONE, SMALL
+from .launching import ARGUMENTS, LAPTOP, PHONE
 from .screenshots import OPENED, PAGES
 from .visiting import Visitor
 
@@ -181,7 +181,7 @@ def test_the_keys_of_the_film(visitor: Visitor) -> None:
 
 @pytest.mark.parametrize("route", ["#/bench", "#/compare"])
 def test_less_motion_is_respected_and_else_it_plays_by_itself(route: str, visitor: Visitor) -> None:
-    calm, lively = visitor.open(route, size=SMALL), visitor.open(route, size=SMALL, reduced_motion="no-preference")
+    calm, lively = visitor.open(route), visitor.open(route, reduced_motion="no-preference")
     settle(calm)
     settle(lively)
     eventually(lively, lambda: runs(lively))
@@ -201,7 +201,7 @@ def runs(page: Page) -> None:
 
 def test_once_open_it_asks_nobody_but_the_lab(visitor: Visitor) -> None:
     """A walk through all pages: everything asked for is of the lab's origin (which every other test watches, too)."""
-    page = visitor.open(size=SMALL)
+    page = visitor.open()
     for name in ("Tour", "Holonomy", "Compare", "Crossed fields", "Bench"):
         page.get_by_role("link", name=name, exact=True).click()
         settle(page)

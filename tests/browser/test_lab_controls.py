@@ -13,7 +13,6 @@ import trundle as tr
 from trundle.scenario import files
 
 from .bench import Bench, as_shown, circle_rate, drift, eventually
-from .launching import SMALL
 from .visiting import Visitor
 
 RATE = "support.motion.rate"
@@ -22,7 +21,7 @@ RATE = "support.motion.rate"
 @pytest.fixture(scope="module")
 def page(staying: Visitor) -> Page:
     """One page for all: to make one anew takes longer than what is tried in it."""
-    return staying.open(size=SMALL)
+    return staying.open()
 
 
 @pytest.fixture(autouse=True)
@@ -179,7 +178,7 @@ def words_for(path: str, typed: str) -> str:
 
 
 def test_undo_and_redo_go_along_the_changes(visitor: Visitor) -> None:
-    bench = Bench(visitor.open("#/bench?name=level-turntable-nudged", size=SMALL))  # with no past
+    bench = Bench(visitor.open("#/bench?name=level-turntable-nudged"))  # with no past
     box = bench.box(RATE)
     for rate in ("45", "78"):
         box.fill(rate)

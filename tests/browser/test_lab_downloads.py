@@ -37,7 +37,7 @@ def scenario() -> tr.Scenario:
 @pytest.fixture(scope="module")
 def bench(staying: Visitor, scenario: tr.Scenario) -> Bench:
     """The scenario, opened by link, in one page for all."""
-    return Bench(staying.open(linked(tomllib.loads(scenario.to_toml())), size=SMALL, accept_downloads=True))
+    return Bench(staying.open(linked(tomllib.loads(scenario.to_toml())), accept_downloads=True))
 
 
 @pytest.fixture(autouse=True)
@@ -169,7 +169,7 @@ def test_gif(bench: Bench, tmp_path: Path) -> None:
 
 def test_a_scenario_that_cannot_run_is_told_instead_of_a_file(visitor: Visitor) -> None:
     visitor.watch.allow("status of 422")
-    bench = Bench(visitor.open(f"#/bench?name={NAME}", size=SMALL))
+    bench = Bench(visitor.open(f"#/bench?name={NAME}"))
     box = bench.box("body.radius")
     box.fill("-25 mm")
     box.press("Enter")

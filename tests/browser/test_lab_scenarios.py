@@ -10,7 +10,6 @@ import trundle as tr
 from trundle.scenario import files
 
 from .bench import Bench, Stage, eventually
-from .launching import SMALL
 from .visiting import Visitor
 
 TOLD = 2e-5  # m: what is drawn has single precision and is told to a hundredth of a millimetre
@@ -19,7 +18,7 @@ SEEN = 30  # a difference in colour that an eye sees; the channels go to 255
 
 @pytest.fixture(scope="module")
 def bench(staying: Visitor) -> Bench:
-    return Bench(staying.open(size=SMALL))
+    return Bench(staying.open())
 
 
 def end_of(name: str) -> tuple[float, ...]:
@@ -30,7 +29,8 @@ def end_of(name: str) -> tuple[float, ...]:
 
         rolled = PathScenario.read(tables).run()
         return tuple(float(value) for value in rolled.stages.position[-1])
-    run = tr.Scenario.load(name).run().in_frame("world")
+    scenario = tr.Scenario.load(name)
+    run = scenario.run(every=float(scenario.timing.duration)).in_frame("world")
     return tuple(float(value) for value in run.data.position.values[-1])
 
 

@@ -128,6 +128,13 @@ def test_a_file_is_chosen_by_the_button(visitor: Visitor, tmp_path: Path) -> Non
     expect(bench.page.locator(".bar-title")).to_have_text(files.title_of(NAME))
 
 
+@pytest.fixture(scope="module")
+def kept(staying: Visitor) -> Bench:
+    """A page that goes from one refused file to the next."""
+    staying.watch.allow(r"status of 4(22|00)")
+    return Bench(staying.open(f"#/bench?name={NAME}"))
+
+
 @pytest.mark.parametrize(
     ("name", "content"),
     [
@@ -136,12 +143,13 @@ def test_a_file_is_chosen_by_the_button(visitor: Visitor, tmp_path: Path) -> Non
         ("sizes.toml", b'[body]\nkind = "cube"\n'),
     ],
 )
-def test_a_file_that_is_none_is_refused_and_the_bench_stays(name: str, content: bytes, visitor: Visitor) -> None:
-    visitor.watch.allow(r"status of 4(22|00)")
-    bench = Bench(visitor.open(f"#/bench?name={NAME}"))
-    drop(bench.page, name, content)
-    expect(bench.page.locator(".toast-error")).to_contain_text(f"{name}: ")
-    expect(bench.page.locator(".bar-title")).to_have_text(files.title_of(NAME))
+def test_a_file_that_is_none_is_refused_and_the_bench_stays(
+    name: str, content: bytes, kept: Bench, staying: Visitor
+) -> None:
+    drop(kept.page, name, content)
+    expect(kept.page.locator(".toast-error").filter(has_text=f"{name}: ")).to_be_visible()
+    expect(kept.page.locator(".bar-title")).to_have_text(files.title_of(NAME))
+    assert staying.watch.left() == []
 
 
 def test_a_scenario_is_found_by_its_words(visitor: Visitor) -> None:

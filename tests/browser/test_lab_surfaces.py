@@ -8,14 +8,13 @@ import pytest
 import trundle as tr
 
 from .bench import Bench, eventually
-from .launching import SMALL
 from .visiting import Visitor
 
 
 @pytest.fixture
 def bench(visitor: Visitor) -> Bench:
     """A turning bowl, seen from above: right on the screen is the first axis, up is the second."""
-    shown = Bench(visitor.open("#/bench?name=ball-in-a-turning-bowl", size=SMALL))
+    shown = Bench(visitor.open("#/bench?name=ball-in-a-turning-bowl"))
     shown.page.get_by_role("button", name="Path", exact=True).click()  # it has the ball's colour
     shown.stage.canvas.focus()
     shown.page.keyboard.press("Home")

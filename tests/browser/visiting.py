@@ -8,7 +8,7 @@ from typing import Any
 
 from playwright.sync_api import Browser, BrowserContext, Page
 
-from .launching import LAPTOP, PATIENCE
+from .launching import PATIENCE, SMALL
 from .watching import Watch
 
 
@@ -21,7 +21,7 @@ class Visitor:
     watch: Watch
     contexts: list[BrowserContext] = field(default_factory=list)
 
-    def open(self, route: str = "", *, size: Any = LAPTOP, reduced_motion: Any = "reduce", **options: Any) -> Page:
+    def open(self, route: str = "", *, size: Any = SMALL, reduced_motion: Any = "reduce", **options: Any) -> Page:
         """Open a page of the lab: `open("#/tour", size=PHONE)`.
 
         Motion is reduced unless asked for otherwise: a processor that draws by itself is not to be kept busy by tests

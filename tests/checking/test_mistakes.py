@@ -92,7 +92,7 @@ def shipped() -> list[str]:
 @pytest.mark.parametrize("name", shipped())
 def test_what_ships_passes_on_every_surface(name: str) -> None:
     scenario = tr.Scenario.load(name)
-    short = scenario.run(duration=min(2.0, float(scenario.timing.duration)))
+    short = scenario.run(duration=min(1.0, float(scenario.timing.duration)))
     if short.events or (short.data.phase.values != 0).any():
         pytest.skip("it slips, flies or stops: a check is about rolling")
     if short.system.support.motion.own:
