@@ -132,3 +132,21 @@ def test_a_loop_turns_by_the_angle_that_the_package_says(shape: str, size: float
     eventually(page, agrees)
     if size == 0.1:  # for a small loop the two are all but the same
         assert end.rotation.angle == pytest.approx(area / 0.025**2, rel=0.01)
+
+
+LATE = """() => {
+    const ask = window.fetch
+    window.fetch = async (...what) => {
+        await new Promise((soon) => setTimeout(soon, 1500))
+        return ask(...what)
+    }
+}"""
+
+
+def test_the_balls_may_be_told_to_roll_before_their_ways_are_computed(visitor: Visitor) -> None:
+    page = visitor.open("#/holonomy/orders")
+    expect(page.get_by_test_id("pole").first).to_have_text("up")
+    page.evaluate(LATE)
+    page.get_by_role("radio", name="Two east, one north").check()
+    page.get_by_role("button", name="Roll both").click()
+    eventually(page, lambda: points(page, rolled("EEN").north_pole))

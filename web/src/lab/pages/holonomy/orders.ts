@@ -46,6 +46,7 @@ export function createOrders(app: App, done: (outcome: Outcome) => void): Orders
   const controller = new AbortController()
   const transport = createTransport(first.stage.viewer, [second.stage.viewer])
   let outcome: Outcome | null = null
+  let wanted = false // somebody has asked for the balls to roll before it was known how
   undo.add(() => transport.dispose())
   undo.add(() => controller.abort())
 
@@ -64,6 +65,8 @@ export function createOrders(app: App, done: (outcome: Outcome) => void): Orders
   }
 
   function play(): void {
+    wanted = outcome === null
+    if (wanted) return // the ways are still being computed
     const { viewer } = first.stage
     viewer.seek(app.settings.reducedMotion ? viewer.duration : 0)
     if (!app.settings.reducedMotion) viewer.play()
@@ -78,6 +81,7 @@ export function createOrders(app: App, done: (outcome: Outcome) => void): Orders
 
   async function set(one: readonly Turn[], other: readonly Turn[]): Promise<void> {
     outcome = null
+    wanted = false
     const ways = [piecesOf(one), piecesOf(other), piecesOf(between(one, other))]
     first.heading.textContent = sentence(inWords(one))
     second.heading.textContent = sentence(inWords(other))
@@ -88,6 +92,7 @@ export function createOrders(app: App, done: (outcome: Outcome) => void): Orders
       show(first, a)
       show(second, b)
       transport.refresh()
+      if (wanted) play()
     } catch (error) {
       if (!controller.signal.aborted) first.stage.problem(error)
     }
