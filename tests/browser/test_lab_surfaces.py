@@ -36,9 +36,8 @@ def test_a_ball_in_a_bowl_is_dragged_up_its_side_and_nudged_while_it_runs(bench:
         assert bench.stage.ball() == pytest.approx((x - 60, y - 50), abs=6), "it lies where it was let go"
 
     eventually(bench.page, moved)
-    bench.page.wait_for_timeout(
-        1000
-    )  # a hand that moves is followed with fewer samples; at rest all of them are asked for
+    # A hand that moves is followed with fewer samples; at rest all of them are asked for.
+    bench.page.wait_for_timeout(1000)
     bench.settle()
     before = bench.run()
     then = before.data.sel(time=bench.play_past(0.4).time, method="nearest")

@@ -24,8 +24,8 @@ class Visitor:
     def open(self, route: str = "", *, size: Any = SMALL, reduced_motion: Any = "reduce", **options: Any) -> Page:
         """Open a page of the lab: `open("#/tour", size=PHONE)`.
 
-        Motion is reduced unless asked for otherwise: a processor that draws by itself is not to be kept busy by tests
-        that do not look at motion.
+        It is small, and motion is reduced, unless asked for otherwise: a processor that draws by itself is not to be
+        kept busy by tests that look at neither size nor motion.
         """
         context = self.browser.new_context(viewport=size, reduced_motion=reduced_motion, **options)
         self.contexts.append(context)

@@ -50,6 +50,7 @@ test('points are put between samples where a path bends, and only there', () => 
     expect(turned).toBeLessThan(0.11)
   }
   expect(pathPoints(unpack(circling(41)), 'support').length).toBe(4 * 41)
+  expect(pathPoints(unpack(circling(2)), 'support').length).toBe(4 * 7)
 })
 
 test('a ball that rides along with the table stays where it is on it', () => {

@@ -14,9 +14,13 @@ class Picture implements Sharpened {
   readonly draw = () => void this.drawn.push(this.share)
 }
 
+function setUp({ byProcessor }: { byProcessor: boolean }) {
+  const picture = new Picture(byProcessor)
+  return { picture, sharpness: new Sharpness(picture, picture.draw) }
+}
+
 test('a graphics card draws every change in full, at once', () => {
-  const picture = new Picture(false)
-  const sharpness = new Sharpness(picture, picture.draw)
+  const { picture, sharpness } = setUp({ byProcessor: false })
   for (let i = 0; i < 10; i++) {
     sharpness.changed()
     expect(picture.share).toBe(1)
@@ -27,8 +31,7 @@ test('a graphics card draws every change in full, at once', () => {
 })
 
 test('the processor draws changes coarsely, and the last of them once more in full', () => {
-  const picture = new Picture(true)
-  const sharpness = new Sharpness(picture, picture.draw)
+  const { picture, sharpness } = setUp({ byProcessor: true })
   for (let i = 0; i < 10; i++) {
     sharpness.changed()
     expect(picture.share).toBeLessThan(0.7)
@@ -40,8 +43,7 @@ test('the processor draws changes coarsely, and the last of them once more in fu
 })
 
 test('play is not interrupted by a full picture, and what stands still after it is drawn in full', () => {
-  const picture = new Picture(true)
-  const sharpness = new Sharpness(picture, picture.draw)
+  const { picture, sharpness } = setUp({ byProcessor: true })
   sharpness.changed()
   for (let i = 0; i < 40; i++) {
     sharpness.frame(16 * i)
@@ -55,8 +57,7 @@ test('play is not interrupted by a full picture, and what stands still after it 
 })
 
 test('what rests is drawn in full at once, the next change coarsely again', () => {
-  const picture = new Picture(true)
-  const sharpness = new Sharpness(picture, picture.draw)
+  const { picture, sharpness } = setUp({ byProcessor: true })
   sharpness.changed()
   sharpness.rest()
   sharpness.changed()
@@ -66,8 +67,7 @@ test('what rests is drawn in full at once, the next change coarsely again', () =
 })
 
 test('nothing is drawn after the end', () => {
-  const picture = new Picture(true)
-  const sharpness = new Sharpness(picture, picture.draw)
+  const { picture, sharpness } = setUp({ byProcessor: true })
   sharpness.changed()
   sharpness.dispose()
   vi.advanceTimersByTime(5000)

@@ -68,6 +68,7 @@ function places(
 
 /** Into how many parts the way from sample i to the next is to be cut: many where the path turns at either end. */
 function partsAt(samples: Float32Array, i: number, most: number): number {
+  if (samples.length < 9) return most // two samples alone do not tell
   const turned = Math.max(turnAt(samples, i), turnAt(samples, i + 1))
   return turned < most * BEND ? Math.max(1, Math.ceil(turned / BEND)) : most
 }
