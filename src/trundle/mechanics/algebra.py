@@ -6,13 +6,13 @@ A `Vector` holds three scalars, so the same expression is arithmetic on floats, 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 from .scalars import Scalar, namespace
+from .values import value
 
 
-@dataclass(frozen=True, slots=True)
+@value()
 class Vector:
     """A vector in space, by its three components in one frame.
 
@@ -85,7 +85,7 @@ E_Y = Vector(0.0, 1.0, 0.0)
 E_Z = Vector(0.0, 0.0, 1.0)
 
 
-@dataclass(frozen=True, slots=True)
+@value()
 class Matrix:
     """A 3×3 matrix by its three rows.
 
@@ -124,7 +124,8 @@ class Matrix:
     @property
     def transpose(self) -> Matrix:
         """The transposed matrix."""
-        return Matrix(*(Vector(*column) for column in zip(self.a, self.b, self.c, strict=True)))
+        a, b, c = self.a, self.b, self.c
+        return Matrix(Vector(a.x, b.x, c.x), Vector(a.y, b.y, c.y), Vector(a.z, b.z, c.z))
 
     def __add__(self, other: Matrix) -> Matrix:
         return Matrix(self.a + other.a, self.b + other.b, self.c + other.c)
@@ -140,7 +141,7 @@ class Matrix:
     def __matmul__(self, other: Any) -> Any:
         if isinstance(other, Matrix):
             columns = other.transpose
-            return Matrix(*(Vector(row.dot(columns.a), row.dot(columns.b), row.dot(columns.c)) for row in self.rows))
+            return Matrix(columns @ self.a, columns @ self.b, columns @ self.c)  # row by row, dot products commute
         return Vector(self.a.dot(other), self.b.dot(other), self.c.dot(other))
 
     @property
@@ -191,7 +192,7 @@ def point_inertia(mass: Scalar, offset: Vector) -> Matrix:
     )
 
 
-@dataclass(frozen=True, slots=True)
+@value()
 class Quaternion:
     """A unit quaternion w + x i + y j + z k that takes body components to components in the support frame.
 
@@ -268,8 +269,8 @@ class Quaternion:
 
     def rate(self, angular_velocity: Vector) -> Quaternion:
         """Return q̇ = ½ Ω q for an angular velocity Ω in the support frame."""
-        omega = Quaternion(0.0, *angular_velocity)
-        return Quaternion(*(0.5 * component for component in omega * self))
+        turned = Quaternion(0.0, *angular_velocity) * self
+        return Quaternion(0.5 * turned.w, 0.5 * turned.x, 0.5 * turned.y, 0.5 * turned.z)
 
     def matrix(self) -> Matrix:
         """Return the rotation matrix Q (body to support frame); for a unit quaternion it is orthogonal."""

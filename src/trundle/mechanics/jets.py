@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 from .scalars import Scalar, is_number, namespace
+from .values import value
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@value(eq=False)
 class Jet:
     """A value, its gradient and its Hessian in a few variables.
 
@@ -240,5 +241,6 @@ def constant_jet(value: Scalar, n: int) -> Jet:
     return Jet(value, (0.0,) * n, (0.0,) * len(_pairs(n)))
 
 
-def _pairs(n: int) -> list[tuple[int, int]]:
-    return [(i, j) for i in range(n) for j in range(i, n)]
+@cache
+def _pairs(n: int) -> tuple[tuple[int, int], ...]:
+    return tuple((i, j) for i in range(n) for j in range(i, n))

@@ -2,6 +2,9 @@
 
 Each stretch of time is covered by steps on which Ω is a polynomial and q its Taylor series about the middle; all
 steps are worked out at once and then multiplied up. Where Ω(t) repeats, `periodic_orientation` needs one period only.
+
+In here a quaternion w + xi + yj + zk is a pair of complex numbers, (w + xi) + (y + zi)j: a product takes four
+multiplications of arrays for sixteen.
 """
 
 from __future__ import annotations
@@ -18,6 +21,7 @@ from .exact.phi import two_product
 from .monodromy import Monodromy
 
 Array = NDArray[np.float64]
+Pairs = NDArray[np.complex128]  # (2, n)
 AngularVelocity = Callable[[Array], Array]  # times (n,) -> Ω (3, n) in the support frame, rad/s
 
 _NODES = 8  # of the polynomial for Ω on a step
@@ -64,55 +68,64 @@ def orientation(angular_velocity: AngularVelocity, times: Array, start: Any, sta
     [0.0, 0.0, 0.0, 1.0]
     """
     times = np.asarray(times, dtype=float)
-    pieces = _pieces(angular_velocity, np.concatenate([[start_time], times]))
+    edges = np.concatenate([[start_time], times])
+    steps = _steps_needed(angular_velocity, edges)
+    pieces = np.ceil(steps / (_STEPS_AT_ONCE // 4)).astype(np.int64)
     if pieces.max(initial=1) > 1:  # far between: go there by way of instants in between
-        between = np.repeat(np.diff(times, prepend=start_time) / pieces, pieces)
+        between = np.repeat(np.diff(edges) / pieces, pieces)
         index = np.arange(pieces.sum()) - np.repeat(np.cumsum(pieces), pieces) + 1
         finer = np.repeat(times, pieces) + index * between
         return orientation(angular_velocity, finer, start, start_time)[np.cumsum(pieces) - 1]
-    result = np.empty((4, times.size))
-    q, now, done = np.asarray(start, dtype=float).reshape(4, 1), float(start_time), 0
+    result = np.empty((2, times.size), dtype=complex)
+    q, done = _paired(start), 0
     while done < times.size:
-        edges = np.concatenate([[now], times[done : done + _STEPS_AT_ONCE // 4]])
-        steps = _steps_needed(angular_velocity, edges).astype(np.int64)
-        take = max(1, int(np.searchsorted(np.cumsum(steps), _STEPS_AT_ONCE)))
-        edges, steps = edges[: take + 1], steps[:take]
-        turned = _running_product(_turns(angular_velocity, edges, steps))[:, np.cumsum(steps) - 1]
-        result[:, done : done + take] = _product(turned, q)
-        done, now = done + take, float(edges[-1])
+        ahead = steps[done : done + _STEPS_AT_ONCE // 4]
+        take = max(1, int(np.searchsorted(np.cumsum(ahead), _STEPS_AT_ONCE)))
+        ahead = ahead[:take]
+        turned = _running_product(_turns(angular_velocity, edges[done : done + take + 1], ahead))
+        result[:, done : done + take] = _product(turned[:, np.cumsum(ahead) - 1], q)
+        done += take
         q = result[:, done - 1 : done]
-    return (result / np.sqrt((result * result).sum(axis=0))).T
+    return _unit(result)
 
 
-def _pieces(angular_velocity: AngularVelocity, edges: Array) -> NDArray[np.int64]:
-    """Return into how many parts to cut each interval so that none asks for too many steps at once."""
-    steps = _steps_needed(angular_velocity, edges)
+def _paired(quaternion: Any) -> Pairs:
+    """Return one quaternion (w, x, y, z) as a pair."""
+    w, x, y, z = (float(part) for part in quaternion)
+    return np.array([[complex(w, x)], [complex(y, z)]])
+
+
+def _unit(pairs: Pairs) -> Array:
+    """Return the quaternions (n, 4) of pairs, scaled to length 1."""
+    q = np.ascontiguousarray(pairs.T).view(float)
+    return q / np.sqrt((q * q).sum(axis=1, keepdims=True))
+
+
+def _steps_needed(angular_velocity: AngularVelocity, edges: Array) -> NDArray[np.int64]:
+    """Count the steps in each interval so that none turns by more than `_LARGEST_TURN`."""
+    instants = np.concatenate([edges, 0.5 * (edges[1:] + edges[:-1])])
+    speeds = np.sqrt((angular_velocity(instants) ** 2).sum(axis=0))
+    speeds, middles = speeds[: edges.size], speeds[edges.size :]
+    fastest = np.maximum(np.maximum(speeds[1:], speeds[:-1]), middles)
+    steps = np.maximum(1.0, np.ceil(fastest * np.diff(edges) / _LARGEST_TURN))
     total = float(steps.sum())
     if not total < _MOST_STEPS:
         raise SolverError(
             f"The body turns by some {total:.3g} rad in this run, more than the {_MOST_STEPS:.3g} rad that its "
             "orientation is followed over. Ask for a shorter run, or look for a load that drives it too hard."
         )
-    return np.maximum(1, np.ceil(steps / (_STEPS_AT_ONCE // 4))).astype(np.int64)
+    return steps.astype(np.int64)
 
 
-def _steps_needed(angular_velocity: AngularVelocity, edges: Array) -> Array:
-    """Count the steps in each interval so that none turns by more than `_LARGEST_TURN`."""
-    speeds = np.sqrt((angular_velocity(edges) ** 2).sum(axis=0))
-    middles = np.sqrt((angular_velocity(0.5 * (edges[1:] + edges[:-1])) ** 2).sum(axis=0))
-    fastest = np.maximum(np.maximum(speeds[1:], speeds[:-1]), middles)
-    return np.maximum(1.0, np.ceil(fastest * np.diff(edges) / _LARGEST_TURN))
-
-
-def _turns(angular_velocity: AngularVelocity, edges: Array, steps: NDArray[np.int64]) -> Array:
-    """Return the rotation (4, total) of each step; steps are halved until Ω's polynomial resolves Ω on them."""
+def _turns(angular_velocity: AngularVelocity, edges: Array, steps: NDArray[np.int64]) -> Pairs:
+    """Return the rotation (2, total) of each step; steps are halved until Ω's polynomial resolves Ω on them."""
     half = np.repeat(0.5 * np.diff(edges) / steps, steps)
     index = np.arange(steps.sum()) - np.repeat(np.cumsum(steps) - steps, steps)
     middle = np.repeat(edges[:-1], steps) + (2 * index + 1) * half
     return _resolved_turns(angular_velocity, middle, half, depth=0)
 
 
-def _resolved_turns(angular_velocity: AngularVelocity, middle: Array, half: Array, depth: int) -> Array:
+def _resolved_turns(angular_velocity: AngularVelocity, middle: Array, half: Array, depth: int) -> Pairs:
     coefficients = _polynomials(angular_velocity, middle, half)
     size = np.abs(coefficients).max(axis=1)  # (nodes, total), each already times the half step
     rough = size[-2:].max(axis=0) > _TAIL * np.maximum(size[0], 1.0)
@@ -145,17 +158,19 @@ def _polynomials(angular_velocity: AngularVelocity, middle: Array, half: Array) 
     return coefficients * half
 
 
-def _taylor(coefficients: Array) -> Array:
+def _taylor(coefficients: Array) -> Pairs:
     """Sum the series of q about the middle of each step; return the rotation from its beginning to its end."""
-    term = [np.zeros((4, coefficients.shape[2]))]
-    term[0][0] = 1.0
-    even, odd = term[0].copy(), np.zeros_like(term[0])
-    for n in range(1, _terms_needed(coefficients) + 1):
-        total = np.zeros_like(even)
-        for j in range(min(n, _NODES)):
-            total += _pure_product(coefficients[j], term[n - 1 - j])
-        term.append(total * (0.5 / n))
-        (odd if n % 2 else even).__iadd__(term[n])
+    x, y, z = np.moveaxis(coefficients, 1, 0)
+    spin, across = 1j * x, y + 1j * z  # Ω as a pair, for each power of the time
+    most, total = _terms_needed(coefficients), x.shape[1]
+    a, b = (np.zeros((most + 1, total), dtype=complex) for _ in range(2))  # q's terms, as pairs
+    a[0] = 1.0
+    for n in range(1, most + 1):
+        used = min(n, _NODES)
+        u, v, c, d = spin[:used], across[:used], a[n - used : n][::-1], b[n - used : n][::-1]
+        a[n] = (u * c - v * d.conj()).sum(axis=0) * (0.5 / n)
+        b[n] = (u * d + v * c.conj()).sum(axis=0) * (0.5 / n)
+    even, odd = (np.stack([a[first::2].sum(axis=0), b[first::2].sum(axis=0)]) for first in (0, 1))
     return _product(even + odd, _conjugate(even - odd))
 
 
@@ -171,37 +186,31 @@ def _terms_needed(coefficients: Array) -> int:
     return max(n for n, bound in enumerate(most) if bound > _EPSILON / 8)
 
 
-def _pure_product(v: Array, q: Array) -> Array:
-    """Return the product of the quaternion (0, v) with q."""
-    (x, y, z), (a, b, c, d) = v, q
-    return np.stack([-(x * b + y * c + z * d), x * a + y * d - z * c, y * a + z * b - x * d, z * a + x * c - y * b])
+def _product(p: Pairs, q: Pairs) -> Pairs:
+    """Return the quaternion products p q."""
+    return np.stack([p[0] * q[0] - p[1] * q[1].conj(), p[0] * q[1] + p[1] * q[0].conj()])
 
 
-def _product(p: Array, q: Array) -> Array:
-    """Return the quaternion products p q, components first."""
-    return p[0] * q + _pure_product(p[1:], q)
+def _conjugate(q: Pairs) -> Pairs:
+    return np.stack([q[0].conj(), -q[1]])
 
 
-def _conjugate(q: Array) -> Array:
-    return q * np.array([[1.0], [-1.0], [-1.0], [-1.0]])
-
-
-def _running_product(turns: Array) -> Array:
+def _running_product(turns: Pairs) -> Pairs:
     """Return r_j = turn_j ... turn_1 turn_0, in √n vectorised sweeps."""
     count = turns.shape[1]
     width = max(1, int(np.ceil(np.sqrt(count))))
     rows = -(-count // width)
-    padded = np.zeros((4, rows * width))
+    padded = np.zeros((2, rows * width), dtype=complex)
     padded[0] = 1.0
     padded[:, :count] = turns
-    grid = padded.reshape(4, rows, width).copy()
+    grid = padded.reshape(2, rows, width)
     for j in range(1, width):
         grid[:, :, j] = _product(grid[:, :, j], grid[:, :, j - 1])
     before = grid[:, 0, -1].copy()
     for i in range(1, rows):
         grid[:, i] = _product(grid[:, i], before[:, None])
         before = grid[:, i, -1].copy()
-    return grid.reshape(4, -1)[:, :count]
+    return grid.reshape(2, -1)[:, :count]
 
 
 def periodic_orientation(
@@ -236,11 +245,10 @@ def periodic_orientation(
     turns -= _rest(elapsed, turns, monodromy) < 0  # the quotient was rounded up to a whole turn
     rest = np.clip(_rest(elapsed, turns, monodromy), 0.0, None)
     order = np.argsort(rest, kind="stable")
-    within = np.empty((4, rest.size))
-    within[:, order] = orientation(angular_velocity, rest[order], (1.0, 0.0, 0.0, 0.0)).T
-    q0 = np.asarray(start, dtype=float).reshape(4, 1)
-    result = _product(within, _product(monodromy.power(turns), q0))
-    return (result / np.sqrt((result * result).sum(axis=0))).T
+    within = np.empty((2, rest.size), dtype=complex)
+    within[:, order] = orientation(angular_velocity, rest[order], (1.0, 0.0, 0.0, 0.0)).view(complex).T
+    w, x, y, z = monodromy.power(turns)
+    return _unit(_product(within, _product(np.stack([w + 1j * x, y + 1j * z]), _paired(start))))
 
 
 def _rest(elapsed: Array, turns: Array, monodromy: Monodromy) -> Array:

@@ -188,7 +188,8 @@ def _first_stop(path: Any, stops: Any, begin: Array, count: int) -> tuple[float,
     if not count:
         return None
     looks = np.linspace(path.t_old, path.t, _LOOKS)
-    values = np.array([begin, *(stops(t, path(t)) for t in looks[1:])])
+    between = path(looks[1:]).T
+    values = np.array([begin, *(stops(t, y) for t, y in zip(looks[1:], between, strict=True))])
     found: list[tuple[float, int]] = []
     for which in range(count):
         value = values[:, which]
