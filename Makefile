@@ -1,7 +1,7 @@
 # Everything from a bare machine: Python 3.11 or newer and make are all it needs.
 .POSIX:
 .DELETE_ON_ERROR:
-.PHONY: help demo test bench lint format clean always
+.PHONY: help demo test bench check-web lint lint-python format clean always
 
 # make PYTHON=/some/python3.12 demo  chooses the interpreter; otherwise the first of these that is new enough.
 PYTHON =
@@ -26,19 +26,24 @@ demo: .venv/installed
 	$(PLAIN) $(BIN)/trundle run tilted-turntable -o demo
 	@echo 'To spin the table yourself, open the lab: $(BIN)/trundle lab'
 
-# The web part first: it fetches what the browser tests put into a page to judge it.
+# The web part first: it fetches what the browser tests put into a page to judge it. Lint and types are judged beside it.
 test: .venv/installed-test
 	@if [ -f .ci/chromium ]; then sh .ci/chromium; fi
-	$(PLAIN) $(BIN)/python web/build.py test
+	@$(MAKE) --no-print-directory -j 2 lint-python check-web
 	$(PYTEST)
-	@$(MAKE) --no-print-directory lint
 
-lint: .venv/installed-test
+check-web: .venv/installed-test
+	$(PLAIN) $(BIN)/python web/build.py test
+	$(PLAIN) $(BIN)/python web/build.py lint
+
+lint: lint-python
+	$(PLAIN) $(BIN)/python web/build.py lint
+
+lint-python: .venv/installed-test
 	$(PLAIN) $(BIN)/ruff check .
 	$(PLAIN) $(BIN)/ruff format --check .
 	$(PLAIN) $(BIN)/mypy --no-color-output
 	$(PLAIN) $(BIN)/lint-imports --no-logo --no-cache
-	$(PLAIN) $(BIN)/python web/build.py lint
 
 format: .venv/installed-test
 	$(BIN)/ruff format .
@@ -78,12 +83,16 @@ always:
 WEB = web/src web/lab.html web/package.json web/package-lock.json web/.npmrc web/tsconfig.json web/vite.config.ts web/build.py
 
 INSTALL = echo 'Installing trundle and its pinned dependencies into .venv (a minute or two the first time) ...' && \
-	$(PINNED) $(BIN)/python -m pip install --quiet --progress-bar off -c constraints.txt
+	$(PIP) --no-compile
 
-# What pip does for other packages: without it, and where Python may not write beside the sources, each start compiles.
+PIP = $(PINNED) $(BIN)/python -m pip install --quiet --progress-bar off -c constraints.txt
+
+# What others bring, Python compiles as it comes to it: to compile all takes half a minute. Our own is compiled at once:
+# where Python may not write beside the sources, each start would compile them.
 COMPILE = $(BIN)/python -m compileall -q src
 
-# Keep a .venv that works; otherwise make one with the first Python that is new enough.
+# Keep a .venv that works; otherwise make one with the first Python that is new enough. The pip that comes with it may
+# take twice as long to read the constraints as the one that they name.
 PREPARE = \
 	if $(BIN)/python -m pip --version >/dev/null 2>&1; then exit 0; fi; \
 	found=; \
@@ -101,7 +110,8 @@ PREPARE = \
 	  rm -rf .venv; \
 	  echo "$$found could not create a virtual environment: install its venv module (Debian and Ubuntu: python3-venv)." >&2; \
 	  exit 1; \
-	fi
+	fi; \
+	$(PIP) pip
 
 clean:
 	rm -rf .venv demo out dist build web/node_modules src/trundle/viewer/static
