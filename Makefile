@@ -87,9 +87,11 @@ INSTALL = echo 'Installing trundle and its pinned dependencies into .venv (a min
 
 PIP = $(PINNED) $(BIN)/python -m pip install --quiet --progress-bar off -c constraints.txt
 
-# What others bring, Python compiles as it comes to it: to compile all takes half a minute. Our own is compiled at once:
-# where Python may not write beside the sources, each start would compile them.
-COMPILE = $(BIN)/python -m compileall -q src
+# Compiled here and not by pip, which uses one processor and compiles others' tests too. Some of what others bring is meant
+# for another Python. Without all this, where Python may not write beside the sources, each start would compile.
+COMPILE = \
+	$(BIN)/python -m compileall -qq -j 0 -x '[/]tests?[/]' .venv/lib || true; \
+	$(BIN)/python -m compileall -q src
 
 # Keep a .venv that works; otherwise make one with the first Python that is new enough. The pip that comes with it may
 # take twice as long to read the constraints as the one that they name.
