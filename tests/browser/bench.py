@@ -63,6 +63,11 @@ def linked(scenario: dict[str, Any]) -> str:
     return f"#/bench?s={base64.urlsafe_b64encode(packed).decode().rstrip('=')}"
 
 
+def colours(picture: np.ndarray) -> int:
+    """How many colours there are in a picture."""
+    return len(np.unique(picture @ (1, 256, 65536)))
+
+
 @dataclass(frozen=True)
 class Drawn:
     """What the viewer says that it draws."""
@@ -103,16 +108,26 @@ class Stage:
             "width": 0.6 * box["width"],
             "height": 0.55 * box["height"],
         }
-        return np.asarray(Image.open(BytesIO(self.page.screenshot(clip=clip))).convert("RGB"), dtype=int)  # type: ignore[arg-type]
+        return self.picture(clip)
+
+    def picture(self, clip: Any) -> np.ndarray:
+        """What is seen in a part of the page; height, width, colour."""
+        # The caret as it is: to hide it, Playwright would have every element's style computed anew.
+        shot = self.page.screenshot(clip=clip, caret="initial")
+        return np.asarray(Image.open(BytesIO(shot)).convert("RGB"), dtype=int)
 
     def sharpness(self) -> str:
         """With which share of its pixels the picture is drawn: what changes may be drawn with fewer."""
         return self.host.get_attribute("data-sharp") or ""
 
+    def two_frames(self) -> None:
+        """Wait until what was asked for is drawn."""
+        self.page.evaluate("() => new Promise(frame => requestAnimationFrame(() => requestAnimationFrame(frame)))")
+
     def seen_after(self, key: str) -> tuple[np.ndarray, str]:
         """The middle of the picture that a key leads to, and how sharp it is drawn."""
         self.page.keyboard.press(key)
-        self.page.evaluate("() => new Promise(frame => requestAnimationFrame(() => requestAnimationFrame(frame)))")
+        self.two_frames()
         sharp = self.sharpness()
         picture = self.middle()
         return picture, sharp if self.sharpness() == sharp else "both"
@@ -123,7 +138,7 @@ class Stage:
         assert box, "the canvas is not shown"
         top = 70.0  # the tools stand above
         clip = {"x": box["x"], "y": box["y"] + top, "width": box["width"], "height": box["height"] - top}
-        picture = np.asarray(Image.open(BytesIO(self.page.screenshot(clip=clip))).convert("RGB"), dtype=int)  # type: ignore[arg-type]
+        picture = self.picture(clip)
         red, green, blue = (picture[:, :, channel] for channel in range(3))
         y, x = np.nonzero((blue > red + 60) & (blue > green + 25))
         assert len(x) > 30, "no ball is seen"
@@ -151,9 +166,10 @@ class Bench:
 
     def settle(self) -> None:
         """Wait until something is drawn, and nothing is being computed."""
-        expect(self.stage.canvas).to_be_visible()
-        expect(self.stage.host).to_have_attribute("data-bodies", re.compile("[1-9]"))
-        expect(self.page.locator("section.stage[data-busy]")).to_have_count(0)
+        # `wait_for` looks again sooner than `expect` does, which comes to seconds over all tests.
+        self.stage.canvas.wait_for()
+        self.page.locator('[data-bodies]:not([data-bodies="0"])').first.wait_for(state="attached")
+        self.page.locator("section.stage[data-busy]").wait_for(state="detached")
 
     def open(self, route: str) -> None:
         self.page.evaluate("route => { location.hash = route }", route)

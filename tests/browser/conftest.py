@@ -86,7 +86,21 @@ def visitor(
 
 @pytest.fixture(scope="module")
 def staying(browser: Browser, lab: str) -> Iterator[Visitor]:
-    """A visitor who stays for all tests of a module; each of them must ask its watch whether something went wrong."""
+    """A visitor who stays for all tests of a module."""
     visiting = Visitor(browser, lab, Watch((lab + "/",)))
     yield visiting
     visiting.leave()
+
+
+@pytest.fixture(autouse=True)
+def unhurt(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Nothing may have gone wrong in the pages of who stays; what one test provokes, the next may not."""
+    if "staying" not in request.fixturenames:
+        yield
+        return
+    watch: Watch = request.getfixturevalue("staying").watch
+    yield
+    left = watch.left()
+    watch.faults.clear()
+    watch.allowed.clear()
+    assert left == []

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
 
 import pytest
 from playwright.sync_api import Page, expect
@@ -22,13 +21,6 @@ RATE = "support.motion.rate"
 def page(staying: Visitor) -> Page:
     """One page for all: to make one anew takes longer than what is tried in it."""
     return staying.open()
-
-
-@pytest.fixture(autouse=True)
-def unhurt(staying: Visitor) -> Iterator[None]:
-    """Nothing may have gone wrong in the page."""
-    yield
-    assert staying.watch.left() == []
 
 
 def level(page: Page) -> Bench:

@@ -11,6 +11,12 @@ from playwright.sync_api import Browser, BrowserContext, Page
 from .launching import PATIENCE, SMALL
 from .watching import Watch
 
+# Everything is made ready to be drawn, and nothing is: the page is told of no difference.
+UNDRAWN = """
+for (const way of ['drawArrays', 'drawArraysInstanced', 'drawElements', 'drawElementsInstanced'])
+    WebGL2RenderingContext.prototype[way] = () => {}
+"""
+
 
 @dataclass
 class Visitor:
@@ -21,16 +27,21 @@ class Visitor:
     watch: Watch
     contexts: list[BrowserContext] = field(default_factory=list)
 
-    def open(self, route: str = "", *, size: Any = SMALL, reduced_motion: Any = "reduce", **options: Any) -> Page:
+    def open(
+        self, route: str = "", *, size: Any = SMALL, reduced_motion: Any = "reduce", drawn: bool = True, **options: Any
+    ) -> Page:
         """Open a page of the lab: `open("#/tour", size=PHONE)`.
 
         It is small, and motion is reduced, unless asked for otherwise: a processor that draws by itself is not to be
-        kept busy by tests that look at neither size nor motion.
+        kept busy by tests that look at neither size nor motion. Where none looks at the stage's pixels either, it
+        need not be `drawn`.
         """
         context = self.browser.new_context(viewport=size, reduced_motion=reduced_motion, **options)
         self.contexts.append(context)
         context.set_default_timeout(PATIENCE)
         self.watch.over(context)
+        if not drawn:
+            context.add_init_script(UNDRAWN)
         page = context.new_page()
         page.goto(f"{self.lab}/{route}")
         return page

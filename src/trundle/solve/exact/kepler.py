@@ -10,10 +10,13 @@ from math import factorial
 from typing import Any
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 
 _MOST_STEPS = 400
 _TERMS = 12  # of the series below |z| = 1: the next would be 1e-24
 _EPSILON = 2.0**-52
+_CLOSE = 1e-12  # share of x within which a step of Newton's method may be nothing but rounding
+_SERIES = [[(-1) ** n / factorial(2 * n + k) for n in range(_TERMS)] for k in (2, 3)]
 
 
 def inverse_of(time: Callable[[Any], tuple[Any, Any]], t: Any, high: Any) -> Any:
@@ -39,26 +42,40 @@ def inverse_of(time: Callable[[Any], tuple[Any, Any]], t: Any, high: Any) -> Any
     >>> np.round(x, 12).tolist()
     [0.0, 2.0]
     """
-    low, high = np.zeros_like(t), np.array(high, dtype=float)
+    t, high = np.broadcast_arrays(np.asarray(t, dtype=float), np.asarray(high, dtype=float))
+    shape, t, high = t.shape, t.ravel(), high.ravel().copy()
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        low, high = _brackets(time, t, high)
+        x, last = 0.5 * (low + high), high - low
+        left = np.arange(t.size)  # those not yet found
         for _ in range(_MOST_STEPS):
-            short = time(high)[0] < t
-            if not short.any():
+            at, before, behind = x[left], low[left], high[left]
+            now, rate = time(at)
+            over = ~(now < t[left])
+            before, behind = np.where(over, before, at), np.where(over, at, behind)
+            better = at - (now - t[left]) / rate
+            inside = (better >= before) & (better <= behind)
+            better = np.where(inside, better, 0.5 * (before + behind))
+            step = np.abs(better - at)
+            # The steps of Newton's method shrink to the rounding of t(x), and then no more.
+            rounding = inside & (step <= _CLOSE * np.abs(at)) & (4 * step >= last[left])
+            done = (step <= _EPSILON * np.abs(at)) | (behind - before <= 2 * _EPSILON * behind) | rounding
+            x[left], low[left], high[left], last[left] = better, before, behind, step
+            left = left[~done]
+            if not left.size:
                 break
-            low, high = np.where(short, high, low), np.where(short, 2 * high, high)
-        x = 0.5 * (low + high)
-        for _ in range(_MOST_STEPS):
-            now, rate = time(x)
-            over = ~(now < t)
-            low, high = np.where(over, low, x), np.where(over, x, high)
-            better = x - (now - t) / rate
-            inside = (better >= low) & (better <= high)
-            better = np.where(inside, better, 0.5 * (low + high))
-            done = (np.abs(better - x) <= _EPSILON * np.abs(x)) | (high - low <= 2 * _EPSILON * high)
-            x = better
-            if done.all():
-                break
-    return x
+    return x.reshape(shape)
+
+
+def _brackets(time: Callable[[Any], tuple[Any, Any]], t: Any, high: Any) -> tuple[Any, Any]:
+    """Return bounds between which each x is, from a first guess of the upper ones."""
+    low = np.zeros_like(t)
+    for _ in range(_MOST_STEPS):
+        short = time(high)[0] < t
+        if not short.any():
+            break
+        low, high = np.where(short, high, low), np.where(short, 2 * high, high)
+    return low, high
 
 
 def precisely(time: Callable[[Any], tuple[Any, Any]], t: Any, near: float) -> Any:
@@ -121,8 +138,7 @@ def stumpff(square: Any, x: Any) -> tuple[Any, Any, Any, Any]:
     z = square * x * x
     small = np.abs(z) < 1
     near = np.where(small, z, 0.0)
-    c2 = sum((-near) ** n / factorial(2 * n + 2) for n in range(_TERMS))
-    s3 = sum((-near) ** n / factorial(2 * n + 3) for n in range(_TERMS))
+    c2, s3 = (polyval(near, series) for series in _SERIES)
     nu = abs(square) ** 0.5
     with np.errstate(over="ignore", invalid="ignore"):
         y = np.where(small, 0.0, nu * x)
