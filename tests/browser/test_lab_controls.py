@@ -20,7 +20,7 @@ RATE = "support.motion.rate"
 @pytest.fixture(scope="module")
 def page(staying: Visitor) -> Page:
     """One page for all: to make one anew takes longer than what is tried in it."""
-    return staying.open()
+    return staying.open(drawn=False)
 
 
 def level(page: Page) -> Bench:
@@ -170,7 +170,7 @@ def words_for(path: str, typed: str) -> str:
 
 
 def test_undo_and_redo_go_along_the_changes(visitor: Visitor) -> None:
-    bench = Bench(visitor.open("#/bench?name=level-turntable-nudged"))  # with no past
+    bench = Bench(visitor.open("#/bench?name=level-turntable-nudged", drawn=False))  # with no past
     box = bench.box(RATE)
     for rate in ("45", "78"):
         box.fill(rate)

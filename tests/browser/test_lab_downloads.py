@@ -161,7 +161,7 @@ def test_gif(bench: Bench, tmp_path: Path) -> None:
 
 def test_a_scenario_that_cannot_run_is_told_instead_of_a_file(visitor: Visitor) -> None:
     visitor.watch.allow("status of 422")
-    bench = Bench(visitor.open(f"#/bench?name={NAME}"))
+    bench = Bench(visitor.open(f"#/bench?name={NAME}", drawn=False))
     box = bench.box("body.radius")
     box.fill("-25 mm")
     box.press("Enter")

@@ -109,7 +109,7 @@ def test_two_orders_side_by_side(visitor: Visitor) -> None:
 
 @pytest.mark.parametrize(("shape", "size"), [("Circle", 0.4), ("Circle", 0.1), ("Square", 1.2)])
 def test_a_loop_turns_by_the_angle_that_the_package_says(shape: str, size: float, visitor: Visitor) -> None:
-    page = visitor.open("#/holonomy/loop")
+    page = visitor.open("#/holonomy/loop", drawn=False)
     page.get_by_role("radio", name=shape).check()
     page.get_by_test_id("loop-size").fill(str(size))
     length = size * 0.025

@@ -48,7 +48,7 @@ def test_a_copied_link_opens_the_same_scenario_elsewhere(visitor: Visitor) -> No
     expected["support"]["motion"]["rate"] = "45 rpm"
     assert decoded(link.split("s=")[1]) == expected
 
-    other = Bench(visitor.open(link.removeprefix(visitor.lab + "/")))
+    other = Bench(visitor.open(link.removeprefix(visitor.lab + "/"), drawn=False))
     expect(other.box("support.motion.rate")).to_have_value("45")
     expect(other.page.get_by_text(expected["title"]).first).to_be_visible()
     eventually(other.page, lambda: shows(other, tr.Scenario.read(expected).run()))
@@ -57,13 +57,13 @@ def test_a_copied_link_opens_the_same_scenario_elsewhere(visitor: Visitor) -> No
 
 def test_a_link_made_without_the_lab_opens(visitor: Visitor) -> None:
     tables = changed()
-    bench = Bench(visitor.open(linked(tables)))
+    bench = Bench(visitor.open(linked(tables), drawn=False))
     expect(bench.page.get_by_text(tables["title"]).first).to_be_visible()
     eventually(bench.page, lambda: shows(bench, tr.Scenario.read(tables).run()))
 
 
 def test_the_link_follows_in_the_address_and_back_goes_back(visitor: Visitor) -> None:
-    bench = Bench(visitor.open(f"#/bench?name={NAME}"))
+    bench = Bench(visitor.open(f"#/bench?name={NAME}", drawn=False))
     page = bench.page
     page.get_by_role("link", name="Tour").click()
     expect(page.get_by_text("Step 1 of 7")).to_be_visible()
@@ -74,14 +74,14 @@ def test_the_link_follows_in_the_address_and_back_goes_back(visitor: Visitor) ->
 
 @pytest.mark.parametrize("code", ["AAAA", "this-is-no-link", "%F0%9F%8E%B1"])
 def test_a_damaged_link_is_told_and_the_lab_still_opens(code: str, visitor: Visitor) -> None:
-    page = visitor.open(f"#/bench?s={code}")
+    page = visitor.open(f"#/bench?s={code}", drawn=False)
     expect(page.get_by_text("The link")).to_be_visible()
     Bench(page)
 
 
 def test_an_unknown_name_is_told_in_the_packages_words(visitor: Visitor) -> None:
     visitor.watch.allow("status of 404")
-    page = visitor.open("#/bench?name=no-such-thing")
+    page = visitor.open("#/bench?name=no-such-thing", drawn=False)
     expect(page.get_by_text("no-such-thing").first).to_be_visible()
 
 
@@ -102,7 +102,7 @@ def drop(page: Page, name: str, content: bytes) -> None:
 
 def test_a_scenario_file_is_dropped_on_the_page(visitor: Visitor) -> None:
     scenario = tr.Scenario.read(changed())
-    bench = Bench(visitor.open())
+    bench = Bench(visitor.open(drawn=False))
     drop(bench.page, "mine.toml", scenario.to_toml().encode())
     expect(bench.page.get_by_text("Opened mine.toml.")).to_be_visible()
     expect(bench.page.get_by_text("Kugel auf dem Drehtisch").first).to_be_visible()
@@ -112,7 +112,7 @@ def test_a_scenario_file_is_dropped_on_the_page(visitor: Visitor) -> None:
 def test_a_run_is_dropped_on_the_page(visitor: Visitor, tmp_path: Path) -> None:
     run = tr.Scenario.read(changed()).run()
     run.save(tmp_path / "run.nc")
-    bench = Bench(visitor.open())
+    bench = Bench(visitor.open(drawn=False))
     drop(bench.page, "run.nc", (tmp_path / "run.nc").read_bytes())
     expect(bench.page.get_by_text("Opened run.nc.")).to_be_visible()
     eventually(bench.page, lambda: shows(bench, run))
@@ -121,7 +121,7 @@ def test_a_run_is_dropped_on_the_page(visitor: Visitor, tmp_path: Path) -> None:
 def test_a_file_is_chosen_by_the_button(visitor: Visitor, tmp_path: Path) -> None:
     path = tmp_path / "chosen.toml"
     path.write_text(files.read(NAME), encoding="utf-8")
-    bench = Bench(visitor.open())
+    bench = Bench(visitor.open(drawn=False))
     with bench.page.expect_file_chooser() as chooser:
         bench.page.get_by_role("button", name="Open a file").click()
     chooser.value.set_files(path)
@@ -131,7 +131,7 @@ def test_a_file_is_chosen_by_the_button(visitor: Visitor, tmp_path: Path) -> Non
 @pytest.fixture(scope="module")
 def kept(staying: Visitor) -> Bench:
     """A page that goes from one refused file to the next."""
-    return Bench(staying.open(f"#/bench?name={NAME}"))
+    return Bench(staying.open(f"#/bench?name={NAME}", drawn=False))
 
 
 @pytest.mark.parametrize(
@@ -152,7 +152,7 @@ def test_a_file_that_is_none_is_refused_and_the_bench_stays(
 
 
 def test_a_scenario_is_found_by_its_words(visitor: Visitor) -> None:
-    bench = Bench(visitor.open())
+    bench = Bench(visitor.open(drawn=False))
     bench.page.keyboard.press("/")
     dialog = bench.page.get_by_role("dialog", name="Scenarios")
     names = files.names()

@@ -114,7 +114,7 @@ def test_a_nudge_keeps_the_clock_and_the_turn_of_a_table_that_turns_freely(visit
 
 
 def test_what_cannot_be_nudged_says_why(visitor: Visitor) -> None:
-    bench = Bench(visitor.open("#/bench?name=coin-rolling-upright"))
+    bench = Bench(visitor.open("#/bench?name=coin-rolling-upright", drawn=False))
     bench.page.get_by_role("radio", name="Nudge it").click()
     expect(bench.page.get_by_text("Nudging is for balls whose centre of mass is in the middle.")).to_be_visible()
 
@@ -157,7 +157,7 @@ def alike(bench: Bench, first: tuple[np.ndarray, str]) -> None:
 @pytest.fixture(scope="module")
 def leaning(staying: Visitor) -> Bench:
     """A ball put down on a table that leans, where the three frames differ; one page for all of them."""
-    return Bench(staying.open("#/bench?name=tilted-turntable-put-down"))
+    return Bench(staying.open("#/bench?name=tilted-turntable-put-down", drawn=False))
 
 
 @pytest.mark.parametrize(("name", "frame"), [("Support", "support"), ("Riding", "corotating"), ("World", "world")])

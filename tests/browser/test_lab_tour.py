@@ -180,7 +180,7 @@ def test_a_guess_is_drawn_by_hand(visitor: Visitor) -> None:
 
 
 def test_what_is_seen_on_the_tour_is_taken_to_the_bench(visitor: Visitor) -> None:
-    page = visitor.open("#/tour/4")
+    page = visitor.open("#/tour/4", drawn=False)
     step(page, 4)
     page.get_by_test_id("table-rate").fill("45")
     page.get_by_test_id("make-it-yours").click()
@@ -196,7 +196,7 @@ def found(bench: Bench, rate: float) -> None:
 
 @pytest.mark.parametrize(("key", "at"), [("n", 4), ("b", 2)])
 def test_keys_go_on_and_back(key: str, at: int, visitor: Visitor) -> None:
-    page = visitor.open("#/tour/3")
+    page = visitor.open("#/tour/3", drawn=False)
     step(page, 3)
     page.keyboard.press(key)
     step(page, at)
