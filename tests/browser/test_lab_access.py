@@ -158,7 +158,7 @@ def tab_to(page: Page, name: str, tag: str = "", most: int = 120) -> None:
 
 
 def test_everything_by_keyboard_alone(visitor: Visitor) -> None:
-    bench = Bench(visitor.open("#/bench?name=level-turntable-nudged"))
+    bench = Bench(visitor.open("#/bench?name=level-turntable-nudged", drawn=False))
     page, stage = bench.page, bench.stage
     page.keyboard.press("Tab")
     assert page.evaluate(ACTIVE)["name"] == "Skip to the page"
@@ -204,7 +204,7 @@ def at_time(stage: Stage, time: float) -> None:
 
 
 def test_the_keys_of_the_film(visitor: Visitor) -> None:
-    bench = Bench(visitor.open("#/bench?name=level-turntable-nudged"))
+    bench = Bench(visitor.open("#/bench?name=level-turntable-nudged", drawn=False))
     page, stage = bench.page, bench.stage
     page.keyboard.press("Space")
     eventually(page, lambda: plays(stage, True))
@@ -242,7 +242,7 @@ def runs(page: Page) -> None:
 
 def test_once_open_it_asks_nobody_but_the_lab(visitor: Visitor) -> None:
     """A walk through all pages: everything asked for is of the lab's origin (which every other test watches, too)."""
-    page = visitor.open(drawn=False)
+    page = visitor.open()
     for name in ("Tour", "Holonomy", "Compare", "Crossed fields", "Bench"):
         link = page.get_by_role("link", name=name, exact=True)
         link.click()
@@ -268,7 +268,7 @@ def test_without_webgl_the_path_is_drawn_and_the_reason_told(visitor: Visitor, c
 
 
 def test_projector_mode_has_large_type(visitor: Visitor) -> None:
-    bench = Bench(visitor.open("#/bench"))
+    bench = Bench(visitor.open("#/bench", drawn=False))
     page = bench.page
     before = page.evaluate("parseFloat(getComputedStyle(document.body).fontSize)")
     page.keyboard.press("p")
