@@ -9,6 +9,7 @@
 
 from __future__ import annotations
 
+import gc
 import io
 import os
 import re
@@ -41,6 +42,14 @@ TIME_LIMIT = 120  # s, for one command of a document
 os.environ["MPLBACKEND"] = "Agg"  # no window, here and in every command that a document runs
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in what a script starts with `&`: tests of Ctrl-C would wait
     signal.signal(signal.SIGINT, signal.default_int_handler)
+gc.disable()  # while the tests are collected, nothing that is made is thrown away
+
+
+def pytest_collection_finish() -> None:
+    """Leave the half million objects that every test module together makes out of all further looks for garbage."""
+    gc.collect()
+    gc.freeze()
+    gc.enable()
 
 
 def run_toml(example: Example) -> None:

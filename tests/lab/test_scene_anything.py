@@ -28,7 +28,7 @@ def test_everything_combined(case):
 
 def check(system, start):
     try:
-        run = tr.simulate(system, start, duration=0.1, every=0.01, method="runge-kutta")
+        run = tr.simulate(system, start, duration=0.03, every=0.01, method="runge-kutta")
     except tr.TrundleError:
         assume(False)
     scene = scene_of(run)
