@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import http.client
 import json
 import os
@@ -19,6 +20,8 @@ from typing import Any
 
 import pytest
 from tests.lab.conftest import shipped
+
+from trundle.lab.serving import listen
 
 pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks at processes as Linux shows them")
 
@@ -148,6 +151,24 @@ def test_the_browser_is_opened_once_it_answers(tmp_path: Path) -> None:
     with running("--port", "0", env={"BROWSER": f"{browser} %s"}) as lab:
         assert within(20, lambda: seen.exists() and seen.read_text().endswith(" 200"))
         assert seen.read_text() == f"http://127.0.0.1:{lab.port}/ 200"
+
+
+def test_a_small_answer_does_not_wait_for_the_last_to_be_received() -> None:
+    """Nagle's delay and that of acknowledgements make 40 ms together; asyncio ends it only where it knows TCP."""
+
+    async def at_once() -> int:
+        told = asyncio.get_running_loop().create_future()
+
+        def came(_: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+            told.set_result(writer.get_extra_info("socket").getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))
+            writer.close()
+
+        async with await asyncio.start_server(came, sock=listen("127.0.0.1", 0)) as server:
+            _, writer = await asyncio.open_connection(*server.sockets[0].getsockname())
+            writer.close()
+            return await told
+
+    assert asyncio.run(at_once()) != 0
 
 
 def test_where_the_usual_port_is_taken_another_is_found() -> None:
