@@ -73,7 +73,7 @@ def listen(host: str, port: int | None) -> socket.socket:
     except (OSError, UnicodeError):
         raise InvalidValueError("--host", "must be an address of this machine", host) from None
     for wanted in (DEFAULT_PORT, 0) if port is None else (port,):
-        # Named TCP, or asyncio would not know it for that and let each small answer wait 40 ms for the last to be received.
+        # Named TCP, or asyncio would not take it for that, and each small answer would wait 40 ms for the one before.
         taken = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
         try:
             taken.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
