@@ -17,6 +17,7 @@ from tests.tolerances import EXACT
 import trundle as tr
 from trundle.solve.closed_form import orientations
 from trundle.solve.exact import SphereOnPlane
+from trundle.solve.orientation import orientation
 
 LEVEL = Ball(0.025, 0.065, 0.4, 3.5, (0.1, 0.03), (0.05, 0.2), spin=-2.0)
 BALLS = {
@@ -114,6 +115,41 @@ def test_a_constant_angular_velocity_is_composed_as_scipy_does(axis: tuple[float
     start = Rotation.from_quat(np.array(HALF_TURNED) / math.hypot(*HALF_TURNED), scalar_first=True)
     wanted = [(Rotation.from_rotvec(10 * np.array(axis) * t) * start).as_matrix() for t in times]
     assert np.abs(Rotation.from_quat(ours, scalar_first=True).as_matrix() - wanted).max() <= EXACT(64 * 40, 1)
+
+
+TURNING = {"fast about an axis that hardly turns": (1000, 1, 3), "slow about one that turns fast": (0.25, 200, 0.125)}
+
+
+@pytest.mark.parametrize("name", TURNING)
+def test_many_samples_share_a_step_and_a_sample_many_steps(name: str) -> None:
+    """Ω of constant size about an axis that turns at κ: seen from there it is constant, as in uniform precession."""
+    across, rate, along = TURNING[name]
+    times = np.linspace(0.0, 20.0, 1501)
+    q = orientation(
+        lambda t: np.stack([across * np.cos(rate * t), across * np.sin(rate * t), along + 0 * t]), times, (1, 0, 0, 0)
+    )
+    with mpmath.workdps(60):
+        own = mpmath.matrix([across, 0, along - rate])
+        size = mpmath.norm(own)
+        for i in range(0, 1501, 100):
+            half, turn = size * mpf(float(times[i])) / 2, rate * mpf(float(times[i])) / 2
+            turned = (mpmath.cos(half), *(part / size * mpmath.sin(half) for part in own))
+            wanted = quaternion_product((mpmath.cos(turn), 0, 0, mpmath.sin(turn)), turned)
+            assert off(q[i], wanted) <= EXACT(4, float(size) * 20)
+
+
+def test_no_step_crosses_a_kink() -> None:
+    """A quarter of a turn about x, then one about y."""
+    corner, end = math.pi / 2, math.pi
+
+    def turning(t: Any) -> Any:
+        return np.stack([np.where(t < corner, 1.0, 0.0), np.where(t < corner, 0.0, 1.0), 0 * t])
+
+    q = orientation(turning, np.array([corner / 2, corner, end]), (1, 0, 0, 0), kinks=[corner])
+    wanted = [(math.cos(math.pi / 8), math.sin(math.pi / 8), 0, 0), (0.5**0.5, 0.5**0.5, 0, 0), (0.5, 0.5, 0.5, -0.5)]
+    assert np.abs(q - wanted).max() <= EXACT(8, 1)
+    with pytest.raises(tr.SolverError, match="not smooth"):
+        orientation(turning, np.array([3.0]), (1, 0, 0, 0))
 
 
 def test_nothing_happens_at_half_a_turn() -> None:

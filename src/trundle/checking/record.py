@@ -306,7 +306,7 @@ def orientation_from(
     for stride in (1, 2):
         kept = np.unique(np.append(np.arange(0, time.size, stride), time.size - 1))
         spline = make_interp_spline(time[kept], sign * angular_velocity[kept], k=3)
-        found.append(orientation(_columns_of(spline), time, q0, float(time[0])))
+        found.append(orientation(_columns_of(spline), time, q0, float(time[0]), time[kept]))
     q, coarse = found
     side = np.sign((q * coarse).sum(axis=1, keepdims=True))
     doubt = 2 * np.linalg.norm(q - side * coarse, axis=1)

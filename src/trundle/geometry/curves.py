@@ -308,12 +308,7 @@ class RolledCurve:
         No step crosses from one polynomial to the next, so each has an Ω that its series follows to the last digit.
         """
         breaks = self.breaks
-        inner = breaks[(breaks > breaks[0]) & (breaks < u[-1])] if u.size else breaks[:0]
-        times = np.concatenate([u, inner])
-        order = np.argsort(times, kind="stable")
-        found = np.empty((times.size, 4))
-        found[order] = orientation(self.angular_velocity, times[order], start, float(breaks[0]))
-        return found[: u.size]
+        return orientation(self.angular_velocity, u, start, float(breaks[0]), breaks)
 
     @cached_property
     def area(self) -> float:

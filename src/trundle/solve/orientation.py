@@ -1,7 +1,8 @@
 """Orientation q(t) from a known Ω(t): q̇ = ½ Ω q (theory page, section 5).
 
-Each stretch of time is covered by steps on which Ω is a polynomial and q its Taylor series about the middle; all
-steps are worked out at once and then multiplied up. Where Ω(t) repeats, `periodic_orientation` needs one period only.
+The time is covered by steps on which Ω is a polynomial and q its Taylor series about the middle; many steps are worked
+out at once and then multiplied up, and q at an instant is read off its step's series. Where Ω(t) repeats,
+`periodic_orientation` needs one period only.
 
 In here a quaternion w + xi + yj + zk is a pair of complex numbers, (w + xi) + (y + zi)j: a product takes four
 multiplications of arrays for sixteen.
@@ -24,18 +25,21 @@ Array = NDArray[np.float64]
 Pairs = NDArray[np.complex128]  # (2, n)
 AngularVelocity = Callable[[Array], Array]  # times (n,) -> Ω (3, n) in the support frame, rad/s
 
-_NODES = 8  # of the polynomial for Ω on a step
-_LARGEST_TURN = 1.0  # rad a step
+_NODES = 12  # of the polynomial for Ω on a step
+_LARGEST_TURN = 8.0  # rad a step
+_LOOKS = 16  # at how fast the body turns, at least, before the steps are chosen
 _MOST_TERMS = 40  # of q's series on a step
-_STEPS_AT_ONCE = 100_000
-_MOST_STEPS = 3e8  # some twenty minutes
+_AT_ONCE = 20_000  # steps, or instants
+_MOST_STEPS = 3e8  # an hour
 _EPSILON = 2.0**-53
-# The last coefficient of Ω's polynomial on a step, rad: rounding alone makes it some 1e-14; what comes after it is a
-# hundredth of it at most, divided by nine when integrated.
-_TAIL = 1e-13
+# The last two Legendre coefficients of Ω on a step, rad: rounding alone makes them some 1e-16, and what comes after
+# them is a tenth of them at most, divided by as many as there are nodes when integrated.
+_TAIL = 1e-14
 
 
-def orientation(angular_velocity: AngularVelocity, times: Array, start: Any, start_time: float = 0.0) -> Array:
+def orientation(
+    angular_velocity: AngularVelocity, times: Array, start: Any, start_time: float = 0.0, kinks: Any = ()
+) -> Array:
     """Return the orientation at given times from a known angular velocity.
 
     Parameters
@@ -48,6 +52,8 @@ def orientation(angular_velocity: AngularVelocity, times: Array, start: Any, sta
         Quaternion (w, x, y, z) at `start_time`.
     start_time : float
         s, at most the first of `times`.
+    kinks : sequence of floats
+        Instants at which Ω(t) is not smooth, ascending, s; it must be so everywhere else.
 
     Returns
     -------
@@ -68,25 +74,33 @@ def orientation(angular_velocity: AngularVelocity, times: Array, start: Any, sta
     [0.0, 0.0, 0.0, 1.0]
     """
     times = np.asarray(times, dtype=float)
-    edges = np.concatenate([[start_time], times])
+    if not times.size:
+        return np.empty((0, 4))
+    edges = _edges(start_time, float(times[-1]), np.asarray(kinks, dtype=float))
     steps = _steps_needed(angular_velocity, edges)
-    pieces = np.ceil(steps / (_STEPS_AT_ONCE // 4)).astype(np.int64)
-    if pieces.max(initial=1) > 1:  # far between: go there by way of instants in between
-        between = np.repeat(np.diff(edges) / pieces, pieces)
-        index = np.arange(pieces.sum()) - np.repeat(np.cumsum(pieces), pieces) + 1
-        finer = np.repeat(times, pieces) + index * between
-        return orientation(angular_velocity, finer, start, start_time)[np.cumsum(pieces) - 1]
+    upto = np.cumsum(steps)
     result = np.empty((2, times.size), dtype=complex)
     q, done = _paired(start), 0
-    while done < times.size:
-        ahead = steps[done : done + _STEPS_AT_ONCE // 4]
-        take = max(1, int(np.searchsorted(np.cumsum(ahead), _STEPS_AT_ONCE)))
-        ahead = ahead[:take]
-        turned = _running_product(_turns(angular_velocity, edges[done : done + take + 1], ahead))
-        result[:, done : done + take] = _product(turned[:, np.cumsum(ahead) - 1], q)
-        done += take
-        q = result[:, done - 1 : done]
+    for first in range(0, int(upto[-1]), _AT_ONCE):
+        index = np.arange(first, min(first + _AT_ONCE, int(upto[-1])))
+        which = np.searchsorted(upto, index, side="right")
+        half = 0.5 * np.diff(edges)[which] / steps[which]
+        middle = edges[which] + (2 * (index - upto[which] + steps[which]) + 1) * half
+        course = _Course.over(angular_velocity, middle, half, q)
+        end = times.size if index[-1] == upto[-1] - 1 else int(np.searchsorted(times, course.end, side="right"))
+        for begin in range(done, end, _AT_ONCE):
+            part = slice(begin, min(begin + _AT_ONCE, end))
+            result[:, part] = course.at(times[part])
+        q, done = course.last, max(done, end)
     return _unit(result)
+
+
+def _edges(begin: float, end: float, kinks: Array) -> Array:
+    """Return where to look how fast the body turns: at both ends, at the kinks between them, and evenly in between."""
+    fixed = np.concatenate([[begin], kinks[(kinks > begin) & (kinks < end)], [end]])
+    parts = -(-_LOOKS // (fixed.size - 1))
+    share = np.arange(parts) / parts
+    return np.append((fixed[:-1, None] + share * np.diff(fixed)[:, None]).ravel(), end)
 
 
 def _paired(quaternion: Any) -> Pairs:
@@ -102,7 +116,7 @@ def _unit(pairs: Pairs) -> Array:
 
 
 def _steps_needed(angular_velocity: AngularVelocity, edges: Array) -> NDArray[np.int64]:
-    """Count the steps in each interval so that none turns by more than `_LARGEST_TURN`."""
+    """Count the steps in each interval so that none turns by more than `_LARGEST_TURN`, as far as one sees."""
     instants = np.concatenate([edges, 0.5 * (edges[1:] + edges[:-1])])
     speeds = np.sqrt((angular_velocity(instants) ** 2).sum(axis=0))
     speeds, middles = speeds[: edges.size], speeds[edges.size :]
@@ -111,67 +125,96 @@ def _steps_needed(angular_velocity: AngularVelocity, edges: Array) -> NDArray[np
     total = float(steps.sum())
     if not total < _MOST_STEPS:
         raise SolverError(
-            f"The body turns by some {total:.3g} rad in this run, more than the {_MOST_STEPS:.3g} rad that its "
-            "orientation is followed over. Ask for a shorter run, or look for a load that drives it too hard."
+            f"The body turns by some {total * _LARGEST_TURN:.3g} rad in this run, more than the "
+            f"{_MOST_STEPS * _LARGEST_TURN:.3g} rad that its orientation is followed over. Ask for a shorter run, or "
+            "look for a load that drives it too hard."
         )
     return steps.astype(np.int64)
 
 
-def _turns(angular_velocity: AngularVelocity, edges: Array, steps: NDArray[np.int64]) -> Pairs:
-    """Return the rotation (2, total) of each step; steps are halved until Ω's polynomial resolves Ω on them."""
-    half = np.repeat(0.5 * np.diff(edges) / steps, steps)
-    index = np.arange(steps.sum()) - np.repeat(np.cumsum(steps) - steps, steps)
-    middle = np.repeat(edges[:-1], steps) + (2 * index + 1) * half
-    return _resolved_turns(angular_velocity, middle, half, depth=0)
+class _Course:
+    """The orientation over adjoining steps, each with its series about the middle."""
+
+    def __init__(self, middle: Array, half: Array, series: Pairs, start: Pairs) -> None:
+        self.middle, self.half, self.series = middle, half, series  # series: (2, terms, steps)
+        even, odd = series[:, ::2].sum(axis=1), series[:, 1::2].sum(axis=1)
+        self._back = _conjugate(even - odd)  # from a step's beginning to its middle
+        turned = _product(_running_product(_product(even + odd, self._back)), start)
+        self._before = np.concatenate([start, turned[:, :-1]], axis=1)
+        self.last = turned[:, -1:]
+        self.end = float(middle[-1] + half[-1])
+
+    @staticmethod
+    def over(angular_velocity: AngularVelocity, middle: Array, half: Array, start: Pairs) -> _Course:
+        """Follow Ω over these steps, halved until its polynomial resolves it on them."""
+        middle, half, coefficients = _resolved(angular_velocity, middle, half)
+        return _Course(middle, half, _taylor(coefficients), start)
+
+    def at(self, times: Array) -> Pairs:
+        """Return q at instants on these steps."""
+        which = np.minimum(np.searchsorted(self.middle + self.half, times), self.middle.size - 1)
+        half = self.half[which]
+        x = np.clip(np.divide(times - self.middle[which], half, out=np.zeros_like(times), where=half > 0), -1.0, 1.0)
+        series = self.series[:, :, which]
+        now = series[:, -1]
+        for n in range(series.shape[1] - 2, -1, -1):
+            now = now * x + series[:, n]
+        return _product(_product(now, self._back[:, which]), self._before[:, which])
 
 
-def _resolved_turns(angular_velocity: AngularVelocity, middle: Array, half: Array, depth: int) -> Pairs:
-    coefficients = _polynomials(angular_velocity, middle, half)
-    size = np.abs(coefficients).max(axis=1)  # (nodes, total), each already times the half step
-    rough = size[-2:].max(axis=0) > _TAIL * np.maximum(size[0], 1.0)
-    result = _taylor(coefficients)
-    if rough.any():
-        if depth > 30:
-            raise SolverError("Ω(t) is not smooth: its orientation cannot be followed; look for a jump in the loads.")
-        quarter, m = 0.5 * half[rough], middle[rough]
-        first, second = (
-            _resolved_turns(angular_velocity, m + side * quarter, quarter, depth + 1) for side in (-1.0, 1.0)
-        )
-        result[:, rough] = _product(second, first)
-    return result
+def _resolved(angular_velocity: AngularVelocity, middle: Array, half: Array) -> tuple[Array, Array, Array]:
+    """Return steps, ascending, and the coefficients of Ω on each; those on which it is not resolved are halved."""
+    done: list[tuple[Array, Array, Array]] = []
+    for _ in range(31):
+        coefficients, tail = _polynomials(angular_velocity, middle, half)
+        size = np.abs(coefficients[0]).max(axis=0)  # already times the half step
+        rough = (tail > _TAIL * np.maximum(size, 1.0)) | (size > _LARGEST_TURN)
+        done.append((middle[~rough], half[~rough], coefficients[..., ~rough]))
+        if not rough.any():
+            break
+        quarter = 0.5 * half[rough]
+        middle, half = np.concatenate([middle[rough] - quarter, middle[rough] + quarter]), np.tile(quarter, 2)
+    else:
+        raise SolverError("Ω(t) is not smooth: its orientation cannot be followed; look for a jump in the loads.")
+    parts: list[Array] = [np.concatenate([step[part] for step in done], axis=-1) for part in range(3)]
+    order = np.argsort(parts[0], kind="stable")
+    middle, half, coefficients = (part[..., order] for part in parts)
+    return middle, half, coefficients
 
 
 @cache
-def _fit() -> tuple[Any, Any]:
-    """Nodes on [−1, 1] and the matrix that takes values there to coefficients of 1, x, x², ..."""
+def _fit() -> tuple[Array, Array, Array]:
+    """Nodes on [−1, 1], and what takes values there to coefficients of 1, x, x², ... and to the last two Legendre's."""
     nodes, _ = np.polynomial.legendre.leggauss(_NODES)
-    return nodes, np.linalg.inv(np.vander(nodes, increasing=True))
+    legendre = np.linalg.inv(np.polynomial.legendre.legvander(nodes, _NODES - 1))
+    return nodes, np.linalg.inv(np.vander(nodes, increasing=True)), legendre[-2:]
 
 
-def _polynomials(angular_velocity: AngularVelocity, middle: Array, half: Array) -> Array:
-    """Return the coefficients (nodes, 3, total) of Ω·(half step) in x ∈ [−1, 1]."""
-    nodes, to_coefficients = _fit()
+def _polynomials(angular_velocity: AngularVelocity, middle: Array, half: Array) -> tuple[Array, Array]:
+    """Return the coefficients (nodes, 3, total) of Ω·(half step) in x ∈ [−1, 1], and the size of what ends them."""
+    nodes, to_coefficients, to_tail = _fit()
     values = angular_velocity((middle + nodes[:, None] * half).ravel()).reshape(3, _NODES, -1)
     mean = values.mean(axis=1, keepdims=True)
-    coefficients = np.einsum("jn,cnt->jct", to_coefficients, values - mean)  # of the small rest: rounding stays small
-    coefficients[0] += mean[:, 0]
-    return coefficients * half
+    rest = (values - mean) * half  # small, and so is its rounding
+    coefficients = np.einsum("jn,cnt->jct", to_coefficients, rest)
+    coefficients[0] += mean[:, 0] * half
+    return coefficients, np.abs(np.einsum("jn,cnt->jct", to_tail, rest)).max(axis=(0, 1))
 
 
 def _taylor(coefficients: Array) -> Pairs:
-    """Sum the series of q about the middle of each step; return the rotation from its beginning to its end."""
+    """Return the series (2, terms, total) of q about the middle of each step, where it is 1."""
     x, y, z = np.moveaxis(coefficients, 1, 0)
     spin, across = 1j * x, y + 1j * z  # Ω as a pair, for each power of the time
     most, total = _terms_needed(coefficients), x.shape[1]
-    a, b = (np.zeros((most + 1, total), dtype=complex) for _ in range(2))  # q's terms, as pairs
+    series = np.zeros((2, most + 1, total), dtype=complex)
+    a, b = series
     a[0] = 1.0
     for n in range(1, most + 1):
         used = min(n, _NODES)
         u, v, c, d = spin[:used], across[:used], a[n - used : n][::-1], b[n - used : n][::-1]
         a[n] = (u * c - v * d.conj()).sum(axis=0) * (0.5 / n)
         b[n] = (u * d + v * c.conj()).sum(axis=0) * (0.5 / n)
-    even, odd = (np.stack([a[first::2].sum(axis=0), b[first::2].sum(axis=0)]) for first in (0, 1))
-    return _product(even + odd, _conjugate(even - odd))
+    return series
 
 
 def _terms_needed(coefficients: Array) -> int:
@@ -183,7 +226,7 @@ def _terms_needed(coefficients: Array) -> int:
     most = [1.0]
     for n in range(1, _MOST_TERMS + 1):
         most.append(sum(sizes[j] * most[n - 1 - j] for j in range(min(n, _NODES))) * 0.5 / n)
-    return max(n for n, bound in enumerate(most) if bound > _EPSILON / 8)
+    return max(1, *(n for n, bound in enumerate(most) if bound > _EPSILON / 8))
 
 
 def _product(p: Pairs, q: Pairs) -> Pairs:
