@@ -178,12 +178,11 @@ def _resolved(angular_velocity: AngularVelocity, middle: Array, half: Array) -> 
         raise SolverError("Ω(t) is not smooth: its orientation cannot be followed; look for a jump in the loads.")
     parts: list[Array] = [np.concatenate([step[part] for step in done], axis=-1) for part in range(3)]
     order = np.argsort(parts[0], kind="stable")
-    middle, half, coefficients = (part[..., order] for part in parts)
-    return middle, half, coefficients
+    return parts[0][order], parts[1][order], parts[2][..., order]
 
 
 @cache
-def _fit() -> tuple[Array, Array, Array]:
+def _fit() -> tuple[Any, Any, Any]:
     """Nodes on [−1, 1], and what takes values there to coefficients of 1, x, x², ... and to the last two Legendre's."""
     nodes, _ = np.polynomial.legendre.leggauss(_NODES)
     legendre = np.linalg.inv(np.polynomial.legendre.legvander(nodes, _NODES - 1))
