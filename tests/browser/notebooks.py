@@ -49,9 +49,6 @@ def jupyterlab(folder: Path) -> Iterator[tuple[str, str]]:
     settings = own / "config" / "labconfig"
     settings.mkdir(parents=True)
     (settings / "default_setting_overrides.json").write_text(json.dumps(_NO_NEWS))
-    # A grammar of addresses, made anew in two seconds at every start; jsonschema does without where it is not there.
-    (own / "missing").mkdir()
-    (own / "missing" / "rfc3987_syntax.py").write_text("raise ImportError")
     token, log = secrets.token_hex(16), own / "log"
     with log.open("w") as stream:
         process = subprocess.Popen(  # noqa: S603
@@ -62,7 +59,6 @@ def jupyterlab(folder: Path) -> Iterator[tuple[str, str]]:
             ],
             env=os.environ
             | {
-                "PYTHONPATH": os.pathsep.join(filter(None, (str(own / "missing"), os.environ.get("PYTHONPATH")))),
                 "JUPYTER_TOKEN": token,
                 "JUPYTER_CONFIG_DIR": str(own / "config"),
                 "JUPYTER_DATA_DIR": str(own / "data"),

@@ -16,6 +16,11 @@ UNDRAWN = """
 for (const way of ['drawArrays', 'drawArraysInstanced', 'drawElements', 'drawElementsInstanced'])
     WebGL2RenderingContext.prototype[way] = () => {}
 """
+# The page waits for a card that never comes.
+CARDLESS = """
+const ask = window.fetch
+window.fetch = (...given) => String(given[0]).endsWith('/api/card') ? new Promise(() => {}) : ask(...given)
+"""
 
 
 @dataclass
@@ -28,13 +33,20 @@ class Visitor:
     contexts: list[BrowserContext] = field(default_factory=list)
 
     def open(
-        self, route: str = "", *, size: Any = SMALL, reduced_motion: Any = "reduce", drawn: bool = True, **options: Any
+        self,
+        route: str = "",
+        *,
+        size: Any = SMALL,
+        reduced_motion: Any = "reduce",
+        drawn: bool = True,
+        cards: bool = True,
+        **options: Any,
     ) -> Page:
         """Open a page of the lab: `open("#/tour", size=PHONE)`.
 
         It is small, and motion is reduced, unless asked for otherwise: a processor that draws by itself is not to be
         kept busy by tests that look at neither size nor motion. Where none looks at the stage's pixels either, it
-        need not be `drawn`.
+        need not be `drawn`; and where none looks at `cards`, none need be computed.
         """
         context = self.browser.new_context(viewport=size, reduced_motion=reduced_motion, **options)
         self.contexts.append(context)
@@ -42,6 +54,8 @@ class Visitor:
         self.watch.over(context)
         if not drawn:
             context.add_init_script(UNDRAWN)
+        if not cards:
+            context.add_init_script(CARDLESS)
         page = context.new_page()
         page.goto(f"{self.lab}/{route}")
         return page

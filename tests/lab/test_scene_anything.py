@@ -15,7 +15,7 @@ def test_spheres_and_rollers(case):
     check(*case)
 
 
-@settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=12, deadline=None, suppress_health_check=list(HealthCheck))
 @given(anything())
 def test_everything_combined(case):
     system, placed = case
