@@ -105,11 +105,12 @@ def _rolled(turning: Any, h: float) -> tuple[Any, float]:
     m, a, moment, force = 2.0, 0.5, 0.4 * 2.0 * 0.25, 2.0 * 9.80665 * math.sin(TILT)
 
     def rates(state: Any, W: Any) -> Any:
-        x, y, q = state[0], state[1], state[2:6]
-        V = np.array([-OMEGA * y + a * W[1], OMEGA * x - a * W[0]])
-        lagrangian = 0.5 * m * V @ V + 0.5 * moment * W @ W + force * x
-        turn = np.concatenate([[-W @ q[1:]], W * q[0] + np.cross(W, q[1:])])
-        return np.concatenate([V, 0.5 * turn, [lagrangian]])
+        x, y, s, i, j, k, _ = state.tolist()
+        p, q, r = W.tolist()
+        Vx, Vy = -OMEGA * y + a * q, OMEGA * x - a * p
+        lagrangian = 0.5 * m * (Vx * Vx + Vy * Vy) + 0.5 * moment * (p * p + q * q + r * r) + force * x
+        turn = (-p * i - q * j - r * k, p * s + q * k - r * j, q * s + r * i - p * k, r * s + p * j - q * i)
+        return np.array([Vx, Vy, *(0.5 * part for part in turn), lagrangian])
 
     state = np.array([*START.position[:2], 1.0, 0.0, 0.0, 0.0, 0.0])
     for i in range(STEPS):
