@@ -96,12 +96,17 @@ def test_uniform_precession() -> None:
     times = [0.3, 6.0, 700.0, 1e7]
     with mpmath.workdps(60):
         for t, q in zip(times, found(ball, times), strict=True):
-            own = mpmath.matrix([4, 0, 2 - 1])  # Ω₀ − κ e₃
-            size, half = mpmath.norm(own), mpmath.norm(own) * t / 2
-            turned = (mpmath.cos(half), *(part / size * mpmath.sin(half) for part in own))
-            carried = (mpmath.cos(mpf(t) / 2), 0, 0, mpmath.sin(mpf(t) / 2))
-            wanted = quaternion_product(carried, turned)
+            wanted = precessed((4, 0, 2), 1, t)
             assert off(q, wanted) <= 1e-12
+
+
+def precessed(across_and_along: tuple[Any, Any, Any], rate: Any, t: float) -> tuple[Any, ...]:
+    """The orientation where Ω keeps its size about an axis that turns at κ: from that frame it is Ω₀ − κ e₃."""
+    x, y, z = across_and_along
+    own, half = mpmath.matrix([x, y, z - rate]), mpf(t) / 2
+    size = mpmath.norm(own)
+    turned = (mpmath.cos(size * half), *(part / size * mpmath.sin(size * half) for part in own))
+    return quaternion_product((mpmath.cos(rate * half), 0, 0, mpmath.sin(rate * half)), turned)
 
 
 @pytest.mark.parametrize("axis", [(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.6, 0.0, 0.8), (0.0, 0.0, 0.0)])
@@ -129,13 +134,24 @@ def test_many_samples_share_a_step_and_a_sample_many_steps(name: str) -> None:
         lambda t: np.stack([across * np.cos(rate * t), across * np.sin(rate * t), along + 0 * t]), times, (1, 0, 0, 0)
     )
     with mpmath.workdps(60):
-        own = mpmath.matrix([across, 0, along - rate])
-        size = mpmath.norm(own)
         for i in range(0, 1501, 100):
-            half, turn = size * mpf(float(times[i])) / 2, rate * mpf(float(times[i])) / 2
-            turned = (mpmath.cos(half), *(part / size * mpmath.sin(half) for part in own))
-            wanted = quaternion_product((mpmath.cos(turn), 0, 0, mpmath.sin(turn)), turned)
-            assert off(q[i], wanted) <= EXACT(4, float(size) * 20)
+            wanted = precessed((across, 0, along), rate, float(times[i]))
+            assert off(q[i], wanted) <= EXACT(4, math.hypot(across, along - rate) * 20)
+
+
+def test_a_turn_that_nobody_saw_when_the_steps_were_chosen() -> None:
+    """About one axis, and at rest whenever it is looked at first: the angle is an integral."""
+    looks, end, speed = 32, 20.0, 43.0
+
+    def turning(t: Any) -> Any:
+        return np.outer(np.full(3, 3**-0.5), speed * np.sin(np.pi * looks * t / end) ** 2)
+
+    times = np.linspace(0.0, end, 101)
+    q = orientation(turning, times, (1, 0, 0, 0))
+    wave = 2 * math.pi * looks / end
+    half = 0.25 * speed * (times - np.sin(wave * times) / wave)
+    wanted = np.stack([np.cos(half), *(3**-0.5 * np.sin(half),) * 3], axis=1)
+    assert np.abs(q - wanted).max() <= EXACT(2, 0.5 * speed * end)
 
 
 def test_no_step_crosses_a_kink() -> None:

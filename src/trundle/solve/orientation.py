@@ -30,7 +30,7 @@ _LARGEST_TURN = 8.0  # rad a step
 _LOOKS = 16  # at how fast the body turns, at least, before the steps are chosen
 _MOST_TERMS = 40  # of q's series on a step
 _AT_ONCE = 20_000  # steps, or instants
-_MOST_STEPS = 3e8  # an hour
+_MOST_STEPS = 3e8  # half an hour
 _EPSILON = 2.0**-53
 # The last two Legendre coefficients of Ω on a step, rad: rounding alone makes them some 1e-16, and what comes after
 # them is a tenth of them at most, divided by as many as there are nodes when integrated.
@@ -167,8 +167,9 @@ def _resolved(angular_velocity: AngularVelocity, middle: Array, half: Array) -> 
     done: list[tuple[Array, Array, Array]] = []
     for _ in range(31):
         coefficients, tail = _polynomials(angular_velocity, middle, half)
-        size = np.abs(coefficients[0]).max(axis=0)  # already times the half step
-        rough = (tail > _TAIL * np.maximum(size, 1.0)) | (size > _LARGEST_TURN)
+        size = np.sqrt((coefficients[0] ** 2).sum(axis=0))  # already times the half step
+        # A step may turn by more than one saw when it was chosen, but hardly: its series would lose digits.
+        rough = (tail > _TAIL * np.maximum(size, 1.0)) | (size > 0.6 * _LARGEST_TURN)
         done.append((middle[~rough], half[~rough], coefficients[..., ~rough]))
         if not rough.any():
             break
