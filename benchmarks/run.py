@@ -28,6 +28,7 @@ NAMES = (
     "start_up",
     "members",
     "lab_load",
+    "lab_page",
 )
 PACKAGES = ("numpy", "scipy", "heyoka", "numba", "llvmlite", "jax", "diffrax", "mpmath", "xarray", "matplotlib")
 WIDTHS = (52, 10, 9, 7)

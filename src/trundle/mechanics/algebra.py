@@ -154,12 +154,62 @@ class Matrix:
         """The determinant."""
         return self.a.dot(self.b.cross(self.c))
 
+    @property
+    def whole(self) -> Matrix:
+        """Itself: with its elements, as `Turned.whole`."""
+        return self
+
     def solve(self, v: Vector) -> Vector:
-        """Return x with (this matrix) x = v, by Cramer's rule: no pivoting, so that symbols can pass."""
+        """Return x with (this matrix) x = v, by the cofactors: no pivoting, so that symbols can pass."""
         p, q, r = self.transpose.rows
         qr = q.cross(r)
-        determinant = p.dot(qr)
-        return Vector(v.dot(qr), p.dot(v.cross(r)), p.dot(q.cross(v))) / determinant
+        return Vector(v.dot(qr), v.dot(r.cross(p)), v.dot(p.cross(q))) / p.dot(qr)
+
+
+@value()
+class Turned:
+    """A symmetric matrix known along other axes: Q M Qᵀ, applied without working out its elements.
+
+    To work them out takes twice the products of applying it once.
+
+    Parameters
+    ----------
+    turn : Matrix
+        Q, from those axes to the axes of the vectors that it is applied to.
+    own : Matrix
+        M, symmetric, along those axes.
+
+    Examples
+    --------
+    >>> quarter = Matrix(-E_Y, E_X, E_Z)  # about the third axis
+    >>> Turned(quarter, Matrix.diagonal(1.0, 2.0, 3.0)) @ E_X
+    Vector(x=2.0, y=0.0, z=0.0)
+    """
+
+    turn: Matrix
+    own: Matrix
+
+    __array_ufunc__ = None
+
+    def __matmul__(self, v: Vector) -> Vector:
+        return self.turn @ (self.own @ (self.turn.transpose @ v))
+
+    def solve(self, v: Vector) -> Vector:
+        """Return x with (this matrix) x = v."""
+        return self.turn @ self.own.solve(self.turn.transpose @ v)
+
+    @property
+    def whole(self) -> Matrix:
+        """The matrix with its elements, of which six are worked out."""
+        a, b, c = self.turn.rows
+        p, q, r = (self.own @ row for row in self.turn.rows)
+        ab, ac, bc = a.dot(q), a.dot(r), b.dot(r)
+        return Matrix(Vector(a.dot(p), ab, ac), Vector(ab, b.dot(q), bc), Vector(ac, bc, c.dot(r)))
+
+    @property
+    def rows(self) -> tuple[Vector, Vector, Vector]:
+        """The three rows."""
+        return self.whole.rows
 
 
 def point_inertia(mass: Scalar, offset: Vector) -> Matrix:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..errors import SolverError
-from .algebra import ZERO, Matrix, Quaternion, Vector, point_inertia
+from .algebra import ZERO, Matrix, Quaternion, Turned, Vector, point_inertia
 from .loads import Acting, BodyMotion
 from .motions import SupportState
 from .scalars import Scalar, is_zero
@@ -33,7 +33,7 @@ class Contact:
     point: Vector  # p, m
     normal: Vector  # n, from the support into the body
     offset: Vector  # ρ, from the centre of mass to p, m
-    inverse_curvature: Matrix  # C of the body, m
+    inverse_curvature: Matrix | Turned  # C of the body, m
     shape_operator: Matrix  # S of the support, 1/m
 
     @property
@@ -41,9 +41,15 @@ class Contact:
         """R = p − ρ, the centre of mass, m."""
         return self.point - self.offset
 
+    @property
+    def flat(self) -> bool:
+        """Whether the support is known not to bend: S = 0."""
+        return all(is_zero(bend) for row in self.shape_operator.rows for bend in row)
+
     def across(self, gap: Scalar = 0.0) -> Matrix:
         """Return 1 + (C + g)S: how the body's nearest point moves over the support when the support's does."""
-        reach = self.inverse_curvature if is_zero(gap) else self.inverse_curvature + Matrix.identity() * gap
+        reach = self.inverse_curvature.whole
+        reach = reach if is_zero(gap) else reach + Matrix.identity() * gap
         return Matrix.identity() + reach @ self.shape_operator
 
     def clearance(self, gap: Scalar = 0.0) -> Scalar:
@@ -74,11 +80,12 @@ class Contact:
         point_rate, offset_rate : Vector
             ṗ, and the rate of ρ, m/s.
         """
-        n, omega = self.normal, self.support.angular_velocity
-        moved = slip + self.inverse_curvature @ (angular_velocity - omega).cross(n)
+        n, omega, flat = self.normal, self.support.angular_velocity, self.flat
+        C = self.inverse_curvature if flat else self.inverse_curvature.whole  # its elements are wanted anyway
+        moved = slip + C @ (angular_velocity - omega).cross(n)
         if not is_zero(gap):
             moved = moved - n * slip.dot(n) - omega.cross(n) * gap
-        along = self.across(gap).solve(moved)
+        along = moved if flat else self.across(gap).solve(moved)
         point_rate = self.support.material_velocity(self.point) + along
         if is_zero(gap):
             return point_rate, point_rate - velocity

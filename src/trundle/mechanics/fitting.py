@@ -83,7 +83,7 @@ def room(contact: Contact) -> tuple[float, Vector]:
     first = n.cross(helper)
     first = first / first.norm()
     second = n.cross(first)
-    both = Matrix.identity() + contact.inverse_curvature @ contact.shape_operator
+    both = Matrix.identity() + contact.inverse_curvature.whole @ contact.shape_operator
     tangential = np.array([[float(a.dot(both @ b)) for b in (first, second)] for a in (first, second)])
     values, ways = np.linalg.eig(tangential)  # C S is similar to the symmetric √C S √C: they are real
     least = int(np.argmin(values.real))
@@ -167,7 +167,7 @@ def check_curvature(contact: Contact, received: Any, key: str = "position") -> N
             raise InvalidValueError(
                 key, "must be where the surface is smooth", received, f"Its {name} is not finite there."
             )
-    for name, own in (("contact", contact.offset), ("curvature", contact.inverse_curvature)):
+    for name, own in (("contact", contact.offset), ("curvature", contact.inverse_curvature.whole)):
         if not _all_finite(own):
             remedy = f"Its {name} is not finite in this position: turn it a little."
             raise InvalidValueError("orientation", "must let the body touch in one point", received, remedy)

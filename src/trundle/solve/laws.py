@@ -15,7 +15,7 @@ import numpy as np
 from ..mechanics.algebra import ZERO, Quaternion, Vector
 from ..mechanics.contact import Contact, Rolling, roll, settle, touch
 from ..mechanics.loads import BodyMotion
-from ..mechanics.scalars import Scalar, is_zero
+from ..mechanics.scalars import Scalar
 from ..mechanics.slipping import Flying, Slipping, fly, slip
 from ..mechanics.system import RollingSystem, State
 from .samples import FLIGHT, RESTING, ROLLING, SLIPPING, Array, Samples
@@ -95,7 +95,7 @@ class Law:
         covered = system.body.shape.covers(-(orientation.matrix().transpose @ contact.normal))
         if covered is not None:
             found["edge"] = covered
-        if not all(is_zero(bend) for row in surface.shape_operator(there).rows for bend in row):
+        if not contact.flat:
             found["curved"] = contact.clearance(gap) - _SHORT_OF_IT
         return found
 

@@ -155,10 +155,9 @@ class _Course:
         which = np.minimum(np.searchsorted(self.middle + self.half, times), self.middle.size - 1)
         half = self.half[which]
         x = np.clip(np.divide(times - self.middle[which], half, out=np.zeros_like(times), where=half > 0), -1.0, 1.0)
-        series = self.series[:, :, which]
-        now = series[:, -1]
-        for n in range(series.shape[1] - 2, -1, -1):
-            now = now * x + series[:, n]
+        now = self.series[:, -1].take(which, axis=1)
+        for n in range(self.series.shape[1] - 2, -1, -1):
+            now = now * x + self.series[:, n].take(which, axis=1)
         return _product(_product(now, self._back[:, which]), self._before[:, which])
 
 

@@ -8,7 +8,7 @@ export interface Sharpened {
   sharpen(share: number): void
 }
 
-const COARSE = 0.5
+const COARSE = 0.42 // a hand that drags sees the path bend at once rather than see it crisp
 const CALM = 900 // ms without a change: a picture in full takes time that a hand which moves on would wait for
 
 export class Sharpness {

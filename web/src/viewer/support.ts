@@ -134,6 +134,12 @@ export class SupportModel {
     this.rim.resize(width, height)
   }
 
+  /** Leave out the underside of a plane that is seen from above: its triangles would be tried one by one, and left. */
+  seenFrom(eye: Vector3): void {
+    if (this.scene?.header.support.kind !== 'plane') return
+    this.back.visible = this.front.visible && this.group.worldToLocal(from.copy(eye)).z <= 0
+  }
+
   /** Darken the surface where bodies touch it: places in the support's own frame, and how wide. */
   shade(index: number, x: number, y: number, z: number, radius: number): void {
     const { touches, touching } = this.paint
@@ -150,6 +156,8 @@ export class SupportModel {
     }
   }
 }
+
+const from = new Vector3()
 
 /** Whether two scenes' supports look the same: to make one anew takes longer than to compare. */
 function sameGround(one: Scene, other: Scene): boolean {

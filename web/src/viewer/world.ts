@@ -130,6 +130,7 @@ export class World {
       this.stage.carry(
         this.contact.copy(lead.body.group.position).applyMatrix4(this.stage.root.matrixWorld).sub(this.before),
       )
+    this.support?.seenFrom(this.stage.camera.position)
     this.decorate(time, show, labels)
   }
 

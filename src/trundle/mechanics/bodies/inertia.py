@@ -7,7 +7,7 @@ from typing import Any
 
 from ...errors import InvalidValueError
 from .. import checks
-from ..algebra import ZERO, Matrix, Vector
+from ..algebra import ZERO, Matrix, Turned, Vector
 from ..scalars import Scalar, is_number, is_zero, namespace
 
 _SLACK = 1e-12  # of a moment: the rounding that a rule is not held against
@@ -120,7 +120,7 @@ class Principal:
 
     def in_space(self, Q: Matrix, body: Any) -> Matrix:  # noqa: ARG002
         """Return Q diag(x, y, z) Qᵀ, the inertia tensor in the support frame, kg m²."""
-        return Q @ Matrix.diagonal(self.x, self.y, self.z) @ Q.transpose
+        return Turned(Q, Matrix.diagonal(self.x, self.y, self.z)).whole
 
     def gyroscopic(self, Q: Matrix, Omega: Vector, body: Any) -> Vector:
         """Return Ω×JΩ in the support frame, N m."""
@@ -205,7 +205,7 @@ class Tensor:
 
     def in_space(self, Q: Matrix, body: Any) -> Matrix:  # noqa: ARG002
         """Return Q J Qᵀ, the inertia tensor in the support frame, kg m²."""
-        return Q @ self.matrix @ Q.transpose
+        return Turned(Q, self.matrix).whole
 
     def gyroscopic(self, Q: Matrix, Omega: Vector, body: Any) -> Vector:
         """Return Ω×JΩ in the support frame, N m."""

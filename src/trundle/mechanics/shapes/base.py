@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 from .. import checks
-from ..algebra import Matrix, Vector
+from ..algebra import Matrix, Turned, Vector
 from ..scalars import Scalar, is_zero
 
 
@@ -32,7 +32,7 @@ class Shape:
         """Whether the surface looks the same after any turn about the body's third axis."""
         return False
 
-    def contact(self, Q: Matrix, n: Vector) -> tuple[Vector, Matrix]:
+    def contact(self, Q: Matrix, n: Vector) -> tuple[Vector, Matrix | Turned]:
         """Return ρ = Q X(−Qᵀn) and C = Q (∂X/∂ν) Qᵀ for a support with unit normal n into the body.
 
         Parameters
@@ -46,11 +46,11 @@ class Shape:
         -------
         rho : Vector
             From the centre of mass to the contact point, support frame, m.
-        C : Matrix
+        C : Matrix or Turned
             Inverse curvature at the contact, support frame, m.
         """
         nu = -(Q.transpose @ n)
-        return Q @ self.support_map(nu), Q @ self.support_gradient(nu) @ Q.transpose
+        return Q @ self.support_map(nu), Turned(Q, self.support_gradient(nu))
 
 
 def centre_of(value: Any) -> Vector | None:

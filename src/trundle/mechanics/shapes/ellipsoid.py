@@ -44,16 +44,18 @@ class Ellipsoid(Shape):
         return is_number(self.a) and is_number(self.b) and bool(self.a == self.b) and on_third_axis(self.centre)
 
     def support_map(self, nu: Vector) -> Vector:
-        """Return X = c + Aν/√(νᵀAν) with A = diag(a², b², c²)."""
-        stretched, h = self._stretched(nu)
-        return moved(self.centre, stretched / h)
+        """Return X = c + Aν/h with A = diag(a², b², c²) and h = √(νᵀAν)."""
+        from_centre, _ = self._reached(nu)
+        return moved(self.centre, from_centre)
 
     def support_gradient(self, nu: Vector) -> Matrix:
-        """Return (A − Aν(Aν)ᵀ/h²)/h with h = √(νᵀAν)."""
-        stretched, h = self._stretched(nu)
+        """Return (A − x xᵀ)/h with x = Aν/h."""
+        x, shrunk = self._reached(nu)
         A = Matrix.diagonal(self.a * self.a, self.b * self.b, self.c * self.c)
-        return (A - Matrix.outer(stretched, stretched) * (1.0 / (h * h))) * (1.0 / h)
+        return (A - Matrix.outer(x, x)) * shrunk
 
-    def _stretched(self, nu: Vector) -> tuple[Vector, Scalar]:
+    def _reached(self, nu: Vector) -> tuple[Vector, Scalar]:
+        """Return the point Aν/h from the ellipsoid's centre, and 1/h."""
         stretched = Vector(self.a * self.a * nu.x, self.b * self.b * nu.y, self.c * self.c * nu.z)
-        return stretched, namespace(*stretched).sqrt(nu.dot(stretched))
+        shrunk = 1.0 / namespace(*stretched).sqrt(nu.dot(stretched))
+        return stretched * shrunk, shrunk

@@ -1,0 +1,145 @@
+"""The lab's page: how soon a change is seen, and what a picture costs while it plays."""
+
+from __future__ import annotations
+
+import shutil
+import statistics
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from lab_load import served
+from measure import BrokenBenchmarkError, Row, seconds
+
+CLOSED, NUMERICAL = 0.1, 0.3  # s from a change to its picture
+FRAME = 1 / 60  # s
+CHANGES, PAUSE = 25, 80  # changes of a number that is dragged, and ms between them
+PLAYING = 5.0  # s
+POINTS = 10_000
+
+TITLE = "The lab's page: from a change to its picture, while a number is dragged; and playing a path of 10 000 points"
+
+# The number that is dragged, and from which of its slider's thousand steps on.
+SCENARIOS = {
+    "level-turntable-nudged": ("support.motion.rate", 300, CLOSED),
+    "tilted-turntable": ("support.tilt", 300, CLOSED),
+    "ball-in-a-trough": ("body.radius", 300, CLOSED),
+    "ball-in-a-turning-bowl": ("support.motion.rate", 300, NUMERICAL),
+    "turntable-drop": ("support.motion.rate", 300, NUMERICAL),
+    "rattleback": ("body.mass", 300, NUMERICAL),
+}
+BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
+# The processor draws the stage, and the rest of the page by the quicker way for one.
+SOFTWARE = (
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-gpu-rasterization",
+    "--disable-gpu-compositing",
+)
+
+# Every drawing call is counted, and carried out only where the pixels are to be filled; a picture is there when the
+# graphics processor, or who stands in for it, has finished it.
+WATCH = """
+window.calls = 0; window.corners = 0; window.drawn = null
+const gl = WebGL2RenderingContext.prototype, pixel = new Uint8Array(4)
+for (const way of ['drawArrays', 'drawElements', 'drawArraysInstanced', 'drawElementsInstanced']) {
+    const draw = gl[way]
+    gl[way] = function (...given) {
+        window.calls += 1
+        window.corners += (way.startsWith('drawArrays') ? given[2] : given[1]) * (given[4] ?? 1)
+        if (%(filled)s) draw.apply(this, given)
+        const told = window.drawn
+        window.drawn = null
+        if (told) queueMicrotask(() => { this.readPixels(0, 0, 1, 1, this.RGBA, this.UNSIGNED_BYTE, pixel); told() })
+    }
+}
+const ask = window.requestAnimationFrame
+window.busy = 0
+window.requestAnimationFrame = (step) => ask((now) => {
+    const begun = performance.now()
+    step(now)
+    window.busy += performance.now() - begun
+})
+"""
+CHANGE = """async ([path, to]) => {
+    const slider = document.querySelector(`.controls [data-path="${path}"] input[type=range]`)
+    const begun = performance.now()
+    const seen = new Promise((told, not) => {
+        window.drawn = told
+        setTimeout(() => not(new Error('nothing was drawn')), 10000)
+    })
+    slider.value = String(to)
+    slider.dispatchEvent(new Event('input', {bubbles: true}))
+    await seen
+    return (performance.now() - begun) / 1000
+}"""
+PLAY = """async (seconds) => {
+    const before = [window.busy, window.calls, window.corners]
+    const begun = performance.now()
+    let frames = 0
+    await new Promise((ended) => {
+        const next = () => { frames += 1; performance.now() - begun < 1000 * seconds ? setTimeout(ask) : ended() }
+        const ask = () => requestAnimationFrame(next)
+        ask()
+    })
+    const taken = (performance.now() - begun) / 1000
+    return [frames / taken, (window.busy - before[0]) / 1000 / frames, (window.calls - before[1]) / frames,
+        (window.corners - before[2]) / frames]
+}"""
+
+
+def rows() -> Iterator[Row]:
+    """Drag a number of each scenario, then play."""
+    with served() as (_, port), browser() as launched:
+        for name, (path, share, most) in SCENARIOS.items():
+            for filled in (True, False):
+                page = opened(launched, port, name, filled)
+                first = share if filled else share + 4  # what was asked for before would come from the cache
+                times = sorted(page.evaluate(CHANGE, [path, first + 9 * i]) for i in paused(page, CHANGES))
+                page.context.close()
+                what = f"{name}: half within" if filled else "  with no pixel filled"
+                raw = f"9 of 10 within {seconds(times[int(0.9 * len(times))])}"
+                yield Row(what, statistics.median(times), most=most if filled else None, raw=raw, kind="time")
+        page = opened(launched, port, "level-turntable-nudged", filled=False)
+        box = page.locator('.controls [data-path="run.every"] input:not([type=range])').first
+        box.fill(f"{20 / POINTS * 1000:g} ms")
+        box.press("Enter")
+        page.wait_for_timeout(3000)
+        page.keyboard.press("Space")
+        page.wait_for_timeout(500)
+        rate, busy, calls, corners = page.evaluate(PLAY, PLAYING)
+        page.context.close()
+    raw = f"{calls:.0f} drawing calls with {corners:.0f} corners a frame"
+    yield Row("playing: frames a second, no pixel filled", rate, least=0.95 / FRAME, raw=raw, kind="count")
+    yield Row("  of the page's own work in a frame", busy, most=0.5 * FRAME, kind="time")
+
+
+@contextmanager
+def browser() -> Iterator[Any]:
+    """A browser without windows, in which the processor draws."""
+    from playwright.sync_api import sync_playwright
+
+    program = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if program is None:
+        raise BrokenBenchmarkError("there is no Chromium here")
+    with sync_playwright() as playwright:
+        launched = playwright.chromium.launch(executable_path=program, args=SOFTWARE)
+        yield launched
+        launched.close()
+
+
+def opened(launched: Any, port: int, name: str, filled: bool) -> Any:
+    """A page of the bench, at rest."""
+    page = launched.new_page(viewport={"width": 1366, "height": 768}, reduced_motion="reduce")
+    page.add_init_script(WATCH % {"filled": str(filled).lower()})
+    page.goto(f"http://127.0.0.1:{port}/#/bench?name={name}")
+    page.locator("section.stage[data-shown]").wait_for()
+    page.wait_for_timeout(4000)
+    return page
+
+
+def paused(page: Any, count: int) -> Iterator[int]:
+    """Count, with pauses as between two movements of a hand."""
+    for i in range(count):
+        yield i
+        page.wait_for_timeout(PAUSE)
