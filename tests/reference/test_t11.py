@@ -222,3 +222,18 @@ def test_auto_leaves_the_closed_forms_where_one_is_missing() -> None:
     assert tr.simulate(system, start, 1.0, 0.5).method != "exact"
     with pytest.raises(OutOfDomainError, match="the plane turns"):
         exactly(system, start)
+
+
+@pytest.mark.parametrize(
+    ("radius", "wall", "angle", "rate"), [(0.125, 0.3125, 2.0, 1.0), (0.18, 0.47, 2.45, -5.94), (0.07, 0.35, 2.26, -4.07)]
+)
+def test_a_ball_at_rest_under_the_roof_of_a_turning_pipe_falls(
+    radius: float, wall: float, angle: float, rate: float
+) -> None:
+    pipe = tr.Support(tr.Cylinder(wall), motion=tr.Spin(rate), tilt="90 deg")  # its first axis points down
+    system = tr.RollingSystem(tr.Body.cylinder(radius, 1.0), pipe)
+    run = exactly(system, system.place((angle, 0.0), (0.0, 0.0)), until=0.35)
+    # From ℓ(cos θ, sin θ), by g t²/2 down, to the circle of radius ℓ.
+    wait = mpmath.sqrt(-4 * (mpf(wall) - mpf(radius)) * mpmath.cos(mpf(angle)) / mpf(G))
+    assert [event.kind for event in run.events][:2] == ["lift", "land"]
+    assert abs(run.events[1].time - wait) <= EXACT(16, wait)

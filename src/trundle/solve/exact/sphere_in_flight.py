@@ -205,12 +205,14 @@ class SphereInFlight(ClosedForm):
             )
         )
         ell = float(self.radius if self.distance is None else self.distance)
+        # A body that stands still where a support turns under it has a velocity of what rounding leaves of Ω×ρ.
+        speed = max(float(np.linalg.norm(self.velocity)), float(self.radius * np.linalg.norm(self.angular_velocity)))
         if sum(self.across) == 1:
             f = np.array([r.sum() - ell, V.sum(), 0.5 * A.sum(), 0.0, 0.0])
-            sizes = [ell, np.abs(self.velocity).max(), 0.0]
+            sizes = [ell, speed, 0.0]
         else:
             f = np.array([r @ r - ell * ell, 2 * r @ V, V @ V + r @ A, A @ V, 0.25 * A @ A]) * self.side
-            sizes = [ell * ell, ell * float(np.linalg.norm(V)), float(V @ V) + ell * float(np.linalg.norm(A))]
+            sizes = [ell * ell, ell * speed, float(V @ V) + ell * float(np.linalg.norm(A))]
         for i, (share, size) in enumerate(zip(_NOTHING, sizes, strict=True)):
             if abs(f[i]) > share * size:
                 break
