@@ -8,16 +8,18 @@ float crisp(float signed_) { // 0 to 1 across the zero of a function, one pixel 
   return clamp(signed_ / max(fwidth(signed_), 1e-9) + 0.5, 0.0, 1.0);
 }
 float band(float value, float half_) { return crisp(half_ - abs(value)); }
-// 1 on the whole numbers, a line so many pixels wide; gone where the lines would run together.
-float rule(float value, float pixels) {
-  float width = fwidth(value);
-  float off = abs(fract(value - 0.5) - 0.5) / max(width, 1e-9);
-  return clamp(0.5 * pixels + 0.5 - off, 0.0, 1.0) * (1.0 - smoothstep(0.15, 0.4, width));
+// How many pixels one is beyond the nearest multiple of a whole number.
+float beyond(float value, float width, float every) {
+  return (value - every * floor(value / every + 0.5)) / width;
 }
-// Alternating 0 and 1 by whole numbers; their mean where they are too fine to see.
-float alternate(float value) {
-  float wave = sin(3.14159265 * value);
-  return mix(crisp(wave), 0.5, smoothstep(0.25, 0.7, fwidth(value)));
+// 1 within half a line's width, all in pixels; gone where the lines, so many of them to a pixel, would run together.
+float rule(float off, float wide, float dense) {
+  return clamp(0.5 * wide + 0.5 - abs(off), 0.0, 1.0) * (1.0 - smoothstep(0.15, 0.4, dense));
+}
+// 1 from an even whole number to the next and 0 from an odd one; their mean where they are too fine to see.
+float alternate(float value, float width) {
+  float next = clamp(beyond(value, width, 1.0) + 0.5, 0.0, 1.0);
+  return mix(mix(next, 1.0 - next, mod(floor(value + 0.5), 2.0)), 0.5, smoothstep(0.25, 0.7, width));
 }
 `
 
@@ -40,24 +42,20 @@ vec3 painted(vec3 place, vec3 pattern) {
 `
 
 const SUPPORT = /* glsl */ `
+// Without branches: a processor that draws goes through both sides of each.
 vec3 painted(vec2 marks, vec3 place) {
-  vec3 tone;
-  if (polar > 0.5) {
-    float turns = marks.x * sectors;
-    tone = mix(base, other, alternate(turns) * contrast);
-    float first = crisp(turns) * crisp(1.0 - turns);
-    tone = mix(tone, accent, first * accented);
-    float ring = flatness > 0.5 ? length(place.xy) / spacing : marks.y * rings;
-    float lines = max(rule(turns, stroke), rule(ring, stroke));
-    tone = mix(tone, line, 0.55 * lines);
-  } else {
-    vec2 cell = place.xy / spacing;
-    float check = abs(alternate(cell.x) - alternate(cell.y));
-    tone = mix(base, other, check * contrast);
-    float fine = max(rule(cell.x, stroke), rule(cell.y, stroke));
-    float coarse = max(rule(cell.x / 5.0, 1.6 * stroke), rule(cell.y / 5.0, 1.6 * stroke));
-    tone = mix(tone, line, max(0.4 * fine, 0.75 * coarse));
-  }
+  float ring = flatness > 0.5 ? length(place.xy) / spacing : marks.y * rings;
+  vec2 at = polar > 0.5 ? vec2(marks.x * sectors, ring) : place.xy / spacing;
+  vec2 width = max(fwidth(at), 1e-9);
+  float check = abs(alternate(at.x, width.x) - (1.0 - polar) * alternate(at.y, width.y));
+  vec3 tone = mix(base, other, check * contrast);
+  float first = clamp((0.5 - abs(at.x - 0.5)) / width.x + 0.5, 0.0, 1.0);
+  tone = mix(tone, accent, first * accented * polar);
+  float fine = max(rule(beyond(at.x, width.x, 1.0), stroke, width.x), rule(beyond(at.y, width.y, 1.0), stroke, width.y));
+  float wide = 1.6 * stroke;
+  float fifth = max(
+    rule(beyond(at.x, width.x, 5.0), wide, 0.2 * width.x), rule(beyond(at.y, width.y, 5.0), wide, 0.2 * width.y));
+  tone = mix(tone, line, max((0.4 + 0.15 * polar) * fine, 0.75 * (1.0 - polar) * fifth));
   float near = 0.0;
   for (int i = 0; i < 5; i++) {
     if (i >= touching) break;
