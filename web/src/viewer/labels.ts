@@ -3,10 +3,26 @@ import type { Vector3 } from 'three'
 
 export type LabelKind = 'arrow' | 'axis' | 'body' | 'sketch' | 'guide' | 'spot'
 
+interface Label {
+  text: string
+  x: number
+  y: number
+  colour: string
+  kind: LabelKind
+}
+
+/** A label's place and size, CSS pixels. */
+export interface Box {
+  x: number
+  y: number
+  width: number
+  height: number
+}
+
 export class LabelLayer {
   readonly element: HTMLElement
   private readonly pool: HTMLElement[] = []
-  private readonly asked: { text: string; x: number; y: number; colour: string; kind: LabelKind }[] = []
+  private readonly asked: Label[] = []
   private project: (place: Vector3) => { x: number; y: number } | null = () => null
 
   constructor(document: Document) {
@@ -27,15 +43,33 @@ export class LabelLayer {
   }
 
   end(): void {
-    this.asked.forEach(({ text, x, y, colour, kind }, i) => {
-      const element = this.at(i)
-      if (element.textContent !== text) element.textContent = text
-      if (element.dataset.kind !== kind) element.dataset.kind = kind
-      element.style.setProperty('--tr-label', colour)
-      element.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`
-      element.hidden = false
+    const written = this.asked.map((label, i) => this.write(label, i))
+    const names = this.asked.flatMap((label, i) => (label.kind === 'body' ? [{ label, element: written[i]! }] : []))
+    if (names.length > 1) {
+      const boxes = names.map(({ label: { x, y }, element: { offsetWidth: width, offsetHeight: height } }) => ({
+        x,
+        y,
+        width,
+        height,
+      }))
+      moveApart(boxes)
+      names.forEach(({ label }, i) => {
+        label.y = boxes[i]!.y
+      })
+    }
+    this.asked.forEach(({ x, y }, i) => {
+      written[i]!.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`
     })
     for (let i = this.asked.length; i < this.pool.length; i++) this.pool[i]!.hidden = true
+  }
+
+  private write({ text, colour, kind }: Label, index: number): HTMLElement {
+    const element = this.at(index)
+    if (element.textContent !== text) element.textContent = text
+    if (element.dataset.kind !== kind) element.dataset.kind = kind
+    element.style.setProperty('--tr-label', colour)
+    element.hidden = false
+    return element
   }
 
   private at(index: number): HTMLElement {
@@ -46,5 +80,17 @@ export class LabelLayer {
     this.pool.push(made)
     this.element.append(made)
     return made
+  }
+}
+
+/** Move those down that lie over others, from the uppermost on, so that each can be read. */
+export function moveApart(boxes: readonly Box[]): void {
+  const placed: Box[] = []
+  for (const box of [...boxes].sort((a, b) => a.y - b.y)) {
+    for (const above of placed) {
+      const beside = box.x >= above.x + above.width || above.x >= box.x + box.width
+      if (!beside) box.y = Math.max(box.y, above.y + above.height)
+    }
+    placed.push(box)
   }
 }

@@ -8,7 +8,8 @@ export interface Sharpened {
   sharpen(share: number): void
 }
 
-const COARSE = 0.42 // a hand that drags sees the path bend at once rather than see it crisp
+const COARSE = 0.5
+const DRAGGED = 0.42 // a hand that drags would see the path bend at once rather than see it crisp
 const CALM = 900 // ms without a change: a picture in full takes time that a hand which moves on would wait for
 
 export class Sharpness {
@@ -46,7 +47,7 @@ export class Sharpness {
       this.picture.sharpen(1)
       return
     }
-    this.picture.sharpen(this.pace.share)
+    this.picture.sharpen(Math.min(this.pace.share, DRAGGED))
     this.calm = setTimeout(() => {
       this.picture.sharpen(1)
       this.draw()
