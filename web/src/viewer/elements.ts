@@ -1,4 +1,4 @@
-/** Small helpers that make elements of the page, and the icons of the bar. */
+/** Small helpers for elements of the page, and the icons of the bar. */
 
 const SVG = 'http://www.w3.org/2000/svg'
 
@@ -44,4 +44,21 @@ export function iconButton(name: Icon, label: string, pressed: () => void): HTML
   const button = element('button', 'tr-button', { type: 'button', 'aria-label': label, title: label }, icon(name))
   button.addEventListener('click', pressed)
   return button
+}
+
+/** On a page that scrolls, the wheel scrolls it until somebody has taken hold of the stage. */
+export function leaveThePageItsWheel(frame: HTMLElement, stage: HTMLElement, signal: AbortSignal): void {
+  const heard = (event: WheelEvent) => {
+    const page = document.scrollingElement
+    const scrolls = page !== null && page.scrollHeight > page.clientHeight + 1
+    if (scrolls && document.activeElement !== stage && !event.ctrlKey) event.stopPropagation()
+  }
+  frame.addEventListener('wheel', heard, { signal, capture: true })
+}
+
+/** What a canvas shows, as a PNG file. */
+export function pngOf(canvas: HTMLCanvasElement): Promise<Blob> {
+  return new Promise((done, failed) => {
+    canvas.toBlob((blob) => (blob ? done(blob) : failed(new Error('The browser made no picture.'))), 'image/png')
+  })
 }

@@ -160,3 +160,9 @@ export function sameNumbers(one: ColumnArray | undefined, other: ColumnArray | u
   for (let i = 0; i < one.length; i++) if (one[i] !== other[i]) return false
   return true
 }
+
+/** What a picture of scenes shows, in words. */
+export function saidOf(scenes: readonly Scene[]): string {
+  const said = scenes.map(({ header }) => `${header.body.name} on ${header.support.name.toLowerCase()}`).join('; ')
+  return said ? `3-D picture: ${said}` : '3-D picture, empty'
+}

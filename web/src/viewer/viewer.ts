@@ -3,14 +3,14 @@ import './viewer.css'
 import { Vector3 } from 'three'
 import type { Frame, SceneOptions, Show, Theme, Tool, Viewer, ViewerEvents, ViewerOptions } from './contract'
 import { Controls, pressed } from './controls'
-import { element } from './elements'
+import { element, leaveThePageItsWheel, pngOf } from './elements'
 import { Emitter } from './emitter'
 import { Fallback } from './fallback'
 import { framesOf, nextFrame } from './frames'
 import { LabelLayer } from './labels'
 import { Legend } from './legend'
 import { Player } from './player'
-import type { Scene, Triple } from './scene'
+import { type Scene, saidOf, type Triple } from './scene'
 import { Sharpness } from './sharpness'
 import { liveShow } from './shown'
 import { Stage } from './stage'
@@ -64,7 +64,7 @@ class StageViewer implements Viewer {
       'data-testid': 'stage',
       tabindex: '0',
       role: 'img',
-      'aria-label': '3-D picture, empty',
+      'aria-label': saidOf([]),
     })
     this.labels = new LabelLayer(document)
     this.frameElement = element('div', 'tr-stage', {}, this.canvas, this.labels.element, this.legend.element, this.note)
@@ -108,16 +108,9 @@ class StageViewer implements Viewer {
   private listen(): void {
     const { signal } = this.abort
     this.root.addEventListener('keydown', (event) => this.key(event), { signal })
-    this.frameElement.addEventListener('wheel', (event) => this.wheel(event), { signal, capture: true })
+    leaveThePageItsWheel(this.frameElement, this.canvas, signal)
     this.canvas.addEventListener('webglcontextlost', (event) => event.preventDefault(), { signal })
     this.canvas.addEventListener('webglcontextrestored', () => this.invalidate(), { signal })
-  }
-
-  /** On a page that scrolls, the wheel scrolls it until somebody has taken hold of the stage. */
-  private wheel(event: WheelEvent): void {
-    const page = document.scrollingElement
-    const scrolls = page !== null && page.scrollHeight > page.clientHeight + 1
-    if (scrolls && document.activeElement !== this.canvas && !event.ctrlKey) event.stopPropagation()
   }
 
   private key(event: KeyboardEvent): void {
@@ -147,20 +140,13 @@ class StageViewer implements Viewer {
     this.fallback?.setScenes(scenes, this.frame)
     this.controls?.setScenes(scenes, this.player.begin)
     this.note.textContent = this.world?.support?.note ?? ''
-    this.describe()
+    this.canvas.setAttribute('aria-label', saidOf(scenes))
     if (!keep && scenes.length) this.resetCamera()
     this.controls?.refresh()
     if (options.rests) this.sharpness?.rest()
     // At once: the picture is made while the page does what else there is to do for the new runs.
     if (this.playing) this.invalidate()
     else this.drawNow()
-  }
-
-  private describe(): void {
-    const said = this.scenes
-      .map(({ header }) => `${header.body.name} on ${header.support.name.toLowerCase()}`)
-      .join('; ')
-    this.canvas.setAttribute('aria-label', said ? `3-D picture: ${said}` : '3-D picture, empty')
   }
 
   play(): void {
@@ -334,10 +320,7 @@ class StageViewer implements Viewer {
     if (!stage) throw new Error('A snapshot needs WebGL, which this browser lacks.')
     stage.sharpen(1)
     this.draw() // the canvas keeps its picture only until the browser has shown it
-    const made = new Promise<Blob>((done, failed) => {
-      this.canvas.toBlob((blob) => (blob ? done(blob) : failed(new Error('The browser made no picture.'))), 'image/png')
-    })
-    return made
+    return pngOf(this.canvas)
   }
 
   private resize(): void {
@@ -388,16 +371,8 @@ class StageViewer implements Viewer {
   /** What is drawn, in attributes of the host: for tests, and for whoever wants to style by it. */
   private tell(): void {
     const { x, y, z } = this.world?.shownPlace(0, this.place) ?? this.place
-    const said = {
-      time: this.time,
-      playing: this.playing,
-      frame: this.frame,
-      x,
-      y,
-      z,
-      bodies: this.scenes.length,
-      sharp: this.stage?.sharp ?? 1,
-    }
+    const { time, playing, frame } = this
+    const said = { time, playing, frame, x, y, z, bodies: this.scenes.length, sharp: this.stage?.sharp ?? 1 }
     for (const [name, value] of Object.entries(said)) {
       this.host.dataset[name] = typeof value === 'number' ? String(Number(value.toPrecision(9))) : String(value)
     }
