@@ -225,7 +225,8 @@ def test_auto_leaves_the_closed_forms_where_one_is_missing() -> None:
 
 
 @pytest.mark.parametrize(
-    ("radius", "wall", "angle", "rate"), [(0.125, 0.3125, 2.0, 1.0), (0.18, 0.47, 2.45, -5.94), (0.07, 0.35, 2.26, -4.07)]
+    ("radius", "wall", "angle", "rate"),
+    [(0.125, 0.3125, 2.0, 1.0), (0.18, 0.47, 2.45, -5.94), (0.07, 0.35, 2.26, -4.07)],
 )
 def test_a_ball_at_rest_under_the_roof_of_a_turning_pipe_falls(
     radius: float, wall: float, angle: float, rate: float
