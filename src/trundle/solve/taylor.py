@@ -277,11 +277,24 @@ def _memory() -> _Memory:
 def _compiled(key: str, compile_: Any) -> Any:
     known = _memory().known
     if key not in known:
+        _quiet()
         known[key] = _load(key)
         if known[key] is None:
             known[key] = compile_()
             _store(key, known[key])
     return known[key]
+
+
+@cache
+def _quiet() -> None:
+    """Keep heyoka's warnings out of the results, among which it prints them.
+
+    They say that of two roots a hair apart one may have been passed over. What would come of that the card looks for by
+    other ways: that the support pushes, and another method.
+    """
+    import heyoka
+
+    heyoka.set_logger_level_error()
 
 
 def _compile(equations: list[Any], stops: list[Any], tolerance: float, parameters: int) -> Any:
