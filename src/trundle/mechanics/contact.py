@@ -148,7 +148,7 @@ def touch(
     surface, support = system.support.surface, system.support.motion.at(time, *own)
     turn, there = support.rotation, _own(support, point)
     n = turn @ surface.normal(there)
-    S = turn @ surface.shape_operator(there) @ turn.transpose
+    S = Turned(turn, surface.shape_operator(there)).whole
     rho, C = system.body.shape.contact(orientation.matrix(), n)
     return Contact(support, point, n, rho, C, S)
 

@@ -16,10 +16,8 @@ from ..mechanics.bodies import Body
 from ..mechanics.shapes import Disc, Roller, Shape, Torus
 from .mesh import Array, Mesh, grid_triangles, joined, oriented
 
-_ROWS, _AROUND = (
-    36,
-    56,
-)  # intervals of the grid from pole to pole, and round: the equator is a row of it, and each axis a column
+# Intervals of the grid from pole to pole, and round: the equator is a row of it, and each axis a column.
+_ROWS, _AROUND = 36, 56
 _COVERED = -1e-13  # `covers` at the edge itself, but for rounding
 _NEARLY = 1e-3  # rad from the pole
 _LENS = 0.02  # half the thickness in the middle of a sharp disc, over its radius

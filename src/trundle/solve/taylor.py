@@ -289,8 +289,8 @@ def _compiled(key: str, compile_: Any) -> Any:
 def _quiet() -> None:
     """Keep heyoka's warnings out of the results, among which it prints them.
 
-    They say that of two roots a hair apart one may have been passed over. What would come of that the card looks for by
-    other ways: that the support pushes, and another method.
+    They say that a stop's root was not found where it was looked for, and passed over. A lift or slip passed over shows
+    on the card, in the normal force and the friction needed; slip has two stops for its end.
     """
     import heyoka
 

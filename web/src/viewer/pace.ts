@@ -27,4 +27,5 @@ export class Pace {
 
 const SLOW = 42 // ms
 const PATIENCE = 5 // frames
-const LEAST = 0.42
+/** The smallest share: fewer pixels show too little. */
+export const LEAST = 0.42

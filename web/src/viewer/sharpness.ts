@@ -1,5 +1,5 @@
 /** How sharp a picture is drawn: in full at rest, with fewer pixels while it moves too slowly or the processor must draw it. */
-import { Pace } from './pace'
+import { LEAST, Pace } from './pace'
 
 /** What is drawn with a share of its pixels to a side. */
 export interface Sharpened {
@@ -9,7 +9,6 @@ export interface Sharpened {
 }
 
 const COARSE = 0.5
-const DRAGGED = 0.42 // a hand that drags would see the path bend at once rather than see it crisp
 const CALM = 900 // ms without a change: a picture in full takes time that a hand which moves on would wait for
 
 export class Sharpness {
@@ -47,7 +46,7 @@ export class Sharpness {
       this.picture.sharpen(1)
       return
     }
-    this.picture.sharpen(Math.min(this.pace.share, DRAGGED))
+    this.picture.sharpen(LEAST) // a hand that drags would see the path bend at once rather than see it crisp
     this.calm = setTimeout(() => {
       this.picture.sharpen(1)
       this.draw()
