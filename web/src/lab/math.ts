@@ -4,7 +4,7 @@ import 'katex/dist/katex.min.css'
 import { h } from './dom'
 
 /** Put a formula into an element: drawn for the eye, and as MathML for the ear. */
-export function math(host: HTMLElement, latex: string, display = false): void {
+function math(host: HTMLElement, latex: string, display = false): void {
   host.replaceChildren()
   try {
     katex.render(latex, host, {
@@ -24,16 +24,43 @@ export function math(host: HTMLElement, latex: string, display = false): void {
 
 /** A new element with the formula in it. */
 export function formula(latex: string, display = false): HTMLElement {
-  const element = h(display ? 'div' : 'span', { class: display ? 'math-block' : 'math' })
-  math(element, latex, display)
-  if (display) watch(element)
+  const { element, set } = changing(display)
+  set(latex)
   return element
 }
 
+export interface Changing {
+  element: HTMLElement
+  set(latex: string): void
+}
+
+/** A place for formulas, one after another: the same one is not set and laid out again. */
+export function changing(display = false): Changing {
+  const element = h(display ? 'div' : 'span', { class: display ? 'math-block' : 'math' })
+  let shown: string | undefined
+  return {
+    element,
+    set(latex) {
+      if (latex === shown) return
+      shown = latex
+      math(element, latex, display)
+      if (display) watch(element)
+    },
+  }
+}
+
+// Tells of a first size too, once the page has been laid out: to ask sooner would lay it out once more.
+const sizes =
+  typeof ResizeObserver === 'function'
+    ? new ResizeObserver((entries) => {
+        for (const { target } of entries) reachable(target as HTMLElement)
+      })
+    : undefined
+
 /** A formula wider than its place can be scrolled, so it must be reached by keyboard. */
 function watch(element: HTMLElement): void {
-  queueMicrotask(() => reachable(element)) // by then it stands in the page
-  if (typeof ResizeObserver === 'function') new ResizeObserver(() => reachable(element)).observe(element)
+  sizes?.unobserve(element) // or what is new inside, in the same place, would not be told of
+  sizes?.observe(element)
 }
 
 function reachable(element: HTMLElement): void {

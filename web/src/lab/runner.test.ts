@@ -13,7 +13,7 @@ function setUp(patience = 100) {
   const jobs: Job[] = []
   const done: string[] = []
   const failed: string[] = []
-  let frames: (() => void)[] = []
+  let waiting: (() => void)[] = []
   const clock = { now: 0 }
   const runner = createRunner<number, string>({
     patience,
@@ -23,50 +23,50 @@ function setUp(patience = 100) {
       }),
     done: (answer) => done.push(answer),
     failed: (error) => failed.push(String(error)),
-    frame: (callback) => frames.push(callback),
+    soon: (callback) => waiting.push(callback),
     now: () => clock.now,
   })
-  const frame = () => {
-    const due = frames
-    frames = []
+  const begin = () => {
+    const due = waiting
+    waiting = []
     for (const callback of due) callback()
   }
-  return { runner, jobs, done, failed, frame, clock }
+  return { runner, jobs, done, failed, begin, clock }
 }
 
 const settled = () => new Promise((resolve) => setTimeout(resolve))
 
-it('runs only the newest of a frame', () => {
-  const { runner, jobs, frame } = setUp()
+it('runs only the newest of a task', () => {
+  const { runner, jobs, begin } = setUp()
   runner.ask(1)
   runner.ask(2)
   runner.ask(3)
-  frame()
+  begin()
   expect(jobs.map((job) => job.request)).toEqual([3])
 })
 
 it('lets a young job finish and shows it, then runs the newest that waited', async () => {
-  const { runner, jobs, done, frame } = setUp()
+  const { runner, jobs, done, begin } = setUp()
   runner.ask(1)
-  frame()
+  begin()
   runner.ask(2)
   runner.ask(3)
-  frame()
+  begin()
   expect(jobs).toHaveLength(1)
   jobs[0]!.finish('one')
   await settled()
-  frame()
+  begin()
   expect(done).toEqual(['one'])
   expect(jobs.map((job) => job.request)).toEqual([1, 3])
 })
 
 it('aborts a job that is overdue, and never shows what it says later', async () => {
-  const { runner, jobs, done, failed, frame, clock } = setUp(100)
+  const { runner, jobs, done, failed, begin, clock } = setUp(100)
   runner.ask(1)
-  frame()
+  begin()
   clock.now = 150
   runner.ask(2)
-  frame()
+  begin()
   expect(jobs[0]!.signal.aborted).toBe(true)
   expect(jobs.map((job) => job.request)).toEqual([1, 2])
   jobs[1]!.finish('two')
@@ -78,11 +78,11 @@ it('aborts a job that is overdue, and never shows what it says later', async () 
 
 it('aborts it when its time is up while a newer one waits', () => {
   vi.useFakeTimers()
-  const { runner, jobs, frame, clock } = setUp(100)
+  const { runner, jobs, begin, clock } = setUp(100)
   runner.ask(1)
-  frame()
+  begin()
   runner.ask(2)
-  frame()
+  begin()
   clock.now = 101
   vi.advanceTimersByTime(101)
   expect(jobs[0]!.signal.aborted).toBe(true)
@@ -91,22 +91,22 @@ it('aborts it when its time is up while a newer one waits', () => {
 })
 
 it('tells of an error, but not of one that is old', async () => {
-  const { runner, jobs, failed, frame } = setUp()
+  const { runner, jobs, failed, begin } = setUp()
   runner.ask(1)
-  frame()
+  begin()
   runner.ask(2)
   jobs[0]!.fail(new Error('old'))
   await settled()
-  frame()
+  begin()
   jobs[1]!.fail(new Error('new'))
   await settled()
   expect(failed).toEqual(['Error: new'])
 })
 
 it('says nothing more once it is stopped', async () => {
-  const { runner, jobs, done, frame } = setUp()
+  const { runner, jobs, done, begin } = setUp()
   runner.ask(1)
-  frame()
+  begin()
   runner.stop()
   jobs[0]!.finish('one')
   await settled()

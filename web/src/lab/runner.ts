@@ -1,4 +1,4 @@
-/** Runs a job for the newest request: at most once a frame, one at a time, an overdue elder is cancelled. */
+/** Runs a job for the newest request: one at a time, an overdue elder is cancelled. */
 
 export interface RunnerOptions<Request, Answer> {
   run(request: Request, signal: AbortSignal): Promise<Answer>
@@ -11,7 +11,8 @@ export interface RunnerOptions<Request, Answer> {
    * that a slider that is dragged without a stop still draws; an older one is aborted.
    */
   patience?: number
-  frame?(callback: () => void): void
+  /** When to begin with what is asked in the task under way, and asked again. */
+  soon?(callback: () => void): void
   now?(): number
 }
 
@@ -21,21 +22,17 @@ export interface Runner<Request> {
 }
 
 export function createRunner<Request, Answer>(options: RunnerOptions<Request, Answer>): Runner<Request> {
-  const {
-    patience = 150,
-    frame = (callback) => void requestAnimationFrame(callback),
-    now = () => performance.now(),
-  } = options
+  const { patience = 500, soon = queueMicrotask, now = () => performance.now() } = options
   let waiting: { request: Request } | null = null
   let running: { controller: AbortController; began: number } | null = null
-  let framed = false
+  let scheduled = false
   let timer: ReturnType<typeof setTimeout> | undefined
 
   function schedule(): void {
-    if (framed) return
-    framed = true
-    frame(() => {
-      framed = false
+    if (scheduled) return
+    scheduled = true
+    soon(() => {
+      scheduled = false
       start()
     })
   }

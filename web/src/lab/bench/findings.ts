@@ -1,7 +1,7 @@
 /** Predicted beside measured: a table, and the formula with the numbers put in. */
 import type { Finding, Scene } from '../../viewer/scene'
 import { fill, h } from '../dom'
-import { formula } from '../math'
+import { changing, formula } from '../math'
 import { show } from '../quantity'
 
 /** A relative difference in words: "1.1 × 10⁻¹⁶", "0.3 %", "exact". */
@@ -12,26 +12,34 @@ export function differenceText(difference: number | null): string {
   return size >= 1e-4 ? `${show(size * 100, 3)} %` : show(size, 2)
 }
 
-/** Two lines a row: what it is, and beneath it the numbers. The roles keep it a table for whoever hears it. */
-function row(finding: Finding): HTMLElement {
-  const symbol = finding.symbol ? formula(finding.symbol) : null
-  const unit = finding.unit ? h('span', { class: 'unit' }, finding.unit) : null
-  const name = h('span', { class: 'finding-name' }, finding.name)
-  const cell = (text: string, kind?: string) => h('td', { role: 'cell', class: kind }, text)
-  return h(
-    'tr',
-    { role: 'row', title: finding.note || null },
-    h('th', { scope: 'row', role: 'rowheader' }, name, symbol, unit),
-    cell(show(finding.predicted)),
-    cell(show(finding.measured)),
-    cell(
-      differenceText(finding.difference),
-      Math.abs(finding.difference ?? 1) < 1e-3 ? 'difference agrees' : 'difference',
-    ),
-  )
+interface Row {
+  element: HTMLElement
+  show(finding: Finding): void
 }
 
-function tableOf(findings: Finding[]): HTMLElement {
+/** Two lines a row: what it is, and beneath it the numbers. The roles keep it a table for whoever hears it. */
+function createRow({ name, symbol, unit, note }: Finding): Row {
+  const cell = () => h('td', { role: 'cell' })
+  const [predicted, measured, off] = [cell(), cell(), cell()]
+  const head = h(
+    'th',
+    { scope: 'row', role: 'rowheader' },
+    h('span', { class: 'finding-name' }, name),
+    symbol ? formula(symbol) : null,
+    unit ? h('span', { class: 'unit' }, unit) : null,
+  )
+  return {
+    element: h('tr', { role: 'row', title: note || null }, head, predicted, measured, off),
+    show(finding) {
+      predicted.textContent = show(finding.predicted)
+      measured.textContent = show(finding.measured)
+      off.textContent = differenceText(finding.difference)
+      off.className = Math.abs(finding.difference ?? 1) < 1e-3 ? 'difference agrees' : 'difference'
+    },
+  }
+}
+
+function tableOf(rows: Row[]): HTMLElement {
   const heads = ['', 'predicted', 'measured', 'off by'].map((text) =>
     h('th', { scope: 'col', role: 'columnheader' }, text || h('span', { class: 'sr-only' }, 'quantity')),
   )
@@ -40,7 +48,11 @@ function tableOf(findings: Finding[]): HTMLElement {
     { class: 'numbers findings-rows', role: 'table' },
     h('caption', { class: 'sr-only' }, 'What theory predicts, and what the run shows'),
     h('thead', { role: 'rowgroup' }, h('tr', { role: 'row' }, heads)),
-    h('tbody', { role: 'rowgroup' }, findings.map(row)),
+    h(
+      'tbody',
+      { role: 'rowgroup' },
+      rows.map(({ element }) => element),
+    ),
   )
 }
 
@@ -51,29 +63,37 @@ export interface Findings {
 
 export function createFindings(derive: () => void): Findings {
   const table = h('div', { class: 'findings-table' })
-  const law = h('div', { class: 'formula-card', hidden: true })
+  const [name, said, worked] = [h('h3'), changing(true), changing(true)]
+  const button = h('button', { class: 'link', type: 'button', onclick: derive }, 'How does this follow?')
+  const formulas = h('div', { class: 'formula-lines' }, said.element, worked.element)
+  const law = h('div', { class: 'formula-card', hidden: true }, name, formulas, button)
   const element = h('div', { class: 'findings' }, law, table)
+  let rows: Row[] = []
+  let told = ''
+
+  /** Only what differs is put in: while a number is dragged the rows stay, and most of the page's layout with them. */
+  function updateTable(findings: Finding[]): void {
+    const what = JSON.stringify(findings.map((one) => [one.name, one.symbol, one.unit, one.note]))
+    if (what !== told) {
+      told = what
+      rows = findings.map(createRow)
+      const none = 'Nothing is predicted for this motion: it is computed, and the card says how well.'
+      fill(table, rows.length > 0 ? tableOf(rows) : h('p', { class: 'empty' }, none))
+    }
+    for (const [i, row] of rows.entries()) row.show(findings[i]!)
+  }
 
   function update({ header }: Scene): void {
-    const { findings = [], formula: told = null } = header
-    const none = 'Nothing is predicted for this motion: it is computed, and the card says how well.'
-    fill(table, findings.length > 0 ? tableOf(findings) : h('p', { class: 'empty' }, none))
-    law.hidden = told === null
-    if (!told) return
+    const { findings = [], formula: shown = null } = header
+    updateTable(findings)
+    law.hidden = shown === null
+    if (!shown) return
+    fill(name, shown.name, shown.source ? h('span', { class: 'source' }, shown.source) : null)
+    said.set(shown.latex)
+    worked.set(shown.numbers_latex ?? '')
+    worked.element.hidden = !shown.numbers_latex
     // A path rolled without forces is geometry: there is no law of motion to derive.
-    const derived = header.scenario === undefined || 'support' in Object(header.scenario)
-    const button = derived && h('button', { class: 'link', type: 'button', onclick: derive }, 'How does this follow?')
-    fill(
-      law,
-      h('h3', {}, told.name, told.source ? h('span', { class: 'source' }, told.source) : null),
-      h(
-        'div',
-        { class: 'formula-lines' },
-        formula(told.latex, true),
-        told.numbers_latex ? formula(told.numbers_latex, true) : null,
-      ),
-      button,
-    )
+    button.hidden = header.scenario !== undefined && !('support' in Object(header.scenario))
   }
   return { element, update }
 }

@@ -6,7 +6,7 @@ import { createViewer } from '../../viewer/viewer'
 import type { App } from '../app'
 import { cleanup, fill, h } from '../dom'
 import { type IconName, icon } from '../icons'
-import { formula } from '../math'
+import { changing } from '../math'
 import { show } from '../quantity'
 import type { Scenario } from '../scenario'
 import { headline } from './findings'
@@ -59,6 +59,7 @@ export function createStage(app: App): Stage {
   const hint = h('p', { class: 'stage-hint', role: 'status', hidden: true })
   const time = h('p', { class: 'stage-took' })
   const big = h('div', { class: 'stage-headline' })
+  const law = changing()
   const old = h('p', { class: 'stage-stale', hidden: true }, 'The last path that could be computed')
   const empty = h('p', { class: 'stage-empty working' }, 'Computing the motion …')
   const tools = h('div', { class: 'stage-tools', role: 'radiogroup', 'aria-label': 'What the pointer does' })
@@ -172,8 +173,9 @@ export function createStage(app: App): Stage {
       found &&
         found.predicted !== null &&
         h('p', { class: 'headline-predicted' }, `predicted ${show(found.predicted)}`),
-      said ? formula(said) : null,
+      said && law.element,
     )
+    if (said) law.set(said)
     big.hidden = !found && !said
   }
 
