@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .mechanics.system import RollingSystem
-from .solve.methods import tolerance_of
+from .solve.methods import Method
 from .solve.samples import FLIGHT, Samples
 
 if TYPE_CHECKING:
@@ -120,15 +120,15 @@ def _own(system: RollingSystem, samples: Samples) -> dict[str, Any]:
     }
 
 
-def attributes(title: str, method: str) -> dict[str, Any]:
+def attributes(title: str, method: Method) -> dict[str, Any]:
     """Return what a dataset says of itself: title, method, tolerance, frame and versions.
 
     Parameters
     ----------
     title : str
         Of the scenario.
-    method : str
-        One of `trundle.solve.methods.METHODS`.
+    method : Method
+        The method that ran.
 
     Returns
     -------
@@ -137,14 +137,14 @@ def attributes(title: str, method: str) -> dict[str, Any]:
 
     Examples
     --------
-    >>> attributes("A ball", "exact")["frame"]
-    'support'
+    >>> attributes("A ball", Method("taylor", 1e-9))["tolerance"]
+    1e-09
     """
-    packages = ["trundle", "numpy", *{"taylor": ["heyoka"], "runge-kutta": ["scipy"]}.get(method, [])]
+    packages = ["trundle", "numpy", *{"taylor": ["heyoka"], "runge-kutta": ["scipy"]}.get(method.name, [])]
     return {
         "title": title,
-        "method": method,
-        "tolerance": tolerance_of(method),
+        "method": method.name,
+        "tolerance": method.tolerance,
         "frame": "support",
         "source": ", ".join(f"{package} {_version(package)}" for package in packages),
     }

@@ -14,6 +14,7 @@ from .mechanics.parameters import structure_of
 from .mechanics.system import RollingSystem, State
 from .simulation import simulate
 from .solve import taylor
+from .solve.methods import Method
 from .solve.samples import Progress
 from .solve.sampling import MOST_SAMPLES, sample_times
 
@@ -232,7 +233,7 @@ class _Result:
         coordinates: dict[str, Any] = {name: template[name] for name in ("axis", "quaternion")}
         time = (("time",), pd.Index(self.times), {"long_name": "time", "units": "s", "axis": "T"})
         coordinates |= {"member": pd.RangeIndex(self.members), "time": time}
-        attributes = {"Conventions": "CF-1.11", **labels.attributes("", "taylor")}
+        attributes = {"Conventions": "CF-1.11", **labels.attributes("", Method.of("taylor"))}
         return xarray.Dataset({**variables, **about}, coords=coordinates, attrs=attributes)
 
 

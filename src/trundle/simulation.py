@@ -27,6 +27,7 @@ def simulate(
     every: Any,
     method: str = "auto",
     *,
+    tolerance: float | None = None,
     title: str = "",
     scenario: str | None = None,
     progress: Progress | None = None,
@@ -46,6 +47,9 @@ def simulate(
     method : str
         "exact": the closed form. "taylor": heyoka at 1e-15. "runge-kutta": SciPy's DOP853 at 1e-12. "auto": the closed
         form where every phase of the run has one, else Taylor's method.
+    tolerance : float, optional
+        Of "taylor" and "runge-kutta", relative, for each step, 1e-15 to 1e-3; absent: as above. The run remembers it,
+        and its card allows for it. A closed form has none.
     title : str
         For figures and the card.
     scenario : str, optional
@@ -80,11 +84,11 @@ def simulate(
     _check_start(system, start)
     times = start.time + sample_times(duration, every)
     check_finite(system, float(times[0]), float(times[-1]))
-    chosen, samples = methods.run(method, system, start, times, progress)
+    chosen, samples = methods.run(method, system, start, times, progress, tolerance)
     if scenario is None:
         title, scenario = _described(system, start, times, method, title)
     data = labels.dataset(system, samples, labels.attributes(title, chosen))
-    return Trajectory(data, system, start, chosen, samples.events, scenario)
+    return Trajectory(data, system, start, chosen.name, samples.events, scenario)
 
 
 def _described(system: RollingSystem, start: State, times: Any, method: str, title: str) -> tuple[str, str]:
@@ -166,6 +170,7 @@ class Scenario(ScenarioFile):
         *,
         duration: Any = None,
         every: Any = None,
+        tolerance: float | None = None,
         progress: Progress | None = None,
     ) -> Trajectory:
         """Run the scenario.
@@ -176,6 +181,8 @@ class Scenario(ScenarioFile):
             Instead of the file's.
         duration, every : float or quantity, optional
             Instead of the file's, s.
+        tolerance : float, optional
+            As for `simulate`.
         progress : callable, optional
             Told the fraction done, 0 to 1.
 
@@ -201,6 +208,7 @@ class Scenario(ScenarioFile):
             float(self.timing.duration) if duration is None else duration,
             float(self.timing.every) if every is None else every,
             self.timing.method if method is None else method,
+            tolerance=tolerance,
             title=self.title,
             scenario=self.to_toml(),
             progress=progress,

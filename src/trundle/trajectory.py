@@ -14,7 +14,7 @@ from .errors import InvalidValueError, TrundleError, UnknownNameError
 from .files import written_whole
 from .mechanics.system import RollingSystem, State
 from .scenario import ScenarioFile
-from .solve.methods import solver
+from .solve.methods import Method
 from .solve.samples import Event, Samples
 from .viewer.viewable import Viewable
 
@@ -165,7 +165,7 @@ class Trajectory(Viewable):
         if not inside or (np.diff(wanted) < 0).any():
             raise InvalidValueError("times", f"must ascend within the run, {first:g} to {last:g} s", times)
         once, places = np.unique(wanted, return_inverse=True)
-        samples = solver(self.method)(self.system, self.start, once, self.tolerance)
+        samples = Method(self.method, self.tolerance).solve(self.system, self.start, once)
         samples = replace(samples, time=once).part(places)  # at the rim an integrator may stop a rounding earlier
         data = labels.dataset(self.system, samples, {**self.data.attrs, "frame": "support"})
         return replace(self, data=data).in_frame(self.frame)
@@ -187,7 +187,8 @@ class Trajectory(Viewable):
         from . import verify
 
         if "card" not in self._kept:
-            self._kept["card"] = verify.card(self.system, self.start, self.samples, self.method, self.title)
+            method = Method(self.method, self.tolerance)
+            self._kept["card"] = verify.card(self.system, self.start, self.samples, method, self.title)
         return self._kept["card"]
 
     def with_card(self, card: Card) -> Trajectory:

@@ -188,6 +188,42 @@ def test_a_system_that_no_scenario_can_say_still_runs() -> None:
     assert ours.card().passed, str(ours.card())
 
 
+# --- a tolerance of one's own ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-9, 1e-12])
+def test_a_tolerance_asked_for_is_kept_and_remembered(method: str, tolerance: float) -> None:
+    exact, ours = run(), run(method, tolerance=tolerance)
+    assert ours.tolerance == (0.0 if method == "exact" else tolerance)
+    turned = float(np.linalg.norm(exact.data.angular_velocity.values, axis=1).max())
+    apart = np.abs(ours.data.position - exact.data.position).values.max()
+    assert apart <= EXACT(64, 0.5) + SOLVER(4 * turned, ours.tolerance, 0.5)
+    assert ours.card().passed, str(ours.card())
+    assert np.abs(ours.at([0.55]).data.position - exact.at([0.55]).data.position).values.max() <= 2 * apart + EXACT(
+        4, 1
+    )
+
+
+def test_a_coarse_run_is_one_and_its_card_says_so(method: str) -> None:
+    fine, coarse = run(method), run(method, tolerance=1e-6)
+    differs = np.abs(fine.data.position - coarse.data.position).values.max() > EXACT(64, 0.5)
+    assert differs == (method != "exact")
+    if method != "exact":
+        pretended = replace(coarse, data=coarse.data.assign_attrs(tolerance=fine.tolerance))
+        assert "tolerance 1e-06" in coarse.card().method
+        assert not pretended.card().passed
+
+
+def test_runge_kutta_stops_where_rounding_begins() -> None:
+    assert run("runge-kutta", tolerance=1e-15).tolerance == 1e-13
+
+
+@pytest.mark.parametrize("bad", [0, -1e-9, 1e-16, 0.1, math.nan, True, "1e-9"])
+def test_other_tolerances_are_refused(method: str, bad: Any) -> None:
+    with pytest.raises(tr.InvalidValueError, match=r"tolerance: must be a number from 1e-15 to 0\.001"):
+        run(method, tolerance=bad)
+
+
 # --- the same motion at other instants ------------------------------------------------------------------
 
 

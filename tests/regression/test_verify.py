@@ -23,8 +23,9 @@ from trundle.mechanics.shapes import Ellipsoid, Sphere
 from trundle.mechanics.system import RollingSystem, State
 from trundle.solve import laws, methods
 from trundle.solve.exact import SphereOnPlane
+from trundle.solve.methods import Method
 from trundle.solve.samples import Samples
-from trundle.verify import Card, CardFigure, compared
+from trundle.verify import Card, CardFigure
 
 BALL = tr.Body.solid_sphere(radius=0.025, mass=0.065)
 TABLE = tr.Support(tr.Plane(), motion=tr.Spin(3.5), tilt=0.05)
@@ -35,7 +36,7 @@ Fault = Callable[..., Samples]
 
 
 def solved(system: RollingSystem = SYSTEM, start: State = START, method: str = "exact") -> Samples:
-    return methods.solver(method)(system, start, TIMES, methods.tolerance_of(method), None)
+    return Method.of(method).solve(system, start, TIMES)
 
 
 def failures(card: Card) -> set[str]:
@@ -50,7 +51,7 @@ def failures(card: Card) -> set[str]:
 def test_a_right_run_passes(method: str) -> None:
     if method == "taylor":
         pytest.importorskip("heyoka")
-    card = verify.card(SYSTEM, START, solved(method=method), method, "a run")
+    card = verify.card(SYSTEM, START, solved(method=method), Method.of(method), "a run")
     assert card.passed, str(card)
     assert card.title == "a run"
 
@@ -139,9 +140,8 @@ def test_a_planted_fault_of_the_method_fails_its_figure(name: str, monkeypatch: 
             return honest(method)
         return lambda system, start, times, *_: fault(honest("exact"), system, start, times)
 
-    for module in (verify, compared):
-        monkeypatch.setattr(module, "solver", solver)
-    card = verify.card(SYSTEM, START, solver("exact")(SYSTEM, START, TIMES), "exact")
+    monkeypatch.setattr(methods, "solver", solver)
+    card = verify.card(SYSTEM, START, solver("exact")(SYSTEM, START, TIMES), Method.of("exact"))
     assert wanted <= failures(card), str(card)
 
 
@@ -149,7 +149,7 @@ def test_a_wrong_rate_of_the_circle_fails(monkeypatch: pytest.MonkeyPatch) -> No
     pytest.importorskip("heyoka")
     right = SphereOnPlane._kappa_pair.fget
     monkeypatch.setattr(SphereOnPlane, "_kappa_pair", property(lambda form: (right(form)[0] * (1 + 1e-7), 0.0)))
-    card = verify.card(SYSTEM, START, solved(), "exact")
+    card = verify.card(SYSTEM, START, solved(), Method.of("exact"))
     assert {"law of motion", AGAINST} <= failures(card), str(card)
 
 
@@ -161,7 +161,7 @@ def test_a_wrong_law_fails(monkeypatch: pytest.MonkeyPatch) -> None:
 
     system = replace(SYSTEM, body=tr.Body(0.065, tr.Principal(1.6e-5, 1.7e-5, 1.8e-5), Sphere(0.025)))
     monkeypatch.setattr(laws, "roll", wrong)
-    card = verify.card(system, START, solved(system, method="runge-kutta"), "runge-kutta")
+    card = verify.card(system, START, solved(system, method="runge-kutta"), Method.of("runge-kutta"))
     assert {"law of motion"} <= failures(card), str(card)
 
 
@@ -175,7 +175,7 @@ def test_altered_numbers_fail(field: str) -> None:
     pytest.importorskip("heyoka")
     right = solved()
     factor = np.array([1.0, -1.0, -1.0, -1.0]) if field == "orientation" else 1 + 1e-6
-    card = verify.card(SYSTEM, START, replace(right, **{field: getattr(right, field) * factor}), "exact")
+    card = verify.card(SYSTEM, START, replace(right, **{field: getattr(right, field) * factor}), Method.of("exact"))
     assert not card.passed, str(card)
 
 
@@ -184,7 +184,7 @@ def test_one_altered_sample_fails() -> None:
     right = solved()
     bumped = right.velocity.copy()
     bumped[83] += 1e-9
-    assert "no slip" in failures(verify.card(SYSTEM, START, replace(right, velocity=bumped), "exact"))
+    assert "no slip" in failures(verify.card(SYSTEM, START, replace(right, velocity=bumped), Method.of("exact")))
 
 
 OTHERS = {
@@ -201,7 +201,7 @@ OTHERS = {
 @pytest.mark.parametrize("name", OTHERS)
 @pytest.mark.parametrize("method", ["exact", "runge-kutta"])
 def test_the_samples_of_another_system_fail(name: str, method: str) -> None:
-    card = verify.card(OTHERS[name], START, solved(method=method), method)
+    card = verify.card(OTHERS[name], START, solved(method=method), Method.of(method))
     assert not card.passed, str(card)
 
 
@@ -212,8 +212,8 @@ def test_the_samples_of_another_body_fail_where_nothing_is_conserved() -> None:
         return replace(SYSTEM, body=body)
 
     mine = solved(egg(1.8e-5), method="runge-kutta")
-    assert verify.card(egg(1.8e-5), START, mine, "runge-kutta").passed
-    assert not verify.card(egg(1.9e-5), START, mine, "runge-kutta").passed
+    assert verify.card(egg(1.8e-5), START, mine, Method.of("runge-kutta")).passed
+    assert not verify.card(egg(1.9e-5), START, mine, Method.of("runge-kutta")).passed
 
 
 # --- friction and the normal force ----------------------------------------------------------------------
@@ -252,7 +252,7 @@ def test_friction_that_is_not_enough(friction: float, method: str) -> None:
 def test_rolling_beyond_the_friction_given_fails() -> None:
     system = replace(SYSTEM, support=replace(TABLE, friction=0.05))
     held = solved(method="runge-kutta")
-    figure = verify.card(system, START, held, "runge-kutta")["friction coefficient needed"]
+    figure = verify.card(system, START, held, Method.of("runge-kutta"))["friction coefficient needed"]
     assert figure.passed is False
     assert "slip" in figure.note
 
@@ -269,7 +269,7 @@ def test_the_support_does_not_pull() -> None:
 def test_a_support_that_pulls_fails() -> None:
     right = solved()
     pulled = replace(right, contact_force=-right.contact_force)
-    assert "normal force" in failures(verify.card(SYSTEM, START, pulled, "exact"))
+    assert "normal force" in failures(verify.card(SYSTEM, START, pulled, Method.of("exact")))
 
 
 # --- integrals ------------------------------------------------------------------------------------------
@@ -322,9 +322,8 @@ def test_each_integral_that_holds_is_there_and_no_other(name: str) -> None:
     method = methods.choose("auto", system, start)
     method = "runge-kutta" if method != "exact" and body is not EGG and support is not TUMBLING else method
     times = np.linspace(0.0, 0.5, 51)
-    card = verify.card(
-        system, start, methods.solver(method)(system, start, times, methods.tolerance_of(method)), method
-    )
+    chosen = Method.of(method)
+    card = verify.card(system, start, chosen.solve(system, start, times), chosen)
     assert drifts(card) == wanted
     assert card.passed, str(card)
 
@@ -357,7 +356,7 @@ def test_json_brings_back_every_number() -> None:
 
 
 def test_a_mistyped_figure_lists_the_names() -> None:
-    card = verify.card(SYSTEM, START, solved(), "exact")
+    card = verify.card(SYSTEM, START, solved(), Method.of("exact"))
     with pytest.raises(tr.UnknownNameError, match=r"Did you mean 'no slip'.*law of motion"):
         card["no slp"]
 
@@ -401,9 +400,8 @@ def test_what_an_unstable_motion_does_not_explain_still_fails(name: str, monkeyp
             return honest(method)
         return lambda system, start, times, *_: fault(honest("exact"), system, start, times)
 
-    for module in (verify, compared):
-        monkeypatch.setattr(module, "solver", solver)
-    card = verify.card(system, start, solver("exact")(system, start, TIMES), "exact")
+    monkeypatch.setattr(methods, "solver", solver)
+    card = verify.card(system, start, solver("exact")(system, start, TIMES), Method.of("exact"))
     assert AGAINST in failures(card), str(card)
 
 

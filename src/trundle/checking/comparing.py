@@ -205,7 +205,7 @@ def _run(system: RollingSystem, at: Motion, step: Array, count: int) -> tuple[Sa
     state = _start(system, at, step)
     method, samples = methods.run("auto", system, state, at.time[:count])
     ended = sum(event.final for event in samples.events)
-    return samples.part(slice(0, samples.time.size - ended)), method  # the last is where the support ends
+    return samples.part(slice(0, samples.time.size - ended)), method.name  # the last is where the support ends
 
 
 def _start(system: RollingSystem, at: Motion, step: Array) -> State:

@@ -93,7 +93,9 @@ def path_from(data: Any) -> PathScenario:
     return PathScenario.read(data, "")
 
 
-def run_of(scenario: Scenario, most: int, wanted: int | None = None) -> tuple[Trajectory, float]:
+def run_of(
+    scenario: Scenario, most: int, wanted: int | None = None, tolerance: float | None = None
+) -> tuple[Trajectory, float]:
     """Run a scenario.
 
     Parameters
@@ -104,6 +106,8 @@ def run_of(scenario: Scenario, most: int, wanted: int | None = None) -> tuple[Tr
         How many samples there may be.
     wanted : int, optional
         How many are of use: with fewer than the scenario's own, only those are computed.
+    tolerance : float, optional
+        As for `trundle.simulate`.
 
     Returns
     -------
@@ -120,12 +124,14 @@ def run_of(scenario: Scenario, most: int, wanted: int | None = None) -> tuple[Tr
     duration, every = float(scenario.timing.duration), float(scenario.timing.every)
     limits.check_timing(duration, every, most)
     began = time.perf_counter()
-    run = scenario.run(every=every if wanted is None else max(every, duration / (wanted - 1)))
+    run = scenario.run(every=every if wanted is None else max(every, duration / (wanted - 1)), tolerance=tolerance)
     return run, time.perf_counter() - began
 
 
 @answering
-def simulate(data: dict[str, Any], samples: int | None = None, card: bool = False) -> Answer:
+def simulate(
+    data: dict[str, Any], samples: int | None = None, card: bool = False, tolerance: float | None = None
+) -> Answer:
     """Run a scenario and pack what a viewer needs.
 
     Parameters
@@ -136,6 +142,8 @@ def simulate(data: dict[str, Any], samples: int | None = None, card: bool = Fals
         How many to show at most.
     card : bool
         Whether to verify it, too.
+    tolerance : float, optional
+        As for `trundle.simulate`; a picture needs no more than 1e-9.
 
     Returns
     -------
@@ -153,7 +161,7 @@ def simulate(data: dict[str, Any], samples: int | None = None, card: bool = Fals
         from ..geometry.scene import rolled_scene
 
         return Answer(pack(rolled_scene(path_from(data).run(), samples, card)), SCENE)
-    run, seconds = run_of(scenario_from(data), limits.MOST_SAVED, samples)
+    run, seconds = run_of(scenario_from(data), limits.MOST_SAVED, samples, tolerance)
     return Answer(pack(scene_of(run, samples, card, seconds=seconds)), SCENE)
 
 

@@ -15,7 +15,7 @@ from ..viewer.exports import FORMATS
 from . import answers, exports, pages
 from .errors import Refusal, RefusedError, of_validation
 from .pool import LeftError
-from .requests import JSON, OPENED, AboutScenario, ToDraw, ToExport, ToRoll, described
+from .requests import JSON, OPENED, AboutScenario, ToDraw, ToExport, ToRoll, ToSimulate, described
 from .security import Guard
 from .service import Lab
 from .settings import Settings
@@ -97,9 +97,10 @@ def _asking(app: FastAPI, lab: Lab) -> None:
     """Add the routes that compute."""
 
     @app.post("/api/simulate", **described("Run a scenario: a packed scene.", scene=True))
-    async def simulate(request: Request, asked: ToDraw) -> Response:
+    async def simulate(request: Request, asked: ToSimulate) -> Response:
         lane = lab.slow if asked.card else lab.quick
-        return await lab.answer(request, lane, answers.simulate, asked.scenario, asked.samples, asked.card)
+        wanted = asked.samples, asked.card, asked.tolerance
+        return await lab.answer(request, lane, answers.simulate, asked.scenario, *wanted)
 
     @app.post("/api/card", **described("The verification card of a run, in full precision."))
     async def card(request: Request, asked: AboutScenario) -> Response:

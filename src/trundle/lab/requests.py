@@ -39,6 +39,14 @@ Tables = Annotated[
 Samples = Annotated[int | None, Field(ge=2, le=MOST_SAMPLES, description="How many samples to show at most.")]
 
 
+Tolerance = Annotated[
+    float | None,
+    Field(
+        ge=1e-15, le=1e-3, description="Of a numerical method, relative, for each step; absent: the finest there is."
+    ),
+]
+
+
 class AboutScenario(_Asked):
     """A question about one scenario."""
 
@@ -50,6 +58,12 @@ class ToDraw(AboutScenario):
 
     samples: Samples = None
     card: bool = Field(default=False, description="Whether to verify the run, which takes seconds.")
+
+
+class ToSimulate(ToDraw):
+    """A scenario to be run and drawn."""
+
+    tolerance: Tolerance = None
 
 
 class ToRoll(_Asked):

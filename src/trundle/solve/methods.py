@@ -5,17 +5,51 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 from typing import Any
 
-from ..errors import OutOfDomainError, UnknownNameError
+from ..errors import InvalidValueError, OutOfDomainError, UnknownNameError
 from ..mechanics.system import RollingSystem, State
 from .exact import closed_form
 from .samples import Array, Progress, Samples
 
 METHODS = {"exact": "closed_form", "taylor": "taylor", "runge-kutta": "runge_kutta"}
 CHOICES = ("auto", *METHODS)
+_FINEST, _COARSEST = 1e-15, 1e-3  # tolerances; beyond them a step is all rounding, or knows nothing of the motion
+_FINEST_OF = {"runge-kutta": 1e-13}  # SciPy's own limit is 2e-14
+
+
+@dataclass(frozen=True)
+class Method:
+    """A method and how finely it works.
+
+    Parameters
+    ----------
+    name : str
+        One of `METHODS`.
+    tolerance : float
+        Relative, of each step; 0 for a closed form.
+
+    Examples
+    --------
+    >>> Method.of("taylor", 1e-9), Method.of("exact", 1e-9).tolerance
+    (Method(name='taylor', tolerance=1e-09), 0.0)
+    """
+
+    name: str
+    tolerance: float
+
+    @classmethod
+    def of(cls, name: str, tolerance: float | None = None) -> Method:
+        """Return a method at a tolerance, or the nearest that it can keep; absent: its own."""
+        own = tolerance_of(name)
+        return cls(name, own if tolerance is None or own == 0 else max(tolerance, _FINEST_OF.get(name, _FINEST)))
+
+    def solve(self, system: RollingSystem, start: State, times: Array, progress: Progress | None = None) -> Samples:
+        """Return the samples of a run at ascending times, s, none before the start."""
+        return solver(self.name)(system, start, times, self.tolerance, progress)
 
 
 def choose(method: str, system: RollingSystem, start: State) -> str:
@@ -62,8 +96,13 @@ def choose(method: str, system: RollingSystem, start: State) -> str:
 
 
 def run(
-    method: str, system: RollingSystem, start: State, times: Array, progress: Progress | None = None
-) -> tuple[str, Samples]:
+    method: str,
+    system: RollingSystem,
+    start: State,
+    times: Array,
+    progress: Progress | None = None,
+    tolerance: float | None = None,
+) -> tuple[Method, Samples]:
     """Run a method; `auto` leaves the closed forms where the run comes to a phase that none covers.
 
     Parameters
@@ -78,16 +117,20 @@ def run(
         Ascending, s, none before the start.
     progress : callable, optional
         Told the fraction done.
+    tolerance : float, optional
+        Of a numerical method, relative, for each step; absent: the finest that it keeps.
 
     Returns
     -------
-    method : str
-        The one of `METHODS` that ran.
+    method : Method
+        The one that ran.
     samples : Samples
         What it found.
 
     Raises
     ------
+    InvalidValueError
+        If the tolerance is none.
     UnknownNameError, OutOfDomainError, SolverError
         As `choose` and the method.
 
@@ -101,13 +144,23 @@ def run(
     >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), table)
     >>> start = system.place(velocity=(1.0, 0.0), angular_velocity=(0.0, 0.0, 0.0))
     >>> run("auto", system, start, np.array([0.0, 1.0]))[0]
-    'taylor'
+    Method(name='taylor', tolerance=1e-15)
     """
+    if tolerance is not None:
+        _check_tolerance(tolerance)
     if method == "auto":
         with suppress(OutOfDomainError):
-            return "exact", solver("exact")(system, start, times, tolerance_of("exact"), progress)
-    chosen = _numerical(system) if method == "auto" else choose(method, system, start)
-    return chosen, solver(chosen)(system, start, times, tolerance_of(chosen), progress)
+            exact = Method.of("exact")
+            return exact, exact.solve(system, start, times, progress)
+    chosen = Method.of(_numerical(system) if method == "auto" else choose(method, system, start), tolerance)
+    return chosen, chosen.solve(system, start, times, progress)
+
+
+def _check_tolerance(tolerance: Any) -> None:
+    known = isinstance(tolerance, (int, float)) and not isinstance(tolerance, bool)
+    if not (known and _FINEST <= tolerance <= _COARSEST):
+        remedy = "Leave it out for the last digit; 1e-9 is twice as fast, and nothing that a picture shows."
+        raise InvalidValueError("tolerance", f"must be a number from {_FINEST:g} to {_COARSEST:g}", tolerance, remedy)
 
 
 def _numerical(system: RollingSystem) -> str:
@@ -156,7 +209,7 @@ def solver(method: str) -> Callable[..., Any]:
 
 
 def tolerance_of(method: str) -> float:
-    """Return the tolerance at which a method runs; 0 for a closed form.
+    """Return the tolerance at which a method runs unless another is asked for; 0 for a closed form.
 
     Parameters
     ----------

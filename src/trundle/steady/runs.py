@@ -33,10 +33,9 @@ def carried(flow: Flow, y: Array, times: Any) -> Array:
     (10,) or (10, n) array
         Integrated by Taylor's method where there is heyoka, else by DOP853.
     """
-    method = methods.choose("taylor", flow.system, flow.state(y))
-    solve = methods.solver(method)
+    method = methods.Method.of(methods.choose("taylor", flow.system, flow.state(y)))
     instants = np.atleast_1d(np.asarray(times, dtype=float))
-    run = solve(flow.system, flow.state(y), flow.time + instants, methods.tolerance_of(method))
+    run = method.solve(flow.system, flow.state(y), flow.time + instants)
     states = np.hstack([run.contact, run.orientation, run.angular_velocity]).T
     if len(instants) and np.sum(states[3:7, 0] * y[3:7]) < 0 and instants[0] == 0:
         states[3:7] = -states[3:7]

@@ -13,7 +13,7 @@ from ..mechanics.algebra import Vector
 from ..mechanics.invariants import Record, invariants_of
 from ..mechanics.system import RollingSystem, State
 from ..solve.exact import ClosedForm, SphereOnPlane, closed_form
-from ..solve.methods import solver, tolerance_of
+from ..solve.methods import Method
 from ..solve.samples import FLIGHT, ROLLING, SLIPPING, Samples
 from .bounds import EXACT, SOLVER, Array, bound_of, speed_of, turned_in
 from .card import Card, CardFigure, checked
@@ -33,7 +33,7 @@ _MEANWHILE = {"rolling": "while it rolls", "slipping": "while it slips", "flight
 _FITTED, _CIRCLES_FITTED = 2000, 20  # points and, where they are taken anew, circles
 
 
-def card(system: RollingSystem, start: State, samples: Samples, method: str, title: str = "") -> Card:
+def card(system: RollingSystem, start: State, samples: Samples, method: Method, title: str = "") -> Card:
     """Check a trajectory and return what was found.
 
     Parameters
@@ -44,8 +44,8 @@ def card(system: RollingSystem, start: State, samples: Samples, method: str, tit
         Where it started.
     samples : Samples
         The trajectory in the inertial support frame.
-    method : str
-        That made it.
+    method : Method
+        That made it, at its tolerance.
     title : str
         Of the run.
 
@@ -91,14 +91,14 @@ def _events(samples: Samples) -> Iterator[CardFigure]:
     yield CardFigure("events", float(len(kinds)), note=", ".join(told) + more)
 
 
-def _described(method: str, motion: ClosedForm | None) -> str:
-    if method == "exact" and motion is not None:
+def _described(method: Method, motion: ClosedForm | None) -> str:
+    if method.name == "exact" and motion is not None:
         return f"closed form {motion.equation}, {motion.name} ({motion.source})"
-    name = {"taylor": "Taylor series (heyoka)", "runge-kutta": "Runge-Kutta DOP853 (SciPy)"}[method]
-    return f"{name}, tolerance {tolerance_of(method):g}"
+    name = {"taylor": "Taylor series (heyoka)", "runge-kutta": "Runge-Kutta DOP853 (SciPy)"}[method.name]
+    return f"{name}, tolerance {method.tolerance:g}"
 
 
-def _no_slip(system: RollingSystem, at: Samples, method: str) -> Iterator[CardFigure]:
+def _no_slip(system: RollingSystem, at: Samples, method: Method) -> Iterator[CardFigure]:
     rolling = at.part(at.phase == ROLLING)
     if rolling.time.size:
         V, turning, u = rolling.speeds(system)
@@ -111,18 +111,18 @@ def _no_slip(system: RollingSystem, at: Samples, method: str) -> Iterator[CardFi
         yield friction_law(system, slipping, bound_of(method, turned_in(at)))
 
 
-def _law(system: RollingSystem, start: State, at: Samples, method: str) -> Iterator[CardFigure]:
+def _law(system: RollingSystem, start: State, at: Samples, method: Method) -> Iterator[CardFigure]:
     found = stretches(system, start.time, at)
     total = sum(stretch.length for stretch in found)
     windows = np.vstack([stretch.windows(stretch.length / total) for stretch in found[:_MOST_STRETCHES]])
     sampled = at.part(slice(None, None, max(1, at.time.size // _RUN_AGAIN)))
     every = [windows.ravel(), sampled.time, np.array([start.time, at.time[-1]])]
-    again = solver(method)(system, start, np.unique(np.concatenate(every)), tolerance_of(method))
+    again = method.solve(system, start, np.unique(np.concatenate(every)))
     yield same_again(system, start, sampled, again, method)
     looked_at = again.part(_places(again.time, windows.ravel()))
     law = residuals(system, looked_at, windows)
     # A slope taken over a third of a radian of turning multiplies a method's own error by some tens.
-    bound = max(EXACT * 10, 100 * SOLVER * tolerance_of(method))
+    bound = max(EXACT * 10, 100 * SOLVER * method.tolerance)
     count = len(windows)
     yield checked("velocity is the slope of the path", law.path, bound, f"at {count} instants, share of the speed")
     yield checked("law of motion", law.law, bound, "Newton, Euler and the constraint as one 9×9 system; T2 not used")
@@ -133,7 +133,7 @@ def _law(system: RollingSystem, start: State, at: Samples, method: str) -> Itera
         ends = again.part(_places(again.time, np.array([start.time, at.time[-1]])))
 
         def follow(times: Array) -> Samples:
-            there = solver(method)(system, start, np.unique(times), tolerance_of(method))
+            there = method.solve(system, start, np.unique(times))
             return there.part(_places(there.time, times))
 
         panels = np.vstack([stretch.panels() for stretch in found])
@@ -152,7 +152,7 @@ def _wants_balance(system: RollingSystem, at: Samples, found: list[Stretch]) -> 
     return not plain and len(found) <= _MOST_STRETCHES and all(stretch.resolved for stretch in found)
 
 
-def _integrals(system: RollingSystem, at: Samples, method: str) -> Iterator[CardFigure]:
+def _integrals(system: RollingSystem, at: Samples, method: Method) -> Iterator[CardFigure]:
     """Check each first integral over every stretch of a phase that it survives."""
     bound, phases = bound_of(method, turned_in(at)), set()
     worst: dict[str, tuple[float, Any, set[str]]] = {}
@@ -191,7 +191,7 @@ def _drift(values: Any, size: float) -> float:
     return 0.0 if change == 0 else float(change / max(size, 1e-300))
 
 
-def _guiding_centre(motion: ClosedForm | None, start: State, at: Samples, method: str) -> Iterator[CardFigure]:
+def _guiding_centre(motion: ClosedForm | None, start: State, at: Samples, method: Method) -> Iterator[CardFigure]:
     """Check centre and radius of the circle from positions and velocities: integrals on a turning plane."""
     if not isinstance(motion, SphereOnPlane) or not motion.has_guiding_centre:
         return
@@ -209,7 +209,7 @@ def _guiding_centre(motion: ClosedForm | None, start: State, at: Samples, method
 
 
 def _circle(
-    system: RollingSystem, motion: ClosedForm | None, start: State, samples: Samples, method: str
+    system: RollingSystem, motion: ClosedForm | None, start: State, samples: Samples, method: Method
 ) -> Iterator[CardFigure]:
     """Measure rate, centre and drift from the positions alone, beside the formula's."""
     if not isinstance(motion, SphereOnPlane) or not motion.has_guiding_centre:
@@ -226,7 +226,7 @@ def _circle(
     if found is None or turns < 0.25 or found.rate_error > 1e-6 * abs(motion.kappa):
         yield CardFigure("circle not measured", turns, "turns", note="the run shows too little of the circle")
         return
-    slack = max(10.0, SOLVER * tolerance_of(method) / 2.2e-16)
+    slack = max(10.0, SOLVER * method.tolerance / 2.2e-16)
     centre, drift = complex(*motion.guiding_centre(0.0)), complex(*motion.drift_velocity)
     for name, value, formula, error, unit in (
         ("circle rate measured", found.rate, motion.kappa, found.rate_error, "rad/s"),
@@ -245,7 +245,7 @@ def _circle(
 
 
 def _even_path(
-    system: RollingSystem, start: State, samples: Samples, method: str, kappa: float
+    system: RollingSystem, start: State, samples: Samples, method: Method, kappa: float
 ) -> tuple[Array, NDArray[np.complex128]]:
     """Return times and path for a fit: the samples at an even step, or new ones where they are too far apart."""
     t = samples.time - start.time
@@ -254,7 +254,7 @@ def _even_path(
         t = t[:-1]
     if t.size < 32 or not even or (t[1] - t[0]) * kappa > 1:
         t = np.linspace(0.0, min(float(samples.time[-1] - start.time), _CIRCLES_FITTED * 2 * math.pi / kappa), _FITTED)
-        samples = solver(method)(system, start, start.time + t, tolerance_of(method))
+        samples = method.solve(system, start, start.time + t)
         t = samples.time - start.time
     stride = max(1, int(0.5 / (kappa * (t[1] - t[0]))), t.size // _FITTED // 100)
     keep = slice(0, stride * _FITTED, stride)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..mechanics.loads import Load
 from ..mechanics.system import RollingSystem
-from ..solve.methods import tolerance_of
+from ..solve.methods import Method
 from ..solve.samples import Samples
 
 Array = NDArray[np.float64]
@@ -17,9 +17,9 @@ Array = NDArray[np.float64]
 EXACT, SOLVER = 1e-12, 1e3
 
 
-def bound_of(method: str, turned: float = 1.0) -> float:
+def bound_of(method: Method, turned: float = 1.0) -> float:
     """Return the share that a method may be off after the body has turned by so many radians."""
-    return max(EXACT, SOLVER * tolerance_of(method) * max(1.0, turned / SOLVER))
+    return max(EXACT, SOLVER * method.tolerance * max(1.0, turned / SOLVER))
 
 
 def turned_in(samples: Samples) -> float:

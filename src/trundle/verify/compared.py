@@ -12,7 +12,7 @@ from ..mechanics.algebra import E_X, E_Z, Quaternion, Vector
 from ..mechanics.contact import settle
 from ..mechanics.system import RollingSystem, State
 from ..solve.exact import ClosedForm
-from ..solve.methods import solver, tolerance_of
+from ..solve.methods import Method
 from ..solve.samples import Samples
 from .bounds import EXACT, SOLVER, bound_of, largest, sizes_of, turned_in
 from .card import CardFigure, checked
@@ -23,7 +23,7 @@ _NUDGE = 1e-10  # of the largest Ω: small beside a motion that magnifies it a b
 _A_STEP = 10.0  # times its tolerance that a method may err in a step
 
 
-def same_again(system: RollingSystem, start: State, ours: Samples, again: Samples, method: str) -> CardFigure:
+def same_again(system: RollingSystem, start: State, ours: Samples, again: Samples, method: Method) -> CardFigure:
     """Compare samples with the same method run again: then what is checked of that run holds for them.
 
     Parameters
@@ -34,7 +34,7 @@ def same_again(system: RollingSystem, start: State, ours: Samples, again: Sample
         Where it started.
     ours, again : Samples
         The samples, and the second run at their times and others.
-    method : str
+    method : Method
         Of both.
 
     Returns
@@ -49,7 +49,7 @@ def same_again(system: RollingSystem, start: State, ours: Samples, again: Sample
     sizes |= {"contact": sizes["position"], "contact_force": largest(ours.contact_force)}
     side = np.sign((ours.orientation * theirs.orientation).sum(axis=1, keepdims=True))  # q and −q are one rotation
     angle = largest(ours.orientation - side * theirs.orientation)
-    rounding = max(EXACT, 1e-15 * turned, 100 * tolerance_of(method) * turned)  # of an angle, which adds up
+    rounding = max(EXACT, 1e-15 * turned, 100 * method.tolerance * turned)  # of an angle, which adds up
     bound = bound_of(method, turned)
     share = max(_difference(ours, theirs, sizes), angle * bound / rounding)
     bound, grown = _allowing_growth(share, bound, system, start, ours, method, sizes)
@@ -58,7 +58,7 @@ def same_again(system: RollingSystem, start: State, ours: Samples, again: Sample
 
 
 def cross_check(
-    system: RollingSystem, start: State, at: Samples, method: str, motion: ClosedForm | None
+    system: RollingSystem, start: State, at: Samples, method: Method, motion: ClosedForm | None
 ) -> Iterator[CardFigure]:
     """Compare a closed form with a numerical method, whichever of the two made the run.
 
@@ -78,22 +78,23 @@ def cross_check(
         return
     from ..solve.taylor import available
 
-    other = ("taylor" if available() else "runge-kutta") if method == "exact" else "exact"
-    numerical = other if method == "exact" else method
+    closed = method.name == "exact"
+    other = Method.of(("taylor" if available() else "runge-kutta") if closed else "exact")
+    numerical = other if closed else method
     span, speed = float(at.time[-1] - start.time), largest(at.angular_velocity)
     times = start.time + np.linspace(0.0, min(span, _MOST_RADIANS / max(speed, 1e-300)), _INSTANTS)
     try:
-        ours, theirs = (solver(name)(system, start, times, tolerance_of(name)) for name in (method, other))
+        ours, theirs = (one.solve(system, start, times) for one in (method, other))
     except OutOfDomainError:  # the run comes into a phase that no closed form covers
         return
     count = min(theirs.time.size, ours.time.size)  # one may reach the rim first, by a rounding
     ours, theirs = ours.part(slice(0, count)), theirs.part(slice(0, count))
     turned = speed * float(ours.time[-1] - start.time)
-    name = f"closed form against {'Taylor' if numerical == 'taylor' else 'Runge-Kutta'}"
+    name = f"closed form against {'Taylor' if numerical.name == 'taylor' else 'Runge-Kutta'}"
     difference, bound = _difference(ours, theirs, sizes_of(system, ours)), bound_of(numerical, turned)
     turn = Quaternion.of(ours.orientation) * Quaternion.of(theirs.orientation).conjugate
     angle = 2 * largest(turn.array()[:, 1:])
-    allowed = 100 * tolerance_of(numerical) * max(10.0, turned)  # the error of Ω added up over the turning
+    allowed = 100 * numerical.tolerance * max(10.0, turned)  # the error of Ω added up over the turning
     share = max(difference, angle * bound / allowed)
     wider, grown = _allowing_growth(share, bound, system, start, ours, numerical, sizes_of(system, ours))
     over = f"over {ours.time[-1] - start.time:g} s, {count} instants"
@@ -116,7 +117,7 @@ def _allowing_growth(
     system: RollingSystem,
     start: State,
     at: Samples,
-    method: str,
+    method: Method,
     sizes: dict[str, float],
 ) -> tuple[float, str]:
     """Widen a bound by what the motion itself does to a small difference, where the plain bound does not hold.
@@ -131,13 +132,13 @@ def _allowing_growth(
     return (wider, f"; a change of the start shows {magnified:.2g} times larger") if wider > bound else (bound, "")
 
 
-def _magnified(system: RollingSystem, start: State, at: Samples, method: str, sizes: dict[str, float]) -> float:
+def _magnified(system: RollingSystem, start: State, at: Samples, method: Method, sizes: dict[str, float]) -> float:
     """Return how many times larger than in Ω of the start a small change shows in the motion."""
     span = float(at.time[-1] - at.time[0])
     size = max(largest(at.angular_velocity), 1 / max(span, 1e-300))
     times = np.union1d(at.time[:: max(1, at.time.size // _INSTANTS)], at.time[-1:])
     starts = [start, *_nudged(system, start, _NUDGE * size)]
-    first, *others = (solver(method)(system, begin, times, tolerance_of(method)) for begin in starts)
+    first, *others = (method.solve(system, begin, times) for begin in starts)
     found = []
     for other in others:
         count = min(first.time.size, other.time.size)

@@ -74,6 +74,11 @@ export interface SimulateOptions extends RequestOptions {
   card?: boolean
 }
 
+export interface RunOptions extends SimulateOptions {
+  /** Of a numerical method, relative, for each step; absent: the finest there is. */
+  tolerance?: number
+}
+
 export interface RollRequest {
   radius: Quantity
   curve: { [key: string]: Json | undefined }
@@ -85,7 +90,7 @@ export interface Api {
   schema(options?: RequestOptions): Promise<Json>
   /** Has a worker answered yet, or are they starting? */
   ready(options?: RequestOptions): Promise<{ ready: boolean }>
-  simulate(scenario: Scenario, options?: SimulateOptions): Promise<Simulated>
+  simulate(scenario: Scenario, options?: RunOptions): Promise<Simulated>
   card(scenario: Scenario, options?: RequestOptions): Promise<Card>
   derivation(scenario: Scenario, options?: RequestOptions): Promise<Derivation>
   twin(scenario: Scenario, options?: SimulateOptions): Promise<Simulated>
@@ -174,7 +179,8 @@ export function createApi(base = '', ask: typeof fetch = (input, init) => fetch(
     scenario: (name, options) => get(`/api/scenarios/${encodeURIComponent(name)}`, options),
     schema: (options) => get('/api/schema', options),
     ready: (options) => get('/api/ready', options),
-    simulate: (scenario, options = {}) => packed('/api/simulate', { scenario }, options, 'simulate'),
+    simulate: (scenario, { tolerance, ...options } = {}) =>
+      packed('/api/simulate', { scenario, tolerance }, options, 'simulate'),
     card: (scenario, options = {}) => post('/api/card', { scenario }, options, 'card', json<Card>),
     derivation: (scenario, options = {}) =>
       post('/api/derivation', { scenario }, options, 'derivation', json<Derivation>),

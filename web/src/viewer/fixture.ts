@@ -39,6 +39,7 @@ const HEADER = {
   format: 1,
   title: 'Ball in a circle, Ω',
   method: 'exact',
+  tolerance: 0,
   duration: 2,
   gravity: [0, 0, -9.81],
   tilt: 0,

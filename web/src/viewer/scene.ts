@@ -57,6 +57,8 @@ export interface SceneHeader {
   format: number
   title: string
   method: string
+  /** Relative, of each of the method's steps; 0 for a closed form, which has none. */
+  tolerance: number
   duration: number
   seconds?: number | null
   scenario?: unknown

@@ -1,10 +1,9 @@
-/** Every change is computed anew: quickly while a hand moves, in full and with the card when it rests. */
+/** Every change is computed anew: quickly at first, in full and with the card when the numbers rest. */
 import type { Scene } from '../../viewer/scene'
 import { isAbort } from '../api'
 import type { App } from '../app'
 import { createRunner } from '../runner'
 import type { Scenario } from '../scenario'
-import type { Change } from '../store'
 import type { CardState } from './card'
 
 export interface Listener {
@@ -18,21 +17,25 @@ export interface Listener {
 }
 
 export interface Computing {
-  ask(scenario: Scenario, change: Change): void
+  ask(scenario: Scenario): void
   stop(): void
 }
 
-/** While a hand moves fewer samples do: the eye follows the path, not its points. */
-const QUICK = 1500
+/** What is enough for the eye, which follows the path and not its points, and sees no billionth of it. */
+const QUICK = { samples: 1500, tolerance: 1e-9 }
 const REST = 600
+
+/** Is there more to a scenario than what was computed quickly? */
+function coarse({ columns, header }: Scene): boolean {
+  return columns.time.length >= QUICK.samples || header.tolerance >= QUICK.tolerance
+}
 
 export function createComputing(app: App, listener: Listener): Computing {
   let rest: ReturnType<typeof setTimeout> | undefined
   let shown: { scene: Scene; scenario: Scenario; quick: boolean } | undefined
 
   const runner = createRunner<{ scenario: Scenario; quick: boolean }, { scene: Scene; milliseconds: number }>({
-    run: ({ scenario, quick }, signal) =>
-      app.api.simulate(scenario, { signal, lane: null, ...(quick && { samples: QUICK }) }),
+    run: ({ scenario, quick }, signal) => app.api.simulate(scenario, { signal, lane: null, ...(quick && QUICK) }),
     done({ scene, milliseconds }, { scenario, quick }) {
       const again = shown?.scenario === scenario
       shown = { scene, scenario, quick }
@@ -50,7 +53,7 @@ export function createComputing(app: App, listener: Listener): Computing {
   async function whenAtRest(scenario: Scenario): Promise<void> {
     if (!shown || shown.scenario !== scenario) return
     listener.settled(shown.scene)
-    if (shown.quick && shown.scene.columns.time.length >= QUICK) runner.ask({ scenario, quick: false })
+    if (shown.quick && coarse(shown.scene)) runner.ask({ scenario, quick: false })
     if (!scenario.support) {
       listener.card({ state: 'none', message: 'A path that is rolled without forces has no card.' })
       return
@@ -74,10 +77,10 @@ export function createComputing(app: App, listener: Listener): Computing {
   }
 
   return {
-    ask(scenario, change) {
+    ask(scenario) {
       app.api.cancel('card')
       listener.card({ state: 'waiting' })
-      runner.ask({ scenario, quick: change.gesture !== undefined })
+      runner.ask({ scenario, quick: true })
       later(scenario)
     },
     stop() {

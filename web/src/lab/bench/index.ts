@@ -100,7 +100,7 @@ function _mount(host: HTMLElement, app: App): () => void {
       linking.shipped(name, scenario)
       opened(scenario, source)
     } catch (error) {
-      if (source === 'first') computing.ask(store.scenario, { source })
+      if (source === 'first') computing.ask(store.scenario)
       if (!isAbort(error)) app.toast(error instanceof Error ? error.message : String(error), 'error')
     }
   }
@@ -198,7 +198,7 @@ function _mount(host: HTMLElement, app: App): () => void {
       if (change.source === 'undo' || change.source === 'redo') fresh = false
       if (change.source === 'nudge') restart = true
       showScenario(scenario)
-      computing.ask(scenario, change)
+      computing.ask(scenario)
       linking.changed(scenario)
     }),
     stage.viewer.on('time', ({ time }) => curves.at(time)),
@@ -232,7 +232,7 @@ function _mount(host: HTMLElement, app: App): () => void {
   void said.then((found) => {
     if (found) return
     if (store.scenario === FIRST) void take(FIRST_NAME, first)
-    else computing.ask(store.scenario, { source: first })
+    else computing.ask(store.scenario)
   })
   return () => undo.run()
 }

@@ -212,9 +212,9 @@ export function createStage(app: App): Stage {
       const whole = duration(milliseconds / 1000)
       const computed = typeof header.seconds === 'number' ? duration(header.seconds) : null
       fill(time, h('span', { class: 'number' }, computed ?? whole), ` ${method}`)
-      time.title = computed
-        ? `Computed in ${computed}. From the question to the picture: ${whole}.`
-        : `From the question to the picture: ${whole}.`
+      const finely = header.tolerance > 1e-12 ? `, to ${show(header.tolerance, 1)} a step while the numbers move` : ''
+      const asked = `From the question to the picture: ${whole}.`
+      time.title = computed ? `Computed in ${computed}${finely}. ${asked}` : asked
     },
     stale(why) {
       old.hidden = why === null || scene === undefined
