@@ -129,6 +129,13 @@ FAULTS: dict[str, tuple[Fault, set[str]]] = {
 }
 
 
+def test_samples_too_far_apart_to_show_the_motion_pass() -> None:
+    # A rattleback rocks some thirty times a second: between two of these samples, too.
+    pytest.importorskip("heyoka")
+    card = tr.Scenario.load("rattleback").run(duration=5.0, every=0.1).card()
+    assert card.passed, str(card)
+
+
 @pytest.mark.parametrize("name", FAULTS)
 def test_a_planted_fault_of_the_method_fails_its_figure(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("heyoka")

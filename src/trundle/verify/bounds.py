@@ -45,12 +45,18 @@ def sizes_of(system: RollingSystem, at: Samples) -> dict[str, float]:
 
 
 def pace_of(system: RollingSystem, at: Samples) -> float:
-    """Return the fastest rate in a motion, as its samples show it, 1/s: what a look at its slopes must resolve."""
+    """Return the fastest rate in a motion, as its samples show it, 1/s: what a look at its slopes must resolve.
+
+    Samples far apart do not show by their differences how fast the velocity changes; the forces at each of them do.
+    """
     varying = [load for load in system.loads if _varies(load)]
     motion, shape = at.motion(system), at.position.shape
     loads = [vector for load in varying for vector in (load.force(motion), load.torque(motion))]
     changing = [at.velocity, at.angular_velocity, *(np.broadcast_to(load.array(), shape) for load in loads)]
     paces = [_pace(at.time, values) for values in changing]
+    applied = np.broadcast_to(system.loads_on(motion)[0].array(), shape)
+    speed = max(largest(at.velocity), 1e-6 * speed_of(system, at), 1e-300)
+    paces.append(largest(at.contact_force + applied) / (system.body.mass * speed))
     return largest(at.angular_velocity) + float(system.support.motion.fastest_rate) + max(paces)
 
 
