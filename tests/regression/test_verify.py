@@ -130,7 +130,7 @@ FAULTS: dict[str, tuple[Fault, set[str]]] = {
 
 
 def test_samples_too_far_apart_to_show_the_motion_pass() -> None:
-    # A rattleback rocks some thirty times a second: between two of these samples, too.
+    # A rattleback rocks twelve times a second, and is sampled ten times.
     pytest.importorskip("heyoka")
     card = tr.Scenario.load("rattleback").run(duration=5.0, every=0.1).card()
     assert card.passed, str(card)

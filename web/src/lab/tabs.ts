@@ -89,7 +89,7 @@ export function createTabs(tabs: Tab[], label: string, changed?: (id: string) =>
     },
     badge(id, text, kind) {
       const badge = buttons.get(id)?.querySelector<HTMLElement>('.badge')
-      if (!badge) return
+      if (!badge || (badge.textContent === text && badge.dataset.kind === kind)) return
       badge.hidden = text === ''
       badge.textContent = text
       badge.dataset.kind = kind

@@ -88,8 +88,11 @@ export interface CardPanel {
 export function createCard(): CardPanel {
   const element = h('div', { class: 'card-panel' })
   let badge: { text: string; kind: 'good' | 'bad' | 'busy' } = { text: '…', kind: 'busy' }
+  let shown: CardState['state'] | undefined
 
   function update(now: CardState): void {
+    if (now.state === 'waiting' && shown === 'waiting') return
+    shown = now.state
     element.setAttribute('aria-busy', String(now.state === 'working' || now.state === 'waiting'))
     if (now.state === 'there') {
       draw(now.card)

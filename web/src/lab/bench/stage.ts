@@ -20,6 +20,8 @@ function duration(seconds: number): string {
 
 type BenchTool = Exclude<Tool, 'draw'>
 
+const SOON = 250 // ms: an answer that comes sooner needs no sign that one works at it, which would only flicker
+
 const TOOLS: { tool: BenchTool; icon: IconName; label: string; key: string; hint: string }[] = [
   { tool: 'orbit', icon: 'orbit', label: 'Turn the view', key: 'O', hint: '' },
   { tool: 'drag', icon: 'hand', label: 'Move the ball', key: 'D', hint: 'Drag the ball to where it should start.' },
@@ -67,6 +69,7 @@ export function createStage(app: App): Stage {
   const viewer = createViewer(host, { theme: app.appearance, controls: true, projector: app.settings.projector })
   let scene: Scene | undefined
   let hasStarted = false
+  let late: ReturnType<typeof setTimeout> | undefined
 
   const buttons = TOOLS.map(({ tool, icon: name, label, key }) => {
     const button = h('button', {
@@ -205,6 +208,9 @@ export function createStage(app: App): Stage {
     },
     working(busy) {
       element.toggleAttribute('data-busy', busy)
+      element.removeAttribute('data-late')
+      clearTimeout(late)
+      if (busy) late = setTimeout(() => element.setAttribute('data-late', ''), SOON)
     },
     took(milliseconds, { header }) {
       const method =
@@ -223,6 +229,9 @@ export function createStage(app: App): Stage {
       empty.classList.remove('working')
       empty.textContent = why
     },
-    dispose: () => undo.run(),
+    dispose() {
+      clearTimeout(late)
+      undo.run()
+    },
   }
 }
