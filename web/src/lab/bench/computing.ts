@@ -4,6 +4,7 @@ import { isAbort } from '../api'
 import type { App } from '../app'
 import { createRunner } from '../runner'
 import type { Scenario } from '../scenario'
+import type { Change } from '../store'
 import type { CardState } from './card'
 
 export interface Listener {
@@ -17,28 +18,37 @@ export interface Listener {
 }
 
 export interface Computing {
-  ask(scenario: Scenario): void
+  /** `change`: what made it so; absent where it was only opened. */
+  ask(scenario: Scenario, change?: Change): void
   stop(): void
 }
 
-/** What is enough for the eye, which follows the path and not its points, and sees no billionth of it. */
-const QUICK = { samples: 1500, tolerance: 1e-9 }
+/** What is enough for the eye, which sees no billionth of a path, and while a hand moves no more points of it than these. */
+const QUICK = { tolerance: 1e-9 }
+const MOVING = { tolerance: 1e-9, samples: 1500 }
 const REST = 600
 
-/** Is there more to a scenario than what was computed quickly? */
-function coarse({ columns, header }: Scene): boolean {
-  return columns.time.length >= QUICK.samples || header.tolerance >= QUICK.tolerance
+interface Asked {
+  scenario: Scenario
+  /** How little is enough for now; absent: all there is. */
+  enough?: typeof QUICK | typeof MOVING
+}
+
+/** Is there more to a scenario than what was computed of it? */
+function coarse({ columns, header }: Scene, { enough }: Asked): boolean {
+  if (!enough) return false
+  return header.tolerance >= enough.tolerance || ('samples' in enough && columns.time.length >= enough.samples)
 }
 
 export function createComputing(app: App, listener: Listener): Computing {
   let rest: ReturnType<typeof setTimeout> | undefined
-  let shown: { scene: Scene; scenario: Scenario; quick: boolean } | undefined
+  let shown: { scene: Scene; asked: Asked } | undefined
 
-  const runner = createRunner<{ scenario: Scenario; quick: boolean }, { scene: Scene; milliseconds: number }>({
-    run: ({ scenario, quick }, signal) => app.api.simulate(scenario, { signal, lane: null, ...(quick && QUICK) }),
-    done({ scene, milliseconds }, { scenario, quick }) {
-      const again = shown?.scenario === scenario
-      shown = { scene, scenario, quick }
+  const runner = createRunner<Asked, { scene: Scene; milliseconds: number }>({
+    run: ({ scenario, enough }, signal) => app.api.simulate(scenario, { signal, lane: null, ...enough }),
+    done({ scene, milliseconds }, asked) {
+      const again = shown?.asked.scenario === asked.scenario
+      shown = { scene, asked }
       listener.scene(scene, milliseconds, again)
     },
     failed: (error) => {
@@ -51,9 +61,9 @@ export function createComputing(app: App, listener: Listener): Computing {
   })
 
   async function whenAtRest(scenario: Scenario): Promise<void> {
-    if (!shown || shown.scenario !== scenario) return
+    if (shown?.asked.scenario !== scenario) return
     listener.settled(shown.scene)
-    if (shown.quick && coarse(shown.scene)) runner.ask({ scenario, quick: false })
+    if (coarse(shown.scene, shown.asked)) runner.ask({ scenario })
     if (!scenario.support) {
       listener.card({ state: 'none', message: 'A path that is rolled without forces has no card.' })
       return
@@ -71,16 +81,16 @@ export function createComputing(app: App, listener: Listener): Computing {
     clearTimeout(rest)
     rest = setTimeout(() => {
       // A slow run may still be on its way: its card waits for it.
-      if (shown?.scenario === scenario) void whenAtRest(scenario)
+      if (shown?.asked.scenario === scenario) void whenAtRest(scenario)
       else later(scenario)
     }, REST)
   }
 
   return {
-    ask(scenario) {
+    ask(scenario, change) {
       app.api.cancel('card')
       listener.card({ state: 'waiting' })
-      runner.ask({ scenario, quick: true })
+      runner.ask({ scenario, enough: change?.gesture === undefined ? QUICK : MOVING })
       later(scenario)
     },
     stop() {

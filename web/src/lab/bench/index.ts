@@ -198,7 +198,7 @@ function _mount(host: HTMLElement, app: App): () => void {
       if (change.source === 'undo' || change.source === 'redo') fresh = false
       if (change.source === 'nudge') restart = true
       showScenario(scenario)
-      computing.ask(scenario)
+      computing.ask(scenario, change)
       linking.changed(scenario)
     }),
     stage.viewer.on('time', ({ time }) => curves.at(time)),
