@@ -71,6 +71,24 @@ def test_a_dragged_tilt_shows_the_drift_that_the_package_computes(page: Page) ->
     eventually(bench.page, agrees)
 
 
+def test_what_moves_is_computed_quickly_and_what_rests_in_full(page: Page) -> None:
+    pytest.importorskip("heyoka")
+    bench, asked = opened(page, "rattleback"), []
+    page.on("request", lambda one: asked.append(one.post_data_json) if one.url.endswith("/api/simulate") else None)
+    bench.slide("body.mass", 0.6)
+
+    def in_full() -> None:
+        assert "tolerance" not in asked[-1]
+        assert "samples" not in asked[-1]
+        bench.page.keyboard.press("End")
+        assert bench.stage.drawn().place == pytest.approx(end_of(bench.run()), abs=2e-5)
+
+    bench.stage.canvas.focus()
+    eventually(bench.page, in_full)
+    assert (asked[0]["tolerance"], asked[0]["samples"]) == (1e-9, 1500)
+    assert asked[-1]["scenario"] == asked[-2]["scenario"]
+
+
 def test_the_drawn_path_follows_a_slider(page: Page) -> None:
     bench = level(page)
     bench.slide("start.velocity.1", 0.62)
