@@ -30,6 +30,7 @@ _LARGEST_TURN = 8.0  # rad a step
 _LOOKS = 16  # at how fast the body turns, at least, before the steps are chosen
 _MOST_TERMS = 40  # of q's series on a step
 _AT_ONCE = 20_000  # steps, or instants
+_TOGETHER = 1000  # steps whose series have the same number of terms
 _MOST_STEPS = 3e8  # half an hour
 _EPSILON = 2.0**-53
 # The last two Legendre coefficients of Ω on a step, rad: rounding alone makes them some 1e-16, and what comes after
@@ -147,8 +148,8 @@ class _Course:
     @staticmethod
     def over(angular_velocity: AngularVelocity, middle: Array, half: Array, start: Pairs) -> _Course:
         """Follow Ω over these steps, halved until its polynomial resolves it on them."""
-        middle, half, coefficients = _resolved(angular_velocity, middle, half)
-        return _Course(middle, half, _taylor(coefficients), start)
+        middle, half, mean, legendre = _resolved(angular_velocity, middle, half)
+        return _Course(middle, half, _series(mean, legendre), start)
 
     def at(self, times: Array) -> Pairs:
         """Return q at instants on these steps."""
@@ -161,59 +162,87 @@ class _Course:
         return _product(_product(now, self._back[:, which]), self._before[:, which])
 
 
-def _resolved(angular_velocity: AngularVelocity, middle: Array, half: Array) -> tuple[Array, Array, Array]:
-    """Return steps, ascending, and the coefficients of Ω on each; those on which it is not resolved are halved."""
-    done: list[tuple[Array, Array, Array]] = []
+def _resolved(angular_velocity: AngularVelocity, middle: Array, half: Array) -> tuple[Array, Array, Array, Array]:
+    """Return steps, ascending, and Ω on each as `_polynomials` does; those on which it is not resolved are halved."""
+    done: list[tuple[Array, ...]] = []
     for _ in range(31):
-        coefficients, tail = _polynomials(angular_velocity, middle, half)
-        size = np.sqrt((coefficients[0] ** 2).sum(axis=0))  # already times the half step
+        mean, legendre = _polynomials(angular_velocity, middle, half)
+        size = np.sqrt((mean**2).sum(axis=0))
+        tail = np.abs(legendre[:, -2:]).max(axis=(0, 1))
         # A step may turn by more than one saw when it was chosen, but hardly: its series would lose digits.
         rough = (tail > _TAIL * np.maximum(size, 1.0)) | (size > 0.6 * _LARGEST_TURN)
-        done.append((middle[~rough], half[~rough], coefficients[..., ~rough]))
+        done.append(tuple(part[..., ~rough] for part in (middle, half, mean, legendre)))
         if not rough.any():
             break
         quarter = 0.5 * half[rough]
         middle, half = np.concatenate([middle[rough] - quarter, middle[rough] + quarter]), np.tile(quarter, 2)
     else:
         raise SolverError("Ω(t) is not smooth: its orientation cannot be followed; look for a jump in the loads.")
-    parts: list[Array] = [np.concatenate([step[part] for step in done], axis=-1) for part in range(3)]
+    parts: list[Array] = [np.concatenate(part, axis=-1) for part in zip(*done, strict=True)]
     order = np.argsort(parts[0], kind="stable")
-    return parts[0][order], parts[1][order], parts[2][..., order]
+    return parts[0][order], parts[1][order], parts[2][:, order], parts[3][..., order]
 
 
 @cache
 def _fit() -> tuple[Any, Any, Any]:
-    """Nodes on [−1, 1], and what takes values there to coefficients of 1, x, x², ... and to the last two Legendre's."""
+    """Nodes on [−1, 1], what takes values there to Legendre's coefficients, and these to those of 1, x, x², ..."""
     nodes, _ = np.polynomial.legendre.leggauss(_NODES)
-    legendre = np.linalg.inv(np.polynomial.legendre.legvander(nodes, _NODES - 1))
-    return nodes, np.linalg.inv(np.vander(nodes, increasing=True)), legendre[-2:]
+    to_legendre = np.linalg.inv(np.polynomial.legendre.legvander(nodes, _NODES - 1))
+    powers = [np.polynomial.legendre.leg2poly(np.eye(_NODES)[j]) for j in range(_NODES)]
+    return nodes, to_legendre, np.array([np.pad(row, (0, _NODES - row.size)) for row in powers]).T
 
 
 def _polynomials(angular_velocity: AngularVelocity, middle: Array, half: Array) -> tuple[Array, Array]:
-    """Return the coefficients (nodes, 3, total) of Ω·(half step) in x ∈ [−1, 1], and the size of what ends them."""
-    nodes, to_coefficients, to_tail = _fit()
+    """Return Ω·(half step) on each step: mean (3, total), and Legendre's coefficients of the rest (3, nodes, total).
+
+    The rest is small, and so is its rounding.
+    """
+    nodes, to_legendre, _ = _fit()
     values = angular_velocity((middle + nodes[:, None] * half).ravel()).reshape(3, _NODES, -1)
-    mean = values.mean(axis=1, keepdims=True)
-    rest = (values - mean) * half  # small, and so is its rounding
-    coefficients = np.einsum("jn,cnt->jct", to_coefficients, rest)
-    coefficients[0] += mean[:, 0] * half
-    return coefficients, np.abs(np.einsum("jn,cnt->jct", to_tail, rest)).max(axis=(0, 1))
+    mean = values.mean(axis=1)
+    rest = values - mean[:, None]
+    rest *= half
+    return mean * half, to_legendre @ rest
+
+
+def _series(mean: Array, legendre: Array) -> Pairs:
+    """Return the series (2, terms, total) of q about the middle of each step, where it is 1."""
+    blocks = [slice(first, first + _TOGETHER) for first in range(0, mean.shape[1], _TOGETHER)]
+    parts = [_taylor(_powers(mean[:, at], legendre[..., at])) for at in blocks]
+    if len(parts) == 1:
+        return parts[0]
+    series = np.zeros((2, max(part.shape[1] for part in parts), mean.shape[1]), dtype=complex)
+    for at, part in zip(blocks, parts, strict=True):
+        series[:, : part.shape[1], at] = part
+    return series
+
+
+def _powers(mean: Array, legendre: Array) -> Array:
+    """Return Ω's coefficients (3, powers, total) of 1, x, x², ..., without those that are as small as what ends them.
+
+    Where Ω changes slowly, half of Legendre's coefficients are rounding of Ω's values.
+    """
+    sizes = np.abs(legendre).max(axis=(0, 2), initial=0.0)
+    count = 1 + int(np.flatnonzero(sizes > 2 * sizes[-3:].max())[-1:].sum())
+    coefficients = _fit()[2][:count, :count] @ legendre[:, :count]
+    coefficients[:, 0] += mean
+    return coefficients
 
 
 def _taylor(coefficients: Array) -> Pairs:
-    """Return the series (2, terms, total) of q about the middle of each step, where it is 1."""
-    x, y, z = np.moveaxis(coefficients, 1, 0)
-    spin, across = 1j * x, y + 1j * z  # Ω as a pair, for each power of the time
-    most, total = _terms_needed(coefficients), x.shape[1]
-    series = np.zeros((2, most + 1, total), dtype=complex)
-    a, b = series
-    a[0] = 1.0
+    """Return the series (2, terms, total) of q for Ω's coefficients (3, powers, total)."""
+    most, (_, powers, total) = _terms_needed(coefficients), coefficients.shape
+    turning = np.zeros((4, powers, 4, total))  # Ω q = (turning) q for each power of x, so that one sum makes a term
+    for a, b, c in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        turning[1 + a, :, 0] = turning[1 + c, :, 1 + b] = coefficients[a]
+        turning[0, :, 1 + a] = turning[1 + b, :, 1 + c] = -coefficients[a]
+    q = np.zeros((most + 1, 4, total))
+    q[0, 0] = 1.0
     for n in range(1, most + 1):
-        used = min(n, _NODES)
-        u, v, c, d = spin[:used], across[:used], a[n - used : n][::-1], b[n - used : n][::-1]
-        a[n] = (u * c - v * d.conj()).sum(axis=0) * (0.5 / n)
-        b[n] = (u * d + v * c.conj()).sum(axis=0) * (0.5 / n)
-    return series
+        used = min(n, powers)
+        np.einsum("ajbt,jbt->at", turning[:, :used], q[n - used : n][::-1], out=q[n])
+        q[n] *= 0.5 / n
+    return np.stack([q[:, 0] + 1j * q[:, 1], q[:, 2] + 1j * q[:, 3]])
 
 
 def _terms_needed(coefficients: Array) -> int:
@@ -221,10 +250,10 @@ def _terms_needed(coefficients: Array) -> int:
 
     Where Ω is small but turns fast, a late coefficient outweighs all products of early ones.
     """
-    sizes = np.abs(coefficients).sum(axis=1).max(axis=1, initial=0.0).tolist()
+    sizes = np.abs(coefficients).sum(axis=0).max(axis=1, initial=0.0).tolist()
     most = [1.0]
     for n in range(1, _MOST_TERMS + 1):
-        most.append(sum(sizes[j] * most[n - 1 - j] for j in range(min(n, _NODES))) * 0.5 / n)
+        most.append(sum(sizes[j] * most[n - 1 - j] for j in range(min(n, len(sizes)))) * 0.5 / n)
     return max(1, *(n for n, bound in enumerate(most) if bound > _EPSILON / 8))
 
 
