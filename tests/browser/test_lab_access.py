@@ -83,7 +83,7 @@ def judge(page: Page, part: str = "body", sizes: tuple[dict, ...] = (LAPTOP, PHO
             come_to_rest(page, calm=40.0)
             found += [f"{scheme}, {size['width']} wide: {one}" for one in violations(page, part, rules)]
         schemes.reverse()
-        wide = page.evaluate("document.documentElement.scrollWidth - innerWidth")
+        wide = page.evaluate(TOO_WIDE)
         if wide > 0:
             found.append(f"{size['width']} wide: {wide} pixels must be scrolled to the side")
     assert not found, "\n".join(found)
@@ -114,6 +114,18 @@ def test_axe_finds_nothing_grave_in_what_opens(name: str, kept: Page) -> None:
     kept.keyboard.press("Escape")
 
 
+def test_a_derivation_fits_a_phone(kept: Page) -> None:
+    go(kept, "#/bench")
+    kept.set_viewport_size(PHONE)  # type: ignore[arg-type]
+    kept.get_by_role("tab", name="Numbers").click()
+    kept.get_by_role("button", name="How does this follow?").click()
+    kept.locator(".dialog-body .step").nth(3).wait_for()
+    come_to_rest(kept)
+    assert kept.evaluate(TOO_WIDE) <= 0
+    kept.keyboard.press("Escape")
+    kept.set_viewport_size(LAPTOP)  # type: ignore[arg-type]
+
+
 def test_axe_finds_nothing_grave_in_an_error(visitor: Visitor) -> None:
     visitor.watch.allow("status of 422")
     bench = Bench(visitor.open("#/bench", drawn=False))
@@ -124,6 +136,9 @@ def test_axe_finds_nothing_grave_in_an_error(visitor: Visitor) -> None:
     judge(bench.page, ".bench", (LAPTOP,))
 
 
+# By how many pixels the page, or a dialog in it, is wider than what is seen of it.
+TOO_WIDE = """Math.max(...[document.documentElement, ...document.querySelectorAll('.dialog-body, .steps')]
+    .map(element => element.scrollWidth - element.clientWidth))"""
 ACTIVE = """() => {
     const one = document.activeElement
     const isMarked = (element) => {

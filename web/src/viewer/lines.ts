@@ -23,11 +23,13 @@ attribute vec4 from;
 attribute vec4 to;
 uniform vec2 resolution;
 uniform float width;
+uniform float pixel;
 uniform float now;
 uniform float fading;
 varying float vTime;
 varying vec2 vPlace;
 varying float vLength;
+varying float vWidth;
 
 void main() {
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
@@ -49,7 +51,8 @@ void main() {
   float pixels = length(way);
   way = pixels > 1e-4 ? way / pixels : vec2(1.0, 0.0);
   // Beyond its ends by as much as closes the gap at a bend: little where points are dense and bends slight.
-  float across = 0.5 * width;
+  vWidth = max(width, pixel); // thinner than a drawn pixel it would be seen here and there only
+  float across = 0.5 * vWidth;
   float beyond = min(across, pixels);
   int at = gl_VertexID & 3;
   float side = (at & 1) == 0 ? -1.0 : 1.0;
@@ -70,15 +73,15 @@ uniform vec3 faded;
 uniform float now;
 uniform float fading;
 uniform float least;
-uniform float width;
 uniform float dash;
 varying float vTime;
 varying vec2 vPlace;
 varying float vLength;
+varying float vWidth;
 
 void main() {
   float beyond = max(max(-vPlace.y, vPlace.y - vLength), 0.0);
-  if (beyond > 0.0 && vLength > 0.5 * width && length(vec2(vPlace.x, beyond)) > 0.5 * width) discard;
+  if (beyond > 0.0 && vLength > 0.5 * vWidth && length(vec2(vPlace.x, beyond)) > 0.5 * vWidth) discard;
   if (dash > 0.0 && fract(vTime / dash) > 0.55) discard;
   float fresh = fading > 0.0 ? mix(least, 1.0, exp(-(now - vTime) / fading)) : 1.0;
   gl_FragColor = vec4(mix(faded, colour, fresh), 1.0); // as the eye sees it: the colours are not linear ones
@@ -96,6 +99,7 @@ export class Line {
   private readonly uniforms = {
     resolution: { value: new Vector2(1, 1) },
     width: { value: 2 },
+    pixel: { value: 1 },
     now: { value: 1e29 },
     fading: { value: 0 },
     least: { value: 1 },
@@ -115,6 +119,9 @@ export class Line {
     })
     this.mesh = new Mesh(new BufferGeometry(), material)
     this.mesh.frustumCulled = false
+    this.mesh.onBeforeRender = (renderer) => {
+      this.uniforms.pixel.value = 1 / renderer.getPixelRatio()
+    }
     this.mesh.renderOrder = order
     this.mesh.visible = false
   }
