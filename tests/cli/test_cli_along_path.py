@@ -60,6 +60,7 @@ def test_json_and_quiet(here: Command) -> None:
     [
         (["--duration", "3 s"], "`--duration` is for motions under forces; got '3 s'."),
         (["--method", "exact"], "`--method` is for motions under forces; got 'exact'."),
+        (["--tolerance", "1e-9"], "`--tolerance` is for motions under forces; got '1e-09'."),
         (["--every", "3 s"], "`--every` must be a length; got '3 s'."),
         (["--every", "0 m"], "`--every` must be positive; got '0 m'."),
     ],

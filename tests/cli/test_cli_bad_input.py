@@ -61,6 +61,7 @@ def test_a_bad_file(here: Command, folder: Path, there: str, instead: str, key: 
         (["tilted-turntable", "--every", "1e-12"], "`--every` must leave at most 10,000,000 samples"),
         (["tilted-turntable", "--method", "tailor"], "`--method` must be one of those that exist; got 't"),
         (["tilted-turntable", "--method", "tailor"], "Did you mean 'taylor'?"),
+        (["rattleback", "--tolerance", "0.1"], "`--tolerance` must be a number from 1e-15 to 1e-06; got 0.1."),
         (["tilted-turntable", "-o", "file"], "`--output` must be a folder; got 'file'"),
         (["tilted-turntable", "-o", "file/below"], "`--output` must be a folder; got 'file/below'"),
     ],

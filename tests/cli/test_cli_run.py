@@ -69,12 +69,15 @@ def test_the_saved_scenario_has_the_users_words(here: Command, folder: Path) -> 
         "50 ms",
         "--method",
         "runge-kutta",
+        "--tolerance",
+        "1e-10",
     )
     saved = tr.Trajectory.load(folder / "tilted-turntable" / "run.nc")
     tables = tomllib.loads(saved.scenario)
     assert tables["run"] == {"duration": "2 s", "every": "50 ms", "method": "runge-kutta"}
     assert tables["support"]["motion"]["rate"] == "33.3 rpm"
-    assert saved.method == "runge-kutta"
+    assert (saved.method, saved.tolerance) == ("runge-kutta", 1e-10)
+    assert "tolerance 1e-10" in saved.card().method
     assert saved.data.time.size == 41
 
 

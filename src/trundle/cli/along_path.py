@@ -75,7 +75,7 @@ def run(
 def _load(tables: dict[str, Any], source: str, given: dict[str, str]) -> PathScenario:
     from ..geometry import PathScenario
 
-    for option in ("duration", "method"):
+    for option in ("duration", "method", "tolerance"):
         if option in given:
             remedy = "A path knows no time and no forces; leave the option out."
             raise InvalidValueError(f"--{option}", "is for motions under forces", given[option], remedy)

@@ -105,6 +105,10 @@ def run(
         str | None,
         typer.Option(metavar="METHOD", help="auto, exact, taylor or runge-kutta.", autocompletion=lambda: METHODS),
     ] = None,
+    tolerance: Annotated[
+        float | None,
+        typer.Option(metavar="NUMBER", help="Of a numerical method, 1e-15 to 1e-6. Default: the finest it keeps."),
+    ] = None,
     duration: Annotated[
         str | None,
         typer.Option(metavar="TIME", help="Length of the run, such as '60 s', in place of the file's."),
@@ -123,6 +127,7 @@ def run(
 
     Exit status: 0, all is well; 2, bad input; 3, a figure of the card failed; 130, interrupted; 1, all else.
     """
+    from ..solve.methods import check_tolerance
     from .writing import check_folder
 
     folder = Path(Path(scenario).stem) if output is None else output.expanduser()
@@ -130,14 +135,16 @@ def run(
     if files.rolls_along_path(tables):
         from . import along_path
 
-        options = {"duration": duration, "every": every, "method": method}
+        finely = None if tolerance is None else f"{tolerance:g}"
+        options = {"duration": duration, "every": every, "method": method, "tolerance": finely}
         told = along_path.run(tables, scenario, folder, figure=not no_figure, **options)
         return _report(*told, quiet=quiet, as_json=as_json)
     names = FILES[:1] if no_figure else FILES
+    check_tolerance(tolerance, "--tolerance")
     loaded = load(scenario, duration=duration, every=every, method=method)
     check_folder(folder, names)
     with screen.ProgressBar(wanted=not quiet) as bar:
-        trajectory = loaded.run(progress=bar)
+        trajectory = loaded.run(tolerance=tolerance, progress=bar)
     signals.check()
     card, written = _finish(trajectory, folder, names)
     return _report(card, [event.text for event in trajectory.events], written, quiet=quiet, as_json=as_json)

@@ -149,8 +149,7 @@ def run(
     >>> run("auto", system, start, np.array([0.0, 1.0]))[0]
     Method(name='taylor', tolerance=1e-15)
     """
-    if tolerance is not None:
-        _check_tolerance(tolerance)
+    check_tolerance(tolerance)
     if method == "auto":
         with suppress(OutOfDomainError):
             exact = Method.of("exact")
@@ -159,11 +158,30 @@ def run(
     return chosen, chosen.solve(system, start, times, progress)
 
 
-def _check_tolerance(tolerance: Any) -> None:
+def check_tolerance(tolerance: Any, name: str = "tolerance") -> None:
+    """Refuse what is no tolerance; None is one.
+
+    Parameters
+    ----------
+    tolerance : float or None
+        Relative, of each step.
+    name : str
+        What the asker calls it.
+
+    Raises
+    ------
+    InvalidValueError
+        If it is no number, or so fine that a step is all rounding, or so coarse that no card could tell right from
+        wrong.
+
+    Examples
+    --------
+    >>> check_tolerance(1e-9)
+    """
     known = isinstance(tolerance, (int, float)) and not isinstance(tolerance, bool)
-    if not (known and _FINEST <= tolerance <= _COARSEST):
+    if tolerance is not None and not (known and _FINEST <= tolerance <= _COARSEST):
         remedy = "Leave it out for the last digit; 1e-9 is twice as fast, and nothing that a picture shows."
-        raise InvalidValueError("tolerance", f"must be a number from {_FINEST:g} to {_COARSEST:g}", tolerance, remedy)
+        raise InvalidValueError(name, f"must be a number from {_FINEST:g} to {_COARSEST:g}", tolerance, remedy)
 
 
 def _numerical(system: RollingSystem) -> str:
