@@ -17,10 +17,7 @@ from .samples import Array, Progress, Samples
 
 METHODS = {"exact": "closed_form", "taylor": "taylor", "runge-kutta": "runge_kutta"}
 CHOICES = ("auto", *METHODS)
-_FINEST, _COARSEST = (
-    1e-15,
-    1e-6,
-)  # tolerances; beyond them a step is all rounding, or a card could not tell right from wrong
+_FINEST, _COARSEST = 1e-15, 1e-6  # tolerances that can be asked for
 _FINEST_OF = {"runge-kutta": 1e-13}  # SciPy's own limit is 2e-14
 
 
