@@ -169,9 +169,12 @@ class _Course:
     def _beginning(self) -> Any:
         """Return the direction in which slipping begins: the one that its own friction leads along."""
 
-        def growth(c: float, s: float) -> tuple[float, float]:
-            x, z = self.M[:2, 2] - self.mu * self.M[:2, :2] @ (c, s)
-            return float(x), float(z)
+        def growth(c: Any, s: Any) -> tuple[Any, Any]:
+            first, second = self.M[:2]
+            return (
+                first[2] - self.mu * (first[0] * c + first[1] * s),
+                second[2] - self.mu * (second[0] * c + second[1] * s),
+            )
 
         found = onset(growth)
         if found is None:

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
 _TRIED = 90  # directions in which a change of sign is looked for
 
 
-def onset(growth: Callable[[float, float], tuple[float, float]]) -> tuple[float, tuple[float, float]] | None:
+def onset(growth: Callable[[Any, Any], tuple[Any, Any]]) -> tuple[float, tuple[float, float]] | None:
     """Return how slip begins: its direction ŝ, with dŝ = 0, and how fast it grows along it.
 
     Parameters
     ----------
     growth : callable
-        The rate of change of s, two components, for friction against (cos β, sin β), given by cos β and sin β.
+        The rate of change of s, two components, for friction against (cos β, sin β), given by cos β and sin β: numbers
+        or arrays.
 
     Returns
     -------
@@ -41,13 +43,17 @@ def onset(growth: Callable[[float, float], tuple[float, float]]) -> tuple[float,
         return float(c * along_second - s * along_first)
 
     angles = np.linspace(-math.pi, math.pi, _TRIED + 1)
-    values = [across(angle) for angle in angles]
+    c, s = np.cos(angles), np.sin(angles)
+    along_first, along_second = growth(c, s)
+    left = np.signbit(c * along_second - s * along_first)
     found = []
-    for i in range(_TRIED):
-        if values[i] * values[i + 1] <= 0:
-            angle = brentq(across, angles[i], angles[i + 1], xtol=1e-15)
-            c, s = math.cos(angle), math.sin(angle)
-            along_first, along_second = growth(c, s)
-            found.append((float(c * along_first + s * along_second), (c, s)))
+    for i in np.flatnonzero(left[1:] != left[:-1]):
+        ends = sorted((float(angles[i]), float(angles[i + 1])), key=lambda angle: abs(across(angle)))
+        # An end that is the root itself: a number may have been rounded to the other side than the array.
+        meets = across(ends[0]) * across(ends[1]) <= 0
+        angle = brentq(across, *ends, xtol=1e-15) if meets else ends[0]
+        way = math.cos(angle), math.sin(angle)
+        rate = growth(*way)
+        found.append((float(way[0] * rate[0] + way[1] * rate[1]), way))
     growing = [pair for pair in found if pair[0] > 0]
     return max(growing) if growing else None

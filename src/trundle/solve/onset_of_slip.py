@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from ..errors import SolverError
 from ..mechanics.algebra import E_X, E_Y, E_Z, ZERO, Matrix, Vector
@@ -99,10 +100,10 @@ def _way(system: RollingSystem, at: Touch, needed: Vector) -> tuple[Vector, floa
     first = needed / -needed.norm()
     second = at.contact.normal.cross(first)
 
-    def grows(c: float, s: float) -> tuple[float, float]:
+    def grows(c: Any, s: Any) -> tuple[Any, Any]:
         own, hat = at.state.support, first * c + second * s
         rate = slip(system, at.state.time, at.contact.point, at.orientation, at.Omega, ZERO, own, hat).slip_rate
-        return float(rate.dot(first)), float(rate.dot(second))
+        return rate.dot(first), rate.dot(second)
 
     if math.hypot(*grows(1.0, 0.0)) <= _JUST * needed.norm() / system.body.mass:  # it gives way just now
         return first, 0.0

@@ -43,10 +43,11 @@ def largest(value: Any, start: float, end: float) -> Sizes:
     >>> round(largest(Expression.parse("0.1*sin(3*t)", ("t",), "angle"), 0.0, 10.0).pace, 3)
     3.0
     """
-    found = []
-    for i in range(_LOOKS):
-        try:
-            found.append([abs(float(part)) for part in course(value, start + (end - start) * (i + 0.5) / _LOOKS)])
-        except (ArithmeticError, ValueError):
-            continue
-    return Sizes(*(max((each[i] for each in found), default=0.0) for i in range(3)))
+    import numpy as np
+
+    times = start + (end - start) * (np.arange(_LOOKS) + 0.5) / _LOOKS
+    with np.errstate(all="ignore"):  # a formula may have no value here or there
+        parts = [np.broadcast_to(np.asarray(part, dtype=float), times.shape) for part in course(value, times)]
+    sizes = np.abs(parts)
+    found = sizes[:, np.isfinite(sizes).all(axis=0)]
+    return Sizes(*found.max(axis=1, initial=0.0).tolist())
