@@ -5,11 +5,12 @@ from __future__ import annotations
 import contextlib
 import copy
 import hashlib
+import itertools
 import os
 import pickle
 import platform
 import stat
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -131,12 +132,13 @@ def integrate(
     SolverError
         If the integration breaks down.
     """
-    integrator, lowered = compiled(system, law, tolerance)
-    run = _Run(integrator, lowered, [*numbers(system), *extras], begin, state)
-    states, reached = _propagate(run, times, progress)
-    if reached is None:
-        return Stretch(times, states, None)
-    stop = Stop(run.time, lowered.stops[reached], integrator.state.copy())
+    lowered, key = _ready(system, law, tolerance)
+    with _borrowed(lowered, key, tolerance) as integrator:
+        run = _Run(integrator, lowered, [*numbers(system), *extras], begin, state)
+        states, reached = _propagate(run, times, progress)
+        if reached is None:
+            return Stretch(times, states, None)
+        stop = Stop(run.time, lowered.stops[reached], integrator.state.copy())
     kept, states = cut(times[: len(states)], states, stop.time)
     return Stretch(kept, states, stop)
 
@@ -165,11 +167,25 @@ def compiled(system: RollingSystem, law: Law, tolerance: float = TOLERANCE) -> t
     See `benchmarks/trajectory.py`.
     """
     lowered, key = _ready(system, law, tolerance)
+    return _copied(lowered, key, tolerance), lowered
 
+
+def _copied(lowered: Lowered, key: str, tolerance: float) -> Any:
     def compile_() -> Any:
         return _compile(*lowered.heyoka(), tolerance, lowered.parameters)
 
-    return copy.copy(_compiled(key, compile_)), lowered
+    return copy.copy(_compiled(key, compile_))
+
+
+@contextlib.contextmanager
+def _borrowed(lowered: Lowered, key: str, tolerance: float) -> Iterator[Any]:
+    """Lend a copy that nobody else uses, and keep it for the next stretch: to make one takes a millisecond."""
+    idle = _memory().idle.setdefault(key, [])
+    integrator = idle.pop() if idle else _copied(lowered, key, tolerance)
+    if lowered.stops:
+        integrator.reset_cooldowns()  # a stop just passed is not looked for again at once
+    yield integrator
+    idle.append(integrator)  # not where it broke down
 
 
 def _ready(system: RollingSystem, law: Law, tolerance: float) -> tuple[Lowered, str]:
@@ -235,16 +251,17 @@ def _propagate(run: _Run, times: Array, progress: Progress | None) -> tuple[Arra
     return np.vstack(parts), None
 
 
-def _chunks(times: Array, most: int = _CHUNKS) -> list[Array]:
+def _chunks(times: Array, most: int = _CHUNKS) -> Iterator[Array]:
     """Part the instants so that none is long after the first of its part."""
-    if not times.size:
-        return []
-    parts = np.array_split(times, min(most, max(1, times.size // _LEAST_CHUNK)))
-    found = []
-    for part in parts:
-        which = np.floor((part - part[0]) / _LONGEST)
-        found += np.split(part, np.flatnonzero(np.diff(which)) + 1)
-    return found
+    count = min(most, max(1, times.size // _LEAST_CHUNK))
+    edges = np.arange(count + 1) * times.size // count
+    for first, last in itertools.pairwise(edges.tolist()):
+        part = times[first:last]
+        if part.size and part[-1] - part[0] < _LONGEST:
+            yield part
+        elif part.size:
+            which = np.floor((part - part[0]) / _LONGEST)
+            yield from np.split(part, np.flatnonzero(np.diff(which)) + 1)
 
 
 def _event(run: _Run, outcome: Any) -> int | None:
@@ -266,6 +283,7 @@ class _Memory:
 
     def __init__(self) -> None:
         self.known: dict[str, Any] = {}
+        self.idle: dict[str, list[Any]] = {}  # copies between two uses
         self.ready: dict[Any, tuple[Lowered, str]] = {}
 
 
