@@ -220,10 +220,12 @@ def _series(mean: Array, legendre: Array) -> Pairs:
 def _powers(mean: Array, legendre: Array) -> Array:
     """Return Ω's coefficients (3, powers, total) of 1, x, x², ..., without those that are as small as what ends them.
 
-    Where Ω changes slowly, half of Legendre's coefficients are rounding of Ω's values.
+    Where Ω changes slowly, half of Legendre's coefficients are rounding of Ω's values, as the last two are; where it
+    changes fast, what is larger than their bound is no rounding.
     """
     sizes = np.abs(legendre).max(axis=(0, 2), initial=0.0)
-    count = 1 + int(np.flatnonzero(sizes > 2 * sizes[-3:].max())[-1:].sum())
+    shown = np.flatnonzero(sizes > min(2 * sizes[-2:].max(), _TAIL))
+    count = int(shown[-1]) + 1 if shown.size else 1
     coefficients = _fit()[2][:count, :count] @ legendre[:, :count]
     coefficients[:, 0] += mean
     return coefficients
