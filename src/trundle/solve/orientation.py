@@ -1,8 +1,8 @@
 """Orientation q(t) from a known Ω(t): q̇ = ½ Ω q (theory page, section 5).
 
-The time is covered by steps on which Ω is a polynomial and q its Taylor series about the middle; many steps are worked
-out at once and then multiplied up, and q at an instant is read off its step's series. Where Ω(t) repeats,
-`periodic_orientation` needs one period only.
+The time is covered by panels on which Ω is a polynomial, and these are halved into steps on which the body turns little
+and q is its Taylor series about the middle; many steps are worked out at once and then multiplied up, and q at an
+instant is read off its step's series. Where Ω(t) repeats, `periodic_orientation` needs one period only.
 
 In here a quaternion w + xi + yj + zk is a pair of complex numbers, (w + xi) + (y + zi)j: a product takes four
 multiplications of arrays for sixteen.
@@ -25,16 +25,17 @@ Array = NDArray[np.float64]
 Pairs = NDArray[np.complex128]  # (2, n)
 AngularVelocity = Callable[[Array], Array]  # times (n,) -> Ω (3, n) in the support frame, rad/s
 
-_NODES = 12  # of the polynomial for Ω on a step
+_NODES = 12  # of the polynomial for Ω on a panel
 _LARGEST_TURN = 8.0  # rad a step
+_PANEL = 8  # steps; a power of two
 _LOOKS = 16  # at how fast the body turns, at least, before the steps are chosen
 _MOST_TERMS = 40  # of q's series on a step
 _AT_ONCE = 20_000  # steps, or instants
-_TOGETHER = 1000  # steps whose series have the same number of terms
+_TOGETHER = 500  # steps whose series have the same number of terms
 _MOST_STEPS = 3e8  # half an hour
 _EPSILON = 2.0**-53
-# The last two Legendre coefficients of Ω on a step, rad: rounding alone makes them some 1e-16, and what comes after
-# them is a tenth of them at most, divided by as many as there are nodes when integrated.
+# The last two Legendre coefficients of Ω on a panel, for each rad that it turns by: rounding alone makes them some
+# 1e-16, and what comes after them is a tenth of them at most, divided by as many as there are nodes when integrated.
 _TAIL = 1e-14
 
 
@@ -78,15 +79,15 @@ def orientation(
     if not times.size:
         return np.empty((0, 4))
     edges = _edges(start_time, float(times[-1]), np.asarray(kinks, dtype=float))
-    steps = _steps_needed(angular_velocity, edges)
-    upto = np.cumsum(steps)
+    panels = -(-_steps_needed(angular_velocity, edges) // _PANEL)
+    upto = np.cumsum(panels)
     result = np.empty((2, times.size), dtype=complex)
     q, done = _paired(start), 0
-    for first in range(0, int(upto[-1]), _AT_ONCE):
-        index = np.arange(first, min(first + _AT_ONCE, int(upto[-1])))
+    for first in range(0, int(upto[-1]), _AT_ONCE // _PANEL):
+        index = np.arange(first, min(first + _AT_ONCE // _PANEL, int(upto[-1])))
         which = np.searchsorted(upto, index, side="right")
-        half = 0.5 * np.diff(edges)[which] / steps[which]
-        middle = edges[which] + (2 * (index - upto[which] + steps[which]) + 1) * half
+        half = 0.5 * np.diff(edges)[which] / panels[which]
+        middle = edges[which] + (2 * (index - upto[which] + panels[which]) + 1) * half
         course = _Course.over(angular_velocity, middle, half, q)
         end = times.size if index[-1] == upto[-1] - 1 else int(np.searchsorted(times, course.end, side="right"))
         for begin in range(done, end, _AT_ONCE):
@@ -147,8 +148,8 @@ class _Course:
 
     @staticmethod
     def over(angular_velocity: AngularVelocity, middle: Array, half: Array, start: Pairs) -> _Course:
-        """Follow Ω over these steps, halved until its polynomial resolves it on them."""
-        middle, half, mean, legendre = _resolved(angular_velocity, middle, half)
+        """Follow Ω over these panels, halved until its polynomial resolves it on them and the body turns little."""
+        middle, half, mean, legendre = _parted(*_resolved(angular_velocity, middle, half))
         return _Course(middle, half, _series(mean, legendre), start)
 
     def at(self, times: Array) -> Pairs:
@@ -163,14 +164,12 @@ class _Course:
 
 
 def _resolved(angular_velocity: AngularVelocity, middle: Array, half: Array) -> tuple[Array, Array, Array, Array]:
-    """Return steps, ascending, and Ω on each as `_polynomials` does; those on which it is not resolved are halved."""
+    """Return panels and Ω on each as `_polynomials` does; those on which it is not resolved are halved."""
     done: list[tuple[Array, ...]] = []
     for _ in range(31):
         mean, legendre = _polynomials(angular_velocity, middle, half)
         size = np.sqrt((mean**2).sum(axis=0))
-        tail = np.abs(legendre[:, -2:]).max(axis=(0, 1))
-        # A step may turn by more than one saw when it was chosen, but hardly: its series would lose digits.
-        rough = (tail > _TAIL * np.maximum(size, 1.0)) | (size > 0.6 * _LARGEST_TURN)
+        rough = np.abs(legendre[:, -2:]).max(axis=(0, 1)) > _TAIL * np.maximum(size, 1.0)
         done.append(tuple(part[..., ~rough] for part in (middle, half, mean, legendre)))
         if not rough.any():
             break
@@ -178,9 +177,43 @@ def _resolved(angular_velocity: AngularVelocity, middle: Array, half: Array) -> 
         middle, half = np.concatenate([middle[rough] - quarter, middle[rough] + quarter]), np.tile(quarter, 2)
     else:
         raise SolverError("Ω(t) is not smooth: its orientation cannot be followed; look for a jump in the loads.")
-    parts: list[Array] = [np.concatenate(part, axis=-1) for part in zip(*done, strict=True)]
-    order = np.argsort(parts[0], kind="stable")
-    return parts[0][order], parts[1][order], parts[2][:, order], parts[3][..., order]
+    return _together(done)
+
+
+def _together(parts: list[tuple[Array, ...]]) -> tuple[Array, Array, Array, Array]:
+    middle, half, mean, legendre = (np.concatenate(part, axis=-1) for part in zip(*parts, strict=True))
+    return middle, half, mean, legendre
+
+
+def _parted(middle: Array, half: Array, mean: Array, legendre: Array) -> tuple[Array, Array, Array, Array]:
+    """Return steps, ascending, and Ω on each: panels that are halved until the body turns little on their parts."""
+    legendre = legendre[:, : _above_rounding(legendre)]
+    turn = np.sqrt((mean**2).sum(axis=0)) / (0.51 * _LARGEST_TURN)
+    levels = np.ceil(np.log2(np.maximum(turn, 1.0))).astype(int)
+    done = []
+    for level in np.unique(levels).tolist():
+        which, count = levels == level, 2**level
+        share, size = (2 * np.arange(count) + 1) / count - 1, legendre.shape[1]
+        begun = middle[which, None] + half[which, None] * share
+        parts = _parting(level)[:, :size, :size].reshape(-1, size) @ legendre[..., which]
+        parts = parts.reshape(3, count, size, -1).transpose(0, 2, 3, 1).reshape(3, size, -1)
+        length = np.repeat(half[which] / count, count)
+        done.append((begun.ravel(), length, np.repeat(mean[:, which] / count, count, axis=1), parts))
+    if len(done) == 1 and (np.diff(done[0][0]) >= 0).all():
+        return done[0]
+    middle, half, mean, legendre = _together(done)
+    order = np.argsort(middle, kind="stable")
+    return middle[order], half[order], mean[:, order], legendre[..., order]
+
+
+@cache
+def _parting(level: int) -> Any:
+    """What takes Legendre's coefficients of Ω·(half length) on [−1, 1] to those on each of 2^level equal parts."""
+    if level == 0:
+        return np.eye(_NODES)[None]
+    nodes, to_legendre, _ = _fit()
+    halves = [0.5 * to_legendre @ np.polynomial.legendre.legvander(0.5 * (nodes + s), _NODES - 1) for s in (-1, 1)]
+    return np.concatenate([_parting(level - 1) @ half for half in halves])
 
 
 @cache
@@ -193,7 +226,7 @@ def _fit() -> tuple[Any, Any, Any]:
 
 
 def _polynomials(angular_velocity: AngularVelocity, middle: Array, half: Array) -> tuple[Array, Array]:
-    """Return Ω·(half step) on each step: mean (3, total), and Legendre's coefficients of the rest (3, nodes, total).
+    """Return Ω·(half length) on each panel: mean (3, total), and Legendre's coefficients of the rest (3, nodes, total).
 
     The rest is small, and so is its rounding.
     """
@@ -218,17 +251,30 @@ def _series(mean: Array, legendre: Array) -> Pairs:
 
 
 def _powers(mean: Array, legendre: Array) -> Array:
-    """Return Ω's coefficients (3, powers, total) of 1, x, x², ..., without those that are as small as what ends them.
-
-    Where Ω changes slowly, half of Legendre's coefficients are rounding of Ω's values, as the last two are; where it
-    changes fast, what is larger than their bound is no rounding.
-    """
-    sizes = np.abs(legendre).max(axis=(0, 2), initial=0.0)
-    shown = np.flatnonzero(sizes > min(2 * sizes[-2:].max(), _TAIL))
-    count = int(shown[-1]) + 1 if shown.size else 1
+    """Return Ω's coefficients (3, powers, total) of 1, x, x², ..., without those that turn by nothing."""
+    count = _count_above(_EPSILON / 8, _sizes(legendre))
     coefficients = _fit()[2][:count, :count] @ legendre[:, :count]
     coefficients[:, 0] += mean
     return coefficients
+
+
+def _above_rounding(legendre: Array) -> int:
+    """Count Legendre's coefficients without those at the end that are as small as what ends them.
+
+    Where Ω changes slowly, half of them are rounding of Ω's values, as the last two are; where it changes fast, what is
+    larger than their bound is no rounding.
+    """
+    sizes = _sizes(legendre)
+    return _count_above(min(2 * sizes[-2:].max(), _TAIL), sizes)
+
+
+def _sizes(coefficients: Array) -> Array:
+    return np.abs(coefficients).max(axis=(0, 2), initial=0.0)
+
+
+def _count_above(bound: float, sizes: Array) -> int:
+    above = np.flatnonzero(sizes > bound)
+    return int(above[-1]) + 1 if above.size else 1
 
 
 def _taylor(coefficients: Array) -> Pairs:
