@@ -6,6 +6,7 @@ A `Vector` holds three scalars, so the same expression is arithmetic on floats, 
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from .scalars import Scalar, namespace
@@ -62,7 +63,10 @@ class Vector:
 
     def norm(self) -> Scalar:
         """Return the length."""
-        return namespace(self.x, self.y, self.z).sqrt(self.dot(self))
+        square = self.dot(self)
+        if type(square) is float:  # asked for thousands of times where a contact is searched for
+            return math.sqrt(square)
+        return namespace(self.x, self.y, self.z).sqrt(square)
 
     @staticmethod
     def of(components: Any) -> Vector:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -17,11 +17,13 @@ from ..mechanics.system import RollingSystem, State
 from . import phases
 from .exact import ClosedForm, SphereOnPlane, form_of_phase, refusals
 from .first_stop import first_stop
+from .following import Next, Stop
 from .laws import Law
 from .monodromy import Monodromy
 from .orientation import orientation, periodic_orientation
-from .phases import Stop, Stretch
+from .phases import Stretch
 from .samples import FLIGHT, SLIPPING, Array, Progress, Samples
+from .touch import Touch
 
 _PHASE_A_STEP = 0.05  # rad of the motion's own phase between two looks at what may end it
 _AT_ONCE = 100_000
@@ -59,36 +61,24 @@ def solve(
     >>> solve(system, system.place((0.1, 0.0)), np.array([0.0, 9.0])).position.tolist()
     [[0.1, 0.0, 0.025], [0.1, 0.0, 0.025]]
     """
-
-    def stretch(system: RollingSystem, law: Law, begin: float, state: Sequence[float], *rest: Any) -> Stretch:
-        untouched = begin == start.time and list(state) == law.pack(system, start)  # then to the start's last digit
-        return integrate(system, law, begin, state, *rest, start=start if untouched else None)
-
-    return phases.solve(stretch, system, start, times, tolerance, progress)
+    return phases.solve(integrate, system, start, times, tolerance, progress)
 
 
 def integrate(
     system: RollingSystem,
-    law: Law,
-    begin: float,
-    state: Sequence[float],
+    now: Next,
     times: Array,
     tolerance: float = 0.0,  # noqa: ARG001
-    extras: Sequence[float] = (),
     progress: Progress | None = None,
-    *,
-    start: State | None = None,
 ) -> Stretch:
     """Follow one law to its first stop by the closed form of its phase.
 
     Parameters
     ----------
-    system, law, begin, state, times, extras, progress
+    system, now, times, progress
         As for `trundle.solve.taylor.integrate`.
     tolerance : float
         Not used.
-    start : State, optional
-        The same as `state`, where it is known to more digits.
 
     Returns
     -------
@@ -100,32 +90,29 @@ def integrate(
     OutOfDomainError
         If no closed form covers the phase.
     """
-    if start is None:
-        start = law.record(system, np.array([begin]), np.asarray(state, dtype=float)[None]).state(0)
-    form = form_of_phase(law.code, system, start, state)
+    law, start = now.law, now.start
+    form = form_of_phase(law.code, system, start, now.numbers)
     if form is None:
         raise OutOfDomainError(refusals(law.code, system, start))
-    end = float(times[-1]) if times.size else begin
-    found = _first_stop(system, law, extras, form, start, end - begin)
+    end = float(times[-1]) if times.size else now.time
+    found = _first_stop(system, now, form, end - now.time)
     if found is None:
         samples = _samples(system, law, form, start, times, progress)
         return Stretch(times, np.empty((times.size, 0)), None, samples)
-    reached = begin + found[0]
+    reached = now.time + found[0]
     kept = times[times < reached]
     samples = _samples(system, law, form, start, np.append(kept, reached), progress)
-    numbers = np.array(law.pack(system, samples.state(-1)), dtype=float)
-    stop = Stop(reached, found[1], numbers)
+    at = Touch.of(system, samples.state(-1), Vector(*samples.contact[-1].tolist()))
+    stop = Stop(reached, found[1], np.array(law.numbers(at), dtype=float), at)
     return Stretch(kept, np.empty((kept.size, 0)), stop, samples.part(slice(0, kept.size)))
 
 
 # What ends a stretch
 
 
-def _first_stop(
-    system: RollingSystem, law: Law, extras: Sequence[float], form: ClosedForm, start: State, duration: float
-) -> tuple[float, str] | None:
+def _first_stop(system: RollingSystem, now: Next, form: ClosedForm, duration: float) -> tuple[float, str] | None:
     """Return when and by which of the law's stops the form's motion ends, if it does within the duration."""
-    names = law.stops(system, start.time, law.pack(system, start), extras)
+    names = now.law.stops(system, now.time, now.numbers, now.extras)
     known = {name: t for name, t in form.ends_at.items() if name in names and 0 <= t <= duration}
     sooner = min(((t, name) for name, t in known.items()), default=None)
     given = {*form.ends_at, *(f"near {name}" for name in form.ends_at), *form.never}
@@ -134,25 +121,24 @@ def _first_stop(
         return sooner
     upto = min(duration if sooner is None else sooner[0], 1.01 * max(form.repeats(name) for name in asked))
     pace = form.pace(upto)
-    values = _values(system, law, extras, form, start, asked)
+    values = _values(system, now, form, asked)
     found = first_stop(values, upto, _PHASE_A_STEP / pace if pace > 0 else math.inf)
     return sooner if found is None else (found[0], asked[found[1]])
 
 
-def _values(
-    system: RollingSystem, law: Law, extras: Sequence[float], form: ClosedForm, start: State, asked: list[str]
-) -> Callable[[Any], Any]:
+def _values(system: RollingSystem, now: Next, form: ClosedForm, asked: list[str]) -> Callable[[Any], Any]:
     """Return the stops asked for as functions of the time since the start.
 
     Where they depend on the orientation, the form says how the body stands; most are the same from all sides, or turn
     in their plane.
     """
+    law, start = now.law, now.start
     at_start, only_bounds = Quaternion(*start.orientation), set(asked) <= _BOUNDS
 
     def at(t: Any) -> Any:
-        r, V, Omega, _ = form.motion_at(t)
+        (r, V, Omega, _), grown = form.motion_and_own_at(t)
         q = at_start if only_bounds else form.stance(t) or at_start
-        own = tuple(of_start + gone for of_start, gone in zip(start.support, form.own_at(t), strict=True))
+        own = tuple(of_start + gone for of_start, gone in zip(start.support, grown, strict=True))
         contact = touch(system, start.time + t, r, q, own)
         contact = replace(contact, point=r + contact.offset)
         if only_bounds:
@@ -162,7 +148,7 @@ def _values(
             if law.code == SLIPPING:
                 s = contact.slip_velocity(V, Omega)
                 added = [*(s - contact.normal * s.dot(contact.normal))]
-            found = law.stops(system, start.time + t, [*contact.point, *q, *Omega, *added, *own], extras)
+            found = law.stops(system, start.time + t, [*contact.point, *q, *Omega, *added, *own], now.extras)
         if is_number(t):
             return [float(found[name]) for name in asked]
         return np.array([np.broadcast_to(found[name], np.shape(t)) for name in asked])
@@ -178,15 +164,17 @@ def _samples(
 ) -> Samples:
     shape = (times.size, 3)
     position, velocity, turning, force = (np.empty(shape) for _ in range(4))
+    own = np.empty((times.size, len(start.support)))
     for first in range(0, times.size, _AT_ONCE):
         part = slice(first, first + _AT_ONCE)
-        parts = form.motion_at(times[part] - start.time)
+        parts, grown = form.motion_and_own_at(times[part] - start.time)
         for array, vector in zip((position, velocity, turning, force), parts, strict=True):
             array[part] = vector.array()
+        for i, (of_start, gone) in enumerate(zip(start.support, grown, strict=True)):
+            own[part, i] = of_start + gone
         if progress is not None:
             progress(0.5 * (start.time + float(times[part][-1])))
     q = orientations(form, start, times) if times.size else np.empty((0, 4))
-    own = _own(system, form, start, times)
     contact = _contact(system, law, times, position, q, own)
     if progress is not None and times.size:
         progress(float(times[-1]))
@@ -202,14 +190,6 @@ def _contact(system: RollingSystem, law: Law, times: Array, position: Array, q: 
         return position + now.offset.array()
     there = now.support.rotation.transpose @ (centre - now.support.origin)
     return (centre - now.normal * system.support.surface.level(there)).array()
-
-
-def _own(system: RollingSystem, form: ClosedForm, start: State, times: Array) -> Array:
-    """Return the coordinates of the support's own motion, (n, k)."""
-    if not system.support.motion.own:
-        return np.zeros((times.size, 0))
-    gone = np.stack([np.broadcast_to(part, times.shape) for part in form.own_at(times - start.time)], axis=1)
-    return np.asarray(start.support) + gone
 
 
 def orientations(motion: ClosedForm, start: State, times: Array) -> Array:

@@ -26,7 +26,7 @@ from .laws import (
     state_turning,
 )
 from .onset_of_slip import first_moment
-from .samples import Event
+from .samples import Array, Event
 from .touch import Touch, floats, moment
 
 _WEIGHTLESS = 1e-13  # share of the forces at hand below which nothing presses the body on
@@ -36,14 +36,42 @@ SETTLED = 1e-6  # height, as a share of |ρ|, below which a bounce is cut
 
 
 @dataclass(frozen=True)
+class Stop:
+    """Where a stretch ended: the instant, which of the law's stops, and the state's numbers."""
+
+    time: float
+    name: str
+    numbers: Array
+    known: Touch | None = None  # the same, where the method knows it better than by its numbers
+
+    def at(self, system: RollingSystem, law: Law) -> Touch:
+        """Return the body where it was then."""
+        return _meant(system, law, self.time, self.numbers) if self.known is None else self.known
+
+
+@dataclass(frozen=True)
 class Next:
-    """The law that holds from now on, its numbers, and what happened."""
+    """The law that holds from now on, where the body is, its numbers by that law, and what happened."""
 
     law: Law
-    time: float
-    state: list[float]
+    start: State
+    numbers: list[float]
     extras: tuple[float, ...] = ()
     events: tuple[Event, ...] = ()
+
+    @staticmethod
+    def of(law: Law, at: Touch, extras: tuple[float, ...] = (), events: tuple[Event, ...] = ()) -> Next:
+        """Return what begins where a body touches."""
+        return Next(law, at.state, law.numbers(at), extras, events)
+
+    @property
+    def time(self) -> float:
+        """When it begins, s."""
+        return self.start.time
+
+
+def _meant(system: RollingSystem, law: Law, time: float, numbers: Any) -> Touch:
+    return Touch.of(system, law.state(system, time, numbers))
 
 
 def at_start(system: RollingSystem, start: State) -> Next:
@@ -63,15 +91,15 @@ def at_start(system: RollingSystem, start: State) -> Next:
     """
     at = Touch.of(system, start)
     if at.gap > SLIP_TOLERANCE * at.arm:
-        return _fly(system, start)
+        return _fly(at)
     if at.approach < -SLIP_TOLERANCE * at.speed:
-        return _struck(system, start)
+        return _struck(system, at)
     if at.approach > SLIP_TOLERANCE * at.speed:
-        return _fly(system, start)
+        return _fly(at)
     return _touching(system, at)
 
 
-def after(system: RollingSystem, law: Law, stop: str, time: float, numbers: Any) -> Next:
+def after(system: RollingSystem, law: Law, stop: Stop) -> Next:
     """Return what follows one of a law's stops.
 
     Parameters
@@ -80,35 +108,30 @@ def after(system: RollingSystem, law: Law, stop: str, time: float, numbers: Any)
         Body and support.
     law : Law
         That ended.
-    stop : str
-        Which of its stops it came to.
-    time : float
-        s.
-    numbers : array
-        The state there.
+    stop : Stop
+        Which of its stops it came to, and where.
 
     Returns
     -------
     Next
         The next law, and the event.
     """
-    before = law.state(system, time, numbers)
-    stop = stop.removeprefix("near ")
-    if stop in ("grip", "stop") and _goes_on(system, before, numbers, stop):
-        slip = Vector(*map(float, numbers[10:13])) if stop == "grip" else None
-        return Next(law, time, list(numbers), _extras(system, Touch.of(system, before), slip))
-    if stop == "land":
-        return _struck(system, before)
-    if stop == "lift":
-        return _lifted(system, before)
-    if stop in ("grip", "stop"):
-        before = _come_to_it(system, law, time, numbers, stop)
-        time = before.time
-    follows = _touching(system, Touch.of(system, before), gave_way=stop)
+    at, name = stop.at(system, law), stop.name.removeprefix("near ")
+    if name in ("grip", "stop") and _goes_on(system, at, stop.numbers, name):
+        slip = Vector(*map(float, stop.numbers[10:13])) if name == "grip" else None
+        return Next(law, at.state, list(stop.numbers), _extras(system, at, slip))
+    if name == "land":
+        return _struck(system, at)
+    if name == "lift":
+        return _lifted(system, at)
+    if name in ("grip", "stop"):
+        at = _come_to_it(system, law, at, stop.numbers, name)
+    follows = _touching(system, at, gave_way=name)
     kind, said = _NAMES[type(follows.law).code] if type(follows.law).code != law.code else ("slip", _TURNED)
-    if stop == "grip" and isinstance(follows.law, SlippingLaw):
+    if name == "grip" and isinstance(follows.law, SlippingLaw):
         kind, said = "slip", _TURNED
-    event = Event(time, kind, f"{said} at t = {time:.9g} s", before, before)
+    state = at.state
+    event = Event(state.time, kind, f"{said} at t = {state.time:.9g} s", state, state)
     return replace(follows, events=(event, *follows.events))
 
 
@@ -121,9 +144,8 @@ _NAMES = {
 }
 
 
-def _goes_on(system: RollingSystem, state: State, numbers: Any, stop: str) -> bool:
+def _goes_on(system: RollingSystem, at: Touch, numbers: Any, stop: str) -> bool:
     """Tell whether slip or turning was only at its slowest, and did not end."""
-    at = Touch.of(system, state)
     left = np.linalg.norm(numbers[10:13]) if stop == "grip" else state_turning(at.contact, at.Omega).norm() * at.arm
     return bool(left > 1e2 * at.still(system))
 
@@ -135,7 +157,7 @@ def _extras(system: RollingSystem, at: Touch, slip: Vector | None = None) -> tup
     return still**2, *floats(v / v.norm())
 
 
-def spins_on(system: RollingSystem, law: Law, time: float, numbers: Any) -> bool:
+def spins_on(system: RollingSystem, law: Law, stop: Stop) -> bool:
     """Tell whether a body has stopped rolling, and still spins about the normal.
 
     Parameters
@@ -143,41 +165,37 @@ def spins_on(system: RollingSystem, law: Law, time: float, numbers: Any) -> bool
     system : RollingSystem
         Body and support.
     law : Law
-        Of rolling, at its stop.
-    time : float
-        s.
-    numbers : array
-        The state there.
+        Of rolling.
+    stop : Stop
+        Its "stop".
 
     Returns
     -------
     bool
         False also where its turning over the support was only at its slowest.
     """
-    state = law.state(system, time, numbers)
-    if _goes_on(system, state, numbers, "stop"):
+    at = stop.at(system, law)
+    if _goes_on(system, at, stop.numbers, "stop"):
         return False
-    at = Touch.of(system, state)
     relative = at.Omega - at.contact.support.angular_velocity
     return bool(abs(relative.dot(at.contact.normal)) * at.arm > 1e-9 * at.scale(system))
 
 
-def _fly(system: RollingSystem, state: State, least_gap: float = 0.0, events: tuple[Event, ...] = ()) -> Next:
-    law = FlightLaw()
-    numbers = law.pack(system, state)
-    numbers[13] = max(numbers[13], least_gap)
-    return Next(law, state.time, numbers, (), events)
+def _fly(at: Touch, least_gap: float = 0.0, events: tuple[Event, ...] = ()) -> Next:
+    now = Next.of(FlightLaw(), at, (), events)
+    now.numbers[13] = max(now.numbers[13], least_gap)
+    return now
 
 
-def _lifted(system: RollingSystem, state: State) -> Next:
-    at = Touch.of(system, state)
+def _lifted(system: RollingSystem, at: Touch) -> Next:
+    state = at.state
     if system.support.friction is None and _pull(system, at) > _PULLED_BACK * at.scale(system) ** 2 / at.arm:
         raise SolverError(
             f"At t = {state.time:.9g} s friction without limit would have to hold the body down, which no support "
             "does. Give the support a `friction`, so that the body slips before that."
         )
     event = Event(state.time, "lift", f"came off the support at t = {state.time:.9g} s", state, state)
-    return _fly(system, state, _TAKE_OFF * at.arm, (event,))
+    return _fly(at, _TAKE_OFF * at.arm, (event,))
 
 
 def _pull(system: RollingSystem, at: Touch) -> float:
@@ -188,10 +206,9 @@ def _pull(system: RollingSystem, at: Touch) -> float:
     return float(free.normal_force * response(system, at.contact, at.orientation, n).dot(n))
 
 
-def _struck(system: RollingSystem, before: State) -> Next:
+def _struck(system: RollingSystem, at: Touch) -> Next:
     """Let the body strike the support, and bounce or stay."""
-    at = Touch.of(system, before)
-    n, own = at.contact.normal, before.support
+    before, n, own = at.state, at.contact.normal, at.state.support
     V, Omega, off = at.V, at.Omega, 0.0
     if at.approach < 0:
         struck = land(system, at.contact, at.orientation, at.slip)
@@ -202,40 +219,37 @@ def _struck(system: RollingSystem, before: State) -> Next:
     pull = _pull(system, at)
     bounces = off > 0 and not (pull > 0 and off * off < 2 * pull * SETTLED * at.arm)
     time, said = before.time, f"landed at {-at.approach:.4g} m/s"
+    after = at.moving(system, V, Omega, own)
     if bounces:
-        after = at.moving(V, Omega, own)
-        event = Event(time, "land", f"{said} and bounced at t = {time:.9g} s", before, after)
-        return _fly(system, after, _TAKE_OFF * at.arm, (event,))
-    after = _set_down(system, at.moving(V, Omega, own))
+        event = Event(time, "land", f"{said} and bounced at t = {time:.9g} s", before, after.state)
+        return _fly(after, _TAKE_OFF * at.arm, (event,))
+    after = _set_down(system, after)
     cut = "; the bounces to come are lower than a millionth of the body and were cut" if off > 0 else ""
     kind = "settle" if off > 0 else "land"
-    event = Event(time, kind, f"{said}{cut} at t = {time:.9g} s", before, after)
-    follows = _touching(system, Touch.of(system, after))
+    event = Event(time, kind, f"{said}{cut} at t = {time:.9g} s", before, after.state)
+    follows = _touching(system, after)
     return replace(follows, events=(event, *follows.events))
 
 
-def _set_down(system: RollingSystem, state: State) -> State:
-    """Return a state that touches and stays: no velocity off the support, and none along it where that is rounding."""
-    at = Touch.of(system, state)
+def _set_down(system: RollingSystem, at: Touch) -> Touch:
+    """Return a body that touches and stays: no velocity off the support, and none along it where that is rounding."""
     limit = SLIP_TOLERANCE * at.speed
     held = at.sliding.norm() <= limit and system.support.friction != 0
-    return at.moving(at.contact.rolling_velocity(at.Omega) + (ZERO if held else at.sliding), at.Omega)
+    return at.moving(system, at.contact.rolling_velocity(at.Omega) + (ZERO if held else at.sliding), at.Omega)
 
 
-def _come_to_it(system: RollingSystem, law: Law, time: float, numbers: Any, stop: str) -> State:
+def _come_to_it(system: RollingSystem, law: Law, at: Touch, numbers: Any, stop: str) -> Touch:
     """Go on straight from where slip or turning has all but ended to where it has ended."""
-    y, wait = np.asarray(numbers, dtype=float), 0.0
-    at = Touch.of(system, law.state(system, time, y))
+    y, time = np.asarray(numbers, dtype=float), at.state.time
     s = y[10:13] if stop == "grip" else state_turning(at.contact, at.Omega).array()
     length, still = float(np.linalg.norm(s)), at.still(system)
     if length > 1e-3 * (still if stop == "grip" else still / at.arm):
         rates = np.array([float(rate) for rate in law.rates(system, time, y.tolist())])
         closing = float(-(s @ (rates[10:13] if stop == "grip" else rates[7:10])) / length)
         wait = length / closing if closing > 0 else 0.0
-        y = y + wait * rates
-        at = Touch.of(system, law.state(system, time + wait, y))
+        at = _meant(system, law, time + wait, y + wait * rates)
     Omega = at.Omega if stop == "grip" else at.Omega - state_turning(at.contact, at.Omega)
-    return replace(at.moving(at.contact.rolling_velocity(Omega), Omega), time=time + wait)
+    return at.moving(system, at.contact.rolling_velocity(Omega), Omega)
 
 
 def _touching(system: RollingSystem, at: Touch, gave_way: str = "") -> Next:
@@ -243,13 +257,11 @@ def _touching(system: RollingSystem, at: Touch, gave_way: str = "") -> Next:
 
     Where static friction or the resistance has just given way, "slip" or "start", rounding no longer decides it.
     """
-    state, support, limit = at.state, system.support, SLIP_TOLERANCE * at.speed
+    support, limit = system.support, SLIP_TOLERANCE * at.speed
     if support.friction == 0:
-        law: Law = SlidingFreely()
-        return Next(law, state.time, law.pack(system, state))
+        return Next.of(SlidingFreely(), at)
     if support.friction is not None and at.sliding.norm() > limit:
-        law = SlippingLaw()
-        return Next(law, state.time, law.pack(system, state), _extras(system, at, at.sliding))
+        return Next.of(SlippingLaw(), at, _extras(system, at, at.sliding))
     if any(load.stops for load in system.loads) and gave_way != "start":
         resting = _resting(system, at)
         if resting is not None:
@@ -267,30 +279,27 @@ def _rolling(system: RollingSystem, at: Touch, *, slips: bool) -> Next:
     forces = system.body.mass * at.scale(system) ** 2 / at.arm
     weightless = abs(N) <= _WEIGHTLESS * forces
     if N < 0 and not weightless:
-        return _lifted(system, state)
+        return _lifted(system, at)
     mu = system.support.friction
     if slips or (mu is not None and f.norm() > mu * max(N, 0.0) * (1 + CONE_SLACK) + _WEIGHTLESS * forces):
-        then, extras = first_moment(system, at, f)
-        slipping = SlippingLaw()
-        return Next(slipping, then.time, slipping.pack(system, then), extras)
+        return Next.of(SlippingLaw(), *first_moment(system, at, f))
     if any(load.stops for load in system.loads):
         return _turning_on(system, at, lifts=not weightless)
-    law = RollingLaw(lifts=not weightless, grips=not weightless)
-    return Next(law, state.time, law.pack(system, state))
+    return Next.of(RollingLaw(lifts=not weightless, grips=not weightless), at)
 
 
 def _turning_on(system: RollingSystem, at: Touch, *, lifts: bool) -> Next:
     """Return rolling against a resistance; from rest, with a first little turn the way it is driven."""
-    law, state, still = RollingWithResistance(lifts=lifts, grips=lifts), at.state, at.still(system) / at.arm
+    still = at.still(system) / at.arm
     turning = state_turning(at.contact, at.Omega)
     if turning.norm() <= 2 * still:
-        law_at_rest = RestingLaw()
-        couple = law_at_rest.held(system, state.time, law_at_rest.pack(system, state)).couple
+        at_rest = RestingLaw()
+        couple = at_rest.held(system, at.state.time, at_rest.numbers(at)).couple
         driven = couple - at.contact.normal * couple.dot(at.contact.normal)
         way = driven * (-4 * still / driven.norm()) if driven.norm() > 0 else ZERO
         Omega = at.Omega - turning + way
-        state = at.moving(at.contact.rolling_velocity(Omega), Omega)
-    return Next(law, state.time, law.pack(system, state), _extras(system, Touch.of(system, state)))
+        at = at.moving(system, at.contact.rolling_velocity(Omega), Omega)
+    return Next.of(RollingWithResistance(lifts=lifts, grips=lifts), at, _extras(system, at))
 
 
 def _resting(system: RollingSystem, at: Touch) -> Next | None:
@@ -298,12 +307,11 @@ def _resting(system: RollingSystem, at: Touch) -> Next | None:
     relative = at.Omega - at.contact.support.angular_velocity
     if relative.norm() * at.arm > SLIP_TOLERANCE * at.scale(system):
         return None
-    law = RestingLaw()
-    numbers = law.pack(system, at.state)
-    stops = law.stops(system, at.state.time, numbers, ())
+    rest = Next.of(RestingLaw(), at)
+    stops = rest.law.stops(system, rest.time, rest.numbers, ())
     if system.support.motion.free or min(stops["lift"], stops["start"], stops.get("slip", 0.0)) < 0:
         return None
-    return Next(law, at.state.time, numbers)
+    return rest
 
 
-__all__ = ["SETTLED", "Next", "after", "at_start", "moment", "spins_on"]
+__all__ = ["SETTLED", "Next", "Stop", "after", "at_start", "moment", "spins_on"]

@@ -13,12 +13,13 @@ from typing import Any
 import numpy as np
 
 from ..mechanics.algebra import ZERO, Quaternion, Vector
-from ..mechanics.contact import Contact, Rolling, roll, settle, touch
+from ..mechanics.contact import Contact, Rolling, roll, touch
 from ..mechanics.loads import BodyMotion
 from ..mechanics.scalars import Scalar
 from ..mechanics.slipping import Flying, Slipping, fly, slip
 from ..mechanics.system import RollingSystem, State
 from .samples import FLIGHT, RESTING, ROLLING, SLIPPING, Array, Samples
+from .touch import Touch
 
 CONTACT = ("p_x", "p_y", "p_z", "q_w", "q_x", "q_y", "q_z", "Omega_x", "Omega_y", "Omega_z")
 Numbers = Sequence[Scalar]
@@ -60,6 +61,10 @@ class Law:
 
     def pack(self, system: RollingSystem, state: State) -> list[float]:
         """Return the numbers of a state."""
+        return self.numbers(Touch.of(system, state))
+
+    def numbers(self, at: Touch) -> list[float]:
+        """Return the numbers of a body at its contact."""
         raise NotImplementedError
 
     def record(self, system: RollingSystem, time: Array, states: Array) -> Samples:
@@ -135,11 +140,9 @@ class RollingLaw(Law):
             found |= _ending("stop", turning, extras)
         return {**found, **self._bounds(system, now.contact, Quaternion(*state[3:7]), 0.0)}
 
-    def pack(self, system: RollingSystem, state: State) -> list[float]:
+    def numbers(self, at: Touch) -> list[float]:
         """Return p = r + ρ, q and Ω."""
-        q, centre = Quaternion(*state.orientation), Vector(*state.position)
-        contact = settle(system, state.time, centre, q, state.support)
-        return [*(centre + contact.offset), *q, *state.angular_velocity, *state.support]
+        return [*at.nearest, *at.orientation, *at.Omega, *at.state.support]
 
     def record(self, system: RollingSystem, time: Array, states: Array) -> Samples:
         """Complete p, q and Ω by the rolling law."""
@@ -180,14 +183,9 @@ class SlippingLaw(Law):
             found |= _ending("grip", s, extras)
         return {**found, **self._bounds(system, now.contact, Quaternion(*state[3:7]), 0.0)}
 
-    def pack(self, system: RollingSystem, state: State) -> list[float]:
+    def numbers(self, at: Touch) -> list[float]:
         """Return p, q, Ω and the part of s along the support."""
-        q, centre, V = Quaternion(*state.orientation), Vector(*state.position), Vector(*state.velocity)
-        Omega = Vector(*state.angular_velocity)
-        contact = settle(system, state.time, centre, q, state.support)
-        s = contact.slip_velocity(V, Omega)
-        s = s - contact.normal * s.dot(contact.normal)
-        return [*(centre + contact.offset), *q, *Omega, *s, *state.support]
+        return [*at.nearest, *at.orientation, *at.Omega, *at.sliding, *at.state.support]
 
     def record(self, system: RollingSystem, time: Array, states: Array) -> Samples:
         """Complete p, q, Ω and s by the law of slipping."""
@@ -243,12 +241,9 @@ class FlightLaw(Law):
         contact = touch(system, time, p, q, own)
         return {"land": rest[3], **self._bounds(system, contact, q, rest[3])}
 
-    def pack(self, system: RollingSystem, state: State) -> list[float]:
+    def numbers(self, at: Touch) -> list[float]:
         """Return the nearest point, q, Ω, V and the gap."""
-        q, centre = Quaternion(*state.orientation), Vector(*state.position)
-        contact = settle(system, state.time, centre, q, state.support)
-        gap = (centre + contact.offset - contact.point).dot(contact.normal)
-        return [*contact.point, *q, *state.angular_velocity, *state.velocity, gap, *state.support]
+        return [*at.contact.point, *at.orientation, *at.Omega, *at.V, at.gap, *at.state.support]
 
     def record(self, system: RollingSystem, time: Array, states: Array) -> Samples:
         """Complete the state of a flight; nothing pushes then."""
@@ -300,9 +295,9 @@ class RestingLaw(Law):
             found["slip"] = most * most * (1 + CONE_SLACK) - f.dot(f)
         return {**found, **self._bounds(system, held.contact, Quaternion(*state[3:7]), 0.0)}
 
-    def pack(self, system: RollingSystem, state: State) -> list[float]:
+    def numbers(self, at: Touch) -> list[float]:
         """Return p, q and Ω."""
-        return RollingLaw().pack(system, state)
+        return RollingLaw().numbers(at)
 
     def record(self, system: RollingSystem, time: Array, states: Array) -> Samples:
         """Complete the state of a body at rest on its support."""

@@ -11,7 +11,7 @@ from ..mechanics.contact import roll
 from ..mechanics.impact import response
 from ..mechanics.onset import onset
 from ..mechanics.slipping import slip
-from ..mechanics.system import RollingSystem, State
+from ..mechanics.system import RollingSystem
 from .laws import RollingLaw
 from .touch import Touch, floats
 
@@ -20,7 +20,7 @@ _SETTLED_IN = 2e3  # how much faster its direction settles than it grows once it
 _JUST = 1e-8  # share of friction below which what it cannot give has no direction yet
 
 
-def first_moment(system: RollingSystem, at: Touch, needed: Vector) -> tuple[State, tuple[float, ...]]:
+def first_moment(system: RollingSystem, at: Touch, needed: Vector) -> tuple[Touch, tuple[float, ...]]:
     """Return a body that has slipped for a moment, in which it still rolled but for what friction could not give.
 
     What it cannot give grows from nothing, mostly, and so the slip is the integral of a slope. Its direction would
@@ -37,8 +37,8 @@ def first_moment(system: RollingSystem, at: Touch, needed: Vector) -> tuple[Stat
 
     Returns
     -------
-    (State, tuple of float)
-        The state a little later, and the numbers that the stops of `SlippingLaw` take.
+    (Touch, tuple of float)
+        The body a little later, and the numbers that the stops of `SlippingLaw` take.
 
     Raises
     ------
@@ -51,16 +51,16 @@ def first_moment(system: RollingSystem, at: Touch, needed: Vector) -> tuple[Stat
     >>> slope = tr.Support(tr.Plane(), tilt=1.0, friction=0.1)
     >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), slope)
     >>> at = Touch.of(system, system.place())
-    >>> state, _ = first_moment(system, at, _friction(system, at))
-    >>> state.time < 1e-6 and state.velocity[0] > 0
+    >>> later, _ = first_moment(system, at, _friction(system, at))
+    >>> later.state.time < 1e-6 and later.V.x > 0
     True
     """
-    state, numbers = at.state, RollingLaw().pack(system, at.state)
+    time, numbers = at.state.time, RollingLaw().numbers(at)
     begun = _way(system, at, needed)[1]
 
     def later(wait: float) -> tuple[Touch, Vector, float]:
-        moved = RollingLaw().advanced(system, state.time, numbers, wait)
-        then = Touch.of(system, RollingLaw().state(system, state.time + wait, moved))
+        moved = RollingLaw().advanced(system, time, numbers, wait)
+        then = Touch.of(system, RollingLaw().state(system, time + wait, moved))
         return (then, *_way(system, then, _friction(system, then)))
 
     trial = _FIRST * at.arm / at.scale(system)
@@ -81,8 +81,8 @@ def _friction(system: RollingSystem, at: Touch) -> Vector:
     return R - n * n.dot(R)
 
 
-def _pushed(system: RollingSystem, at: Touch, slip: Vector) -> State:
-    """Return the state after the impulse at the contact that makes it slip so."""
+def _pushed(system: RollingSystem, at: Touch, slip: Vector) -> Touch:
+    """Return the body after the impulse at the contact that makes it slip so."""
     columns = [response(system, at.contact, at.orientation, e) for e in (E_X, E_Y, E_Z)]
     P = Matrix(*columns).transpose.solve(slip)
     J = system.body.inertia_in_space(at.orientation.matrix())
@@ -92,7 +92,7 @@ def _pushed(system: RollingSystem, at: Touch, slip: Vector) -> State:
             *own[:-1],
             own[-1] - float(at.contact.support.lever(at.contact.point).dot(P) / system.support.motion.inertia),
         )
-    return at.moving(at.V + P / system.body.mass, at.Omega + J.solve(at.contact.offset.cross(P)), own)
+    return at.moving(system, at.V + P / system.body.mass, at.Omega + J.solve(at.contact.offset.cross(P)), own)
 
 
 def _way(system: RollingSystem, at: Touch, needed: Vector) -> tuple[Vector, float]:

@@ -10,7 +10,7 @@ multiplications of arrays for sixteen.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any
 
@@ -27,7 +27,8 @@ AngularVelocity = Callable[[Array], Array]  # times (n,) -> Ω (3, n) in the sup
 
 _NODES = 12  # of the polynomial for Ω on a panel
 _LARGEST_TURN = 8.0  # rad a step
-_PANEL = 8  # steps; a power of two
+_PANEL = 8  # steps, a power of two, or less where Ω turns by more than so many rad
+_SMOOTH = 0.4
 _LOOKS = 16  # at how fast the body turns, at least, before the steps are chosen
 _MOST_TERMS = 40  # of q's series on a step
 _AT_ONCE = 20_000  # steps, or instants
@@ -79,7 +80,7 @@ def orientation(
     if not times.size:
         return np.empty((0, 4))
     edges = _edges(start_time, float(times[-1]), np.asarray(kinks, dtype=float))
-    panels = -(-_steps_needed(angular_velocity, edges) // _PANEL)
+    panels = _panels_needed(angular_velocity, edges)
     upto = np.cumsum(panels)
     result = np.empty((2, times.size), dtype=complex)
     q, done = _paired(start), 0
@@ -117,13 +118,13 @@ def _unit(pairs: Pairs) -> Array:
     return q / np.sqrt((q * q).sum(axis=1, keepdims=True))
 
 
-def _steps_needed(angular_velocity: AngularVelocity, edges: Array) -> NDArray[np.int64]:
-    """Count the steps in each interval so that none turns by more than `_LARGEST_TURN`, as far as one sees."""
+def _panels_needed(angular_velocity: AngularVelocity, edges: Array) -> NDArray[np.int64]:
+    """Count the panels in each interval, as far as one sees, so that none turns by too much and Ω is smooth on it."""
     instants = np.concatenate([edges, 0.5 * (edges[1:] + edges[:-1])])
-    speeds = np.sqrt((angular_velocity(instants) ** 2).sum(axis=0))
-    speeds, middles = speeds[: edges.size], speeds[edges.size :]
-    fastest = np.maximum(np.maximum(speeds[1:], speeds[:-1]), middles)
-    steps = np.maximum(1.0, np.ceil(fastest * np.diff(edges) / _LARGEST_TURN))
+    Omega = angular_velocity(instants)
+    begin, end, middle = Omega[:, : edges.size - 1], Omega[:, 1 : edges.size], Omega[:, edges.size :]
+    speeds = np.stack([_length(part) for part in (begin, middle, end)])
+    steps = np.maximum(1.0, np.ceil(speeds.max(axis=0) * np.diff(edges) / _LARGEST_TURN))
     total = float(steps.sum())
     if not total < _MOST_STEPS:
         raise SolverError(
@@ -131,7 +132,15 @@ def _steps_needed(angular_velocity: AngularVelocity, edges: Array) -> NDArray[np
             f"{_MOST_STEPS * _LARGEST_TURN:.3g} rad that its orientation is followed over. Ask for a shorter run, or "
             "look for a load that drives it too hard."
         )
-    return steps.astype(np.int64)
+    # What goes round on a circle is this far from its chord in the middle.
+    reach = max(float(_length(Omega - Omega.mean(axis=1, keepdims=True)).max()), 1e-300)
+    arc = 2 * np.arccos(np.clip(1 - _length(middle - 0.5 * (begin + end)) / reach, -1.0, 1.0))
+    return np.maximum(np.ceil(steps / _PANEL), np.ceil(arc / _SMOOTH)).clip(1).astype(np.int64)
+
+
+def _length(vectors: Array) -> Array:
+    """Return the lengths of the columns."""
+    return np.sqrt((vectors**2).sum(axis=0))
 
 
 class _Course:
@@ -168,7 +177,7 @@ def _resolved(angular_velocity: AngularVelocity, middle: Array, half: Array) -> 
     done: list[tuple[Array, ...]] = []
     for _ in range(31):
         mean, legendre = _polynomials(angular_velocity, middle, half)
-        size = np.sqrt((mean**2).sum(axis=0))
+        size = _length(mean)
         rough = np.abs(legendre[:, -2:]).max(axis=(0, 1)) > _TAIL * np.maximum(size, 1.0)
         done.append(tuple(part[..., ~rough] for part in (middle, half, mean, legendre)))
         if not rough.any():
@@ -180,7 +189,7 @@ def _resolved(angular_velocity: AngularVelocity, middle: Array, half: Array) -> 
     return _together(done)
 
 
-def _together(parts: list[tuple[Array, ...]]) -> tuple[Array, Array, Array, Array]:
+def _together(parts: Sequence[tuple[Array, ...]]) -> tuple[Array, Array, Array, Array]:
     middle, half, mean, legendre = (np.concatenate(part, axis=-1) for part in zip(*parts, strict=True))
     return middle, half, mean, legendre
 
@@ -188,7 +197,7 @@ def _together(parts: list[tuple[Array, ...]]) -> tuple[Array, Array, Array, Arra
 def _parted(middle: Array, half: Array, mean: Array, legendre: Array) -> tuple[Array, Array, Array, Array]:
     """Return steps, ascending, and Ω on each: panels that are halved until the body turns little on their parts."""
     legendre = legendre[:, : _above_rounding(legendre)]
-    turn = np.sqrt((mean**2).sum(axis=0)) / (0.51 * _LARGEST_TURN)
+    turn = _length(mean) / (0.51 * _LARGEST_TURN)
     levels = np.ceil(np.log2(np.maximum(turn, 1.0))).astype(int)
     done = []
     for level in np.unique(levels).tolist():
@@ -208,7 +217,7 @@ def _parted(middle: Array, half: Array, mean: Array, legendre: Array) -> tuple[A
 
 @cache
 def _parting(level: int) -> Any:
-    """What takes Legendre's coefficients of Ω·(half length) on [−1, 1] to those on each of 2^level equal parts."""
+    """Return what takes Legendre's coefficients of Ω·(half length) to those on each of 2^level equal parts."""
     if level == 0:
         return np.eye(_NODES)[None]
     nodes, to_legendre, _ = _fit()

@@ -16,7 +16,7 @@ from ..mechanics.algebra import ZERO, Quaternion, Vector
 from ..mechanics.slipping import slip
 from ..mechanics.system import RollingSystem, State
 from . import following
-from .following import Next
+from .following import Next, Stop
 from .laws import Law, RollingLaw
 from .samples import SLIPPING, Array, Event, Progress, Samples
 
@@ -33,15 +33,6 @@ _ENDS = {
 
 
 @dataclass(frozen=True)
-class Stop:
-    """Where a stretch ended: the instant, which of the law's stops, and the state's numbers."""
-
-    time: float
-    name: str
-    state: Array
-
-
-@dataclass(frozen=True)
 class Stretch:
     """One law's part of a run: states at the times before its stop, if it came to one."""
 
@@ -51,8 +42,7 @@ class Stretch:
     samples: Samples | None = None  # instead of states, where the method knows all of them
 
 
-# (system, law, start time, numbers of the state, times, tolerance, extras, progress) -> Stretch
-Integrate = Callable[..., Stretch]
+Integrate = Callable[[RollingSystem, Next, Array, float, Progress | None], Stretch]
 
 
 def solve(
@@ -99,7 +89,7 @@ def solve(
         held = RollingLaw()
         left = _across(system, held, Stop(start.time, "", np.array(held.pack(system, start))), now, left, parts)
     while True:
-        stretch = integrate(system, now.law, now.time, now.state, left, tolerance, now.extras, told)
+        stretch = integrate(system, now, left, tolerance, told)
         known = stretch.samples
         parts.append(now.law.record(system, stretch.times, stretch.states) if known is None else known)
         if stretch.stop is None:
@@ -122,7 +112,7 @@ def _across(system: RollingSystem, law: Law, stop: Stop, follows: Next, left: Ar
     """Add the samples in the short step across an event, and return the times after it."""
     early = left[left < follows.time]
     if early.size:
-        steps = [law.advanced(system, stop.time, stop.state.tolist(), t - stop.time) for t in early.tolist()]
+        steps = [law.advanced(system, stop.time, stop.numbers.tolist(), t - stop.time) for t in early.tolist()]
         samples = law.record(system, early, np.array(steps))
         parts.append(_giving_way(system, samples, follows) if follows.law.code == SLIPPING else samples)
     return left[early.size :]
@@ -146,11 +136,11 @@ def _telling(progress: Progress | None, times: Array) -> Progress | None:
 
 
 def _spinning_on(system: RollingSystem, law: Law, stop: Stop) -> bool:
-    return stop.name.endswith("stop") and following.spins_on(system, law, stop.time, stop.state)
+    return stop.name.endswith("stop") and following.spins_on(system, law, stop)
 
 
 def _ended(system: RollingSystem, law: Law, stop: Stop) -> tuple[Samples, Event]:
-    samples = law.record(system, np.array([stop.time]), stop.state[None])
+    samples = law.record(system, np.array([stop.time]), stop.numbers[None])
     return samples, end(system, "spot" if stop.name.endswith("stop") else stop.name, samples.state(0))
 
 
@@ -183,10 +173,10 @@ def end(system: RollingSystem, name: str, state: State) -> Event:
     return Event(state.time, name, f"{said} at t = {state.time:.9g} s", state, state)
 
 
-def _following(system: RollingSystem, law: Law, stop: Stop) -> following.Next:
+def _following(system: RollingSystem, law: Law, stop: Stop) -> Next:
     """Return what follows a stop, or say that nothing can be worked out there."""
     try:
-        return following.after(system, law, stop.name, stop.time, stop.state)
+        return following.after(system, law, stop)
     except (ArithmeticError, ValueError) as error:
         raise SolverError(
             f"What follows at t = {stop.time:.9g} s cannot be worked out ({error}): the contact is singular there."

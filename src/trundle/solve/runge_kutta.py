@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -10,8 +10,9 @@ import numpy as np
 from ..errors import SolverError
 from ..mechanics.system import RollingSystem, State
 from . import phases
+from .following import Next, Stop
 from .laws import Law, SlippingLaw
-from .phases import Stop, Stretch
+from .phases import Stretch
 from .samples import Array, Progress, Samples
 from .tracing import python_law
 
@@ -54,20 +55,13 @@ def solve(
 
 
 def integrate(
-    system: RollingSystem,
-    law: Law,
-    begin: float,
-    state: Sequence[float],
-    times: Array,
-    tolerance: float,
-    extras: Sequence[float] = (),
-    progress: Progress | None = None,
+    system: RollingSystem, now: Next, times: Array, tolerance: float, progress: Progress | None = None
 ) -> Stretch:
     """Follow one law to its first stop.
 
     Parameters
     ----------
-    system, law, begin, state, times, tolerance, extras, progress
+    system, now, times, tolerance, progress
         As for `trundle.solve.taylor.integrate`.
 
     Returns
@@ -82,8 +76,9 @@ def integrate(
     """
     from scipy.integrate import DOP853, Radau
 
-    function, names = python_law(system, law, extras)
-    size, y0 = len(state), np.asarray(state, dtype=float)
+    law, begin = now.law, now.time
+    function, names = python_law(system, law, now.extras)
+    size, y0 = len(now.numbers), np.asarray(now.numbers, dtype=float)
     end = max(float(times[-1]) if times.size else begin, float(np.nextafter(begin, np.inf)))  # some way to go
 
     def rates(t: float, y: Array) -> Array:
@@ -107,7 +102,7 @@ def integrate(
         begun = _steps(first, stops, names, times, progress, until=lambda y: not _stiff(law, y))
         if begun.stop is None or begun.stop.name:
             return begun
-        left, y0 = times[begun.times.size :], begun.stop.state
+        left, y0 = times[begun.times.size :], begun.stop.numbers
         then = _steps(DOP853(rates, begun.stop.time, y0, end, **given), stops, names, left, progress)
         both = np.concatenate([begun.times, then.times]), np.concatenate([begun.states, then.states])
         return Stretch(*both, then.stop)

@@ -22,9 +22,10 @@ from ..files import written_whole
 from ..mechanics.parameters import numbers, structure_of
 from ..mechanics.system import RollingSystem, State
 from . import phases
+from .following import Next, Stop
 from .laws import Law
 from .lowering import Lowered, lower
-from .phases import Stop, Stretch, cut
+from .phases import Stretch, cut
 from .samples import Array, Progress, Samples
 
 TOLERANCE = 1e-15
@@ -92,14 +93,7 @@ def solve(
 
 
 def integrate(
-    system: RollingSystem,
-    law: Law,
-    begin: float,
-    state: Sequence[float],
-    times: Array,
-    tolerance: float,
-    extras: Sequence[float] = (),
-    progress: Progress | None = None,
+    system: RollingSystem, now: Next, times: Array, tolerance: float, progress: Progress | None = None
 ) -> Stretch:
     """Follow one law to its first stop.
 
@@ -107,18 +101,12 @@ def integrate(
     ----------
     system : RollingSystem
         Any system.
-    law : Law
-        Of the phase.
-    begin : float
-        s.
-    state : sequence of float
-        The law's numbers then.
+    now : Next
+        The law, and where it begins.
     times : array (n,)
         Ascending, s, none before the beginning.
     tolerance : float
         Of each step, relative.
-    extras : sequence of float
-        What the law's stops take besides.
     progress : callable, optional
         Told the time reached.
 
@@ -132,9 +120,9 @@ def integrate(
     SolverError
         If the integration breaks down.
     """
-    lowered, key = _ready(system, law, tolerance)
+    lowered, key = _ready(system, now.law, tolerance)
     with _borrowed(lowered, key, tolerance) as integrator:
-        run = _Run(integrator, lowered, [*numbers(system), *extras], begin, state)
+        run = _Run(integrator, lowered, [*numbers(system), *now.extras], now.time, now.numbers)
         states, reached = _propagate(run, times, progress)
         if reached is None:
             return Stretch(times, states, None)

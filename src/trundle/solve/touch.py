@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, replace
 
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import Contact, settle
+from ..mechanics.contact import Contact, settle, touch
 from ..mechanics.system import RollingSystem, State
 
 _STILL = 1e-12  # share of the speeds at the contact at which slip or turning has all but ended
@@ -27,16 +27,24 @@ class Touch:
     speed: float  # m/s
 
     @staticmethod
-    def of(system: RollingSystem, state: State) -> Touch:
-        """Return the contact of a state that touches the support, or is over it."""
+    def of(system: RollingSystem, state: State, point: Vector | None = None) -> Touch:
+        """Return the contact of a state that touches the support, or is over it; it is searched for unless given."""
         q, centre = Quaternion(*state.orientation), Vector(*state.position)
         V, Omega = Vector(*state.velocity), Vector(*state.angular_velocity)
-        contact = settle(system, state.time, centre, q, state.support)
+        if point is None:
+            contact = settle(system, state.time, centre, q, state.support)
+        else:
+            contact = touch(system, state.time, point, q, state.support)
         gap = (centre + contact.offset - contact.point).dot(contact.normal)
         arm = contact.offset.norm()
         u = contact.support.material_velocity(contact.point)
         speed = max(V.norm(), Omega.norm() * arm, u.norm())
         return Touch(state, contact, q, V, Omega, contact.slip_velocity(V, Omega), float(gap), arm, float(speed))
+
+    @property
+    def nearest(self) -> Vector:
+        """The point r + ρ of the body that touches, or that is nearest to the support, m."""
+        return Vector(*self.state.position) + self.contact.offset
 
     @property
     def approach(self) -> float:
@@ -48,10 +56,13 @@ class Touch:
         """The part of s along the support, m/s."""
         return self.slip - self.contact.normal * self.approach
 
-    def moving(self, V: Vector, Omega: Vector, support: tuple[float, ...] | None = None) -> State:
-        """Return the state with other velocities."""
+    def moving(
+        self, system: RollingSystem, V: Vector, Omega: Vector, support: tuple[float, ...] | None = None
+    ) -> Touch:
+        """Return the body at the same place with other velocities, also of the support's own motion."""
         own = self.state.support if support is None else support
-        return replace(self.state, velocity=floats(V), angular_velocity=floats(Omega), support=own)
+        state = replace(self.state, velocity=floats(V), angular_velocity=floats(Omega), support=own)
+        return Touch.of(system, state, self.contact.point)
 
     def scale(self, system: RollingSystem) -> float:
         """Return a speed of this motion: the fastest at the contact, or what all that acts makes of it, m/s."""

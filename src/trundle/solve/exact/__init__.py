@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from ...errors import SolverError
 from ...mechanics.system import RollingSystem, State
 from .. import following
@@ -76,9 +74,7 @@ def closed_form(system: RollingSystem, start: State) -> ClosedForm | None:
         now = following.at_start(system, start)
     except SolverError:  # it cannot go on at all
         return None
-    if list(now.state) != now.law.pack(system, start):  # it strikes the support at once, or begins to slip
-        start = now.law.record(system, np.array([now.time]), np.asarray(now.state, dtype=float)[None]).state(0)
-    return form_of_phase(now.law.code, system, start, now.state)
+    return form_of_phase(now.law.code, system, now.start, now.numbers)
 
 
 def form_of_phase(phase: int, system: RollingSystem, start: State, numbers: Sequence[float]) -> ClosedForm | None:

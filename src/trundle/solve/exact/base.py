@@ -60,6 +60,10 @@ class ClosedForm:
         del t
         return ()
 
+    def motion_and_own_at(self, t: Any) -> tuple[tuple[Vector, Vector, Vector, Vector], tuple[Any, ...]]:
+        """Return what `motion_at` and `own_at` do."""
+        return self.motion_at(t), self.own_at(t)
+
     @property
     def period(self) -> Any:
         """Time after which the motion repeats, s; infinite where it does not."""

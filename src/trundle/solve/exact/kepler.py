@@ -13,10 +13,11 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 
 _MOST_STEPS = 400
+_TABLE = 64  # parts, between which two or three of Newton's steps find x
 _TERMS = 12  # of the series below |z| = 1: the next would be 1e-24
 _EPSILON = 2.0**-52
 _CLOSE = 1e-12  # share of x within which a step of Newton's method may be nothing but rounding
-_SERIES = [[(-1) ** n / factorial(2 * n + k) for n in range(_TERMS)] for k in (2, 3)]
+_SERIES = [(-1) ** n / factorial(2 * n + 3) for n in range(_TERMS)]
 
 
 def inverse_of(time: Callable[[Any], tuple[Any, Any]], t: Any, high: Any) -> Any:
@@ -29,7 +30,7 @@ def inverse_of(time: Callable[[Any], tuple[Any, Any]], t: Any, high: Any) -> Any
     t : array (n,)
         At least 0.
     high : array (n,)
-        A first guess; where it is too small, it is doubled.
+        A first guess of bounds; where the largest is too small, it is doubled.
 
     Returns
     -------
@@ -45,8 +46,8 @@ def inverse_of(time: Callable[[Any], tuple[Any, Any]], t: Any, high: Any) -> Any
     t, high = np.broadcast_arrays(np.asarray(t, dtype=float), np.asarray(high, dtype=float))
     shape, t, high = t.shape, t.ravel(), high.ravel().copy()
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        low, high = _brackets(time, t, high)
-        x, last = 0.5 * (low + high), high - low
+        x, low, high = _begun(time, t, high)
+        last = high - low
         left = np.arange(t.size)  # those not yet found
         for _ in range(_MOST_STEPS):
             at, before, behind = x[left], low[left], high[left]
@@ -67,15 +68,20 @@ def inverse_of(time: Callable[[Any], tuple[Any, Any]], t: Any, high: Any) -> Any
     return x.reshape(shape)
 
 
-def _brackets(time: Callable[[Any], tuple[Any, Any]], t: Any, high: Any) -> tuple[Any, Any]:
-    """Return bounds between which each x is, from a first guess of the upper ones."""
-    low = np.zeros_like(t)
+def _begun(time: Callable[[Any], tuple[Any, Any]], t: Any, high: Any) -> tuple[Any, Any, Any]:
+    """Return a first x for each t, read off a table, and bounds between which it is."""
+    latest, end = t.max(initial=0.0), high.max(initial=0.0)
     for _ in range(_MOST_STEPS):
-        short = time(high)[0] < t
-        if not short.any():
+        if not time(end)[0] < latest:
             break
-        low, high = np.where(short, high, low), np.where(short, 2 * high, high)
-    return low, high
+        end = 2 * end
+    table = np.linspace(0.0, end, _TABLE + 1)
+    reached = time(table)[0]
+    j = np.clip(np.searchsorted(reached, t, side="right") - 1, 0, _TABLE - 1)
+    x = table[j] + (t - reached[j]) / (reached[j + 1] - reached[j]) * (table[j + 1] - table[j])
+    x = np.where((x >= table[j]) & (x <= table[j + 1]), x, 0.5 * (table[j] + table[j + 1]))
+    # A neighbour more on both sides, since t(x) may round otherwise the next time.
+    return x, table[np.maximum(j - 1, 0)], table[np.minimum(j + 2, _TABLE)]
 
 
 def precisely(time: Callable[[Any], tuple[Any, Any]], t: Any, near: float) -> Any:
@@ -135,18 +141,16 @@ def stumpff(square: Any, x: Any) -> tuple[Any, Any, Any, Any]:
     """
     if type(x).__module__.partition(".")[0] == "mpmath":
         return _precise_stumpff(square, x)
-    z = square * x * x
-    small = np.abs(z) < 1
-    near = np.where(small, z, 0.0)
-    c2, s3 = (polyval(near, series) for series in _SERIES)
-    nu = abs(square) ** 0.5
+    if not square:
+        return 1 + 0 * x, x, 0.5 * x * x, x * x * x / 6
+    nu, z = abs(square) ** 0.5, square * x * x
     with np.errstate(over="ignore", invalid="ignore"):
-        y = np.where(small, 0.0, nu * x)
-        half, sine = (np.sin(0.5 * y), np.sin(y)) if square > 0 else (np.sinh(0.5 * y), np.sinh(y))
-    over = 1 / nu if nu else 0.0
-    versine = np.where(small, x * x * c2, 2 * (half * over) ** 2)
-    s1 = np.where(small, x * (1 - near * s3), sine * over)
-    rest = np.where(small, x * x * x * s3, (x - s1) / (square or 1.0))
+        half, sine = (np.sin(0.5 * nu * x), np.sin(nu * x)) if square > 0 else (np.sinh(0.5 * nu * x), np.sinh(nu * x))
+        versine, s1 = 2 * (half / nu) ** 2, sine / nu
+        rest = (x - s1) / square
+    small = np.abs(z) < 1
+    if np.any(small):  # where the difference would lose digits
+        rest = np.where(small, x * x * x * polyval(np.where(small, z, 0.0), _SERIES), rest)
     return 1 - square * versine, s1, versine, rest
 
 

@@ -204,24 +204,26 @@ class SphereOnFreePlane(ClosedForm):
         >>> [round(float(part), 12) for part in ball.motion_at(ball.period)[0]]
         [0.1, 0.0, 0.025]
         """
-        if not is_one(self):
-            return one_by_one(self, t)
+        return self.motion_and_own_at(t)[0] if is_one(self) else one_by_one(self, t)
+
+    def own_at(self, t: Any) -> tuple[Any, Any]:
+        """Return the angle by which the table has turned, rad, and by how much its rate has grown, rad/s."""
+        return self.motion_and_own_at(t)[1]
+
+    def motion_and_own_at(self, t: Any) -> tuple[tuple[Vector, Vector, Vector, Vector], tuple[Any, ...]]:
+        """Return what `motion_at` and `own_at` do, by going once from the time to τ."""
         number = _mpf if _is_mpmath(t) else float
         orbit = _Orbit.of(self, number)
-        zeta, V, A, omega, _ = orbit.at(t)
+        zeta, V, A, omega, angle = orbit.at(t)
         a, m, zero = number(self.radius), number(self.mass), 0 * t
         Omega = (1j * V + omega * zeta) / a
-        return (
+        motion = (
             Vector(zeta.real + zero, zeta.imag + zero, a + zero),
             Vector(V.real + zero, V.imag + zero, zero),
             Vector(Omega.real + zero, Omega.imag + zero, number(self.spin) + zero),
             Vector(m * A.real + zero, m * A.imag + zero, number(self.normal_force) + zero),
         )
-
-    def own_at(self, t: Any) -> tuple[Any, Any]:
-        """Return the angle by which the table has turned, rad, and by how much its rate has grown, rad/s."""
-        *_, omega, angle = _Orbit.of(self, _mpf if _is_mpmath(t) else float).at(t)
-        return angle, omega - self.rate
+        return motion, (angle, omega - self.rate)
 
 
 @dataclass(frozen=True)
