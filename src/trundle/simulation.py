@@ -88,7 +88,8 @@ def simulate(
     if scenario is None:
         title, scenario = _described(system, start, times, method, title)
     data = labels.dataset(system, samples, labels.attributes(title, chosen))
-    return Trajectory(data, system, start, chosen.name, samples.events, scenario)
+    known = {} if samples.form is None else {"form": samples.form}
+    return Trajectory(data, system, start, chosen.name, samples.events, scenario, known)
 
 
 def _described(system: RollingSystem, start: State, times: Any, method: str, title: str) -> tuple[str, str]:

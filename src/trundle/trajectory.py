@@ -14,6 +14,7 @@ from .errors import InvalidValueError, TrundleError, UnknownNameError
 from .files import written_whole
 from .mechanics.system import RollingSystem, State
 from .scenario import ScenarioFile
+from .solve.exact import ClosedForm, closed_form
 from .solve.methods import Method
 from .solve.samples import Event, Samples
 from .viewer.viewable import Viewable
@@ -61,7 +62,7 @@ class Trajectory(Viewable):
     method: str
     events: tuple[Event, ...] = ()
     scenario: str = ""
-    _kept: dict[str, Any] = field(default_factory=dict, compare=False)  # the card, once made
+    _kept: dict[str, Any] = field(default_factory=dict, compare=False)  # card and closed form, once asked for
 
     def __repr__(self) -> str:
         t = self.data.time.values
@@ -87,6 +88,13 @@ class Trajectory(Viewable):
     def tolerance(self) -> float:
         """The tolerance of the method; 0 for a closed form."""
         return float(self.data.attrs["tolerance"])
+
+    @property
+    def closed_form(self) -> ClosedForm | None:
+        """The closed form of the phase in which it starts; None where there is none."""
+        if "form" not in self._kept:
+            self._kept["form"] = closed_form(self.system, self.start)
+        return self._kept["form"]
 
     @property
     def samples(self) -> Samples:

@@ -50,6 +50,15 @@ class MotionContract:
             assert size_of(R @ R.transpose - Matrix.identity()) <= EXACT(16, 1)
             assert abs(R.a.dot(R.b.cross(R.c)) - 1) <= EXACT(16, 1)
 
+    def test_its_word_about_the_axis_is_true(self) -> None:
+        if self.motion.keeps_axis is None:
+            return
+        for t in self.times():
+            now = self.at(t)
+            turning = (now.angular_velocity, now.angular_acceleration)
+            leans = now.rotation @ E_Z != E_Z or any(part != 0 for rate in turning for part in (rate.x, rate.y))
+            assert leans is not self.motion.keeps_axis
+
     @precisely
     def test_material_points_move_as_it_says(self) -> None:
         for t, own in zip(self.times(), vectors("own", 6), strict=True):

@@ -84,7 +84,8 @@ def land(system: RollingSystem, contact: Contact, orientation: Quaternion, slip:
     """
     J = system.body.inertia_in_space(orientation.matrix())
     basis = _basis(contact.normal)
-    M = np.array([[response(system, contact, orientation, e).dot(d) for e in basis] for d in basis])
+    answers = [response(system, contact, orientation, e) for e in basis]
+    M = np.array([[answer.dot(d) for answer in answers] for d in basis])
     mu = None if system.support.friction is None else float(system.support.sliding_friction)
     begin = np.array([float(slip.dot(d)) for d in basis])
     parts = _Course(M, mu, float(system.support.restitution), begin).impulse()

@@ -135,8 +135,8 @@ def keeps_axis(motion: Motion) -> bool:
     Parameters
     ----------
     motion : Motion
-        Any; its own word counts if it has a `keeps_axis`, else it is looked at, at instants from a fraction of a
-        millisecond to two days, and must not lean by a single bit.
+        Any; its own `keeps_axis` counts, else it is looked at, at instants from a fraction of a millisecond to two
+        days, and must not lean by a single bit.
 
     Returns
     -------
@@ -149,9 +149,8 @@ def keeps_axis(motion: Motion) -> bool:
     >>> keeps_axis(tr.UnevenSpin(3.5, 0.01, 3.5)), keeps_axis(tr.Wobble(3.5, "0.1 deg"))
     (True, False)
     """
-    said = getattr(motion, "keeps_axis", None)
-    if said is not None:
-        return bool(said)
+    if motion.keeps_axis is not None:
+        return motion.keeps_axis
     if motion.steady_rate is not None:
         return True
     try:

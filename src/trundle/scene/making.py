@@ -8,7 +8,6 @@ import numpy as np
 
 from ..errors import InvalidValueError
 from ..mechanics.surfaces import Plane
-from ..solve.exact import closed_form
 from ..solve.samples import Samples
 from .body_mesh import body_mesh
 from .columns import UNITS, columns_of, guiding_centre, material, moves, pose_of
@@ -61,7 +60,7 @@ def scene_of(
     run = run.in_frame("support")
     at = shown(run, MOST if samples is None else samples)
     body = body_mesh(run.system.body)
-    form = closed_form(run.system, run.start)
+    form = run.closed_form
     columns = columns_of(at)
     state = at.support(run.system)
     if moves(run.system):

@@ -179,7 +179,7 @@ def _samples(
     if progress is not None and times.size:
         progress(float(times[-1]))
     phase: Any = np.full(times.size, law.code, dtype=np.int8)
-    return Samples(times, position, contact, velocity, turning, q, force + 0.0, phase=phase, own=own)
+    return Samples(times, position, contact, velocity, turning, q, force + 0.0, phase=phase, own=own, form=form)
 
 
 def _contact(system: RollingSystem, law: Law, times: Array, position: Array, q: Array, own: Array) -> Array:

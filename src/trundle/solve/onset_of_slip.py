@@ -67,8 +67,7 @@ def first_moment(system: RollingSystem, at: Touch, needed: Vector) -> tuple[Touc
     growth = max((later(trial)[2] - begun) / trial, 1e-300)
     settling = needed.norm() * response(system, at.contact, at.orientation, needed / needed.norm()).norm()
     wait = trial if begun > 0 else min(max(settling / (_SETTLED_IN * growth), trial), 1000 * trial)
-    (middle, *_), (then, hat, speed) = (later(0.5 * wait), later(wait))
-    halfway = _way(system, middle, _friction(system, middle))[1]
+    (_, _, halfway), (then, hat, speed) = later(0.5 * wait), later(wait)
     slip = hat * (wait * (begun + 4 * halfway + speed) / 6)
     near = min((0.25 * slip.norm()) ** 2, at.still(system) ** 2)
     return _pushed(system, then, slip), (near, *floats(hat))

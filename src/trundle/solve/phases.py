@@ -84,7 +84,7 @@ def solve(
     parts: list[Samples] = []
     now = following.at_start(system, start)
     events += now.events
-    left, told = times, _telling(progress, times)
+    left, told, forms = times, _telling(progress, times), []
     if now.time > start.time:  # it slips from rest: its first moment is behind it
         held = RollingLaw()
         left = _across(system, held, Stop(start.time, "", np.array(held.pack(system, start))), now, left, parts)
@@ -92,6 +92,7 @@ def solve(
         stretch = integrate(system, now, left, tolerance, told)
         known = stretch.samples
         parts.append(now.law.record(system, stretch.times, stretch.states) if known is None else known)
+        forms.append(parts[-1].form)
         if stretch.stop is None:
             break
         stop, law = stretch.stop, now.law
@@ -105,7 +106,7 @@ def solve(
         _check_count(system, events)
         left = _across(system, law, stop, now, left[left >= stop.time], parts)
     kept = [part for part in parts if part.time.size] or parts[:1]
-    return Samples.joined(kept, tuple(events))
+    return replace(Samples.joined(kept, tuple(events)), form=forms[0])
 
 
 def _across(system: RollingSystem, law: Law, stop: Stop, follows: Next, left: Array, parts: list[Samples]) -> Array:

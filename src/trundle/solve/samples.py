@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -80,6 +81,7 @@ class Samples:
     events: tuple[Event, ...] = ()
     phase: Any = None  # (n,) int8: ROLLING, SLIPPING, FLIGHT or RESTING; absent: rolling
     own: Any = None  # (n, k): the coordinates of the support's own motion; absent: none
+    form: Any = None  # the closed form of the phase in which they start, where they come from one
 
     def __post_init__(self) -> None:
         if self.phase is None:
@@ -95,8 +97,7 @@ class Samples:
     @staticmethod
     def joined(parts: Sequence[Samples], events: tuple[Event, ...] = ()) -> Samples:
         """Return several stretches of one run as one."""
-        names = [field.name for field in fields(Samples) if field.name != "events"]
-        joined = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
+        joined = {name: np.concatenate([getattr(part, name) for part in parts]) for name in _columns()}
         return Samples(**joined, events=events)
 
     def motion(self, system: RollingSystem) -> BodyMotion:
@@ -134,8 +135,7 @@ class Samples:
 
     def part(self, where: Any) -> Samples:
         """Return some of the samples, chosen as an array is indexed."""
-        arrays = {f.name: getattr(self, f.name)[where] for f in fields(self) if f.name != "events"}
-        return Samples(**arrays, events=self.events)
+        return replace(self, **{name: getattr(self, name)[where] for name in _columns()})
 
     def state(self, index: int) -> State:
         """Return one sample as a state to start from."""
@@ -151,6 +151,11 @@ class Samples:
             float(self.time[index]),
             row(self.own),
         )
+
+
+@cache
+def _columns() -> tuple[str, ...]:
+    return tuple(field.name for field in fields(Samples) if field.name not in ("events", "form"))
 
 
 def ran_off(time: float, rim: Any) -> Event:

@@ -57,6 +57,7 @@ class Motion:
 
     own: tuple[str, ...] = ()  # names of these coordinates: ("angle",) or, of a free axle, ("angle", "rate")
 
+    keeps_axis: bool | None = None  # whether it never leans the support's third axis; None: that is looked at
     turns: bool = True  # False: it only shifts the support
     free: bool = False  # whether the axle's acceleration is an unknown of the contact law
     inertia: Scalar  # of a free axle, kg m²

@@ -49,6 +49,7 @@ class FreeAxle(Motion):
     bearing_torque: Scalar = 0.0
     below: Scalar = 0.01
     own = ("angle", "rate")
+    keeps_axis = True
     free = True
 
     def __post_init__(self) -> None:

@@ -35,6 +35,7 @@ class SpinBy(Motion):
 
     rate: Any
     own = ("angle",)
+    keeps_axis = True
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "rate", varying(self.rate, "angular velocity", "rate"))

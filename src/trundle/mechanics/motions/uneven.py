@@ -33,6 +33,7 @@ class UnevenSpin(Motion):
     rate: Scalar
     variation: Scalar
     variation_rate: Scalar
+    keeps_axis = True
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "rate", checks.real(self.rate, "angular velocity", "rate"))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -177,7 +178,7 @@ class SphereInFlight(ClosedForm):
         speeds = [abs(v) + abs(f) * duration / self.mass for v, f in zip(self.velocity, self.force, strict=True)]
         return max(speeds) / float(self.radius if self.distance is None else self.distance)
 
-    @property
+    @cached_property
     def ends_at(self) -> dict[str, float]:
         """When it lands, s: the first root of the distance, a polynomial, at which that falls to where it touches."""
         f = self._gap()
@@ -191,7 +192,7 @@ class SphereInFlight(ClosedForm):
         roots = np.roots(f[::-1])
         near = np.abs(roots.imag) <= 1e-7 * np.abs(roots)
         found = sorted(float(t) for t in roots[near].real if t > 0)
-        crossed = [t for t in (_polished(f, t) for t in found) if np.polyval(np.polyder(f[::-1]), t) <= 0]
+        crossed = [t for t in (_polished(f, t) for t in found) if _value_and_slope(f, t)[1] <= 0]
         return {"land": crossed[0] if crossed else math.inf}
 
     def _gap(self) -> Any:
@@ -287,10 +288,17 @@ def turns_freely(motion: Any) -> bool:
 
 def _polished(f: Any, t: float) -> float:
     """Return a root of a polynomial, constant first, to the last digit by Newton's steps."""
-    slope = np.polyder(f[::-1])
     for _ in range(4):
-        rate = np.polyval(slope, t)
+        value, rate = _value_and_slope(f, t)
         if rate == 0:
             break
-        t = float(t - np.polyval(f[::-1], t) / rate)
+        t -= value / rate
     return t
+
+
+def _value_and_slope(f: Any, t: float) -> tuple[float, float]:
+    """Return what a polynomial, constant first, and its derivative are at a time, by Horner's rule."""
+    value, slope = 0.0, 0.0
+    for coefficient in reversed(f.tolist()):
+        value, slope = value * t + coefficient, slope * t + value
+    return value, slope
