@@ -14,6 +14,7 @@ from ..plots.ground import Window, meridians, window_of
 from .mesh import Array, Mesh, grid_triangles, joined, oriented
 
 _AROUND, _ALONG = 120, 48  # cells of a surface of revolution round its axis and along its outline
+_OF_STRAIGHT = np.array([0.0, 1 / 12, 1 / 4, 1.0])  # shares of a straight outline
 _SIDE = 64  # cells along a side of a field
 _FAR = 3.0  # times as far as a run comes, and an edge is not shown
 _PROJECTIONS = 4  # of Newton's steps that bring a vertex onto the surface
@@ -158,12 +159,12 @@ def _outlines(surface: Surface, window: Window, first: bool) -> list[Array]:
 
 
 def _thinned(line: Array) -> Array:
-    """Return points of a line, even along it; few of a straight one."""
+    """Return points of a line, even along it; a few of a straight one, so that turns are true near the axis."""
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
     if len(line) < 2 or along[-1] == 0:
         return line
     straight = along[-1] - np.hypot(*(line[-1] - line[0])) <= 1e-9 * along[-1]
-    at = np.linspace(0.0, along[-1], (_ALONG // 4 if straight else _ALONG) + 1)
+    at = along[-1] * (_OF_STRAIGHT if straight else np.linspace(0.0, 1.0, _ALONG + 1))
     return np.column_stack([np.interp(at, along, line[:, i]) for i in (0, 1)])
 
 

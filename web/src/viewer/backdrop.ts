@@ -14,10 +14,9 @@ uniform vec3 glow, ground;
 varying vec2 place;
 void main() {
   float off = length((place - vec2(0.0, 0.3)) * vec2(0.8, 0.95));
-  gl_FragColor = vec4(mix(glow, ground, smoothstep(0.0, 1.15, off)), 1.0);
-  #include <colorspace_fragment>
   // Half a step of noise hides the steps of so gentle a slope.
-  gl_FragColor.rgb += (fract(sin(dot(gl_FragCoord.xy, vec2(12.9898, 78.233))) * 43758.5453) - 0.5) / 255.0;
+  float noise = fract(dot(fract(gl_FragCoord.xy * vec2(0.75487767, 0.56984029)), vec2(37.31, 23.17))) - 0.5;
+  gl_FragColor = vec4(mix(glow, ground, smoothstep(0.0, 1.15, off)) + noise / 255.0, 1.0);
 }
 `
 
@@ -42,8 +41,8 @@ export class Backdrop {
   }
 
   look(glow: string, ground: string): void {
-    this.uniforms.glow.value.set(glow)
-    this.uniforms.ground.value.set(ground)
+    this.uniforms.glow.value.set(glow).convertLinearToSRGB() // mixed as the screen shows it, which needs no powers
+    this.uniforms.ground.value.set(ground).convertLinearToSRGB()
   }
 
   dispose(): void {

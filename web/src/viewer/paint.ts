@@ -42,20 +42,33 @@ vec3 painted(vec3 place, vec3 pattern) {
 `
 
 const SUPPORT = /* glsl */ `
-// Without branches: a processor that draws goes through both sides of each.
+// Without branches, and only what such markings need: a processor that draws goes through both sides of each.
 vec3 painted(vec2 marks, vec3 place) {
-  float ring = flatness > 0.5 ? length(place.xy) / spacing : marks.y * rings;
-  vec2 at = polar > 0.5 ? vec2(marks.x * sectors, ring) : place.xy / spacing;
+#ifdef SQUARE
+  vec2 at = place.xy / spacing;
+#elif defined(FLAT)
+  vec2 at = vec2(marks.x * sectors, length(place.xy) / spacing);
+#else
+  vec2 at = vec2(marks.x * sectors, marks.y * rings);
+#endif
   vec2 width = max(fwidth(at), 1e-9);
-  float check = abs(alternate(at.x, width.x) - (1.0 - polar) * alternate(at.y, width.y));
-  vec3 tone = mix(base, other, check * contrast);
-  float first = clamp((0.5 - abs(at.x - 0.5)) / width.x + 0.5, 0.0, 1.0);
-  tone = mix(tone, accent, first * accented * polar);
   float fine = max(rule(beyond(at.x, width.x, 1.0), stroke, width.x), rule(beyond(at.y, width.y, 1.0), stroke, width.y));
+  float check = alternate(at.x, width.x);
+#ifdef SQUARE
+  check = abs(check - alternate(at.y, width.y));
   float wide = 1.6 * stroke;
   float fifth = max(
     rule(beyond(at.x, width.x, 5.0), wide, 0.2 * width.x), rule(beyond(at.y, width.y, 5.0), wide, 0.2 * width.y));
-  tone = mix(tone, line, max((0.4 + 0.15 * polar) * fine, 0.75 * (1.0 - polar) * fifth));
+  float lines = max(0.4 * fine, 0.75 * fifth);
+#else
+  float lines = 0.55 * fine;
+#endif
+  vec3 tone = mix(base, other, check * contrast);
+#ifndef SQUARE
+  float first = clamp((0.5 - abs(at.x - 0.5)) / width.x + 0.5, 0.0, 1.0);
+  tone = mix(tone, accent, first * accented);
+#endif
+  tone = mix(tone, line, lines);
   float near = 0.0;
   for (int i = 0; i < 5; i++) {
     if (i >= touching) break;
@@ -65,10 +78,17 @@ vec3 painted(vec2 marks, vec3 place) {
   return tone * (1.0 - shade * near);
 }
 float kept(vec3 place) { // of a plane that has no edge: it is lost in the distance
-  if (fade.w <= 0.0) return 1.0;
+#ifndef ENDLESS
+  return 1.0;
+#else
   vec2 off = abs(place.xy - fade.xy) / fade.zw;
-  float edge = polar > 0.5 ? length(off) : max(off.x, off.y);
+#ifdef SQUARE
+  float edge = max(off.x, off.y);
+#else
+  float edge = length(off);
+#endif
   return 1.0 - smoothstep(0.72, 1.0, edge);
+#endif
 }
 `
 
@@ -102,20 +122,32 @@ export interface SupportPaint {
   other: { value: Color }
   line: { value: Color }
   accent: { value: Color }
-  polar: { value: number }
   sectors: { value: number }
   rings: { value: number }
   contrast: { value: number }
   accented: { value: number }
   spacing: { value: number }
-  /** 1 where rings are at round distances from the axis. */
-  flatness: { value: number }
   stroke: { value: number }
   shade: { value: number }
   /** How many of these are in use. */
   touching: { value: number }
   touches: { value: Vector4[] }
   fade: { value: Vector4 }
+}
+
+/** How a support is marked: `square`, else round its axis; `flat`: with rings at round distances; `endless`: it fades. */
+export interface Marking {
+  square: boolean
+  flat: boolean
+  endless: boolean
+}
+
+/** Let a support's material hold just the code of its marking. */
+export function mark(material: Material, { square, flat, endless }: Marking): void {
+  const wanted = { ...(square && { SQUARE: '' }), ...(flat && { FLAT: '' }), ...(endless && { ENDLESS: '' }) }
+  if (String(Object.keys(wanted)) === String(Object.keys(material.defines ?? {}))) return
+  material.defines = wanted
+  material.needsUpdate = true
 }
 
 export function paintBody(material: Material, paint: BodyPaint): void {
@@ -137,7 +169,7 @@ export function paintSupport(material: Material, paint: SupportPaint): void {
     attributes: 'attribute vec2 marks;',
     vertex: 'vMarks = marks;\nvPlace = position;',
     uniforms: `uniform vec3 base, other, line, accent;
-uniform float polar, sectors, rings, contrast, accented, spacing, flatness, stroke, shade;
+uniform float sectors, rings, contrast, accented, spacing, stroke, shade;
 uniform int touching;
 uniform vec4 touches[5];
 uniform vec4 fade;`,

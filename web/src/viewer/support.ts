@@ -18,7 +18,7 @@ import {
 } from 'three'
 import { mergeGeometries } from 'three/addons/utils/BufferGeometryUtils.js'
 import { Line, pieces } from './lines'
-import { paintSupport, type SupportPaint } from './paint'
+import { mark, paintSupport, type SupportPaint } from './paint'
 import { lengthWords } from './quantities'
 import { edgesOf } from './rim'
 import { type Scene, sameNumbers } from './scene'
@@ -68,11 +68,15 @@ export class SupportModel {
     const plane = support.kind === 'plane'
     const boundless = plane && support.rim === null
     repaint(this.paint, scene)
-    for (const part of [this.front, this.back, this.side]) part.visible = there && part !== this.side
+    const square = support.marks === 'square'
+    for (const part of [this.front, this.back, this.side]) {
+      part.visible = there && part !== this.side
+      mark(part.material, { square, flat: plane, endless: boundless })
+    }
     this.rim.setPoints(new Float32Array())
     if (!there) return
     const geometry = sheet ? sheetUnder(scenes) : geometryOf(scene)
-    this.measure(geometry, plane, support.marks === 'square')
+    this.measure(geometry, plane, square)
     this.replace(this.front, geometry, boundless)
     this.replace(this.back, geometry, true)
     this.side.visible = plane && !boundless
@@ -87,7 +91,6 @@ export class SupportModel {
     const { min, max } = geometry.boundingBox!
     const spacing = roundLength((square ? 0.07 : 0.15) * Math.max(max.x - min.x, max.y - min.y))
     this.paint.spacing.value = spacing
-    this.paint.flatness.value = plane ? 1 : 0
     const words = square ? 'squares of' : 'rings every'
     this.note = plane || square ? `${words} ${lengthWords(spacing)}` : ''
   }
@@ -173,13 +176,11 @@ function newPaint(): SupportPaint {
     other: { value: new Color() },
     line: { value: new Color() },
     accent: { value: new Color() },
-    polar: { value: 1 },
     sectors: { value: 12 },
     rings: { value: 4 },
     contrast: { value: 1 },
     accented: { value: 1 },
     spacing: { value: 1 },
-    flatness: { value: 0 },
     stroke: { value: 1.3 },
     shade: { value: 0.6 },
     touching: { value: 0 },
@@ -190,7 +191,6 @@ function newPaint(): SupportPaint {
 
 /** What stands still is marked more quietly than what moves. */
 function repaint(paint: SupportPaint, { header: { support } }: Scene): void {
-  paint.polar.value = support.marks === 'square' ? 0 : 1
   paint.contrast.value = support.moves ? 1 : 0.45
   paint.accented.value = support.moves ? 1 : 0
   paint.fade.value.set(0, 0, 0, 0)
