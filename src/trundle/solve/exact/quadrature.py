@@ -99,10 +99,11 @@ def series_at(series: NDArray[Any], piece: Any, x: Any) -> Any:
     >>> float(series_at(np.array([0.0, 0.0, 1.0]).reshape(3, 1, 1), 0, 0.5)[0])  # 2x² − 1
     -0.5
     """
-    ahead = behind = 0.0 * series[0][:, piece] * x  # order by order: a million times must not be 25 million numbers
+    twice = 2 * x
+    ahead = behind = 0.0 * series[0].take(piece, axis=1) * x  # order by order: a million times are not 25 million
     for order in range(len(series) - 1, 0, -1):
-        ahead, behind = series[order][:, piece] + 2 * x * ahead - behind, ahead
-    return series[0][:, piece] + x * ahead - behind
+        ahead, behind = series[order].take(piece, axis=1) + twice * ahead - behind, ahead
+    return series[0].take(piece, axis=1) + x * ahead - behind
 
 
 class Running:

@@ -12,7 +12,7 @@ from .quadrature import rule, series_at
 _LONGEST = 0.5  # s, of a piece: what a rate or a load does within a fiftieth of it would not be seen
 _MOST_PHASE = 1.0  # rad of κ and e-folds of drag on a piece
 _SHARE, _SHORTEST = 4e-15, 1e-13  # left by the last coefficients; of a piece where the rate or a load has a kink
-_MOST_PIECES = 2_000_000
+_MOST_PIECES, _AHEAD = 2_000_000, 8
 _MOST_KNOWN, _MOST_KINKS = 1000, 200
 
 
@@ -27,6 +27,7 @@ class Course:
         self.zeta, self.velocity = [complex(*form.position)], [complex(*form.velocity)]
         self.rate = [float(form.rates(0.0)[0])]
         self.turned, self.swept, self.kinks = [0.0], [0.0], 0
+        self.ahead: dict[tuple[float, float], Any] = {}  # what is given on pieces to come, by begin and length
         self.series: list[Any] = []  # of ∫ω and ∫K_z, of ∫e^−Λ N and ∫φ
         self.stacked: Any = None
 
@@ -71,7 +72,7 @@ class Course:
         while self.edges[-1] <= end:
             begin = self.edges[-1]
             self.length = min(_LONGEST, 2 * self.length)
-            while not self._piece(begin):
+            while not self._piece(begin, end):
                 self.length /= 2
             if len(self.series) > _MOST_PIECES:
                 raise SolverError(
@@ -79,14 +80,30 @@ class Course:
                     f"{_MOST_PIECES} pieces end at t = {begin:g} s. Ask for a shorter run."
                 )
 
-    def _piece(self, begin: float) -> bool:
+    def _given(self, begin: float, end: float) -> Any:
+        """Return the points of a piece, and there ω, φ and K_z; ω is at its end, too.
+
+        They are asked for on several pieces at once, since each call costs as much as all else about a piece.
+        """
+        if (begin, self.length) not in self.ahead:
+            begins = [begin]
+            while len(begins) < _AHEAD and begins[-1] + self.length <= end:
+                begins.append(begins[-1] + self.length)
+            share = np.append(0.5 * (1 + rule().points), 1.0)
+            times = np.array(begins)[:, None] + self.length * share
+            with np.errstate(all="ignore"):  # what is not finite is refused by name
+                found = (self.form.rates(times.ravel())[0], *self.form.pushes(times.ravel())[2:])
+            rows = [times, *(np.broadcast_to(part, times.size).reshape(times.shape) for part in found)]
+            self.ahead = {(at, self.length): [row[i] for row in rows] for i, at in enumerate(begins)}
+        times, omega, push, couple = self.ahead[begin, self.length]
+        return times[:-1], omega, push[:-1], couple[:-1]
+
+    def _piece(self, begin: float, end: float) -> bool:
         """Add a piece; False where it is too long for its polynomials."""
         form, this = self.form, rule()
         half = 0.5 * self.length
-        times = begin + half * (1 + this.points)
-        with np.errstate(all="ignore"):  # what is not finite is refused by name
-            omega = np.broadcast_to(form.rates(times)[0], times.shape)
-            _, _, push, couple = (np.broadcast_to(part, times.shape) for part in form.pushes(times))
+        times, all_omega, push, couple = self._given(begin, end)
+        omega, rate = all_omega[:-1], float(all_omega[-1])
         _check_finite(form.start_time + times, omega, push, couple)
         swept = half * (form.gamma + form.share * np.abs(omega).max())
         kinked = self.length <= _SHORTEST * max(1.0, begin)
@@ -116,7 +133,6 @@ class Course:
         series = half * (this.antiderivative @ values.T)
         angle, turned, added, push = series.sum(axis=0)
         gone = np.exp(1j * form.share * angle.real - 2 * form.gamma * half) * added
-        rate = float(form.rates(begin + self.length)[0])
         driven = self.velocity[-1] + 1j * form.share * (rate - self.rate[-1]) * self.zeta[-1] + push
         self.series.append((series[:, :2].real, series[:, 2:]))
         self.zeta.append(complex(self.zeta[-1] + gone))
