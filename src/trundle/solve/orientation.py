@@ -1,6 +1,6 @@
 """Orientation q(t) from a known Ω(t): q̇ = ½ Ω q (theory page, section 5).
 
-The time is covered by panels on which Ω is a polynomial, and these are halved into steps on which the body turns little
+The time is covered by panels on which Ω is a polynomial, and each of them by steps on which the body turns little
 and q is its Taylor series about the middle; many steps are worked out at once and then multiplied up, and q at an
 instant is read off its step's series. Where Ω(t) repeats, `periodic_orientation` needs one period only.
 
@@ -27,7 +27,7 @@ AngularVelocity = Callable[[Array], Array]  # times (n,) -> Ω (3, n) in the sup
 
 _NODES = 12  # of the polynomial for Ω on a panel
 _LARGEST_TURN = 8.0  # rad a step
-_PANEL = 8  # steps, a power of two, or less where Ω turns by more than so many rad
+_PANEL = 8  # steps, or less where Ω turns by more than so many rad
 _SMOOTH = 0.4
 _LOOKS = 16  # at how fast the body turns, at least, before the steps are chosen
 _MOST_TERMS = 40  # of q's series on a step
@@ -195,34 +195,34 @@ def _together(parts: Sequence[tuple[Array, ...]]) -> tuple[Array, Array, Array, 
 
 
 def _parted(middle: Array, half: Array, mean: Array, legendre: Array) -> tuple[Array, Array, Array, Array]:
-    """Return steps, ascending, and Ω on each: panels that are halved until the body turns little on their parts."""
+    """Return steps, ascending, and Ω on each: panels in so many equal parts that the body turns little on each."""
     legendre = legendre[:, : _above_rounding(legendre)]
-    turn = _length(mean) / (0.51 * _LARGEST_TURN)
-    levels = np.ceil(np.log2(np.maximum(turn, 1.0))).astype(int)
+    size = legendre.shape[1]
+    counts = np.maximum(np.ceil(_length(mean) / (0.5 * _LARGEST_TURN)), 1).astype(int)
     done = []
-    for level in np.unique(levels).tolist():
-        which, count = levels == level, 2**level
-        share, size = (2 * np.arange(count) + 1) / count - 1, legendre.shape[1]
-        begun = middle[which, None] + half[which, None] * share
-        parts = _parting(level)[:, :size, :size].reshape(-1, size) @ legendre[..., which]
+    for count in np.unique(counts).tolist():
+        which = counts == count
+        begun = middle[which, None] + half[which, None] * _shares(count)
+        parts = _parting(count)[:, :size, :size].reshape(-1, size) @ legendre[..., which]
         parts = parts.reshape(3, count, size, -1).transpose(0, 2, 3, 1).reshape(3, size, -1)
         length = np.repeat(half[which] / count, count)
         done.append((begun.ravel(), length, np.repeat(mean[:, which] / count, count, axis=1), parts))
-    if len(done) == 1 and (np.diff(done[0][0]) >= 0).all():
-        return done[0]
     middle, half, mean, legendre = _together(done)
     order = np.argsort(middle, kind="stable")
     return middle[order], half[order], mean[:, order], legendre[..., order]
 
 
+def _shares(count: int) -> Array:
+    """Return where the middles of equal parts of [−1, 1] are."""
+    return (2 * np.arange(count) + 1) / count - 1
+
+
 @cache
-def _parting(level: int) -> Any:
-    """Return what takes Legendre's coefficients of Ω·(half length) to those on each of 2^level equal parts."""
-    if level == 0:
-        return np.eye(_NODES)[None]
+def _parting(count: int) -> Any:
+    """Return what takes Legendre's coefficients of Ω·(half length) to those on each of so many equal parts."""
     nodes, to_legendre, _ = _fit()
-    halves = [0.5 * to_legendre @ np.polynomial.legendre.legvander(0.5 * (nodes + s), _NODES - 1) for s in (-1, 1)]
-    return np.concatenate([_parting(level - 1) @ half for half in halves])
+    places = _shares(count)[:, None] + nodes / count
+    return to_legendre @ np.polynomial.legendre.legvander(places, _NODES - 1) / count
 
 
 @cache
