@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from .scalars import Scalar, namespace
+from .scalars import Scalar, is_zero, namespace
 from .values import value
 
 
@@ -154,6 +154,11 @@ class Matrix:
         return self.a, self.b, self.c
 
     @property
+    def is_zero(self) -> bool:
+        """Whether all elements are known to be 0."""
+        return all(map(is_zero, (*self.a, *self.b, *self.c)))
+
+    @property
     def determinant(self) -> Scalar:
         """The determinant."""
         return self.a.dot(self.b.cross(self.c))
@@ -198,7 +203,9 @@ class Turned:
 
     @property
     def whole(self) -> Matrix:
-        """The matrix with its elements, of which six are worked out."""
+        """The matrix with its elements, of which six are worked out; a zero stays one."""
+        if self.own.is_zero:
+            return self.own
         a, b, c = self.turn.rows
         p, q, r = (self.own @ row for row in self.turn.rows)
         ab, ac, bc = a.dot(q), a.dot(r), b.dot(r)

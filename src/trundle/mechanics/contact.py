@@ -44,7 +44,7 @@ class Contact:
     @property
     def flat(self) -> bool:
         """Whether the support is known not to bend: S = 0."""
-        return all(is_zero(bend) for row in self.shape_operator.rows for bend in row)
+        return self.shape_operator.is_zero
 
     def across(self, gap: Scalar = 0.0) -> Matrix:
         """Return 1 + (C + g)S: how the body's nearest point moves over the support when the support's does."""
@@ -258,12 +258,12 @@ def _newton(
             down = contact.normal * -_height(surface, _own(support, point), support.rotation.transpose @ contact.normal)
             size = point.norm() + contact.offset.norm()
             left = max(aside.norm(), down.norm()) / size
-            if step > 0 and left <= 1e-15:
-                break
             if step > 0:  # Newton's: the normal leans by S along the support, and ρ follows it by C
                 aside = contact.across(gap).solve(aside)
             point = point + aside + down
             contact = touch(system, time, point, orientation, own)
+            if step > 0 and left <= _CLOSE:  # and its square is nothing
+                break
     except (ArithmeticError, ValueError):  # outside a formula, or where it has no slope
         return None
     return contact if left <= _CLOSE else None
