@@ -14,7 +14,7 @@ from ..plots.ground import Window, meridians, window_of
 from .mesh import Array, Mesh, grid_triangles, joined, oriented
 
 _AROUND, _ALONG = 120, 48  # cells of a surface of revolution round its axis and along its outline
-_OF_STRAIGHT = np.array([0.0, 1 / 12, 1 / 4, 1.0])  # shares of a straight outline
+_OF_STRAIGHT = np.array([0.0, 1 / 16, 1 / 8, 1 / 4, 1 / 2, 1.0])  # shares of a straight outline
 _SIDE = 64  # cells along a side of a field
 _FAR = 3.0  # times as far as a run comes, and an edge is not shown
 _PROJECTIONS = 4  # of Newton's steps that bring a vertex onto the surface

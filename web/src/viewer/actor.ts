@@ -58,7 +58,7 @@ export class Actor {
     this.ahead.mesh.visible = show.trail && show.ahead
     this.guide.mesh.visible = show.guidingCentre && this.guided
     this.trail.reach(time, fading, LEAST)
-    this.ahead.reach(ALL, fading, LEAST)
+    this.ahead.reach(ALL, fading, LEAST, time)
     this.guide.reach(time, fading, LEAST)
   }
 

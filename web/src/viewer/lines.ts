@@ -108,6 +108,9 @@ export class Line {
     faded: { value: new Color() },
   }
 
+  private times = new Float32Array()
+  private since = -Infinity
+
   constructor(order = 1) {
     const material = new ShaderMaterial({
       uniforms: this.uniforms,
@@ -121,6 +124,8 @@ export class Line {
     this.mesh.frustumCulled = false
     this.mesh.onBeforeRender = (renderer) => {
       this.uniforms.pixel.value = 1 / renderer.getPixelRatio()
+      const [first, end] = this.shown
+      this.mesh.geometry.setDrawRange(6 * first, 6 * Math.max(end - first, 0)) // just now: others may share it
     }
     this.mesh.renderOrder = order
     this.mesh.visible = false
@@ -129,6 +134,7 @@ export class Line {
   /** Points as x, y, z, t; a point whose t is `BREAK` parts the line. */
   setPoints(points: Float32Array): void {
     const count = points.length / 4
+    this.times = ascending(points)
     const geometry = new BufferGeometry()
     const buffer = new InterleavedBuffer(fourfold(points), 4)
     geometry.setAttribute('from', new InterleavedBufferAttribute(buffer, 4, 0))
@@ -143,6 +149,7 @@ export class Line {
   sharePoints(other: Line): void {
     this.mesh.geometry.dispose()
     this.mesh.geometry = other.mesh.geometry
+    this.times = other.times
     this.mesh.visible = other.mesh.visible
   }
 
@@ -157,11 +164,19 @@ export class Line {
     this.uniforms.resolution.value.set(width, height)
   }
 
-  /** Show it up to a time; older parts fade to the share `least` over so many seconds. */
-  reach(now: number, fading = 0, least = 1): void {
+  /** Show it up to a time; older parts fade to the share `least` over so many seconds; none are older than `since`. */
+  reach(now: number, fading = 0, least = 1, since = -Infinity): void {
+    this.since = since
     this.uniforms.now.value = now
     this.uniforms.fading.value = fading
     this.uniforms.least.value = least
+  }
+
+  /** The first of the pieces that are drawn, and the one after the last: the rest would be tried in vain. */
+  get shown(): [number, number] {
+    const pieces = Math.max(this.times.length - 1, 0)
+    const { value: now } = this.uniforms.now
+    return [Math.max(before(this.times, this.since) - 1, 0), Math.min(before(this.times, now), pieces)]
   }
 
   /** Length of a dash and its gap, in the unit of t; 0 for a whole line. */
@@ -189,6 +204,28 @@ function fourfold(points: Float32Array): Float32Array {
     }
   }
   return out
+}
+
+/** The times of points, a break taking the one before it; none where they do not grow, and all is drawn. */
+function ascending(points: Float32Array): Float32Array<ArrayBuffer> {
+  const times = new Float32Array(points.length / 4)
+  for (let i = 0; i < times.length; i++) {
+    const time = points[4 * i + 3]!
+    times[i] = time < BREAK || i === 0 ? time : times[i - 1]!
+    if (i > 0 && times[i]! < times[i - 1]!) return new Float32Array(times.length).fill(-1e30)
+  }
+  return times
+}
+
+/** How many of ascending times are before one. */
+function before(times: Float32Array, time: number): number {
+  let [low, high] = [0, times.length]
+  while (low < high) {
+    const middle = (low + high) >> 1
+    if (times[middle]! < time) low = middle + 1
+    else high = middle
+  }
+  return low
 }
 
 const CORNERS = [0, 1, 2, 1, 3, 2]

@@ -13,6 +13,7 @@ import {
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
 import { Backdrop } from './backdrop'
 import { type Fit, fitted } from './camera'
+import { ShadowWatch } from './casting'
 import { askWhoDraws } from './drawing'
 import type { Palette } from './theme'
 
@@ -40,6 +41,7 @@ export class Stage {
   private readonly key = new DirectionalLight()
   private readonly fill = new DirectionalLight()
   private readonly backdrop = new Backdrop()
+  private readonly shadows = new ShadowWatch()
 
   constructor(canvas: HTMLCanvasElement, changed: () => void) {
     this.byProcessor = askWhoDraws()
@@ -47,6 +49,8 @@ export class Stage {
     const antialias = !this.byProcessor
     this.renderer = new WebGLRenderer({ canvas, antialias, alpha: false, powerPreference: 'high-performance' })
     this.renderer.shadowMap.enabled = true
+    this.renderer.shadowMap.autoUpdate = false
+    canvas.addEventListener('webglcontextlost', () => this.shadows.forget())
     this.renderer.shadowMap.type = this.byProcessor ? BasicShadowMap : PCFShadowMap
     this.camera.up.set(0, 0, 1) // before the controls, which take it once
     this.camera.position.set(1, -3, 2)
@@ -157,6 +161,7 @@ export class Stage {
       this.camera.near = near
       this.camera.updateProjectionMatrix()
     }
+    this.renderer.shadowMap.needsUpdate = this.shadows.moved(this.scene, this.key)
     this.renderer.render(this.scene, this.camera)
   }
 
