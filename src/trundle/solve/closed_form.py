@@ -185,11 +185,11 @@ def _samples(
 def _contact(system: RollingSystem, law: Law, times: Array, position: Array, q: Array, own: Array) -> Array:
     """Return the contacts; in flight the points of the support nearest to the body."""
     centre = Vector.of(position)
-    now = touch(system, times, centre, Quaternion.of(q), tuple(own.T))
     if law.code != FLIGHT:
-        return position + now.offset.array()
-    there = now.support.rotation.transpose @ (centre - now.support.origin)
-    return (centre - now.normal * system.support.surface.level(there)).array()
+        return position + touch(system, times, centre, Quaternion.of(q), tuple(own.T)).offset.array()
+    surface, support = system.support.surface, system.support.motion.at(times, *own.T)
+    there = support.rotation.transpose @ (centre - support.origin)
+    return (centre - support.rotation @ surface.normal(there) * surface.level(there)).array()
 
 
 def orientations(motion: ClosedForm, start: State, times: Array) -> Array:
