@@ -22,11 +22,16 @@ POINTS = 10_000
 TITLE = "The lab's page: from a change to its picture, while a number is dragged; and playing a path of 10 000 points"
 
 # The number that is dragged, and from which of its slider's thousand steps on. A light rattleback rocks more slowly:
-# the steps taken are those about its own mass.
+# the steps taken are those about its own mass. The ball that bounces does so 38 times, each of them a closed form.
 SCENARIOS = {
     "level-turntable-nudged": ("support.motion.rate", CLOSED, 300),
     "tilted-turntable": ("support.tilt", CLOSED, 300),
     "ball-in-a-trough": ("body.radius", CLOSED, 300),
+    "free-turntable-ellipse": ("support.motion.rate", CLOSED, 300),
+    "turntable-starting-up": ("body.radius", CLOSED, 300),
+    "chaplygin-ball": ("body.mass", CLOSED, 300),
+    "incline-with-slip": ("support.tilt", CLOSED, 300),
+    "bouncing-ball-with-backspin": ("body.radius", CLOSED, 300),
     "ball-in-a-turning-bowl": ("support.motion.rate", NUMERICAL, 300),
     "turntable-drop": ("support.motion.rate", NUMERICAL, 300),
     "rattleback": ("body.mass", NUMERICAL, 640),

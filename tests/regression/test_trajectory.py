@@ -19,6 +19,7 @@ from tests.tolerances import EXACT, SOLVER
 
 import trundle as tr
 from trundle.mechanics.shapes import Sphere
+from trundle.solve.exact import closed_form
 
 BALL = tr.Body.solid_sphere(radius=0.025, mass=0.065)
 TABLE = tr.Support(tr.Plane(rim=0.5), motion=tr.Spin(3.5), tilt=0.05, friction=0.3)
@@ -222,6 +223,21 @@ def test_runge_kutta_stops_where_rounding_begins() -> None:
 def test_other_tolerances_are_refused(method: str, bad: Any) -> None:
     with pytest.raises(tr.InvalidValueError, match="`tolerance` must be a number from 1e-15 to 1e-06"):
         run(method, tolerance=bad)
+
+
+@pytest.mark.parametrize("name", ["tilted-turntable", "incline-with-slip", "bouncing-ball-with-backspin"])
+def test_it_knows_the_closed_form_that_it_began_with(name: str, tmp_path: Path) -> None:
+    ours = tr.Scenario.load(name).run(duration=0.5, every=0.1)
+    wanted = closed_form(ours.system, ours.start)
+    assert wanted is not None
+    assert ours.closed_form == wanted
+    assert tr.Trajectory.load(ours.save(tmp_path / "run.nc")).closed_form == wanted
+
+
+def test_it_says_where_there_is_no_closed_form() -> None:
+    dish = tr.RollingSystem(BALL, tr.Support(tr.Paraboloid(1.0)))
+    assert run("runge-kutta", dish, dish.place((0.1, 0.0))).closed_form is None
+    assert run("runge-kutta").closed_form == closed_form(SYSTEM, START)
 
 
 # --- the same motion at other instants ------------------------------------------------------------------

@@ -11,7 +11,7 @@ import numpy as np
 from trundle.mechanics.loads import Force, Torque
 from trundle.mechanics.shapes import Ellipsoid, Roller, Sphere
 from trundle.mechanics.surfaces import Bowl, Cylinder, Dome, Plane, TorusTrack
-from trundle.solve.exact import SphereOnPlane
+from trundle.solve.exact import SphereOnPlane, closed_form
 
 from .happenings import FLIGHT, Happening, Stretch, happenings_of, stretches_of
 from .scales import Array
@@ -156,7 +156,7 @@ def _outline(surface: Any) -> float | None:
 
 def guiding_centre(run: Trajectory, times: Array) -> Array | None:
     """Return the point about which the ball circles, (n, 2), m, support frame, where a closed form has it."""
-    form = run.closed_form
+    form = closed_form(run.system, run.start)
     if not isinstance(form, SphereOnPlane) or not form.has_guiding_centre:
         return None
     if any(stretch.phase for stretch in stretches_of(run)):
