@@ -85,8 +85,9 @@ def test_what_moves_is_computed_quickly_and_what_rests_in_full(page: Page) -> No
 
     bench.stage.canvas.focus()
     eventually(bench.page, in_full)
-    assert (asked[0]["tolerance"], asked[0]["samples"]) == (1e-9, 1500)
-    assert asked[-1]["scenario"] == asked[-2]["scenario"]
+    quick = [one for one in asked if "tolerance" in one]  # what was opened may be asked for in full, too, before
+    assert (quick[-1]["tolerance"], quick[-1]["samples"]) == (1e-9, 1500)
+    assert asked[-1]["scenario"] == quick[-1]["scenario"]
 
 
 def test_the_drawn_path_follows_a_slider(page: Page) -> None:
