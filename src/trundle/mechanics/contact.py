@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 _MOST_STEPS = 60  # of Newton's method, which needs five
 _CLOSE = 1e-9  # share of the lengths at hand to which it must have found the contact
+_ROUNDING = 1e-15
 _LOOKS = 600  # for a better first guess
 
 
@@ -247,7 +248,7 @@ def _newton(
     own: tuple[Scalar, ...],
 ) -> Contact | None:
     """Return the contact to which Newton's method leads from a first guess at p; None where it leads nowhere."""
-    surface = system.support.surface
+    surface, last = system.support.surface, math.inf
     try:
         contact = touch(system, time, point, orientation, own)
         for step in range(_MOST_STEPS):
@@ -262,8 +263,10 @@ def _newton(
                 aside = contact.across(gap).solve(aside)
             point = point + aside + down
             contact = touch(system, time, point, orientation, own)
-            if step > 0 and left <= _CLOSE:  # and its square is nothing
+            # What is left now is less by as much again; or it was rounding.
+            if step > 0 and (left <= _ROUNDING or (left <= _CLOSE and left * left <= 0.1 * _ROUNDING * last)):
                 break
+            last = left
     except (ArithmeticError, ValueError):  # outside a formula, or where it has no slope
         return None
     return contact if left <= _CLOSE else None

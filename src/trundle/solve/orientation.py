@@ -27,8 +27,8 @@ AngularVelocity = Callable[[Array], Array]  # times (n,) -> Ω (3, n) in the sup
 
 _NODES = 12  # of the polynomial for Ω on a panel
 _LARGEST_TURN = 8.0  # rad a step
-_PANEL = 8  # steps, or less where Ω turns by more than so many rad
-_SMOOTH = 0.4
+_PANEL = 8  # steps
+_SMOOTH = 0.4  # rad by which Ω itself turns on a panel
 _LOOKS = 16  # at how fast the body turns, at least, before the steps are chosen
 _MOST_TERMS = 40  # of q's series on a step
 _AT_ONCE = 20_000  # steps, or instants
@@ -178,7 +178,9 @@ def _resolved(angular_velocity: AngularVelocity, middle: Array, half: Array) -> 
     for _ in range(31):
         mean, legendre = _polynomials(angular_velocity, middle, half)
         size = _length(mean)
-        rough = np.abs(legendre[:, -2:]).max(axis=(0, 1)) > _TAIL * np.maximum(size, 1.0)
+        tail = np.abs(legendre[:, -2:]).max(axis=(0, 1))
+        # A panel may turn by more than one saw when it was chosen, but hardly.
+        rough = (tail > _TAIL * np.maximum(size, 1.0)) | (size > _PANEL * _LARGEST_TURN)
         done.append(tuple(part[..., ~rough] for part in (middle, half, mean, legendre)))
         if not rough.any():
             break
