@@ -46,7 +46,7 @@ class Stop:
 
     def at(self, system: RollingSystem, law: Law) -> Touch:
         """Return the body where it was then."""
-        return _meant(system, law, self.time, self.numbers) if self.known is None else self.known
+        return law.meant(system, self.time, self.numbers) if self.known is None else self.known
 
 
 @dataclass(frozen=True)
@@ -68,10 +68,6 @@ class Next:
     def time(self) -> float:
         """When it begins, s."""
         return self.start.time
-
-
-def _meant(system: RollingSystem, law: Law, time: float, numbers: Any) -> Touch:
-    return Touch.of(system, law.state(system, time, numbers))
 
 
 def at_start(system: RollingSystem, start: State) -> Next:
@@ -247,7 +243,7 @@ def _come_to_it(system: RollingSystem, law: Law, at: Touch, numbers: Any, stop: 
         rates = np.array([float(rate) for rate in law.rates(system, time, y.tolist())])
         closing = float(-(s @ (rates[10:13] if stop == "grip" else rates[7:10])) / length)
         wait = length / closing if closing > 0 else 0.0
-        at = _meant(system, law, time + wait, y + wait * rates)
+        at = law.meant(system, time + wait, y + wait * rates)
     Omega = at.Omega if stop == "grip" else at.Omega - state_turning(at.contact, at.Omega)
     return at.moving(system, at.contact.rolling_velocity(Omega), Omega)
 

@@ -6,6 +6,7 @@ these numbers to a full record; the mechanics itself is in `mechanics.contact` a
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -19,7 +20,7 @@ from ..mechanics.scalars import Scalar
 from ..mechanics.slipping import Flying, Slipping, fly, slip
 from ..mechanics.system import RollingSystem, State
 from .samples import FLIGHT, RESTING, ROLLING, SLIPPING, Array, Samples
-from .touch import Touch
+from .touch import Touch, floats
 
 CONTACT = ("p_x", "p_y", "p_z", "q_w", "q_x", "q_y", "q_z", "Omega_x", "Omega_y", "Omega_z")
 Numbers = Sequence[Scalar]
@@ -71,9 +72,17 @@ class Law:
         """Complete states (n, ...) to full samples."""
         raise NotImplementedError
 
-    def state(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array) -> State:
-        """Return the state that is meant by its numbers."""
-        return self.record(system, np.array([time]), np.asarray(numbers, dtype=float)[None]).state(0)
+    def meant(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array) -> Touch:
+        """Return the body that is meant by its numbers."""
+        p, q, Omega, rest, own = self.split([float(number) for number in numbers])
+        q = Quaternion(*(part / math.hypot(*q) for part in q))
+        contact = touch(system, time, p, q, own)
+        centre, V = self._moves(contact, Omega, rest)
+        return Touch.at(State(floats(centre), floats(V), floats(Omega), tuple(q), time, own), contact)
+
+    def _moves(self, contact: Contact, Omega: Vector, rest: Numbers) -> tuple[Vector, Vector]:  # noqa: ARG002
+        """Return the centre of mass and its velocity, which rolling gives unless the phase adds something."""
+        return contact.centre, contact.rolling_velocity(Omega)
 
     def advanced(self, system: RollingSystem, time: float, state: Sequence[float], step: float) -> list[float]:
         """Return the state after a step so short that one of the classical Runge-Kutta method is exact."""
@@ -194,6 +203,9 @@ class SlippingLaw(Law):
         centre, V, R = _arrays(p, now.contact.centre, now.velocity, now.reaction)
         return Samples(time, centre, p, V, Omega, q, R + 0.0, phase=_phase(time, self.code), own=own)
 
+    def _moves(self, contact: Contact, Omega: Vector, rest: Numbers) -> tuple[Vector, Vector]:
+        return contact.centre, contact.rolling_velocity(Omega) + Vector(*rest)
+
     def _recorded(self, system: RollingSystem, time: Array, states: Array) -> Slipping:
         columns = list(states.T)
         columns[3:7] = _unit(states[:, 3:7]).T
@@ -244,6 +256,9 @@ class FlightLaw(Law):
     def numbers(self, at: Touch) -> list[float]:
         """Return the nearest point, q, Ω, V and the gap."""
         return [*at.contact.point, *at.orientation, *at.Omega, *at.V, at.gap, *at.state.support]
+
+    def _moves(self, contact: Contact, Omega: Vector, rest: Numbers) -> tuple[Vector, Vector]:  # noqa: ARG002
+        return contact.centre + contact.normal * rest[3], Vector(*rest[:3])
 
     def record(self, system: RollingSystem, time: Array, states: Array) -> Samples:
         """Complete the state of a flight; nothing pushes then."""
@@ -298,6 +313,9 @@ class RestingLaw(Law):
     def numbers(self, at: Touch) -> list[float]:
         """Return p, q and Ω."""
         return RollingLaw().numbers(at)
+
+    def _moves(self, contact: Contact, Omega: Vector, rest: Numbers) -> tuple[Vector, Vector]:  # noqa: ARG002
+        return contact.centre, contact.support.material_velocity(contact.centre)
 
     def record(self, system: RollingSystem, time: Array, states: Array) -> Samples:
         """Complete the state of a body at rest on its support."""

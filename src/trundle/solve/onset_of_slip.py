@@ -60,7 +60,7 @@ def first_moment(system: RollingSystem, at: Touch, needed: Vector) -> tuple[Touc
 
     def later(wait: float) -> tuple[Touch, Vector, float]:
         moved = RollingLaw().advanced(system, time, numbers, wait)
-        then = Touch.of(system, RollingLaw().state(system, time + wait, moved))
+        then = RollingLaw().meant(system, time + wait, moved)
         return (then, *_way(system, then, _friction(system, then)))
 
     trial = _FIRST * at.arm / at.scale(system)

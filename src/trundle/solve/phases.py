@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import groupby
 
 import numpy as np
 
@@ -81,7 +82,7 @@ def solve(
         If the method breaks down, or events follow each other without end.
     """
     events: list[Event] = []
-    parts: list[Samples] = []
+    parts: list[Samples | tuple[Law, Stretch]] = []
     now = following.at_start(system, start)
     events += now.events
     left, told, forms = times, _telling(progress, times), []
@@ -91,8 +92,8 @@ def solve(
     while True:
         stretch = integrate(system, now, left, tolerance, told)
         known = stretch.samples
-        parts.append(now.law.record(system, stretch.times, stretch.states) if known is None else known)
-        forms.append(parts[-1].form)
+        parts.append((now.law, stretch) if known is None else known)
+        forms.append(None if known is None else known.form)
         if stretch.stop is None:
             break
         stop, law = stretch.stop, now.law
@@ -105,11 +106,33 @@ def solve(
         events += now.events
         _check_count(system, events)
         left = _across(system, law, stop, now, left[left >= stop.time], parts)
-    kept = [part for part in parts if part.time.size] or parts[:1]
+    recorded = _recorded(system, parts)
+    kept = [part for part in recorded if part.time.size] or recorded[:1]
     return replace(Samples.joined(kept, tuple(events)), form=forms[0])
 
 
-def _across(system: RollingSystem, law: Law, stop: Stop, follows: Next, left: Array, parts: list[Samples]) -> Array:
+def _recorded(system: RollingSystem, parts: list[Samples | tuple[Law, Stretch]]) -> list[Samples]:
+    """Return all parts as samples; those that follow each other by one and the same law are completed together."""
+    found: list[Samples] = []
+    for _, some in groupby(parts, key=lambda part: id(part[0] if isinstance(part, tuple) else part)):
+        these = list(some)
+        stretches = [part[1] for part in these if isinstance(part, tuple)]
+        if isinstance(these[0], Samples):
+            found += [part for part in these if isinstance(part, Samples)]
+            continue
+        times = np.concatenate([stretch.times for stretch in stretches])
+        found.append(these[0][0].record(system, times, np.concatenate([stretch.states for stretch in stretches])))
+    return found
+
+
+def _across(
+    system: RollingSystem,
+    law: Law,
+    stop: Stop,
+    follows: Next,
+    left: Array,
+    parts: list[Samples | tuple[Law, Stretch]],
+) -> Array:
     """Add the samples in the short step across an event, and return the times after it."""
     early = left[left < follows.time]
     if early.size:

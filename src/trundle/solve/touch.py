@@ -29,12 +29,16 @@ class Touch:
     @staticmethod
     def of(system: RollingSystem, state: State, point: Vector | None = None) -> Touch:
         """Return the contact of a state that touches the support, or is over it; it is searched for unless given."""
+        q = Quaternion(*state.orientation)
+        if point is None:
+            return Touch.at(state, settle(system, state.time, Vector(*state.position), q, state.support))
+        return Touch.at(state, touch(system, state.time, point, q, state.support))
+
+    @staticmethod
+    def at(state: State, contact: Contact) -> Touch:
+        """Return the same for a contact that is known."""
         q, centre = Quaternion(*state.orientation), Vector(*state.position)
         V, Omega = Vector(*state.velocity), Vector(*state.angular_velocity)
-        if point is None:
-            contact = settle(system, state.time, centre, q, state.support)
-        else:
-            contact = touch(system, state.time, point, q, state.support)
         gap = (centre + contact.offset - contact.point).dot(contact.normal)
         arm = contact.offset.norm()
         u = contact.support.material_velocity(contact.point)
