@@ -8,10 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import settle
-from ..mechanics.system import State
 from ..solve.samples import FLIGHT, Samples
+from ..solve.touch import Touch
 
 if TYPE_CHECKING:
     from ..trajectory import Trajectory
@@ -115,16 +113,10 @@ def with_events(run: Trajectory, at: Samples) -> Samples:
         for name in ("position", "velocity", "angular_velocity", "orientation")
     }
     own = np.array([state.support for state in states], dtype=float).reshape(len(states), -1)
-    contact = np.array([_touching(run, state) for state in states])
+    contact = np.array([tuple(Touch.of(run.system, state).nearest) for state in states])
     new = replace(behind, time=times, own=own, contact=contact, **rows)
     both = Samples.joined([at, new], at.events)
     return both.part(np.argsort(both.time, kind="stable"))
-
-
-def _touching(run: Trajectory, state: State) -> tuple[float, ...]:
-    centre = Vector(*state.position)
-    found = settle(run.system, state.time, centre, Quaternion(*state.orientation), state.support)
-    return tuple(float(part) for part in centre + found.offset)
 
 
 def flying(at: Samples) -> NDArray[np.bool_]:

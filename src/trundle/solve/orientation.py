@@ -123,7 +123,7 @@ def _panels_needed(angular_velocity: AngularVelocity, edges: Array) -> NDArray[n
     instants = np.concatenate([edges, 0.5 * (edges[1:] + edges[:-1])])
     Omega = angular_velocity(instants)
     begin, end, middle = Omega[:, : edges.size - 1], Omega[:, 1 : edges.size], Omega[:, edges.size :]
-    speeds = np.stack([_length(part) for part in (begin, middle, end)])
+    speeds = np.linalg.norm([begin, middle, end], axis=1)
     steps = np.maximum(1.0, np.ceil(speeds.max(axis=0) * np.diff(edges) / _LARGEST_TURN))
     total = float(steps.sum())
     if not total < _MOST_STEPS:
@@ -133,14 +133,10 @@ def _panels_needed(angular_velocity: AngularVelocity, edges: Array) -> NDArray[n
             "look for a load that drives it too hard."
         )
     # What goes round on a circle is this far from its chord in the middle.
-    reach = max(float(_length(Omega - Omega.mean(axis=1, keepdims=True)).max()), 1e-300)
-    arc = 2 * np.arccos(np.clip(1 - _length(middle - 0.5 * (begin + end)) / reach, -1.0, 1.0))
+    reach = max(float(np.linalg.norm(Omega - Omega.mean(axis=1, keepdims=True), axis=0).max()), 1e-300)
+    off = np.linalg.norm(middle - 0.5 * (begin + end), axis=0)
+    arc = 2 * np.arccos(np.clip(1 - off / reach, -1.0, 1.0))
     return np.maximum(np.ceil(steps / _PANEL), np.ceil(arc / _SMOOTH)).clip(1).astype(np.int64)
-
-
-def _length(vectors: Array) -> Array:
-    """Return the lengths of the columns."""
-    return np.sqrt((vectors**2).sum(axis=0))
 
 
 class _Course:
@@ -177,7 +173,7 @@ def _resolved(angular_velocity: AngularVelocity, middle: Array, half: Array) -> 
     done: list[tuple[Array, ...]] = []
     for _ in range(31):
         mean, legendre = _polynomials(angular_velocity, middle, half)
-        size = _length(mean)
+        size = np.linalg.norm(mean, axis=0)
         tail = np.abs(legendre[:, -2:]).max(axis=(0, 1))
         # A panel may turn by more than one saw when it was chosen, but hardly.
         rough = (tail > _TAIL * np.maximum(size, 1.0)) | (size > _PANEL * _LARGEST_TURN)
@@ -200,7 +196,7 @@ def _parted(middle: Array, half: Array, mean: Array, legendre: Array) -> tuple[A
     """Return steps, ascending, and Ω on each: panels in so many equal parts that the body turns little on each."""
     legendre = legendre[:, : _above_rounding(legendre)]
     size = legendre.shape[1]
-    counts = np.maximum(np.ceil(_length(mean) / (0.5 * _LARGEST_TURN)), 1).astype(int)
+    counts = np.maximum(np.ceil(np.linalg.norm(mean, axis=0) / (0.5 * _LARGEST_TURN)), 1).astype(int)
     done = []
     for count in np.unique(counts).tolist():
         which = counts == count

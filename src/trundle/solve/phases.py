@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from itertools import groupby
+from itertools import zip_longest
 
 import numpy as np
 
@@ -43,6 +43,7 @@ class Stretch:
     samples: Samples | None = None  # instead of states, where the method knows all of them
 
 
+Part = Samples | tuple[Law, Stretch]  # of a run: known, or to be completed by the law
 Integrate = Callable[[RollingSystem, Next, Array, float, Progress | None], Stretch]
 
 
@@ -82,10 +83,10 @@ def solve(
         If the method breaks down, or events follow each other without end.
     """
     events: list[Event] = []
-    parts: list[Samples | tuple[Law, Stretch]] = []
+    parts: list[Part] = []
     now = following.at_start(system, start)
     events += now.events
-    left, told, forms = times, _telling(progress, times), []
+    left, told = times, _telling(progress, times)
     if now.time > start.time:  # it slips from rest: its first moment is behind it
         held = RollingLaw()
         left = _across(system, held, Stop(start.time, "", np.array(held.pack(system, start))), now, left, parts)
@@ -93,7 +94,6 @@ def solve(
         stretch = integrate(system, now, left, tolerance, told)
         known = stretch.samples
         parts.append((now.law, stretch) if known is None else known)
-        forms.append(None if known is None else known.form)
         if stretch.stop is None:
             break
         stop, law = stretch.stop, now.law
@@ -108,31 +108,29 @@ def solve(
         left = _across(system, law, stop, now, left[left >= stop.time], parts)
     recorded = _recorded(system, parts)
     kept = [part for part in recorded if part.time.size] or recorded[:1]
-    return replace(Samples.joined(kept, tuple(events)), form=forms[0])
+    form = next((part.form for part in recorded if part.form is not None), None)
+    return replace(Samples.joined(kept, tuple(events)), form=form)
 
 
-def _recorded(system: RollingSystem, parts: list[Samples | tuple[Law, Stretch]]) -> list[Samples]:
+def _recorded(system: RollingSystem, parts: list[Part]) -> list[Samples]:
     """Return all parts as samples; those that follow each other by one and the same law are completed together."""
     found: list[Samples] = []
-    for _, some in groupby(parts, key=lambda part: id(part[0] if isinstance(part, tuple) else part)):
-        these = list(some)
-        stretches = [part[1] for part in these if isinstance(part, tuple)]
-        if isinstance(these[0], Samples):
-            found += [part for part in these if isinstance(part, Samples)]
+    waiting: list[Stretch] = []
+    for part, ahead in zip_longest(parts, parts[1:]):
+        if isinstance(part, Samples):
+            found.append(part)
             continue
-        times = np.concatenate([stretch.times for stretch in stretches])
-        found.append(these[0][0].record(system, times, np.concatenate([stretch.states for stretch in stretches])))
+        law, stretch = part
+        waiting.append(stretch)
+        if isinstance(ahead, tuple) and ahead[0] is law:
+            continue
+        times = np.concatenate([one.times for one in waiting])
+        found.append(law.record(system, times, np.concatenate([one.states for one in waiting])))
+        waiting = []
     return found
 
 
-def _across(
-    system: RollingSystem,
-    law: Law,
-    stop: Stop,
-    follows: Next,
-    left: Array,
-    parts: list[Samples | tuple[Law, Stretch]],
-) -> Array:
+def _across(system: RollingSystem, law: Law, stop: Stop, follows: Next, left: Array, parts: list[Part]) -> Array:
     """Add the samples in the short step across an event, and return the times after it."""
     early = left[left < follows.time]
     if early.size:
