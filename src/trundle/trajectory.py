@@ -352,7 +352,7 @@ def _public_names() -> list[str]:
 
 def _event(values: dict[str, Any]) -> Event:
     states = {name: State(**_tuples(values[name])) for name in ("before", "after") if values.get(name)}
-    return Event(**{**values, **states})
+    return Event(**{**_tuples(values), **states})
 
 
 def _tuples(values: dict[str, Any]) -> dict[str, Any]:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 
+import mpmath
 import pytest
-from tests.tolerances import SOLVER
+from tests.tolerances import EXACT, SOLVER
 
 import trundle as tr
 from trundle.mechanics.algebra import Quaternion, Vector
@@ -61,3 +62,48 @@ def test_no_landing_makes_energy(friction: float, across: float) -> None:
     assert gained <= SOLVER(10, 1e-12)
     if friction == 0:
         assert abs(gained) <= SOLVER(10, 1e-12)  # e = 1 gives all of it back
+
+
+@pytest.mark.parametrize(("friction", "across"), [(1.2, 0.2), (0.9, -0.5), (2.0, 0.3)])
+def test_slip_that_ends_on_the_way(friction: float, across: float) -> None:
+    # Slip falls at a steady rate to nothing, and from there on friction is what keeps it so: two straight pieces.
+    found, rho = landing((across, -2.0), friction, 0.0)
+    xx, xz, zz = planar(rho)
+    way = math.copysign(friction, across)
+    sliding = -across / (xz - way * xx)
+    left = -2.0 + (zz - way * xz) * sliding
+    assert sliding > 0 > left  # it ends before compression does
+    assert abs(xz / xx) < friction  # and friction can hold it
+    holding = -left / (zz - xz * xz / xx)
+    assert abs(found.impulse.z - (sliding + holding)) <= EXACT(32, sliding + holding)
+    x = -way * sliding - xz / xx * holding
+    assert abs(found.impulse.x - x) <= EXACT(32, friction * (sliding + holding))
+    assert found.impulse.y == 0.0
+
+
+@pytest.mark.parametrize(("friction", "slip"), [(0.1, (1.0, 0.7, -2.0)), (0.2, (3.0, 1.5, -1.0))])
+def test_slip_that_turns_on_the_way(friction: float, slip: tuple[float, float, float]) -> None:
+    # Keller's ds/dP = M(n − μŝ) by Taylor's method with 25 digits, up to where s_n = 0.
+    turned = Quaternion(0.8, 0.3, 0.4, math.sqrt(0.11))
+    principal = (0.04, MOMENT, 0.03)
+    body = tr.Body(MASS, tr.Principal(*principal), tr.Ellipsoid(A, 0.2, B))
+    floor = tr.RollingSystem(body, tr.Support(tr.Plane(), friction=friction))
+    contact = touch(floor, 0.0, Vector(0.0, 0.0, 0.0), turned)
+    found = land(floor, contact, turned, Vector(*slip)).impulse
+    with mpmath.workdps(25):
+        Q = mpmath.matrix([[float(part) for part in row] for row in turned.matrix().rows])
+        x, y, z = (mpmath.mpf(float(part)) for part in contact.offset)
+        cross = mpmath.matrix([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+        M = mpmath.eye(3) / MASS - cross * Q * mpmath.diag([1 / mpmath.mpf(part) for part in principal]) * Q.T * cross
+
+        def rates(_: object, s: list[mpmath.mpf]) -> list[mpmath.mpf]:
+            sigma = mpmath.hypot(s[0], s[1])
+            return list(M * mpmath.matrix([-friction * s[0] / sigma, -friction * s[1] / sigma, 1]))
+
+        course = mpmath.odefun(rates, 0, [mpmath.mpf(part) for part in slip])
+        P = mpmath.findroot(lambda P: course(P)[2], float(found.z))
+        ended = course(P)
+        impulse = mpmath.lu_solve(M, mpmath.matrix(ended) - mpmath.matrix(slip))
+    aside = math.atan2(slip[1], slip[0]) - float(mpmath.atan2(ended[1], ended[0]))
+    assert abs(aside) > 1e-2  # it does turn
+    assert max(abs(a - float(b)) for a, b in zip(found, impulse, strict=True)) <= SOLVER(100 * float(P), 1e-12)

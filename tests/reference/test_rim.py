@@ -132,3 +132,4 @@ def test_it_says_when_and_where(method: str) -> None:
     assert "0.35 m" in ours.events[0].text
     assert f"{ours.events[0].time:.6g}"[:6] in ours.events[0].text
     assert "ran off the rim" in repr(ours)
+    assert abs(math.hypot(*ours.events[0].contact) - 0.35) <= EXACT(64, 0.35) + SOLVER(200, tolerance_of(method), 0.35)

@@ -182,6 +182,10 @@ class TestFlight:
         wait = mpmath.findroot(outside, land.time - lift.time)
         assert wait > mpf("0.1")
         assert abs(land.time - lift.time - wait) <= EXACT(256, 1.0)
+        for event in (lift, land):  # on the ray through the centre, on the pipe itself
+            (x, y, _), (p, q, _) = event.before.position, event.contact
+            assert abs(math.hypot(p, q) - 0.5) <= EXACT(8, 0.5)
+            assert abs(x * q - y * p) <= EXACT(64, 0.25)
 
     def test_the_start_in_the_air_is_covered(self) -> None:
         system = tr.RollingSystem(BALL, tr.Support(tr.Dome(0.5)))

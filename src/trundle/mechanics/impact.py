@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..errors import SolverError
-from .algebra import E_X, E_Z, Quaternion, Vector
+from .algebra import E_X, E_Z, Matrix, Quaternion, Vector
 from .contact import Contact
 from .onset import onset
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from .system import RollingSystem
 
 _SLOW = 1e-10  # share of the speed at impact from which on slipping ends along a straight line
+_STRAIGHT = 1e-15  # share of M by which slip that goes on along one line seems to turn
 _MOST_PIECES = 20
 
 
@@ -84,7 +86,7 @@ def land(system: RollingSystem, contact: Contact, orientation: Quaternion, slip:
     """
     J = system.body.inertia_in_space(orientation.matrix())
     basis = _basis(contact.normal)
-    answers = [response(system, contact, orientation, e) for e in basis]
+    answers = [response(system, contact, J, e) for e in basis]
     M = np.array([[answer.dot(d) for answer in answers] for d in basis])
     mu = None if system.support.friction is None else float(system.support.sliding_friction)
     begin = np.array([float(slip.dot(d)) for d in basis])
@@ -102,7 +104,7 @@ def _basis(n: Vector) -> tuple[Vector, Vector, Vector]:
     return first, n.cross(first), n
 
 
-def response(system: RollingSystem, contact: Contact, orientation: Quaternion, impulse: Vector) -> Vector:
+def response(system: RollingSystem, contact: Contact, inertia: Matrix, impulse: Vector) -> Vector:
     """Return by how much an impulse at the contact changes s, m/s.
 
     Parameters
@@ -111,8 +113,8 @@ def response(system: RollingSystem, contact: Contact, orientation: Quaternion, i
         Body and support.
     contact : Contact
         Where they touch.
-    orientation : Quaternion
-        Body frame to support frame.
+    inertia : Matrix
+        J of the body about its centre of mass, in the inertial support frame, kg m².
     impulse : Vector
         On the body, N s.
 
@@ -122,8 +124,7 @@ def response(system: RollingSystem, contact: Contact, orientation: Quaternion, i
         M P, with M = 1/m + [J⁻¹(ρ×·)]×ρ, and what a free axle adds.
     """
     rho, motion = contact.offset, system.support.motion
-    J = system.body.inertia_in_space(orientation.matrix())
-    answer = impulse / system.body.mass + J.solve(rho.cross(impulse)).cross(rho)
+    answer = impulse / system.body.mass + inertia.solve(rho.cross(impulse)).cross(rho)
     if motion.free:
         lever = contact.support.lever(contact.point)
         answer = answer + lever * (lever.dot(impulse) / motion.inertia)
@@ -154,9 +155,10 @@ class _Course:
             if self.aim is not None and self.work >= self.aim:
                 return total
             sliding = np.linalg.norm(self.slip[:2]) > 2 * _SLOW * size
-            total = total + (self._slide(size) if sliding and self.mu else self._straight(self._held()))
+            total = total + (self._slide(size) if sliding and self.mu else self._straight(self._held))
         raise SolverError("A landing does not end: friction and the body's shape jam it. Use less friction.")
 
+    @cached_property
     def _held(self) -> Any:
         """Return the impulse for each unit of P of a contact that does not slip, or that begins to."""
         direction = np.array([0.0, 0.0, 1.0])
@@ -182,25 +184,44 @@ class _Course:
             raise SolverError("A landing jams: no direction of slipping leads on. Use less friction.")
         return np.array(found[1])
 
-    def _straight(self, direction: Any) -> Any:
-        """Go on with a fixed direction of the impulse to the end of compression, or of the impact."""
+    def _straight(self, direction: Any, still: float = math.inf) -> Any:
+        """Go on with a fixed direction of the impulse to the end of compression, or of the impact.
+
+        Slip that falls straight to nothing ends it sooner, at the normal impulse at which it is `still`.
+        """
         change = self.M @ direction
-        if not change[2] > 0:
+        if not change[2] > 0 and math.isinf(still):
             raise SolverError("A landing jams: the impulse does not push the body off. Use less friction.")
-        if self.aim is None:
-            amount = -self.slip[2] / change[2]
+        if not change[2] > 0:
+            upto = math.inf
+        elif self.aim is None:
+            upto = -self.slip[2] / change[2]
         else:  # the work s_n P + ½ c P² still to be done
-            amount = (-self.slip[2] + math.sqrt(self.slip[2] ** 2 + 2 * change[2] * (self.aim - self.work))) / change[2]
+            upto = (-self.slip[2] + math.sqrt(self.slip[2] ** 2 + 2 * change[2] * (self.aim - self.work))) / change[2]
+        amount = min(upto, still)
         self.work += self.slip[2] * amount + 0.5 * change[2] * amount**2
-        if self.aim is not None:
-            self.work = max(self.work, self.aim)
         self.slip = self.slip + change * amount
-        if self.aim is None:
+        if still <= upto:
+            self.slip[:2] = 0.0
+        elif self.aim is None:
             self.slip[2] = 0.0
+        else:
+            self.work = max(self.work, self.aim)
         return direction * amount
 
     def _slide(self, size: float) -> Any:
-        """Go on slipping until slip or compression ends, or the impact.
+        """Go on slipping until slip or compression ends, or the impact: along a line where friction keeps to one."""
+        sigma = float(np.linalg.norm(self.slip[:2]))
+        hat = self.slip[:2] / sigma
+        direction = np.array([*(-self.mu * hat), 1.0])
+        along, aside, _ = self.M @ direction
+        if abs(hat[0] * aside - hat[1] * along) > _STRAIGHT * float(np.abs(self.M).max()):
+            return self._curved(size)
+        growth = float(hat @ (along, aside))
+        return self._straight(direction, -sigma / growth if growth < 0 else math.inf)
+
+    def _curved(self, size: float) -> Any:
+        """Do the same where slip turns on the way.
 
         The slip is σ ŝ with ŝ at an angle β: where σ falls through 0 all is still smooth.
         """

@@ -31,6 +31,7 @@ class Slipping:
     normal_force: Scalar  # N, N
     reaction: Vector  # R, N
     axle_moment: Scalar  # of the body on the support, about the support's axle, N m
+    opening: Scalar  # how fast the body would come off if nothing pushed, m/s²
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +137,8 @@ def slip(
         a0 = a0 - lever * (driven / inertia)
         a1 = a1 + lever * ((lever.dot(d) + support.axle.dot(acting.couple)) / inertia)
     n_rate = support.angular_velocity.cross(n) + contact.shape_operator @ (p_rate - support.material_velocity(point))
-    N = -(n.dot(a0) + n_rate.dot(s)) / n.dot(a1)
+    opening = n.dot(a0) + n_rate.dot(s)
+    N = -opening / n.dot(a1)
     return Slipping(
         contact,
         V,
@@ -147,6 +149,7 @@ def slip(
         N,
         d * N,
         acting.moment_on_axle(support, N) - support.lever(point).dot(d) * N,
+        opening,
     )
 
 

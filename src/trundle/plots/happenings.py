@@ -186,8 +186,8 @@ def part_in(stretches: Sequence[Stretch], phase: int, time: Array) -> np.ndarray
 def with_events(run: Trajectory) -> Trajectory:
     """Return a run whose samples also hold the states just before and just after its events.
 
-    A line through them has its kinks where they happened. What an event does not know (the forces, and where the body
-    touched) is taken from the sample before.
+    A line through them has its kinks where they happened. What an event does not know, the forces, is taken from the
+    sample before.
 
     Parameters
     ----------
@@ -201,7 +201,7 @@ def with_events(run: Trajectory) -> Trajectory:
     """
     time = np.asarray(run.data["time"].values, dtype=float)
     states = [
-        (event.time, state)
+        (event, state)
         for event in run.events
         for state in (getattr(event, "before", None), getattr(event, "after", None))
         if state is not None and time[0] < event.time < time[-1]
@@ -210,11 +210,13 @@ def with_events(run: Trajectory) -> Trajectory:
         return run
     import xarray
 
-    at = np.array([when for when, _ in states])
+    at = np.array([event.time for event, _ in states])
     rows = run.data.isel(time=np.maximum(np.searchsorted(time, at, "right") - 1, 0)).copy(deep=True)
     for name in ("position", "velocity", "angular_velocity", "orientation"):
         if name in rows:
             rows[name].values[...] = np.array([getattr(state, name) for _, state in states])
+    if "contact" in rows:
+        rows["contact"].values[...] = np.array([event.contact for event, _ in states])
     for i, name in enumerate(run.system.support.motion.own):
         if f"support_{name}" in rows:
             rows[f"support_{name}"].values[...] = np.array([state.support[i] for _, state in states])

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..solve.samples import FLIGHT, Samples
-from ..solve.touch import Touch
 
 if TYPE_CHECKING:
     from ..trajectory import Trajectory
@@ -99,13 +98,14 @@ def with_events(run: Trajectory, at: Samples) -> Samples:
     Samples
         Forces and phases of an event are those of the sample behind it.
     """
-    states = [
-        event.after
+    known = [
+        (event.after, event.contact)
         for event in run.events
         if event.after is not None and at.time[0] < event.time < at.time[-1] and event.time not in at.time
     ]
-    if not states or len(states) > _MOST_EVENTS:
+    if not known or len(known) > _MOST_EVENTS:
         return at
+    states, contacts = zip(*known, strict=True)
     times = np.array([state.time for state in states])
     behind = at.part(np.searchsorted(at.time, times))
     rows: dict[str, Any] = {
@@ -113,8 +113,7 @@ def with_events(run: Trajectory, at: Samples) -> Samples:
         for name in ("position", "velocity", "angular_velocity", "orientation")
     }
     own = np.array([state.support for state in states], dtype=float).reshape(len(states), -1)
-    contact = np.array([tuple(Touch.of(run.system, state).nearest) for state in states])
-    new = replace(behind, time=times, own=own, contact=contact, **rows)
+    new = replace(behind, time=times, own=own, contact=np.array(contacts), **rows)
     both = Samples.joined([at, new], at.events)
     return both.part(np.argsort(both.time, kind="stable"))
 

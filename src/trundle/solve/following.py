@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import SolverError
 from ..mechanics.algebra import ZERO, Vector
 from ..mechanics.contact import roll
-from ..mechanics.impact import land, response
+from ..mechanics.impact import land
 from ..mechanics.placing import SLIP_TOLERANCE
 from ..mechanics.slipping import slip
 from ..mechanics.system import RollingSystem, State
@@ -126,9 +126,14 @@ def after(system: RollingSystem, law: Law, stop: Stop) -> Next:
     kind, said = _NAMES[type(follows.law).code] if type(follows.law).code != law.code else ("slip", _TURNED)
     if name == "grip" and isinstance(follows.law, SlippingLaw):
         kind, said = "slip", _TURNED
-    state = at.state
-    event = Event(state.time, kind, f"{said} at t = {state.time:.9g} s", state, state)
-    return replace(follows, events=(event, *follows.events))
+    return replace(follows, events=(_event(kind, said, at), *follows.events))
+
+
+def _event(kind: str, said: str, before: Touch, after: Touch | None = None) -> Event:
+    """Return what happened to a body where it touches; absent after, nothing about its motion changed at once."""
+    state = before.state
+    now = state if after is None else after.state
+    return Event(state.time, kind, f"{said} at t = {state.time:.9g} s", state, now, floats(before.nearest))
 
 
 _TURNED = "stopped slipping and slipped on the other way"
@@ -190,21 +195,19 @@ def _lifted(system: RollingSystem, at: Touch) -> Next:
             f"At t = {state.time:.9g} s friction without limit would have to hold the body down, which no support "
             "does. Give the support a `friction`, so that the body slips before that."
         )
-    event = Event(state.time, "lift", f"came off the support at t = {state.time:.9g} s", state, state)
-    return _fly(at, _TAKE_OFF * at.arm, (event,))
+    return _fly(at, _TAKE_OFF * at.arm, (_event("lift", _NAMES[FlightLaw.code][1], at),))
 
 
 def _pull(system: RollingSystem, at: Touch) -> float:
     """Return how fast the body would come down on the support if it did not push, m/s²."""
     own = at.state.support
     free = slip(system, at.state.time, at.contact.point, at.orientation, at.Omega, at.sliding, own, direction=ZERO)
-    n = at.contact.normal
-    return float(free.normal_force * response(system, at.contact, at.orientation, n).dot(n))
+    return -float(free.opening)
 
 
 def _struck(system: RollingSystem, at: Touch) -> Next:
     """Let the body strike the support, and bounce or stay."""
-    before, n, own = at.state, at.contact.normal, at.state.support
+    n, own = at.contact.normal, at.state.support
     V, Omega, off = at.V, at.Omega, 0.0
     if at.approach < 0:
         struck = land(system, at.contact, at.orientation, at.slip)
@@ -214,15 +217,13 @@ def _struck(system: RollingSystem, at: Touch) -> Next:
         off = float(at.contact.slip_velocity(V, Omega).dot(n)) if system.support.restitution > 0 else 0.0
     pull = _pull(system, at)
     bounces = off > 0 and not (pull > 0 and off * off < 2 * pull * SETTLED * at.arm)
-    time, said = before.time, f"landed at {-at.approach:.4g} m/s"
+    said = f"landed at {-at.approach:.4g} m/s"
     after = at.moving(system, V, Omega, own)
     if bounces:
-        event = Event(time, "land", f"{said} and bounced at t = {time:.9g} s", before, after.state)
-        return _fly(after, _TAKE_OFF * at.arm, (event,))
+        return _fly(after, _TAKE_OFF * at.arm, (_event("land", f"{said} and bounced", at, after),))
     after = _set_down(system, after)
     cut = "; the bounces to come are lower than a millionth of the body and were cut" if off > 0 else ""
-    kind = "settle" if off > 0 else "land"
-    event = Event(time, kind, f"{said}{cut} at t = {time:.9g} s", before, after.state)
+    event = _event("settle" if off > 0 else "land", f"{said}{cut}", at, after)
     follows = _touching(system, after)
     return replace(follows, events=(event, *follows.events))
 

@@ -65,7 +65,8 @@ def first_moment(system: RollingSystem, at: Touch, needed: Vector) -> tuple[Touc
 
     trial = _FIRST * at.arm / at.scale(system)
     growth = max((later(trial)[2] - begun) / trial, 1e-300)
-    settling = needed.norm() * response(system, at.contact, at.orientation, needed / needed.norm()).norm()
+    J = system.body.inertia_in_space(at.orientation.matrix())
+    settling = needed.norm() * response(system, at.contact, J, needed / needed.norm()).norm()
     wait = trial if begun > 0 else min(max(settling / (_SETTLED_IN * growth), trial), 1000 * trial)
     (_, _, halfway), (then, hat, speed) = later(0.5 * wait), later(wait)
     slip = hat * (wait * (begun + 4 * halfway + speed) / 6)
@@ -82,9 +83,8 @@ def _friction(system: RollingSystem, at: Touch) -> Vector:
 
 def _pushed(system: RollingSystem, at: Touch, slip: Vector) -> Touch:
     """Return the body after the impulse at the contact that makes it slip so."""
-    columns = [response(system, at.contact, at.orientation, e) for e in (E_X, E_Y, E_Z)]
-    P = Matrix(*columns).transpose.solve(slip)
     J = system.body.inertia_in_space(at.orientation.matrix())
+    P = Matrix(*(response(system, at.contact, J, e) for e in (E_X, E_Y, E_Z))).transpose.solve(slip)
     own = at.state.support
     if system.support.motion.free:
         own = (

@@ -163,36 +163,10 @@ def _spinning_on(system: RollingSystem, law: Law, stop: Stop) -> bool:
 
 def _ended(system: RollingSystem, law: Law, stop: Stop) -> tuple[Samples, Event]:
     samples = law.record(system, np.array([stop.time]), stop.numbers[None])
-    return samples, end(system, "spot" if stop.name.endswith("stop") else stop.name, samples.state(0))
-
-
-def end(system: RollingSystem, name: str, state: State) -> Event:
-    """Return the event with which a run ends before its time.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Names the rim, the end of the surface and what the shape covers.
-    name : str
-        The stop: "rim", "end", "edge", "curved" or "spot".
-    state : State
-        At the end.
-
-    Returns
-    -------
-    Event
-        Of that kind.
-
-    Examples
-    --------
-    >>> import trundle as tr
-    >>> table = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane(rim=0.5)))
-    >>> end(table, "rim", tr.State((0.5, 0.0, 0.1), (1.0, 0.0, 0.0), (0.0, 10.0, 0.0), time=1.25)).text
-    'ran off the rim (0.5 m from the axis) at t = 1.25 s'
-    """
-    surface = system.support.surface
+    name = "spot" if stop.name.endswith("stop") else stop.name
+    surface, state, contact = system.support.surface, samples.state(0), tuple(samples.contact[0].tolist())
     said = _ENDS[name].format(rim=float(surface.rim or 0.0), end=surface.end, left=system.body.shape.left)
-    return Event(state.time, name, f"{said} at t = {state.time:.9g} s", state, state)
+    return samples, Event(state.time, name, f"{said} at t = {state.time:.9g} s", state, state, contact)
 
 
 def _following(system: RollingSystem, law: Law, stop: Stop) -> Next:

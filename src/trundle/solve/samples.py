@@ -41,6 +41,8 @@ class Event:
         What happened, for the reader.
     before, after : State, optional
         The state just before and just after; they differ where something struck.
+    contact : triple of float, optional
+        Where the body touched, p in the inertial support frame, m.
 
     Examples
     --------
@@ -53,6 +55,7 @@ class Event:
     text: str
     before: State | None = None
     after: State | None = None
+    contact: tuple[float, float, float] | None = None
 
     @property
     def final(self) -> bool:
@@ -129,10 +132,6 @@ class Samples:
         normal = normal_at(system, self.time, Vector.of(self.contact), self.support_own)
         return np.broadcast_to(normal.array(), self.position.shape)
 
-    def ended(self, event: Event) -> Samples:
-        """Return the same samples with the event that ended them."""
-        return replace(self, events=(*self.events, event))
-
     def part(self, where: Any) -> Samples:
         """Return some of the samples, chosen as an array is indexed."""
         return replace(self, **{name: getattr(self, name)[where] for name in _columns()})
@@ -156,26 +155,3 @@ class Samples:
 @cache
 def _columns() -> tuple[str, ...]:
     return tuple(field.name for field in fields(Samples) if field.name not in ("events", "form"))
-
-
-def ran_off(time: float, rim: Any) -> Event:
-    """Return the event of a contact that reaches the rim.
-
-    Parameters
-    ----------
-    time : float
-        s.
-    rim : float
-        Distance of the rim from the axis, m.
-
-    Returns
-    -------
-    Event
-        Of kind "rim".
-
-    Examples
-    --------
-    >>> ran_off(1.25, 0.5).text
-    'ran off the rim (0.5 m from the axis) at t = 1.25 s'
-    """
-    return Event(time, "rim", f"ran off the rim ({float(rim):g} m from the axis) at t = {time:.9g} s")

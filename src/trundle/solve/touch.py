@@ -66,6 +66,8 @@ class Touch:
         """Return the body at the same place with other velocities, also of the support's own motion."""
         own = self.state.support if support is None else support
         state = replace(self.state, velocity=floats(V), angular_velocity=floats(Omega), support=own)
+        if own == self.state.support:  # which is all of the motion that the geometry of touch depends on
+            return Touch.at(state, self.contact)
         return Touch.of(system, state, self.contact.point)
 
     def scale(self, system: RollingSystem) -> float:

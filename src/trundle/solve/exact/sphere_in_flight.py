@@ -182,23 +182,22 @@ class SphereInFlight(ClosedForm):
     def ends_at(self) -> dict[str, float]:
         """When it lands, s: the first root of the distance, a polynomial, at which that falls to where it touches."""
         f = self._gap()
-        if not any(f):
+        largest = max(map(abs, f))
+        if largest == 0:
             return {"land": math.inf}
-        f = f / np.abs(f).max()
+        f = [part / largest for part in f]
         while f[0] == 0:
             f = f[1:]
         if f[0] < 0:  # it presses on the support
             return {"land": 0.0}
-        roots = np.roots(f[::-1])
-        near = np.abs(roots.imag) <= 1e-7 * np.abs(roots)
-        found = sorted(float(t) for t in roots[near].real if t > 0)
-        crossed = [t for t in (_polished(f, t) for t in found) if _value_and_slope(f, t)[1] <= 0]
+        found = [_polished(f, t) for t in _real_roots(f) if t > 0]
+        crossed = [t for t in found if _value_and_slope(f, t)[1] <= 0]
         return {"land": crossed[0] if crossed else math.inf}
 
-    def _gap(self) -> Any:
+    def _gap(self) -> list[float]:
         """Return the coefficients of a polynomial of the time that has the sign of the gap, constant first."""
         r, V, A = (
-            np.array([float(part) * on for part, on in zip(vector, self.across, strict=True)])
+            Vector(*(float(part) * on for part, on in zip(vector, self.across, strict=True)))
             for vector in (
                 [p - c for p, c in zip(self.position, self.middle, strict=True)],
                 self.velocity,
@@ -207,13 +206,14 @@ class SphereInFlight(ClosedForm):
         )
         ell = float(self.radius if self.distance is None else self.distance)
         # A body that stands still where a support turns under it has a velocity of what rounding leaves of Ω×ρ.
-        speed = max(float(np.linalg.norm(self.velocity)), float(self.radius * np.linalg.norm(self.angular_velocity)))
+        speed = max(Vector(*self.velocity).norm(), self.radius * Vector(*self.angular_velocity).norm())
         if sum(self.across) == 1:
-            f = np.array([r.sum() - ell, V.sum(), 0.5 * A.sum(), 0.0, 0.0])
+            f = [sum(r) - ell, sum(V), 0.5 * sum(A)]
             sizes = [ell, speed, 0.0]
         else:
-            f = np.array([r @ r - ell * ell, 2 * r @ V, V @ V + r @ A, A @ V, 0.25 * A @ A]) * self.side
-            sizes = [ell * ell, ell * speed, float(V @ V) + ell * float(np.linalg.norm(A))]
+            f = [r.dot(r) - ell * ell, 2 * r.dot(V), V.dot(V) + r.dot(A), A.dot(V), 0.25 * A.dot(A)]
+            f = [part * self.side for part in f]
+            sizes = [ell * ell, ell * speed, V.dot(V) + ell * A.norm()]
         for i, (share, size) in enumerate(zip(_NOTHING, sizes, strict=True)):
             if abs(f[i]) > share * size:
                 break
@@ -286,7 +286,15 @@ def turns_freely(motion: Any) -> bool:
     return all(is_zero(part) for part in (motion.motor_torque, motion.bearing_drag, motion.bearing_torque))
 
 
-def _polished(f: Any, t: float) -> float:
+def _real_roots(f: list[float]) -> list[float]:
+    """Return about where a polynomial, constant first, is 0, ascending; a double root once or twice."""
+    if not any(f[2:]):  # so after each bounce: it leaves where it is to come back
+        return [-f[0] / f[1]] if any(f[1:]) else []
+    roots = np.roots(f[::-1])
+    return sorted(roots[np.abs(roots.imag) <= 1e-7 * np.abs(roots)].real.tolist())
+
+
+def _polished(f: list[float], t: float) -> float:
     """Return a root of a polynomial, constant first, to the last digit by Newton's steps."""
     for _ in range(4):
         value, rate = _value_and_slope(f, t)
@@ -296,9 +304,9 @@ def _polished(f: Any, t: float) -> float:
     return t
 
 
-def _value_and_slope(f: Any, t: float) -> tuple[float, float]:
+def _value_and_slope(f: list[float], t: float) -> tuple[float, float]:
     """Return what a polynomial, constant first, and its derivative are at a time, by Horner's rule."""
     value, slope = 0.0, 0.0
-    for coefficient in reversed(f.tolist()):
+    for coefficient in reversed(f):
         value, slope = value * t + coefficient, slope * t + value
     return value, slope
