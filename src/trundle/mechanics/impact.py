@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import SolverError
-from .algebra import E_X, E_Z, Matrix, Quaternion, Vector
+from .algebra import E_X, E_Z, ZERO, Matrix, Quaternion, Vector
 from .contact import Contact
 from .onset import onset
 
@@ -87,11 +87,11 @@ def land(system: RollingSystem, contact: Contact, orientation: Quaternion, slip:
     J = system.body.inertia_in_space(orientation.matrix())
     basis = _basis(contact.normal)
     answers = [response(system, contact, J, e) for e in basis]
-    M = np.array([[answer.dot(d) for answer in answers] for d in basis])
-    mu = None if system.support.friction is None else float(system.support.sliding_friction)
-    begin = np.array([float(slip.dot(d)) for d in basis])
+    M = Matrix(*(Vector(*(float(answer.dot(d)) for answer in answers)) for d in basis))
+    mu = math.inf if system.support.friction is None else float(system.support.sliding_friction)
+    begin = Vector(*(float(slip.dot(d)) for d in basis))
     parts = _Course(M, mu, float(system.support.restitution), begin).impulse()
-    P = sum((d * float(part) for d, part in zip(basis, parts, strict=True)), start=basis[0] * 0.0)
+    P = sum((d * part for d, part in zip(basis, parts, strict=True)), start=ZERO)
     motion = system.support.motion
     axle = -contact.support.lever(contact.point).dot(P) / motion.inertia if motion.free else 0.0
     return Impact(P, P / system.body.mass, J.solve(contact.offset.cross(P)), axle)
@@ -133,126 +133,130 @@ def response(system: RollingSystem, contact: Contact, inertia: Matrix, impulse: 
 
 @dataclass
 class _Course:
-    """The course of s over the normal impulse, in a basis of two tangents and n."""
+    """The course of s over the normal impulse, along two tangents and n."""
 
-    M: Any  # (3, 3), 1/kg
-    mu: Any  # None: no limit
+    M: Matrix  # 1/kg
+    mu: float  # inf: no limit
     restitution: float
-    slip: Any  # (3,), m/s
+    slip: Vector  # m/s
     work: float = 0.0  # of the normal impulse, J; falls in compression
     aim: float | None = None  # the work at which it ends, once compression is over
 
-    def impulse(self) -> Any:
-        """Return the whole impulse (3,), N s."""
-        total, size = np.zeros(3), float(np.linalg.norm(self.slip))
-        if self.mu is None:  # friction without limit: slip ends at once
-            total[:2] = np.linalg.solve(self.M[:2, :2], -self.slip[:2])
-            self.slip = self.slip + self.M @ total
-            self.slip[:2] = 0.0
+    def impulse(self) -> Vector:
+        """Return the whole impulse, N s."""
+        total, size = ZERO, self.slip.norm()
+        if math.isinf(self.mu):  # friction without limit: slip ends at once
+            ending = self.M.solve(Vector(-self.slip.x, -self.slip.y, 0.0))
+            total = ending - self._held * ending.z
+            self.slip = Vector(0.0, 0.0, self.slip.z + self.M.c.dot(total))
         for _ in range(_MOST_PIECES):
-            if self.aim is None and self.slip[2] >= 0:
+            if self.aim is None and self.slip.z >= 0:
                 self.aim = (1 - self.restitution**2) * self.work
             if self.aim is not None and self.work >= self.aim:
                 return total
-            sliding = np.linalg.norm(self.slip[:2]) > 2 * _SLOW * size
-            total = total + (self._slide(size) if sliding and self.mu else self._straight(self._held))
+            sliding = self.mu and math.hypot(self.slip.x, self.slip.y) > 2 * _SLOW * size
+            total = total + (self._slide(size) if sliding else self._straight(self._held))
         raise SolverError("A landing does not end: friction and the body's shape jam it. Use less friction.")
 
     @cached_property
-    def _held(self) -> Any:
-        """Return the impulse for each unit of P of a contact that does not slip, or that begins to."""
-        direction = np.array([0.0, 0.0, 1.0])
+    def _held(self) -> Vector:
+        """The impulse for each unit of P of a contact that does not slip, or that begins to."""
         if self.mu == 0:
-            return direction
-        direction[:2] = np.linalg.solve(self.M[:2, :2], -self.M[:2, 2])
-        if self.mu is not None and np.linalg.norm(direction[:2]) > self.mu:
-            direction[:2] = -self.mu * self._beginning()
+            return E_Z
+        answer = self.M.solve(E_Z)
+        direction = answer / answer.z  # M takes it to the normal
+        if math.hypot(direction.x, direction.y) > self.mu:
+            c, s = self._beginning()
+            direction = Vector(-self.mu * c, -self.mu * s, 1.0)
         return direction
 
-    def _beginning(self) -> Any:
+    def _beginning(self) -> tuple[float, float]:
         """Return the direction in which slipping begins: the one that its own friction leads along."""
 
         def growth(c: Any, s: Any) -> tuple[Any, Any]:
-            first, second = self.M[:2]
+            first, second, _ = self.M.rows
             return (
-                first[2] - self.mu * (first[0] * c + first[1] * s),
-                second[2] - self.mu * (second[0] * c + second[1] * s),
+                first.z - self.mu * (first.x * c + first.y * s),
+                second.z - self.mu * (second.x * c + second.y * s),
             )
 
         found = onset(growth)
         if found is None:
             raise SolverError("A landing jams: no direction of slipping leads on. Use less friction.")
-        return np.array(found[1])
+        return found[1]
 
-    def _straight(self, direction: Any, still: float = math.inf) -> Any:
+    def _straight(self, direction: Vector, still: float = math.inf) -> Vector:
         """Go on with a fixed direction of the impulse to the end of compression, or of the impact.
 
         Slip that falls straight to nothing ends it sooner, at the normal impulse at which it is `still`.
         """
-        change = self.M @ direction
-        if not change[2] > 0 and math.isinf(still):
+        change, s = self.M @ direction, self.slip
+        if not change.z > 0 and math.isinf(still):
             raise SolverError("A landing jams: the impulse does not push the body off. Use less friction.")
-        if not change[2] > 0:
+        if not change.z > 0:
             upto = math.inf
         elif self.aim is None:
-            upto = -self.slip[2] / change[2]
+            upto = -s.z / change.z
         else:  # the work s_n P + ½ c P² still to be done
-            upto = (-self.slip[2] + math.sqrt(self.slip[2] ** 2 + 2 * change[2] * (self.aim - self.work))) / change[2]
+            upto = (-s.z + math.sqrt(s.z * s.z + 2 * change.z * (self.aim - self.work))) / change.z
         amount = min(upto, still)
-        self.work += self.slip[2] * amount + 0.5 * change[2] * amount**2
-        self.slip = self.slip + change * amount
+        self.work += s.z * amount + 0.5 * change.z * amount**2
+        x, y, z = s + change * amount
         if still <= upto:
-            self.slip[:2] = 0.0
+            x = y = 0.0
         elif self.aim is None:
-            self.slip[2] = 0.0
+            z = 0.0
         else:
             self.work = max(self.work, self.aim)
+        self.slip = Vector(x, y, z)
         return direction * amount
 
-    def _slide(self, size: float) -> Any:
+    def _slide(self, size: float) -> Vector:
         """Go on slipping until slip or compression ends, or the impact: along a line where friction keeps to one."""
-        sigma = float(np.linalg.norm(self.slip[:2]))
-        hat = self.slip[:2] / sigma
-        direction = np.array([*(-self.mu * hat), 1.0])
-        along, aside, _ = self.M @ direction
-        if abs(hat[0] * aside - hat[1] * along) > _STRAIGHT * float(np.abs(self.M).max()):
+        sigma = math.hypot(self.slip.x, self.slip.y)
+        c, s = self.slip.x / sigma, self.slip.y / sigma
+        direction = Vector(-self.mu * c, -self.mu * s, 1.0)
+        change = self.M @ direction
+        if abs(c * change.y - s * change.x) > _STRAIGHT * max(row.norm() for row in self.M.rows):
             return self._curved(size)
-        growth = float(hat @ (along, aside))
+        growth = c * change.x + s * change.y
         return self._straight(direction, -sigma / growth if growth < 0 else math.inf)
 
-    def _curved(self, size: float) -> Any:
+    def _curved(self, size: float) -> Vector:
         """Do the same where slip turns on the way.
 
         The slip is σ ŝ with ŝ at an angle β: where σ falls through 0 all is still smooth.
         """
         from scipy.integrate import solve_ivp
 
+        M = np.array([tuple(row) for row in self.M.rows])
+
         def rates(_: float, y: Any) -> Any:
             hat = np.array([math.cos(y[1]), math.sin(y[1])])
             direction = np.array([*(-self.mu * hat), 1.0])
-            x, z, up = self.M @ direction
+            x, z, up = M @ direction
             return np.array([hat[0] * x + hat[1] * z, (hat[0] * z - hat[1] * x) / y[0], up, y[2], *direction])
 
         ends = [lambda _, y: y[0] - _SLOW * size]
         ends.append((lambda _, y: y[2]) if self.aim is None else (lambda _, y: y[3] - self.aim))
         for end, direction in zip(ends, (-1, 1), strict=True):
             end.terminal, end.direction = True, direction  # type: ignore[attr-defined]
-        sigma = float(np.linalg.norm(self.slip[:2]))
-        far = 100 * size / float(np.linalg.eigvalsh(self.M)[0])
-        y0 = np.array([sigma, math.atan2(self.slip[1], self.slip[0]), self.slip[2], self.work, 0.0, 0.0, 0.0])
+        far = 100 * size / float(np.linalg.eigvalsh(M)[0])
+        x, z, up = self.slip
+        y0 = np.array([math.hypot(x, z), math.atan2(z, x), up, self.work, 0.0, 0.0, 0.0])
         scale = np.array([size, 1.0, size, size * far, far, far, far])
         found = solve_ivp(rates, (0.0, far), y0, method="DOP853", rtol=1e-12, atol=1e-14 * scale, events=ends)
         if found.status != 1:
             raise SolverError("A landing does not end: friction and the body's shape jam it. Use less friction.")
         y = found.y[:, -1]
-        self.slip = np.array([y[0] * math.cos(y[1]), y[0] * math.sin(y[1]), y[2]])
-        self.work = float(y[3])
-        if abs(y[0] - _SLOW * size) < 1e-3 * _SLOW * size:
-            rest = float(-y[0] / rates(0.0, y)[0])  # straight on to σ = 0
-            y = y + rest * rates(0.0, y)
-            self.slip, self.work = np.array([0.0, 0.0, y[2]]), float(y[3])
+        stopped = abs(y[0] - _SLOW * size) < 1e-3 * _SLOW * size
+        if stopped:
+            y = y - y[0] / rates(0.0, y)[0] * rates(0.0, y)  # straight on to σ = 0
+        sigma, beta, up, work = y[:4].tolist()
+        if stopped:
+            self.slip, self.work = Vector(0.0, 0.0, up), work
         elif self.aim is None:
-            self.slip[2] = 0.0
+            self.slip, self.work = Vector(sigma * math.cos(beta), sigma * math.sin(beta), 0.0), work
         else:
-            self.work = self.aim
-        return y[4:]
+            self.slip, self.work = Vector(sigma * math.cos(beta), sigma * math.sin(beta), up), self.aim
+        return Vector(*y[4:].tolist())

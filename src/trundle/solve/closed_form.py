@@ -221,9 +221,9 @@ def orientations(motion: ClosedForm, start: State, times: Array) -> Array:
     straight = motion.straight_turn(times - start.time)
     if straight is not None:
         axis, angle = straight
-        half = np.broadcast_to(0.5 * np.asarray(angle), times.shape)
-        turn = Quaternion(np.cos(half), *(axis * np.sin(half)))
-        return (turn * Quaternion(*start.orientation)).array()
+        half, q = np.broadcast_to(0.5 * np.asarray(angle), times.shape), Quaternion(*start.orientation)
+        across = Quaternion(0.0, *axis) * q
+        return np.multiply.outer(np.cos(half), q.array()) + np.multiply.outer(np.sin(half), across.array())
 
     def angular_velocity(t: Array) -> Array:
         Omega = motion.motion_at(t)[2]
