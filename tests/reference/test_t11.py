@@ -152,6 +152,30 @@ class TestFlight:
             assert abs(event.time - wanted) <= EXACT(64, wanted)
         assert run.events[-1].kind == "settle"
 
+    @pytest.mark.parametrize("every", [0.01, 1e-4])  # few in a flight, and more than a thousand
+    def test_between_its_bounces_it_is_where_the_parabolas_say(self, every: float) -> None:
+        # Without friction nothing but the fall changes: it goes on, and turns on about one axis.
+        system = tr.RollingSystem(BALL, tr.Support(tr.Plane(), friction=0.0, restitution=0.5))
+        Omega = (3.0, -2.0, 6.0)
+        start = system.place((0.1, 0.0), (0.3, 0.4, 0.0), angular_velocity=Omega, height=0.5)
+        run = exactly(system, start, until=1.1, every=every)
+        fall = mpmath.sqrt(2 * mpf(0.5) / mpf(G))
+        bounces = [fall * (1 + 2 * (1 - mpf(0.5) ** n)) for n in range(40)]
+        samples = run.samples
+        for i in range(0, samples.time.size, max(1, samples.time.size // 100)):
+            t = mpf(samples.time[i])
+            n = sum(t >= bounce for bounce in bounces)
+            if n > 5:  # the bounces grow too low to tell
+                break
+            since, up = (t - bounces[n - 1], mpf(0.5) ** n * mpf(G) * fall) if n else (t, mpf(0))
+            height = (mpf(0.5) if n == 0 else 0) + up * since - mpf(G) * since**2 / 2
+            wanted = (mpf(0.1) + mpf(0.3) * t, mpf(0.4) * t, mpf(BALL.radius) + height)
+            assert max(abs(mpf(a) - b) for a, b in zip(samples.position[i], wanted, strict=True)) <= EXACT(64, 1.0)
+            assert np.abs(samples.contact[i] - [*samples.position[i][:2], 0.0]).max() <= EXACT(4, 1.0)
+            turned = mpmath.cos(mpf(7) * t / 2), *(mpmath.sin(mpf(7) * t / 2) * mpf(part) / 7 for part in Omega)
+            assert max(abs(mpf(a) - b) for a, b in zip(samples.orientation[i], turned, strict=True)) <= EXACT(64, 7.0)
+        assert n > 5
+
     @pytest.mark.parametrize("pull", [G, 0.0, -3.0])
     def test_over_a_plane_it_lands_at_the_root_of_the_quadratic(self, pull: float) -> None:
         ball = SphereInFlight(0.1, 1.0, 0.4, (0, 0, 0.7), (1.0, 0, 2.0), (0, 0, 0), (0.0, 0.0, -pull))

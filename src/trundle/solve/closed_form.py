@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -23,10 +23,11 @@ from .monodromy import Monodromy
 from .orientation import orientation, periodic_orientation
 from .phases import Stretch
 from .samples import FLIGHT, SLIPPING, Array, Progress, Samples
-from .touch import Touch
+from .touch import Touch, floats
 
 _PHASE_A_STEP = 0.05  # rad of the motion's own phase between two looks at what may end it
 _AT_ONCE = 100_000
+_SHORT = 1000  # samples of a stretch, up to which it is completed with those around it
 _PERIODS_WORTH_A_MONODROMY = 10.0  # to work one out takes ten times as long as to follow two circles
 _BOUNDS = {"rim", "end", "edge", "curved"}  # which the place of the contact decides
 
@@ -83,7 +84,7 @@ def integrate(
     Returns
     -------
     Stretch
-        The samples at the times before the stop.
+        The orientations at the times before the stop, and what completes them; or the samples, where they are many.
 
     Raises
     ------
@@ -97,14 +98,26 @@ def integrate(
     end = float(times[-1]) if times.size else now.time
     found = _first_stop(system, now, form, end - now.time)
     if found is None:
-        samples = _samples(system, law, form, start, times, progress)
-        return Stretch(times, np.empty((times.size, 0)), None, samples)
-    reached = now.time + found[0]
-    kept = times[times < reached]
-    samples = _samples(system, law, form, start, np.append(kept, reached), progress)
-    at = Touch.of(system, samples.state(-1), Vector(*samples.contact[-1].tolist()))
-    stop = Stop(reached, found[1], np.array(law.numbers(at), dtype=float), at)
-    return Stretch(kept, np.empty((kept.size, 0)), stop, samples.part(slice(0, kept.size)))
+        kept, stop = times, None
+        q = orientations(form, start, times) if times.size else np.empty((0, 4))
+    else:
+        reached = now.time + found[0]
+        kept = times[times < reached]
+        q = orientations(form, start, np.append(kept, reached))
+        at = _place(system, law, form, start, found[0], q[-1])
+        stop, q = Stop(reached, found[1], np.array(law.numbers(at), dtype=float), at), q[:-1]
+    along = Along(law, form, start.time, start.support)
+    samples = None if kept.size <= _SHORT else along.samples(system, kept, q, progress)
+    return Stretch(kept, q, stop, along, samples)
+
+
+def _place(system: RollingSystem, law: Law, form: ClosedForm, start: State, t: float, q: Array) -> Touch:
+    """Return the body where the form takes it in a time, with the orientation there."""
+    (r, V, Omega, _), grown = form.motion_and_own_at(t)
+    own = tuple(float(of_start + gone) for of_start, gone in zip(start.support, grown, strict=True))
+    time, (w, x, y, z) = start.time + t, q.tolist()
+    state = State(floats(r), floats(V), floats(Omega), (w, x, y, z), time, own)
+    return Touch.of(system, state, _contact(system, law, time, Vector(*state.position), Quaternion(w, x, y, z), own))
 
 
 # What ends a stretch
@@ -159,37 +172,70 @@ def _values(system: RollingSystem, now: Next, form: ClosedForm, asked: list[str]
 # Samples
 
 
-def _samples(
-    system: RollingSystem, law: Law, form: ClosedForm, start: State, times: Array, progress: Progress | None
-) -> Samples:
-    shape = (times.size, 3)
-    position, velocity, turning, force = (np.empty(shape) for _ in range(4))
-    own = np.empty((times.size, len(start.support)))
-    for first in range(0, times.size, _AT_ONCE):
-        part = slice(first, first + _AT_ONCE)
-        parts, grown = form.motion_and_own_at(times[part] - start.time)
-        for array, vector in zip((position, velocity, turning, force), parts, strict=True):
-            array[part] = vector.array()
-        for i, (of_start, gone) in enumerate(zip(start.support, grown, strict=True)):
-            own[part, i] = of_start + gone
-        if progress is not None:
-            progress(0.5 * (start.time + float(times[part][-1])))
-    q = orientations(form, start, times) if times.size else np.empty((0, 4))
-    contact = _contact(system, law, times, position, q, own)
-    if progress is not None and times.size:
-        progress(float(times[-1]))
-    phase: Any = np.full(times.size, law.code, dtype=np.int8)
-    return Samples(times, position, contact, velocity, turning, q, force + 0.0, phase=phase, own=own, form=form)
+@dataclass(frozen=True)
+class Along:
+    """What completes the orientations at some times to samples: the closed form that the body follows from a start."""
+
+    law: Law
+    form: ClosedForm
+    since: Any  # s; an array where the form's numbers are arrays
+    own: tuple[Any, ...]  # of the support's motion, then
+
+    def goes_on(self, other: Any) -> bool:
+        """Tell whether the next stretch has the same formula, so that arrays of its numbers give both."""
+        return isinstance(other, Along) and self.form.of_arrays and type(other.form) is type(self.form)
+
+    def record(self, system: RollingSystem, stretches: Sequence[Stretch]) -> Samples:
+        """Return the samples of this stretch, and of those that go on from it."""
+        sizes = [stretch.times.size for stretch in stretches]
+        each: list[Any] = [stretch.known for stretch in stretches]
+        form, since, own = (
+            _spread(values, sizes) for values in zip(*((one.form, one.since, one.own) for one in each), strict=True)
+        )
+        together = Along(self.law, form, since, own)
+        times = np.concatenate([stretch.times for stretch in stretches])
+        samples = together.samples(system, times, np.concatenate([stretch.states for stretch in stretches]))
+        return replace(samples, form=self.form)
+
+    def samples(self, system: RollingSystem, times: Array, q: Array, progress: Progress | None = None) -> Samples:
+        """Return the samples at given times, at which the orientations are known."""
+        position, velocity, turning, force = (np.empty((times.size, 3)) for _ in range(4))
+        own = np.empty((times.size, len(self.own)))
+        at_once = _AT_ONCE if is_number(self.since) else max(times.size, 1)
+        for first in range(0, times.size, at_once):
+            part = slice(first, first + at_once)
+            parts, grown = self.form.motion_and_own_at(times[part] - self.since)
+            for array, vector in zip((position, velocity, turning, force), parts, strict=True):
+                array[part] = vector.array()
+            for i, (of_start, gone) in enumerate(zip(self.own, grown, strict=True)):
+                own[part, i] = of_start + gone
+            if progress is not None:
+                progress(float(times[part][-1]))
+        contact = _contact(system, self.law, times, Vector.of(position), Quaternion.of(q), tuple(own.T)).array()
+        phase: Any = np.full(times.size, self.law.code, dtype=np.int8)
+        return Samples(
+            times, position, contact, velocity, turning, q, force + 0.0, phase=phase, own=own, form=self.form
+        )
 
 
-def _contact(system: RollingSystem, law: Law, times: Array, position: Array, q: Array, own: Array) -> Array:
-    """Return the contacts; in flight the points of the support nearest to the body."""
-    centre = Vector.of(position)
+def _spread(each: Sequence[Any], sizes: list[int]) -> Any:
+    """Return one value like several of one kind: of what differs an array, each repeated as often as its size says."""
+    first = each[0]
+    if isinstance(first, ClosedForm):
+        numbers = {part.name: [getattr(one, part.name) for one in each] for part in fields(first)}  # type: ignore[arg-type]
+        return replace(first, **{name: _spread(values, sizes) for name, values in numbers.items()})  # type: ignore[type-var]
+    if isinstance(first, tuple):
+        return tuple(_spread(parts, sizes) for parts in zip(*each, strict=True))
+    return first if all(one == first for one in each) else np.repeat(each, sizes)
+
+
+def _contact(system: RollingSystem, law: Law, time: Any, centre: Vector, q: Quaternion, own: tuple[Any, ...]) -> Vector:
+    """Return the contact; in flight the point of the support nearest to the body."""
     if law.code != FLIGHT:
-        return position + touch(system, times, centre, Quaternion.of(q), tuple(own.T)).offset.array()
-    surface, support = system.support.surface, system.support.motion.at(times, *own.T)
+        return centre + touch(system, time, centre, q, own).offset
+    surface, support = system.support.surface, system.support.motion.at(time, *own)
     there = support.rotation.transpose @ (centre - support.origin)
-    return (centre - support.rotation @ surface.normal(there) * surface.level(there)).array()
+    return centre - support.rotation @ surface.normal(there) * surface.level(there)
 
 
 def orientations(motion: ClosedForm, start: State, times: Array) -> Array:

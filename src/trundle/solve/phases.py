@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import zip_longest
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -33,6 +34,16 @@ _ENDS = {
 }
 
 
+class Known(Protocol):
+    """What completes the states of a method that knows more than a law's numbers; of several stretches at once."""
+
+    def goes_on(self, other: Any) -> bool:
+        """Tell whether the stretch that follows can be completed with this one."""
+
+    def record(self, system: RollingSystem, stretches: list[Stretch]) -> Samples:
+        """Return the samples of stretches of which each goes on with the next, this one's first."""
+
+
 @dataclass(frozen=True)
 class Stretch:
     """One law's part of a run: states at the times before its stop, if it came to one."""
@@ -40,10 +51,11 @@ class Stretch:
     times: Array
     states: Array
     stop: Stop | None
-    samples: Samples | None = None  # instead of states, where the method knows all of them
+    known: Known | None = None  # what completes the states, if not the law
+    samples: Samples | None = None  # completed already
 
 
-Part = Samples | tuple[Law, Stretch]  # of a run: known, or to be completed by the law
+Part = Samples | tuple[Law, Stretch]  # of a run: known, or to be completed
 Integrate = Callable[[RollingSystem, Next, Array, float, Progress | None], Stretch]
 
 
@@ -92,8 +104,7 @@ def solve(
         left = _across(system, held, Stop(start.time, "", np.array(held.pack(system, start))), now, left, parts)
     while True:
         stretch = integrate(system, now, left, tolerance, told)
-        known = stretch.samples
-        parts.append((now.law, stretch) if known is None else known)
+        parts.append((now.law, stretch) if stretch.samples is None else stretch.samples)
         if stretch.stop is None:
             break
         stop, law = stretch.stop, now.law
@@ -113,21 +124,31 @@ def solve(
 
 
 def _recorded(system: RollingSystem, parts: list[Part]) -> list[Samples]:
-    """Return all parts as samples; those that follow each other by one and the same law are completed together."""
+    """Return all parts as samples; those that follow each other in one and the same way are completed together."""
     found: list[Samples] = []
     waiting: list[Stretch] = []
     for part, ahead in zip_longest(parts, parts[1:]):
         if isinstance(part, Samples):
             found.append(part)
             continue
-        law, stretch = part
-        waiting.append(stretch)
-        if isinstance(ahead, tuple) and ahead[0] is law:
+        waiting.append(part[1])
+        if isinstance(ahead, tuple) and _goes_on(part, ahead):
             continue
-        times = np.concatenate([one.times for one in waiting])
-        found.append(law.record(system, times, np.concatenate([one.states for one in waiting])))
+        found.append(_completed(system, part[0], waiting))
         waiting = []
     return found
+
+
+def _goes_on(part: tuple[Law, Stretch], ahead: tuple[Law, Stretch]) -> bool:
+    known = part[1].known
+    return part[0] is ahead[0] if known is None else known.goes_on(ahead[1].known)
+
+
+def _completed(system: RollingSystem, law: Law, stretches: list[Stretch]) -> Samples:
+    if stretches[0].known is not None:
+        return stretches[0].known.record(system, stretches)
+    times = np.concatenate([one.times for one in stretches])
+    return law.record(system, times, np.concatenate([one.states for one in stretches]))
 
 
 def _across(system: RollingSystem, law: Law, stop: Stop, follows: Next, left: Array, parts: list[Part]) -> Array:

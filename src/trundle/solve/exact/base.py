@@ -19,6 +19,7 @@ class ClosedForm:
     source: ClassVar[str]
     domain: ClassVar[str]
     phases: ClassVar[tuple[int, ...]] = (ROLLING,)  # of contact that it covers
+    of_arrays: ClassVar[bool] = False  # whether its numbers may be arrays, one element for each time asked for
     never: ClassVar[frozenset[str]] = frozenset()  # stops of the phase that cannot come
 
     @classmethod

@@ -78,6 +78,7 @@ class SphereInFlight(ClosedForm):
         "and torque"
     )
     phases = (FLIGHT,)
+    of_arrays = True
     never = frozenset({"curved"})
 
     @classmethod
