@@ -9,9 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from .algebra import ZERO, Quaternion, Vector
+from .algebra import ZERO, Matrix, Quaternion, Vector
 from .contact import Contact, touch
-from .loads import BodyMotion
+from .loads import Acting, BodyMotion
 from .scalars import Scalar, namespace
 
 if TYPE_CHECKING:
@@ -31,7 +31,19 @@ class Slipping:
     normal_force: Scalar  # N, N
     reaction: Vector  # R, N
     axle_moment: Scalar  # of the body on the support, about the support's axle, N m
-    opening: Scalar  # how fast the body would come off if nothing pushed, m/s²
+
+
+@dataclass(frozen=True, slots=True)
+class Unpushed:
+    """How a body at a contact would move on if the support did not push."""
+
+    velocity: Vector  # V, m/s
+    point_rate: Vector  # ṗ, m/s
+    acting: Acting  # what acts besides the contact force
+    inertia: Matrix  # J, kg m²
+    angular_acceleration: Vector  # Ω̇, rad/s²
+    slip_rate: Vector  # ṡ, m/s²
+    opening: Scalar  # the rate of s·n: how fast it would come off, m/s²
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,43 +126,81 @@ def slip(
     >>> round(now.reaction.x / 7.0, 12), round(now.slip_rate.x, 12)
     (-1.0, -3.5)
     """
-    m, Omega, s = system.body.mass, angular_velocity, slip_velocity
     contact = touch(system, time, point, orientation, own)
     rho, n, support = contact.offset, contact.normal, contact.support
+    free = unpushed(system, time, contact, orientation, angular_velocity, slip_velocity, own)
+    acting = free.acting
+    hat = slip_direction(slip_velocity) if direction is None else direction
+    d = n if hat is ZERO else n - hat * system.support.sliding_friction
+    torque = rho.cross(d) + acting.couple if acting.has_couple else rho.cross(d)
+    turned = free.inertia.solve(torque)
+    answer = d / system.body.mass + turned.cross(rho)  # of s to each newton of N
+    if system.support.motion.free:
+        lever = support.lever(point)
+        moment = lever.dot(d) + support.axle.dot(acting.couple)
+        answer = answer + lever * (moment / system.support.motion.inertia)
+    N = -free.opening / n.dot(answer)
+    return Slipping(
+        contact,
+        free.velocity,
+        free.point_rate,
+        orientation.rate(angular_velocity),
+        free.angular_acceleration + turned * N,
+        free.slip_rate + answer * N,
+        N,
+        d * N,
+        acting.moment_on_axle(support, N) - support.lever(point).dot(d) * N,
+    )
+
+
+def unpushed(
+    system: RollingSystem,
+    time: Scalar,
+    contact: Contact,
+    orientation: Quaternion,
+    angular_velocity: Vector,
+    slip_velocity: Vector,
+    own: tuple[Scalar, ...] = (),
+) -> Unpushed:
+    """Return how a body at a contact would move on without a contact force: T4 with N = 0.
+
+    Parameters
+    ----------
+    system, time, orientation, angular_velocity, slip_velocity, own
+        As for `slip`.
+    contact : Contact
+        Where it touches.
+
+    Returns
+    -------
+    Unpushed
+        The rates of s and Ω, and what they are made of.
+
+    Examples
+    --------
+    A ball on a level floor would fall away from it at g:
+
+    >>> import trundle as tr
+    >>> floor = tr.RollingSystem(tr.Body.solid_sphere(0.1, 7.0), tr.Support(tr.Plane()), gravity=10.0)
+    >>> still = Quaternion(1.0, 0.0, 0.0, 0.0)
+    >>> unpushed(floor, 0.0, touch(floor, 0.0, ZERO, still), still, ZERO, ZERO).opening
+    -10.0
+    """
+    m, Omega, s = system.body.mass, angular_velocity, slip_velocity
+    n, support, point = contact.normal, contact.support, contact.point
     V = contact.rolling_velocity(Omega) + s
     p_rate, rho_rate = contact.rates(s, Omega, V)
     u_rate = support.material_acceleration(point, p_rate)
     acting = system.acting_on(contact.body_motion(m, time, V, orientation, Omega))
     Q = orientation.matrix()
     J = system.body.inertia_in_space(Q)
-    hat = slip_direction(s) if direction is None else direction
-    d = n if hat is ZERO else n - hat * system.support.sliding_friction
-    torque = rho.cross(d) + acting.couple if acting.has_couple else rho.cross(d)
-    freely = J.solve(acting.torque - system.body.gyroscopic(Q, Omega))
-    turned = J.solve(torque)
-    # T4, N being unknown
-    a0 = acting.force / m + freely.cross(rho) + Omega.cross(rho_rate) - u_rate
-    a1 = d / m + turned.cross(rho)
+    turning = J.solve(acting.torque - system.body.gyroscopic(Q, Omega))
+    s_rate = acting.force / m + turning.cross(contact.offset) + Omega.cross(rho_rate) - u_rate
     if system.support.motion.free:  # I ω̇ = τ − e·(p − X)×R, so that u̇ is affine in N
-        lever, inertia = support.lever(point), system.support.motion.inertia
         driven = system.support.motion.axle_torque(time, own) - support.axle.dot(acting.from_support)
-        a0 = a0 - lever * (driven / inertia)
-        a1 = a1 + lever * ((lever.dot(d) + support.axle.dot(acting.couple)) / inertia)
+        s_rate = s_rate - support.lever(point) * (driven / system.support.motion.inertia)
     n_rate = support.angular_velocity.cross(n) + contact.shape_operator @ (p_rate - support.material_velocity(point))
-    opening = n.dot(a0) + n_rate.dot(s)
-    N = -opening / n.dot(a1)
-    return Slipping(
-        contact,
-        V,
-        p_rate,
-        orientation.rate(Omega),
-        freely + turned * N,
-        a0 + a1 * N,
-        N,
-        d * N,
-        acting.moment_on_axle(support, N) - support.lever(point).dot(d) * N,
-        opening,
-    )
+    return Unpushed(V, p_rate, acting, J, turning, s_rate, n.dot(s_rate) + n_rate.dot(s))
 
 
 def fly(

@@ -12,7 +12,7 @@ from ..mechanics.algebra import ZERO, Vector
 from ..mechanics.contact import roll
 from ..mechanics.impact import land
 from ..mechanics.placing import SLIP_TOLERANCE
-from ..mechanics.slipping import slip
+from ..mechanics.slipping import unpushed
 from ..mechanics.system import RollingSystem, State
 from .laws import (
     CONE_SLACK,
@@ -201,8 +201,7 @@ def _lifted(system: RollingSystem, at: Touch) -> Next:
 def _pull(system: RollingSystem, at: Touch) -> float:
     """Return how fast the body would come down on the support if it did not push, m/s²."""
     own = at.state.support
-    free = slip(system, at.state.time, at.contact.point, at.orientation, at.Omega, at.sliding, own, direction=ZERO)
-    return -float(free.opening)
+    return -float(unpushed(system, at.state.time, at.contact, at.orientation, at.Omega, at.sliding, own).opening)
 
 
 def _struck(system: RollingSystem, at: Touch) -> Next:
