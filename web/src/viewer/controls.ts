@@ -1,7 +1,7 @@
 /** The viewer's own bar: play, scrub, speed, whose eyes, which arrows. Everything can be reached by keyboard. */
 import { ARROWS, type ArrowKind } from './arrows'
 import type { Frame, Show, Viewer } from './contract'
-import { element, icon, iconButton } from './elements'
+import { element, hide, icon, iconButton, put, say } from './elements'
 import { FRAME_NAMES, FRAMES, framesOf } from './frames'
 import { nextSpeed, SPEEDS } from './player'
 import { shortNumber } from './quantities'
@@ -27,6 +27,7 @@ export class Controls {
   private readonly clock: HTMLElement
   private readonly total: HTMLElement
   private readonly ticks: HTMLElement
+  private readonly marks: HTMLElement[] = []
   private readonly speed: HTMLSelectElement
   private readonly looping: HTMLButtonElement
   private readonly following: HTMLButtonElement
@@ -139,24 +140,26 @@ export class Controls {
     this.begin = begin
     const { duration } = this.viewer
     this.places = duration < 0.5 ? 4 : duration < 20 ? 2 : 1
-    this.total.textContent = `/ ${shortNumber(duration)} s`
+    say(this.total, `/ ${shortNumber(duration)} s`)
     const headers = scenes.map(({ header }) => header)
     const offered = framesOf(scenes)
-    for (const [frame, button] of this.frames) button.hidden = !offered.includes(frame)
-    this.segments.hidden = offered.length < 2
-    this.switches.get('frictionCone')!.hidden = !headers.some(({ support }) => support.friction !== null)
-    this.switches.get('guidingCentre')!.hidden = !scenes.some(({ columns }) => columns.guiding_centre)
-    this.switches.get('contactForce')!.hidden = !scenes.some(({ columns }) => columns.contact_force)
+    for (const [frame, button] of this.frames) hide(button, !offered.includes(frame))
+    hide(this.segments, offered.length < 2)
+    hide(this.switches.get('frictionCone')!, !headers.some(({ support }) => support.friction !== null))
+    hide(this.switches.get('guidingCentre')!, !scenes.some(({ columns }) => columns.guiding_centre))
+    hide(this.switches.get('contactForce')!, !scenes.some(({ columns }) => columns.contact_force))
     this.mark(headers.flatMap(({ events }) => events ?? []))
   }
 
   private mark(events: readonly SceneEvent[]): void {
-    this.ticks.replaceChildren()
-    for (const { time, text } of events.slice(0, 60)) {
-      const tick = element('span', 'tr-tick', { title: text })
+    const shown = events.slice(0, 60)
+    while (this.marks.length > shown.length) this.marks.pop()!.remove()
+    shown.forEach(({ time, text }, i) => {
+      const tick = this.marks[i] ?? this.ticks.appendChild(element('span', 'tr-tick'))
+      this.marks[i] = tick
+      put(tick, 'title', text)
       tick.style.left = `${(100 * (time - this.begin)) / (this.viewer.duration || 1)}%`
-      this.ticks.append(tick)
-    }
+    })
   }
 
   update(): void {
@@ -166,8 +169,8 @@ export class Controls {
     if (this.slider.value !== value) this.slider.value = value
     this.slider.style.setProperty('--tr-share', `${(100 * passed) / (viewer.duration || 1)}%`)
     const clock = `${viewer.time.toFixed(this.places)} s`
-    if (this.clock.textContent !== clock) this.clock.textContent = clock
-    this.slider.setAttribute('aria-valuetext', `${viewer.time.toFixed(this.places)} seconds`)
+    say(this.clock, clock)
+    put(this.slider, 'aria-valuetext', `${viewer.time.toFixed(this.places)} seconds`)
   }
 
   /** After anything else has changed: buttons show what is so. */
@@ -179,10 +182,10 @@ export class Controls {
       this.playing.title = label
       this.playing.replaceChildren(icon(viewer.playing ? 'pause' : 'play'))
     }
-    this.looping.setAttribute('aria-pressed', String(viewer.loop))
-    this.following.setAttribute('aria-pressed', String(viewer.follow))
-    for (const [frame, button] of this.frames) button.setAttribute('aria-pressed', String(viewer.frame === frame))
-    for (const [show, button] of this.switches) button.setAttribute('aria-pressed', String(viewer.show[show]))
+    put(this.looping, 'aria-pressed', String(viewer.loop))
+    put(this.following, 'aria-pressed', String(viewer.follow))
+    for (const [frame, button] of this.frames) put(button, 'aria-pressed', String(viewer.frame === frame))
+    for (const [show, button] of this.switches) put(button, 'aria-pressed', String(viewer.show[show]))
     const known = SPEEDS.some((speed) => speed === viewer.speed)
     if (known) this.speed.value = String(viewer.speed)
     this.update()

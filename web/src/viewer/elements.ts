@@ -15,6 +15,21 @@ export function element<Name extends keyof HTMLElementTagNameMap>(
   return made
 }
 
+/** Say something there. What is said already is left alone, here and below: the browser would lay it out once more. */
+export function say(element: Element, text: string): void {
+  if (element.textContent !== text) element.textContent = text
+}
+
+/** Hide it, or show it. */
+export function hide(element: HTMLElement, hidden: boolean): void {
+  if (element.hidden !== hidden) element.hidden = hidden
+}
+
+/** Set an attribute. */
+export function put(element: Element, name: string, value: string): void {
+  if (element.getAttribute(name) !== value) element.setAttribute(name, value)
+}
+
 /** Drawn on a field of 20 by 20, in strokes. */
 const ICONS = {
   play: 'M6.5 4.2v11.6L16 10z',

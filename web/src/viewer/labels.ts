@@ -1,5 +1,6 @@
 /** Short words that stand beside things on the stage, as text of the page: crisp, and of the page's typeface. */
 import type { Vector3 } from 'three'
+import { hide, say } from './elements'
 
 export type LabelKind = 'arrow' | 'axis' | 'body' | 'sketch' | 'guide' | 'spot'
 
@@ -60,15 +61,15 @@ export class LabelLayer {
     this.asked.forEach(({ x, y }, i) => {
       written[i]!.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`
     })
-    for (let i = this.asked.length; i < this.pool.length; i++) this.pool[i]!.hidden = true
+    for (let i = this.asked.length; i < this.pool.length; i++) hide(this.pool[i]!, true)
   }
 
   private write({ text, colour, kind }: Label, index: number): HTMLElement {
     const element = this.at(index)
-    if (element.textContent !== text) element.textContent = text
+    say(element, text)
     if (element.dataset.kind !== kind) element.dataset.kind = kind
     element.style.setProperty('--tr-label', colour)
-    element.hidden = false
+    hide(element, false)
     return element
   }
 

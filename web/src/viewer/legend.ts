@@ -1,6 +1,6 @@
 /** What the arrows are, how large they are now, and to what scale they are drawn. */
 import type { LegendRow } from './arrows'
-import { element } from './elements'
+import { element, say } from './elements'
 
 export class Legend {
   readonly element = element('dl', 'tr-legend', { hidden: '' })
@@ -13,7 +13,7 @@ export class Legend {
     this.kinds = kinds
     rows.forEach(({ value }, i) => {
       const place = this.values[i]
-      if (place && place.textContent !== value) place.textContent = value
+      if (place) say(place, value)
     })
   }
 

@@ -3,7 +3,7 @@ import './viewer.css'
 import { Vector3 } from 'three'
 import type { Frame, SceneOptions, Show, Theme, Tool, Viewer, ViewerEvents, ViewerOptions } from './contract'
 import { Controls, pressed } from './controls'
-import { element, leaveThePageItsWheel, pngOf } from './elements'
+import { element, leaveThePageItsWheel, pngOf, put, say } from './elements'
 import { Emitter } from './emitter'
 import { Fallback } from './fallback'
 import { framesOf, nextFrame } from './frames'
@@ -139,8 +139,8 @@ class StageViewer implements Viewer {
     this.world?.setScenes(scenes, keep)
     this.fallback?.setScenes(scenes, this.frame)
     this.controls?.setScenes(scenes, this.player.begin)
-    this.note.textContent = this.world?.support?.note ?? ''
-    this.canvas.setAttribute('aria-label', saidOf(scenes))
+    say(this.note, this.world?.support?.note ?? '')
+    put(this.canvas, 'aria-label', saidOf(scenes))
     if (!keep && scenes.length) this.resetCamera()
     this.controls?.refresh()
     if (options.rests) this.sharpness?.rest()

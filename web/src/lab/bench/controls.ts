@@ -1,4 +1,5 @@
 /** The panel of controls: built from the layout of the scenario, kept in step with the store. */
+import { hide, say } from '../../viewer/elements'
 import type { ApiError } from '../api'
 import type { App } from '../app'
 import { cleanup, fill, h, uniqueId } from '../dom'
@@ -186,8 +187,8 @@ export function createControls(app: App): Controls {
     const key = wrong?.key?.replace(/\[(\d+)\]/g, '.$1') ?? null
     const hit = key === null ? undefined : nearest(key)
     for (const field of fields) field.complain(field === hit ? (wrong?.message ?? null) : null)
-    alert.hidden = wrong === null || hit !== undefined
-    alert.textContent = wrong && !hit ? wrong.message : ''
+    hide(alert, wrong === null || hit !== undefined)
+    say(alert, wrong && !hit ? wrong.message : '')
     hit?.element.closest('details')?.setAttribute('open', '')
   }
 

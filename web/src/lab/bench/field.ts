@@ -1,4 +1,5 @@
 /** One number of the scenario: typed with its unit, dragged by a slider, stepped by the arrow keys. */
+import { hide, put, say } from '../../viewer/elements'
 import { h, uniqueId } from '../dom'
 import { parse, rounded, stepped, toSI, UNITS, write } from '../quantity'
 import type { Json, Path } from '../scenario'
@@ -138,7 +139,7 @@ export function createField(options: FieldOptions): Field {
     const zero = entry.decades ? 0 : Math.min(1, Math.max(0, place(0)))
     slider.style.setProperty('--from', `${Math.min(zero, at) * 100}%`)
     slider.style.setProperty('--to', `${Math.max(zero, at) * 100}%`)
-    slider.setAttribute('aria-valuetext', `${digits()} ${hasUnits ? shownUnit() : ''}`.trim())
+    put(slider, 'aria-valuetext', `${digits()} ${hasUnits ? shownUnit() : ''}`.trim())
   }
 
   function commit(next: Json, word?: string): void {
@@ -249,8 +250,8 @@ export function createField(options: FieldOptions): Field {
       refused = text !== null
       if (refused && good?.now === value) good = { now: good?.earlier, earlier: good?.earlier }
       if (misfit() !== was) draw()
-      message.hidden = text === null
-      message.textContent = text ?? ''
+      hide(message, text === null)
+      say(message, text ?? '')
       element.toggleAttribute('data-wrong', text !== null)
       if (text === null) input.removeAttribute('aria-invalid')
       else input.setAttribute('aria-invalid', 'true')

@@ -1,4 +1,5 @@
 /** Predicted beside measured: a table, and the formula with the numbers put in. */
+import { put, say } from '../../viewer/elements'
 import type { Finding, Scene } from '../../viewer/scene'
 import { fill, h } from '../dom'
 import { changing, formula } from '../math'
@@ -31,10 +32,10 @@ function createRow({ name, symbol, unit, note }: Finding): Row {
   return {
     element: h('tr', { role: 'row', title: note || null }, head, predicted, measured, off),
     show(finding) {
-      predicted.textContent = show(finding.predicted)
-      measured.textContent = show(finding.measured)
-      off.textContent = differenceText(finding.difference)
-      off.className = Math.abs(finding.difference ?? 1) < 1e-3 ? 'difference agrees' : 'difference'
+      say(predicted, show(finding.predicted))
+      say(measured, show(finding.measured))
+      say(off, differenceText(finding.difference))
+      put(off, 'class', Math.abs(finding.difference ?? 1) < 1e-3 ? 'difference agrees' : 'difference')
     },
   }
 }
@@ -88,7 +89,8 @@ export function createFindings(derive: () => void): Findings {
     updateTable(findings)
     law.hidden = shown === null
     if (!shown) return
-    fill(name, shown.name, shown.source ? h('span', { class: 'source' }, shown.source) : null)
+    if (name.textContent !== shown.name + (shown.source ?? ''))
+      fill(name, shown.name, shown.source ? h('span', { class: 'source' }, shown.source) : null)
     said.set(shown.latex)
     worked.set(shown.numbers_latex ?? '')
     worked.element.hidden = !shown.numbers_latex

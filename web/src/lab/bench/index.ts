@@ -4,6 +4,7 @@ import './controls.css'
 import './results.css'
 import './dialogs.css'
 import './phone.css'
+import { hide, say } from '../../viewer/elements'
 import { createAfterwards } from '../afterwards'
 import { ApiError, isAbort } from '../api'
 import type { App, Page } from '../app'
@@ -159,21 +160,16 @@ function _mount(host: HTMLElement, app: App): () => void {
   fill(grid, bar, left, middle, right)
   fill(host, h('h1', { class: 'sr-only' }, 'Bench'), grid)
 
+  let noted = ''
   function showScenario(scenario: Scenario): void {
-    title.textContent = scenario.title ?? 'A scenario without a title'
+    say(title, scenario.title ?? 'A scenario without a title')
     const text = scenario.notes?.trim() ?? ''
-    notes.hidden = text === ''
-    const open = notes.open
-    fill(
-      notes,
-      h('summary', {}, 'What to look for'),
-      h(
-        'div',
-        {},
-        text.split(/\n\s*\n/).map((part) => h('p', {}, part.replace(/`/g, ''))),
-      ),
-    )
-    notes.open = open
+    hide(notes, text === '')
+    if (text !== noted) {
+      const paragraphs = text.split(/\n\s*\n/).map((part) => h('p', {}, part.replace(/`/g, '')))
+      fill(notes, h('summary', {}, 'What to look for'), h('div', {}, paragraphs))
+      noted = text
+    }
     back.disabled = !store.canUndo
     again.disabled = !store.canRedo
   }

@@ -1,5 +1,6 @@
 /** The stage: the viewer, its tools, what is written over it, and what is done on it by hand. */
 import type { Place } from '../../viewer/contract'
+import { hide } from '../../viewer/elements'
 import type { Scene, Triple } from '../../viewer/scene'
 import type { Tool, Viewer } from '../../viewer/viewer'
 import { createViewer } from '../../viewer/viewer'
@@ -179,7 +180,7 @@ export function createStage(app: App): Stage {
       said && law.element,
     )
     if (said) law.set(said)
-    big.hidden = !found && !said
+    hide(big, !found && !said)
   }
 
   undo.add(
@@ -196,7 +197,7 @@ export function createStage(app: App): Stage {
     setScene(next, keep) {
       const first = scene === undefined
       scene = next
-      empty.hidden = true
+      hide(empty, true)
       const was = viewer.playing
       drawAhead()
       viewer.setScenes([next], { keepTime: !first && keep.time, keepCamera: !first && keep.camera, rests: keep.rests })
@@ -223,7 +224,7 @@ export function createStage(app: App): Stage {
       time.title = computed ? `Computed in ${computed}${finely}. ${asked}` : asked
     },
     stale(why) {
-      old.hidden = why === null || scene === undefined
+      hide(old, why === null || scene === undefined)
       element.toggleAttribute('data-stale', why !== null)
       if (scene || why === null) return
       empty.classList.remove('working')
