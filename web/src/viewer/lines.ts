@@ -14,6 +14,7 @@ import {
   ShaderMaterial,
   Vector2,
 } from 'three'
+import { countBefore } from './ascending'
 
 /** In place of a point's time: no line comes here or goes on from here. */
 export const BREAK = 1e30
@@ -176,7 +177,7 @@ export class Line {
   get shown(): [number, number] {
     const pieces = Math.max(this.times.length - 1, 0)
     const { value: now } = this.uniforms.now
-    return [Math.max(before(this.times, this.since) - 1, 0), Math.min(before(this.times, now), pieces)]
+    return [Math.max(countBefore(this.times, this.since) - 1, 0), Math.min(countBefore(this.times, now), pieces)]
   }
 
   /** Length of a dash and its gap, in the unit of t; 0 for a whole line. */
@@ -215,17 +216,6 @@ function ascending(points: Float32Array): Float32Array<ArrayBuffer> {
     if (i > 0 && times[i]! < times[i - 1]!) return new Float32Array(times.length).fill(-1e30)
   }
   return times
-}
-
-/** How many of ascending times are before one. */
-function before(times: Float32Array, time: number): number {
-  let [low, high] = [0, times.length]
-  while (low < high) {
-    const middle = (low + high) >> 1
-    if (times[middle]! < time) low = middle + 1
-    else high = middle
-  }
-  return low
 }
 
 const CORNERS = [0, 1, 2, 1, 3, 2]

@@ -1,5 +1,6 @@
 /** A scene's state at any time, between its samples too: positions by Hermite's cubic, orientations by slerp. */
 import { Quaternion, Vector3 } from 'three'
+import { countBefore } from './ascending'
 import { PHASE, type Scene } from './scene'
 
 export class Track {
@@ -100,13 +101,7 @@ export function sampleBefore(times: ArrayLike<number>, time: number, hint = 0): 
     else if (low < last && times[low + 1]! <= time) low++
     else return low
   }
-  let [bottom, top] = [0, last + 1]
-  while (top - bottom > 1) {
-    const middle = (bottom + top) >> 1
-    if (times[middle]! <= time) bottom = middle
-    else top = middle
-  }
-  return bottom
+  return Math.min(Math.max(countBefore(times, time, true) - 1, 0), last)
 }
 
 /** w, x, y, z as columns hold them. */

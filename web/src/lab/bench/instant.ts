@@ -1,4 +1,5 @@
 /** The state at an instant, between two samples, as the samples say it. */
+import { countBefore } from '../../viewer/ascending'
 import { PHASE, type Scene, type Triple, type Turn } from '../../viewer/scene'
 import type { Pose, Spot } from './surfaces'
 
@@ -18,14 +19,7 @@ const LEAST = 1e-6
 
 /** Index of the last sample at or before a time. */
 export function indexAt(times: Float64Array, time: number): number {
-  let low = 0
-  let high = times.length - 1
-  while (low < high) {
-    const middle = (low + high + 1) >> 1
-    if ((times[middle] ?? 0) <= time) low = middle
-    else high = middle - 1
-  }
-  return low
+  return Math.max(countBefore(times, time, true) - 1, 0)
 }
 
 export function instantAt(scene: Scene, time: number): Instant {

@@ -1,4 +1,5 @@
 /** Reading numbers off a scene's samples: what one would measure with ruler, protractor and stopwatch. No laws here. */
+import { countBefore } from '../../../viewer/ascending'
 import type { Columns, Finding, Scene } from '../../../viewer/scene'
 
 export type Vector = readonly [number, number, number]
@@ -26,12 +27,8 @@ export function turned([w, x, y, z]: Quaternion, [a, b, c]: Vector): Vector {
 /** The sample last reached at a time: the samples are dense, so that the nearest will do for a readout. */
 export function sampleAt(scene: Scene, time: number): number {
   const times = column(scene, 'time')
-  let [low, high] = [0, Math.max(0, times.length - 1)]
-  while (high - low > 1) {
-    const middle = (low + high) >> 1
-    if ((times[middle] ?? 0) <= time) low = middle
-    else high = middle
-  }
+  const next = countBefore(times, time, true)
+  const [low, high] = [Math.max(next - 1, 0), Math.max(Math.min(next, times.length - 1), 0)]
   return Math.abs((times[high] ?? 0) - time) < Math.abs((times[low] ?? 0) - time) ? high : low
 }
 
