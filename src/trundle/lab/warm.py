@@ -17,7 +17,8 @@ def begin() -> None:
     --------
     >>> begin()
     """
-    import matplotlib.backends.backend_agg  # noqa: F401
+    import scipy.optimize
+    import scipy.spatial.transform  # noqa: F401
     import xarray  # noqa: F401
 
     from ..solve import taylor
