@@ -203,8 +203,9 @@ def with_events(run: Trajectory) -> Trajectory:
     states = [
         (event, state)
         for event in run.events
-        for state in (getattr(event, "before", None), getattr(event, "after", None))
-        if state is not None and time[0] < event.time < time[-1]
+        if getattr(event, "contact", None) is not None and time[0] < event.time < time[-1]
+        for state in (event.before, event.after)
+        if state is not None
     ]
     if not states:
         return run

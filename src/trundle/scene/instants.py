@@ -101,7 +101,7 @@ def with_events(run: Trajectory, at: Samples) -> Samples:
     known = [
         (event.after, event.contact)
         for event in run.events
-        if event.after is not None and at.time[0] < event.time < at.time[-1] and event.time not in at.time
+        if event.contact is not None and at.time[0] < event.time < at.time[-1] and event.time not in at.time
     ]
     if not known or len(known) > _MOST_EVENTS:
         return at

@@ -108,6 +108,8 @@ def integrate(
         stop, q = Stop(reached, found[1], np.array(law.numbers(at), dtype=float), at), q[:-1]
     along = Along(law, form, start.time, start.support)
     samples = None if kept.size <= _SHORT else along.samples(system, kept, q, progress)
+    if progress is not None:
+        progress(end if stop is None else stop.time)
     return Stretch(kept, q, stop, along, samples)
 
 
@@ -183,7 +185,9 @@ class Along:
 
     def goes_on(self, other: Any) -> bool:
         """Tell whether the next stretch has the same formula, so that arrays of its numbers give both."""
-        return isinstance(other, Along) and self.form.of_arrays and type(other.form) is type(self.form)
+        if not isinstance(other, Along) or not self.form.of_arrays:
+            return False
+        return type(other.form) is type(self.form) and other.law.code == self.law.code
 
     def record(self, system: RollingSystem, stretches: Sequence[Stretch]) -> Samples:
         """Return the samples of this stretch, and of those that go on from it."""
