@@ -8,19 +8,6 @@ float crisp(float signed_) { // 0 to 1 across the zero of a function, one pixel 
   return clamp(signed_ / max(fwidth(signed_), 1e-9) + 0.5, 0.0, 1.0);
 }
 float band(float value, float half_) { return crisp(half_ - abs(value)); }
-// How many pixels one is beyond the nearest multiple of a whole number.
-float beyond(float value, float width, float every) {
-  return (value - every * floor(value / every + 0.5)) / width;
-}
-// 1 within half a line's width, all in pixels; gone where the lines, so many of them to a pixel, would run together.
-float rule(float off, float wide, float dense) {
-  return clamp(0.5 * wide + 0.5 - abs(off), 0.0, 1.0) * (1.0 - smoothstep(0.15, 0.4, dense));
-}
-// 1 from an even whole number to the next and 0 from an odd one; their mean where they are too fine to see.
-float alternate(float value, float width) {
-  float next = clamp(beyond(value, width, 1.0) + 0.5, 0.0, 1.0);
-  return mix(mix(next, 1.0 - next, mod(floor(value + 0.5), 2.0)), 0.5, smoothstep(0.25, 0.7, width));
-}
 `
 
 /** Gores in two colours round the third body axis, an equator, and the two poles. */
@@ -52,15 +39,21 @@ vec3 painted(vec2 marks, vec3 place) {
   vec2 at = vec2(marks.x * sectors, marks.y * rings);
 #endif
   vec2 width = max(fwidth(at), 1e-9);
-  float fine = max(rule(beyond(at.x, width.x, 1.0), stroke, width.x), rule(beyond(at.y, width.y, 1.0), stroke, width.y));
-  float check = alternate(at.x, width.x);
+  vec2 whole = floor(at + 0.5);
+  vec2 aside = (at - whole) / width; // pixels beyond the nearest of the lines
+  // Lines are gone where they, so many of them to a pixel, would run together.
+  vec2 ruled = clamp(0.5 * stroke + 0.5 - abs(aside), 0.0, 1.0) * (1.0 - smoothstep(0.15, 0.4, width));
+  float fine = max(ruled.x, ruled.y);
+  // 1 from an even whole number to the next and 0 from an odd one; their mean where they are too fine to see.
+  vec2 odd = whole - 2.0 * floor(0.5 * whole);
+  vec2 checks = mix(abs(clamp(aside + 0.5, 0.0, 1.0) - odd), vec2(0.5), smoothstep(0.25, 0.7, width));
 #ifdef SQUARE
-  check = abs(check - alternate(at.y, width.y));
-  float wide = 1.6 * stroke;
-  float fifth = max(
-    rule(beyond(at.x, width.x, 5.0), wide, 0.2 * width.x), rule(beyond(at.y, width.y, 5.0), wide, 0.2 * width.y));
-  float lines = max(0.4 * fine, 0.75 * fifth);
+  float check = abs(checks.x - checks.y);
+  vec2 beyond = (at - 5.0 * floor(0.2 * at + 0.5)) / width;
+  vec2 fifths = clamp(0.8 * stroke + 0.5 - abs(beyond), 0.0, 1.0) * (1.0 - smoothstep(0.75, 2.0, width));
+  float lines = max(0.4 * fine, 0.75 * max(fifths.x, fifths.y));
 #else
+  float check = checks.x;
   float lines = 0.55 * fine;
 #endif
   vec3 tone = mix(base, other, check * contrast);
