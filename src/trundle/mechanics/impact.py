@@ -234,16 +234,17 @@ class _Course:
         def rates(_: float, y: Any) -> Any:
             hat = np.array([math.cos(y[1]), math.sin(y[1])])
             direction = np.array([*(-self.mu * hat), 1.0])
-            x, z, up = M @ direction
-            return np.array([hat[0] * x + hat[1] * z, (hat[0] * z - hat[1] * x) / y[0], up, y[2], *direction])
+            first, second, up = M @ direction
+            along, aside = hat[0] * first + hat[1] * second, hat[0] * second - hat[1] * first
+            return np.array([along, aside / y[0], up, y[2], *direction])
 
         ends = [lambda _, y: y[0] - _SLOW * size]
         ends.append((lambda _, y: y[2]) if self.aim is None else (lambda _, y: y[3] - self.aim))
         for end, direction in zip(ends, (-1, 1), strict=True):
             end.terminal, end.direction = True, direction  # type: ignore[attr-defined]
         far = 100 * size / float(np.linalg.eigvalsh(M)[0])
-        x, z, up = self.slip
-        y0 = np.array([math.hypot(x, z), math.atan2(z, x), up, self.work, 0.0, 0.0, 0.0])
+        first, second, up = self.slip
+        y0 = np.array([math.hypot(first, second), math.atan2(second, first), up, self.work, 0.0, 0.0, 0.0])
         scale = np.array([size, 1.0, size, size * far, far, far, far])
         found = solve_ivp(rates, (0.0, far), y0, method="DOP853", rtol=1e-12, atol=1e-14 * scale, events=ends)
         if found.status != 1:
