@@ -223,7 +223,7 @@ def _fall(function: Callable[[float], float], looks: Array, values: Array) -> fl
 
 
 def _minima(function: Callable[[float], float], looks: Array, values: Array) -> list[float]:
-    """Return where a function is lowest between its looks, in order: where the polynomial through them is, and nearby."""
+    """Return where a function is lowest between its looks, in order, near where the polynomial through them is."""
     from numpy.polynomial import chebyshev
     from scipy.optimize import minimize_scalar
 
