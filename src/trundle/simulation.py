@@ -81,6 +81,8 @@ def simulate(
     >>> run.method, run.data.time.size
     ('exact', 1001)
     """
+    if not isinstance(start, State):
+        raise InvalidValueError("start", "must be a State, as system.place(...) makes it", start)
     times = start.time + sample_times(duration, every)
     _check_start(system, start, float(times[-1]))
     check_finite(system, float(times[0]), float(times[-1]))
@@ -105,8 +107,6 @@ def _described(system: RollingSystem, start: State, times: Any, method: str, tit
 
 def _check_start(system: RollingSystem, start: State, until: float) -> None:
     """Refuse a hand-made start inside the support, or one that slips where nothing limits the friction."""
-    if not isinstance(start, State):
-        raise InvalidValueError("start", "must be a State, as system.place(...) makes it", start)
     own = system.support.motion.own
     if len(start.support) != len(own):
         remedy = "Let system.place(...) make the start."
