@@ -50,7 +50,7 @@ def test_a_dragged_rate_shows_the_circle_that_the_package_computes(page: Page) -
 
     def agrees() -> None:
         assert bench.scenario()["support"]["motion"]["rate"] != "33.3 rpm", "the address did not follow"
-        predicted, measured = bench.found(r"\Omega_c")
+        predicted, measured = bench.found(r"\kappa")
         rate = circle_rate(bench.run())
         assert (predicted, measured) == (as_shown(rate), as_shown(rate))
         assert rate > 1.5, "the slider ends at 10 rad/s, and the circle has two sevenths of that"
@@ -117,7 +117,7 @@ def test_a_value_may_be_typed_with_its_unit(typed: str, rate: float, page: Page)
     def agrees() -> None:
         motion = tr.Scenario.read(bench.scenario()).system().support.motion
         assert motion.rate == pytest.approx(rate, rel=1e-12)
-        assert bench.found(r"\Omega_c")[0] == as_shown(2 / 7 * rate)
+        assert bench.found(r"\kappa")[0] == as_shown(2 / 7 * rate)
 
     eventually(bench.page, agrees)
 
@@ -128,7 +128,7 @@ def test_a_unit_may_be_changed_and_the_motion_stays(page: Page) -> None:
     expect(bench.box(RATE)).to_have_value(re.compile(r"3\.4871[67]\d*"))
 
     def agrees() -> None:
-        assert bench.found(r"\Omega_c")[0] == as_shown(2 / 7 * 1.11 * math.pi)
+        assert bench.found(r"\kappa")[0] == as_shown(2 / 7 * 1.11 * math.pi)
 
     eventually(bench.page, agrees)
 
@@ -206,7 +206,7 @@ def test_undo_and_redo_go_along_the_changes(visitor: Visitor) -> None:
 
 
 def rate_shown(bench: Bench, rate: float) -> None:
-    assert bench.found(r"\Omega_c")[0] == as_shown(2 / 7 * rate)
+    assert bench.found(r"\kappa")[0] == as_shown(2 / 7 * rate)
 
 
 def test_the_card_is_the_packages_own(page: Page) -> None:
