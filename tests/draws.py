@@ -177,6 +177,7 @@ def anything(draw: st.DrawFn) -> tuple[tr.RollingSystem, dict[str, Any]]:
         mu,
         None if kinetic is None or mu is None else kinetic * mu,
         draw(st.sampled_from([0.0, 0.6, 1.0])),
+        draw(st.sampled_from([0.0, 0.0, 0.5, 1.0])),
     )
     system = tr.RollingSystem(
         draw(ANY_BODY),
