@@ -184,8 +184,8 @@ class _Course:
     def _given_back(self, direction: Vector) -> Vector:
         """Return the impulse by which a contact that holds gives back the share e_t² of what friction took, N s.
 
-        It is along the one that ends the slip, and at most what friction left unused. Where it presses the body onto the
-        support, the support holds against it and does no work.
+        It is along the one that ends the slip, and at most what friction left unused. Where it presses the body onto
+        the support, the support holds against it and does no work.
         """
         given, left, turned = ZERO, self.tangential_restitution**2 * max(0.0, self.taken), 0.0
         pressing = -self.M.c.dot(direction)
