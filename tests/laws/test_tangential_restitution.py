@@ -71,7 +71,7 @@ def test_a_superball_thrown_under_a_table_comes_back() -> None:
     for side in (1, -1, 1):
         V, turned = garwin(Fraction(2, 5), V, side * C)
         C = side * turned
-    assert [V] == [Fraction(-333, 343)]
+    assert 343 * V == -333
     rough = floor(sphere(), 1.0, 1.0)
     v, omega = np.array([1.0, 0.0, -3.0]), np.zeros(3)
     for side in (1.0, -1.0, 1.0):
