@@ -93,7 +93,7 @@ def test_air_by_hand():
 
 
 def test_moving_air():
-    rows = found(simulated(table(), NUDGED, loads=(tr.Drag(0.05, air_rate=3.5),), duration=20.0))
+    rows = found(simulated(table(), NUDGED, loads=(tr.Drag(0.05, air=3.5),), duration=20.0))
     for part in ("faster", "slower"):
         for what in (f"Angular rate of the {part} part", f"Growth of the {part} part"):
             assert rows[what]["measured"] == pytest.approx(rows[what]["predicted"], abs=1e-5)

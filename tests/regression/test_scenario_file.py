@@ -208,7 +208,7 @@ PIPES = [
 @pytest.mark.parametrize("support", PIPES)
 def test_pipes_and_imperfect_tables_read_back_to_a_rounding_of_the_place(support: Support) -> None:
     # An angle is read off a place on a circle, so that a coordinate may come back a last digit off.
-    loads = (Force((THIRD, "0.1*sin(3*t)", -0.1)), Torque(("t**2", 0.0, 0.0)), Drag(THIRD, air_rate=-THIRD))
+    loads = (Force((THIRD, "0.1*sin(3*t)", -0.1)), Torque(("t**2", 0.0, 0.0)), Drag(THIRD, air=-THIRD))
     system = RollingSystem(BODIES[0], support, loads)
     state = system.place((0.3, THIRD), (0.1, -0.2), spin=0.5)
     told = ScenarioFile.describe(system, state, duration=1.0, every=0.1)
@@ -244,7 +244,7 @@ def test_air_may_stand_turn_along_or_have_a_rate() -> None:
     text = WHOLE.replace('coefficient = "1 g/s"', 'coefficient = "1 g/s"\nair = {}')
     rate = ScenarioFile.loads(WHOLE).support.motion.rate
     for word, wanted in [('"still"', 0.0), ('"turning"', rate), ('"2 rad/s"', 2.0), ("-1.5", -1.5)]:
-        assert ScenarioFile.loads(text.replace("{}", word)).system().loads[2].air_rate == wanted
+        assert ScenarioFile.loads(text.replace("{}", word)).system().loads[2].air == wanted
 
 
 @given(st.tuples(*[st.floats(-1, 1)] * 4).filter(lambda q: math.hypot(*q) > 1e-3))

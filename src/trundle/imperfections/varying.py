@@ -156,8 +156,8 @@ def _sizes(
     """Return the shortcomings, each with whether its size is the scenario's own: given, the scenario's, or usual."""
     support, motion = system.support, system.support.motion
     air = [load for load in system.loads if isinstance(load, Drag)]
-    still = sum(float(load.coefficient) for load in air if load.air_rate == 0)
-    turning = sum(float(load.coefficient) for load in air if load.air_rate != 0)
+    still = sum(float(load.coefficient) for load in air if load.air == 0)
+    turning = sum(float(load.coefficient) for load in air if load.air != 0)
     rolling = sum(float(load.offset) for load in system.loads if isinstance(load, RollingResistance))
     askew = motion.angle if isinstance(motion, Wobble) else 0.0
     uneven = motion.variation if isinstance(motion, UnevenSpin) else 0.0

@@ -159,7 +159,7 @@ class RollingSystem:
         loads = self.loads if isinstance(self.loads, (list, tuple)) else (self.loads,)
         for i, load in enumerate(loads):
             checks.instance(load, Load, f"loads[{i}]", example)
-        object.__setattr__(self, "loads", tuple(loads))
+        object.__setattr__(self, "loads", tuple(load.over(self.support.motion) for load in loads))
         object.__setattr__(self, "gravity", checks.non_negative(self.gravity, "acceleration", "gravity"))
 
     @property

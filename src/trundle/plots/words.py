@@ -313,7 +313,7 @@ def _constant(load: Any) -> bool:
 
 
 def _air(load: Any) -> str:
-    return "" if is_zero(load.air_rate) else ", air turning"
+    return "" if is_zero(load.air) else ", air turning"
 
 
 def _formula(value: Any, name: str, unit: str) -> str:

@@ -169,7 +169,7 @@ class ScenarioFile(Document):
 
         with _named_in(""):
             body, support = self.body.build(), self.support.build()
-            loads = tuple(load.build(support.motion.mean_rate) for load in self.applied_loads)
+            loads = tuple(load.build() for load in self.applied_loads)
             return RollingSystem(body, support, loads, float(self.gravity))
 
     @cached_property

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 from pydantic import BaseModel, ConfigDict
 
 from ...errors import InvalidValueError
+from ...mechanics.loads.air import STANDING, TURNING
 from ..fields import Coordinate, Measure, Measures, Varying
 
 
@@ -65,7 +66,7 @@ class Air(Measure):
         return {**described, "anyOf": [{"enum": list(AIRS)}, *described["anyOf"]]}
 
 
-AIRS = ("still", "turning")
+AIRS = (STANDING, TURNING)
 
 Radius = Annotated[float, Measure("length", "positive")]
 Mass = Annotated[float, Measure("mass", "positive")]
