@@ -10,7 +10,7 @@ from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, model_va
 from pydantic_core import CoreSchema, core_schema
 
 from ...errors import InvalidValueError
-from ..fields import Measure, Measures, Quantity, written
+from ..fields import Measure, Measures, Quantity, each_checked, written
 from .motions import FixedMotion, Motions
 from .values import AnyTilt, Friction, Radius, Restitution, Rim, Table, Tilt
 
@@ -59,7 +59,7 @@ class Lengths:
             kind = "a list of lists of lengths" if self.rows else "a list of lengths"
             raise InvalidValueError(key, f"must be {kind}", value, f"Write for instance {self.offer}.")
         each = Lengths() if self.rows else Measure("length")
-        return tuple(each(part, f"{key}[{i}]") for i, part in enumerate(value))
+        return each_checked(each, value, key)
 
     @property
     def offer(self) -> str:
