@@ -205,12 +205,22 @@ def _how_to_add(field: FieldInfo, key: str, model: Any) -> str:
         table = next(iter(model.kinds[key].values()))
     if table is None:
         return f"Add for instance: {_example(field, key)}"
-    lines = [_example(inner, name) for name, inner in _keys(table).items() if inner.is_required()]
+    wanted = {name: inner for name, inner in _keys(table).items() if inner.is_required() or _one_of_two(inner)}
+    lines = [_example(inner, name) for name, inner in wanted.items()]
     head = f"[[{key}]]" if get_origin(field.annotation) is tuple else f"[{key}]"
     return f"Add for instance, each on a line of its own: {head} {' ; '.join(lines)}"
 
 
+def _one_of_two(field: FieldInfo) -> bool:
+    """Tell whether a key may be left out only where another stands for it, as a mass may for a density."""
+    return (field.description or "").startswith("Required")
+
+
 _LISTS = {"parts": '[[support.motion.parts]] kind = "spin" ; rate = "33.3 rpm"'}  # of tables
+
+
+def _notes(part: Any) -> tuple[Any, ...]:
+    return getattr(part, "__metadata__", ())
 
 
 def _example(field: FieldInfo, key: str) -> str:
@@ -218,10 +228,10 @@ def _example(field: FieldInfo, key: str) -> str:
         return _LISTS[key]
     if field.examples:
         offer = f'"{field.examples[0]}"' if isinstance(field.examples[0], str) else str(field.examples[0])
-    elif get_args(field.annotation):
+    elif get_origin(field.annotation) is Literal:
         offer = f'"{get_args(field.annotation)[0]}"'
     else:
         offer = ""
-    for note in field.metadata:
+    for note in (*(note for part in get_args(field.annotation) for note in _notes(part)), *field.metadata):
         offer = getattr(note, "offer", None) or offer
     return f"{key} = {offer}"

@@ -94,7 +94,7 @@ function bodySection(scenario: Scenario): Section {
       set: withBody,
     })
   const ratio: Record<string, number> = { 'solid-sphere': 0.4, 'hollow-sphere': 2 / 3 }
-  if (ROUND.has(body.kind) && body.kind !== 'sphere-with-moment') {
+  if (ROUND.has(body.kind) && body.kind !== 'sphere-with-moment' && body.density === undefined) {
     const of = entry('body', 'inertia_ratio') as Entry
     const fallback = ratio[body.kind]
     const set = (now: Scenario, value: Json) =>
