@@ -10,8 +10,9 @@ from pydantic import Field, model_validator
 
 from ..errors import InvalidValueError, ScenarioError
 from .complaints import Kinds
-from .fields import Measure, tell_all, written
+from .fields import Measure, written
 from .tables import KINDS, Bodies, Loads, Run, Start, Supports
+from .together import tell_all
 from .whole import Document
 
 if TYPE_CHECKING:

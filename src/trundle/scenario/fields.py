@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import date, time
 from decimal import Decimal
-from functools import partial
 from typing import Any
 
 from pydantic import BaseModel, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
-from ..errors import InvalidValueError, ScenarioError, did_you_mean
+from ..errors import InvalidValueError, did_you_mean
 from ..mechanics.expressions import Expression, is_formula
 from ..units import UNITS, to_si
+from .together import each_checked
 
 
 class Quantity(float):
@@ -262,71 +262,6 @@ class Varying(Measure):
         described = super().__get_pydantic_json_schema__(schema, handler)
         formula = {"type": "string", "description": "A formula in the time t in s, SI.", "examples": ["0.1*sin(3*t)"]}
         return {**described, "anyOf": [*described["anyOf"], formula]}
-
-
-def each_checked(check: Callable[[Any, str], Any], values: Sequence[Any], key: str = "") -> tuple[Any, ...]:
-    """Check each of a list of values, and tell of all that are wrong.
-
-    Parameters
-    ----------
-    check : callable
-        Takes a value and its key, and returns it as it is meant.
-    values : sequence
-        As a user wrote them.
-    key : str
-        Of the list inside its own field.
-
-    Returns
-    -------
-    tuple
-        The checked values.
-
-    Raises
-    ------
-    InvalidValueError
-        If one of them is refused; a ScenarioError where several are.
-
-    Examples
-    --------
-    >>> each_checked(Measure("length"), ["10 cm", 0])
-    (0.1, 0.0)
-    """
-    return tuple(tell_all(*(partial(check, value, f"{key}[{index}]") for index, value in enumerate(values))))
-
-
-def tell_all(*checks: Callable[[], Any]) -> list[Any]:
-    """Make some checks that do not depend on each other, and tell of all that fail.
-
-    Parameters
-    ----------
-    checks : callables
-        Each raises `InvalidValueError` where something is wrong.
-
-    Returns
-    -------
-    list
-        What they return.
-
-    Raises
-    ------
-    InvalidValueError
-        If one of them fails; a ScenarioError where several do.
-
-    Examples
-    --------
-    >>> tell_all(lambda: 1, lambda: 2)
-    [1, 2]
-    """
-    made: list[Any] = []
-    wrong: list[InvalidValueError] = []
-    for check in checks:
-        try:
-            made.append(check())
-        except InvalidValueError as error:
-            wrong += [error, *getattr(error, "others", ())]
-    if wrong:
-        raise wrong[0] if len(wrong) == 1 else ScenarioError.of(wrong)
-    return made
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,9 @@ from pydantic_core import CoreSchema, core_schema
 
 from ..errors import InvalidValueError
 from .complaints import Kinds, Nothing
-from .fields import Measure, Measures, Quantity, each_checked, written
+from .fields import Measure, Measures, Quantity, written
 from .tables import Place2, Radius, Table, Turn4
+from .together import each_checked
 from .whole import Document
 
 

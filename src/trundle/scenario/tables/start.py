@@ -8,7 +8,8 @@ from typing import Any, Literal
 from pydantic import Field, model_validator
 
 from ...errors import InvalidValueError
-from ..fields import tell_all, written
+from ..fields import written
+from ..together import tell_all
 from .values import Angle, Angle3, Duration, Height, Instant, Own, Place2, Rate, Rate3, Step, Table, Turn4, Velocity
 
 Method = Literal["auto", "exact", "taylor", "runge-kutta"]

@@ -10,7 +10,8 @@ from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, model_va
 from pydantic_core import CoreSchema, core_schema
 
 from ...errors import InvalidValueError
-from ..fields import Measure, Measures, Quantity, each_checked, written
+from ..fields import Measure, Measures, Quantity, written
+from ..together import each_checked
 from .motions import FixedMotion, Motions
 from .values import AnyTilt, Friction, Radius, Restitution, Rim, Table, Tilt
 
