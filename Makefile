@@ -15,7 +15,7 @@ PINNED = PIP_CONSTRAINT=constraints.txt PIP_BUILD_CONSTRAINT=constraints.txt PIP
 PYTEST = $(PLAIN) $(BIN)/python -m pytest -n 2 --dist loadscope --color=no
 
 help:
-	@echo 'make demo    install into .venv, then run the shipped tilted turntable into demo/'
+	@echo 'make demo    install into .venv (from PyPI and the npm registry), then run the shipped tilted turntable into demo/'
 	@echo 'make test    install into .venv, then run every check: tests, documents, lint, types, layers, the web part'
 	@echo 'make bench   install the peers too, then print the ratios of one benchmark run'
 	@echo 'make lint    only ruff, mypy, the order of the layers, and types and lint of the web part'
@@ -24,7 +24,10 @@ help:
 
 demo: .venv/installed
 	$(PLAIN) $(BIN)/trundle run tilted-turntable -o demo
-	@echo 'To spin the table yourself, open the lab: $(BIN)/trundle lab'
+	@echo
+	@echo 'The command is $(BIN)/trundle; after ". $(BIN)/activate" it is trundle. For instance:'
+	@echo '  $(BIN)/trundle list                 the scenarios that ship with trundle'
+	@echo '  $(BIN)/trundle lab                  spin the table yourself, in a browser'
 
 # The web part first: it fetches what the browser tests put into a page to judge it. Lint and types are judged beside it.
 test: .venv/installed-test
@@ -82,7 +85,8 @@ STAMP = if [ ! -f .venv/web ]; then touch .venv/web; fi; touch
 always:
 WEB = web/src web/lab.html web/package.json web/package-lock.json web/.npmrc web/tsconfig.json web/vite.config.ts web/build.py
 
-INSTALL = echo 'Installing trundle and its pinned dependencies into .venv (a minute or two the first time) ...' && \
+INSTALL = echo 'Installing trundle and its pinned dependencies into .venv (a minute or two the first time).' && \
+	echo 'They come from PyPI and, for the page of the lab, from the npm registry ...' && \
 	$(PIP) --no-compile
 
 PIP = $(PINNED) $(BIN)/python -m pip install --quiet --progress-bar off -c constraints.txt

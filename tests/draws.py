@@ -56,7 +56,7 @@ def imperfect(draw: st.DrawFn) -> tuple[tr.RollingSystem, tr.State]:
     rate = draw(st.floats(0.5, 8.0))
     uneven = tr.UnevenSpin(rate, draw(numbers(0.1)), draw(st.floats(0.5, 8.0)))
     motion = draw(st.sampled_from([uneven, tr.Wobble(rate, draw(numbers(0.05)))]))
-    pushed = (tr.Drag(draw(st.floats(0.0, 0.05)), air_rate=rate), tr.Force(("0.01*sin(2*t)", 0.0, "0.02*t")))
+    pushed = (tr.Drag(draw(st.floats(0.0, 0.05)), air=rate), tr.Force(("0.01*sin(2*t)", 0.0, "0.02*t")))
     system = tr.RollingSystem(draw(bodies), tr.Support(tr.Plane(), motion=motion, tilt=draw(TILTS)), loads=pushed)
     return system, system.place(draw(pairs), draw(pairs), spin=draw(numbers(5.0)))
 
@@ -177,6 +177,7 @@ def anything(draw: st.DrawFn) -> tuple[tr.RollingSystem, dict[str, Any]]:
         mu,
         None if kinetic is None or mu is None else kinetic * mu,
         draw(st.sampled_from([0.0, 0.6, 1.0])),
+        draw(st.sampled_from([0.0, 0.0, 0.5, 1.0])),
     )
     system = tr.RollingSystem(
         draw(ANY_BODY),

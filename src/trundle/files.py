@@ -3,19 +3,108 @@
 from __future__ import annotations
 
 import os
+import shutil
+import tempfile
+import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from .errors import TrundleError
 
+_STAGE, _UNHELD = ".trundle-", ".trundle+"  # folders of a process that holds them, and for an instant before that
+_OLD = 86_400.0  # s: older than this is what nobody writes to any more, where no lock can tell
+
+
+@contextmanager
+def staging(above: Path, *others: Path) -> Iterator[Path]:
+    """Make a folder to write in, beside what is to be made, that goes at the end; and clear those of the killed.
+
+    Only a process that is killed leaves its folder. It held a lock on it, which went with the process: so whoever
+    writes there next sees that nobody needs it any more.
+
+    Parameters
+    ----------
+    above : pathlib.Path
+        Where it is made.
+    *others : pathlib.Path
+        Where those of the killed may be besides.
+
+    Yields
+    ------
+    pathlib.Path
+        The folder, whose name begins with a dot.
+
+    Raises
+    ------
+    OSError
+        If it cannot be made.
+
+    Examples
+    --------
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     with staging(Path(folder)) as stage:
+    ...         print(stage.name[:9], len(list(Path(folder).iterdir())))
+    ...     print(list(Path(folder).iterdir()))
+    .trundle- 1
+    []
+    """
+    for place in {above, *others}:
+        _clear(place)
+    made = Path(tempfile.mkdtemp(prefix=_UNHELD, dir=above))
+    stage = made.with_name(made.name.replace(_UNHELD, _STAGE))  # it has this name only while it is held
+    held = None
+    try:
+        held = _hold(made)
+        made.replace(stage)
+        yield stage
+    finally:
+        for folder in (made, stage):
+            shutil.rmtree(folder, ignore_errors=True)
+        if held is not None:
+            os.close(held)
+
+
+def _hold(folder: Path) -> int | None:
+    """Lock a folder, and return what holds the lock; None where somebody else has it, or folders cannot be locked."""
+    try:
+        import fcntl
+
+        opened = os.open(folder, os.O_RDONLY | os.O_CLOEXEC)
+    except (ImportError, OSError):
+        return None
+    try:
+        fcntl.flock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        os.close(opened)
+        return None
+    return opened
+
+
+def _clear(above: Path) -> None:
+    """Remove the folders of processes that were killed; never a reason to fail."""
+    with suppress(OSError):
+        for left in [*above.glob(f"{_STAGE}*"), *above.glob(f"{_UNHELD}*")]:
+            with suppress(OSError):
+                _clear_one(left)
+
+
+def _clear_one(left: Path) -> None:
+    if left.is_symlink() or not left.is_dir():
+        return
+    old = time.time() - left.stat().st_mtime > _OLD
+    held = _hold(left) if left.name.startswith(_STAGE) else None
+    if held is not None or old:
+        shutil.rmtree(left, ignore_errors=True)
+    if held is not None:
+        os.close(held)
+
 
 @contextmanager
 def written_whole(target: Path) -> Iterator[Path]:
-    """Give a temporary file to write, beside the target, and rename it to the target at the end.
+    """Give a temporary file to write, in a folder beside the target, and rename it to the target at the end.
 
-    Whatever interrupts the writing, the target is as it was before; only a killed process leaves the temporary
-    file, whose name begins with a dot.
+    Whatever interrupts the writing, the target is as it was before.
 
     Parameters
     ----------
@@ -25,7 +114,7 @@ def written_whole(target: Path) -> Iterator[Path]:
     Yields
     ------
     pathlib.Path
-        The temporary file, in the same folder and with the same ending.
+        The temporary file, of the same name.
 
     Raises
     ------
@@ -34,7 +123,6 @@ def written_whole(target: Path) -> Iterator[Path]:
 
     Examples
     --------
-    >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     with written_whole(Path(folder) / "a.txt") as temporary:
     ...         _ = temporary.write_text("whole")
@@ -43,12 +131,10 @@ def written_whole(target: Path) -> Iterator[Path]:
     """
     if not target.parent.is_dir():
         raise TrundleError(f"{target} cannot be written: there is no folder {target.parent}. Make it first.")
-    temporary = target.with_name(f".{target.stem}.{os.getpid()}{target.suffix}")
     try:
-        yield temporary
-        temporary.replace(target)
+        with staging(target.parent) as stage:
+            yield stage / target.name
+            (stage / target.name).replace(target)
     except OSError as error:
         reason = error.strerror or str(error)
         raise TrundleError(f"{target} cannot be written: {reason}. Choose another folder or make room.") from None
-    finally:
-        temporary.unlink(missing_ok=True)

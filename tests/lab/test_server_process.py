@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import base64
 import http.client
 import json
 import os
@@ -12,6 +13,7 @@ import socket
 import subprocess
 import sys
 import time
+import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -22,6 +24,7 @@ import pytest
 from tests.lab.conftest import shipped
 
 from trundle.lab.serving import listen
+from trundle.scenario import files
 
 pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks at processes as Linux shows them")
 
@@ -180,6 +183,34 @@ def test_where_the_usual_port_is_taken_another_is_found() -> None:
             assert lab.port != 8765
             assert "port 8765 is taken" in lab.said
             assert lab.ask("/api/scenarios/tilted-turntable")[0] == 200
+
+
+def test_it_opens_a_scenario_of_ones_own(tmp_path: Path) -> None:
+    mine = tmp_path / "my table.toml"
+    text = files.read("tilted-turntable").replace('radius = "25 mm"', 'diameter = "40 mm"')
+    mine.write_text(text, encoding="utf-8")
+    with running(str(mine), "--no-open", "--port", "0") as lab:
+        told = lab.process.stdout.readline()  # type: ignore[union-attr]
+        assert told.startswith(f"{mine} is at http://127.0.0.1:{lab.port}/#/bench?s=")
+        code = told.strip().partition("?s=")[2]
+        scenario = json.loads(zlib.decompress(base64.urlsafe_b64decode(code + "=" * (-len(code) % 4)), -15))
+        assert scenario["body"]["radius"] == "20 mm"
+        assert scenario["title"] == "Steel ball on a tilted turntable"
+        assert lab.ask("/api/simulate", {"scenario": scenario})[1].startswith(b"TRUNDLE1")
+
+
+def test_a_scenario_that_is_none_is_refused_before_it_listens(tmp_path: Path) -> None:
+    wrong = tmp_path / "wrong.toml"
+    wrong.write_text(
+        files.read("tilted-turntable").replace("25 mm", "-25 mm").replace("510 g", "0 g"), encoding="utf-8"
+    )
+    for given, said in ((str(wrong), ("`body.radius`", "`body.mass`")), ("tilted-turntabel", ("Did you mean",))):
+        done = subprocess.run(  # noqa: S603
+            [sys.executable, "-m", "trundle", "lab", given], capture_output=True, text=True, timeout=60, check=False
+        )
+        assert (done.returncode, done.stdout) == (2, "")
+        assert all(word in done.stderr for word in said)
+        assert done.stderr.count("\n") == len(said)
 
 
 def test_what_cannot_be_is_one_line_and_status_2() -> None:

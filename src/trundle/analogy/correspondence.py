@@ -119,7 +119,7 @@ class Twin:
         --------
         >>> import trundle as tr
         >>> tr.twin(tr.Scenario.load("tilted-turntable")).plot().axes[0].get_xlabel()
-        'y, level (m)'
+        'y, level (cm)'
         """
         from .figure import draw
 

@@ -84,10 +84,7 @@ def _load(tables: dict[str, Any], source: str, given: dict[str, str]) -> PathSce
     try:
         return PathScenario.read(tables, source)
     except ScenarioError as error:
-        key = error.key.removeprefix("run.")
-        if key in given:
-            raise ScenarioError(f"--{key}", error.rule, error.received, error.remedy) from None
-        raise
+        raise error.naming({f"run.{key}": f"--{key}" for key in given}) from None
 
 
 def stages_of(rolled: RolledPath) -> list[tuple[str, str]]:

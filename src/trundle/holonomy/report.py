@@ -7,7 +7,7 @@ import textwrap
 from typing import TYPE_CHECKING
 
 import sympy as sp
-from sympy.printing.pretty.pretty_symbology import pretty_symbol
+from sympy.printing.pretty.pretty_symbology import pretty_symbol, pretty_use_unicode
 from sympy.printing.str import StrPrinter
 
 if TYPE_CHECKING:
@@ -51,10 +51,19 @@ def text_of(e: sp.Expr) -> str:
     '−a² sin φ/2'
     """
     text = _Hand().doprint(e)
-    text = re.sub(r"[A-Za-z]\w*", lambda name: pretty_symbol(name[0]), text)
+    text = re.sub(r"[A-Za-z]\w*", lambda name: _letters(name[0]), text)
     text = re.sub(r"\*\*(\d+)", lambda power: power[1].translate(_POWERS), text)
     text = re.sub(r"\b(sin|cos|tan|log|exp)([⁰¹²³⁴⁵⁶⁷⁸⁹]*)\(([^()+\- ]+)\)([⁰¹²³⁴⁵⁶⁷⁸⁹]*)", r"\1\4 \3", text)
     return text.replace("**", "^").replace("*", " ").replace("-", "−")
+
+
+def _letters(name: str) -> str:
+    """Return a symbol's name in Greek letters, whatever SymPy made of the standard output when it was loaded."""
+    before = pretty_use_unicode(True)
+    try:
+        return str(pretty_symbol(name))
+    finally:
+        pretty_use_unicode(before)
 
 
 def form_of(row: list[sp.Expr], q: tuple[sp.Symbol, ...]) -> str:

@@ -20,11 +20,12 @@ class Row:
     Parameters
     ----------
     name : str
-        "tilt", "still-air", "turning-air", "wobble", "uneven-rate"; or "as-given" for the scenario as it is.
+        "tilt", "still-air", "turning-air", "rolling-resistance", "wobble", "uneven-rate"; or "as-given" for the
+        scenario as it is.
     label : str
         What it is, for the reader.
     size : float or None
-        In SI: rad, kg/s, or a share.
+        In SI: rad, kg/s, m, or a share.
     size_text : str
         The size with its unit.
     own : bool
@@ -69,8 +70,11 @@ class Row:
 
     @property
     def outcome(self) -> str:
-        """When the ball left, or that it stayed."""
-        return "stays" if self.leaves is None else f"leaves after {clock(self.leaves)}"
+        """When the ball left, or that it stayed, or stopped rolling while it still spun, where the run ends."""
+        if self.leaves is not None:
+            return f"leaves after {clock(self.leaves)}"
+        times, last = self.run.data.time.values, self.run.events[-1:]
+        return f"stops after {clock(times[-1] - times[0])}" if last and last[0].kind == "spot" else "stays"
 
     @property
     def moved(self) -> str:

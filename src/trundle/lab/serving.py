@@ -115,7 +115,12 @@ def address_of(taken: socket.socket) -> str:
 
 
 def serve(
-    settings: Settings, port: int | None, *, open_browser: bool = True, told: Callable[[str, int], None] | None = None
+    settings: Settings,
+    port: int | None,
+    *,
+    page: str = "",
+    open_browser: bool = True,
+    told: Callable[[str, int], None] | None = None,
 ) -> None:
     """Serve the lab until Ctrl-C.
 
@@ -125,6 +130,8 @@ def serve(
         How it is run; its port is filled in.
     port : int, optional
         Where to listen; absent: the usual port, or any that is free.
+    page : str
+        What comes behind the address where it is opened, as of `page_of`.
     open_browser : bool
         Whether to open it in a browser, once it answers.
     told : callable, optional
@@ -162,7 +169,7 @@ def serve(
                 if self.started and told is not None:
                     told(address, taken.getsockname()[1])
                 if self.started and open_browser:  # some browsers keep their caller
-                    threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
+                    threading.Thread(target=webbrowser.open, args=(address + page,), daemon=True).start()
 
         address = address_of(taken)
         app = create_app(replace(settings, port=taken.getsockname()[1]))

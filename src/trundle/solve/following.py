@@ -248,9 +248,14 @@ def _struck(system: RollingSystem, at: Touch) -> Next:
         V, Omega = V + struck.velocity_change, Omega + struck.angular_velocity_change
         if system.support.motion.free:
             own = (*own[:-1], own[-1] + float(struck.axle_rate_change))
-        off = float(at.contact.slip_velocity(V, Omega).dot(n)) if system.support.restitution > 0 else 0.0
+        off = float(at.contact.slip_velocity(V, Omega).dot(n))
+        if system.support.restitution == 0 and off <= SLIP_TOLERANCE * at.speed:
+            off = 0.0  # slip that is given back may throw a body off, rounding does not
     pull = _pull(system, at)
     bounces = off > 0 and not (pull > 0 and off * off < 2 * pull * SETTLED * at.arm)
+    if not bounces and system.support.friction is None and system.support.tangential_restitution > 0:
+        holding = replace(system.support, tangential_restitution=0.0)  # nothing slips that stays on it
+        return _struck(replace(system, support=holding), at)
     said = f"landed at {-at.approach:.4g} m/s"
     after = at.moving(system, V, Omega, own)
     if bounces:

@@ -36,7 +36,8 @@ class Event:
         body. ``"land"``: a flight ended, the body bouncing or not. ``"settle"``: it landed, and its bounces were cut
         short. ``"stop"``, ``"start"``: it came to rest on the support, or left it. The run ended at ``"rim"``: the
         contact reached the rim; ``"end"``: the end of the surface; ``"edge"``: of what the body's shape covers;
-        ``"curved"``: where the support is too hollow for the body.
+        ``"curved"``: where the support is too hollow for the body; ``"spot"``: rolling stopped while the body still
+        spins.
     text : str
         What happened, for the reader.
     before, after : State, optional
