@@ -17,6 +17,7 @@ from ..mechanics.slipping import slip, unpushed
 from ..mechanics.system import RollingSystem, State
 from .creeping import CreepingLaw
 from .laws import (
+    JAMS,
     FlightLaw,
     Law,
     RestingLaw,
@@ -124,7 +125,7 @@ def after(system: RollingSystem, law: Law, stop: Stop) -> Next:
     if name == "settled":
         return slipping(system, Next.of(law, at))
     if name == "jam":
-        raise jammed(at.state.time)
+        raise jammed(at.state.time, JAMS)
     if name == "lift":
         follows = _touching(system, at) if law.weightless else _lifted(system, at)
         return follows if isinstance(follows.law, FlightLaw) else replace(follows, events=())
@@ -314,8 +315,9 @@ def _slipping(
     N, forces = float(now.normal_force), _forces(system, at)
     if abs(N) <= _WEIGHTLESS * forces:
         return Next.of(law(True), at, (_FLOOR * forces, *ending))
-    if now.opening_per_newton <= 0:
-        raise jammed(state.time, either=N > 0)
+    share = float(now.opening_per_newton * system.body.mass)
+    if share <= JAMS:
+        raise jammed(state.time, share, opens=N * share < 0)
     return _lifted(system, at) if N < 0 else Next.of(law(False), at, ending)
 
 

@@ -11,6 +11,7 @@ from ..errors import SolverError
 from ..mechanics.system import RollingSystem, State
 from . import phases
 from .following import Next, Stop
+from .patience import STEPS, Patience
 from .phases import Stretch
 from .samples import Array, Progress, Samples
 from .tracing import python_law
@@ -138,8 +139,11 @@ def _steps(
     done = int(np.searchsorted(times, stepper.t, side="right"))
     states[:done] = stepper.y
     first = values = stops(stepper.t, stepper.y)
+    patience, count = Patience(float(stepper.t), float(stepper.t_bound)), 0
     while stepper.status == "running":
-        message = stepper.step()
+        message, count = stepper.step(), count + 1
+        if count % STEPS == 0:
+            patience.look(float(stepper.t))
         if stepper.status == "failed" or not np.isfinite(stepper.y).all():
             near = _singular(names, values, first)
             if near is None:

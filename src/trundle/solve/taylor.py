@@ -22,6 +22,7 @@ from . import integrator_cache, phases, runge_kutta
 from .following import Next, Stop
 from .laws import Law
 from .lowering import Lowered, lower
+from .patience import STEPS, Patience
 from .phases import Stretch, cut
 from .samples import Array, Progress, Samples
 
@@ -221,21 +222,35 @@ def _propagate(run: _Run, times: Array, progress: Progress | None) -> tuple[Arra
     """Return the states at the times, and which terminal event came first if one did."""
     integrator = run.integrator
     parts: list[Array] = [np.empty((0, integrator.state.size))]
+    patience = Patience(run.time, float(times[-1]) if times.size else run.time)
     for chunk in _chunks(times):
-        while run.time < chunk[0]:
-            until = min(float(chunk[0]), run.reference + _LONGEST)
-            ended = _event(run, integrator.propagate_until(until - run.reference)[0])
+        left = chunk
+        while left.size:
+            ended = _reach(run, float(left[0]), patience)
             if ended is not None:
                 return np.vstack(parts), ended
-            run.tidy(until)
-        result = integrator.propagate_grid(chunk - run.reference)
-        parts.append(result[-1].reshape(-1, integrator.state.size))
-        ended = _event(run, result[0])
-        if ended is not None:
-            return np.vstack(parts), ended
+            result = integrator.propagate_grid(left - run.reference, max_steps=STEPS)
+            states = result[-1].reshape(-1, integrator.state.size)
+            parts.append(states)
+            ended = _event(run, result[0], patience)
+            if ended is not None:
+                return np.vstack(parts), ended
+            left = left[len(states) :]
         if progress is not None:
             progress(float(chunk[-1]))
     return np.vstack(parts), None
+
+
+def _reach(run: _Run, time: float, patience: Patience) -> int | None:
+    """Go on to an instant, and return which terminal event came first if one did."""
+    while run.time < time:
+        until = min(time, run.reference + _LONGEST)
+        ended = _event(run, run.integrator.propagate_until(until - run.reference, max_steps=STEPS)[0], patience)
+        if ended is not None:
+            return ended
+        if run.time >= until:
+            run.tidy(until)
+    return None
 
 
 def _chunks(times: Array, most: int = _CHUNKS) -> Iterator[Array]:
@@ -251,10 +266,13 @@ def _chunks(times: Array, most: int = _CHUNKS) -> Iterator[Array]:
             yield from np.split(part, np.flatnonzero(np.diff(which)) + 1)
 
 
-def _event(run: _Run, outcome: Any) -> int | None:
-    """Return which terminal event ended it, None if none did; refuse a breakdown."""
+def _event(run: _Run, outcome: Any, patience: Patience) -> int | None:
+    """Return which terminal event ended it, None if none did; refuse a breakdown, and what leads nowhere."""
     import heyoka
 
+    if outcome == heyoka.taylor_outcome.step_limit:
+        patience.look(run.time)
+        return None
     if outcome == heyoka.taylor_outcome.time_limit:
         return None
     if int(outcome) >= 0 or int(outcome) < -1000:
