@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, fields
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -16,21 +17,82 @@ if TYPE_CHECKING:
 
 PHASES = {0: "rolling", 1: "slipping", 2: "flight", 3: "resting"}
 
-# The coordinates of a support that is free to move, or moves as a formula says -> (long name, unit)
+
+@dataclass(frozen=True)
+class Variable:
+    """What a variable of a dataset is.
+
+    Parameters
+    ----------
+    long_name : str
+        In words.
+    units : str
+        As CF writes them.
+    dims : tuple of str
+        Its dimensions.
+    dtype : str
+        NumPy's name of its type.
+
+    Examples
+    --------
+    >>> Variable("velocity of the centre of mass", "m s-1").dims
+    ('time', 'axis')
+    """
+
+    long_name: str
+    units: str
+    dims: tuple[str, ...] = ("time", "axis")
+    dtype: str = "float64"
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """What the variable says of itself."""
+        return {"long_name": self.long_name, "units": self.units}
+
+
+TIME = Variable("time", "s", ("time",))
+COMPONENTS = {"axis": ("x", "y", "z"), "quaternion": ("w", "x", "y", "z")}  # the labels of a second dimension
+
+_VECTORS = {
+    "position": Variable("centre of mass", "m"),
+    "contact": Variable("contact point on the support", "m"),
+    "velocity": Variable("velocity of the centre of mass", "m s-1"),
+    "angular_velocity": Variable("angular velocity of the body", "rad s-1"),
+    "contact_force": Variable("contact force on the body", "N"),
+    "slip_velocity": Variable("velocity of the body's material at the contact relative to the support's", "m s-1"),
+}
+_TURN = Variable("orientation, unit quaternion from body frame to this frame", "1", ("time", "quaternion"))
+_PHASE = Variable("phase of the contact", "1", ("time",), "int8")
+# The coordinates of a support that is free to move, or moves as a formula says.
 _OWN = {
-    "angle": ("angle by which the support has turned", "rad"),
-    "rate": ("rate at which the support turns", "rad s-1"),
+    "angle": Variable("angle by which the support has turned", "rad", ("time",)),
+    "rate": Variable("rate at which the support turns", "rad s-1", ("time",)),
 }
 
-# Dataset variable -> (long name, unit)
-_VECTORS = {
-    "position": ("centre of mass", "m"),
-    "contact": ("contact point on the support", "m"),
-    "velocity": ("velocity of the centre of mass", "m s-1"),
-    "angular_velocity": ("angular velocity of the body", "rad s-1"),
-    "contact_force": ("contact force on the body", "N"),
-    "slip_velocity": ("velocity of the body's material at the contact relative to the support's", "m s-1"),
-}
+
+def variables(system: RollingSystem) -> dict[str, Variable]:
+    """Return which variables the dataset of a run has, beside the time.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        What moves; a support that is free to move adds its own coordinates.
+
+    Returns
+    -------
+    dict from str to Variable
+        By name.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> ball = tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), tr.Support(tr.Plane()))
+    >>> variables(ball)["contact_force"].units
+    'N'
+    """
+    facts = [_OWN[name.rstrip("_0123456789")] for name in system.support.motion.own]  # of two that turn: angle_2
+    own = dict(zip(own_names(system), facts, strict=True))
+    return {**_VECTORS, "orientation": _TURN, "phase": _PHASE, **own}
 
 
 def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any]) -> xarray.Dataset:
@@ -57,33 +119,20 @@ def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any])
     import pandas as pd
     import xarray
 
-    arrays: dict[str, Any] = {name: getattr(samples, name, None) for name in _VECTORS}
     V, carried, u = samples.speeds(system)
-    arrays["slip_velocity"] = np.broadcast_to((V + carried - u).array(), samples.position.shape).copy()
-    arrays["slip_velocity"][samples.phase == FLIGHT] = np.nan  # nothing touches
-    variables = {
-        name: (("time", "axis"), arrays[name], {"long_name": long_name, "units": unit})
-        for name, (long_name, unit) in _VECTORS.items()
-    }
-    turning = {"long_name": "orientation, unit quaternion from body frame to this frame", "units": "1"}
-    phase = {
-        "long_name": "phase of the contact",
-        "units": "1",
-        "flag_values": np.array(list(PHASES), dtype=np.int8),
-        "flag_meanings": " ".join(PHASES.values()),
-    }
+    slip = np.broadcast_to((V + carried - u).array(), samples.position.shape).copy()
+    slip[samples.phase == FLIGHT] = np.nan  # nothing touches
+    arrays = {part.name: getattr(samples, part.name) for part in fields(samples)}
+    arrays |= {"slip_velocity": slip, "phase": samples.phase.astype(np.int8)}
+    arrays |= dict(zip(own_names(system), samples.own.T, strict=True))
+    found = {name: (one.dims, arrays[name], one.attributes) for name, one in variables(system).items()}
+    found["phase"][2].update(flag_values=np.array(list(PHASES), dtype=np.int8), flag_meanings=" ".join(PHASES.values()))
     return xarray.Dataset(
-        {
-            **variables,
-            "orientation": (("time", "quaternion"), samples.orientation, turning),
-            "phase": (("time",), samples.phase.astype(np.int8), phase),
-            **_own(system, samples),
-        },
+        found,
         coords={
             # As pandas indexes: to make them, xarray would first import every package of arrays that it knows of.
-            "time": (("time",), pd.Index(samples.time), {"long_name": "time", "units": "s", "axis": "T"}),
-            "axis": pd.Index(["x", "y", "z"], dtype=object),
-            "quaternion": pd.Index(["w", "x", "y", "z"], dtype=object),
+            "time": (TIME.dims, pd.Index(samples.time), {**TIME.attributes, "axis": "T"}),
+            **{name: pd.Index(list(parts), dtype=object) for name, parts in COMPONENTS.items()},
         },
         attrs={"Conventions": "CF-1.11", **attributes},
     )
@@ -110,14 +159,6 @@ def own_names(system: RollingSystem) -> list[str]:
     """
     names = system.support.motion.own
     return [f"support_{name}" if names.count(name) == 1 else f"support_{name}_{i}" for i, name in enumerate(names)]
-
-
-def _own(system: RollingSystem, samples: Samples) -> dict[str, Any]:
-    facts = [_OWN[name.rstrip("_0123456789")] for name in system.support.motion.own]  # of two that turn: angle_2
-    return {
-        variable: (("time",), column, {"long_name": long_name, "units": unit})
-        for variable, column, (long_name, unit) in zip(own_names(system), samples.own.T, facts, strict=True)
-    }
 
 
 def attributes(title: str, method: Method) -> dict[str, Any]:
