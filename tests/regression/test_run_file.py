@@ -144,9 +144,8 @@ def turned(q: Any) -> Any:
     return q[:, [1, 0, 3, 2]] * [-1, 1, 1, -1]
 
 
-CHANGES = [
-    (key, name) for key in ARRAYS for name in RUNS if (key, name[:7]) != ("slip_velocity", "bounces")
-]  # it flies
+# In flight nothing slips.
+CHANGES = [(key, name) for key in ARRAYS for name in RUNS if (key, name[:7]) != ("slip_velocity", "bounces")]
 
 
 @pytest.mark.parametrize(("key", "name"), CHANGES)
