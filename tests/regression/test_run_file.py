@@ -19,6 +19,7 @@ import xarray
 import trundle as tr
 from trundle import verify
 from trundle.cli import run as command
+from trundle.verify import reread
 
 ARRAYS = ("position", "contact", "velocity", "angular_velocity", "orientation", "contact_force", "slip_velocity")
 RUNS: dict[str, Callable[[], tr.Trajectory]] = {
@@ -91,6 +92,7 @@ def test_the_card_is_that_of_the_run_as_it_was_saved(
     path = tmp_path / "run.nc"
     path.write_bytes(content(name))
     monkeypatch.setattr(verify, "card", None)  # nothing is computed
+    monkeypatch.setattr(reread, "card", None)
     again = tr.Trajectory.load(path)
     assert again.changed == ()
     assert again.card() == made(name).card()
@@ -215,11 +217,27 @@ def test_a_part_of_a_run_is_checked_for_itself(tmp_path: Path) -> None:
     assert again.card().passed, str(again.card())
 
 
-@pytest.mark.parametrize("end", [1e9, 1e200])
-def test_a_run_to_the_end_of_time_is_not_followed(end: float, tmp_path: Path) -> None:
-    edit = variable("time", lambda t: np.where(t == t[-1], end, t))
-    for name in ("slips and rolls", "seen from the table"):
-        assert not tr.Trajectory.load(edited(tmp_path / "run.nc", name, edit)).card().passed
+NOT_FOLLOWED: dict[str, tuple[str, Callable[[Any], object], str]] = {
+    "a billion seconds": ("slips and rolls", variable("time", lambda t: np.where(t == t[-1], 1e9, t)), "would turn by"),
+    "more than there are": (
+        "seen from the table",
+        variable("time", lambda t: np.where(t == t[-1], 1e200, t)),
+        "would turn by",
+    ),
+    "a start as fast as light": (
+        "a numerical method",
+        attribute("start", lambda text: json.dumps({**json.loads(text), "angular_velocity": [0.0, 0.0, 9e6]})),
+        "its first sample is not its start: angular_velocity",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", NOT_FOLLOWED)
+def test_nonsense_is_not_followed_to_its_end(what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    name, edit, said = NOT_FOLLOWED[what]
+    monkeypatch.setattr(reread, "card", None)  # nothing is run
+    (figure,) = tr.Trajectory.load(edited(tmp_path / "run.nc", name, edit)).card().failures
+    assert f"the run cannot be repeated: {said}" in figure.note.replace("it would", "would")
 
 
 # --- in memory ------------------------------------------------------------------------------------------
