@@ -17,7 +17,7 @@ PYTEST = $(PLAIN) $(BIN)/python -m pytest -n 2 --dist loadscope --color=no
 help:
 	@echo 'make demo    install into .venv, then run the shipped tilted turntable into demo/'
 	@echo 'make test    install into .venv, then run every check: tests, documents, lint, types, layers, the web part'
-	@echo 'make fuzz    run 60 random scenarios of each class, and say which end badly (five minutes); make fuzz COUNT=2000'
+	@echo 'make fuzz    run 60 random scenarios of each class, and say which end badly: five minutes; COUNT=2000 for more'
 	@echo 'make bench   install the peers too, then print the ratios of one benchmark run'
 	@echo 'make lint    only ruff, mypy, the order of the layers, and types and lint of the web part'
 	@echo 'make format  let ruff and biome write their format into the sources'
