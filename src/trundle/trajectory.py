@@ -229,9 +229,8 @@ class Trajectory(Viewable):
             return seen.samples, seen.data.slip_velocity.values
 
         made = card_of_file(self.system, self.start, self.data.time.values, read, method, self.title)
-        return replace(
-            made, origin=file.origin if not file.intact else f"made anew: changed since {file.name} was read"
-        )
+        origin = f"made anew: changed since {file.name} was read" if file.intact else file.origin
+        return replace(made, origin=origin)
 
     def with_card(self, card: Card) -> Trajectory:
         """Return the same trajectory with a card that was made elsewhere.

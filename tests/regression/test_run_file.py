@@ -207,13 +207,14 @@ def test_numbers_of_one_run_with_the_words_of_another(tmp_path: Path) -> None:
     assert not again.card().passed
 
 
-def test_a_part_of_a_run_is_checked_for_itself(tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", RUNS)
+def test_a_part_of_a_run_is_checked_for_itself(name: str, tmp_path: Path) -> None:
     path = tmp_path / "run.nc"
-    path.write_bytes(content("a closed form"))
-    xarray.load_dataset(path, engine="h5netcdf").isel(time=slice(3, 30, 2)).to_netcdf(path, engine="h5netcdf")
+    path.write_bytes(content(name))
+    xarray.load_dataset(path, engine="h5netcdf").isel(time=slice(3, 8, 2)).to_netcdf(path, engine="h5netcdf")
     again = tr.Trajectory.load(path)
     assert again.changed is not None
-    assert set(again.changed) == {"time", *ARRAYS, "phase"}
+    assert {"time", "position", "orientation"} <= set(again.changed)
     assert again.card().passed, str(again.card())
 
 

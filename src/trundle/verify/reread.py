@@ -67,6 +67,8 @@ def card_of_file(
             warnings.simplefilter("ignore", RuntimeWarning)
             _check_length(system, start, time)
             samples, slip = read()
+            there = tuple(event for event in samples.events if event.time <= time[-1])  # of a part of a run
+            samples = replace(samples, events=there)
             _check_begin(system, start, samples)
             made = card(system, start, samples, method, title)
             bound = next((one.bound for one in made.figures if one.name == _AGAIN and one.bound), 0.0)
