@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+import math
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -17,82 +17,112 @@ if TYPE_CHECKING:
 
 PHASES = {0: "rolling", 1: "slipping", 2: "flight", 3: "resting"}
 
-
-@dataclass(frozen=True)
-class Variable:
-    """What a variable of a dataset is.
-
-    Parameters
-    ----------
-    long_name : str
-        In words.
-    units : str
-        As CF writes them.
-    dims : tuple of str
-        Its dimensions.
-    dtype : str
-        NumPy's name of its type.
-
-    Examples
-    --------
-    >>> Variable("velocity of the centre of mass", "m s-1").dims
-    ('time', 'axis')
-    """
-
-    long_name: str
-    units: str
-    dims: tuple[str, ...] = ("time", "axis")
-    dtype: str = "float64"
-
-    @property
-    def attributes(self) -> dict[str, Any]:
-        """What the variable says of itself."""
-        return {"long_name": self.long_name, "units": self.units}
-
-
-TIME = Variable("time", "s", ("time",))
-COMPONENTS = {"axis": ("x", "y", "z"), "quaternion": ("w", "x", "y", "z")}  # the labels of a second dimension
-
-_VECTORS = {
-    "position": Variable("centre of mass", "m"),
-    "contact": Variable("contact point on the support", "m"),
-    "velocity": Variable("velocity of the centre of mass", "m s-1"),
-    "angular_velocity": Variable("angular velocity of the body", "rad s-1"),
-    "contact_force": Variable("contact force on the body", "N"),
-    "slip_velocity": Variable("velocity of the body's material at the contact relative to the support's", "m s-1"),
-}
-_TURN = Variable("orientation, unit quaternion from body frame to this frame", "1", ("time", "quaternion"))
-_PHASE = Variable("phase of the contact", "1", ("time",), "int8")
-# The coordinates of a support that is free to move, or moves as a formula says.
+# The coordinates of a support that is free to move, or moves as a formula says -> (long name, unit)
 _OWN = {
-    "angle": Variable("angle by which the support has turned", "rad", ("time",)),
-    "rate": Variable("rate at which the support turns", "rad s-1", ("time",)),
+    "angle": ("angle by which the support has turned", "rad"),
+    "rate": ("rate at which the support turns", "rad s-1"),
+}
+
+# Dataset variable -> (long name, unit)
+_VECTORS = {
+    "position": ("centre of mass", "m"),
+    "contact": ("contact point on the support", "m"),
+    "velocity": ("velocity of the centre of mass", "m s-1"),
+    "angular_velocity": ("angular velocity of the body", "rad s-1"),
+    "contact_force": ("contact force on the body", "N"),
+    "slip_velocity": ("velocity of the body's material at the contact relative to the support's", "m s-1"),
 }
 
 
-def variables(system: RollingSystem) -> dict[str, Variable]:
-    """Return which variables the dataset of a run has, beside the time.
+def facts(system: RollingSystem) -> dict[str, tuple[tuple[str, ...], dict[str, Any]]]:
+    """Return dimensions and attributes of every variable that a trajectory of a system has.
 
     Parameters
     ----------
     system : RollingSystem
-        What moves; a support that is free to move adds its own coordinates.
+        Its support's motion may have coordinates of its own.
 
     Returns
     -------
-    dict from str to Variable
-        By name.
+    dict
+        By name, in the order of the dataset.
 
     Examples
     --------
     >>> import trundle as tr
-    >>> ball = tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), tr.Support(tr.Plane()))
-    >>> variables(ball)["contact_force"].units
-    'N'
+    >>> facts(tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), tr.Support(tr.Plane())))["velocity"]
+    (('time', 'axis'), {'long_name': 'velocity of the centre of mass', 'units': 'm s-1'})
     """
-    facts = [_OWN[name.rstrip("_0123456789")] for name in system.support.motion.own]  # of two that turn: angle_2
-    own = dict(zip(own_names(system), facts, strict=True))
-    return {**_VECTORS, "orientation": _TURN, "phase": _PHASE, **own}
+    turning = {"long_name": "orientation, unit quaternion from body frame to this frame", "units": "1"}
+    phase = {
+        "long_name": "phase of the contact",
+        "units": "1",
+        "flag_values": np.array(list(PHASES), dtype=np.int8),
+        "flag_meanings": " ".join(PHASES.values()),
+    }
+    own = [_OWN[name.rstrip("_0123456789")] for name in system.support.motion.own]  # of two that turn: angle_2
+    return {
+        **{name: (("time", "axis"), _named(*said)) for name, said in _VECTORS.items()},
+        "orientation": (("time", "quaternion"), turning),
+        "phase": (("time",), phase),
+        **{name: (("time",), _named(*said)) for name, said in zip(own_names(system), own, strict=True)},
+    }
+
+
+def size_of(system: RollingSystem) -> int:
+    """Return how many bytes a sample takes in a dataset.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        As for `facts`.
+
+    Returns
+    -------
+    int
+        Of all variables and the time.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> size_of(tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), tr.Support(tr.Plane())))
+    185
+    """
+    widths = {"time": 1, "axis": 3, "quaternion": 4}
+    numbers = [math.prod(widths[dim] for dim in dims) for dims, _ in facts(system).values()]
+    return 8 * (1 + sum(numbers)) - 7  # the phase takes one byte
+
+
+def _named(long_name: str, unit: str) -> dict[str, Any]:
+    return {"long_name": long_name, "units": unit}
+
+
+def columns(system: RollingSystem, samples: Samples) -> dict[str, Any]:
+    """Return the values of every variable of a dataset.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Gives the slip, from velocity and Ω against the support's material.
+    samples : Samples
+        In the inertial support frame.
+
+    Returns
+    -------
+    dict
+        Arrays over time, by the names that `facts` has.
+
+    Examples
+    --------
+    See `Trajectory.data`.
+    """
+    return {
+        **{name: getattr(samples, name) for name in _VECTORS if name != "slip_velocity"},
+        "slip_velocity": _slip(system, samples),
+        "orientation": samples.orientation,
+        "phase": samples.phase.astype(np.int8, copy=False),
+        **dict(zip(own_names(system), samples.own.T, strict=True)),
+    }
 
 
 def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any]) -> xarray.Dataset:
@@ -101,7 +131,7 @@ def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any])
     Parameters
     ----------
     system : RollingSystem
-        Gives the slip, from velocity and Ω against the support's material.
+        As for `columns`.
     samples : Samples
         In the inertial support frame.
     attributes : dict
@@ -116,26 +146,47 @@ def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any])
     --------
     See `Trajectory.data`.
     """
-    import pandas as pd
     import xarray
 
+    arrays = columns(system, samples)
+    variables = {name: (dims, arrays[name], about) for name, (dims, about) in facts(system).items()}
+    return xarray.Dataset(variables, coords=coordinates(samples.time), attrs=attributes)
+
+
+def coordinates(times: Any) -> dict[str, Any]:
+    """Return the coordinates of a dataset: the instants, and the labels of vectors and quaternions.
+
+    Parameters
+    ----------
+    times : array (n,)
+        s.
+
+    Returns
+    -------
+    dict
+        As xarray takes them.
+
+    Examples
+    --------
+    >>> list(coordinates(np.array([0.0, 1.0])))
+    ['time', 'axis', 'quaternion']
+    """
+    import pandas as pd
+
+    return {
+        # As pandas indexes: to make them, xarray would first import every package of arrays that it knows of.
+        "time": (("time",), pd.Index(times), {"long_name": "time", "units": "s", "axis": "T"}),
+        "axis": pd.Index(["x", "y", "z"], dtype=object),
+        "quaternion": pd.Index(["w", "x", "y", "z"], dtype=object),
+    }
+
+
+def _slip(system: RollingSystem, samples: Samples) -> Any:
+    """Return V + Ω×ρ − u, (n, 3), m/s; not a number where nothing touches."""
     V, carried, u = samples.speeds(system)
-    slip = np.broadcast_to((V + carried - u).array(), samples.position.shape).copy()
-    slip[samples.phase == FLIGHT] = np.nan  # nothing touches
-    arrays = {part.name: getattr(samples, part.name) for part in fields(samples)}
-    arrays |= {"slip_velocity": slip, "phase": samples.phase.astype(np.int8)}
-    arrays |= dict(zip(own_names(system), samples.own.T, strict=True))
-    found = {name: (one.dims, arrays[name], one.attributes) for name, one in variables(system).items()}
-    found["phase"][2].update(flag_values=np.array(list(PHASES), dtype=np.int8), flag_meanings=" ".join(PHASES.values()))
-    return xarray.Dataset(
-        found,
-        coords={
-            # As pandas indexes: to make them, xarray would first import every package of arrays that it knows of.
-            "time": (TIME.dims, pd.Index(samples.time), {**TIME.attributes, "axis": "T"}),
-            **{name: pd.Index(list(parts), dtype=object) for name, parts in COMPONENTS.items()},
-        },
-        attrs={"Conventions": "CF-1.11", **attributes},
-    )
+    found = np.broadcast_to((V + carried - u).array(), samples.position.shape).copy()
+    found[samples.phase == FLIGHT] = np.nan
+    return found
 
 
 def own_names(system: RollingSystem) -> list[str]:
@@ -162,7 +213,7 @@ def own_names(system: RollingSystem) -> list[str]:
 
 
 def attributes(title: str, method: Method) -> dict[str, Any]:
-    """Return what a dataset says of itself: title, method, tolerance, frame and versions.
+    """Return what a dataset says of itself: conventions, title, method, tolerance, frame and versions.
 
     Parameters
     ----------
@@ -183,6 +234,7 @@ def attributes(title: str, method: Method) -> dict[str, Any]:
     """
     packages = ["trundle", "numpy", *{"taylor": ["heyoka"], "runge-kutta": ["scipy"]}.get(method.name, [])]
     return {
+        "Conventions": "CF-1.11",
         "title": title,
         "method": method.name,
         "tolerance": method.tolerance,

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 TEXTS = ("scenario", "start", "events", "card")  # attributes that only the file has
 CLAIMS = ("frame", "method", "tolerance")  # attributes of the dataset that a card depends on
 DIGESTS = "sha256"
+_BLOCK = 2**20  # numbers
 _UNIT = 1e-6  # by which the length of a quaternion may be off
 _AGAIN = "Save the run again."
 
@@ -111,19 +112,24 @@ def digests(data: xarray.Dataset, system: RollingSystem, texts: Mapping[str, str
     >>> digests(run.data, run.system, {"scenario": "a"})["scenario"][:8]  # of the one letter, as sha256sum has it
     'ca978112'
     """
-    arrays = {name: data[name].values for name in ("time", *labels.variables(system)) if name in data.variables}
+    arrays = {name: data[name].values for name in ("time", *labels.facts(system)) if name in data.variables}
     claims = {name: data.attrs[name] for name in CLAIMS if name in data.attrs}
-    contents = {name: _content(value) for name, value in {**arrays, **claims, **texts}.items()}
-    return {name: hashlib.sha256(content).hexdigest() for name, content in contents.items()}
+    return {name: _digest(value) for name, value in {**arrays, **claims, **texts}.items()}
 
 
-def _content(value: Any) -> bytes | memoryview[Any]:
+def _digest(value: Any) -> str:
+    """Return the SHA-256 of a text or of numbers, which are taken a block at a time: a copy of a long run is large."""
+    found = hashlib.sha256()
     if isinstance(value, str):
-        return value.encode()
-    array = np.asarray(value)
-    if array.dtype.kind == "f":
-        array = np.where(np.isnan(array), np.nan, array)  # one NaN for all: files do not keep which it was
-    return np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<")).reshape(-1).view(np.uint8).data
+        found.update(value.encode())
+        return found.hexdigest()
+    numbers = np.asarray(value)
+    kind = numbers.dtype.newbyteorder("<")
+    for block in np.array_split(numbers.reshape(-1), numbers.size // _BLOCK + 1):
+        if kind.kind == "f":
+            block = np.where(np.isnan(block), np.nan, block)  # one NaN for all: files do not keep which it was
+        found.update(np.ascontiguousarray(block, dtype=kind).view(np.uint8).data)
+    return found.hexdigest()
 
 
 def write(target: Path, data: xarray.Dataset, texts: Mapping[str, str], system: RollingSystem) -> None:
@@ -308,18 +314,20 @@ def _check_data(data: xarray.Dataset, system: RollingSystem, source: str, remedy
         if not holds:
             raise RunFileError(name, rule, received, remedy, source)
 
-    for name, wanted in {"time": labels.TIME, **labels.variables(system)}.items():
+    labelled = labels.coordinates(np.zeros(0))
+    times, _, about = labelled.pop("time")
+    for name, (dims, said) in {"time": (times, about), **labels.facts(system)}.items():
         check(name, name in data.variables, "must be among the variables of a run", "nothing")
         found = data[name]
-        check(name, found.dims == wanted.dims, f"must have the dimensions {', '.join(wanted.dims)}", found.dims)
-        kind = found.dtype.newbyteorder("=")
-        check(name, kind == np.dtype(wanted.dtype), f"must hold numbers of type {wanted.dtype}", str(found.dtype))
-        units = found.attrs.get("units", "nothing")
-        check(name, isinstance(units, str) and units == wanted.units, f"must have the units {wanted.units!r}", units)
-    for name, parts in labels.COMPONENTS.items():
+        check(name, found.dims == dims, f"must have the dimensions {', '.join(dims)}", found.dims)
+        dtype = np.asarray(said.get("flag_values", 0.0)).dtype
+        check(name, found.dtype.newbyteorder("=") == dtype, f"must hold numbers of type {dtype}", str(found.dtype))
+        wanted, units = said["units"], found.attrs.get("units", "nothing")
+        check(name, isinstance(units, str) and units == wanted, f"must have the units {wanted!r}", units)
+    for name, parts in labelled.items():
         there = data[name].values.tolist() if name in data.coords else "nothing"
         check(name, there == list(parts), f"must have the labels {', '.join(parts)}", there)
-    _check_numbers({name: data[name].values for name in ("time", *labels.variables(system))}, check)
+    _check_numbers({name: data[name].values for name in ("time", *labels.facts(system))}, check)
 
 
 def _check_numbers(arrays: dict[str, Any], check: Callable[[str, Any, str, object], None]) -> None:

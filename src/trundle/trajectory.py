@@ -106,7 +106,7 @@ class Trajectory(Viewable):
     def samples(self) -> Samples:
         """The arrays in the inertial support frame, as the methods and the card take them."""
         data = self.in_frame("support").data
-        names = {part.name for part in fields(Samples)} & {"time", *labels.variables(self.system)}
+        names = {part.name for part in fields(Samples)} & {"time", *labels.facts(self.system)}
         own = [data[name].values for name in labels.own_names(self.system)]
         arrays = {name: data[name].values for name in names if name in data}
         return Samples(**arrays, events=self.events, own=np.stack(own, axis=-1) if own else None)

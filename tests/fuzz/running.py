@@ -238,6 +238,16 @@ def _short(file: str) -> str:
 # --- many of them -----------------------------------------------------------------------------------------
 
 
+def _warm_up() -> None:
+    """Import what runs and cards need, once for all copies: but compile nothing, for LLVM keeps threads."""
+    import trundle as tr
+    import trundle.solve.taylor
+
+    trundle.solve.taylor.available()
+    tr.Scenario.load("tilted-turntable").run(duration=0.1, every=0.02)
+    tr.Scenario.load("rocking-hemisphere").run("runge-kutta", duration=0.1, every=0.02).card()
+
+
 def outcomes(cases: Iterator[tuple[str, int]], folder: Path, workers: int, limit: float = LIMIT) -> Iterator[Outcome]:
     """Try out seeds of classes, some at a time.
 
@@ -257,11 +267,7 @@ def outcomes(cases: Iterator[tuple[str, int]], folder: Path, workers: int, limit
     Outcome
         In the order in which they end.
     """
-    import trundle.solve.runge_kutta
-    import trundle.solve.taylor
-    import trundle.verify
-    import trundle.verify.reread  # noqa: F401  once for all copies, not once in each
-
+    _warm_up()
     running: dict[int, tuple[str, int, Child, int]] = {}
     free = list(range(workers))
     waiting = iter(cases)

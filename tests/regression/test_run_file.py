@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import hashlib
 import json
 import random
 import shutil
@@ -17,7 +18,7 @@ import pytest
 import xarray
 
 import trundle as tr
-from trundle import verify
+from trundle import run_file, verify
 from trundle.cli import run as command
 from trundle.verify import reread
 
@@ -106,6 +107,16 @@ def test_a_run_computed_here_says_nothing_of_a_file() -> None:
     ours = made("a closed form")
     assert (ours.changed, ours.card().origin) == ((), "")
     assert "origin" not in ours.card().as_dict()
+
+
+def test_the_digest_of_a_long_run_is_taken_in_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
+    ours = made("bounces, seen from the world")
+    whole = run_file.digests(ours.data, ours.system, {})
+    position = np.ascontiguousarray(ours.data.position.values, dtype="<f8").tobytes()
+    assert whole["position"] == hashlib.sha256(position).hexdigest()
+    for size in (1, 7, ours.data.position.size):
+        monkeypatch.setattr(run_file, "_BLOCK", size)
+        assert run_file.digests(ours.data, ours.system, {}) == whole
 
 
 def test_what_a_user_adds_leaves_the_digests_alone(tmp_path: Path) -> None:
