@@ -132,6 +132,31 @@ class ScenarioError(InvalidValueError):
         return type(self), (self.key, self.rule, self.received, self.remedy, self.source, self.others)
 
 
+class RunFileError(InvalidValueError):
+    """A file is not one that a run was saved to, or it is damaged.
+
+    Parameters
+    ----------
+    key, rule, received, remedy : see InvalidValueError
+        The key is "file", or a variable or attribute in it.
+    source : str
+        The file.
+
+    Examples
+    --------
+    >>> print(RunFileError("time", "must ascend", "0.1 s after 0.2 s", "Save the run again.", "run.nc"))
+    run.nc: `time` must ascend; got '0.1 s after 0.2 s'. Save the run again.
+    """
+
+    def __init__(self, key: str, rule: str, received: object, remedy: str, source: str) -> None:
+        super().__init__(key, rule, received, remedy)
+        self.source = source
+        self.args = (f"{source}: {self.args[0]}",)
+
+    def __reduce__(self) -> tuple[type, tuple[object, ...]]:
+        return type(self), (self.key, self.rule, self.received, self.remedy, self.source)
+
+
 class OutOfDomainError(TrundleError):
     """A closed form or a method was asked for a system outside its stated domain."""
 

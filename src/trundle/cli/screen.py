@@ -109,6 +109,8 @@ def show_card(card: Card) -> None:
     console = _console()
     console.print(Text(card.title, style="bold"))
     console.print(Text(f"method: {card.method}"))
+    if card.origin:
+        console.print(Text(f"origin: {card.origin}"))
     console.print(table)
     console.print(Text("every check held" if card.passed else f"{len(card.failures)} of the checks FAILED"))
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import InvalidValueError
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import normal_at
 from ..mechanics.loads import BodyMotion
@@ -21,6 +22,8 @@ Progress = Callable[[float], None]  # told the fraction done, 0 to 1
 
 
 ROLLING, SLIPPING, FLIGHT, RESTING = range(4)  # phases of the contact
+ENDS = ("rim", "end", "edge", "curved", "spot")  # kinds of event that end a run
+KINDS = ("slip", "grip", "lift", "land", "settle", "stop", "start", *ENDS)
 
 
 @dataclass(frozen=True)
@@ -45,6 +48,11 @@ class Event:
     contact : triple of float, optional
         Where the body touched, p in the inertial support frame, m.
 
+    Raises
+    ------
+    InvalidValueError
+        If there is no such kind.
+
     Examples
     --------
     >>> Event(1.5, "rim", "ran off the rim").kind
@@ -58,10 +66,14 @@ class Event:
     after: State | None = None
     contact: tuple[float, float, float] | None = None
 
+    def __post_init__(self) -> None:
+        if self.kind not in KINDS:
+            raise InvalidValueError("kind", f"must be one of {', '.join(KINDS)}", self.kind)
+
     @property
     def final(self) -> bool:
         """Whether the run ended here."""
-        return self.kind in ("rim", "end", "edge", "curved", "spot")
+        return self.kind in ENDS
 
 
 @dataclass(frozen=True)

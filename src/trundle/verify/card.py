@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 
@@ -83,6 +83,9 @@ class Card:
         With equation and source, or tolerance.
     figures : tuple of CardFigure
         The checks.
+    origin : str
+        Where the card of a run that was loaded comes from: saved with it, or made anew. Cards that say the same are
+        equal, whatever their origin.
 
     Examples
     --------
@@ -95,6 +98,7 @@ class Card:
     title: str
     method: str
     figures: tuple[CardFigure, ...]
+    origin: str = field(default="", compare=False, kw_only=True)
 
     @property
     def passed(self) -> bool:
@@ -116,13 +120,15 @@ class Card:
 
     def __str__(self) -> str:
         verdict = "every check held" if self.passed else f"{len(self.failures)} of the checks FAILED"
-        lines = [self.title or "Verification card", f"method: {self.method}", *map(str, self.figures), verdict]
+        origin = [f"origin: {self.origin}"] if self.origin else []
+        lines = [self.title or "Verification card", f"method: {self.method}", *origin, *map(str, self.figures), verdict]
         return "\n".join(lines)
 
     def as_dict(self) -> dict[str, Any]:
         """Return the card as plain dictionaries; numbers that are not finite become text."""
         figures = [{key: _plain(value) for key, value in asdict(figure).items()} for figure in self.figures]
-        return {"title": self.title, "method": self.method, "passed": self.passed, "figures": figures}
+        origin = {"origin": self.origin} if self.origin else {}
+        return {"title": self.title, "method": self.method, **origin, "passed": self.passed, "figures": figures}
 
     def as_json(self) -> str:
         """Return the card as JSON text."""

@@ -152,7 +152,8 @@ def card_of(scene: Scene, name: str = "") -> str:
     who = f": {escape(name)}" if name else ""
     head = f'<summary><h2>Verification{who}</h2> <strong class="page-{state}">{verdict}</strong></summary>'
     method = str(card["method"])
-    told = f"<p>{escape(method[:1].upper() + method[1:])}.</p>"
+    origin = f" The card is {escape(str(card['origin']))}." if card.get("origin") else ""
+    told = f"<p>{escape(method[:1].upper() + method[1:])}.{origin}</p>"
     return f"<details{' open' * (not name)}>{head}{told}{table}</details>"
 
 
