@@ -106,16 +106,19 @@ class ScenarioFile(Document):
         from ..mechanics.finiteness import check_finite
 
         system = self.system()
-        kinds = system.support.surface.coordinates
-        for i, (part, kind) in enumerate(zip(self.start.position, kinds, strict=True)):
-            Measure(kind)(part, f"start.position[{i}]")
-        for i, (part, kind) in enumerate(zip(self.start.support or (), system.support.motion.own_kinds, strict=False)):
-            Measure(kind)(part, f"start.support[{i}]")
+        for key, kinds in self._kinds_of_components().items():
+            given = getattr(self.start, key.removeprefix("start.")) or ()
+            for i, (part, kind) in enumerate(zip(given, kinds, strict=False)):
+                Measure(kind)(part, f"{key}[{i}]")
         begin = float(self.start.time)
         with _named_in(""):
             check_finite(system, begin, begin + float(self.timing.duration))
         self.start_state()  # placing it tells whether the body fits there, and whether the start rolls
         return self
+
+    def _kinds_of_components(self) -> dict[str, tuple[str, ...]]:
+        support = self.system().support
+        return {"start.position": support.surface.coordinates, "start.support": tuple(support.motion.own_kinds)}
 
     # --- what it describes -------------------------------------------------------------------------------
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cache
 from typing import Any
@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..display import Displayed, Headline, Markup, number, numbers, pairs
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import normal_at
 from ..mechanics.loads import BodyMotion
@@ -23,8 +24,8 @@ Progress = Callable[[float], None]  # told the fraction done, 0 to 1
 ROLLING, SLIPPING, FLIGHT, RESTING = range(4)  # phases of the contact
 
 
-@dataclass(frozen=True)
-class Event:
+@dataclass(frozen=True, repr=False)
+class Event(Displayed):
     """Something that happened at one instant of a run.
 
     Parameters
@@ -56,6 +57,13 @@ class Event:
     before: State | None = None
     after: State | None = None
     contact: tuple[float, float, float] | None = None
+
+    def _headline(self) -> Headline:
+        return Headline(self.kind, self.text)
+
+    def _parts(self) -> Iterator[Markup]:
+        contact = "" if self.contact is None else numbers(self.contact, unit="m")
+        yield pairs([("time", number(self.time, 9, "s")), ("contact", contact)])
 
     @property
     def final(self) -> bool:
