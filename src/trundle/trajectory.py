@@ -64,11 +64,6 @@ class Trajectory(Viewable):
     # of which this is another view, with the facts of the view; `file`, from which it was loaded.
     _kept: dict[str, Any] = field(default_factory=dict, compare=False)
 
-    def __repr__(self) -> str:
-        t = self.data.time.values
-        ending = f", {self.events[-1].text}" if self.events else ""
-        return f"<Trajectory: {t.size} samples over {t[-1] - t[0]:g} s, {self.method}, {self.frame} frame{ending}>"
-
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
             raise AttributeError(name)

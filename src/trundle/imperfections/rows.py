@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
+from ..display import Displayed, Headline, Markup, pairs
 from ..plots.scales import short, with_unit
 from ..trajectory import Trajectory
 from .measuring import CircleMotion
 
+HEADINGS = ("shortcoming", "size", "the ball", "its circle", "theory")
 LEAST = 1e-5 / 60  # m/s: a circle that moves by less than a hundredth of a millimetre in a minute
 
 
-@dataclass(frozen=True)
-class Row:
+@dataclass(frozen=True, repr=False)
+class Row(Displayed):
     """A demonstration with one shortcoming.
 
     Parameters
@@ -89,6 +92,18 @@ class Row:
         if self.theory_leaves is None or not 0 < self.theory_leaves < math.inf:
             return self.theory
         return f"from {clock(self.theory_leaves)}: {self.theory}"
+
+    @property
+    def cells(self) -> tuple[str, ...]:
+        """The row as text, in the order of the headings of the table."""
+        size = self.size_text and self.size_text + " (its own)" * self.own
+        return self.label, size, self.outcome, self.moved, self.expected
+
+    def _headline(self) -> Headline:
+        return Headline(" ".join(filter(None, (self.label, self.size_text))), self.outcome)
+
+    def _parts(self) -> Iterator[Markup]:
+        yield pairs(list(zip(HEADINGS, self.cells, strict=True))[2:])
 
     def as_dict(self) -> dict[str, Any]:
         """Return the row in SI units, as JSON takes it.

@@ -15,6 +15,8 @@ from typing import Any
 from ..errors import InvalidValueError
 from .settings import DEFAULT_PORT, Settings
 
+_BACKLOG = 128  # connections that wait to be taken, and that are taken in one go
+
 
 def is_loopback(host: str) -> bool:
     """Tell whether only this machine can reach an address.
@@ -78,7 +80,7 @@ def listen(host: str, port: int | None) -> socket.socket:
         try:
             taken.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             taken.bind((address[0], wanted, *address[2:]))
-            taken.listen(512)
+            taken.listen(_BACKLOG)
         except OSError as error:
             taken.close()
             reason = error.strerror or str(error)
@@ -148,7 +150,11 @@ def serve(
         preload()  # before what follows, which takes a second to import, too
         import uvicorn
 
+        from . import terminal
         from .app import create_app
+        from .connections import bounded
+
+        terminal.install()
 
         class Server(uvicorn.Server):
             @contextmanager
@@ -175,12 +181,15 @@ def serve(
         app = create_app(replace(settings, port=taken.getsockname()[1]))
         config = uvicorn.Config(
             app,
+            http=bounded(settings),
+            backlog=_BACKLOG,
+            log_config=None,  # what is told, and how: terminal
             log_level="warning",
             access_log=False,
             server_header=False,
             proxy_headers=False,
             timeout_graceful_shutdown=2,
-            timeout_keep_alive=60,
+            timeout_keep_alive=settings.idle_time,  # type: ignore[arg-type]
             ws="none",
         )
         Server(config).run(sockets=[taken])

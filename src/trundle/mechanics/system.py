@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
+from ..display import Displayed, Markup, number, numbers, pairs
 from ..errors import InvalidValueError
 from . import checks
 from .algebra import E_Z, ZERO, Vector
@@ -90,7 +92,7 @@ class Support:
 
 
 @dataclass(frozen=True)
-class State:
+class State(Displayed):
     """Where a body is and how it moves, in the inertial support frame.
 
     Parameters
@@ -120,6 +122,18 @@ class State:
     orientation: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
     time: float = 0.0
     support: tuple[float, ...] = ()
+
+    def _parts(self) -> Iterator[Markup]:
+        yield pairs(
+            [
+                ("position r", numbers(self.position, unit="m")),
+                ("velocity V", numbers(self.velocity, unit="m/s")),
+                ("angular velocity Ω", numbers(self.angular_velocity, unit="rad/s")),
+                ("orientation q", numbers(self.orientation)),
+                ("time", number(self.time, unit="s")),
+                ("support", numbers(self.support) if self.support else ""),
+            ]
+        )
 
 
 @dataclass(frozen=True)

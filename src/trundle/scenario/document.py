@@ -107,11 +107,12 @@ class ScenarioFile(Document):
         from ..mechanics.finiteness import check_finite
 
         system, begin = self.system(), float(self.start.time)
-        kinds = {"position": system.support.surface.coordinates, "support": system.support.motion.own_kinds}
         coordinates = [
-            partial(Measure(kind), part, f"start.{key}[{i}]")
-            for key, expected in kinds.items()
-            for i, (part, kind) in enumerate(zip(getattr(self.start, key) or (), expected, strict=False))
+            partial(Measure(kind), part, f"{key}[{i}]")
+            for key, kinds in self._kinds_of_components().items()
+            for i, (part, kind) in enumerate(
+                zip(getattr(self.start, key.removeprefix("start.")) or (), kinds, strict=False)
+            )
         ]
 
         def finite() -> None:
@@ -121,6 +122,10 @@ class ScenarioFile(Document):
         tell_all(*coordinates, finite)
         self.start_state()  # placing it tells whether the body fits there, and whether the start rolls
         return self
+
+    def _kinds_of_components(self) -> dict[str, tuple[str, ...]]:
+        support = self.system().support
+        return {"start.position": support.surface.coordinates, "start.support": tuple(support.motion.own_kinds)}
 
     # --- what it describes -------------------------------------------------------------------------------
 

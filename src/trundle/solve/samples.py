@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cache
 from typing import Any
@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..display import Displayed, Headline, Markup, number, numbers, pairs
 from ..errors import InvalidValueError
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import normal_at
@@ -26,8 +27,8 @@ ENDS = ("rim", "end", "edge", "curved", "spot")  # kinds of event that end a run
 KINDS = ("slip", "grip", "lift", "land", "settle", "stop", "start", *ENDS)
 
 
-@dataclass(frozen=True)
-class Event:
+@dataclass(frozen=True, repr=False)
+class Event(Displayed):
     """Something that happened at one instant of a run.
 
     Parameters
@@ -69,6 +70,13 @@ class Event:
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
             raise InvalidValueError("kind", f"must be one of {', '.join(KINDS)}", self.kind)
+
+    def _headline(self) -> Headline:
+        return Headline(self.kind, self.text)
+
+    def _parts(self) -> Iterator[Markup]:
+        contact = "" if self.contact is None else numbers(self.contact, unit="m")
+        yield pairs([("time", number(self.time, 9, "s")), ("contact", contact)])
 
     @property
     def final(self) -> bool:
