@@ -57,10 +57,8 @@ def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any])
     import pandas as pd
     import xarray
 
-    arrays: dict[str, Any] = {name: getattr(samples, name, None) for name in _VECTORS}
-    V, carried, u = samples.speeds(system)
-    arrays["slip_velocity"] = np.broadcast_to((V + carried - u).array(), samples.position.shape).copy()
-    arrays["slip_velocity"][samples.phase == FLIGHT] = np.nan  # nothing touches
+    arrays = {name: getattr(samples, name) for name in _VECTORS if name != "slip_velocity"}
+    arrays["slip_velocity"] = _slip(system, samples)
     variables = {
         name: (("time", "axis"), arrays[name], {"long_name": long_name, "units": unit})
         for name, (long_name, unit) in _VECTORS.items()
@@ -76,7 +74,7 @@ def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any])
         {
             **variables,
             "orientation": (("time", "quaternion"), samples.orientation, turning),
-            "phase": (("time",), samples.phase.astype(np.int8), phase),
+            "phase": (("time",), samples.phase.astype(np.int8, copy=False), phase),
             **_own(system, samples),
         },
         coords={
@@ -87,6 +85,16 @@ def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any])
         },
         attrs={"Conventions": "CF-1.11", **attributes},
     )
+
+
+def _slip(system: RollingSystem, samples: Samples) -> Any:
+    """Return V + Ω×ρ − u, (n, 3), m/s; not a number where nothing touches."""
+    found = np.empty_like(samples.position)
+    for where, some in samples.blocks():
+        V, carried, u = some.speeds(system)
+        found[where] = (V + carried - u).array()
+        found[where][some.phase == FLIGHT] = np.nan
+    return found
 
 
 def own_names(system: RollingSystem) -> list[str]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from . import frames, labels
 from .errors import InvalidValueError, TrundleError, UnknownNameError
-from .files import written_whole
+from .netcdf import write_dataset
 from .mechanics.system import RollingSystem, State
 from .scenario import ScenarioFile
 from .solve.exact import ClosedForm, closed_form
@@ -292,9 +292,7 @@ class Trajectory(Viewable):
             "events": json.dumps([asdict(event) for event in self.events]),
             "card": self.card().as_json(),
         }
-        with written_whole(target) as temporary:
-            # Made in memory first: HDF5 brings the process down where a disk fills while it writes.
-            temporary.write_bytes(self.data.assign_attrs(extra).to_netcdf(engine="h5netcdf"))
+        write_dataset(self.data.assign_attrs(extra), target)
         return target
 
     @staticmethod
