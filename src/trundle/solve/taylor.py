@@ -220,41 +220,24 @@ class _Run:
         self.integrator.pars[:] = self.values[: self.lowered.parameters]
 
 
-def _propagate(
-    run: _Run, times: Array, progress: Progress | None
-) -> Iterator[tuple[Array, Array, int | None]]:
+def _propagate(run: _Run, times: Array, progress: Progress | None) -> Iterator[tuple[Array, Array, int | None]]:
     """Yield the times and the states there, a chunk after the other, and last which terminal event came, if one did."""
     integrator = run.integrator
-<<<<<<< HEAD
-    parts: list[Array] = [np.empty((0, integrator.state.size))]
     patience = Patience(run.time, float(times[-1]) if times.size else run.time)
-=======
->>>>>>> df7309a (Fill the arrays of a run as it goes on, and write files as they are made)
     for chunk in _chunks(times):
         left = chunk
         while left.size:
             ended = _reach(run, float(left[0]), patience)
             if ended is not None:
-<<<<<<< HEAD
-                return np.vstack(parts), ended
+                yield left[:0], np.empty((0, integrator.state.size)), ended
+                return
             result = integrator.propagate_grid(left - run.reference, max_steps=STEPS)
             states = result[-1].reshape(-1, integrator.state.size)
-            parts.append(states)
             ended = _event(run, result[0], patience)
+            yield left[: len(states)], states, ended
             if ended is not None:
-                return np.vstack(parts), ended
-            left = left[len(states) :]
-=======
-                yield chunk[:0], np.empty((0, integrator.state.size)), ended
                 return
-            run.tidy(until)
-        result = integrator.propagate_grid(chunk - run.reference)
-        states = result[-1].reshape(-1, integrator.state.size)
-        ended = _event(run, result[0])
-        yield chunk[: len(states)], states, ended
-        if ended is not None:
-            return
->>>>>>> df7309a (Fill the arrays of a run as it goes on, and write files as they are made)
+            left = left[len(states) :]
         if progress is not None:
             progress(float(chunk[-1]))
 
@@ -271,9 +254,12 @@ def _reach(run: _Run, time: float, patience: Patience) -> int | None:
     return None
 
 
-def _chunks(times: Array, most: int = _CHUNKS) -> Iterator[Array]:
-    """Part the instants so that none is long after the first of its part."""
-    count = max(min(most, max(1, times.size // _LEAST_CHUNK)), -(-times.size // AT_ONCE))
+def _chunks(times: Array, most: int = _CHUNKS, size: int = AT_ONCE) -> Iterator[Array]:
+    """Part the instants, where it can be into no more parts than `most`, so that none is long after its part's first.
+
+    No part has more than `size`.
+    """
+    count = max(min(most, max(1, times.size // _LEAST_CHUNK)), -(-times.size // size))
     edges = np.arange(count + 1) * times.size // count
     for first, last in itertools.pairwise(edges.tolist()):
         part = times[first:last]
