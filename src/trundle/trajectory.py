@@ -12,6 +12,7 @@ import numpy as np
 from . import frames, labels, run_file
 from .errors import InvalidValueError, TrundleError, UnknownNameError
 from .mechanics.system import RollingSystem, State
+from .memory import check_room
 from .solve.exact import ClosedForm, closed_form
 from .solve.methods import Method
 from .solve.samples import Event, Samples
@@ -162,7 +163,7 @@ class Trajectory(Viewable):
         Raises
         ------
         InvalidValueError
-            If the times are not finite, ascending and within the run.
+            If the times are not finite, ascending and within the run, or find no room in memory.
 
         Examples
         --------
@@ -177,6 +178,8 @@ class Trajectory(Viewable):
         inside = wanted.size and np.isfinite(wanted).all() and wanted[0] >= first and wanted[-1] <= last
         if not inside or (np.diff(wanted) < 0).any():
             raise InvalidValueError("times", f"must ascend within the run, {first:g} to {last:g} s", times)
+        each, received = labels.size_of(self.system), f"{wanted.size:,} times"
+        check_room(wanted.size, each, "times", received, "ask for {:,} at a time".format)
         once, places = np.unique(wanted, return_inverse=True)
         samples = Method(self.method, self.tolerance).solve(self.system, self.start, once)
         samples = replace(samples, time=once).part(places)  # at the rim an integrator may stop a rounding earlier

@@ -248,17 +248,23 @@ def _even_path(
     system: RollingSystem, start: State, samples: Samples, method: Method, kappa: float
 ) -> tuple[Array, NDArray[np.complex128]]:
     """Return times and path for a fit: the samples at an even step, or new ones where they are too far apart."""
-    t = samples.time - start.time
-    even = np.allclose(np.diff(t[:-1]), t[1] - t[0], rtol=1e-6)  # the last may be the run's end
-    if t.size > 2 and t[-1] - t[-2] < 0.999 * (t[1] - t[0]):
-        t = t[:-1]
-    if t.size < 32 or not even or (t[1] - t[0]) * kappa > 1:
-        t = np.linspace(0.0, min(float(samples.time[-1] - start.time), _CIRCLES_FITTED * 2 * math.pi / kappa), _FITTED)
-        samples = method.solve(system, start, start.time + t)
-        t = samples.time - start.time
-    stride = max(1, int(0.5 / (kappa * (t[1] - t[0]))), t.size // _FITTED // 100)
-    keep = slice(0, stride * _FITTED, stride)
-    return t[keep], samples.position[keep, 0] + 1j * samples.position[keep, 1]
+    t = samples.time
+    step = float(t[1] - t[0])
+    count = t.size - bool(t.size > 2 and t[-1] - t[-2] < 0.999 * step)  # the last may be the run's end
+    keep = _fitted(count, step * kappa)
+    even = step > 0 and np.allclose(np.diff(t[keep]), keep.step * step, rtol=1e-6)
+    if count < 32 or not even or step * kappa > 1:
+        span = min(float(t[-1] - start.time), _CIRCLES_FITTED * 2 * math.pi / kappa)
+        samples = method.solve(system, start, start.time + np.linspace(0.0, span, _FITTED))
+        keep = _fitted(samples.time.size, float(samples.time[1] - samples.time[0]) * kappa)
+    place = samples.position[keep]
+    return samples.time[keep] - start.time, place[:, 0] + 1j * place[:, 1]
+
+
+def _fitted(count: int, turned: float) -> slice:
+    """Return which of many points to fit, given how far the circle turns from one to the next."""
+    stride = max(1, int(0.5 / turned) if turned > 0 else 1, count // _FITTED // 100)
+    return slice(0, min(count, stride * _FITTED), stride)
 
 
 def _pair(value: complex, unit: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -42,29 +43,48 @@ def contact_force(system: RollingSystem, samples: Samples) -> Iterator[CardFigur
     >>> tr.Scenario.load("tilted-turntable").run().card()["normal force"].passed
     True
     """
-    touching = samples.part(samples.phase != FLIGHT)
-    if not touching.time.size:
-        return
-    N, f = _parts(system, touching)
-    least = int(np.argmin(N))
-    size = largest(touching.contact_force)
-    pushed = None if size == 0 else bool(N[least] >= -1e-12 * size)
+    least, needed, size = (math.inf, 0.0), (-1.0, 0.0), 0.0  # what, and when
+    for _, some in samples.blocks():
+        touching = some.part(some.phase != FLIGHT)
+        if not touching.time.size:
+            continue
+        N, f = _parts(system, touching)
+        size = max(size, largest(touching.contact_force))
+        least = min(least, _at(touching, N, int(np.argmin(N))))
+        rolls = touching.phase == ROLLING
+        if rolls.any():
+            share = np.where(rolls, _share(np.linalg.norm(f, axis=1), N), -1.0)
+            needed = max(needed, _at(touching, share, int(np.argmax(share))), key=lambda found: found[0])
+    if least[0] < math.inf:
+        yield _pushing(*least, size)
+    if needed[0] >= 0:
+        yield _holding(system, *needed)
+
+
+def _at(samples: Samples, values: Array, index: int) -> tuple[float, float]:
+    return float(values[index]), float(samples.time[index])
+
+
+def _share(f: Array, N: Array) -> Array:
+    """Return |f|/N, which is without bound where nothing presses the body on and something holds it."""
+    return np.where(N > 0, f / np.where(N > 0, N, 1.0), np.where(f > 0, np.inf, 0.0))
+
+
+def _pushing(least: float, time: float, size: float) -> CardFigure:
+    """Say whether the support pushed all the time, given the least N and the largest force."""
+    pushed = None if size == 0 else least >= -1e-12 * size
     held = "; a support cannot pull: it would come off" if pushed is False else ""
-    said = f"least, at t = {touching.time[least]:.6g} s{held}"
-    yield CardFigure("normal force", float(N[least]), "N", None, pushed, said)
-    rolls = touching.phase == ROLLING
-    if not rolls.any():
-        return
-    N, f_size, times = N[rolls], np.linalg.norm(f[rolls], axis=1), touching.time[rolls]
-    needed = np.where(N > 0, f_size / np.where(N > 0, N, 1.0), np.where(f_size > 0, np.inf, 0.0))
-    worst = int(np.argmax(needed))
-    mu, note = system.support.friction, f"max |f|/N, at t = {times[worst]:.6g} s"
+    return CardFigure("normal force", least, "N", None, pushed, f"least, at t = {time:.6g} s{held}")
+
+
+def _holding(system: RollingSystem, needed: float, time: float) -> CardFigure:
+    """Say whether friction sufficed for rolling, given the largest |f|/N."""
+    mu, note = system.support.friction, f"max |f|/N, at t = {time:.6g} s"
     if mu is None:
-        yield CardFigure("friction coefficient needed", float(needed[worst]), note=note)
-    else:
-        enough = bool(needed[worst] <= mu * (1 + _SLACK))
-        note += "" if enough else "; it would slip"
-        yield CardFigure("friction coefficient needed", float(needed[worst]), "", float(mu), enough, note)
+        return CardFigure("friction coefficient needed", needed, note=note)
+    enough = bool(needed <= mu * (1 + _SLACK))
+    note += "" if enough else "; it would slip"
+    return CardFigure("friction coefficient needed", needed, "", float(mu), enough, note)
 
 
 def friction_law(system: RollingSystem, slipping: Samples, bound: float) -> CardFigure:
