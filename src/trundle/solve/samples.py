@@ -84,6 +84,7 @@ class Samples:
     events: tuple[Event, ...] = ()
     phase: Any = None  # (n,) int8: ROLLING, SLIPPING, FLIGHT or RESTING; absent: rolling
     own: Any = None  # (n, k): the coordinates of the support's own motion; absent: none
+    slip_velocity: Any = None  # (n, 3): as a dataset holds it; absent: what V, Ω and the support make of it
     form: Any = None  # the closed form of the phase in which they start, where they come from one
 
     def __post_init__(self) -> None:
@@ -100,7 +101,8 @@ class Samples:
     @staticmethod
     def joined(parts: Sequence[Samples], events: tuple[Event, ...] = ()) -> Samples:
         """Return several stretches of one run as one."""
-        joined = {name: np.concatenate([getattr(part, name) for part in parts]) for name in _columns()}
+        columns = {name: [getattr(part, name) for part in parts] for name in _columns()}
+        joined = {name: np.concatenate(each) for name, each in columns.items() if all(a is not None for a in each)}
         return Samples(**joined, events=events)
 
     def motion(self, system: RollingSystem) -> BodyMotion:
@@ -134,7 +136,8 @@ class Samples:
 
     def part(self, where: Any) -> Samples:
         """Return some of the samples, chosen as an array is indexed."""
-        return replace(self, **{name: getattr(self, name)[where] for name in _columns()})
+        columns = {name: getattr(self, name) for name in _columns()}
+        return replace(self, **{name: array[where] for name, array in columns.items() if array is not None})
 
     def state(self, index: int) -> State:
         """Return one sample as a state to start from."""

@@ -7,15 +7,31 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..mechanics.system import RollingSystem
-from ..solve.samples import FLIGHT, ROLLING, Samples
+from ..solve.samples import FLIGHT, RESTING, ROLLING, Samples
 from .bounds import Array, largest
 from .card import CardFigure, checked
+from .each_sample import Shares, worst_of
+from .law import applied
 
 _SLACK = 1e-8  # by which rolling may pass the cone before it gives way: what `CONE_SLACK` leaves, and rounding
+_TOLD = 1e-2  # sharpness of a direction beyond which nothing is said of it
 
 
-def _parts(system: RollingSystem, at: Samples) -> tuple[Array, Array]:
-    """Return N and f of the contact force."""
+def normal_and_friction(system: RollingSystem, at: Samples) -> tuple[Array, Array]:
+    """Return N and f of the contact force.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        What moved.
+    at : Samples
+        Any n of a run.
+
+    Returns
+    -------
+    N, f : array
+        (n,) and (n, 3), N.
+    """
     normal = at.normals(system)
     N = np.einsum("ni,ni->n", at.contact_force, normal)
     return N, at.contact_force - N[:, None] * normal
@@ -45,17 +61,17 @@ def contact_force(system: RollingSystem, samples: Samples) -> Iterator[CardFigur
     touching = samples.part(samples.phase != FLIGHT)
     if not touching.time.size:
         return
-    N, f = _parts(system, touching)
+    N, f = normal_and_friction(system, touching)
     least = int(np.argmin(N))
     size = largest(touching.contact_force)
     pushed = None if size == 0 else bool(N[least] >= -1e-12 * size)
     held = "; a support cannot pull: it would come off" if pushed is False else ""
     said = f"least, at t = {touching.time[least]:.6g} s{held}"
     yield CardFigure("normal force", float(N[least]), "N", None, pushed, said)
-    rolls = touching.phase == ROLLING
-    if not rolls.any():
+    holds = (touching.phase == ROLLING) | (touching.phase == RESTING)
+    if not holds.any():
         return
-    N, f_size, times = N[rolls], np.linalg.norm(f[rolls], axis=1), touching.time[rolls]
+    N, f_size, times = N[holds], np.linalg.norm(f[holds], axis=1), touching.time[holds]
     needed = np.where(N > 0, f_size / np.where(N > 0, N, 1.0), np.where(f_size > 0, np.inf, 0.0))
     worst = int(np.argmax(needed))
     mu, note = system.support.friction, f"max |f|/N, at t = {times[worst]:.6g} s"
@@ -65,6 +81,45 @@ def contact_force(system: RollingSystem, samples: Samples) -> Iterator[CardFigur
         enough = bool(needed[worst] <= mu * (1 + _SLACK))
         note += "" if enough else "; it would slip"
         yield CardFigure("friction coefficient needed", float(needed[worst]), "", float(mu), enough, note)
+    rests = touching.part(touching.phase == RESTING)
+    if rests.time.size:
+        yield _resistance(system, rests)
+
+
+def _resistance(system: RollingSystem, rests: Samples) -> CardFigure:
+    """Say what resistance to rolling a body needs that rests, as a lever of N."""
+    couple, N = holding(system, rests)
+    needed = np.linalg.norm(couple, axis=1) / np.maximum(N, 1e-300)
+    most = float(sum(float(load.offset) for load in system.loads if load.stops))
+    worst = int(np.argmax(needed))
+    note = f"couple over N of a body at rest, at t = {rests.time[worst]:.6g} s"
+    return CardFigure(
+        "resistance needed", float(needed[worst]), "m", most, bool(needed[worst] <= most * (1 + _SLACK)), note
+    )
+
+
+def holding(system: RollingSystem, rests: Samples) -> tuple[Array, Array]:
+    """Return the couple along the support that rest takes, N m, and the normal force.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        What rests.
+    rests : Samples
+        At rest on the support, which carries the body along.
+
+    Returns
+    -------
+    couple, N : array
+        (n, 3) and (n,).
+    """
+    _, K, J, gyroscopic = applied(system, rests)
+    support, n = rests.support(system), rests.normals(system)
+    change = np.broadcast_to(support.angular_acceleration.array(), n.shape)
+    arm = rests.contact - rests.position
+    whole = np.einsum("nij,nj->ni", J, change) + gyroscopic - K - np.cross(arm, rests.contact_force)
+    N, _ = normal_and_friction(system, rests)
+    return whole - (whole * n).sum(axis=1, keepdims=True) * n, N
 
 
 def friction_law(system: RollingSystem, slipping: Samples, bound: float) -> CardFigure:
@@ -77,23 +132,28 @@ def friction_law(system: RollingSystem, slipping: Samples, bound: float) -> Card
     slipping : Samples
         Samples in which it slips.
     bound : float
-        The share of μN by which friction may be off.
+        The share of the contact force by which friction may be off.
 
     Returns
     -------
     CardFigure
-        The largest departure.
+        The largest departure, beside what is allowed there: V is the small difference that slip is made of, so that the
+        direction of a slow slip is only as sharp as that. How large friction is does not depend on it.
     """
-    N, f = _parts(system, slipping)
-    V, turning, u = slipping.speeds(system)
-    s = (V + turning - u).array()
-    speed = np.linalg.norm(s, axis=1)
-    mu = float(system.support.sliding_friction)
-    clear = speed > 1e-6 * max(float(speed.max()), 1e-300)  # of less, rounding decides the direction
-    off = f[clear] + mu * (N / np.where(speed > 0, speed, 1.0))[clear, None] * s[clear]
-    share = largest(off) / max(largest(slipping.contact_force), 1e-300) if clear.any() else 0.0
-    # V is the small difference that slip is made of: its direction is as sharp as that.
-    sharp = max(
-        1.0, float((np.max(V.norm()) + np.max(turning.norm())) / max(float(speed[clear].min(initial=1.0)), 1e-300))
-    )
-    return checked("friction while slipping", share, bound * sharp, f"f = −μ N ŝ, μ = {mu:g}")
+    support = system.support
+    coefficient = support.friction if support.kinetic_friction is None else support.kinetic_friction
+    if coefficient is None:
+        return checked("friction while slipping", np.inf, bound, "nothing limits its friction: it cannot slip")
+    mu = float(coefficient)
+    N, f = normal_and_friction(system, slipping)
+    V, turning, u = (np.broadcast_to(v.array(), f.shape) for v in slipping.speeds(system))
+    s = V + turning - u
+    speed, size = np.linalg.norm(s, axis=1), max(largest(slipping.contact_force), 1e-300)
+    at_contact = np.linalg.norm([V, turning, u], axis=2).sum(axis=0)
+    sharp = bound * (1 + at_contact / np.maximum(speed, 1e-300))
+    off = np.linalg.norm(f + mu * (N / np.maximum(speed, 1e-300))[:, None] * s, axis=1) / size
+    conditions = [
+        Shares("its size", np.abs(np.linalg.norm(f, axis=1) - mu * np.abs(N)) / size, bound),
+        Shares("its direction", np.where(sharp < _TOLD, off, 0.0), sharp),
+    ]
+    return worst_of("friction while slipping", conditions, slipping.time, f"f = −μ N ŝ, μ = {mu:g}")

@@ -5,28 +5,30 @@ Rates come from the trajectory's own numbers: each is the slope at the middle of
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..mechanics.algebra import Quaternion, Vector
+from ..mechanics.algebra import Matrix, Quaternion, Vector
 from ..mechanics.system import RollingSystem
-from ..solve.samples import RESTING, ROLLING, Samples
-
-Array = NDArray[np.float64]
+from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
+from .bounds import Array, largest
 
 WINDOWS = 24
 _HALF_NODES = 6  # a polynomial of degree 12
+_SHARP = 1e-3  # of a length over half a window, against which rounding in a slope is as small as its bound asks
 _PHASE_A_WINDOW = 0.3  # rad of the fastest rotation: what a polynomial leaves of a body that is no sphere is rounding
 
 
 @dataclass(frozen=True)
 class Residuals:
-    """How far a trajectory is from the law, each as a share of the terms that it is made of."""
+    """How far a trajectory is from the law, each as a share of the terms that it is made of; at most 0 where none is."""
 
-    path: float  # the slope of the position against the velocity
+    path: float  # the slope of the position against V
+    turning: float  # the slope of the orientation against Ω
+    slip: float  # how the two points that touch move apart, by the slopes of position, orientation and support
     law: float  # accelerations and reaction against the 9 × 9 system
     virtual_power: float  # of the reaction over the admissible velocities
 
@@ -102,94 +104,221 @@ def residuals(system: RollingSystem, windows: Samples, times: Array) -> Residual
     for phase in np.unique(phases):
         which = np.flatnonzero(phases == phase)
         index = (which[:, None] * nodes + np.arange(nodes)).ravel()
-        found.append(_residuals_of(system, windows.part(index), times[which], int(phase)))
-    return Residuals(*(max(getattr(part, name) for part in found) for name in ("path", "law", "virtual_power")))
+        found.append(_Windows(system, windows.part(index), times[which], int(phase)).residuals())
+    return Residuals(*(max(getattr(part, field.name) for part in found) for field in fields(Residuals)))
 
 
-def _residuals_of(system: RollingSystem, windows: Samples, times: Array, phase: int) -> Residuals:
-    """Return the residuals of windows of one phase."""
-    shape = times.shape
+@dataclass(frozen=True)
+class _Windows:
+    """Windows of one phase, and what the slopes at their middles say."""
 
-    def slope(array: Array) -> Array:
-        return _slope_at_middle(times, array.reshape(*shape, -1))
+    system: RollingSystem
+    all: Samples
+    times: Array
+    phase: int
 
-    V_rate, Omega_rate = slope(windows.velocity), slope(windows.angular_velocity)
-    p_rate, r_rate = slope(windows.contact), slope(windows.position)
-    rho_rate = slope(windows.contact - windows.position)
-    own_rate = slope(windows.own) if windows.own.size else None
-    middle = windows.part(np.arange(_HALF_NODES, times.size, shape[1]))
-    m, V, Omega = float(system.body.mass), middle.velocity, middle.angular_velocity
-    rho = middle.contact - middle.position
-    F, K, J, gyroscopic, u_rate = applied(system, middle, p_rate, own_rate)
-    R = middle.contact_force
-    if phase == ROLLING:  # what holds the body to the support is not asked for, but found
-        solved = newton_euler(m, J, rho, F, K - gyroscopic, u_rate - np.cross(Omega, rho_rate))
-    else:
-        turned = Omega_rate if phase == RESTING else _euler(J, K - gyroscopic + np.cross(rho, R))
-        solved = (F + R) / m, turned, R
+    def slope(self, array: Array) -> Array:
+        return _slope_at_middle(self.times, array.reshape(*self.times.shape, -1))
 
-    rate = np.linalg.norm(Omega, axis=1).max() + np.abs(V_rate).max() / max(np.abs(V).max(), 1e-300)
-    a_size = max(np.abs(F).max() / m, np.abs(V_rate).max(), np.abs(V).max() * rate, 1e-300)
-    lever = m * a_size * np.linalg.norm(rho, axis=1).max() / np.trace(J, axis1=1, axis2=2).min()  # what R may turn
-    turn_size = max(np.abs(Omega_rate).max(), np.abs(Omega).max() * rate, lever)
-    law = max(
-        np.abs(solved[0] - V_rate).max() / a_size,
-        np.abs(solved[1] - Omega_rate).max() / turn_size,
-        np.abs(solved[2] - R).max() / (m * a_size),
-    )
-    half = (times[:, -1] - times[:, 0]).min() / 2
-    path = np.abs(r_rate - V).max() / max(np.abs(V).max(), np.abs(middle.position).max() / half)
-    if phase != ROLLING:
-        return Residuals(float(path), float(law), 0.0)
+    @cached_property
+    def middle(self) -> Samples:
+        return self.all.part(np.arange(_HALF_NODES, self.times.size, self.times.shape[1]))
 
-    force = m * V_rate - F  # the reaction and its torque as the motion shows them
-    torque = np.einsum("nij,nj->ni", J, Omega_rate) + gyroscopic - K
-    power = [
-        np.abs((force * np.cross(rho, turn)).sum(axis=1) + torque @ turn).max()  # δV = −δΩ×ρ = ρ×δΩ
-        for turn in np.eye(3)
-    ]
-    turning = np.abs(J).max() * np.abs(Omega).max() * rate
-    torque_size = max(m * a_size * np.linalg.norm(rho, axis=1).max(), turning)
-    return Residuals(float(path), float(law), float(max(power) / torque_size))
+    @cached_property
+    def half(self) -> float:
+        """Half a window, s: a slope is as sharp as rounding over this."""
+        return float((self.times[:, -1] - self.times[:, 0]).min()) / 2
+
+    @cached_property
+    def rate(self) -> float:
+        """How fast the motion changes, 1/s."""
+        V, V_rate = self.middle.velocity, self.slope(self.all.velocity)
+        return largest(self.middle.angular_velocity) + float(np.abs(V_rate).max() / max(np.abs(V).max(), 1e-300))
+
+    def residuals(self) -> Residuals:
+        """Return all of them."""
+        path, turning, slip = self._kinematics()
+        law = self._law()
+        power = self._virtual_power() if self.phase == ROLLING else 0.0
+        return Residuals(path, turning, slip, max(law, self._axle()), power)
+
+    def _kinematics(self) -> tuple[float, float, float]:
+        """Compare what is said of V, Ω and slip with the slopes of position, orientation and support."""
+        at, V, Omega = self.middle, self.middle.velocity, self.middle.angular_velocity
+        path = largest(self.slope(self.all.position) - V)
+        sharp = _SHARP * max(largest(at.position), largest(at.contact)) / self.half
+        to_path = max(float(np.abs(V).max()), sharp, 1e-300)
+        # 2 q̇ q*, of which the first part is the rate of |q|
+        turned = Quaternion.of(self.slope(self.all.orientation)) * Quaternion.of(at.orientation).conjugate
+        off = np.linalg.norm(2 * turned.array() - np.pad(Omega, ((0, 0), (1, 0))), axis=1).max()
+        turning = float(off) / max(largest(Omega), _SHARP / self.half)
+        if self.phase == FLIGHT:
+            return path / to_path, turning, 0.0
+        apart = self.slope(self._body_points() - self._support_points())
+        speeds = [np.broadcast_to(v.array(), at.position.shape) for v in at.speeds(self.system)]
+        if self.phase == SLIPPING:
+            apart = apart - (speeds[0] + speeds[1] - speeds[2])
+        return path / to_path, turning, largest(apart) / max(*map(largest, speeds), sharp, 1e-300)
+
+    def _body_points(self) -> Array:
+        """Return where the body's point that touches at the middle of a window is at each of its instants."""
+        nodes, at = self.times.shape[1], self.middle
+        onward = Quaternion.of(self.all.orientation) * Quaternion.of(np.repeat(at.orientation, nodes, axis=0)).conjugate
+        return self.all.position + rotated(onward.array(), np.repeat(at.contact - at.position, nodes, axis=0))
+
+    def _support_points(self) -> Array:
+        """Return the same of the support's point."""
+        pose, nodes = self.middle.support(self.system), self.times.shape[1]
+        own = (pose.rotation.transpose @ (Vector.of(self.middle.contact) - pose.origin)).array()
+        own = np.repeat(np.broadcast_to(own, self.middle.contact.shape), nodes, axis=0)
+        carried = self.all.support(self.system).carried(Vector.of(own)).array()
+        return np.broadcast_to(carried, own.shape)
+
+    def _law(self) -> float:
+        """Compare V̇, Ω̇ and R with Newton, Euler and, of a body that rolls, the constraint."""
+        at, V_rate, Omega_rate = self.middle, self.slope(self.all.velocity), self.slope(self.all.angular_velocity)
+        m, V, Omega, R = float(self.system.body.mass), at.velocity, at.angular_velocity, at.contact_force
+        rho = at.contact - at.position
+        F, K, J, gyroscopic = applied(self.system, at)
+        if self.phase == ROLLING:  # what holds the body to the support is not asked for, but found
+            u = np.broadcast_to(self.all.speeds(self.system)[2].array(), self.all.position.shape)
+            rho_rate = self.slope(self.all.contact - self.all.position)
+            solved = newton_euler(m, J, rho, F, K - gyroscopic, self.slope(u) - np.cross(Omega, rho_rate))
+        else:
+            turned = Omega_rate if self.phase == RESTING else _euler(J, K - gyroscopic + np.cross(rho, R))
+            solved = (F + R) / m, turned, R
+        a_size = self._acceleration(F, V_rate)
+        lever = m * a_size * largest(rho) / np.trace(J, axis1=1, axis2=2).min()  # what R may turn
+        turn_size = max(np.abs(Omega_rate).max(), np.abs(Omega).max() * self.rate, lever)
+        return float(
+            max(
+                np.abs(solved[0] - V_rate).max() / a_size,
+                np.abs(solved[1] - Omega_rate).max() / turn_size,
+                np.abs(solved[2] - R).max() / (m * a_size),
+            )
+        )
+
+    def _acceleration(self, F: Array, V_rate: Array) -> float:
+        """Return against what an acceleration is small or not."""
+        V = np.abs(self.middle.velocity).max()
+        return float(max(np.abs(F).max() / float(self.system.body.mass), np.abs(V_rate).max(), V * self.rate, 1e-300))
+
+    def _axle(self) -> float:
+        """Compare ω̇ of a free axle with I ω̇ = τ − e·[(p − X)×R] − e·(couples of the contact)."""
+        motion, at = self.system.support.motion, self.middle
+        if not motion.free:
+            return 0.0
+        pose, R = at.support(self.system), at.contact_force
+        axle, arm = (np.broadcast_to(v.array(), R.shape) for v in (pose.axle, Vector.of(at.contact) - pose.origin))
+        own = tuple(at.own.T)
+        parts = [np.broadcast_to(np.asarray(motion.axle_torque(at.time, own), dtype=float), at.time.shape)]
+        if self.phase != FLIGHT:
+            acting = self.system.acting_on(at.motion(self.system))
+            N = (R * at.normals(self.system)).sum(axis=1)
+            couple = [np.broadcast_to(v.array(), R.shape) for v in (acting.from_support, acting.couple)]
+            parts += [
+                -(axle * np.cross(arm, R)).sum(axis=1),
+                -(axle * (couple[0] + couple[1] * N[:, None])).sum(axis=1),
+            ]
+        change = motion.inertia * self.slope(self.all.own)
+        size = max(
+            *(float(np.abs(part).max()) for part in parts),
+            float(motion.inertia * np.abs(at.own[:, -1]).max() * self.rate),
+        )
+        turned = np.abs(self.slope(self.all.own)[:, 0] - at.own[:, -1]).max() / max(
+            np.abs(at.own[:, -1]).max(), _SHARP / self.half
+        )
+        return float(max(np.abs(change[:, -1] - sum(parts)).max() / max(size, 1e-300), turned))
+
+    def _virtual_power(self) -> float:
+        """Return the power of the reaction, as the motion shows it, over δV = −δΩ×ρ."""
+        at, V_rate, Omega_rate = self.middle, self.slope(self.all.velocity), self.slope(self.all.angular_velocity)
+        m, rho = float(self.system.body.mass), at.contact - at.position
+        F, K, J, gyroscopic = applied(self.system, at)
+        force = m * V_rate - F
+        torque = np.einsum("nij,nj->ni", J, Omega_rate) + gyroscopic - K
+        power = [
+            np.abs((force * np.cross(rho, turn)).sum(axis=1) + torque @ turn).max()  # δV = −δΩ×ρ = ρ×δΩ
+            for turn in np.eye(3)
+        ]
+        turning = np.abs(J).max() * np.abs(at.angular_velocity).max() * self.rate
+        size = max(m * self._acceleration(F, V_rate) * largest(rho), turning)
+        return float(max(power) / size)
 
 
 def _euler(J: Array, torque: Array) -> Array:
     return np.asarray(np.linalg.solve(J, torque[..., None])[..., 0])
 
 
-def applied(system: RollingSystem, at: Samples, p_rate: Array, own_rate: Array | None = None) -> tuple[Array, ...]:
-    """Return F, K, J, Ω×JΩ and u̇ at each instant, as arrays.
+def rotated(q: Array, v: Array) -> Array:
+    """Return vectors turned by unit quaternions, v + 2w(u×v) + 2u×(u×v).
+
+    Parameters
+    ----------
+    q : array (n, 4)
+        (w, x, y, z), u = (x, y, z).
+    v : array (n, 3)
+        What is turned.
+
+    Returns
+    -------
+    array (n, 3)
+        Turned.
+
+    Examples
+    --------
+    >>> rotated(np.array([[0.0, 0.0, 0.0, 1.0]]), np.array([[1.0, 2.0, 3.0]])).tolist()
+    [[-1.0, -2.0, 3.0]]
+    """
+    across = 2 * np.cross(q[:, 1:], v)
+    return v + q[:, :1] * across + np.cross(q[:, 1:], across)
+
+
+def inertia_of(system: RollingSystem, q: Array) -> Array:
+    """Return J in the inertial support frame, turned by `rotated` and not by the law's own matrices.
 
     Parameters
     ----------
     system : RollingSystem
-        Body, support and loads.
+        Gives J in the body frame.
+    q : array (n, 4)
+        Orientations.
+
+    Returns
+    -------
+    array (n, 3, 3)
+        kg m².
+    """
+    own = np.array([list(row) for row in system.body.inertia_in_space(Matrix.identity()).rows], dtype=float)
+    axes = np.stack([rotated(q, np.broadcast_to(e, (len(q), 3))) for e in np.eye(3)], axis=2)
+    return axes @ own @ axes.transpose(0, 2, 1)
+
+
+def applied(system: RollingSystem, at: Samples) -> tuple[Array, Array, Array, Array]:
+    """Return F, K, J and Ω×JΩ at each instant, as arrays.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Body, support and loads. Its weight is g(sin α, 0, −cos α) m, worked out here.
     at : Samples
         Instants of a motion, n of them; their contact force gives the normal force that couples follow.
-    p_rate : array (n, 3)
-        ṗ, m/s.
-    own_rate : array (n, k), optional
-        Rates of the coordinates of the support's own motion: the last is the ω̇ of a free axle.
 
     Returns
     -------
     tuple of array
         (n, 3) each, J (n, 3, 3); SI, inertial support frame.
     """
-    q, shape = Quaternion.of(at.orientation), at.position.shape
-    acting = system.acting_on(at.motion(system))
+    shape, tilt = at.position.shape, float(system.support.tilt)
+    weight = float(system.body.mass * system.gravity) * np.array([np.sin(tilt), 0.0, -np.cos(tilt)])
+    acting = replace(system, gravity=0.0).acting_on(at.motion(system))
     torque = acting.torque
     if acting.has_couple:
         torque = torque + acting.couple * Vector.of(at.contact_force).dot(Vector.of(at.normals(system)))
-    tensor = system.body.inertia_in_space(q.matrix())
-    J = np.stack([np.broadcast_to(row.array(), shape) for row in tensor.rows], axis=1)
+    J = inertia_of(system, at.orientation)
     JOmega = np.einsum("nij,nj->ni", J, at.angular_velocity)
-    support, p = at.support(system), Vector.of(at.contact)
-    u_rate = support.material_acceleration(p, Vector.of(p_rate))
-    if system.support.motion.free and own_rate is not None:
-        u_rate = u_rate + support.lever(p) * own_rate[:, -1]
-    F, K, u = (np.broadcast_to(v.array(), shape) for v in (acting.force, torque, u_rate))
-    return F, K, J, np.cross(at.angular_velocity, JOmega), u
+    F, K = (np.broadcast_to(v.array(), shape) for v in (acting.force, torque))
+    return F + weight, K, J, np.cross(at.angular_velocity, JOmega)
 
 
 def newton_euler(m: float, J: Array, rho: Array, F: Array, K: Array, constraint: Array) -> tuple[Any, Any, Any]:
