@@ -7,19 +7,20 @@ falls off exponentially where friction ends it, and the impulse follows from M P
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
 from dataclasses import dataclass
 from functools import cached_property
+from operator import mul
 
 import numpy as np
 
 from .bounds import Array
 
-_ENDED = 1e-12  # of the slip at first: what is left of slip that has ended
+_ENDED = 1e-10  # of the slip at first: what is left of slip that has ended
 _STRAIGHT = 1e-14  # of M, by which slip along one line seems to turn
 _MOST_PIECES = 20
 _MOST_STEPS = 1000
-_TERMS = 24  # of a Taylor series
+_TERMS = 20  # of a Taylor series
 _PRECISION = 1e-17
 
 
@@ -79,12 +80,13 @@ class Course:
         if self.mu is None or sigma <= 2 * _ENDED * size:
             return self._from_no_slip()
         hat = self.slip[:2] / sigma
-        rate = self.M @ np.append(-self.mu * hat, 1.0)
+        way = np.append(-self.mu * hat, 1.0)
+        rate = self.M @ way
         if abs(hat[0] * rate[1] - hat[1] * rate[0]) > _STRAIGHT * np.abs(self.M).max():
             self.turned = True
             return self._curve()
         along = float(hat @ rate[:2])
-        return self._line(np.append(-self.mu * hat, 1.0), -sigma / along if along < 0 else np.inf)
+        return self._line(way, -sigma / along if along < 0 else np.inf)
 
     def _from_no_slip(self) -> bool:
         """Go on from where slip has ended: it stays so where the friction cone allows it, and else begins again."""
@@ -123,77 +125,99 @@ class Course:
         speed, aim = float(np.linalg.norm(self.slip)), self.aim
         series = _Series.of(self.M, float(self.mu or 0.0), self.slip / speed, self.work / speed**2)
         least = _ENDED * series.length
+        row, upto = (2, 0.0) if aim is None else (3, aim / speed**2)
         for _ in range(_MOST_STEPS):
             step = series.step()
-            over = (lambda t: series.at(t)[2]) if aim is None else (lambda t: series.at(t)[3] - aim / speed**2)
-            stops = over(step) >= 0
+            stops = series.at(step)[row] >= upto
             if stops:
-                step = _root(over, step)
+                step = series.reaches(row, upto, step)
             series = series.after(step)
             ended = series.length <= least
             if stops or ended:
                 self.slip, self.work = np.array(series.slip) * speed, series.work * speed**2
-                if stops:
-                    self.work, self.slip[2] = (self.work, 0.0) if aim is None else (aim, self.slip[2])
-                else:
-                    self.slip[:2] = 0.0
-                return True
+                if stops and aim is None:
+                    self.slip[2] = 0.0
+                elif stops:
+                    self.work = float(aim or 0.0)
+                return True if stops else self._rest_of_it()
         return False
+
+    def _rest_of_it(self) -> bool:
+        """Go on straight to where slip ends that has all but ended: what is left turns by no more than it is."""
+        sigma = float(np.hypot(*self.slip[:2]))
+        hat = self.slip[:2] / sigma
+        way = np.append(-float(self.mu or 0.0) * hat, 1.0)
+        along = float(hat @ (self.M @ way)[:2])
+        return along < 0 and self._line(way, -sigma / along)
 
 
 @dataclass(frozen=True)
 class _Series:
-    """Taylor series of s, for a speed of 1, and of the work of P_n at one instant of τ."""
+    """Taylor series of s, for a speed of 1, and of the work of P_n at one instant of τ; floats are quicker here."""
 
-    push: Array  # M n
-    drag: Array  # μ M, its first two columns
+    push: list[float]  # M n
+    drag: list[list[float]]  # μ M, its first two columns
     slip: tuple[float, float, float]
     work: float
 
     @staticmethod
     def of(M: Array, mu: float, slip: Array, work: float) -> _Series:
         x, y, z = slip.tolist()
-        return _Series(M[:, 2], mu * M[:, :2], (x, y, z), work)
+        return _Series(M[:, 2].tolist(), (mu * M[:, :2]).tolist(), (x, y, z), work)
 
     @property
     def length(self) -> float:
         """|s_t|."""
-        return float(np.hypot(*self.slip[:2]))
+        return math.hypot(*self.slip[:2])
 
     @cached_property
-    def terms(self) -> Array:
-        """The coefficients of s and of the work, (4, terms)."""
-        s, length, w = np.zeros((3, _TERMS)), np.zeros(_TERMS), np.zeros(_TERMS)
-        s[:, 0], length[0], w[0] = self.slip, self.length, self.work
+    def terms(self) -> list[list[float]]:
+        """The coefficients of s and of the work."""
+        (a, b, c), ((d, e), (f, g), (h, i)) = self.push, self.drag
+        (x, y, z), length, w = ([part] for part in self.slip), [self.length], [self.work]
+        twice = 2 * length[0]
         for k in range(_TERMS - 1):
-            if k:
-                square = (s[:2, : k + 1] * s[:2, k::-1]).sum()
-                length[k] = (square - length[1:k] @ length[k - 1 : 0 : -1]) / (2 * length[0])
-            s[:, k + 1] = (length[k] * self.push - self.drag @ s[:2, k]) / (k + 1)
-            w[k + 1] = s[2, : k + 1] @ length[k::-1] / (k + 1)
-        return np.vstack([s, w])
+            if k:  # of |s_t|² = x² + y²
+                square = _product(x, x) + _product(y, y) - _product(length[1:], length[1:])
+                length.append(square / twice)
+            x_k, y_k, l_k, n = x[k], y[k], length[k], k + 1
+            w.append(_product(z, length) / n)
+            x.append((l_k * a - d * x_k - e * y_k) / n)
+            y.append((l_k * b - f * x_k - g * y_k) / n)
+            z.append((l_k * c - h * x_k - i * y_k) / n)
+        return [x, y, z, w]
 
     def step(self) -> float:
         """Return how far the series holds to the last digit."""
-        last = np.abs(self.terms[:, -2:]).max(axis=0) / self.length
-        reach = [(_PRECISION / max(c, 1e-300)) ** (1 / n) for n, c in zip((_TERMS - 2, _TERMS - 1), last, strict=True)]
-        return min(reach)
+        n, least = _TERMS - 1, 1e-300
+        last = [max(abs(row[m]) for row in self.terms) / self.length for m in (n - 1, n)]
+        return min((_PRECISION / max(last[0], least)) ** (1 / (n - 1)), (_PRECISION / max(last[1], least)) ** (1 / n))
 
-    def at(self, t: float) -> Array:
+    def at(self, t: float) -> list[float]:
         """Return s and the work at a τ."""
-        return self.terms @ t ** np.arange(_TERMS)
+        powers = [1.0]
+        for _ in range(_TERMS - 1):
+            powers.append(powers[-1] * t)
+        return [sum(map(mul, row, powers)) for row in self.terms]
+
+    def reaches(self, row: int, value: float, step: float) -> float:
+        """Return the τ at which one of the numbers comes up to a value that it has passed at the end of a step."""
+        from scipy.optimize import brentq
+
+        def over(t: float) -> float:
+            return self.at(t)[row] - value
+
+        return 0.0 if over(0.0) >= 0 else float(brentq(over, 0.0, step, xtol=1e-300, rtol=1e-15))
 
     def after(self, t: float) -> _Series:
         """Return the series about a τ."""
-        x, y, z, w = self.at(t).tolist()
+        x, y, z, w = self.at(t)
         return _Series(self.push, self.drag, (x, y, z), w)
 
 
-def _root(over: Callable[[float], float], step: float) -> float:
-    """Return where a function that ends above zero passes through it."""
-    from scipy.optimize import brentq
-
-    return 0.0 if over(0.0) >= 0 else float(brentq(over, 0.0, step, xtol=1e-300, rtol=1e-15))
+def _product(one: list[float], other: list[float]) -> float:
+    """Return the last coefficient of the product of two series that are known so far."""
+    return sum(map(mul, one, reversed(other)))
 
 
 def _begins(M: Array, mu: float) -> Array | None:

@@ -1,6 +1,6 @@
 """Each sample by itself: whether its numbers fit each other, and the phase that it is said to be in.
 
-None of this says anything of the law. It ties the columns of a run together, so that what is found of one holds for all.
+None of this says anything of the law. It ties the columns of a run together: what is found of one holds for all.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
 from .bounds import EXACT, Array, largest, speed_of
 from .card import CardFigure, checked
 
+_WORTH_TELLING = 1e-3  # of its bound
 _STEP = 1e-6  # of a length, for the slope of the level function
 
 
@@ -65,7 +66,7 @@ def worst_of(name: str, conditions: list[Shares], time: Array, said: str) -> Car
     most = max(conditions, key=lambda condition: condition.ratio.max())
     at = int(np.argmax(most.ratio))
     bound = float(np.broadcast_to(most.bound, most.share.shape)[at])
-    told = f"; most: {most.name}, t = {time[at]:.6g} s" if most.ratio[at] > 0 else ""
+    told = f"; most: {most.name}, t = {time[at]:.6g} s" if most.ratio[at] > _WORTH_TELLING else ""
     return checked(name, max(0.0, float(most.share[at])), bound, said + told)
 
 
@@ -108,7 +109,7 @@ class EachSample:
 
     @cached_property
     def slip(self) -> Array:
-        """s = V + Ω×ρ − u, m/s."""
+        """The slip s = V + Ω×ρ − u, m/s."""
         return self.speeds[0] + self.speeds[1] - self.speeds[2]
 
     @cached_property
@@ -117,7 +118,7 @@ class EachSample:
         return self.at.normals(self.system)
 
     @cached_property
-    def _apart(self) -> tuple[Array, Array]:
+    def apart(self) -> tuple[Array, Array]:
         """From p to the point of the body whose normal is −n, m; and how high p is over the surface, m."""
         at, q = self.at, Quaternion.of(self.at.orientation)
         contact = touch(self.system, at.time, Vector.of(at.contact), q, at.support_own)
@@ -138,7 +139,7 @@ class EachSample:
 
     def _touching(self) -> CardFigure:
         """Check that the body touches where it is said to, and is over the support where not."""
-        apart, height = self._apart
+        apart, height = self.apart
         gap = (apart * self.normals).sum(axis=1)
         aside = np.linalg.norm(apart - gap[:, None] * self.normals, axis=1)
         size = largest(self.at.contact - self.at.position) + largest(self.at.contact)

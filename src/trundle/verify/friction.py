@@ -150,7 +150,7 @@ def friction_law(system: RollingSystem, slipping: Samples, bound: float) -> Card
     s = V + turning - u
     speed, size = np.linalg.norm(s, axis=1), max(largest(slipping.contact_force), 1e-300)
     at_contact = np.linalg.norm([V, turning, u], axis=2).sum(axis=0)
-    sharp = bound * (1 + at_contact / np.maximum(speed, 1e-300))
+    sharp = np.where(speed > 0, bound * (1 + at_contact / np.maximum(speed, 1e-300)), np.inf)
     off = np.linalg.norm(f + mu * (N / np.maximum(speed, 1e-300))[:, None] * s, axis=1) / size
     conditions = [
         Shares("its size", np.abs(np.linalg.norm(f, axis=1) - mu * np.abs(N)) / size, bound),

@@ -232,8 +232,8 @@ class Landing:
         """Return how high the bounce would have risen that was cut, as a share of |ρ|."""
         q, own = Quaternion(*self.before.orientation), self.after.support
         contact = touch(self.system, self.before.time, Vector(*self._point), q, own)
-        sliding = self.slip(self.after)
-        sliding = Vector(*(sliding - self.n * (sliding @ self.n)))
+        slip = self.slip(self.after)
+        sliding = Vector(*(slip - self.n * (slip @ self.n)))
         Omega = Vector(*self.after.angular_velocity)
         back = -float(unpushed(self.system, self.before.time, contact, q, Omega, sliding, own).opening)
         return self.off**2 / (2 * max(back, 1e-300)) / float(np.linalg.norm(self.rho))

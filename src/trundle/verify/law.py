@@ -18,13 +18,13 @@ from .bounds import Array, largest
 
 WINDOWS = 24
 _HALF_NODES = 6  # a polynomial of degree 12
-_SHARP = 1e-3  # of a length over half a window, against which rounding in a slope is as small as its bound asks
+_ROUNDING = 1e-14  # of a place, over half a window: what rounding may do to the slopes of a polynomial with 13 nodes
 _PHASE_A_WINDOW = 0.3  # rad of the fastest rotation: what a polynomial leaves of a body that is no sphere is rounding
 
 
 @dataclass(frozen=True)
 class Residuals:
-    """How far a trajectory is from the law, each as a share of the terms that it is made of; at most 0 where none is."""
+    """How far a trajectory is from the law, each as a share of the terms that it is made of."""
 
     path: float  # the slope of the position against V
     turning: float  # the slope of the orientation against Ω
@@ -77,7 +77,7 @@ def _slope_at_middle(times: Array, values: Array) -> Array:
     return np.einsum("wn,wn...->w...", row / half, change)
 
 
-def residuals(system: RollingSystem, windows: Samples, times: Array) -> Residuals:
+def residuals(system: RollingSystem, windows: Samples, times: Array, bound: float) -> Residuals:
     """Compare a trajectory with the law by the independent route.
 
     Parameters
@@ -88,6 +88,8 @@ def residuals(system: RollingSystem, windows: Samples, times: Array) -> Residual
         The trajectory at `times.ravel()`.
     times : array (windows, nodes)
         As `window_times` returns them, none across an event.
+    bound : float
+        The share that is allowed; rounding is allowed besides.
 
     Returns
     -------
@@ -104,7 +106,7 @@ def residuals(system: RollingSystem, windows: Samples, times: Array) -> Residual
     for phase in np.unique(phases):
         which = np.flatnonzero(phases == phase)
         index = (which[:, None] * nodes + np.arange(nodes)).ravel()
-        found.append(_Windows(system, windows.part(index), times[which], int(phase)).residuals())
+        found.append(_Windows(system, windows.part(index), times[which], int(phase), bound).residuals())
     return Residuals(*(max(getattr(part, field.name) for part in found) for field in fields(Residuals)))
 
 
@@ -116,6 +118,7 @@ class _Windows:
     all: Samples
     times: Array
     phase: int
+    bound: float
 
     def slope(self, array: Array) -> Array:
         return _slope_at_middle(self.times, array.reshape(*self.times.shape, -1))
@@ -142,23 +145,39 @@ class _Windows:
         power = self._virtual_power() if self.phase == ROLLING else 0.0
         return Residuals(path, turning, slip, max(law, self._axle()), power)
 
+    @cached_property
+    def _speeds(self) -> list[Array]:
+        """V, Ω×ρ and u at the middles, m/s."""
+        return [np.broadcast_to(v.array(), self.middle.position.shape) for v in self.middle.speeds(self.system)]
+
+    @cached_property
+    def _clock(self) -> float:
+        """How far the clock has come, s: of all that moves steadily, the place is only as sharp as this."""
+        return float(np.abs(self.times).max())
+
+    @cached_property
+    def _sharp(self) -> float:
+        """The speed that rounding of places makes, over the bound, m/s: no smaller one is told from none."""
+        at, fastest = self.middle, sum(map(largest, self._speeds))
+        place = largest(at.position) + largest(at.contact) + fastest * self._clock
+        return max(_ROUNDING * place / self.half / self.bound, 1e-300)
+
     def _kinematics(self) -> tuple[float, float, float]:
         """Compare what is said of V, Ω and slip with the slopes of position, orientation and support."""
         at, V, Omega = self.middle, self.middle.velocity, self.middle.angular_velocity
-        path = largest(self.slope(self.all.position) - V)
-        sharp = _SHARP * max(largest(at.position), largest(at.contact)) / self.half
-        to_path = max(float(np.abs(V).max()), sharp, 1e-300)
+        path = largest(self.slope(self.all.position) - V) / max(float(np.abs(V).max()), self._sharp)
         # 2 q̇ q*, of which the first part is the rate of |q|
         turned = Quaternion.of(self.slope(self.all.orientation)) * Quaternion.of(at.orientation).conjugate
-        off = np.linalg.norm(2 * turned.array() - np.pad(Omega, ((0, 0), (1, 0))), axis=1).max()
-        turning = float(off) / max(largest(Omega), _SHARP / self.half)
+        off = float(np.linalg.norm(2 * turned.array() - np.pad(Omega, ((0, 0), (1, 0))), axis=1).max())
+        angle = 1 + largest(Omega) * self._clock
+        turning = off / max(largest(Omega), _ROUNDING * angle / self.half / self.bound)
         if self.phase == FLIGHT:
-            return path / to_path, turning, 0.0
+            return path, turning, 0.0
         apart = self.slope(self._body_points() - self._support_points())
-        speeds = [np.broadcast_to(v.array(), at.position.shape) for v in at.speeds(self.system)]
+        V, carried, u = self._speeds
         if self.phase == SLIPPING:
-            apart = apart - (speeds[0] + speeds[1] - speeds[2])
-        return path / to_path, turning, largest(apart) / max(*map(largest, speeds), sharp, 1e-300)
+            apart = apart - (V + carried - u)
+        return path, turning, largest(apart) / max(*map(largest, self._speeds), self._sharp)
 
     def _body_points(self) -> Array:
         """Return where the body's point that touches at the middle of a window is at each of its instants."""
@@ -177,7 +196,7 @@ class _Windows:
     def _law(self) -> float:
         """Compare V̇, Ω̇ and R with Newton, Euler and, of a body that rolls, the constraint."""
         at, V_rate, Omega_rate = self.middle, self.slope(self.all.velocity), self.slope(self.all.angular_velocity)
-        m, V, Omega, R = float(self.system.body.mass), at.velocity, at.angular_velocity, at.contact_force
+        m, Omega, R = float(self.system.body.mass), at.angular_velocity, at.contact_force
         rho = at.contact - at.position
         F, K, J, gyroscopic = applied(self.system, at)
         if self.phase == ROLLING:  # what holds the body to the support is not asked for, but found
@@ -220,15 +239,13 @@ class _Windows:
                 -(axle * np.cross(arm, R)).sum(axis=1),
                 -(axle * (couple[0] + couple[1] * N[:, None])).sum(axis=1),
             ]
-        change = motion.inertia * self.slope(self.all.own)
-        size = max(
-            *(float(np.abs(part).max()) for part in parts),
-            float(motion.inertia * np.abs(at.own[:, -1]).max() * self.rate),
-        )
-        turned = np.abs(self.slope(self.all.own)[:, 0] - at.own[:, -1]).max() / max(
-            np.abs(at.own[:, -1]).max(), _SHARP / self.half
-        )
-        return float(max(np.abs(change[:, -1] - sum(parts)).max() / max(size, 1e-300), turned))
+        change, rate = self.slope(self.all.own), at.own[:, -1]
+        size = max(*(float(np.abs(part).max()) for part in parts), motion.inertia * np.abs(rate).max() * self.rate)
+        law = np.abs(motion.inertia * change[:, -1] - sum(parts)).max() / max(size, 1e-300)
+        angle = float(np.abs(at.own[:, -2]).max()) + np.abs(rate).max() * self._clock
+        turned = np.abs(change[:, -2] - rate).max()
+        sharp = _ROUNDING * angle / self.half / self.bound
+        return float(max(law, turned / max(np.abs(rate).max(), sharp, 1e-300)))
 
     def _virtual_power(self) -> float:
         """Return the power of the reaction, as the motion shows it, over δV = −δΩ×ρ."""
