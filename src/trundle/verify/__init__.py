@@ -23,7 +23,7 @@ from .compared import cross_check, same_again
 from .each_sample import EachSample
 from .energy import balance
 from .events import AtEvents
-from .friction import contact_force, friction_law
+from .friction import contact_force, friction_law, looked_into
 from .landings import Landing, landing_figures, landings_of
 from .plane import reactions, straightness
 
@@ -79,7 +79,7 @@ def card(system: RollingSystem, start: State, samples: Samples, method: Method, 
         *same_again(system, start, again.sampled, again.samples, method),
         *cross_check(system, start, some, method, motion),
         *(_circle(system, motion, start, samples, method) if rolls else ()),
-        *contact_force(system, Samples.joined([samples, again.samples])),
+        *contact_force(system, Samples.joined([samples, looked_into(system, again.samples, again.follow)])),
         *landing_figures(landings),
         *AtEvents(system, again.samples, bound).figures(),
         *_events(samples),

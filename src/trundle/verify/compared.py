@@ -16,7 +16,7 @@ from ..solve.methods import Method
 from ..solve.samples import Event, Samples
 from .bounds import EXACT, Array, bound_of, largest, sizes_of, turned_in
 from .card import CardFigure, checked
-from .growth import MOST, Growth, alike, growth, numerical, parted, same_events
+from .growth import MOST, Growth, alike, at_the_same_times, growth, numerical, parted, same_events
 
 _INSTANTS = 200
 _MOST_RADIANS = 50_000.0  # of turning that a cross-check follows
@@ -43,15 +43,13 @@ def same_again(
     CardFigure
         The largest difference, as a share; and the samples whose phase is another.
     """
-    theirs = again.part(np.clip(np.searchsorted(again.time, ours.time), 0, again.time.size - 1))
-    known = theirs.time == ours.time
-    ours, theirs = ours.part(known), theirs.part(known)
+    ours, theirs = at_the_same_times(ours, again)
     turned, sizes = turned_in(ours), sizes_of(system, ours)
     sizes |= {"contact": sizes["position"], "contact_force": largest(ours.contact_force)}
     both = Compared(system, start, ours, theirs, method, sizes, turned)
     # Rounding of an angle adds up.
     angle = both.angle * both.bound / max(EXACT, 1e-15 * turned, 100 * method.tolerance * turned)
-    said = f"gives the same motion, force, orientation and events at {known.sum()} instants"
+    said = f"gives the same motion, force, orientation and events at {ours.time.size} instants"
     yield both.figure("the method run again", np.maximum(both.share, angle), both.bound, said)
     other = int(((ours.phase != theirs.phase) & both.alike).sum())
     if ours.events or other or (ours.phase != ours.phase[0]).any():
@@ -89,13 +87,12 @@ def cross_check(
         if not times.size:
             return
         ours, theirs = (one.solve(system, start, times) for one in (method, other))
-    count = min(theirs.time.size, ours.time.size)  # one may reach the rim first, by a rounding
-    ours, theirs = ours.part(slice(0, count)), theirs.part(slice(0, count))
+    ours, theirs = at_the_same_times(ours, theirs)
     turned = speed * float(ours.time[-1] - start.time)
     sizes = sizes_of(system, ours) | {"contact_force": largest(ours.contact_force)}
     both = Compared(system, start, ours, theirs, finer, sizes, turned)
     name = f"closed form against {'Taylor' if finer.name == 'taylor' else 'Runge-Kutta'}"
-    over = f"over {ours.time[-1] - start.time:g} s, {count} instants"
+    over = f"over {ours.time[-1] - start.time:g} s, {ours.time.size} instants"
     yield both.figure(name, both.share, both.bound, f"position, velocity, Ω, force, events; {over}")
     alone = "; exact from the place alone" if motion.straight_turn(0.0) is not None else ""
     note = f"angle between the two, after {turned:.3g} rad{alone}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from .each_sample import Shares, worst_of
 from .law import applied
 
 _SLACK = 1e-8  # by which rolling may pass the cone before it gives way: what `CONE_SLACK` leaves, and rounding
+_LOOKS, _FINER, _MOST_DIPS, _CLOSE = 3, 14, 100, 1e-9  # how often, how finely and at how many dips it looks closer
 _TOLD = 1e-2  # sharpness of a direction beyond which nothing is said of it
 
 
@@ -35,6 +36,53 @@ def normal_and_friction(system: RollingSystem, at: Samples) -> tuple[Array, Arra
     normal = at.normals(system)
     N = np.einsum("ni,ni->n", at.contact_force, normal)
     return N, at.contact_force - N[:, None] * normal
+
+
+def looked_into(system: RollingSystem, at: Samples, follow: Callable[[Array], Samples]) -> Samples:
+    """Return samples with more of them where, between two, the support might pull or friction might not do.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        What moved.
+    at : Samples
+        Of a run, in any order.
+    follow : callable
+        Takes ascending instants, returns the run's samples there.
+
+    Returns
+    -------
+    Samples
+        The same where N and what is left of the friction cone hardly fall between samples.
+    """
+    at = at.part(np.unique(at.time, return_index=True)[1])
+    for _ in range(_LOOKS):
+        between = _dips(system, at)
+        if not between.size:
+            break
+        more = follow(np.unique(between))
+        at = Samples.joined([at, more])
+        at = at.part(np.unique(at.time, return_index=True)[1])
+    return at
+
+
+def _dips(system: RollingSystem, at: Samples) -> Array:
+    """Return instants around where N, or μN − |f|, is lowest and might fall below zero unseen."""
+    N, f = normal_and_friction(system, at)
+    holds = (at.phase == ROLLING) | (at.phase == RESTING)
+    watched = [(N, at.phase != FLIGHT)]
+    if system.support.friction is not None:
+        watched.append((float(system.support.friction) * N - np.linalg.norm(f, axis=1), holds))
+    found = [np.empty(0)]
+    for value, asked in watched:
+        left, here, right = value[:-2], value[1:-1], value[2:]
+        ours = asked[:-2] & asked[1:-1] & asked[2:] & (at.phase[:-2] == at.phase[2:])
+        # In between it may fall below zero, but hardly by more than it falls and rises from look to look.
+        may = ours & (here >= 0) & (here < left) & (here <= right) & (here < np.maximum(left, right) - here)
+        wide = at.time[2:] - at.time[:-2] > _CLOSE * np.abs(at.time[1:-1])
+        some = np.flatnonzero(may & wide)[:_MOST_DIPS]
+        found += [np.linspace(at.time[i], at.time[i + 2], _FINER + 2)[1:-1] for i in some]
+    return np.concatenate(found)
 
 
 def contact_force(system: RollingSystem, samples: Samples) -> Iterator[CardFigure]:

@@ -82,6 +82,23 @@ def alike(ours: Samples, theirs: Samples) -> NDArray[np.bool_]:
     return mine == other
 
 
+def at_the_same_times(ours: Samples, theirs: Samples) -> tuple[Samples, Samples]:
+    """Return the samples of two runs at the times that both have: one may have ended sooner, at an instant of its own.
+
+    Parameters
+    ----------
+    ours, theirs : Samples
+        Ascending.
+
+    Returns
+    -------
+    tuple of Samples
+        As long as each other.
+    """
+    _, mine, others = np.intersect1d(ours.time, theirs.time, assume_unique=True, return_indices=True)
+    return ours.part(mine), theirs.part(others)
+
+
 def same_events(ours: tuple[Event, ...], theirs: tuple[Event, ...]) -> int:
     """Return how many events of two runs are of the same kinds, from the first on.
 
@@ -139,10 +156,10 @@ def growth(
     first, *others = (method.solve(system, begin, times) for begin in (start, *nudged(system, start, change)))
     until, found, shifted = float(times[-1]), np.zeros(times.size), np.zeros(len(first.events))
     for other in others:
-        count, known = min(first.time.size, other.time.size), same_events(first.events, other.events)
-        one, changed = (run.part(slice(0, count)) for run in (first, other))
-        found[:count] = np.maximum(found[:count], np.where(alike(one, changed), difference(one, changed), 0.0))
-        for i in range(known):
+        one, changed = at_the_same_times(first, other)
+        where = np.searchsorted(times, one.time)
+        found[where] = np.maximum(found[where], np.where(alike(one, changed), difference(one, changed), 0.0))
+        for i in range(same_events(first.events, other.events)):
             shifted[i] = max(shifted[i], abs(first.events[i].time - other.events[i].time) / span)
         until = min(until, parted(first, other))
     found = np.maximum.accumulate(found)

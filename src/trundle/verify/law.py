@@ -5,7 +5,7 @@ Rates come from the trajectory's own numbers: each is the slope at the middle of
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any
 
@@ -19,6 +19,7 @@ from .bounds import Array, largest
 WINDOWS = 24
 _HALF_NODES = 6  # a polynomial of degree 12
 _ROUNDING = 1e-14  # of a place, over half a window: what rounding may do to the slopes of a polynomial with 13 nodes
+_NARROWEST = 1e-10  # of what the clock shows: in less, 13 instants have too few digits
 _PHASE_A_WINDOW = 0.3  # rad of the fastest rotation: what a polynomial leaves of a body that is no sphere is rounding
 
 
@@ -53,7 +54,8 @@ def window_times(begin: float, end: float, fastest: float) -> Array:
     >>> window_times(0.0, 10.0, 1.0).shape
     (24, 13)
     """
-    width = min(end - begin, _PHASE_A_WINDOW / max(fastest, 1e-300))
+    least = _NARROWEST * max(abs(begin), abs(end))
+    width = min(end - begin, max(least, _PHASE_A_WINDOW / max(fastest, 1e-300)))
     golden = 0.6180339887498949
     middles = begin + width / 2 + np.sort((golden * (1 + np.arange(WINDOWS))) % 1.0) * (end - begin - width)
     nodes = -np.cos(np.pi * np.arange(2 * _HALF_NODES + 1) / (2 * _HALF_NODES))
@@ -232,13 +234,8 @@ class _Windows:
         own = tuple(at.own.T)
         parts = [np.broadcast_to(np.asarray(motion.axle_torque(at.time, own), dtype=float), at.time.shape)]
         if self.phase != FLIGHT:
-            acting = self.system.acting_on(at.motion(self.system))
-            N = (R * at.normals(self.system)).sum(axis=1)
-            couple = [np.broadcast_to(v.array(), R.shape) for v in (acting.from_support, acting.couple)]
-            parts += [
-                -(axle * np.cross(arm, R)).sum(axis=1),
-                -(axle * (couple[0] + couple[1] * N[:, None])).sum(axis=1),
-            ]
+            from_support = exerted(self.system, at)[2]
+            parts += [-(axle * np.cross(arm, R)).sum(axis=1), -(axle * from_support).sum(axis=1)]
         change, rate = self.slope(self.all.own), at.own[:, -1]
         size = max(*(float(np.abs(part).max()) for part in parts), motion.inertia * np.abs(rate).max() * self.rate)
         law = np.abs(motion.inertia * change[:, -1] - sum(parts)).max() / max(size, 1e-300)
@@ -326,16 +323,41 @@ def applied(system: RollingSystem, at: Samples) -> tuple[Array, Array, Array, Ar
     tuple of array
         (n, 3) each, J (n, 3, 3); SI, inertial support frame.
     """
-    shape, tilt = at.position.shape, float(system.support.tilt)
+    tilt = float(system.support.tilt)
     weight = float(system.body.mass * system.gravity) * np.array([np.sin(tilt), 0.0, -np.cos(tilt)])
-    acting = replace(system, gravity=0.0).acting_on(at.motion(system))
-    torque = acting.torque
-    if acting.has_couple:
-        torque = torque + acting.couple * Vector.of(at.contact_force).dot(Vector.of(at.normals(system)))
+    F, K, _ = exerted(system, at)
     J = inertia_of(system, at.orientation)
     JOmega = np.einsum("nij,nj->ni", J, at.angular_velocity)
-    F, K = (np.broadcast_to(v.array(), shape) for v in (acting.force, torque))
     return F + weight, K, J, np.cross(at.angular_velocity, JOmega)
+
+
+def exerted(system: RollingSystem, at: Samples) -> tuple[Array, Array, Array]:
+    """Return force and torque of the loads besides the weight, and the part of the torque that the support exerts.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Its loads.
+    at : Samples
+        Instants of a motion, n of them, all in flight or none.
+
+    Returns
+    -------
+    force, torque, from_support : array (n, 3)
+        N and N m.
+    """
+    force, torque, from_support = np.zeros((3, *at.position.shape))
+    if not system.loads:
+        return force, torque, from_support
+    motion = at.motion(system)
+    N = 0.0 if motion.normal is None else Vector.of(at.contact_force).dot(motion.normal)
+    for load in system.loads:
+        couple = (load.torque_per_normal_force(motion) * N).array()
+        turning = load.torque(motion).array()
+        force = force + load.force(motion).array()
+        torque = torque + turning + couple
+        from_support = from_support + couple + (turning if load.at_contact else 0.0)
+    return force, torque, from_support
 
 
 def newton_euler(m: float, J: Array, rho: Array, F: Array, K: Array, constraint: Array) -> tuple[Any, Any, Any]:
