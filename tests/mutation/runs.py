@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-
 import trundle as tr
 from trundle.trajectory import Trajectory
 
-BALL = dict(radius=0.03, mass=0.2)
+BALL = {"radius": 0.03, "mass": 0.2}
 
 
 def _egg(**support: Any) -> tuple[tr.Body, tr.Support]:
@@ -58,14 +56,19 @@ def egg_bounces() -> Trajectory:
     return _run(system, start, 0.25)
 
 
-def egg_over_bowl() -> Trajectory:
+def egg_over_bowl(duration: float = 0.13) -> Trajectory:
     """The same is thrown through the air over a bowl that turns and is shaken, and lands on it."""
     motion = tr.Combined((tr.Spin(3.0), tr.Shake((0.0, 0.01, 0.005), 9.0)))
     system = tr.RollingSystem(*_egg(surface=tr.Bowl(0.5), motion=motion, friction=0.3))
     start = system.place(
         (0.1, 0.0), (1.0, 0.3, 0.5), height=0.02, attitude=(0.3, 0.4, 0.5), angular_velocity=(3.0, -9, 5)
     )
-    return _run(system, start, 0.2)
+    return _run(system, start, duration)
+
+
+def egg_grips_in_bowl() -> Trajectory:
+    """And slips there until it grips."""
+    return egg_over_bowl(0.16)
 
 
 def billiard() -> Trajectory:
@@ -86,7 +89,7 @@ def ball_on_free_table() -> Trajectory:
     support = tr.Support(tr.Plane(), motion=axle, friction=0.3, restitution=0.3)
     loads = (tr.RollingCouple(1e-4), tr.PivotFriction(1e-3, 0.5))
     system = tr.RollingSystem(tr.Body.solid_sphere(**BALL), support, loads)
-    return _run(system, system.place((0.1, 0.05), (0.2, 0.0), height=0.01, angular_velocity=(3.0, -9.0, 5.0)), 0.5)
+    return _run(system, system.place((0.1, 0.05), (0.2, 0.0), height=0.01, angular_velocity=(3.0, -9.0, 5.0)), 0.2)
 
 
 def egg_on_free_table() -> Trajectory:
@@ -100,20 +103,20 @@ def egg_on_free_table() -> Trajectory:
 def ball_off_dome() -> Trajectory:
     """A ball rolls off a dome without slipping."""
     system = tr.RollingSystem(tr.Body.solid_sphere(**BALL), tr.Support(tr.Dome(0.3)))
-    return _run(system, system.place((0.02, 0.0), (0.3, 0.0)), 0.6)
+    return _run(system, system.place((0.02, 0.0), (0.3, 0.0)), 0.5)
 
 
 def ball_slips_off_dome() -> Trajectory:
     """A ball rolls on a dome, slips, and lifts off."""
     system = tr.RollingSystem(tr.Body.solid_sphere(**BALL), tr.Support(tr.Dome(0.3), friction=0.3))
-    return _run(system, system.place((0.02, 0.0), (0.3, 0.05)), 0.6)
+    return _run(system, system.place((0.02, 0.0), (0.3, 0.05)), 0.45)
 
 
 def ball_on_rocking_table() -> Trajectory:
     """A ball rolls, slips and grips on a table that is rocked."""
     support = tr.Support(tr.Plane(), motion=tr.Rock(0.3, 12.0), friction=0.2)
     system = tr.RollingSystem(tr.Body.solid_sphere(**BALL), support)
-    return _run(system, system.place((0.05, 0.0), (0.0, 0.2)), 0.6)
+    return _run(system, system.place((0.05, 0.0), (0.0, 0.2)), 0.4)
 
 
 def ball_comes_to_rest() -> Trajectory:
@@ -133,7 +136,7 @@ def ball_slows_down() -> Trajectory:
 def ball_over_a_crest() -> Trajectory:
     """A ball rolls over a crest so fast that it only just slips."""
     system = tr.RollingSystem(tr.Body.solid_sphere(**BALL), tr.Support(tr.HeightField("0.02*cos(8*x)"), friction=1.0))
-    return _run(system, system.place((-0.3, 0.0), (2.90456, 0.0)), 0.3)
+    return _run(system, system.place((-0.3, 0.0), (2.90456, 0.0)), 0.12)
 
 
 def egg_under_loads() -> Trajectory:
@@ -240,5 +243,5 @@ RUNS: dict[str, Callable[[], Trajectory]] = {
     if callable(function)
     and getattr(function, "__module__", "") == __name__
     and function.__name__[0] != "_"
-    and not function.__code__.co_argcount
+    and function.__code__.co_argcount <= len(function.__defaults__ or ())
 }

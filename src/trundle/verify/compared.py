@@ -167,12 +167,12 @@ class Compared:
     def _apart(self, mine: Event, other: Event) -> float:
         """Return how far the states at an event differ, as a share."""
         pairs = [(mine.before, other.before), (mine.after, other.after)]
+        sizes = {field: self.sizes[field] for field in ("position", "velocity", "angular_velocity")}
         return max(
             float(np.linalg.norm(np.subtract(getattr(one, field), getattr(its, field)))) / max(size, 1e-300)
             for one, its in pairs
             if one is not None and its is not None
-            for field, size in self.sizes.items()
-            if field not in ("contact", "contact_force")
+            for field, size in {**sizes, "orientation": 1.0}.items()
         )
 
     def figure(self, name: str, share: Array, bound: float, said: str, unit: str = "") -> CardFigure:
@@ -226,6 +226,8 @@ def _difference(ours: Samples, theirs: Samples, sizes: dict[str, float]) -> Arra
         np.linalg.norm(getattr(ours, field) - getattr(theirs, field), axis=1) / max(size, 1e-300)
         for field, size in sizes.items()
     ]
+    for mine, other in zip(ours.own.T, theirs.own.T, strict=True):  # the support's angle and rate
+        shares.append(np.abs(mine - other) / max(float(np.abs(mine).max(initial=0.0)), 1e-300))
     return np.max(shares, axis=0)
 
 

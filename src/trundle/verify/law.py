@@ -18,7 +18,8 @@ from .bounds import Array, largest
 
 WINDOWS = 24
 _HALF_NODES = 6  # a polynomial of degree 12
-_ROUNDING = 1e-14  # of a place, over half a window: what rounding may do to the slopes of a polynomial with 13 nodes
+# Of a place, over half a window: a slope takes 20 times an error of its 13 places, each of ten roundings or so.
+_ROUNDING = 4e-14
 _NARROWEST = 1e-10  # of what the clock shows: in less, 13 instants have too few digits
 _PHASE_A_WINDOW = 0.3  # rad of the fastest rotation: what a polynomial leaves of a body that is no sphere is rounding
 
