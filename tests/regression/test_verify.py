@@ -395,6 +395,18 @@ def test_a_ball_s_landing_is_the_textbook_s(mu: float | None, restitution: float
     assert np.abs(P - wanted).max() <= 1e-15 * 10
 
 
+@pytest.mark.parametrize("back", [0.5, 1.0])
+def test_a_superball_s_slip_comes_back(back: float) -> None:
+    # Garwin and Cross: a ball that grips comes off with −e_t of its slip; where friction is too weak it slips through.
+    m, k, s, approach = 0.2, 0.4, np.array([0.6, -0.8]), 3.0
+    M = np.diag([(1 + 1 / k) / m, (1 + 1 / k) / m, 1 / m])
+    for mu in (2.0, None):
+        P = Course(M, mu, 1.0, np.array([*s, -approach]), back).impulse()
+        assert np.abs((M @ P)[:2] + (1 + back) * s).max() <= 1e-14
+    weak = Course(M, 0.02, 1.0, np.array([*s, -approach]), back).impulse()
+    assert np.abs(weak - Course(M, 0.02, 1.0, np.array([*s, -approach])).impulse()).max() == 0
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_slip_that_turns_keeps_keller_s_equations(seed: int) -> None:
     # M P = Δs, and along the way ds/dP = M(n − μŝ): here by many small steps of the midpoint rule, and extrapolated.

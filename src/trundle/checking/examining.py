@@ -111,8 +111,7 @@ def independent_law(system: RollingSystem, at: Motion) -> tuple[Array, Array]:
     Omega, V = Vector.of(at.angular_velocity), Vector.of(at.velocity)
     p_rate, rho_rate = (np.broadcast_to(v.array(), at.position.shape) for v in at.contact.rates(slip, Omega, V))
     samples = at.samples()
-    F, K, J, gyroscopic = applied(system, samples)
-    u_rate = samples.support(system).material_acceleration(at.contact.point, Vector.of(p_rate)).array()
+    F, K, J, gyroscopic, u_rate = applied(system, samples, p_rate)
     constraint = u_rate - np.cross(at.angular_velocity, rho_rate)
 
     def solved(moment: Array) -> tuple[Array, Array, Array]:

@@ -74,7 +74,7 @@ def _away_from_changes(slipping: NDArray[np.bool_], index: NDArray[np.int_], rea
 
 def _reaction(system: RollingSystem, at: Motion) -> tuple[Array, Array, Array]:
     """Return Euler's equation's mismatch as an angular acceleration, and f and N of the force that V̇ asks for."""
-    F, K, J, gyroscopic = applied(system, at.samples())
+    F, K, J, gyroscopic, _ = applied(system, at.samples(), at.velocity)
     R = float(system.body.mass) * at.acceleration - F
     torque = np.einsum("nij,nj->ni", J, at.angular_acceleration) + gyroscopic - K - np.cross(at.offset, R)
     n = np.broadcast_to(at.contact.normal.array(), R.shape)

@@ -101,8 +101,7 @@ class Samples:
     @staticmethod
     def joined(parts: Sequence[Samples], events: tuple[Event, ...] = ()) -> Samples:
         """Return several stretches of one run as one."""
-        columns = {name: [getattr(part, name) for part in parts] for name in _columns()}
-        joined = {name: np.concatenate(each) for name, each in columns.items() if all(a is not None for a in each)}
+        joined = {name: np.concatenate([getattr(part, name) for part in parts]) for name in _columns()}
         return Samples(**joined, events=events)
 
     def motion(self, system: RollingSystem) -> BodyMotion:
@@ -136,8 +135,8 @@ class Samples:
 
     def part(self, where: Any) -> Samples:
         """Return some of the samples, chosen as an array is indexed."""
-        columns = {name: getattr(self, name) for name in _columns()}
-        return replace(self, **{name: array[where] for name, array in columns.items() if array is not None})
+        slips = None if self.slip_velocity is None else self.slip_velocity[where]
+        return replace(self, **{name: getattr(self, name)[where] for name in _columns()}, slip_velocity=slips)
 
     def state(self, index: int) -> State:
         """Return one sample as a state to start from."""
@@ -157,4 +156,4 @@ class Samples:
 
 @cache
 def _columns() -> tuple[str, ...]:
-    return tuple(field.name for field in fields(Samples) if field.name not in ("events", "form"))
+    return tuple(field.name for field in fields(Samples) if field.name not in ("events", "slip_velocity", "form"))

@@ -167,13 +167,15 @@ class Compared:
     def _apart(self, mine: Event, other: Event) -> float:
         """Return how far the states at an event differ, as a share."""
         pairs = [(mine.before, other.before), (mine.after, other.after)]
+        moved = np.subtract(mine.contact or other.contact or 0.0, other.contact or mine.contact or 0.0)
         sizes = {field: self.sizes[field] for field in ("position", "velocity", "angular_velocity")}
-        return max(
+        apart = [
             float(np.linalg.norm(np.subtract(getattr(one, field), getattr(its, field)))) / max(size, 1e-300)
             for one, its in pairs
             if one is not None and its is not None
             for field, size in {**sizes, "orientation": 1.0}.items()
-        )
+        ]
+        return max(float(np.linalg.norm(moved)) / max(sizes["position"], 1e-300), *apart)
 
     def figure(self, name: str, share: Array, bound: float, said: str, unit: str = "") -> CardFigure:
         """Return the figure of a difference: where a plain bound does not hold, with what the motion magnifies.

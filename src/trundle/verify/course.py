@@ -38,6 +38,8 @@ class Course:
         e.
     slip : array (3,)
         s just before, m/s, its third component negative.
+    tangential : float
+        e_t: the share e_t² of what friction took comes back where the contact holds.
 
     Examples
     --------
@@ -52,9 +54,11 @@ class Course:
     mu: float | None
     restitution: float
     slip: Array
+    tangential: float = 0.0
     turned: bool = False  # whether the slip changed its direction on the way
     work: float = 0.0  # of the normal impulse, J
     aim: float | None = None  # the work at which it ends, known once compression is over
+    unused: float = 0.0  # what friction could have given besides while the contact held, N s
 
     def impulse(self) -> Array:
         """Return P along two tangents and n, N s; not a number where no impulse ends the landing."""
@@ -67,10 +71,39 @@ class Course:
             if self.aim is None and self.slip[2] >= 0:
                 self.aim = (1 - self.restitution**2) * self.work
             if self.aim is not None and self.work >= self.aim:
+                self._give_back(begin)
                 return np.asarray(np.linalg.solve(self.M, self.slip - begin))
             if not self._go_on(size):
                 break
         return np.full(3, np.nan)
+
+    def _give_back(self, begin: Array) -> None:
+        """Add the impulse along that which ends the slip, by which a contact that holds gives back a share of its work.
+
+        The work of all of P is ½P·(s₀ + s), whatever its course; what is not that of its normal part, friction took.
+        """
+        P = np.linalg.solve(self.M, self.slip - begin)
+        left = self.tangential**2 * (self.work - 0.5 * float(P @ (begin + self.slip)))
+        if not (left > 0 and self.tangential > 0 and self.unused > 0):
+            return
+        way = np.append(np.linalg.solve(self.M[:2, :2], -begin[:2]), 0.0)
+        along, presses = float(np.hypot(*way[:2])), -float((self.M @ way)[2])
+        free = max(0.0, float(self.slip[2])) / presses if presses > 0 else np.inf
+        done, left = self._push(way, left, min(free, self.unused / along))
+        if done < free:
+            return
+        # From s_n = 0 on the support holds against what presses the body onto it, which makes the cone wider.
+        held = np.append(way[:2], presses / self.M[2, 2])
+        wide = -np.inf if self.mu is None else along - held[2] * self.mu
+        self._push(held, left, (self.unused - along * done) / wide if wide > 0 else np.inf)
+
+    def _push(self, way: Array, work: float, most: float) -> tuple[float, float]:
+        """Add an impulse along a direction until it has done some work; return it, and the work still left."""
+        rate, first = self.M @ way, float(self.slip[:2] @ way[:2])
+        gain = float(rate[:2] @ way[:2])
+        amount = min(most, 2 * work / (first + np.sqrt(first * first + 2 * gain * work)) if work > 0 else 0.0)
+        self.slip = self.slip + amount * rate
+        return float(amount), work - amount * (first + 0.5 * gain * amount)
 
     def _go_on(self, size: float) -> bool:
         """Go on by one piece: slip along a line, slip that turns, or no slip; tell whether there is a way on."""
@@ -93,7 +126,11 @@ class Course:
         stays = np.linalg.solve(self.M, [0.0, 0.0, 1.0])
         stays = stays / stays[2]
         if self.mu is None or np.hypot(*stays[:2]) <= self.mu:
+            before = self.slip
             goes_on = self._line(stays)
+            amount = float(np.linalg.solve(self.M, self.slip - before)[2])
+            spare = np.inf if self.mu is None else self.mu - float(np.hypot(*stays[:2]))
+            self.unused += spare * amount if amount > 0 else 0.0
             self.slip[:2] = 0.0
             return goes_on
         begins = _begins(self.M, self.mu)

@@ -8,10 +8,10 @@ import numpy as np
 
 from ..mechanics.system import RollingSystem
 from ..solve.samples import FLIGHT, RESTING, ROLLING, Samples
+from .acting import acting
 from .bounds import Array, largest
 from .card import CardFigure, checked
 from .each_sample import Shares, worst_of
-from .law import applied
 
 _SLACK = 1e-8  # by which rolling may pass the cone before it gives way: what `CONE_SLACK` leaves, and rounding
 _LOOKS, _FINER, _MOST_DIPS, _CLOSE = 3, 14, 100, 1e-9  # how often, how finely and at how many dips it looks closer
@@ -85,20 +85,20 @@ def _dips(system: RollingSystem, at: Samples) -> Array:
     return np.concatenate(found)
 
 
-def contact_force(system: RollingSystem, samples: Samples) -> Iterator[CardFigure]:
+def contact_force(system: RollingSystem, *parts: Samples) -> Iterator[CardFigure]:
     """Say what friction rolling needs, and whether the support pushes rather than pulls.
 
     Parameters
     ----------
     system : RollingSystem
         What moved.
-    samples : Samples
-        Of the run.
+    parts : Samples
+        Of the run, one or several.
 
     Yields
     ------
     CardFigure
-        Two, for the parts of the run in which the body touches, and rolls.
+        Two, for the parts of the run in which the body touches, and rolls; and one of a body at rest.
 
     Examples
     --------
@@ -106,32 +106,50 @@ def contact_force(system: RollingSystem, samples: Samples) -> Iterator[CardFigur
     >>> tr.Scenario.load("tilted-turntable").run().card()["normal force"].passed
     True
     """
-    touching = samples.part(samples.phase != FLIGHT)
-    if not touching.time.size:
-        return
-    N, f = normal_and_friction(system, touching)
-    least = int(np.argmin(N))
-    size = largest(touching.contact_force)
-    pushed = None if size == 0 else bool(N[least] >= -1e-12 * size)
+    least, needed, size = (np.inf, 0.0), (-1.0, 0.0), 0.0  # what, and when
+    for part in parts:
+        touching = part.part(part.phase != FLIGHT)
+        if not touching.time.size:
+            continue
+        N, f = normal_and_friction(system, touching)
+        size = max(size, largest(touching.contact_force))
+        least = min(least, _at(touching, N, int(np.argmin(N))))
+        holds = (touching.phase == ROLLING) | (touching.phase == RESTING)
+        share = np.where(holds, _share(np.linalg.norm(f, axis=1), N), -1.0)
+        needed = max(needed, _at(touching, share, int(np.argmax(share))), key=lambda found: found[0])
+    if least[0] < np.inf:
+        yield _pushing(*least, size)
+    if needed[0] >= 0:
+        yield _holding(system, *needed)
+    rests = [part.part(part.phase == RESTING) for part in parts if (part.phase == RESTING).any()]
+    if rests:
+        yield _resistance(system, Samples.joined(rests))
+
+
+def _at(samples: Samples, values: Array, index: int) -> tuple[float, float]:
+    return float(values[index]), float(samples.time[index])
+
+
+def _share(f: Array, N: Array) -> Array:
+    """Return |f|/N, which is without bound where nothing presses the body on and something holds it."""
+    return np.where(N > 0, f / np.where(N > 0, N, 1.0), np.where(f > 0, np.inf, 0.0))
+
+
+def _pushing(least: float, time: float, size: float) -> CardFigure:
+    """Say whether the support pushed all the time, given the least N and the largest force."""
+    pushed = None if size == 0 else least >= -1e-12 * size
     held = "; a support cannot pull: it would come off" if pushed is False else ""
-    said = f"least, at t = {touching.time[least]:.6g} s{held}"
-    yield CardFigure("normal force", float(N[least]), "N", None, pushed, said)
-    holds = (touching.phase == ROLLING) | (touching.phase == RESTING)
-    if not holds.any():
-        return
-    N, f_size, times = N[holds], np.linalg.norm(f[holds], axis=1), touching.time[holds]
-    needed = np.where(N > 0, f_size / np.where(N > 0, N, 1.0), np.where(f_size > 0, np.inf, 0.0))
-    worst = int(np.argmax(needed))
-    mu, note = system.support.friction, f"max |f|/N, at t = {times[worst]:.6g} s"
+    return CardFigure("normal force", least, "N", None, pushed, f"least, at t = {time:.6g} s{held}")
+
+
+def _holding(system: RollingSystem, needed: float, time: float) -> CardFigure:
+    """Say whether friction sufficed for rolling and for rest, given the largest |f|/N."""
+    mu, note = system.support.friction, f"max |f|/N, at t = {time:.6g} s"
     if mu is None:
-        yield CardFigure("friction coefficient needed", float(needed[worst]), note=note)
-    else:
-        enough = bool(needed[worst] <= mu * (1 + _SLACK))
-        note += "" if enough else "; it would slip"
-        yield CardFigure("friction coefficient needed", float(needed[worst]), "", float(mu), enough, note)
-    rests = touching.part(touching.phase == RESTING)
-    if rests.time.size:
-        yield _resistance(system, rests)
+        return CardFigure("friction coefficient needed", needed, note=note)
+    enough = bool(needed <= mu * (1 + _SLACK))
+    note += "" if enough else "; it would slip"
+    return CardFigure("friction coefficient needed", needed, "", float(mu), enough, note)
 
 
 def _resistance(system: RollingSystem, rests: Samples) -> CardFigure:
@@ -161,7 +179,7 @@ def holding(system: RollingSystem, rests: Samples) -> tuple[Array, Array]:
     couple, N : array
         (n, 3) and (n,).
     """
-    _, K, J, gyroscopic = applied(system, rests)
+    _, K, J, gyroscopic = acting(system, rests)
     support, n = rests.support(system), rests.normals(system)
     change = np.broadcast_to(support.angular_acceleration.array(), n.shape)
     arm = rests.contact - rests.position

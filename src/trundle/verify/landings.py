@@ -17,11 +17,11 @@ from ..mechanics.contact import normal_at, touch
 from ..mechanics.slipping import unpushed
 from ..mechanics.system import RollingSystem, State
 from ..solve.samples import Event
+from .acting import inertia_of
 from .bounds import EXACT, SOLVER, Array
 from .card import CardFigure
 from .course import Course
 from .each_sample import Shares, worst_of
-from .law import inertia_of
 
 _KINDS = ("land", "settle")
 _MOST = 1000  # landings looked at
@@ -120,7 +120,8 @@ class Landing:
         support, axes = self.system.support, self._axes
         coefficient = support.friction if support.kinetic_friction is None else support.kinetic_friction
         mu = None if coefficient is None else float(coefficient)
-        return Course(axes @ M @ axes.T, mu, float(support.restitution), axes @ self.slip(self.before))
+        shares = float(support.restitution), float(getattr(support, "tangential_restitution", 0.0))
+        return Course(axes @ M @ axes.T, mu, shares[0], axes @ self.slip(self.before), shares[1])
 
     @cached_property
     def _axes(self) -> Array:
@@ -264,7 +265,7 @@ def landings_of(system: RollingSystem, events: tuple[Event, ...]) -> list[Landin
     list of Landing
         In order.
     """
-    found = [Landing(system, event) for event in events if event.kind in _KINDS and event.before is not None]
+    found = [Landing(system, event) for event in events if event.kind in _KINDS and event.contact is not None]
     return found[:: -(-len(found) // _MOST)] if len(found) > _MOST else found
 
 

@@ -11,9 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from ..mechanics.algebra import Matrix, Quaternion, Vector
+from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.system import RollingSystem
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
+from .acting import acting, exerted, rotated
 from .bounds import Array, largest
 
 WINDOWS = 24
@@ -201,7 +202,7 @@ class _Windows:
         at, V_rate, Omega_rate = self.middle, self.slope(self.all.velocity), self.slope(self.all.angular_velocity)
         m, Omega, R = float(self.system.body.mass), at.angular_velocity, at.contact_force
         rho = at.contact - at.position
-        F, K, J, gyroscopic = applied(self.system, at)
+        F, K, J, gyroscopic = acting(self.system, at)
         if self.phase == ROLLING:  # what holds the body to the support is not asked for, but found
             u = np.broadcast_to(self.all.speeds(self.system)[2].array(), self.all.position.shape)
             rho_rate = self.slope(self.all.contact - self.all.position)
@@ -249,7 +250,7 @@ class _Windows:
         """Return the power of the reaction, as the motion shows it, over δV = −δΩ×ρ."""
         at, V_rate, Omega_rate = self.middle, self.slope(self.all.velocity), self.slope(self.all.angular_velocity)
         m, rho = float(self.system.body.mass), at.contact - at.position
-        F, K, J, gyroscopic = applied(self.system, at)
+        F, K, J, gyroscopic = acting(self.system, at)
         force = m * V_rate - F
         torque = np.einsum("nij,nj->ni", J, Omega_rate) + gyroscopic - K
         power = [
@@ -265,100 +266,23 @@ def _euler(J: Array, torque: Array) -> Array:
     return np.asarray(np.linalg.solve(J, torque[..., None])[..., 0])
 
 
-def rotated(q: Array, v: Array) -> Array:
-    """Return vectors turned by unit quaternions, v + 2w(u×v) + 2u×(u×v).
+def applied(system: RollingSystem, at: Samples, p_rate: Array) -> tuple[Array, Array, Array, Array, Array]:
+    """Return F, K, J, Ω×JΩ and u̇ at each instant, for a motion of which no slopes are at hand.
 
     Parameters
     ----------
-    q : array (n, 4)
-        (w, x, y, z), u = (x, y, z).
-    v : array (n, 3)
-        What is turned.
-
-    Returns
-    -------
-    array (n, 3)
-        Turned.
-
-    Examples
-    --------
-    >>> rotated(np.array([[0.0, 0.0, 0.0, 1.0]]), np.array([[1.0, 2.0, 3.0]])).tolist()
-    [[-1.0, -2.0, 3.0]]
-    """
-    across = 2 * np.cross(q[:, 1:], v)
-    return v + q[:, :1] * across + np.cross(q[:, 1:], across)
-
-
-def inertia_of(system: RollingSystem, q: Array) -> Array:
-    """Return J in the inertial support frame, turned by `rotated` and not by the law's own matrices.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Gives J in the body frame.
-    q : array (n, 4)
-        Orientations.
-
-    Returns
-    -------
-    array (n, 3, 3)
-        kg m².
-    """
-    own = np.array([list(row) for row in system.body.inertia_in_space(Matrix.identity()).rows], dtype=float)
-    axes = np.stack([rotated(q, np.broadcast_to(e, (len(q), 3))) for e in np.eye(3)], axis=2)
-    return axes @ own @ axes.transpose(0, 2, 1)
-
-
-def applied(system: RollingSystem, at: Samples) -> tuple[Array, Array, Array, Array]:
-    """Return F, K, J and Ω×JΩ at each instant, as arrays.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Body, support and loads. Its weight is g(sin α, 0, −cos α) m, worked out here.
-    at : Samples
-        Instants of a motion, n of them; their contact force gives the normal force that couples follow.
+    system, at
+        As for `acting`.
+    p_rate : array (n, 3)
+        ṗ, m/s.
 
     Returns
     -------
     tuple of array
         (n, 3) each, J (n, 3, 3); SI, inertial support frame.
     """
-    tilt = float(system.support.tilt)
-    weight = float(system.body.mass * system.gravity) * np.array([np.sin(tilt), 0.0, -np.cos(tilt)])
-    F, K, _ = exerted(system, at)
-    J = inertia_of(system, at.orientation)
-    JOmega = np.einsum("nij,nj->ni", J, at.angular_velocity)
-    return F + weight, K, J, np.cross(at.angular_velocity, JOmega)
-
-
-def exerted(system: RollingSystem, at: Samples) -> tuple[Array, Array, Array]:
-    """Return force and torque of the loads besides the weight, and the part of the torque that the support exerts.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Its loads.
-    at : Samples
-        Instants of a motion, n of them, all in flight or none.
-
-    Returns
-    -------
-    force, torque, from_support : array (n, 3)
-        N and N m.
-    """
-    force, torque, from_support = np.zeros((3, *at.position.shape))
-    if not system.loads:
-        return force, torque, from_support
-    motion = at.motion(system)
-    N = 0.0 if motion.normal is None else Vector.of(at.contact_force).dot(motion.normal)
-    for load in system.loads:
-        couple = (load.torque_per_normal_force(motion) * N).array()
-        turning = load.torque(motion).array()
-        force = force + load.force(motion).array()
-        torque = torque + turning + couple
-        from_support = from_support + couple + (turning if load.at_contact else 0.0)
-    return force, torque, from_support
+    change = at.support(system).material_acceleration(Vector.of(at.contact), Vector.of(p_rate))
+    return *acting(system, at), np.broadcast_to(change.array(), at.position.shape)
 
 
 def newton_euler(m: float, J: Array, rho: Array, F: Array, K: Array, constraint: Array) -> tuple[Any, Any, Any]:
