@@ -45,12 +45,11 @@ def same_again(
     """
     ours, theirs = at_the_same_times(ours, again)
     turned, sizes = turned_in(ours), sizes_of(system, ours)
-    sizes |= {"contact": sizes["position"], "contact_force": largest(ours.contact_force)}
+    sizes |= {"contact": sizes["position"]}
     both = Compared(system, start, ours, theirs, method, sizes, turned)
-    # Rounding of an angle adds up.
-    angle = both.angle * both.bound / max(EXACT, 1e-15 * turned, 100 * method.tolerance * turned)
+    turned_apart = both.turns * both.bound / both.angle_bound
     said = f"gives the same motion, force, orientation and events at {ours.time.size} instants"
-    yield both.figure("the method run again", np.maximum(both.share, angle), both.bound, said)
+    yield both.figure("the method run again", np.maximum(both.share, turned_apart), both.bound, said)
     other = int(((ours.phase != theirs.phase) & both.alike).sum())
     if ours.events or other or (ours.phase != ours.phase[0]).any():
         yield checked("phase", other, 0, "samples in another phase than the method run again has")
@@ -89,15 +88,14 @@ def cross_check(
         ours, theirs = (one.solve(system, start, times) for one in (method, other))
     ours, theirs = at_the_same_times(ours, theirs)
     turned = speed * float(ours.time[-1] - start.time)
-    sizes = sizes_of(system, ours) | {"contact_force": largest(ours.contact_force)}
-    both = Compared(system, start, ours, theirs, finer, sizes, turned)
+    both = Compared(system, start, ours, theirs, finer, sizes_of(system, ours), turned)
     name = f"closed form against {'Taylor' if finer.name == 'taylor' else 'Runge-Kutta'}"
     over = f"over {ours.time[-1] - start.time:g} s, {ours.time.size} instants"
     yield both.figure(name, both.share, both.bound, f"position, velocity, Ω, force, events; {over}")
     alone = "; exact from the place alone" if motion.straight_turn(0.0) is not None else ""
     note = f"angle between the two, after {turned:.3g} rad{alone}"
     allowed = 100 * finer.tolerance * max(10.0, turned)  # the error of Ω added up over the turning
-    yield both.figure(f"{name}, orientation", both.angle, allowed, note, "rad")
+    yield both.figure(f"{name}, orientation", both.turns, allowed, note, "rad")
 
 
 @dataclass(frozen=True)
@@ -131,6 +129,11 @@ class Compared:
         """The share that the method may be off; more than a hundredth says nothing."""
         return min(bound_of(self.method, self.turned), MOST)
 
+    @property
+    def angle_bound(self) -> float:
+        """The angle that the method may be off, rad: rounding, and the error of Ω, add up over the turning."""
+        return max(EXACT, 1e-15 * self.turned, 100 * self.method.tolerance * self.turned)
+
     @cached_property
     def alike(self) -> NDArray[np.bool_]:
         """Which samples can be compared: those between the same events."""
@@ -140,6 +143,13 @@ class Compared:
     def share(self) -> Array:
         """The difference at each sample, as a share."""
         return np.where(self.alike, _difference(self.ours, self.theirs, self.sizes), 0.0)
+
+    @cached_property
+    def turns(self) -> Array:
+        """The largest of the angle between the orientations, rad, and the shares of the support's angle and rate."""
+        own = np.abs(self.ours.own - self.theirs.own)
+        own = own / np.maximum(np.abs(self.ours.own).max(axis=0, initial=0.0), 1e-300)
+        return np.maximum(self.angle, np.where(self.alike, own.max(axis=1, initial=0.0), 0.0))
 
     @cached_property
     def angle(self) -> Array:
@@ -173,7 +183,7 @@ class Compared:
             float(np.linalg.norm(np.subtract(getattr(one, field), getattr(its, field)))) / max(size, 1e-300)
             for one, its in pairs
             if one is not None and its is not None
-            for field, size in {**sizes, "orientation": 1.0}.items()
+            for field, size in {**sizes, "orientation": self.angle_bound / self.bound}.items()
         ]
         return max(float(np.linalg.norm(moved)) / max(sizes["position"], 1e-300), *apart)
 
@@ -205,6 +215,7 @@ class Compared:
         told, known = self.ours.time <= until, events <= until
         allowed = grown.widened(bound, self.turned, grown.at(self.ours.time))
         later = np.pad(grown.shifted, (0, max(0, events.size - grown.shifted.size)))[: events.size]
+        later = np.maximum(later, grown.at(events))  # of the times and of the states
         values = np.concatenate(
             [share[told], self._shifts[known] * bound / self.bound, [np.inf] if parts <= until else []]
         )
@@ -228,8 +239,6 @@ def _difference(ours: Samples, theirs: Samples, sizes: dict[str, float]) -> Arra
         np.linalg.norm(getattr(ours, field) - getattr(theirs, field), axis=1) / max(size, 1e-300)
         for field, size in sizes.items()
     ]
-    for mine, other in zip(ours.own.T, theirs.own.T, strict=True):  # the support's angle and rate
-        shares.append(np.abs(mine - other) / max(float(np.abs(mine).max(initial=0.0)), 1e-300))
     return np.max(shares, axis=0)
 
 

@@ -108,7 +108,8 @@ class AtEvents:
     @cached_property
     def _sizes(self) -> dict[str, float]:
         sizes = sizes_of(self.system, self.again)
-        return {**sizes, "position": sizes["position"] + self._arm, "orientation": 1.0}
+        known = {name: sizes[name] for name in ("velocity", "angular_velocity")}
+        return {**known, "position": sizes["position"] + self._arm, "orientation": 1.0}
 
     @cached_property
     def _arm(self) -> float:
@@ -218,7 +219,8 @@ class AtEvents:
             yield event, "at the end", abs(_number(inside)), _SHORT
         elif event.kind == "curved":
             contact = touch(self.system, at.time, Vector.of(at.contact), q, at.support_own)
-            yield event, "1 + C S singular", abs(_number(contact.clearance(0.0))), _SHORT + _GOES_ON * self.bound
+            gap = float(each.apart[0][0] @ each.normals[0]) if each.flies[0] else 0.0
+            yield event, "1 + C S singular", abs(_number(contact.clearance(gap))), _SHORT + _GOES_ON * self.bound
         elif event.kind == "spot":
             yield (
                 event,

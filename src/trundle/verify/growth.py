@@ -8,11 +8,13 @@ Where that response is no longer small, two honest runs may be anywhere, and no 
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import SolverError
 from ..mechanics.algebra import E_X, E_Z, Quaternion, Vector
 from ..mechanics.contact import Contact, settle
 from ..mechanics.placing import SLIP_TOLERANCE
@@ -26,6 +28,7 @@ _NUDGE = 1e-10  # of the largest Ω: small beside a motion that magnifies it a m
 _OVER_TOLERANCE = 100.0  # and so many times the method's tolerance
 _MOST_NUDGE = 1e-4
 _A_STEP = 10.0  # times its tolerance that a method may err in a step
+_FLOOR = 1e-4  # of the change: of less, rounding is part
 _INSTANTS = 200
 
 
@@ -38,7 +41,8 @@ class Growth:
     times : array (n,)
         s.
     magnified : array (n,)
-        The most up to each of them, as shares of the sizes for each share of Ω.
+        The most up to each of them, of a change in the start or at any instant since: as shares of the sizes for each
+        share of Ω.
     shifted : array (k,)
         The same of the times of the first k events, as shares of the run.
     until : float
@@ -153,19 +157,24 @@ def growth(
     span = max(float(times[-1] - start.time), 1e-300)
     share = min(max(_NUDGE, _OVER_TOLERANCE * method.tolerance), _MOST_NUDGE)
     change = share * max(largest(at.angular_velocity), 1 / span)
-    first, *others = (method.solve(system, begin, times) for begin in (start, *nudged(system, start, change)))
+    first, others = method.solve(system, start, times), []
+    for begin in nudged(system, start, change):
+        with suppress(SolverError):  # a changed start may come to where no law goes on
+            others.append(method.solve(system, begin, times))
     until, found, shifted = float(times[-1]), np.zeros(times.size), np.zeros(len(first.events))
     for other in others:
         one, changed = at_the_same_times(first, other)
-        where = np.searchsorted(times, one.time)
-        found[where] = np.maximum(found[where], np.where(alike(one, changed), difference(one, changed), 0.0))
+        where = np.minimum(np.searchsorted(times, one.time), times.size - 1)
+        # Of a change in a direction between those tried, no more shows than their squares add up to.
+        found[where] = np.hypot(found[where], np.where(alike(one, changed), difference(one, changed), 0.0))
         for i in range(same_events(first.events, other.events)):
-            shifted[i] = max(shifted[i], abs(first.events[i].time - other.events[i].time) / span)
+            shifted[i] = np.hypot(shifted[i], (first.events[i].time - other.events[i].time) / span)
         until = min(until, parted(first, other))
-    found = np.maximum.accumulate(found)
     nonlinear = times[found > MOST]
     until = min(until, float(nonlinear[0])) if nonlinear.size else until
-    return Growth(times, found / share, shifted / share, until)
+    # An error is made at any instant: what counts is the growth since the response was least.
+    least = np.minimum.accumulate(np.clip(found / share, _FLOOR, 1.0))
+    return Growth(times, np.maximum.accumulate(found / share / least), shifted / share, until)
 
 
 def numerical(method: Method) -> Method:
