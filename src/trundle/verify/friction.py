@@ -15,6 +15,7 @@ from .each_sample import Shares, worst_of
 
 _SLACK = 1e-8  # by which rolling may pass the cone before it gives way: what `CONE_SLACK` leaves, and rounding
 _LOOKS, _FINER, _MOST_DIPS, _CLOSE = 3, 14, 100, 1e-9  # how often, how finely and at how many dips it looks closer
+_FIRST = 1e-3  # how far the normal may turn in the first moment of slip
 _TOLD = 1e-2  # sharpness of a direction beyond which nothing is said of it
 
 
@@ -204,7 +205,8 @@ def friction_law(system: RollingSystem, slipping: Samples, bound: float) -> Card
     -------
     CardFigure
         The largest departure, beside what is allowed there: V is the small difference that slip is made of, so that the
-        direction of a slow slip is only as sharp as that. How large friction is does not depend on it.
+        direction of a slow slip is only as sharp as that. How large friction is does not depend on it, but in the first
+        moment of slip, which has the direction of its end.
     """
     support = system.support
     coefficient = support.friction if support.kinetic_friction is None else support.kinetic_friction
@@ -219,7 +221,11 @@ def friction_law(system: RollingSystem, slipping: Samples, bound: float) -> Card
     sharp = np.where(speed > 0, bound * (1 + at_contact / np.maximum(speed, 1e-300)), np.inf)
     off = np.linalg.norm(f + mu * (N / np.maximum(speed, 1e-300))[:, None] * s, axis=1) / size
     conditions = [
-        Shares("its size", np.abs(np.linalg.norm(f, axis=1) - mu * np.abs(N)) / size, bound),
+        Shares(
+            "its size",
+            np.abs(np.linalg.norm(f, axis=1) - mu * np.abs(N)) / size,
+            np.where(sharp < _TOLD, bound, _FIRST),
+        ),
         Shares("its direction", np.where(sharp < _TOLD, off, 0.0), sharp),
     ]
     return worst_of("friction while slipping", conditions, slipping.time, f"f = −μ N ŝ, μ = {mu:g}")

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..mechanics.algebra import Quaternion, Vector
+from ..mechanics.contact import touch
 from ..mechanics.system import RollingSystem
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
 from .acting import acting, exerted, rotated
@@ -163,8 +164,17 @@ class _Windows:
     def _sharp(self) -> float:
         """The speed that rounding of places makes, over the bound, m/s: no smaller one is told from none."""
         at, fastest = self.middle, sum(map(largest, self._speeds))
-        place = largest(at.position) + largest(at.contact) + fastest * self._clock
+        place = largest(at.position) + largest(at.contact) + self._bend + fastest * self._clock
         return max(_ROUNDING * place / self.half / self.bound, 1e-300)
+
+    @cached_property
+    def _bend(self) -> float:
+        """The support's radius, m: of what is worked out from its centre, the place is only as sharp as that."""
+        at = self.middle
+        q = Quaternion.of(at.orientation)
+        S = touch(self.system, at.time, Vector.of(at.contact), q, at.support_own).shape_operator
+        most = max(float(np.abs(row.array()).max()) for row in S.rows)
+        return 1 / most if most > 0 else 0.0
 
     def _kinematics(self) -> tuple[float, float, float]:
         """Compare what is said of V, Ω and slip with the slopes of position, orientation and support."""
@@ -173,7 +183,7 @@ class _Windows:
         # 2 q̇ q*, of which the first part is the rate of |q|
         turned = Quaternion.of(self.slope(self.all.orientation)) * Quaternion.of(at.orientation).conjugate
         off = float(np.linalg.norm(2 * turned.array() - np.pad(Omega, ((0, 0), (1, 0))), axis=1).max())
-        angle = 1 + largest(Omega) * self._clock
+        angle = 1 + largest(Omega) * self._clock + self._bend / largest(at.contact - at.position)
         turning = off / max(largest(Omega), _ROUNDING * angle / self.half / self.bound)
         if self.phase == FLIGHT:
             return path, turning, 0.0
