@@ -11,7 +11,7 @@ import numpy as np
 
 from ..mechanics.system import RollingSystem, State
 from ..solve.methods import Method
-from ..solve.samples import FLIGHT, RESTING, ROLLING, Samples
+from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
 from .bounds import EXACT, SOLVER, Array
 from .card import CardFigure, checked
 from .events import instants_of
@@ -108,18 +108,19 @@ class Again:
         """Yield what the slopes in the windows say: how it moves, and by which law."""
         (found, phases), bound, count = self._looked_at, self.bound, len(self.windows)
         if phases - {FLIGHT}:
-            held = bool(phases & {ROLLING, RESTING})
-            name, said = (
-                ("no slip", "the two points that touch move alike") if held else ("slip", "they move apart as s")
-            )
-            note = f"{said}: slopes of position, orientation and support, share of the speed"
-            yield checked(name, found.slip, bound, note)
+            held, slips = bool(phases & {ROLLING, RESTING}), SLIPPING in phases
+            said = " and ".join(["move alike"] * held + ["apart as s while it slips"] * slips)
+            note = f"the two points that touch {said}; slopes of position, orientation and support"
+            yield checked("no slip" if held else "slip", found.slip, bound, note)
         yield checked(
             "velocity is the slope of the path", found.path, bound, f"at {count} instants, share of the speed"
         )
         yield checked("Ω is the slope of the orientation", found.turning, bound, "2 q̇ q* against Ω, share of Ω")
         yield checked(
-            "law of motion", found.law, bound, "Newton, Euler and the constraint as one 9×9 system; T2 not used"
+            "law of motion",
+            found.law,
+            bound,
+            "Newton, Euler and the constraint as one 9×9 system, T2 not used; loads as given",
         )
         if ROLLING in phases:
             note = "over the admissible velocities (d'Alembert)"

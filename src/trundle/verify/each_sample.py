@@ -134,7 +134,7 @@ class EachSample:
     def figures(self) -> Iterator[CardFigure]:
         """Yield whether it touches, and whether the numbers fit."""
         yield self._touching()
-        said = "V, Ω, q, slip, force and phase of each sample, one against the other"
+        said = "V, Ω, q, slip, force and phase of each, one against the other; of the law it says nothing"
         yield worst_of("samples fit together", list(self._fitting()), self.at.time, said)
 
     def _touching(self) -> CardFigure:
