@@ -201,12 +201,27 @@ class Trajectory(Viewable):
         >>> tr.Scenario.load("level-turntable-nudged").run(duration=5.0).card().passed
         True
         """
-        facts, kept = self._facts(), self._kept
-        if "view" in kept and kept["view"][1] == facts:
-            return kept["view"][0].card()
-        if "card" not in kept or kept["card"][0] != facts:
-            kept["card"] = facts, self._checked()
-        return kept["card"][1]
+        run = self._whole()
+        facts = run._facts()
+        made = run._card_of(facts)
+        if made is None:
+            made = run._checked()
+            run._kept["card"] = facts, made
+        return made
+
+    def _card_if_made(self) -> Card | None:
+        """Return the card if it has been made, and nothing has changed since."""
+        run = self._whole()
+        return run._card_of(run._facts())
+
+    def _card_of(self, facts: tuple[Any, ...]) -> Card | None:
+        since, card = self._kept.get("card", (None, None))
+        return card if since == facts else None
+
+    def _whole(self) -> Trajectory:
+        """Return the run of which this is a view, as long as nothing has changed in it; otherwise itself."""
+        run, since = self._kept.get("view", (self, None))
+        return run if since == self._facts() else self
 
     def _facts(self) -> tuple[Any, ...]:
         """Return all that a card depends on: it speaks of a run for which they are the same."""

@@ -106,6 +106,7 @@ class Samples:
     events: tuple[Event, ...] = ()
     phase: Any = None  # (n,) int8: ROLLING, SLIPPING, FLIGHT or RESTING; absent: rolling
     own: Any = None  # (n, k): the coordinates of the support's own motion; absent: none
+    slip_velocity: Any = None  # (n, 3): as a dataset holds it; absent: what V, Ω and the support make of it
     form: Any = None  # the closed form of the phase in which they start, where they come from one
 
     def __post_init__(self) -> None:
@@ -156,7 +157,8 @@ class Samples:
 
     def part(self, where: Any) -> Samples:
         """Return some of the samples, chosen as an array is indexed."""
-        return replace(self, **{name: getattr(self, name)[where] for name in _columns()})
+        slips = None if self.slip_velocity is None else self.slip_velocity[where]
+        return replace(self, **{name: getattr(self, name)[where] for name in _columns()}, slip_velocity=slips)
 
     def blocks(self) -> Iterator[tuple[slice, Samples]]:
         """Yield all samples, `AT_ONCE` of them at a time, and where these stand."""
@@ -222,4 +224,4 @@ class Recording:
 
 @cache
 def _columns() -> tuple[str, ...]:
-    return tuple(field.name for field in fields(Samples) if field.name not in ("events", "form"))
+    return tuple(field.name for field in fields(Samples) if field.name not in ("events", "slip_velocity", "form"))

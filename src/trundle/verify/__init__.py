@@ -15,19 +15,19 @@ from ..mechanics.system import RollingSystem, State
 from ..solve.exact import ClosedForm, SphereOnPlane, closed_form
 from ..solve.methods import Method
 from ..solve.samples import FLIGHT, ROLLING, SLIPPING, Samples
-from .bounds import EXACT, SOLVER, Array, bound_of, speed_of, turned_in
+from .again import Again
+from .bounds import EXACT, SOLVER, Array, bound_of, turned_in
 from .card import Card, CardFigure, checked
 from .circle import measure
 from .compared import cross_check, same_again
+from .each_sample import EachSample
 from .energy import balance
-from .friction import contact_force, friction_law
-from .law import residuals
+from .events import AtEvents
+from .friction import contact_force, friction_law, looked_into
+from .landings import Landing, landing_figures, landings_of
 from .plane import reactions, straightness
-from .stretches import Stretch, stretches
 
 _MOST_SAMPLES = 20_000  # looked at for integrals
-_RUN_AGAIN = 2000  # samples
-_MOST_STRETCHES = 200  # looked at
 _EVENTS_TOLD = 4
 _MEANWHILE = {"rolling": "while it rolls", "slipping": "while it slips", "flight": "in flight"}
 _FITTED, _CIRCLES_FITTED = 2000, 20  # points and, where they are taken anew, circles
@@ -66,16 +66,22 @@ def card(system: RollingSystem, start: State, samples: Samples, method: Method, 
     some = samples.part(slice(None, None, every)) if every > 1 else samples
     rolls = bool((samples.phase == ROLLING).all()) and all(event.final for event in samples.events)
     bound = bound_of(method, turned_in(some))
+    again, landings = Again(system, start, some, method), landings_of(system, samples.events)
     figures = [
-        *_no_slip(system, some, method),
+        *again.figures(),
+        *EachSample(system, some, bound).figures(),
         *(straightness(system, some, bound) if rolls else ()),
-        *_law(system, start, some, method),
+        *_friction(system, some, bound),
+        *_balance(again, landings, bound),
         *(reactions(system, some, bound) if rolls else ()),
         *_integrals(system, some, method),
         *(_guiding_centre(motion, start, some, method) if rolls else ()),
+        *same_again(system, start, again.sampled, again.samples, method),
         *cross_check(system, start, some, method, motion),
         *(_circle(system, motion, start, samples, method) if rolls else ()),
-        *contact_force(system, samples),
+        *contact_force(system, samples, looked_into(system, again.samples, again.follow)),
+        *landing_figures(landings),
+        *AtEvents(system, again.samples, bound).figures(),
         *_events(samples),
     ]
     return Card(title, _described(method, motion), tuple(figures))
@@ -98,58 +104,23 @@ def _described(method: Method, motion: ClosedForm | None) -> str:
     return f"{name}, tolerance {method.tolerance:g}"
 
 
-def _no_slip(system: RollingSystem, at: Samples, method: Method) -> Iterator[CardFigure]:
-    rolling = at.part(at.phase == ROLLING)
-    if rolling.time.size:
-        V, turning, u = rolling.speeds(system)
-        slip, size = (V + turning - u).norm(), max(speed_of(system, rolling), 1e-300)
-        while_ = "" if rolling.time.size == at.time.size else ", while it rolls"
-        note = f"|V + Ω×ρ − u| over the speed{while_}"
-        yield checked("no slip", float(np.max(slip)) / size, bound_of(method), note)
+def _friction(system: RollingSystem, at: Samples, bound: float) -> Iterator[CardFigure]:
+    """Check the law of friction where it slips."""
     slipping = at.part(at.phase == SLIPPING)
     if slipping.time.size:
-        yield friction_law(system, slipping, bound_of(method, turned_in(at)))
+        yield friction_law(system, slipping, bound)
 
 
-def _law(system: RollingSystem, start: State, at: Samples, method: Method) -> Iterator[CardFigure]:
-    found = stretches(system, start.time, at)
-    total = sum(stretch.length for stretch in found)
-    windows = np.vstack([stretch.windows(stretch.length / total) for stretch in found[:_MOST_STRETCHES]])
-    sampled = at.part(slice(None, None, max(1, at.time.size // _RUN_AGAIN)))
-    every = [windows.ravel(), sampled.time, np.array([start.time, at.time[-1]])]
-    again = method.solve(system, start, np.unique(np.concatenate(every)))
-    yield same_again(system, start, sampled, again, method)
-    looked_at = again.part(_places(again.time, windows.ravel()))
-    law = residuals(system, looked_at, windows)
-    # A slope taken over a third of a radian of turning multiplies a method's own error by some tens.
-    bound = max(EXACT * 10, 100 * SOLVER * method.tolerance)
-    count = len(windows)
-    yield checked("velocity is the slope of the path", law.path, bound, f"at {count} instants, share of the speed")
-    yield checked("law of motion", law.law, bound, "Newton, Euler and the constraint as one 9×9 system; T2 not used")
-    if (looked_at.phase == ROLLING).any():
-        note = "over the admissible velocities (d'Alembert)"
-        yield checked("virtual power of the reaction", law.virtual_power, bound, note)
-    if _wants_balance(system, at, found):
-        ends = again.part(_places(again.time, np.array([start.time, at.time[-1]])))
-
-        def follow(times: Array) -> Samples:
-            there = method.solve(system, start, np.unique(times))
-            return there.part(_places(there.time, times))
-
-        panels = np.vstack([stretch.panels() for stretch in found])
-        yield balance(system, ends, panels, follow, at.events, bound_of(method, turned_in(at)))
-
-
-def _places(times: Array, wanted: Array) -> Any:
-    """Return where instants stand among ascending times, the last one for what a run's end left out."""
-    return np.minimum(np.searchsorted(times, wanted), times.size - 1)
-
-
-def _wants_balance(system: RollingSystem, at: Samples, found: list[Stretch]) -> bool:
-    """Tell whether the energy is to be balanced: where no integral says the same, and the run can be followed."""
+def _balance(again: Again, landings: list[Landing], bound: float) -> Iterator[CardFigure]:
+    """Balance the energy where no integral says the same, and the run can be followed."""
+    system, at = again.system, again.at
     kept = any(integral.name in ("energy", "moving energy") for integral in invariants_of(system))
     plain = kept and not any(not event.final for event in at.events)
-    return not plain and len(found) <= _MOST_STRETCHES and all(stretch.resolved for stretch in found)
+    if plain or not again.can_be_followed:
+        return
+    ends = again.places(np.array([again.start.time, at.time[-1]]))
+    panels = np.vstack([stretch.panels() for stretch in again.stretches])
+    yield balance(system, ends, panels, again.follow, sum(landing.work for landing in landings), bound)
 
 
 def _integrals(system: RollingSystem, at: Samples, method: Method) -> Iterator[CardFigure]:
