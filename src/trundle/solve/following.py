@@ -15,6 +15,7 @@ from ..mechanics.impact import land
 from ..mechanics.placing import SLIP_TOLERANCE
 from ..mechanics.slipping import slip, unpushed
 from ..mechanics.system import RollingSystem, State
+from .coming_off import lift_at_hand
 from .creeping import CreepingLaw
 from .laws import (
     JAMS,
@@ -117,6 +118,11 @@ def after(system: RollingSystem, law: Law, stop: Stop) -> Next:
         The next law, and the event.
     """
     at, name = stop.at(system, law), stop.name.removeprefix("near ")
+    if name in ("slip", "start"):
+        lift = lift_at_hand(system, law, stop.time, stop.numbers.tolist(), name, at.arm / at.scale(system))
+        if lift is not None:
+            advanced = law.advanced(system, stop.time, stop.numbers.tolist(), lift - stop.time)
+            return _lifted(system, law.meant(system, lift, advanced))
     if name in ("grip", "stop") and _goes_on(system, at, stop.numbers, name):
         slip = Vector(*map(float, stop.numbers[10:13])) if name == "grip" else None
         return Next(law, at.state, list(stop.numbers), _extras(system, at, slip))

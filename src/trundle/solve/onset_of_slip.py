@@ -126,7 +126,10 @@ class _Growth:
 def _growth(system: RollingSystem, at: Touch) -> _Growth | None:
     """Return how slip grows: where friction only just gives way, against the friction that rolling takes."""
     state = at.state
-    contact, first = against(system, state.time, at.contact.point, at.orientation, at.Omega, state.support)
+    try:
+        contact, first = against(system, state.time, at.contact.point, at.orientation, at.Omega, state.support)
+    except ZeroDivisionError:  # nothing asks for friction
+        return None
     rates = slip_rates(system, state.time, contact, at.orientation, at.Omega, first, ZERO, state.support)
     c, s, settling = rates.settled()
     if c > 0 and settling > 0 and _grows(rates, c, s):
