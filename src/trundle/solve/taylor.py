@@ -244,12 +244,15 @@ def _propagate(run: _Run, times: Array, progress: Progress | None) -> Iterator[t
 
 def _reach(run: _Run, time: float, patience: Patience) -> int | None:
     """Go on to an instant, and return which terminal event came first if one did."""
+    import heyoka
+
     while run.time < time:
         until = min(time, run.reference + _LONGEST)
-        ended = _event(run, run.integrator.propagate_until(until - run.reference, max_steps=STEPS)[0], patience)
+        outcome = run.integrator.propagate_until(until - run.reference, max_steps=STEPS)[0]
+        ended = _event(run, outcome, patience)
         if ended is not None:
             return ended
-        if run.time >= until:
+        if outcome == heyoka.taylor_outcome.time_limit:  # the time reached may be a rounding less
             run.tidy(until)
     return None
 
