@@ -12,7 +12,7 @@ _UNASKED = 1e-7  # share of what friction can give when the body is pressed on a
 
 
 def lift_at_hand(
-    system: RollingSystem, law: Law, time: float, numbers: Sequence[float], name: str, moment: float
+    system: RollingSystem, law: Law, time: float, numbers: Sequence[float], name: str, extras: Sequence[float]
 ) -> float | None:
     """Return when the body comes off in whose contact friction, or resistance to rolling, seems to give way.
 
@@ -31,8 +31,8 @@ def lift_at_hand(
         The state's.
     name : str
         Of the stop.
-    moment : float
-        A time in which the motion changes, s.
+    extras : sequence of float
+        What the law's stops take besides the system's numbers.
 
     Returns
     -------
@@ -47,15 +47,17 @@ def lift_at_hand(
     >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.05, 1.0), shaken)
     >>> law = RollingLaw()
     >>> numbers = law.pack(system, system.place(time=0.011234))
-    >>> round(lift_at_hand(system, law, 0.011234, numbers, "slip", 0.07), 9)  # asin(g/(Aω²))/ω
+    >>> round(lift_at_hand(system, law, 0.011234, numbers, "slip", ()), 9)  # asin(g/(Aω²))/ω
     0.011234198
     """
     from scipy.optimize import brentq
 
     def look(wait: float) -> tuple[float, float]:
-        found = law.stops(system, time + wait, law.advanced(system, time, numbers, wait), (0.0,) * law.extras)
+        found = law.stops(system, time + wait, law.advanced(system, time, numbers, wait), extras)
         return float(found["lift"]), float(found[name])
 
+    at = law.meant(system, time, numbers)
+    moment = at.arm / at.scale(system)
     limit = _AT_HAND * moment
     now, later = look(0.0)[0], look(limit)[0]
     if not later < 0 or later > now:

@@ -13,7 +13,7 @@ from ..mechanics.algebra import ZERO, Vector
 from ..mechanics.contact import roll
 from ..mechanics.impact import land
 from ..mechanics.placing import SLIP_TOLERANCE
-from ..mechanics.slipping import slip, unpushed
+from ..mechanics.slipping import response, slip, unpushed
 from ..mechanics.system import RollingSystem, State
 from .coming_off import lift_at_hand
 from .creeping import CreepingLaw
@@ -119,7 +119,8 @@ def after(system: RollingSystem, law: Law, stop: Stop) -> Next:
     """
     at, name = stop.at(system, law), stop.name.removeprefix("near ")
     if name in ("slip", "start"):
-        lift = lift_at_hand(system, law, stop.time, stop.numbers.tolist(), name, at.arm / at.scale(system))
+        extras = (_FLOOR * _forces(system, at),) * law.weightless + (0.0,) * law.ending
+        lift = lift_at_hand(system, law, stop.time, stop.numbers.tolist(), name, extras)
         if lift is not None:
             advanced = law.advanced(system, stop.time, stop.numbers.tolist(), lift - stop.time)
             return _lifted(system, law.meant(system, lift, advanced))
@@ -232,12 +233,22 @@ def _fly(at: Touch, least_gap: float = 0.0, events: tuple[Event, ...] = ()) -> N
 
 def _lifted(system: RollingSystem, at: Touch) -> Next:
     state = at.state
-    if system.support.friction is None and _pull(system, at) > _PULLED_BACK * at.scale(system) ** 2 / at.arm:
+    if system.support.friction is None and _pulled_back(system, at):
         raise SolverError(
             f"At t = {state.time:.9g} s friction without limit would have to hold the body down, which no support "
             "does. Give the support a `friction`, so that the body slips before that."
         )
     return _fly(at, _TAKE_OFF * at.arm, (_event("lift", _NAMES[FlightLaw.code][1], at),))
+
+
+def _pulled_back(system: RollingSystem, at: Touch) -> bool:
+    """Tell whether friction alone keeps a body from coming straight down again."""
+    pull, limit = _pull(system, at), _PULLED_BACK * at.scale(system) ** 2 / at.arm
+    n, own = at.contact.normal, at.state.support
+    R = roll(system, at.state.time, at.contact.point, at.orientation, at.Omega, own).reaction
+    J = system.body.inertia_in_space(at.orientation.matrix())
+    by_friction = pull - float(response(system, at.contact, J, n * n.dot(R)).slip.dot(n))
+    return bool(min(pull, by_friction) > limit)
 
 
 def _pull(system: RollingSystem, at: Touch) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -119,8 +120,16 @@ def _balance(again: Again, landings: list[Landing], bound: float) -> Iterator[Ca
     if plain or not again.can_be_followed:
         return
     ends = again.places(np.array([again.start.time, at.time[-1]]))
+    ends = Samples.joined([_before(again.start, ends.part(slice(0, 1))), ends.part(slice(1, 2))])
     panels = np.vstack([stretch.panels() for stretch in again.stretches])
     yield balance(system, ends, panels, again.follow, sum(landing.work for landing in landings), bound)
+
+
+def _before(start: State, at: Samples) -> Samples:
+    """Return the first sample as the run was started: it may have landed since, at the same instant."""
+    names = ("position", "velocity", "angular_velocity", "orientation")
+    given = {name: np.array([getattr(start, name)], dtype=float) for name in names}
+    return replace(at, **given, own=np.array([start.support], dtype=float))
 
 
 def _integrals(system: RollingSystem, at: Samples, method: Method) -> Iterator[CardFigure]:

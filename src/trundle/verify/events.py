@@ -108,8 +108,7 @@ class AtEvents:
     @cached_property
     def _sizes(self) -> dict[str, float]:
         sizes = sizes_of(self.system, self.again)
-        known = {name: sizes[name] for name in ("velocity", "angular_velocity")}
-        return {**known, "position": sizes["position"] + self._arm, "orientation": 1.0}
+        return {**sizes, "position": sizes["position"] + self._arm, "orientation": 1.0}
 
     @cached_property
     def _arm(self) -> float:
@@ -150,6 +149,8 @@ class AtEvents:
         if one is None or other is None:
             return
         for field, size in self._sizes.items():
+            if field == "contact_force":
+                continue
             apart = float(np.linalg.norm(np.subtract(getattr(one, field), getattr(other, field))))
             yield event, f"{what} of the {field.replace('_', ' ')}", apart / max(size, 1e-300), _GOES_ON * self.bound
         if one.support:
@@ -169,7 +170,7 @@ class AtEvents:
             yield event, "gap 0", gap / self._sizes["position"], _GOES_ON * self.bound
             return
         N, f = (np.asarray(part)[0] for part in normal_and_friction(self.system, at))
-        force = max(largest(self.again.contact_force), 1e-300)
+        force = max(self._sizes["contact_force"], 1e-300)
         if event.kind == "lift":
             yield event, "N = 0", self._pulled(phase, float(N), f) / force, _GOES_ON * self.bound
         elif phase == SLIPPING:

@@ -10,12 +10,13 @@ import numpy as np
 from ..mechanics.system import RollingSystem
 from ..solve.samples import FLIGHT, RESTING, ROLLING, Samples
 from .acting import acting
-from .bounds import Array, largest
+from .bounds import Array, largest, sizes_of
 from .card import CardFigure, checked
 from .each_sample import Shares, worst_of
 
 _SLACK = 1e-8  # by which rolling may pass the cone before it gives way: what `CONE_SLACK` leaves, and rounding
 _LOOKS, _FINER, _MOST_DIPS, _CLOSE = 3, 14, 100, 1e-9  # how often, how finely and at how many dips it looks closer
+_PULLS = 2e-12  # share of the forces at hand by which the support seems to pull: what docs/phases.md leaves to rounding
 _FIRST = 1e-3  # how far the normal may turn in the first moment of slip
 _TOLD = 1e-2  # sharpness of a direction beyond which nothing is said of it
 
@@ -111,11 +112,11 @@ def contact_force(system: RollingSystem, *parts: Samples) -> Iterator[CardFigure
     least, needed, resisted = (math.inf, 0.0), (-1.0, 0.0), (-1.0, 0.0)  # what, and when
     size = 0.0
     for some in (some for part in parts for _, some in part.blocks()):
+        size = max(size, sizes_of(system, some)["contact_force"])
         touching = some.part(some.phase != FLIGHT)
         if not touching.time.size:
             continue
         N, f = normal_and_friction(system, touching)
-        size = max(size, largest(touching.contact_force))
         least = min(least, _at(touching, N, int(np.argmin(N))))
         rests = touching.phase == RESTING
         share = np.where((touching.phase == ROLLING) | rests, _share(np.linalg.norm(f, axis=1), N), -1.0)
@@ -141,7 +142,7 @@ def _share(f: Array, N: Array) -> Array:
 
 def _pushing(least: float, time: float, size: float) -> CardFigure:
     """Say whether the support pushed all the time, given the least N and the largest force."""
-    pushed = None if size == 0 else least >= -1e-12 * size
+    pushed = None if size == 0 else least >= -_PULLS * size
     held = "; a support cannot pull: it would come off" if pushed is False else ""
     return CardFigure("normal force", least, "N", None, pushed, f"least, at t = {time:.6g} s{held}")
 

@@ -222,7 +222,7 @@ class _Windows:
             solved = (F + R) / m, turned, R
         a_size = self._acceleration(F, V_rate)
         lever = m * a_size * largest(rho) / np.trace(J, axis1=1, axis2=2).min()  # what R may turn
-        turn_size = max(np.abs(Omega_rate).max(), np.abs(Omega).max() * self.rate, lever)
+        turn_size = max(np.abs(Omega_rate).max(), np.abs(Omega).max() * self.rate, lever, self._sharp_turn)
         return float(
             max(
                 np.abs(solved[0] - V_rate).max() / a_size,
@@ -232,9 +232,16 @@ class _Windows:
         )
 
     def _acceleration(self, F: Array, V_rate: Array) -> float:
-        """Return against what an acceleration is small or not."""
-        V = np.abs(self.middle.velocity).max()
-        return float(max(np.abs(F).max() / float(self.system.body.mass), np.abs(V_rate).max(), V * self.rate, 1e-300))
+        """Return against what an acceleration is small or not, and over the bound what rounding makes of a slope."""
+        V, fastest = np.abs(self.middle.velocity).max(), sum(map(largest, self._speeds))
+        sharp = _ROUNDING * fastest / self.half / self.bound
+        acting = np.abs(F).max() / float(self.system.body.mass)
+        return float(max(acting, np.abs(V_rate).max(), V * self.rate, sharp, 1e-300))
+
+    @property
+    def _sharp_turn(self) -> float:
+        """The same of Ω̇, 1/s²."""
+        return _ROUNDING * largest(self.middle.angular_velocity) / self.half / self.bound
 
     def _axle(self) -> float:
         """Compare ω̇ of a free axle with I ω̇ = τ − e·[(p − X)×R] − e·(couples of the contact)."""
@@ -267,7 +274,7 @@ class _Windows:
             np.abs((force * np.cross(rho, turn)).sum(axis=1) + torque @ turn).max()  # δV = −δΩ×ρ = ρ×δΩ
             for turn in np.eye(3)
         ]
-        turning = np.abs(J).max() * np.abs(at.angular_velocity).max() * self.rate
+        turning = np.abs(J).max() * max(np.abs(at.angular_velocity).max() * self.rate, self._sharp_turn)
         size = max(m * self._acceleration(F, V_rate) * largest(rho), turning)
         return float(max(power) / size)
 
