@@ -128,7 +128,7 @@ def _balance(again: Again, landings: list[Landing], bound: float) -> Iterator[Ca
 def _before(start: State, at: Samples) -> Samples:
     """Return the first sample as the run was started: it may have landed since, at the same instant."""
     names = ("position", "velocity", "angular_velocity", "orientation")
-    given = {name: np.array([getattr(start, name)], dtype=float) for name in names}
+    given: dict[str, Any] = {name: np.array([getattr(start, name)], dtype=float) for name in names}
     return replace(at, **given, own=np.array([start.support], dtype=float))
 
 
