@@ -259,7 +259,7 @@ SLIPPING_LAW = (
         "answer = push / system.body.mass + turned.cross(rho)",
         "answer = turned.cross(rho)",
         SLIPS,
-        refused="broke down",
+        refused="all but jams",
     ),
     Mutant(
         "T4: the slip grows 1 % too fast",
