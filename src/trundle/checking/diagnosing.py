@@ -1,172 +1,175 @@
-"""From a check that fails to the mistake behind it: each hypothesis is undone, and must leave nothing to explain."""
+"""From a check that fails to the mistakes behind it: they are undone, and must leave nothing to explain."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from ..errors import TrundleError
-from ..mechanics.system import RollingSystem, State
-from .comparing import integrals, own_run
-from .examining import Law, Series, examine, independent_law
-from .motion import Motion
-from .record import Theirs
+from .case import Case
+from .comparisons import ACCELERATION, TURNING, Sensitivity
+from .examining import SLIP, Series, examine, sensitivity
+from .fitting import FAMILIES, fitted
+from .integrals import integrals
+from .laws import independent_law
+from .misread import misreadings
+from .mistakes import Suspect, law_of, mechanical, with_mistakes
+from .own_run import own_run
+from .record import Array, Theirs
 from .result import Mistake
+from .searching import Tried, explaining
+from .slipping import crude
 
-FIT_INSTANTS = 80
-_GLANCE = 16  # instants
+_GLANCE = 10  # windows on which mistakes are tried
 _MORE_ROOM = 10.0  # times: undoing a mistake may not buy its success with a wider bound
+_FITTED = (SLIP, ACCELERATION, TURNING)
+_CLEAREST = 1.0  # share of a size: what is off by more is off, and no more need be said
 
 
-@dataclass(frozen=True)
-class Case:
-    """What failed.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        What is said to move.
-    theirs : Theirs
-        Their samples, checked.
-    tolerance : float
-        As for `examine`.
-    start : State or None
-        Of the scenario.
-    series : mapping from str to Series
-        All that was found.
-    motion : Motion
-        Their motion.
-    """
-
-    system: RollingSystem
-    theirs: Theirs
-    tolerance: float
-    start: State | None
-    series: Mapping[str, Series]
-    motion: Motion
-
-    @property
-    def failing(self) -> list[Series]:
-        """The series beyond their bounds, the worst first."""
-        return sorted((s for s in self.series.values() if s.worst > 1), key=lambda s: -s.worst)
-
-
-@dataclass(frozen=True)
-class Trial:
-    """One mistake undone.
-
-    Parameters
-    ----------
-    name, says : str
-        As of a `Mistake`.
-    theirs : Theirs, optional
-        Their samples without it; absent: as they are.
-    system : RollingSystem, optional
-        The system that they had, by mistake.
-    law : callable
-        That they had, by mistake.
-    excused : frozenset of str
-        Checks that the mistake itself spoils.
-    extra : tuple of Series
-        Further checks that the mistake must pass.
-    numbers : dict
-        What was fitted.
-    named : bool
-        Whether it is a number with a reason.
-    """
-
-    name: str
-    says: str
-    theirs: Theirs | None = None
-    system: RollingSystem | None = None
-    law: Law = independent_law
-    excused: frozenset[str] = frozenset()
-    extra: tuple[Series, ...] = ()
-    numbers: dict[str, float] = field(default_factory=dict)
-    named: bool = True
-    whole: bool = True
-
-
-Hypothesis = Callable[[Case], Iterator[Trial]]
-
-
-def diagnose(case: Case, hypotheses: tuple[Hypothesis, ...]) -> tuple[Mistake, ...]:
-    """Return the mistakes that explain a failing check, those with a named number first.
+def diagnose(case: Case) -> tuple[tuple[Mistake, ...], tuple[Mistake, ...]]:
+    """Return the mistakes that explain a failing check, and where none does, those that explain most of it.
 
     Parameters
     ----------
     case : Case
         What failed.
-    hypotheses : tuple of callable
-        Each yields trials, or none where it does not apply.
 
     Returns
     -------
-    tuple of Mistake
-        Empty where nothing explains it.
+    explain, nearest : tuple of Mistake
+        The likeliest first.
     """
-    found: list[Mistake] = []
-    for hypothesis in hypotheses:
+    with np.errstate(all="ignore"):  # numbers so changed may be no motion at all
+        trials = _Trials(case)
+        suspects = [*misreadings(case), *mechanical(case.system), *crude(case)]
+        suspects += [suspect for family in FAMILIES for suspect in fitted(family, case.system, trials.residual)]
+        explain, nearest = explaining(suspects, trials.tried, trials.confirmed)
+    return tuple(map(trials.mistake, explain)), tuple(map(trials.mistake, nearest))
+
+
+@dataclass
+class _Trials:
+    """Mistakes undone, one after the other or several together, in what one case looks at."""
+
+    case: Case
+    base: Mapping[str, Series] = field(init=False)
+    reacts: Sensitivity = field(init=False)
+    changed: dict[tuple[int, ...], Theirs | None] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        case = self.case
+        self.view = case.view.thinned(_GLANCE)
+        self.reacts = sensitivity(case.system, case.theirs, case.start, independent_law)
+        self.base, _ = examine(
+            case.system, case.theirs, case.tolerance, case.start, self.view, independent_law, self.reacts
+        )
+        self.off = _off(self.base, ())
+
+    def theirs(self, suspects: tuple[Suspect, ...]) -> Theirs | None:
+        """Return their samples without some misreadings; it is worked out once."""
+        found, key = self.case.theirs, ()
+        for suspect in suspects:
+            if suspect.theirs is None or found is None:
+                continue
+            key = (*key, id(suspect))
+            if key not in self.changed:
+                try:
+                    self.changed[key] = suspect.theirs(found)
+                except (TrundleError, ArithmeticError, ValueError):
+                    self.changed[key] = None
+            found = self.changed[key]
+        return found
+
+    def series(self, suspects: tuple[Suspect, ...], *, whole: bool) -> dict[str, Series] | None:
+        """Return what is left with mistakes undone, quickly or with all there is; None where that is no motion."""
+        case, theirs = self.case, self.theirs(suspects)
+        if theirs is None:
+            return None
+        view, reacts = (case.view, None) if whole else (self.view, self.reacts)
+        law = law_of(suspects)
         try:
-            tried = [mistake for mistake in (judged(case, trial) for trial in hypothesis(case)) if mistake]
-        except (TrundleError, ArithmeticError):  # their numbers, so changed, are no motion at all
-            continue
-        found += tried
-    once = {mistake.says: mistake for mistake in found}
-    return tuple(sorted(once.values(), key=lambda mistake: not mistake.named))
-
-
-def judged(case: Case, trial: Trial) -> Mistake | None:
-    """Return the mistake if undoing it leaves nothing beyond its bound.
-
-    Parameters
-    ----------
-    case : Case
-        What failed.
-    trial : Trial
-        The mistake undone.
-
-    Returns
-    -------
-    Mistake or None
-        None where it does not explain what was found.
-    """
-    theirs = case.theirs if trial.theirs is None else trial.theirs
-    system = case.system if trial.system is None else trial.system
-    if trial.theirs is not None:  # most are far off, and a few instants show it
-        glance, _ = examine(system, theirs, case.tolerance, case.start, trial.law, _GLANCE)
-        replaced = {extra.name for extra in trial.extra} | trial.excused
-        if any(one.worst > 1 for name, one in glance.items() if name not in replaced):
+            system = with_mistakes(case.system, suspects)
+            found, _ = examine(system, theirs, case.tolerance, case.start, view, law, reacts)
+            found |= {one.name: one for suspect in suspects if suspect.extra for one in suspect.extra(system)}
+            if whole and law is independent_law and all(suspect.whole for suspect in suspects):
+                found |= {one.name: one for one in integrals(system, theirs, case.tolerance, case.start)}
+                ours, _ = own_run(system, theirs, case.tolerance, case.start)
+                found |= {} if ours is None else {ours.name: ours}
+        except (TrundleError, ArithmeticError, ValueError):
             return None
-    series, at = examine(system, theirs, case.tolerance, case.start, trial.law)
-    series |= {extra.name: extra for extra in trial.extra}
-    if not _holds(series, trial) or (trial.theirs is None and not _no_wider(case, series)):
-        return None
-    if trial.whole and trial.law is independent_law:  # what adds up over the run must come out right, too
-        later = {one.name: one for one in integrals(system, at, case.tolerance)}
-        ours, _ = own_run(system, theirs, at, case.tolerance)
-        later |= {} if ours is None else {ours.name: ours}
-        if not _holds(later, trial):
+        return found if all(np.isfinite(one.length).all() for one in found.values()) else None
+
+    def tried(self, suspects: tuple[Suspect, ...]) -> Tried | None:
+        """Try mistakes in a few windows."""
+        found = self.series(suspects, whole=False)
+        if found is None or not self._may(suspects):
             return None
-        series |= later
-    told = [one for one in case.failing if one.name in series and one.name not in trial.excused]
-    if not told and not trial.extra:
-        return None
-    worst = told[0] if told else case.failing[0]
-    after = series[worst.name] if told else next(iter(trial.extra or series.values()))
-    if after.allowed > _MORE_ROOM * max(worst.allowed, case.tolerance) and after.allowed > worst.share / _MORE_ROOM:
-        return None
-    return Mistake(
-        trial.name, trial.says, worst.name, worst.share, after.share, after.allowed, trial.numbers, trial.named
-    )
+        left = _off(found, suspects) / max(self.off, 1e-300)
+        return Tried(suspects, left, self._explains(found, suspects, self.base), found)
+
+    def confirmed(self, suspects: tuple[Suspect, ...]) -> Tried | None:
+        """Try mistakes in all windows, with all that adds up over the run."""
+        found = self.series(suspects, whole=True)
+        if found is None:
+            return None
+        left = _off(found, suspects) / max(_off(self.case.series, suspects), 1e-300)
+        return Tried(suspects, left, self._explains(found, suspects, self.case.series), found)
+
+    def residual(self, suspect: Suspect) -> Array:
+        """Return what a fit makes small: what is left of the law, over the bounds of what is off as it is."""
+        found = self.series((suspect,), whole=False)
+        names = [name for name in _FITTED if name in self.base]
+        if found is None:
+            raise TrundleError("No motion.")
+        return np.concatenate([(found[name].residual / self.base[name].bound[:, None]).ravel() for name in names])
+
+    def _may(self, suspects: tuple[Suspect, ...]) -> bool:
+        """Tell whether what a mistake spoils later holds at the first instant, if it says so."""
+        begins = {name for suspect in suspects for name in suspect.begins if name in self.base}
+        return all(self.base[name].ratio[0] <= 1 for name in begins)
+
+    def _explains(
+        self, found: Mapping[str, Series], suspects: tuple[Suspect, ...], before: Mapping[str, Series]
+    ) -> bool:
+        excused = {name for suspect in suspects for name in suspect.excused}
+        kept = {name: one for name, one in found.items() if name not in excused}
+        if any(one.worst > 1 for one in kept.values()):
+            return False
+        return any(suspect.theirs is not None for suspect in suspects) or _no_wider(before, kept)
+
+    def mistake(self, tried: Tried) -> Mistake:
+        """Return what was tried as what is told."""
+        excused = {name for suspect in tried.suspects for name in suspect.excused}
+        told = [one for one in self.case.failing if one.name in tried.found and one.name not in excused]
+        worst = told[0] if told else self.case.failing[0]
+        after = tried.found.get(worst.name) or max(tried.found.values(), key=lambda one: one.worst)
+        numbers: dict[str, float] = {}
+        for suspect in tried.suspects:
+            numbers |= suspect.numbers
+        return Mistake(
+            " + ".join(suspect.name for suspect in tried.suspects),
+            " ".join(suspect.says for suspect in tried.suspects),
+            worst.name,
+            worst.share,
+            after.share,
+            after.allowed,
+            numbers,
+            all(suspect.named for suspect in tried.suspects),
+            max(0.0, 1 - tried.left),
+        )
 
 
-def _no_wider(case: Case, series: Mapping[str, Series]) -> bool:
+def _off(series: Mapping[str, Series], suspects: tuple[Suspect, ...]) -> float:
+    """Return how far off a motion is altogether, each series as a share of its size."""
+    excused = {name for suspect in suspects for name in suspect.excused}
+    told = [min(one.typical, _CLEAREST) for name, one in series.items() if name not in excused]
+    return float(np.sqrt(sum(share**2 for share in told)))
+
+
+def _no_wider(before: Mapping[str, Series], after: Mapping[str, Series]) -> bool:
     """Tell whether another system passes by what it explains, rather than by bounds that grow with its own speeds."""
-    both = [(case.series[name], one) for name, one in series.items() if name in case.series]
-    same = [(before, after) for before, after in both if before.time.size == after.time.size]
-    return all((after.bound <= _MORE_ROOM * before.bound).all() for before, after in same)
-
-
-def _holds(series: Mapping[str, Series], trial: Trial) -> bool:
-    return all(one.worst <= 1 for name, one in series.items() if name not in trial.excused)
+    both = [(before[name], one) for name, one in after.items() if name in before]
+    same = [(one, other) for one, other in both if one.time.size == other.time.size]
+    return all((other.bound <= _MORE_ROOM * one.bound).all() for one, other in same)

@@ -1,24 +1,50 @@
-"""The motion of somebody else against contact, constraint and law, instant by instant, each with its own bound."""
+"""The motion of somebody else against contact, constraint and law, each residual beside what it may be by chance."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import roll
-from ..mechanics.surfaces import Plane
+from ..mechanics.algebra import Vector
 from ..mechanics.system import RollingSystem, State
-from ..verify.law import applied, newton_euler
-from .motion import INSTANTS, Motion, motion_of, rate_of, turning_of
+from .chance import longest
+from .comparisons import (
+    ACCELERATION,
+    LIFTS,
+    PATH,
+    SHIFTED,
+    SLIPS,
+    TURN,
+    TURNING,
+    Comparison,
+    Sensitivity,
+    comparisons,
+    nodes_of,
+    sensitivity_of,
+)
+from .laws import Law, Rates, independent_law
+from .motion import Instants, Motion, motion_of, rate_of
 from .record import Array, Theirs, gap_of
+from .slopes import SIGMAS, Index
+from .windows import Plan, Weights, plans, spread_of, weights_of
 
 LAW_SHARE = 10.0  # times the tolerance: an acceleration is a slope, and multiplies what a method leaves
-GAP, PATH, TURN, SLIP = "touches the support", "velocity is the slope of the path", "orientation turns as Ω", "no slip"
-ACCELERATION, TURNING = "law of motion, acceleration", "law of motion, angular acceleration"
+GAP, SLIP = "touches the support", "no slip"
+INSTANTS = 240  # looked at for gap and slip
+_TRIAL = 8  # windows of each width on which the width is chosen
+_AS_GOOD = 1.3  # times the least bound: of widths that tell as much the narrowest is taken
+_DIMMEST = 0.05  # share of a mismatch that is left where it turns about within a window
+_BEYOND = 3.0  # standard deviations that a truncation must stand out of the noise
+
+_UNITS = {
+    PATH: "share of the speed",
+    TURN: "2 q̇ q* against Ω, share of Ω",
+    ACCELERATION: "Newton, Euler and constraint as one 9×9 system",
+    TURNING: "Newton, Euler and constraint as one 9×9 system",
+}
 
 
 @dataclass(frozen=True)
@@ -83,79 +109,98 @@ class Series:
         return float(self.bound[np.argmax(self.ratio)] / self.size)
 
     @property
+    def typical(self) -> float:
+        """The root mean square residual as a share of the size."""
+        return float(np.sqrt((self.length**2).mean()) / self.size)
+
+    @property
     def first_failure(self) -> float | None:
         """The first instant at which the bound is exceeded, s."""
         over = np.flatnonzero(self.ratio > 1)
         return float(self.time[over[0]]) if over.size else None
 
 
-Law = Callable[[RollingSystem, Motion], tuple[Array, Array]]
+@dataclass(frozen=True)
+class View:
+    """How their motion is looked at: what is compared over which windows, and at which instants contact and slip are.
+
+    It is found once, for the system as it was given; whoever asks for another law looks in the same way.
+    """
+
+    compared: tuple[tuple[Comparison, Plan], ...]
+    instants: Index
+
+    def thinned(self, count: int) -> View:
+        """Return no more than some of the windows and instants."""
+        some = np.unique(np.linspace(0, self.instants.size - 1, min(self.instants.size, 2 * count)).round().astype(int))
+        return View(tuple((one, plan.thinned(count)) for one, plan in self.compared), self.instants[some])
+
+    def fitting(self, theirs: Theirs) -> View:
+        """Return what of it can be looked at in changed samples, which may lack a part."""
+        able = {(one.name, one.array) for one in comparisons(theirs)}
+        return View(tuple(pair for pair in self.compared if (pair[0].name, pair[0].array) in able), self.instants)
 
 
-def independent_law(system: RollingSystem, at: Motion) -> tuple[Array, Array]:
-    """Return V̇ and Ω̇ from Newton, Euler and the differentiated constraint as one 9×9 system; T2 is not used.
+@dataclass(frozen=True)
+class _Seen:
+    """One comparison over its windows: mismatch and mean rate (k, 3), spread and bias (k,), and the means' dimming."""
+
+    mismatch: Array
+    rate: Array
+    spread: Array
+    bias: Array
+    freedom: float
+    left: float
+
+
+def view_of(system: RollingSystem, theirs: Theirs, tolerance: float, start: State | None) -> View:
+    """Choose for each comparison the windows in which a wrong rate would show best.
 
     Parameters
     ----------
     system : RollingSystem
-        Body, support and loads.
-    at : Motion
-        The states.
+        What is said to move.
+    theirs : Theirs
+        Their samples, checked.
+    tolerance : float
+        As for `examine`.
+    start : State, optional
+        As for `motion_of`.
 
     Returns
     -------
-    acceleration, angular_acceleration : array (m, 3)
-        m/s² and rad/s².
+    View
+        Of widths that tell as much as each other, the narrowest.
     """
-    slip = Vector.of(at.slip)
-    Omega, V = Vector.of(at.angular_velocity), Vector.of(at.velocity)
-    p_rate, rho_rate = (np.broadcast_to(v.array(), at.position.shape) for v in at.contact.rates(slip, Omega, V))
-    samples = at.samples()
-    F, K, J, gyroscopic, u_rate = applied(system, samples, p_rate)
-    constraint = u_rate - np.cross(at.angular_velocity, rho_rate)
-
-    def solved(moment: Array) -> tuple[Array, Array, Array]:
-        return newton_euler(float(system.body.mass), J, at.offset, F, moment - gyroscopic, constraint)
-
-    V_rate, Omega_rate, R = solved(K)
-    acting = system.acting_on(samples.motion(system))
-    if not acting.has_couple:
-        return V_rate, Omega_rate
-    # A couple that grows with N: all is linear in it, and N = n·R closes the circle.
-    V_more, Omega_more, R_more = solved(K + np.broadcast_to(acting.couple.array(), K.shape))
-    n = samples.normals(system)
-    N = (n * R).sum(axis=1) / (1.0 - (n * (R_more - R)).sum(axis=1))
-    return V_rate + N[:, None] * (V_more - V_rate), Omega_rate + N[:, None] * (Omega_more - Omega_rate)
-
-
-def eliminated_law(system: RollingSystem, at: Motion) -> tuple[Array, Array]:
-    """Return V̇ and Ω̇ from T2 and T3, for systems that leave a term out: the 9×9 route knows all terms.
-
-    Parameters
-    ----------
-    system, at
-        As for `independent_law`.
-
-    Returns
-    -------
-    acceleration, angular_acceleration : array (m, 3)
-        m/s² and rad/s².
-    """
-    q, Omega = Quaternion.of(at.orientation), Vector.of(at.angular_velocity)
-    now = roll(system, at.time, at.contact.point, q, Omega)
-    state = now.contact.body_motion(system.body.mass, at.time, now.velocity, q, Omega)
-    V_rate = (now.reaction + system.loads_on(state)[0]) / system.body.mass
-    shape = at.position.shape
-    return np.broadcast_to(V_rate.array(), shape), np.broadcast_to(now.angular_acceleration.array(), shape)
+    n = theirs.time.size
+    tried = {f"{i}": plan.thinned(_TRIAL) for i, plan in enumerate(plans(n))}
+    whole = list(plans(n))
+    index, places = nodes_of({name: plan.index for name, plan in tried.items()})
+    at = motion_of(system, theirs, start, index)
+    rates, reacts = independent_law(system, at), sensitivity(system, theirs, start, independent_law)
+    best: dict[str, list[tuple[float, int, Comparison]]] = {}
+    for one in comparisons(theirs):
+        for i, (name, plan) in enumerate(tried.items()):
+            seen = _seen(one, weights_of(plan, theirs.time, one.order), theirs, at, places[name], rates, reacts)
+            asked = _times(one.name) * tolerance * _size(one.name, system, at, [seen.mismatch + seen.rate], rates)
+            bound = float(np.median(SIGMAS * seen.spread + seen.bias + asked)) / max(seen.left, _DIMMEST)
+            best.setdefault(one.name, []).append((bound, i, one))
+    chosen = []
+    for found in best.values():
+        least = min(bound for bound, _, _ in found)
+        _, i, one = min((entry for entry in found if entry[0] <= _AS_GOOD * least), key=lambda entry: entry[1])
+        chosen.append((one, whole[i]))
+    return View(tuple(chosen), np.unique(np.linspace(0, n - 1, min(n, INSTANTS)).round().astype(int)))
 
 
 def examine(
     system: RollingSystem,
     theirs: Theirs,
     tolerance: float,
-    start: State | None = None,
+    start: State | None,
+    view: View,
     law: Law = independent_law,
-    instants: int = INSTANTS,
+    reacts: Sensitivity | None = None,
 ) -> tuple[dict[str, Series], Motion]:
     """Compare their motion with contact, constraint and law.
 
@@ -169,56 +214,171 @@ def examine(
         To which they are held, as a share; the data's own noise and spacing may ask for more room.
     start : State, optional
         As for `motion_of`.
+    view : View
+        How to look.
     law : callable
         Gives the accelerations.
-    instants : int
-        How many at most.
+    reacts : Sensitivity, optional
+        Of a law much like it, where the errors of the states need not be followed again.
 
     Returns
     -------
     series : dict from str to Series
         By name.
     motion : Motion
-        That they are of.
+        That they are of, at all instants looked at.
     """
-    at = motion_of(system, theirs, start, instants)
-    arm = float(np.linalg.norm(at.offset, axis=1).max())
-    speed = _largest(at.velocity, np.cross(at.angular_velocity, at.offset), at.carried)
-    rate = rate_of(system)
-    found: list[Series] = []
-
-    def add(name: str, residual: Array, size: float, error: Array, times: float, note: str) -> None:
-        residual = residual if residual.ndim == 2 else residual[:, None]
-        asked = times * tolerance * size
-        found.append(Series(name, at.time, residual, size, asked + error, asked, note))
-
-    if theirs.height_given:
-        add(GAP, gap_of(system, at.contact), arm, at.position_error, 1.0, "gap, share of the radius")
-    if theirs.velocity is not None:
-        slope = theirs.slope("position", at.index)
-        error = slope.error + at.velocity_error
-        add(PATH, slope.values - at.velocity, speed, error, 1.0, "share of the speed")
-    if theirs.orientation is not None and theirs.angular_velocity is not None and theirs.doubt is None:
-        turned, error, _ = turning_of(theirs, at.index)
-        size = _largest(at.angular_velocity, turned)
-        error = error + at.angular_velocity_error
-        add(TURN, turned - at.angular_velocity, size, error, 1.0, "2 q̇ q* against Ω, share of Ω")
-    if at.turning_known:
-        error = at.velocity_error + arm * at.angular_velocity_error + rate * at.position_error
-        add(SLIP, at.slip, speed, error, 1.0, "|V + Ω×ρ − u| over the speed")
-    V_rate, Omega_rate = law(system, at)
-    simple = system.body.is_isotropic_sphere and isinstance(system.support.surface, Plane)
-    quick = rate if simple else rate + _largest(at.angular_velocity)
-    weight = 1e-3 * float(np.max(Vector(*system.weight.acceleration).norm()))
-    size = max(_largest(at.acceleration, V_rate), 1e-2 * rate * speed, weight)
-    passed_on = quick * (at.velocity_error + arm * at.angular_velocity_error)
-    note = "Newton, Euler and constraint as one 9×9 system"
-    add(ACCELERATION, at.acceleration - V_rate, size, at.acceleration_error + passed_on, LAW_SHARE, note)
-    if at.turning_known:
-        size = max(size / arm, _largest(at.angular_acceleration, Omega_rate))
-        error = at.angular_acceleration_error + passed_on / arm
-        add(TURNING, at.angular_acceleration - Omega_rate, size, error, LAW_SHARE, note)
+    view = view.fitting(theirs)
+    windows = {one.name: plan.index for one, plan in view.compared}
+    index, places = nodes_of(windows | {"": view.instants[None]})
+    at = motion_of(system, theirs, start, index)
+    rates = law(system, at)
+    reacts = sensitivity(system, theirs, start, law) if reacts is None else reacts
+    found = list(_contact(system, theirs, at, places[""][0], tolerance, reacts))
+    for one, plan in view.compared:
+        seen = _seen(one, weights_of(plan, theirs.time, one.order), theirs, at, places[one.name], rates, reacts)
+        size = _size(one.name, system, at, [seen.mismatch + seen.rate], rates)
+        asked = _times(one.name) * tolerance * size
+        bound = asked + seen.bias + longest(len(seen.spread), seen.freedom) * seen.spread
+        note = f"{_UNITS[one.name]}, means over {_span(theirs, plan)}"
+        found.append(Series(one.name, plan.moment(theirs.time), seen.mismatch, size, bound, asked, note))
     return {series.name: series for series in found}, at
+
+
+def _span(theirs: Theirs, plan: Plan) -> str:
+    ends = theirs.time[plan.start + plan.width - 1] - theirs.time[plan.start]
+    return f"{float(np.median(ends)):.3g} s"
+
+
+def _times(name: str) -> float:
+    return LAW_SHARE if name in (ACCELERATION, TURNING) else 1.0
+
+
+def sensitivity(system: RollingSystem, theirs: Theirs, start: State | None, law: Law) -> Sensitivity:
+    """Return what errors of their states do to V̇, Ω̇, slip and gap.
+
+    Parameters
+    ----------
+    system, theirs, start, law
+        As of `examine`.
+
+    Returns
+    -------
+    Sensitivity
+        At some instants all along their samples.
+    """
+    n = theirs.time.size
+    few = np.unique(np.linspace(0, n - 1, min(n, SHIFTED)).round().astype(int))
+
+    def asked(states: Instants) -> tuple[Array, ...]:
+        return (*law(system, states), states.slip, gap_of(system, states.contact))
+
+    return sensitivity_of(system, asked, motion_of(system, theirs, start, few))[0]
+
+
+def _seen(
+    one: Comparison,
+    weights: Weights,
+    theirs: Theirs,
+    at: Motion,
+    place: Index,
+    rates: Rates,
+    reacts: Sensitivity,
+) -> _Seen:
+    """Return the mismatch of one comparison in each window, and what noise and spacing make of it."""
+    f = one.rate(at, rates)[place]
+    mismatch, change = weights.mismatch(getattr(theirs, one.array), f)
+    gains = one.gains(at, reacts)
+    noise = {name: _noise(at, name, place) for name in {one.array, *(at.sources[part] for part in gains)}}
+    by_row = [(one.array, np.linalg.norm(weights.row, axis=1))]
+
+    def parts(phi: Array) -> list[tuple[str, Array]]:
+        carried = ((at.sources[part], weights.gain(phi * g[place], at.estimates[part], place)) for part, g in gains.items())
+        return list(carried)
+
+    spread = spread_of(by_row + parts(weights.phi), noise)
+    by_chance = spread_of(parts(weights.fewer), noise) if gains else np.zeros_like(spread)
+    bias = np.maximum(change - _BEYOND * np.sqrt(f.shape[-1]) * by_chance, 0.0)
+    for part, gain in gains.items():
+        bias = bias + np.abs(weights.mean((gain * at.estimates[part].bias)[place]))
+    if one.which is not None:
+        bias = bias + np.abs(weights.mean(reacts.curvature_at(one.which, at.time)[place]))
+    if one.array in theirs.doubts:
+        bias = bias + _growth(theirs, one.array)[at.index][place].mean(axis=1)
+    twice = 2.0 if one.turning else 1.0
+    freedom = min(at.estimates[name].freedom for name in noise)
+    mean = one.vectors(at, place, weights.mean(f))
+    left = min(_left(weights, probe[place]) for probe in ([f_ for f_ in (one.rate(at, rates),)] + _probes(one, at)))
+    return _Seen(one.vectors(at, place, mismatch), mean, twice * spread, twice * bias, freedom, left)
+
+
+def _noise(at: Motion, name: str, place: Index) -> Array:
+    """Return the standard deviation of means of an array in each window, per root of their number."""
+    estimate = at.estimates[name]
+    return np.asarray(np.sqrt(estimate.alike * (estimate.noise[place] ** 2).mean(axis=1)))
+
+
+def _growth(theirs: Theirs, name: str) -> Array:
+    """Return what a doubt about Ω leaves of its slope: it turns with Ω as the body does."""
+    return theirs.doubts[name] * float(np.linalg.norm(getattr(theirs, name), axis=1).max())
+
+
+def _probes(one: Comparison, at: Motion) -> list[Array]:
+    return [at.velocity] if one.which is not None and not one.turning else []
+
+
+def _left(weights: Weights, f: Array) -> float:
+    """Return the share that a window's mean leaves of something that turns with f, as most mistakes do."""
+    length = weights.mean(np.linalg.norm(f, axis=-1))
+    mean = np.linalg.norm(weights.mean(f), axis=-1)
+    return float(np.median(np.where(length > 0, mean / np.where(length > 0, length, 1.0), 1.0)))
+
+
+def _size(name: str, system: RollingSystem, at: Motion, slopes: list[Array], rates: Rates) -> float:
+    """Return what a residual is small beside, or not."""
+    if name == TURN:
+        return _largest(at.angular_velocity, *slopes)
+    speed = _largest(at.velocity, np.cross(at.angular_velocity, at.offset), at.carried)
+    if name == PATH:
+        return speed
+    weight = 1e-3 * float(np.max(Vector(*system.weight.acceleration).norm()))
+    if name == ACCELERATION:
+        return max(_largest(*slopes, rates[0]), 1e-2 * rate_of(system) * speed, weight)
+    least = max(_largest(rates[0]), 1e-2 * rate_of(system) * speed, weight) / at.arm
+    return max(least, _largest(*slopes, rates[1]))
+
+
+def _contact(
+    system: RollingSystem, theirs: Theirs, at: Motion, some: Index, tolerance: float, reacts: Sensitivity
+) -> Iterator[Series]:
+    """Yield gap and slip at some instants."""
+    speed = _largest(at.velocity, np.cross(at.angular_velocity, at.offset), at.carried)
+    if theirs.height_given:
+        gap = gap_of(system, at.contact)[:, None]
+        yield _at_instants(GAP, gap, at.arm, LIFTS, at, some, tolerance, reacts, "gap, share of the radius")
+    if at.turning_known:
+        yield _at_instants(SLIP, at.slip, speed, SLIPS, at, some, tolerance, reacts, "|V + Ω×ρ − u| over the speed")
+
+
+def _at_instants(
+    name: str,
+    residual: Array,
+    size: float,
+    which: int,
+    at: Motion,
+    some: Index,
+    tolerance: float,
+    reacts: Sensitivity,
+    note: str,
+) -> Series:
+    """Return the series of something that the states themselves must make zero."""
+    gains, asked = reacts.gains_at(which, at.time), tolerance * size
+    parts = [(at.sources[part], gain * at.estimates[part].spread) for part, gain in gains.items()]
+    spread = spread_of(parts, {source: np.ones(1) for source, _ in parts})
+    bias = reacts.curvature_at(which, at.time) + sum(gain * at.estimates[part].bias for part, gain in gains.items())
+    freedom = min(at.estimates[part].freedom for part in gains)
+    bound = asked + bias + longest(some.size, freedom, residual.shape[1]) * spread
+    return Series(name, at.time[some], residual[some], size, bound[some], asked, note)
 
 
 def _largest(*arrays: Any) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -15,7 +15,7 @@ from ..mechanics.contact import Contact, settle, touch
 from ..mechanics.shapes import concentric_sphere
 from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem
-from .slopes import Estimate, Known, derivative
+from .slopes import Estimate, Index, Known, best_fit, derivative
 
 Array = NDArray[np.float64]
 
@@ -41,8 +41,12 @@ class Theirs:
         Quaternions (w, x, y, z), body frame to support frame.
     height_given : bool
         Whether the third component of the position is theirs, or follows from touching the plane.
-    doubt : array (n,), optional
-        What an Ω that was worked out may be off by, rad/s.
+    doubts : mapping from str to array (n,)
+        What may be off besides noise: of an orientation that was added up from Ω, rad; of an Ω turned by one, rad/s.
+    spin : float, optional
+        Ω·n at the first sample, where nothing that was given tells it, rad/s.
+    remarks : tuple of str
+        What was left out in reading.
     source : str
         Where it comes from, for titles.
 
@@ -59,17 +63,24 @@ class Theirs:
     angular_velocity: Array | None = None
     orientation: Array | None = None
     height_given: bool = True
-    doubt: Array | None = None
+    doubts: Mapping[str, Array] = field(default_factory=dict)
+    spin: float | None = None
+    remarks: tuple[str, ...] = ()
     source: str = ""
-    _windows: Known = field(default_factory=dict, compare=False, repr=False)  # goes on to changed copies
-    _kept: dict[Any, Estimate] = field(default_factory=dict, init=False, compare=False, repr=False)
+    # What was worked out goes on to changed copies, by the arrays that it was worked out of.
+    _windows: Known = field(default_factory=dict, compare=False, repr=False)
+    _kept: dict[Any, tuple[Any, ...]] = field(default_factory=dict, compare=False, repr=False)
 
-    def slope(self, name: str, index: NDArray[np.int_], order: int = 1) -> Estimate:
+    def slope(self, name: str, index: Index, order: int = 1, kept: float = 1.0) -> Estimate:
         """Return a derivative of one of the arrays at some samples; it is worked out once."""
-        key = (name, order, index.size)
-        if key not in self._kept:
-            self._kept[key] = derivative(self.time, getattr(self, name), index, order, self._windows)
-        return self._kept[key]
+        time, values = self.time, getattr(self, name)
+        key = (id(time), id(values), order, kept)
+        if key not in self._kept:  # with the arrays, so that no others take their places in memory
+            self._kept[key] = (best_fit(time, values, order, self._windows, kept), time, values)
+        whole = (*key, index.tobytes())
+        if whole not in self._kept:
+            self._kept[whole] = (derivative(time, values, index, order, self._windows, self._kept[key][0]),)
+        return self._kept[whole][0]
 
     @property
     def parts(self) -> str:
@@ -82,12 +93,6 @@ class Theirs:
         }
         given = [name for name, array in names.items() if array is not None]
         return given[0] if len(given) == 1 else f"{', '.join(given[:-1])} and {given[-1]}"
-
-    def thinned(self, index: Any) -> Theirs:
-        """Return some of the samples, chosen as an array is indexed."""
-        arrays = ("time", "position", "velocity", "angular_velocity", "orientation", "doubt")
-        kept = {name: getattr(self, name)[index] for name in arrays if getattr(self, name) is not None}
-        return replace(self, **kept)
 
 
 def checked(theirs: Theirs, system: RollingSystem) -> Theirs:

@@ -110,7 +110,7 @@ def show_card(card: Card) -> None:
     console.print(Text(card.title, style="bold"))
     console.print(Text(f"method: {card.method}"))
     console.print(table)
-    console.print(Text("every check held" if card.passed else f"{len(card.failures)} of the checks FAILED"))
+    console.print(Text(card.summary))
 
 
 def _console(*, stderr: bool = False) -> Any:

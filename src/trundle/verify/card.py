@@ -106,6 +106,11 @@ class Card:
         """The figures that failed."""
         return tuple(figure for figure in self.figures if figure.passed is False)
 
+    @property
+    def summary(self) -> str:
+        """The verdict in a line."""
+        return "every check held" if self.passed else f"{len(self.failures)} of the checks FAILED"
+
     def __getitem__(self, name: str) -> CardFigure:
         for figure in self.figures:
             if figure.name == name:
@@ -115,8 +120,7 @@ class Card:
         raise UnknownNameError("figure of the card", name, [figure.name for figure in self.figures])
 
     def __str__(self) -> str:
-        verdict = "every check held" if self.passed else f"{len(self.failures)} of the checks FAILED"
-        lines = [self.title or "Verification card", f"method: {self.method}", *map(str, self.figures), verdict]
+        lines = [self.title or "Verification card", f"method: {self.method}", *map(str, self.figures), self.summary]
         return "\n".join(lines)
 
     def as_dict(self) -> dict[str, Any]:

@@ -1,0 +1,113 @@
+"""Which mistakes explain what was found: each alone, then any two, then what else is off beside the best of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any
+
+from .mistakes import Suspect, together
+
+_SAME = 1e-6  # of what is off: a mistake that changes no more changes nothing
+_FURTHER = 4  # of the best, beside which something else is looked for
+_MUCH = 0.75  # of what is off, that mistakes must take away to be worth a word where they do not explain all
+_FAR_BETTER = 0.5  # of what another leaves: two mistakes must be so much better than one
+SHOWN = 5  # mistakes
+
+
+@dataclass(frozen=True)
+class Tried:
+    """Mistakes, tried together.
+
+    Parameters
+    ----------
+    suspects : tuple of Suspect
+        One or more.
+    left : float
+        What is off with them undone, as a share of what is off as it is.
+    explains : bool
+        Whether nothing is left beyond its bound.
+    found : Any
+        What whoever tried them wants to keep.
+    """
+
+    suspects: tuple[Suspect, ...]
+    left: float
+    explains: bool
+    found: Any = None
+
+    @property
+    def rank(self) -> tuple[bool, int, float]:
+        """By which the likelier comes first: numbers with a reason, few mistakes, little left."""
+        return not all(one.named for one in self.suspects), len(self.suspects), self.left
+
+
+Trial = Callable[[tuple[Suspect, ...]], Tried | None]  # None where they cannot be tried
+
+
+def explaining(suspects: Iterable[Suspect], tried: Trial, confirmed: Trial) -> tuple[list[Tried], list[Tried]]:
+    """Search for mistakes that explain what was found.
+
+    Parameters
+    ----------
+    suspects : iterable of Suspect
+        The commonest first.
+    tried : callable
+        Tries some quickly.
+    confirmed : callable
+        Tries some with all there is to check.
+
+    Returns
+    -------
+    explain, nearest : list of Tried
+        Those that explain all, as few at a time as will do; where there are none, those that explain most of it.
+    """
+    singles = _all((one,) for one in suspects)(tried)
+    found = _confirmed(singles, confirmed)
+    if found:
+        return found, []
+    telling = [one for one in singles if abs(one.left - 1) > _SAME]
+    pairs = _all((a.suspects[0], b.suspects[0]) for a, b in combinations(telling, 2))(tried)
+    found = _confirmed(pairs, confirmed)
+    if found:
+        return found, []
+    best = sorted([*singles, *pairs], key=lambda one: one.left)[:_FURTHER]
+    more = _all((*few.suspects, one.suspects[0]) for few in best for one in telling)(tried)
+    found = _confirmed([one for one in more if len(one.suspects) > 1], confirmed)
+    return (found, []) if found else ([], _nearest([*singles, *pairs, *more]))
+
+
+def _all(combinations: Iterable[tuple[Suspect, ...]]) -> Callable[[Trial], list[Tried]]:
+    def by(tried: Trial) -> list[Tried]:
+        found = (tried(suspects) for suspects in combinations if together(suspects))
+        return [one for one in found if one is not None]
+
+    return by
+
+
+def _confirmed(trials: Sequence[Tried], confirmed: Trial) -> list[Tried]:
+    """Return those that explain all when all is checked, the likeliest of each name first."""
+    found: dict[tuple[str, ...], Tried] = {}
+    for trial in sorted((one for one in trials if one.explains), key=lambda one: one.rank):
+        name = tuple(one.name for one in trial.suspects)
+        if name in found or len(found) == SHOWN:
+            continue
+        sure = confirmed(trial.suspects)
+        if sure is not None and sure.explains:
+            found[name] = sure
+    return sorted(found.values(), key=lambda one: one.rank)
+
+
+def _nearest(trials: Sequence[Tried]) -> list[Tried]:
+    """Return those that take away most of what is off; two together only where neither does nearly as much."""
+    kept: list[Tried] = []
+    for trial in sorted(trials, key=lambda one: (len(one.suspects), one.left)):
+        own = {id(suspect) for suspect in trial.suspects}
+        fewer = [one.left for one in trials if {id(suspect) for suspect in one.suspects} < own]
+        if trial.left <= 1 - _MUCH and all(trial.left <= _FAR_BETTER * left for left in fewer):
+            kept.append(trial)
+    return sorted(kept, key=lambda one: one.left)[:SHOWN]
+
+
+__all__ = ["SHOWN", "Tried", "Trial", "explaining"]
