@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ..mechanics.system import RollingSystem, State
-from .examining import Series, View
+from .examining import View
 from .motion import Motion
 from .record import Theirs
+from .series import Series
 
 
 @dataclass(frozen=True)

@@ -8,10 +8,11 @@ import numpy as np
 
 from ..errors import TrundleError
 from .case import Case
-from .examining import Series, examine, sensitivity
+from .examining import examine, sensitivity
 from .laws import independent_law
 from .misread import misreadings
 from .mistakes import Suspect, law_of, mechanical, with_mistakes
+from .series import Series
 
 _WINDOWS = 16
 
@@ -52,15 +53,13 @@ def power_of(case: Case) -> Power:
     view, shown, blind = case.view.thinned(_WINDOWS), dict[str, str](), dict[str, str]()
     reacts = sensitivity(case.system, case.theirs, case.start, independent_law)
     right, _ = examine(case.system, case.theirs, case.tolerance, case.start, view, independent_law, reacts)
-    suspects = [*mechanical(case.system), *misreadings(case)]
+    suspects = [*mechanical(case.system, turning=case.motion.turning_known), *misreadings(case)]
     for suspect in (one for one in suspects if one.textbook):
         try:
             theirs = case.theirs if suspect.theirs is None else suspect.theirs(case.theirs)
             system = with_mistakes(case.system, (suspect,))
             with np.errstate(all="ignore"):
-                wrong, _ = examine(
-                    system, theirs, case.tolerance, case.start, view, law_of((suspect,)), reacts
-                )
+                wrong, _ = examine(system, theirs, case.tolerance, case.start, view, law_of((suspect,)), reacts)
         except (TrundleError, ArithmeticError, ValueError):
             continue
         kept = {name: one for name, one in wrong.items() if name not in suspect.excused and name in right}

@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import TrundleError
 from .case import Case
 from .comparisons import ACCELERATION, TURNING, Sensitivity
-from .examining import SLIP, Series, examine, sensitivity
+from .examining import SLIP, examine, sensitivity
 from .fitting import FAMILIES, fitted
 from .integrals import integrals
 from .laws import independent_law
@@ -20,6 +20,7 @@ from .own_run import own_run
 from .record import Array, Theirs
 from .result import Mistake
 from .searching import Tried, explaining
+from .series import Series
 from .slipping import crude
 
 _GLANCE = 10  # windows on which mistakes are tried
@@ -43,8 +44,9 @@ def diagnose(case: Case) -> tuple[tuple[Mistake, ...], tuple[Mistake, ...]]:
     """
     with np.errstate(all="ignore"):  # numbers so changed may be no motion at all
         trials = _Trials(case)
-        suspects = [*misreadings(case), *mechanical(case.system), *crude(case)]
-        suspects += [suspect for family in FAMILIES for suspect in fitted(family, case.system, trials.residual)]
+        suspects = [*misreadings(case), *mechanical(case.system, turning=case.motion.turning_known), *crude(case)]
+        families = FAMILIES if case.motion.turning_known else FAMILIES[:-1]  # without Ω it is that of another table
+        suspects += [suspect for family in families for suspect in fitted(family, case.system, trials.residual)]
         explain, nearest = explaining(suspects, trials.tried, trials.confirmed)
     return tuple(map(trials.mistake, explain)), tuple(map(trials.mistake, nearest))
 
@@ -92,7 +94,7 @@ class _Trials:
         try:
             system = with_mistakes(case.system, suspects)
             found, _ = examine(system, theirs, case.tolerance, case.start, view, law, reacts)
-            found |= {one.name: one for suspect in suspects if suspect.extra for one in suspect.extra(system)}
+            found |= {one.name: one for suspect in suspects if suspect.further for one in suspect.further(system)}
             if whole and law is independent_law and all(suspect.whole for suspect in suspects):
                 found |= {one.name: one for one in integrals(system, theirs, case.tolerance, case.start)}
                 ours, _ = own_run(system, theirs, case.tolerance, case.start)
@@ -104,7 +106,7 @@ class _Trials:
     def tried(self, suspects: tuple[Suspect, ...]) -> Tried | None:
         """Try mistakes in a few windows."""
         found = self.series(suspects, whole=False)
-        if found is None or not self._may(suspects):
+        if found is None or not self._may(suspects) or not _no_wider(self.base, found):
             return None
         left = _off(found, suspects) / max(self.off, 1e-300)
         return Tried(suspects, left, self._explains(found, suspects, self.base), found)
@@ -135,9 +137,7 @@ class _Trials:
     ) -> bool:
         excused = {name for suspect in suspects for name in suspect.excused}
         kept = {name: one for name, one in found.items() if name not in excused}
-        if any(one.worst > 1 for one in kept.values()):
-            return False
-        return any(suspect.theirs is not None for suspect in suspects) or _no_wider(before, kept)
+        return all(one.worst <= 1 for one in kept.values()) and _no_wider(before, kept)
 
     def mistake(self, tried: Tried) -> Mistake:
         """Return what was tried as what is told."""
@@ -169,7 +169,6 @@ def _off(series: Mapping[str, Series], suspects: tuple[Suspect, ...]) -> float:
 
 
 def _no_wider(before: Mapping[str, Series], after: Mapping[str, Series]) -> bool:
-    """Tell whether another system passes by what it explains, rather than by bounds that grow with its own speeds."""
+    """Tell whether a motion passes by what mistakes explain, rather than by bounds that have become wider."""
     both = [(before[name], one) for name, one in after.items() if name in before]
-    same = [(one, other) for one, other in both if one.time.size == other.time.size]
-    return all((other.bound <= _MORE_ROOM * one.bound).all() for one, other in same)
+    return all(other.room <= max(_MORE_ROOM * one.room, one.typical / _MORE_ROOM) for one, other in both)

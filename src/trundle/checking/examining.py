@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -26,8 +26,10 @@ from .comparisons import (
     sensitivity_of,
 )
 from .laws import Law, Rates, independent_law
+from .looking import Open, left_open, seen, share_left
 from .motion import Instants, Motion, motion_of, rate_of
 from .record import Array, Theirs, gap_of
+from .series import Series
 from .slopes import SIGMAS, Index
 from .windows import Plan, Weights, plans, spread_of, weights_of
 
@@ -37,7 +39,6 @@ INSTANTS = 240  # looked at for gap and slip
 _TRIAL = 8  # windows of each width on which the width is chosen
 _AS_GOOD = 1.3  # times the least bound: of widths that tell as much the narrowest is taken
 _DIMMEST = 0.05  # share of a mismatch that is left where it turns about within a window
-_BEYOND = 3.0  # standard deviations that a truncation must stand out of the noise
 
 _UNITS = {
     PATH: "share of the speed",
@@ -45,79 +46,6 @@ _UNITS = {
     ACCELERATION: "Newton, Euler and constraint as one 9×9 system",
     TURNING: "Newton, Euler and constraint as one 9×9 system",
 }
-
-
-@dataclass(frozen=True)
-class Series:
-    """One residual over time beside its bound.
-
-    Parameters
-    ----------
-    name : str
-        Of the check.
-    time : array (m,)
-        s.
-    residual : array (m, c)
-        As vectors.
-    size : float
-        Beside which a residual is small or not: the shares are shares of it.
-    bound : array (m,)
-        The longest vector allowed.
-    asked : float
-        The part of the bound that the tolerance makes; the rest is what the data themselves leave open.
-    note : str
-        How it was measured.
-
-    Examples
-    --------
-    >>> one = Series("no slip", np.arange(2.0), np.array([[0.0], [0.5]]), 1.0, np.array([0.25, 0.25]), 0.1, "")
-    >>> float(one.worst), one.share, one.first_failure
-    (2.0, 0.5, 1.0)
-    """
-
-    name: str
-    time: Array
-    residual: Array
-    size: float
-    bound: Array
-    asked: float
-    note: str
-
-    @property
-    def length(self) -> Array:
-        """The residual's length at each instant."""
-        return np.asarray(np.linalg.norm(self.residual, axis=1), dtype=float)
-
-    @property
-    def ratio(self) -> Array:
-        """The residual over its bound."""
-        return self.length / self.bound
-
-    @property
-    def worst(self) -> float:
-        """The largest residual over its bound."""
-        return float(self.ratio.max())
-
-    @property
-    def share(self) -> float:
-        """The residual as a share of the size, where it is worst against its bound."""
-        return float(self.length[np.argmax(self.ratio)] / self.size)
-
-    @property
-    def allowed(self) -> float:
-        """The bound as a share of the size, at the same instant."""
-        return float(self.bound[np.argmax(self.ratio)] / self.size)
-
-    @property
-    def typical(self) -> float:
-        """The root mean square residual as a share of the size."""
-        return float(np.sqrt((self.length**2).mean()) / self.size)
-
-    @property
-    def first_failure(self) -> float | None:
-        """The first instant at which the bound is exceeded, s."""
-        over = np.flatnonzero(self.ratio > 1)
-        return float(self.time[over[0]]) if over.size else None
 
 
 @dataclass(frozen=True)
@@ -129,6 +57,17 @@ class View:
 
     compared: tuple[tuple[Comparison, Plan], ...]
     instants: Index
+    _known: dict[Any, Any] = field(default_factory=dict, compare=False, repr=False)
+
+    def open(
+        self, one: Comparison, plan: Plan, theirs: Theirs, at: Motion, place: Index, reacts: Sensitivity
+    ) -> tuple[Weights, Open]:
+        """Return the weights of a comparison, and what it leaves open; neither asks for the law, once it reacts."""
+        key = (one.name, id(theirs), id(reacts))
+        if key not in self._known:  # with what it was worked out of, so that nothing else takes its place in memory
+            weights = weights_of(plan, theirs.time, one.order)
+            self._known[key] = weights, left_open(one, weights, theirs, at, place, reacts), theirs, reacts
+        return self._known[key][:2]
 
     def thinned(self, count: int) -> View:
         """Return no more than some of the windows and instants."""
@@ -138,19 +77,9 @@ class View:
     def fitting(self, theirs: Theirs) -> View:
         """Return what of it can be looked at in changed samples, which may lack a part."""
         able = {(one.name, one.array) for one in comparisons(theirs)}
-        return View(tuple(pair for pair in self.compared if (pair[0].name, pair[0].array) in able), self.instants)
-
-
-@dataclass(frozen=True)
-class _Seen:
-    """One comparison over its windows: mismatch and mean rate (k, 3), spread and bias (k,), and the means' dimming."""
-
-    mismatch: Array
-    rate: Array
-    spread: Array
-    bias: Array
-    freedom: float
-    left: float
+        return View(
+            tuple(pair for pair in self.compared if (pair[0].name, pair[0].array) in able), self.instants, self._known
+        )
 
 
 def view_of(system: RollingSystem, theirs: Theirs, tolerance: float, start: State | None) -> View:
@@ -181,14 +110,17 @@ def view_of(system: RollingSystem, theirs: Theirs, tolerance: float, start: Stat
     best: dict[str, list[tuple[float, int, Comparison]]] = {}
     for one in comparisons(theirs):
         for i, (name, plan) in enumerate(tried.items()):
-            seen = _seen(one, weights_of(plan, theirs.time, one.order), theirs, at, places[name], rates, reacts)
-            asked = _times(one.name) * tolerance * _size(one.name, system, at, [seen.mismatch + seen.rate], rates)
-            bound = float(np.median(SIGMAS * seen.spread + seen.bias + asked)) / max(seen.left, _DIMMEST)
+            weights = weights_of(plan, theirs.time, one.order)
+            here = theirs, at, places[name]
+            found = seen(one, weights, *here, rates, left_open(one, weights, *here, reacts))
+            asked = _times(one.name) * tolerance * _size(one.name, system, at, found.mismatch + found.rate, rates)
+            left = max(share_left(one, weights, *here[1:], rates), _DIMMEST)
+            bound = float(np.median(SIGMAS * found.spread + found.bias + asked)) / left
             best.setdefault(one.name, []).append((bound, i, one))
     chosen = []
-    for found in best.values():
-        least = min(bound for bound, _, _ in found)
-        _, i, one = min((entry for entry in found if entry[0] <= _AS_GOOD * least), key=lambda entry: entry[1])
+    for entries in best.values():
+        least = min(bound for bound, _, _ in entries)
+        _, i, one = min((entry for entry in entries if entry[0] <= _AS_GOOD * least), key=lambda entry: entry[1])
         chosen.append((one, whole[i]))
     return View(tuple(chosen), np.unique(np.linspace(0, n - 1, min(n, INSTANTS)).round().astype(int)))
 
@@ -236,12 +168,15 @@ def examine(
     reacts = sensitivity(system, theirs, start, law) if reacts is None else reacts
     found = list(_contact(system, theirs, at, places[""][0], tolerance, reacts))
     for one, plan in view.compared:
-        seen = _seen(one, weights_of(plan, theirs.time, one.order), theirs, at, places[one.name], rates, reacts)
-        size = _size(one.name, system, at, [seen.mismatch + seen.rate], rates)
+        weights, open_ = view.open(one, plan, theirs, at, places[one.name], reacts)
+        one_ = seen(one, weights, theirs, at, places[one.name], rates, open_)
+        slope = one_.mismatch + one_.rate
+        size = _size(one.name, system, at, slope, rates)
         asked = _times(one.name) * tolerance * size
-        bound = asked + seen.bias + longest(len(seen.spread), seen.freedom) * seen.spread
+        bound = asked + one_.bias + longest(len(one_.spread), one_.freedom) * one_.spread
         note = f"{_UNITS[one.name]}, means over {_span(theirs, plan)}"
-        found.append(Series(one.name, plan.moment(theirs.time), seen.mismatch, size, bound, asked, note))
+        motion = _largest(slope, one_.rate)
+        found.append(Series(one.name, plan.moment(theirs.time), one_.mismatch, size, bound, asked, note, motion))
     return {series.name: series for series in found}, at
 
 
@@ -276,76 +211,18 @@ def sensitivity(system: RollingSystem, theirs: Theirs, start: State | None, law:
     return sensitivity_of(system, asked, motion_of(system, theirs, start, few))[0]
 
 
-def _seen(
-    one: Comparison,
-    weights: Weights,
-    theirs: Theirs,
-    at: Motion,
-    place: Index,
-    rates: Rates,
-    reacts: Sensitivity,
-) -> _Seen:
-    """Return the mismatch of one comparison in each window, and what noise and spacing make of it."""
-    f = one.rate(at, rates)[place]
-    mismatch, change = weights.mismatch(getattr(theirs, one.array), f)
-    gains = one.gains(at, reacts)
-    noise = {name: _noise(at, name, place) for name in {one.array, *(at.sources[part] for part in gains)}}
-    by_row = [(one.array, np.linalg.norm(weights.row, axis=1))]
-
-    def parts(phi: Array) -> list[tuple[str, Array]]:
-        carried = ((at.sources[part], weights.gain(phi * g[place], at.estimates[part], place)) for part, g in gains.items())
-        return list(carried)
-
-    spread = spread_of(by_row + parts(weights.phi), noise)
-    by_chance = spread_of(parts(weights.fewer), noise) if gains else np.zeros_like(spread)
-    bias = np.maximum(change - _BEYOND * np.sqrt(f.shape[-1]) * by_chance, 0.0)
-    for part, gain in gains.items():
-        bias = bias + np.abs(weights.mean((gain * at.estimates[part].bias)[place]))
-    if one.which is not None:
-        bias = bias + np.abs(weights.mean(reacts.curvature_at(one.which, at.time)[place]))
-    if one.array in theirs.doubts:
-        bias = bias + _growth(theirs, one.array)[at.index][place].mean(axis=1)
-    twice = 2.0 if one.turning else 1.0
-    freedom = min(at.estimates[name].freedom for name in noise)
-    mean = one.vectors(at, place, weights.mean(f))
-    left = min(_left(weights, probe[place]) for probe in ([f_ for f_ in (one.rate(at, rates),)] + _probes(one, at)))
-    return _Seen(one.vectors(at, place, mismatch), mean, twice * spread, twice * bias, freedom, left)
-
-
-def _noise(at: Motion, name: str, place: Index) -> Array:
-    """Return the standard deviation of means of an array in each window, per root of their number."""
-    estimate = at.estimates[name]
-    return np.asarray(np.sqrt(estimate.alike * (estimate.noise[place] ** 2).mean(axis=1)))
-
-
-def _growth(theirs: Theirs, name: str) -> Array:
-    """Return what a doubt about Ω leaves of its slope: it turns with Ω as the body does."""
-    return theirs.doubts[name] * float(np.linalg.norm(getattr(theirs, name), axis=1).max())
-
-
-def _probes(one: Comparison, at: Motion) -> list[Array]:
-    return [at.velocity] if one.which is not None and not one.turning else []
-
-
-def _left(weights: Weights, f: Array) -> float:
-    """Return the share that a window's mean leaves of something that turns with f, as most mistakes do."""
-    length = weights.mean(np.linalg.norm(f, axis=-1))
-    mean = np.linalg.norm(weights.mean(f), axis=-1)
-    return float(np.median(np.where(length > 0, mean / np.where(length > 0, length, 1.0), 1.0)))
-
-
-def _size(name: str, system: RollingSystem, at: Motion, slopes: list[Array], rates: Rates) -> float:
-    """Return what a residual is small beside, or not."""
+def _size(name: str, system: RollingSystem, at: Motion, slope: Array, rates: Rates) -> float:
+    """Return what a residual is small beside, or not; never nothing, where something might move."""
     if name == TURN:
-        return _largest(at.angular_velocity, *slopes)
+        return _largest(at.angular_velocity, slope)
     speed = _largest(at.velocity, np.cross(at.angular_velocity, at.offset), at.carried)
     if name == PATH:
         return speed
     weight = 1e-3 * float(np.max(Vector(*system.weight.acceleration).norm()))
     if name == ACCELERATION:
-        return max(_largest(*slopes, rates[0]), 1e-2 * rate_of(system) * speed, weight)
+        return max(_largest(slope, rates[0]), 1e-2 * rate_of(system) * speed, weight)
     least = max(_largest(rates[0]), 1e-2 * rate_of(system) * speed, weight) / at.arm
-    return max(least, _largest(*slopes, rates[1]))
+    return max(least, _largest(slope, rates[1]))
 
 
 def _contact(
@@ -372,7 +249,8 @@ def _at_instants(
     note: str,
 ) -> Series:
     """Return the series of something that the states themselves must make zero."""
-    gains, asked = reacts.gains_at(which, at.time), tolerance * size
+    gains = {part: gain for part, gain in reacts.gains_at(which, at.time).items() if part in at.estimates}
+    asked = tolerance * size
     parts = [(at.sources[part], gain * at.estimates[part].spread) for part, gain in gains.items()]
     spread = spread_of(parts, {source: np.ones(1) for source, _ in parts})
     bias = reacts.curvature_at(which, at.time) + sum(gain * at.estimates[part].bias for part, gain in gains.items())

@@ -12,8 +12,8 @@ from ..plots.scales import Unit, unit_for, with_unit
 from ..plots.sheet import BLUE, GREY, INK, VERMILION, Sheet, look
 
 if TYPE_CHECKING:
-    from .examining import Series
     from .result import Check
+    from .series import Series
     from .trajectories import Drawn
 
 WIDTH, LEFT, STRIPS, BETWEEN, EDGE = 11.4, 0.72, 5.1, 0.95, 0.2

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..errors import TrundleError
 from ..mechanics.bodies import Principal, Tensor
+from ..mechanics.loads import at_rest
 from ..mechanics.system import RollingSystem
 from . import laws
 from .laws import Law
@@ -171,6 +172,8 @@ def _pulls(system: RollingSystem, numbers: Array, doubts: Array) -> Iterator[Sus
     (x, y), doubt = (float(part) for part in numbers), float(np.hypot(*doubts))
     if math.hypot(x, y) <= doubt:
         return
+    if any(math.hypot(x + fx, y + fy) <= max(doubt, _TINY * math.hypot(x, y)) for fx, fy in _constant(system)):
+        return  # a load that was left out, which is suspected by itself
     g, down = float(system.gravity), constant_pull(system)[0]
     sine = (down + x) / g if g else math.inf
     lean = f", as on a tilt of {math.degrees(math.asin(sine)):.4g}°" if abs(sine) < 1 and abs(y) <= doubt else ""
@@ -178,6 +181,13 @@ def _pulls(system: RollingSystem, numbers: Array, doubts: Array) -> Iterator[Sus
     changed = partial(laws.with_pull, x=x, y=y)
     touched = frozenset({"pull", "tilt", "gravity"})
     yield Suspect("wrong-gravity-or-force", says, touched, changed, numbers={"x": x, "y": y}, named=False)
+
+
+def _constant(system: RollingSystem) -> list[tuple[float, float]]:
+    """Return the constant forces among the loads along the plane, as accelerations, m/s²."""
+    m = float(system.body.mass)
+    forces = [load.force(at_rest(m)) for load in system.loads if load.constant]
+    return [(float(force.x) / m, float(force.y) / m) for force in forces]
 
 
 def _any(_: RollingSystem) -> bool:

@@ -13,9 +13,10 @@ from ..mechanics.loads import BodyMotion
 from ..mechanics.system import RollingSystem, State
 from .chance import longest
 from .comparisons import sensitivity_of
-from .examining import LAW_SHARE, Series
+from .examining import LAW_SHARE
 from .motion import Instants, motion_of
 from .record import Array, Theirs
+from .series import Series
 from .windows import spread_of
 
 _INSTANTS = 48  # looked at

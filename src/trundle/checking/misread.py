@@ -12,18 +12,20 @@ import numpy as np
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.shapes import concentric_sphere
 from ..mechanics.surfaces import Plane
+from ..mechanics.system import RollingSystem, State
 from .case import Case
 from .comparisons import TURN
-from .examining import GAP, Series
+from .examining import GAP
 from .mistakes import Suspect
-from .motion import added_up, turning_of
+from .motion import added_up, turning_of, with_orientation
 from .reading import from_frame
 from .record import Array, Theirs
+from .series import Series
 from .slopes import SIGMAS
 
 _MOST_RADIANS = 1e4  # of turning that are added up to an orientation
-_TIME, _LENGTH, _OMEGA, _PLACE, _FRAME, _TURNED = (
-    frozenset({part}) for part in ("time", "length", "Ω", "place", "frame", "orientation")
+_TIME, _LENGTH, _OMEGA, _PLACE, _FRAME, _TURNED, _AXES = (
+    frozenset({part}) for part in ("time", "length", "Ω", "place", "frame", "orientation", "axes")
 )
 
 
@@ -73,9 +75,7 @@ def _units(case: Case) -> Iterator[Suspect]:
         undo = partial(_times, factors={"angular_velocity": factor})
         yield Suspect(name, f"Ω is in {unit}, not in rad/s.", _OMEGA, theirs=undo)
     says = "Ω has the wrong sign: a ball rolling along +x turns about +y."
-    yield Suspect(
-        "sign-of-angular-velocity", says, _OMEGA, theirs=partial(_times, factors={"angular_velocity": -1.0})
-    )
+    yield Suspect("sign-of-angular-velocity", says, _OMEGA, theirs=partial(_times, factors={"angular_velocity": -1.0}))
 
 
 def _places(case: Case) -> Iterator[Suspect]:
@@ -111,22 +111,22 @@ def _body_axes(case: Case) -> Iterator[Suspect]:
     theirs, start, name = case.theirs, case.start, "body-axes-for-space-axes"
     if theirs.angular_velocity is None or "angular_velocity" in theirs.doubts:
         return
-    along = frozenset({"axes"})
     if theirs.orientation is not None and "orientation" not in theirs.doubts:
         says = "Ω has its components along the axes of the body; it was taken for the one along space axes."
-        yield Suspect(name, says, along, theirs=_spun, textbook=True)
+        yield Suspect(name, says, _AXES, theirs=_spun, textbook=True)
         says = (
             "The orientation was integrated as q̇ = ½ q Ω, which is for body axes, from an Ω along space axes: "
             "that is q̇ = ½ Ω q."
         )
-        yield Suspect(name, says, _TURNED | along, theirs=_without_orientation, extra=partial(_own_axes, case))
+        undo = partial(_without_orientation, system=case.system, start=start)
+        yield Suspect(name, says, _TURNED | _AXES, theirs=undo, further=partial(_own_axes, case))
         return
     span = float(theirs.time[-1] - theirs.time[0])
     if span * float(np.linalg.norm(theirs.angular_velocity, axis=1).max()) > _MOST_RADIANS:
         return
     says = "Ω has its components along the axes of the body, which starts along those of the support frame."
     undo = partial(_spun_by_itself, start=start, keep="orientation" in theirs.doubts)
-    yield Suspect(name, says, along, theirs=undo, textbook=True)
+    yield Suspect(name, says, _AXES, theirs=undo, textbook=True)
 
 
 def _spun(theirs: Theirs) -> Theirs:
@@ -135,8 +135,8 @@ def _spun(theirs: Theirs) -> Theirs:
     return replace(theirs, angular_velocity=(Q @ Vector.of(theirs.angular_velocity)).array())
 
 
-def _spun_by_itself(theirs: Theirs, start: object, keep: bool) -> Theirs:
-    q, doubt = added_up(theirs, start, body_axes=True)  # type: ignore[arg-type]
+def _spun_by_itself(theirs: Theirs, start: State | None, keep: bool) -> Theirs:
+    q, doubt = added_up(theirs, start, body_axes=True)
     spun = (Quaternion.of(q).matrix() @ Vector.of(theirs.angular_velocity)).array()
     doubts = {"angular_velocity": doubt * np.linalg.norm(spun, axis=1)}
     if not keep:
@@ -144,8 +144,9 @@ def _spun_by_itself(theirs: Theirs, start: object, keep: bool) -> Theirs:
     return replace(theirs, angular_velocity=spun, orientation=q, doubts=doubts | {"orientation": doubt})
 
 
-def _without_orientation(theirs: Theirs) -> Theirs:
-    return replace(theirs, orientation=None)
+def _without_orientation(theirs: Theirs, system: RollingSystem, start: State | None) -> Theirs:
+    """Return what they gave without the orientation, unless the law needs one: then with that of their Ω."""
+    return with_orientation(system, replace(theirs, orientation=None), start)
 
 
 def _own_axes(case: Case, _: object) -> tuple[Series, ...]:
@@ -206,7 +207,8 @@ def _holonomic(case: Case) -> Iterator[Suspect]:
                 f"The constraint was taken for a holonomic one: the orientation is {how}, "
                 "a function of the place alone. It depends on the way there; integrate q̇ = ½ Ω q."
             )
-            yield Suspect("holonomic-constraint", says, _TURNED, theirs=_without_orientation, extra=matches)
+            undo = partial(_without_orientation, system=case.system, start=case.start)
+            yield Suspect("holonomic-constraint", says, _TURNED | _AXES, theirs=undo, further=matches)
 
 
 def _given(match: Series, _: object) -> tuple[Series, ...]:

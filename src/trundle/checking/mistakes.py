@@ -17,9 +17,10 @@ from ..mechanics.loads import at_rest
 from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem
 from . import laws
-from .examining import SLIP, Series
+from .examining import SLIP
 from .laws import Law
 from .record import Theirs
+from .series import Series
 
 RATIOS = {2 / 5: "solid sphere", 2 / 3: "thin shell", 1 / 2: "solid cylinder", 1.0: "hoop"}
 GRAVITIES = (9.80665, 9.81, 9.8, 10.0)
@@ -50,7 +51,7 @@ class Suspect:
         Checks that the mistake itself spoils.
     begins : frozenset of str
         Of these, the ones that hold at the first instant.
-    extra : callable, optional
+    further : callable, optional
         Further checks that the mistake must pass, of a system.
     numbers : dict
         What the mistake makes of a number.
@@ -70,7 +71,7 @@ class Suspect:
     theirs: Callable[[Theirs], Theirs] | None = None
     excused: frozenset[str] = frozenset()
     begins: frozenset[str] = frozenset()
-    extra: Callable[[RollingSystem], tuple[Series, ...]] | None = None
+    further: Callable[[RollingSystem], tuple[Series, ...]] | None = None
     numbers: dict[str, float] = field(default_factory=dict)
     named: bool = True
     textbook: bool = False
@@ -95,13 +96,15 @@ def law_of(suspects: Sequence[Suspect], otherwise: Law = laws.independent_law) -
     return next((suspect.law for suspect in suspects if suspect.law is not None), otherwise)
 
 
-def mechanical(system: RollingSystem) -> Iterator[Suspect]:
+def mechanical(system: RollingSystem, *, turning: bool = True) -> Iterator[Suspect]:
     """Yield the mistakes of mechanics that can be made with a system, the commonest first.
 
     Parameters
     ----------
     system : RollingSystem
         The right one.
+    turning : bool
+        Whether Ω is told, by which another table is told from another rate of the circle.
 
     Yields
     ------
@@ -122,7 +125,7 @@ def mechanical(system: RollingSystem) -> Iterator[Suspect]:
     yield from _tilts(system)
     yield from _gravities(system)
     yield from _terms(system)
-    yield from _circles(system)
+    yield from _circles(system, turning)
 
 
 def rate_of(system: RollingSystem) -> float:
@@ -255,18 +258,23 @@ def _gravities(system: RollingSystem) -> Iterator[Suspect]:
     if not flat:
         says = "Gravity was left out."
         changed = partial(_with_gravity, g=0.0)
-        yield Suspect("gravity-left-out", says, frozenset({"gravity"}), changed, numbers={"gravity": 0.0}, textbook=True)
+        yield Suspect(
+            "gravity-left-out", says, frozenset({"gravity"}), changed, numbers={"gravity": 0.0}, textbook=True
+        )
 
 
 def _terms(system: RollingSystem) -> Iterator[Suspect]:
     """Yield terms that may be forgotten."""
     for i, load in enumerate(system.loads):
         says = f"A load was left out: {type(load).__name__}."
-        yield Suspect("load-left-out", says, frozenset({f"load {i}"}), partial(_without, load=i), textbook=True)
+        left = partial(laws.without_load, load=load)
+        yield Suspect("load-left-out", says, frozenset({f"load {i}"}), left, textbook=True)
     if isinstance(system.body.inertia, (Principal, Tensor)):
         says = "Ω×JΩ was left out of Euler's equation: the moments of inertia are not all the same."
         left = frozenset({"law", "inertia"})
-        yield Suspect("missing-gyroscopic-term", says, left, laws.without_gyroscopic, laws.eliminated_law, textbook=True)
+        yield Suspect(
+            "missing-gyroscopic-term", says, left, laws.without_gyroscopic, laws.eliminated_law, textbook=True
+        )
     if system.support.motion.steady_rate == 0:
         return
     how, name = "u̇, the table's motion under the moving contact, was left out of the law", "missing-carrying-term"
@@ -276,32 +284,30 @@ def _terms(system: RollingSystem) -> Iterator[Suspect]:
     yield Suspect(name, says, both, law=laws.without_carrying_in_turning)
 
 
-def _without(system: RollingSystem, load: int) -> RollingSystem:
-    return laws.without_load(system, system.loads[load])
-
-
-def _circles(system: RollingSystem) -> Iterator[Suspect]:
+def _circles(system: RollingSystem, turning: bool) -> Iterator[Suspect]:
     """Yield no friction at all, and other rates of the circle that a ball goes round in on a turning table."""
     says = "It slides as a puck does, without friction: neither the table nor the spin acts on its path."
     puck = frozenset({"law", "rate", "inertia", "pull"})
     if system.body.shape.axis is None:
         yield Suspect("puck", says, puck, law=laws.frictionless_law, excused=_SLIPS, textbook=True)
+    omega = rate_of(system)
+    if omega and system.body.shape.axis is None:  # on a support at rest only the factor of rolling is then missing
         law = laws.constrained(laws.frictionless_law)
         yield Suspect("puck", f"{says} Ω follows from no slip.", puck, law=law, textbook=True)
-    omega = rate_of(system)
     if not omega or not system.body.is_isotropic_sphere or not laws.turns(system):
         return
     k = float(system.body.inertia_ratio)
-    right = k / (1 + k)
-    for name, share, text in (
-        ("circle-upside-down", 1 / right, f"at {_fraction(1 / right)} of the table's rate, {_fraction(right)} upside down"),
+    right, over = k / (1 + k), (1 + k) / k
+    shares = [
+        ("circle-upside-down", over, f"at {_fraction(over)} of the table's rate, {_fraction(right)} upside down"),
         ("coriolis-for-rolling", 2.0, "at 2ω, as a Coriolis force would have it"),
         ("coriolis-for-rolling", -2.0, "at −2ω, as a Coriolis force would have it"),
         ("circle-of-the-table", 1.0, "at the table's own rate"),
-        ("sign-of-table-rate", -right, "the wrong way"),
-        ("table-motion-ignored", 0.0, "not at all"),
-        *(("wrong-inertia-ratio", r / (1 + r), f"as k = {_fraction(r)} would have it") for r in RATIOS),
-    ):
+    ]
+    if turning:  # without Ω they are those of another table
+        shares += [("sign-of-table-rate", -right, "the wrong way"), ("table-motion-ignored", 0.0, "not at all")]
+        shares += [("wrong-inertia-ratio", r / (1 + r), f"as k = {_fraction(r)} would have it") for r in RATIOS]
+    for name, share, text in shares:
         if abs(share - right) > _SAME:
             yield Suspect(
                 name,

@@ -13,9 +13,10 @@ from ..mechanics.system import RollingSystem, State
 from ..solve import methods
 from ..solve.samples import Samples
 from .chance import longest
-from .examining import INSTANTS, LAW_SHARE, Series
+from .examining import INSTANTS, LAW_SHARE
 from .motion import Motion, motion_of
 from .record import Array, Theirs
+from .series import Series
 from .slopes import SIGMAS
 
 _MOST_RADIANS = 1e4  # of turning that a run of ours follows
@@ -186,7 +187,9 @@ def _nearest(begin: _Start, where: Array, parts: slice, count: int) -> tuple[Sam
         if m < 2 or not which.size:
             return ours.part(slice(0, m)), moved[:m]
         slopes = [(run.position[:m] - ours.position[:m]) / begin.step[i] for run, i in zip(beside, which, strict=True)]
-        moved = np.sqrt(sum((np.linalg.norm(s, axis=1) * begin.spread[i]) ** 2 for s, i in zip(slopes, which, strict=True)))
+        moved = np.sqrt(
+            sum((np.linalg.norm(s, axis=1) * begin.spread[i]) ** 2 for s, i in zip(slopes, which, strict=True))
+        )
         changed = _change(begin, numbers, np.array(slopes)[..., parts], (where[:m] - ours.position[:m])[:, parts])
         path = ours.position[:m] + sum(s * changed[i] for s, i in zip(slopes, which, strict=True))
         far = float(np.linalg.norm(path - ours.position[:m], axis=1).max()) > _STRAIGHT * _extent(begin.at)

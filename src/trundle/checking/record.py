@@ -69,17 +69,17 @@ class Theirs:
     source: str = ""
     # What was worked out goes on to changed copies, by the arrays that it was worked out of.
     _windows: Known = field(default_factory=dict, compare=False, repr=False)
-    _kept: dict[Any, tuple[Any, ...]] = field(default_factory=dict, compare=False, repr=False)
+    _kept: dict[Any, Any] = field(default_factory=dict, compare=False, repr=False)
 
     def slope(self, name: str, index: Index, order: int = 1, kept: float = 1.0) -> Estimate:
         """Return a derivative of one of the arrays at some samples; it is worked out once."""
         time, values = self.time, getattr(self, name)
-        key = (id(time), id(values), order, kept)
-        if key not in self._kept:  # with the arrays, so that no others take their places in memory
-            self._kept[key] = (best_fit(time, values, order, self._windows, kept), time, values)
-        whole = (*key, index.tobytes())
-        if whole not in self._kept:
-            self._kept[whole] = (derivative(time, values, index, order, self._windows, self._kept[key][0]),)
+        key = (name, order, kept)
+        if key not in self._kept:  # changed copies bend as much: units and axes are what changes
+            self._kept[key] = best_fit(time, values, order, self._windows, kept)
+        whole = (*key, id(time), id(values), index.tobytes())
+        if whole not in self._kept:  # with the arrays, so that no others take their places in memory
+            self._kept[whole] = derivative(time, values, index, order, self._windows, self._kept[key]), time, values
         return self._kept[whole][0]
 
     @property

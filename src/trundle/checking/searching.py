@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import combinations
 from typing import Any
 
 from .mistakes import Suspect, together
@@ -13,6 +12,8 @@ _SAME = 1e-6  # of what is off: a mistake that changes no more changes nothing
 _FURTHER = 4  # of the best, beside which something else is looked for
 _MUCH = 0.75  # of what is off, that mistakes must take away to be worth a word where they do not explain all
 _FAR_BETTER = 0.5  # of what another leaves: two mistakes must be so much better than one
+_HELPFUL = 12  # mistakes that help most alone: one of each pair is among them
+_NEAREST = 3
 SHOWN = 5  # mistakes
 
 
@@ -40,7 +41,7 @@ class Tried:
     @property
     def rank(self) -> tuple[bool, int, float]:
         """By which the likelier comes first: numbers with a reason, few mistakes, little left."""
-        return not all(one.named for one in self.suspects), len(self.suspects), self.left
+        return not all(one.named for one in self.suspects), len(self.suspects), round(self.left, 3)
 
 
 Trial = Callable[[tuple[Suspect, ...]], Tried | None]  # None where they cannot be tried
@@ -68,7 +69,8 @@ def explaining(suspects: Iterable[Suspect], tried: Trial, confirmed: Trial) -> t
     if found:
         return found, []
     telling = [one for one in singles if abs(one.left - 1) > _SAME]
-    pairs = _all((a.suspects[0], b.suspects[0]) for a, b in combinations(telling, 2))(tried)
+    helpful = sorted(telling, key=lambda one: one.left)[:_HELPFUL]
+    pairs = _all(_pairs(helpful, telling))(tried)
     found = _confirmed(pairs, confirmed)
     if found:
         return found, []
@@ -76,6 +78,14 @@ def explaining(suspects: Iterable[Suspect], tried: Trial, confirmed: Trial) -> t
     more = _all((*few.suspects, one.suspects[0]) for few in best for one in telling)(tried)
     found = _confirmed([one for one in more if len(one.suspects) > 1], confirmed)
     return (found, []) if found else ([], _nearest([*singles, *pairs, *more]))
+
+
+def _pairs(helpful: Sequence[Tried], others: Sequence[Tried]) -> Iterator[tuple[Suspect, ...]]:
+    """Yield each pair of which one at least helps by itself, once."""
+    done: set[int] = set()
+    for one in helpful:
+        done.add(id(one))
+        yield from ((one.suspects[0], other.suspects[0]) for other in others if id(other) not in done)
 
 
 def _all(combinations: Iterable[tuple[Suspect, ...]]) -> Callable[[Trial], list[Tried]]:
@@ -91,7 +101,7 @@ def _confirmed(trials: Sequence[Tried], confirmed: Trial) -> list[Tried]:
     found: dict[tuple[str, ...], Tried] = {}
     for trial in sorted((one for one in trials if one.explains), key=lambda one: one.rank):
         name = tuple(one.name for one in trial.suspects)
-        if name in found or len(found) == SHOWN:
+        if name in found or len(found) == SHOWN or _has_a_reason(trial, found.values()):
             continue
         sure = confirmed(trial.suspects)
         if sure is not None and sure.explains:
@@ -99,15 +109,22 @@ def _confirmed(trials: Sequence[Tried], confirmed: Trial) -> list[Tried]:
     return sorted(found.values(), key=lambda one: one.rank)
 
 
+def _has_a_reason(trial: Tried, found: Iterable[Tried]) -> bool:
+    """Tell whether a free number only repeats a number with a reason."""
+    free = [one for one in trial.suspects if not one.named]
+    given = [one for other in found for one in other.suspects if one.named]
+    return any(one.touches & other.touches for one in free for other in given)
+
+
 def _nearest(trials: Sequence[Tried]) -> list[Tried]:
     """Return those that take away most of what is off; two together only where neither does nearly as much."""
-    kept: list[Tried] = []
-    for trial in sorted(trials, key=lambda one: (len(one.suspects), one.left)):
-        own = {id(suspect) for suspect in trial.suspects}
-        fewer = [one.left for one in trials if {id(suspect) for suspect in one.suspects} < own]
-        if trial.left <= 1 - _MUCH and all(trial.left <= _FAR_BETTER * left for left in fewer):
+    left = {frozenset(map(id, trial.suspects)): trial.left for trial in trials}
+    kept = []
+    for trial in sorted((one for one in trials if one.left <= 1 - _MUCH), key=lambda one: one.rank):
+        fewer = [frozenset(map(id, trial.suspects)) - {id(one)} for one in trial.suspects]
+        if all(trial.left <= _FAR_BETTER * left.get(some, 1.0) for some in fewer):
             kept.append(trial)
-    return sorted(kept, key=lambda one: one.left)[:SHOWN]
+    return sorted(kept, key=lambda one: one.left)[:_NEAREST]
 
 
-__all__ = ["SHOWN", "Tried", "Trial", "explaining"]
+__all__ = ["SHOWN", "Trial", "Tried", "explaining"]

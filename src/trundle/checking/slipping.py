@@ -14,11 +14,12 @@ from ..mechanics.system import RollingSystem
 from ..verify.law import applied
 from .case import Case
 from .comparisons import ACCELERATION, PATH, TURN, TURNING
-from .examining import GAP, LAW_SHARE, SLIP, Series
+from .examining import GAP, LAW_SHARE, SLIP
 from .laws import independent_law
 from .mistakes import ALONE, Suspect
 from .motion import Motion, motion_of
 from .record import Array
+from .series import Series
 from .slopes import Estimate, Index
 
 _EVERYTHING = frozenset({GAP, PATH, TURN, SLIP, ACCELERATION, TURNING})
@@ -94,7 +95,13 @@ def _friction(case: Case) -> Iterator[Suspect]:
     says = f"It slips {until}: while it does, friction is μN against the slip, with μ = {typical:.4g}."
     numbers = {"friction": typical, "until": ends}
     yield Suspect(
-        "slipping", says, ALONE, excused=_EVERYTHING - {TURNING}, extra=lambda _: (rest,), numbers=numbers, whole=False
+        "slipping",
+        says,
+        ALONE,
+        excused=_EVERYTHING - {TURNING},
+        further=lambda _: (rest,),
+        numbers=numbers,
+        whole=False,
     )
 
 
@@ -159,7 +166,7 @@ def _steps(case: Case) -> Iterator[Suspect]:
             says,
             frozenset({"steps"}),
             excused=_EVERYTHING - {ACCELERATION},
-            extra=partial(_differences, case, h),
+            further=partial(_differences, case, h),
             numbers={"step": h},
             whole=False,
         )

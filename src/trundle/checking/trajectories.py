@@ -17,13 +17,14 @@ from .case import Case
 from .comparisons import ACCELERATION
 from .deciding import Power, power_of
 from .diagnosing import diagnose
-from .examining import Series, examine, view_of
+from .examining import examine, view_of
 from .integrals import integrals
 from .motion import Motion, motion_of, with_orientation
 from .own_run import OWN_RUN, OwnRun, own_run
 from .reading import Conventions, read
 from .record import Theirs, check_covered, checked
 from .result import Check, Mistake
+from .series import Series
 
 TOLERANCE = 1e-5  # a share; what good methods leave is far below, and what a wrong law leaves far above
 _TELLS = 0.2  # a bound, as a share, beyond which the data say nothing of a check
