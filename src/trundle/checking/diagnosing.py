@@ -22,11 +22,11 @@ from .result import Mistake
 from .searching import Tried, explaining
 from .series import Series
 from .slipping import crude
+from .spinning import another_spin
 
 _GLANCE = 10  # windows on which mistakes are tried
 _MORE_ROOM = 10.0  # times: undoing a mistake may not buy its success with a wider bound
 _FITTED = (SLIP, ACCELERATION, TURNING)
-_CLEAREST = 1.0  # share of a size: what is off by more is off, and no more need be said
 
 
 def diagnose(case: Case) -> tuple[tuple[Mistake, ...], tuple[Mistake, ...]]:
@@ -44,7 +44,7 @@ def diagnose(case: Case) -> tuple[tuple[Mistake, ...], tuple[Mistake, ...]]:
     """
     with np.errstate(all="ignore"):  # numbers so changed may be no motion at all
         trials = _Trials(case)
-        suspects = [*misreadings(case), *mechanical(case.system, turning=case.motion.turning_known), *crude(case)]
+        suspects = [*misreadings(case), *mechanical(case.system, turning=case.motion.turning_known), *another_spin(case), *crude(case)]
         families = FAMILIES if case.motion.turning_known else FAMILIES[:-1]  # without Ω it is that of another table
         suspects += [suspect for family in families for suspect in fitted(family, case.system, trials.residual)]
         explain, nearest = explaining(suspects, trials.tried, trials.confirmed)
@@ -162,10 +162,10 @@ class _Trials:
 
 
 def _off(series: Mapping[str, Series], suspects: tuple[Suspect, ...]) -> float:
-    """Return how far off a motion is altogether, each series as a share of its size."""
+    """Return how far off a motion is altogether: each series as a share of its size, which counts for one at most."""
     excused = {name for suspect in suspects for name in suspect.excused}
-    told = [min(one.typical, _CLEAREST) for name, one in series.items() if name not in excused]
-    return float(np.sqrt(sum(share**2 for share in told)))
+    shares = [one.typical for name, one in series.items() if name not in excused]
+    return float(np.sqrt(sum((share / (1 + share)) ** 2 for share in shares)))
 
 
 def _no_wider(before: Mapping[str, Series], after: Mapping[str, Series]) -> bool:

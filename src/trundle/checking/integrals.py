@@ -46,7 +46,8 @@ def integrals(system: RollingSystem, theirs: Theirs, tolerance: float, start: St
     for integral in invariants_of(system):
         if integral.name.startswith("spin") and not at.turning_known:
             continue  # it would be our own assumption that is found again
-        if not integral.terms(system, _record(system, at)):  # it has nothing to say of this motion
+        terms, sizes = integral.sized_terms(system, _record(system, at))
+        if not terms:  # it has nothing to say of this motion
             continue
         reacts, (value,) = sensitivity_of(system, _values(system, integral), at)
         gains = reacts.gains[0]
@@ -55,7 +56,7 @@ def integrals(system: RollingSystem, theirs: Theirs, tolerance: float, start: St
         bias = reacts.curvature[0] + sum(gain * at.estimates[name].bias for name, gain in gains.items())
         freedom = min(at.estimates[name].freedom for name in gains)
         times = longest(len(value), freedom, value.shape[1])
-        size = _size(system, integral, at)
+        size = max(1e-300, *(float(np.abs(_rows(term, at.time.size)).max()) for term in sizes))
         asked = LAW_SHARE * tolerance * size
         bound = asked + bias + bias[0] + times * np.hypot(spread, spread[0])
         note = f"{integral.formula} stays the same"
@@ -82,11 +83,6 @@ def _values(system: RollingSystem, integral: Invariant) -> Callable[[Instants], 
         return (np.asarray(sum(_rows(term, at.time.size) for term in terms), dtype=float),)
 
     return values
-
-
-def _size(system: RollingSystem, integral: Invariant, at: Instants) -> float:
-    _, sizes = integral.sized_terms(system, _record(system, at))
-    return max(1e-300, *(float(np.abs(_rows(term, at.time.size)).max()) for term in sizes))
 
 
 def _rows(term: Any, count: int) -> Array:

@@ -122,7 +122,6 @@ def checked(theirs: Theirs, system: RollingSystem) -> Theirs:
     t = theirs.time
     if t.size < FEWEST:
         raise InvalidValueError("time", f"must hold {FEWEST} samples or more", f"{t.size}", "Write more of the run.")
-    _check_finite(theirs)
     backwards = np.flatnonzero(np.diff(t) <= 0)
     if backwards.size:
         i = int(backwards[0])
@@ -141,17 +140,6 @@ def checked(theirs: Theirs, system: RollingSystem) -> Theirs:
             "Add wx, wy, wz or qw, qx, qy, qz.",
         )
     return theirs
-
-
-def _check_finite(theirs: Theirs) -> None:
-    for name in ("time", "position", "velocity", "angular_velocity", "orientation"):
-        array = getattr(theirs, name)
-        if array is None:
-            continue
-        bad = np.flatnonzero(~np.isfinite(array.reshape(array.shape[0], -1)).all(axis=1))
-        if bad.size and not (name == "position" and not theirs.height_given):
-            row = array[bad[0]].tolist()
-            raise InvalidValueError(name, "must be finite numbers", f"{row} in sample {bad[0] + 1}", "Leave it out.")
 
 
 def _with_height(position: Array, system: RollingSystem) -> Array:

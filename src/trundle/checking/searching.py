@@ -8,7 +8,7 @@ from typing import Any
 
 from .mistakes import Suspect, together
 
-_SAME = 1e-6  # of what is off: a mistake that changes no more changes nothing
+_SAME = 1e-9  # of what is off: a mistake that changes no more changes nothing
 _FURTHER = 4  # of the best, beside which something else is looked for
 _MUCH = 0.75  # of what is off, that mistakes must take away to be worth a word where they do not explain all
 _FAR_BETTER = 0.5  # of what another leaves: two mistakes must be so much better than one

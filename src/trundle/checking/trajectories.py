@@ -24,6 +24,7 @@ from .own_run import OWN_RUN, OwnRun, own_run
 from .reading import Conventions, read
 from .record import Theirs, check_covered, checked
 from .result import Check, Mistake
+from .spinning import acts, fitted_spin
 from .series import Series
 
 TOLERANCE = 1e-5  # a share; what good methods leave is far below, and what a wrong law leaves far above
@@ -137,6 +138,9 @@ def check(
     given = theirs.parts
     theirs, coarse = followed(theirs, system)
     theirs = with_orientation(system, theirs, start)
+    if start is None and acts(system, theirs):
+        theirs, found = _with_spin(system, theirs, tolerance)
+        coarse += found
     case, ours = _looked_at(system, theirs, tolerance, start)
     figures = [*_told(case), *coarse, *map(_figure, case.series.values())]
     if OWN_RUN not in case.series:
@@ -152,11 +156,20 @@ def check(
         likely,
         nearest,
         tuple(power.blind.values()),
-        power.decides and _law_tells(case),
+        _decides(case, power),
         "\n".join([*theirs.remarks, *filter(None, [_remark(case, likely, nearest)])]),
         _apart(ours),
         _drawn=Drawn(system, case.motion, tuple(case.series.values()), ours),
     )
+
+
+def _with_spin(system: RollingSystem, theirs: Theirs, tolerance: float) -> tuple[Theirs, list[CardFigure]]:
+    """Add the spin that the path tells, where neither data nor start do."""
+    spin = fitted_spin(system, theirs, tolerance, None)
+    if spin is None:
+        return theirs, []
+    note = "nothing that was given tells it: fitted to the path"
+    return replace(theirs, spin=spin), [CardFigure("spin at the start", spin, "rad/s", note=note)]
 
 
 def _looked_at(system: RollingSystem, theirs: Theirs, tolerance: float, start: State | None) -> tuple[Case, OwnRun]:
@@ -169,9 +182,9 @@ def _looked_at(system: RollingSystem, theirs: Theirs, tolerance: float, start: S
     return Case(system, theirs, tolerance, start, view, series, at), ours
 
 
-def _law_tells(case: Case) -> bool:
-    """Tell whether the acceleration is known well enough for a verdict."""
-    return case.series[ACCELERATION].allowed <= _TELLS or case.series[ACCELERATION].worst > 1
+def _decides(case: Case, power: Power) -> bool:
+    """Tell whether most mistakes that matter would have been seen, or, if none matters, the law itself."""
+    return power.decides if power.shown or power.blind else case.series[ACCELERATION].room <= _TELLS
 
 
 def _apart(ours: OwnRun) -> str:
@@ -257,7 +270,7 @@ def _figure(series: Series) -> CardFigure:
     note = series.note
     if room > 2 * series.asked:
         note += "; noise and spacing of the data leave that much open"
-    if holds and allowed > _TELLS:
+    if holds and series.room > _TELLS:
         return CardFigure(series.name, share, "", allowed, None, f"{note}: too much to tell")
     return CardFigure(series.name, share, "", allowed, holds, note)
 
@@ -271,7 +284,7 @@ def _first_failure(case: Case) -> float | None:
 
 def _remark(case: Case, likely: tuple[Mistake, ...], nearest: tuple[Mistake, ...]) -> str:
     if not case.failing:
-        coarse = [one.name for one in case.series.values() if one.allowed > _TELLS]
+        coarse = [one.name for one in case.series.values() if one.room > _TELLS]
         return f"The data are too few or too noisy to tell: {', '.join(coarse)}." if coarse else ""
     if likely:
         return ""
