@@ -90,7 +90,8 @@ def _scales(system: RollingSystem, at: Motion) -> dict[str, float]:
     """Return the parts of the state that the law depends on, with the size of each."""
     extent = max(float(np.ptp(at.position, axis=0).max()), at.arm)
     speed = max(_largest(at.velocity, np.cross(at.angular_velocity, at.offset)), 1e-3 * at.arm)
-    scales = {"position": extent, "velocity": speed, "angular_velocity": speed / at.arm, "orientation": 1.0}
+    turning = speed / at.arm
+    scales = {"position": extent, "velocity": speed, "angular_velocity": turning, "orientation": 1.0, "spin": turning}
     if system.body.is_isotropic_sphere:
         del scales["orientation"]
     return {name: scale for name, scale in scales.items() if name in at.estimates}

@@ -25,6 +25,7 @@ from .slipping import crude
 from .spinning import another_spin
 
 _GLANCE = 10  # windows on which mistakes are tried
+_NEARLY = 0.5  # of what is off, left over: worth a closer look
 _MORE_ROOM = 10.0  # times: undoing a mistake may not buy its success with a wider bound
 _FITTED = (SLIP, ACCELERATION, TURNING)
 
@@ -44,7 +45,12 @@ def diagnose(case: Case) -> tuple[tuple[Mistake, ...], tuple[Mistake, ...]]:
     """
     with np.errstate(all="ignore"):  # numbers so changed may be no motion at all
         trials = _Trials(case)
-        suspects = [*misreadings(case), *mechanical(case.system, turning=case.motion.turning_known), *another_spin(case), *crude(case)]
+        suspects = [
+            *misreadings(case),
+            *mechanical(case.system, turning=case.motion.turning_known),
+            *another_spin(case),
+            *crude(case),
+        ]
         families = FAMILIES if case.motion.turning_known else FAMILIES[:-1]  # without Ω it is that of another table
         suspects += [suspect for family in families for suspect in fitted(family, case.system, trials.residual)]
         explain, nearest = explaining(suspects, trials.tried, trials.confirmed)
@@ -84,13 +90,14 @@ class _Trials:
             found = self.changed[key]
         return found
 
-    def series(self, suspects: tuple[Suspect, ...], *, whole: bool) -> dict[str, Series] | None:
+    def series(
+        self, suspects: tuple[Suspect, ...], *, whole: bool, reacts: Sensitivity | None = None
+    ) -> dict[str, Series] | None:
         """Return what is left with mistakes undone, quickly or with all there is; None where that is no motion."""
         case, theirs = self.case, self.theirs(suspects)
         if theirs is None:
             return None
-        view, reacts = (case.view, None) if whole else (self.view, self.reacts)
-        law = law_of(suspects)
+        law, view = law_of(suspects), case.view if whole else self.view
         try:
             system = with_mistakes(case.system, suspects)
             found, _ = examine(system, theirs, case.tolerance, case.start, view, law, reacts)
@@ -105,11 +112,15 @@ class _Trials:
 
     def tried(self, suspects: tuple[Suspect, ...]) -> Tried | None:
         """Try mistakes in a few windows."""
-        found = self.series(suspects, whole=False)
+        found = self.series(suspects, whole=False, reacts=self.reacts)
         if found is None or not self._may(suspects) or not _no_wider(self.base, found):
             return None
         left = _off(found, suspects) / max(self.off, 1e-300)
-        return Tried(suspects, left, self._explains(found, suspects, self.base), found)
+        explains = self._explains(found, suspects, self.base)
+        if not explains and left < _NEARLY:  # another law may make more of the noise in their states
+            found = self.series(suspects, whole=False)
+            explains = found is not None and self._explains(found, suspects, self.base)
+        return Tried(suspects, left, explains)
 
     def confirmed(self, suspects: tuple[Suspect, ...]) -> Tried | None:
         """Try mistakes in all windows, with all that adds up over the run."""
@@ -121,7 +132,7 @@ class _Trials:
 
     def residual(self, suspect: Suspect) -> Array:
         """Return what a fit makes small: what is left of the law, over the bounds of what is off as it is."""
-        found = self.series((suspect,), whole=False)
+        found = self.series((suspect,), whole=False, reacts=self.reacts)
         names = [name for name in _FITTED if name in self.base]
         if found is None:
             raise TrundleError("No motion.")
@@ -156,7 +167,7 @@ class _Trials:
             after.share,
             after.allowed,
             numbers,
-            all(suspect.named for suspect in tried.suspects),
+            tried.named,
             max(0.0, 1 - tried.left),
         )
 

@@ -319,7 +319,7 @@ def _diagnosed(case: _Case, before: float) -> tuple[tuple[Mistake, ...], tuple[M
             tried.found,
             case.tolerance,
             numbers,
-            all(suspect.named for suspect in tried.suspects),
+            tried.named,
             max(0.0, 1 - tried.left),
         )
 

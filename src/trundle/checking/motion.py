@@ -79,18 +79,20 @@ class Motion(Instants):
     def shifted(self, system: RollingSystem, steps: Sequence[tuple[str, Array]]) -> Instants:
         """Return the states as they are and behind them, one after the other, with one part changed by each step.
 
-        A step is a part's name and a change of it (m, 3); an orientation is turned by its.
+        A step is a part's name and a change of it, (m, 3); an orientation is turned by its, a spin grows by the first.
         """
-        names = ("position", "velocity", "angular_velocity", "orientation")
+        names = ("position", "velocity", "angular_velocity", "orientation", "spin")
         stacked = {name: [getattr(self, name)] * (1 + len(steps)) for name in names}
         for i, (name, step) in enumerate(steps):
             stacked[name][i + 1] = _changed(name, getattr(self, name), step)
         parts = {name: np.concatenate(arrays) for name, arrays in stacked.items()}
-        spin = None if self.turning_known else np.tile(self.spin, 1 + len(steps))
+        spin = None if self.turning_known else parts["spin"]
         return instants(system, np.tile(self.time, 1 + len(steps)), parts, spin)
 
 
 def _changed(name: str, part: Array, step: Array) -> Array:
+    if name == "spin":
+        return part + step[:, 0]
     if name != "orientation":
         return part + step
     turned = (Quaternion(1.0, *(Vector.of(step) * 0.5)) * Quaternion.of(part)).array()
@@ -149,7 +151,9 @@ def motion_of(system: RollingSystem, theirs: Theirs, start: State | None, index:
         parts["orientation"] = np.tile(q0, (index.size, 1))
     spin = np.zeros(index.size)
     if "angular_velocity" not in parts:
-        spin = spin_of(system, theirs, start, index)
+        spin, doubt = spin_of(system, theirs, start, index)
+        if doubt.any():
+            estimates["spin"], sources["spin"] = _doubtful(spin, doubt, estimates["position"]), "position"
     now = instants(system, time, parts, spin if "angular_velocity" not in parts else None)
     return Motion(
         time,
@@ -209,7 +213,13 @@ def turning_of(theirs: Theirs, index: Index) -> Estimate:
     return replace(found, spread=2 * np.hypot(rate.spread, q.spread * size))
 
 
-def spin_of(system: RollingSystem, theirs: Theirs, start: State | None, index: Index) -> Array:
+def _doubtful(spin: Array, doubt: Array, like: Estimate) -> Estimate:
+    """Return a spin whose error is no noise of the samples."""
+    none, nowhere = np.zeros(spin.size), np.zeros((spin.size, 1))
+    return Estimate(spin[:, None], none, doubt, none, like.freedom, 1.0, nowhere.astype(int), nowhere)
+
+
+def spin_of(system: RollingSystem, theirs: Theirs, start: State | None, index: Index) -> tuple[Array, Array]:
     """Return Ω·n where nothing that was given tells it: as at the start, and as a ball's goes on from there.
 
     Parameters
@@ -225,8 +235,9 @@ def spin_of(system: RollingSystem, theirs: Theirs, start: State | None, index: I
 
     Returns
     -------
-    array (m,)
-        rad/s. No contact force turns a ball about the normal, so that the rate of Ω·n is Ω·ṅ and what loads make of it.
+    spin, doubt : array (m,)
+        rad/s; the doubt is what half of the instants would change. No contact force turns a ball about the normal, so
+        that the rate of Ω·n is Ω·ṅ.
     """
     n = theirs.time.size
     some = np.unique(np.linspace(0, n - 1, min(n, _SPINNING)).round().astype(int))
@@ -240,13 +251,23 @@ def spin_of(system: RollingSystem, theirs: Theirs, start: State | None, index: I
     if first is None:
         first = 0.0 if start is None else float(np.asarray(start.angular_velocity) @ normal[0])
     if flat:
-        return np.full(index.size, first)
+        return np.full(index.size, first), np.zeros(index.size)
+    across = _from_no_slip(contact, velocity, np.zeros(at.size))
+    half = np.unique(np.append(np.arange(0, at.size, 2), at.size - 1))
+    fine, coarse = (
+        _turned_along(theirs.time[at[some]], normal[some], across[some], theirs.time[index])
+        for some in (slice(None), half)
+    )
+    return first + fine, np.maximum.accumulate(np.abs(fine - coarse))
+
+
+def _turned_along(time: Array, normal: Array, across: Array, wanted: Array) -> Array:
+    """Return the integral of Ω·ṅ from the first instant on."""
     from scipy.interpolate import CubicSpline
 
-    across = _from_no_slip(contact, velocity, np.zeros(at.size))
-    along = CubicSpline(theirs.time[at], normal).derivative()(theirs.time[at])
-    rate = CubicSpline(theirs.time[at], (across * along).sum(axis=1))
-    return first + np.asarray(rate.antiderivative()(theirs.time[index]), dtype=float)
+    along = CubicSpline(time, normal).derivative()(time)
+    rate = CubicSpline(time, (across * along).sum(axis=1))
+    return np.asarray(rate.antiderivative()(wanted), dtype=float)
 
 
 def _velocity(theirs: Theirs, index: Index) -> Array:

@@ -15,7 +15,9 @@ from ..mechanics.contact import Contact, settle, touch
 from ..mechanics.shapes import concentric_sphere
 from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem
-from .slopes import Estimate, Index, Known, best_fit, derivative
+from .noise import noise_of
+from .polynomials import Known
+from .slopes import Estimate, Index, best_fit, derivative
 
 Array = NDArray[np.float64]
 
@@ -74,13 +76,16 @@ class Theirs:
     def slope(self, name: str, index: Index, order: int = 1, kept: float = 1.0) -> Estimate:
         """Return a derivative of one of the arrays at some samples; it is worked out once."""
         time, values = self.time, getattr(self, name)
-        key = (name, order, kept)
+        own, key = (id(time), id(values)), (name, order, kept)
+        if own not in self._kept:  # with the arrays, so that no others take their places in memory
+            self._kept[own] = noise_of(time, values, self._windows), time, values
+        noise = self._kept[own][0]
         if key not in self._kept:  # changed copies bend as much: units and axes are what changes
-            self._kept[key] = best_fit(time, values, order, self._windows, kept)
-        whole = (*key, id(time), id(values), index.tobytes())
-        if whole not in self._kept:  # with the arrays, so that no others take their places in memory
-            self._kept[whole] = derivative(time, values, index, order, self._windows, self._kept[key]), time, values
-        return self._kept[whole][0]
+            self._kept[key] = best_fit(time, values, order, self._windows, noise, kept)
+        whole = (*own, *key, index.tobytes())
+        if whole not in self._kept:
+            self._kept[whole] = derivative(time, values, index, order, self._windows, self._kept[key], noise)
+        return self._kept[whole]
 
     @property
     def parts(self) -> str:

@@ -81,7 +81,9 @@ def _numbers(name: str, array: Any, lines: Sequence[int]) -> Array:
     endless = np.flatnonzero(np.isinf(array))
     if endless.size:
         row = int(endless[0])
-        raise InvalidValueError(name, "must be finite numbers", f"{array[row]} in {_where(row, lines)}", "Leave it out.")
+        raise InvalidValueError(
+            name, "must be finite numbers", f"{array[row]} in {_where(row, lines)}", "Leave it out."
+        )
     return np.asarray(array, dtype=float)
 
 

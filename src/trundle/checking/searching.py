@@ -39,9 +39,14 @@ class Tried:
     found: Any = None
 
     @property
+    def named(self) -> bool:
+        """Whether all their numbers have a reason."""
+        return all(one.named for one in self.suspects)
+
+    @property
     def rank(self) -> tuple[bool, int, float]:
         """By which the likelier comes first: numbers with a reason, few mistakes, little left."""
-        return not all(one.named for one in self.suspects), len(self.suspects), round(self.left, 3)
+        return not self.named, len(self.suspects), round(self.left, 3)
 
 
 Trial = Callable[[tuple[Suspect, ...]], Tried | None]  # None where they cannot be tried
@@ -66,12 +71,14 @@ def explaining(suspects: Iterable[Suspect], tried: Trial, confirmed: Trial) -> t
     """
     singles = _all((one,) for one in suspects)(tried)
     found = _confirmed(singles, confirmed)
-    if found:
+    if any(one.named for one in found):
         return found, []
     telling = [one for one in singles if abs(one.left - 1) > _SAME]
     helpful = sorted(telling, key=lambda one: one.left)[:_HELPFUL]
     pairs = _all(_pairs(helpful, telling))(tried)
-    found = _confirmed(pairs, confirmed)
+    if found:  # by free numbers, which explain too easily
+        pairs = [one for one in pairs if one.named]
+    found = sorted([*found, *_confirmed(pairs, confirmed)], key=lambda one: one.rank)[:SHOWN]
     if found:
         return found, []
     best = sorted([*singles, *pairs], key=lambda one: one.left)[:_FURTHER]

@@ -24,8 +24,8 @@ from .own_run import OWN_RUN, OwnRun, own_run
 from .reading import Conventions, read
 from .record import Theirs, check_covered, checked
 from .result import Check, Mistake
-from .spinning import acts, fitted_spin
 from .series import Series
+from .spinning import acts, fitted_spin
 
 TOLERANCE = 1e-5  # a share; what good methods leave is far below, and what a wrong law leaves far above
 _TELLS = 0.2  # a bound, as a share, beyond which the data say nothing of a check
