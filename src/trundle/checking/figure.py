@@ -50,7 +50,7 @@ def draw(check: Check, drawn: Drawn) -> Sheet:
 def _says(check: Check) -> str:
     if check.passed:
         return "it rolls without slipping and obeys the law, within the bounds"
-    if check.outcome == "cannot decide":
+    if check.answer == "cannot decide":
         return "these data cannot decide: most mistakes would look the same in them"
     told, lead = (check.likely, "likely: ") if check.likely else (check.nearest, "nearest: ")
     if not told:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import InvalidValueError
+from ..files import read_netcdf
 
 _MISSING = ("", "nan", "na", "n/a", "null", "none", "-", "--")  # what programs write where they have no number
 _WIDE = (b"\xff\xfe", b"\xfe\xff")  # how a file in UTF-16 begins
@@ -169,4 +170,6 @@ def _parquet(path: Path, columns: Mapping[str, str]) -> Any:  # noqa: ARG001
 def _netcdf(path: Path, columns: Mapping[str, str]) -> Any:  # noqa: ARG001
     import xarray
 
-    return xarray.load_dataset(path)
+    with path.open("rb") as stream:
+        classic = stream.read(3) == b"CDF"  # NetCDF3, which is no HDF5
+    return xarray.load_dataset(path) if classic else read_netcdf(path)

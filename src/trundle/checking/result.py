@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from ..display import Displayed, Headline, Markup, number, pairs, paragraph
 from ..verify import Card
 
 if TYPE_CHECKING:
@@ -12,7 +14,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Mistake:
+class Mistake(Displayed):
     """A mistake that explains what was found.
 
     Parameters
@@ -48,11 +50,18 @@ class Mistake:
     named: bool = True
     removes: float = 1.0
 
+    def _headline(self) -> Headline:
+        return Headline(self.name, self.says)
+
+    def _parts(self) -> Iterator[Markup]:
+        values = [(self.check, number(self.before, 2)), ("with that undone", number(self.after, 1))]
+        yield pairs([*values, ("at most", number(self.bound, 2)), *((k, number(v)) for k, v in self.numbers.items())])
+
     def __str__(self) -> str:
         return f"{self.says} ({self.check}: {self.before:.2g} as it is, {self.after:.1g} with that undone)"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Check(Card):
     """The card of somebody else's motion or equations.
 
@@ -84,7 +93,7 @@ class Check(Card):
     >>> import trundle as tr
     >>> run = tr.Scenario.load("level-turntable-nudged").run()
     >>> checked = tr.check(run, "level-turntable-nudged")
-    >>> checked.outcome, checked.passed, checked.first_failure, checked.likely
+    >>> checked.answer, checked.passed, checked.first_failure, checked.likely
     ('holds', True, None, ())
     """
 
@@ -99,8 +108,8 @@ class Check(Card):
     _drawn: Any = field(default=None, compare=False, repr=False)
 
     @property
-    def outcome(self) -> str:
-        """The verdict in a word: "holds", "fails", or "cannot decide"."""
+    def answer(self) -> str:
+        """The verdict in a word or two: "holds", "fails", or "cannot decide"."""
         if self.failures:
             return "fails"
         return "holds" if self.decides else "cannot decide"
@@ -108,12 +117,12 @@ class Check(Card):
     @property
     def passed(self) -> bool:
         """Whether no figure failed, and the data could have shown it."""
-        return self.outcome == "holds"
+        return self.answer == "holds"
 
     @property
-    def summary(self) -> str:
-        """The verdict in a line."""
-        return "these data cannot decide" if self.outcome == "cannot decide" else super().summary
+    def outcome(self) -> str:
+        """What came of the checks, in words."""
+        return super().outcome if self.decides or self.failures else "these data cannot decide"
 
     @property
     def verdict(self) -> str:
@@ -139,11 +148,15 @@ class Check(Card):
     def __str__(self) -> str:
         return "\n".join(filter(None, [super().__str__(), self.verdict]))
 
+    def _parts(self) -> Iterator[Markup]:
+        yield paragraph(self.verdict)
+        yield from super()._parts()
+
     def as_dict(self) -> dict[str, Any]:
         """Return the card, the verdict, the first failure and the mistakes as plain dictionaries."""
         names = ("name", "says", "check", "before", "after", "bound", "numbers", "named", "removes")
         found = {
-            "outcome": self.outcome,
+            "answer": self.answer,
             "first_failure": self.first_failure,
             "likely": [{name: getattr(mistake, name) for name in names} for mistake in self.likely],
             "nearest": [{name: getattr(mistake, name) for name in names} for mistake in self.nearest],

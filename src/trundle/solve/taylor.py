@@ -6,10 +6,8 @@ import contextlib
 import copy
 import hashlib
 import itertools
-import os
 import pickle
 import platform
-import stat
 from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
@@ -18,13 +16,13 @@ from typing import Any
 import numpy as np
 
 from ..errors import SolverError
-from ..files import written_whole
 from ..mechanics.parameters import numbers, structure_of
 from ..mechanics.system import RollingSystem, State
-from . import phases
+from . import integrator_cache, phases, runge_kutta
 from .following import Next, Stop
 from .laws import Law
 from .lowering import Lowered, lower
+from .patience import STEPS, Patience
 from .phases import Stretch, cut
 from .samples import Array, Progress, Samples
 
@@ -120,6 +118,8 @@ def integrate(
     SolverError
         If the integration breaks down.
     """
+    if now.law.brief:
+        return runge_kutta.integrate(system, now, times, runge_kutta.FINEST, progress)
     lowered, key = _ready(system, now.law, tolerance)
     with _borrowed(lowered, key, tolerance) as integrator:
         run = _Run(integrator, lowered, [*numbers(system), *now.extras], now.time, now.numbers)
@@ -222,21 +222,35 @@ def _propagate(run: _Run, times: Array, progress: Progress | None) -> tuple[Arra
     """Return the states at the times, and which terminal event came first if one did."""
     integrator = run.integrator
     parts: list[Array] = [np.empty((0, integrator.state.size))]
+    patience = Patience(run.time, float(times[-1]) if times.size else run.time)
     for chunk in _chunks(times):
-        while run.time < chunk[0]:
-            until = min(float(chunk[0]), run.reference + _LONGEST)
-            ended = _event(run, integrator.propagate_until(until - run.reference)[0])
+        left = chunk
+        while left.size:
+            ended = _reach(run, float(left[0]), patience)
             if ended is not None:
                 return np.vstack(parts), ended
-            run.tidy(until)
-        result = integrator.propagate_grid(chunk - run.reference)
-        parts.append(result[-1].reshape(-1, integrator.state.size))
-        ended = _event(run, result[0])
-        if ended is not None:
-            return np.vstack(parts), ended
+            result = integrator.propagate_grid(left - run.reference, max_steps=STEPS)
+            states = result[-1].reshape(-1, integrator.state.size)
+            parts.append(states)
+            ended = _event(run, result[0], patience)
+            if ended is not None:
+                return np.vstack(parts), ended
+            left = left[len(states) :]
         if progress is not None:
             progress(float(chunk[-1]))
     return np.vstack(parts), None
+
+
+def _reach(run: _Run, time: float, patience: Patience) -> int | None:
+    """Go on to an instant, and return which terminal event came first if one did."""
+    while run.time < time:
+        until = min(time, run.reference + _LONGEST)
+        ended = _event(run, run.integrator.propagate_until(until - run.reference, max_steps=STEPS)[0], patience)
+        if ended is not None:
+            return ended
+        if run.time >= until:
+            run.tidy(until)
+    return None
 
 
 def _chunks(times: Array, most: int = _CHUNKS) -> Iterator[Array]:
@@ -252,10 +266,13 @@ def _chunks(times: Array, most: int = _CHUNKS) -> Iterator[Array]:
             yield from np.split(part, np.flatnonzero(np.diff(which)) + 1)
 
 
-def _event(run: _Run, outcome: Any) -> int | None:
-    """Return which terminal event ended it, None if none did; refuse a breakdown."""
+def _event(run: _Run, outcome: Any, patience: Patience) -> int | None:
+    """Return which terminal event ended it, None if none did; refuse a breakdown, and what leads nowhere."""
     import heyoka
 
+    if outcome == heyoka.taylor_outcome.step_limit:
+        patience.look(run.time)
+        return None
     if outcome == heyoka.taylor_outcome.time_limit:
         return None
     if int(outcome) >= 0 or int(outcome) < -1000:
@@ -284,10 +301,10 @@ def _compiled(key: str, compile_: Any) -> Any:
     known = _memory().known
     if key not in known:
         _quiet()
-        known[key] = _load(key)
+        known[key] = integrator_cache.load(key)
         if known[key] is None:
             known[key] = compile_()
-            _store(key, known[key])
+            integrator_cache.store(key, known[key])
     return known[key]
 
 
@@ -331,51 +348,3 @@ def _processor() -> str:
         lines = Path("/proc/cpuinfo").read_text(errors="replace").splitlines()
         return "".join(sorted({line for line in lines if line.startswith(("model name", "flags", "Features"))}))
     return platform.machine() + platform.processor()
-
-
-def cache_folder() -> Path:
-    """Return the folder of the user's cache in which compiled integrators are kept.
-
-    Returns
-    -------
-    pathlib.Path
-        It may not exist yet.
-
-    Examples
-    --------
-    >>> cache_folder().name
-    'trundle'
-    """
-    from platformdirs import user_cache_path
-
-    return user_cache_path("trundle", appauthor=False)
-
-
-def _load(key: str) -> Any:
-    """Read a compiled integrator; anything wrong with it means to compile again.
-
-    A pickle can run code, so it must belong to this user and be writable by nobody else.
-    """
-    path = cache_folder() / f"taylor-{key}.pickle"
-    try:
-        for place in (path.parent, path):
-            facts = place.stat()
-            if facts.st_uid != os.getuid() or facts.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
-                return None
-        digest, _, body = path.read_bytes().partition(b"\n")
-        if hashlib.sha256(body).hexdigest().encode() != digest:
-            return None
-        return pickle.loads(body)  # noqa: S301  own file, checked above
-    except Exception:  # noqa: BLE001  a cache must never be a reason to fail
-        return None
-
-
-def _store(key: str, integrator: Any) -> None:
-    """Write a compiled integrator, whole or not at all; a cache that cannot be written is done without."""
-    folder = cache_folder()
-    with contextlib.suppress(Exception):
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        body = pickle.dumps(integrator)
-        with written_whole(folder / f"taylor-{key}.pickle") as temporary:
-            temporary.touch(mode=0o600)  # whatever the umask, or `_load` would not trust it
-            temporary.write_bytes(hashlib.sha256(body).hexdigest().encode() + b"\n" + body)
