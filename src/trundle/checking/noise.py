@@ -15,7 +15,7 @@ from .polynomials import Array, Index, Known, Polynomials, polynomials
 _DEGREES = (4, 8, 12, 16)
 _MORE = 4  # degrees, that leave about as much if nothing but noise is left
 _ABOUT = 0.7  # of a variance
-_RISE, _FAR = 6.0, 1000.0  # times a variance: noise with much in common seems so much larger in wider windows, not more
+_RISE, _FAR = 12.0, 1000.0  # times a variance: noise with much in common seems so much larger in wider windows, not more
 _NARROWEST, _WIDEST, _WIDER = 11, 768, 1.6  # samples, and times from one width to the next
 _TRIED = 24  # windows
 _LOCAL = 96  # windows in which it is seen whether the noise is the same all along
@@ -143,10 +143,11 @@ class _Levels:
         while widths[-1] * _WIDER <= min(_WIDEST, self.time.size):
             widths.append(int(widths[-1] * _WIDER))
         pairs = [(d, w) for d in _DEGREES for w in widths if w >= d + _MORE + 3]
-        chosen, level = None, np.inf
+        chosen, level, least = None, np.inf, np.inf
         for degree, width in sorted(pairs, key=lambda pair: pair[1] / pair[0]):
             variance, alike = self.at(degree, width)
-            if variance * alike > _FAR * level:
+            least = min(least, variance * alike)
+            if variance * alike > _FAR * least:
                 break  # the motion itself is left over from here on
             if variance * alike <= _RISE * level and self.at(degree + _MORE, width)[0] >= _ABOUT * variance:
                 chosen, level = (degree, width), variance * alike

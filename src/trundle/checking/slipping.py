@@ -23,6 +23,7 @@ from .series import Series
 from .slopes import Estimate, Index
 
 _EVERYTHING = frozenset({GAP, PATH, TURN, SLIP, ACCELERATION, TURNING})
+_UNCLEAR = 3.0  # times the usual bound of the slip: a kink stands out as noise
 _STEADY = 0.02  # of the coefficient of friction while it slips
 
 
@@ -75,7 +76,8 @@ def _friction(case: Case) -> Iterator[Suspect]:
     slipping = slip.ratio > 3
     ahead = at.slip / np.maximum(slip.length, 1e-300)[:, None]
     mu = -(f * ahead).sum(axis=1) / np.where(N != 0, N, np.nan)
-    away = _away_from_changes(slipping, at.index, max(slopes.V_rate.reach, slopes.Omega_rate.reach))
+    unclear = slip.bound > _UNCLEAR * float(np.median(slip.bound))
+    away = _away_from_changes(slipping, unclear, at.index, max(slopes.V_rate.reach, slopes.Omega_rate.reach))
     some = slipping & away
     if (law[~slipping & away] > 1).any() or some.sum() < 3 or not (N[some] > 0).all():
         return
@@ -84,7 +86,8 @@ def _friction(case: Case) -> Iterator[Suspect]:
     steady = max(float(np.abs(mu[some] - typical).max()), float(across.max()))
     if not typical > 0 or steady > _STEADY * typical + asked:
         return
-    ends = float(at.time[np.flatnonzero(slipping)[-1]])
+    plainly = slip.length > 3 * float(np.median(slip.bound))
+    ends = float(at.time[np.flatnonzero(plainly)[-1]])
     until = "all through" if slipping[-1] else f"until t = {ends:.4g} s, and rolls from then on"
     if slip.ratio[0] <= 1 and slipping[-1]:
         until = f"from t = {float(at.time[np.flatnonzero(slipping)[0]]):.4g} s on"
@@ -120,10 +123,12 @@ def _lever(system: RollingSystem, at: Motion) -> float:
     return float(system.body.mass) * at.arm / least
 
 
-def _away_from_changes(slipping: NDArray[np.bool_], index: Index, reach: int) -> NDArray[np.bool_]:
-    """Leave out instants beside those where slipping begins or ends: slopes reach across."""
+def _away_from_changes(
+    slipping: NDArray[np.bool_], unclear: NDArray[np.bool_], index: Index, reach: int
+) -> NDArray[np.bool_]:
+    """Leave out instants beside those where slipping begins or ends, or where that is unclear: slopes reach across."""
     near = np.zeros(slipping.size, dtype=bool)
-    for change in np.flatnonzero(np.diff(slipping.astype(int))):
+    for change in np.flatnonzero((np.diff(slipping.astype(int)) != 0) | unclear[1:] | unclear[:-1]):
         near |= (index >= index[change] - reach) & (index <= index[change + 1] + reach)
     # One-sided slopes at the ends of the samples reach twice as far.
     near[: int(np.searchsorted(index, index[0] + reach))] |= near[: 1 + int(np.searchsorted(index, 2 * reach))].any()

@@ -1,9 +1,8 @@
 """Values and rates of change of somebody else's samples, with what noise and spacing leave open.
 
-Around each instant a polynomial is fitted to some samples by least squares. What the fit leaves over tells the noise
-(XX degrees add, beyond what noise makes of
-that, and how much less it is than what the two before them did, tells the truncation. Degree and width are those for
-which noise and truncation together are least.
+Around each instant a polynomial is fitted to some samples by least squares. Noise of a known size makes its spread. What
+the last two degrees add, beyond what noise makes of that, and how much less it is than what the two before them did,
+tells the truncation. Degree and width are those for which noise and truncation together are least.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from .noise import Noise, noise_of
 from .polynomials import Array, Index, Known, polynomials
 
 SIGMAS = 5.5  # of the noise, against which truncation is weighed; about what the longest of some hundred reaches
-_DEGREES = (4, 6, 8)
+_DEGREES = (4, 6, 8, 12)
 _WIDEST = 768  # samples
 _WIDER = 1.6  # times, from one width to the next
 _TRIED = 24  # windows on which degree and width are chosen
