@@ -182,4 +182,8 @@ def _off(series: Mapping[str, Series], suspects: tuple[Suspect, ...]) -> float:
 def _no_wider(before: Mapping[str, Series], after: Mapping[str, Series]) -> bool:
     """Tell whether a motion passes by what mistakes explain, rather than by bounds that have become wider."""
     both = [(before[name], one) for name, one in after.items() if name in before]
-    return all(other.room <= max(_MORE_ROOM * one.room, one.typical / _MORE_ROOM) for one, other in both)
+    return all(
+        other.room <= max(_MORE_ROOM * one.room, one.typical / _MORE_ROOM)  # in another unit, the size is another
+        or other.room * other.size <= _MORE_ROOM * one.room * one.size
+        for one, other in both
+    )

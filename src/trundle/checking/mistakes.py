@@ -85,8 +85,8 @@ def together(suspects: Sequence[Suspect]) -> bool:
 
 
 def with_mistakes(system: RollingSystem, suspects: Sequence[Suspect]) -> RollingSystem:
-    """Return the system that somebody had who made mistakes."""
-    for suspect in suspects:
+    """Return the system that somebody had who made mistakes: gravity and tilt first, of which the pull is made."""
+    for suspect in sorted(suspects, key=lambda one: "pull" in one.touches):
         system = suspect.system(system) if suspect.system is not None else system
     return system
 

@@ -22,6 +22,7 @@ from .slopes import Estimate, Index, best_fit, derivative
 Array = NDArray[np.float64]
 
 FEWEST = 12  # samples that a slope and its error can be taken from
+_SPLINE = 7  # degree: the components of Ω along the body's axes turn with the body
 _SEARCH = 50  # steps at most to the place of contact; spheres on planes and cylinders need two
 
 
@@ -303,7 +304,7 @@ def orientation_from(
     found = []
     for stride in (1, 2):
         kept = np.unique(np.append(np.arange(0, time.size, stride), time.size - 1))
-        spline = make_interp_spline(time[kept], sign * angular_velocity[kept], k=3)
+        spline = make_interp_spline(time[kept], sign * angular_velocity[kept], k=min(_SPLINE, kept.size - 1))
         found.append(orientation(_columns_of(spline), time, q0, float(time[0]), time[kept]))
     q, coarse = found
     side = np.sign((q * coarse).sum(axis=1, keepdims=True))

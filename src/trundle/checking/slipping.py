@@ -24,6 +24,7 @@ from .slopes import Estimate, Index
 
 _EVERYTHING = frozenset({GAP, PATH, TURN, SLIP, ACCELERATION, TURNING})
 _UNCLEAR = 3.0  # times the usual bound of the slip: a kink stands out as noise
+_MORE = 10.0  # times what is asked of the law: less friction than that is none
 _STEADY = 0.02  # of the coefficient of friction while it slips
 
 
@@ -84,7 +85,7 @@ def _friction(case: Case) -> Iterator[Suspect]:
     typical = float(np.median(mu[some]))
     across = np.linalg.norm(f + (mu * N)[:, None] * ahead, axis=1)[some] / N[some]
     steady = max(float(np.abs(mu[some] - typical).max()), float(across.max()))
-    if not typical > 0 or steady > _STEADY * typical + asked:
+    if not typical > _MORE * asked or steady > _STEADY * typical + asked:
         return
     plainly = slip.length > 3 * float(np.median(slip.bound))
     ends = float(at.time[np.flatnonzero(plainly)[-1]])
