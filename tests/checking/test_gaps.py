@@ -67,19 +67,31 @@ def test_a_long_gap_is_no_mistake() -> None:
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        (lambda text: [*text[:9], "1.0,2.0", *text[10:]], "a cell for each of its 7 headings in every line; got '2 in line 10"),
+        (
+            lambda text: [*text[:9], "1.0,2.0", *text[10:]],
+            "a cell for each of its 7 headings in every line; got '2 in line 10",
+        ),
         (lambda text: [*text[:-1], text[-1][:20]], "in line 201"),
-        (lambda text: [text[0], *(f"{i},{line}" for i, line in enumerate(text[1:]))], "got '8 in line 2'. Is a heading"),
+        (
+            lambda text: [text[0], *(f"{i},{line}" for i, line in enumerate(text[1:]))],
+            "got '8 in line 2'. Is a heading",
+        ),
         (lambda text: [text[0].replace(",vz", ""), *text[1:]], "got '7 in line 2'. Is a heading missing"),
         (lambda text: [text[0] + ",wx", *text[1:]], "8 headings in every line; got '7 in line 2'"),
         (lambda text: [*text[:6], text[6].replace("0.0", "oops", 1), *text[7:]], "must hold numbers; got \"'oops"),
-        (lambda text: [*text[:3], "inf," + text[3].partition(",")[2], *text[4:]], "`t` must be finite numbers; got 'inf in line 4'"),
+        (
+            lambda text: [*text[:3], "inf," + text[3].partition(",")[2], *text[4:]],
+            "`t` must be finite numbers; got 'inf in line 4'",
+        ),
         (lambda text: [text[0].replace("vx", "x"), *text[1:]], "must differ from each other; got \"'x' twice\""),
-        (lambda text: [text[0], *(line.rpartition(",")[0] + "," for line in text[1:])], "`vz` must hold a number in most rows"),
+        (
+            lambda text: [text[0], *(line.rpartition(",")[0] + "," for line in text[1:])],
+            "`vz` must hold a number in most rows",
+        ),
         (lambda text: text[:1], "12 samples or more"),
         (lambda text: [*text[:30], text[29], *text[30:]], "`time` must ascend"),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_read_is_refused_by_line_and_column(tmp_path: Path, change: Any, says: str) -> None:
     with pytest.raises(tr.InvalidValueError) as caught:
         tr.check(written(tmp_path, change(lines(z=CLEAN["z"].round(3), t=CLEAN["t"].round(4)))), SYSTEM)

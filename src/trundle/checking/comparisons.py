@@ -12,6 +12,7 @@ from ..mechanics.system import RollingSystem
 from .laws import Rates
 from .motion import Instants, Motion
 from .record import Array, Theirs
+from .slopes import Index
 
 PATH, TURN = "velocity is the slope of the path", "orientation turns as Ω"
 ACCELERATION, TURNING = "law of motion, acceleration", "law of motion, angular acceleration"
@@ -125,7 +126,7 @@ class Comparison:
     which: int | None = None
     turning: bool = False
 
-    def vectors(self, at: Motion, place: Array, mismatch: Array) -> Array:
+    def vectors(self, at: Motion, place: Index, mismatch: Array) -> Array:
         """Return the mismatch of each window as a vector, (k, 3)."""
         if not self.turning:
             return mismatch
@@ -205,7 +206,7 @@ def _largest(*arrays: Array) -> float:
     return max(float(np.linalg.norm(array, axis=1).max()) for array in arrays)
 
 
-def nodes_of(index: Mapping[str, Array]) -> tuple[Array, dict[str, Array]]:
+def nodes_of(index: Mapping[str, Index]) -> tuple[Index, dict[str, Index]]:
     """Return all samples that windows look at, ascending, and where among them each window's nodes are.
 
     Parameters

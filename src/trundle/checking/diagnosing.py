@@ -77,7 +77,8 @@ class _Trials:
 
     def theirs(self, suspects: tuple[Suspect, ...]) -> Theirs | None:
         """Return their samples without some misreadings; it is worked out once."""
-        found, key = self.case.theirs, ()
+        found: Theirs | None = self.case.theirs
+        key: tuple[int, ...] = ()
         for suspect in suspects:
             if suspect.theirs is None or found is None:
                 continue

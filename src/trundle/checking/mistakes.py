@@ -271,10 +271,8 @@ def _terms(system: RollingSystem) -> Iterator[Suspect]:
         yield Suspect("load-left-out", says, frozenset({f"load {i}"}), left, textbook=True)
     if isinstance(system.body.inertia, (Principal, Tensor)):
         says = "Ω×JΩ was left out of Euler's equation: the moments of inertia are not all the same."
-        left = frozenset({"law", "inertia"})
-        yield Suspect(
-            "missing-gyroscopic-term", says, left, laws.without_gyroscopic, laws.eliminated_law, textbook=True
-        )
+        name, touched = "missing-gyroscopic-term", frozenset({"law", "inertia"})
+        yield Suspect(name, says, touched, laws.without_gyroscopic, laws.eliminated_law, textbook=True)
     if system.support.motion.steady_rate == 0:
         return
     how, name = "u̇, the table's motion under the moving contact, was left out of the law", "missing-carrying-term"

@@ -1,7 +1,8 @@
 """The noise of somebody else's samples: of a camera, of digits cut off, of a filter, as the samples themselves show it.
 
-Polynomials are fitted to windows, and what they leave over is noise as long as four degrees more leave about as much. Of
-such windows those are taken that have most samples to a degree: they see what one sample has in common with the next.
+Polynomials are fitted to windows, and what they leave over is noise as long as four degrees more leave about as much.
+Of such windows those are taken that have most samples to a degree: they see what one sample has in common with the
+next. A motion that repeats itself in a window looks like noise, too; it is told by how much more is left than before.
 """
 
 from __future__ import annotations
@@ -15,7 +16,8 @@ from .polynomials import Array, Index, Known, Polynomials, polynomials
 _DEGREES = (4, 8, 12, 16)
 _MORE = 4  # degrees, that leave about as much if nothing but noise is left
 _ABOUT = 0.7  # of a variance
-_RISE, _FAR = 12.0, 1000.0  # times a variance: noise with much in common seems so much larger in wider windows, not more
+# Times a variance: noise with much in common seems so much larger in wider windows, and all in all, but not more.
+_RISE, _FAR = 12.0, 1000.0
 _NARROWEST, _WIDEST, _WIDER = 11, 768, 1.6  # samples, and times from one width to the next
 _TRIED = 24  # windows
 _LOCAL = 96  # windows in which it is seen whether the noise is the same all along

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -143,7 +144,7 @@ def _begin(system: RollingSystem, theirs: Theirs, at: Motion) -> _Start:
     speed = max(float(np.linalg.norm(at.velocity, axis=1).max()), extent / float(at.time[-1] - at.time[0]))
     scale = np.array([extent, extent, speed, speed, speed / at.arm, 1.0, 1.0, 1.0])
     free, spread, bias = np.zeros(_NUMBERS, dtype=bool), np.zeros(_NUMBERS), np.zeros(_NUMBERS)
-    names = {"position": _PLACES, "velocity": _SPEEDS, "angular_velocity": _SPIN, "orientation": _TURNS}
+    names: dict[str, Any] = {"position": _PLACES, "velocity": _SPEEDS, "angular_velocity": _SPIN, "orientation": _TURNS}
     if system.body.is_isotropic_sphere or "orientation" in theirs.doubts:
         del names["orientation"]  # it does not matter, or is known at the first sample
     for name, places in names.items():

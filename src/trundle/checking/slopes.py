@@ -1,8 +1,8 @@
 """Values and rates of change of somebody else's samples, with what noise and spacing leave open.
 
-Around each instant a polynomial is fitted to some samples by least squares. Noise of a known size makes its spread. What
-the last two degrees add, beyond what noise makes of that, and how much less it is than what the two before them did,
-tells the truncation. Degree and width are those for which noise and truncation together are least.
+Around each instant a polynomial is fitted to some samples by least squares. Noise of a known size makes its spread.
+What the last two degrees add, beyond what noise makes of that, and how much less it is than what the two before them
+did, tells the truncation. Degree and width are those for which noise and truncation together are least.
 """
 
 from __future__ import annotations

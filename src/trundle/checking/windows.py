@@ -1,9 +1,10 @@
 """How fast something they wrote changes, against how fast it should, over windows of the run.
 
-In a window of half-length h, y is what they wrote and f the rate that it should change at: ẏ = f, or ÿ = f. The integral
-of f along their own states is taken off y, and a straight line, or a parabola, is fitted to what is left: its slope, or
-bend, is the mean mismatch of the rate. Of a right motion nothing is left but noise, however far the motion bends in the
-window, so that windows may be as wide as the noise asks; the spread of the mismatch follows from that of one sample.
+In a window of half-length h, y is what they wrote and f the rate that it should change at: ẏ = f, or ÿ = f. The
+integral of f along their own states is taken off y, and a straight line, or a parabola, is fitted to what is left: its
+slope, or bend, is the mean mismatch of the rate. Of a right motion nothing is left but noise, however far the motion
+bends in the window, so that windows may be as wide as the noise asks; the spread of the mismatch follows from that of
+one sample.
 """
 
 from __future__ import annotations
