@@ -12,6 +12,8 @@ _SAME = 1e-9  # of what is off: a mistake that changes no more changes nothing
 _FURTHER = 4  # of the best, beside which something else is looked for
 _MUCH = 0.75  # of what is off, that mistakes must take away to be worth a word where they do not explain all
 _FAR_BETTER = 0.5  # of what another leaves: two mistakes must be so much better than one
+_LITTLE = 0.05  # of what is off
+_FAR_LESS = 0.1  # times what mistakes leave that explain it alone: two are then worth a word, too
 _HELPFUL = 12  # mistakes that help most alone: one of each pair is among them
 _NEAREST = 3
 SHOWN = 5  # mistakes
@@ -71,13 +73,15 @@ def explaining(suspects: Iterable[Suspect], tried: Trial, confirmed: Trial) -> t
     """
     singles = _all((one,) for one in suspects)(tried)
     found = _confirmed(singles, confirmed)
-    if any(one.named for one in found):
-        return found, []
     telling = [one for one in singles if abs(one.left - 1) > _SAME]
     helpful = sorted(telling, key=lambda one: one.left)[:_HELPFUL]
+    if any(one.named for one in found):  # beside others that all but explain it something small may be off
+        names = {one.suspects[0].name for one in found}
+        helpful = [one for one in helpful if one.left <= _LITTLE and one.named and one.suspects[0].name not in names]
     pairs = _all(_pairs(helpful, telling))(tried)
-    if found:  # by free numbers, which explain too easily
-        pairs = [one for one in pairs if one.named]
+    if found:  # a free number explains too easily, and two mistakes easier than one
+        least = _FAR_LESS * min((one.left for one in found if one.named), default=1.0)
+        pairs = [one for one in pairs if one.named and one.left <= least]
     found = sorted([*found, *_confirmed(pairs, confirmed)], key=lambda one: one.rank)[:SHOWN]
     if found:
         return found, []
