@@ -112,7 +112,7 @@ def own_run(
     count = ours.time.size
     if count < 2:
         return None, OwnRun(np.empty((0, 3)), remark="ours leaves the support at once")
-    found = _apart(at, where, ours, method, parts)
+    found = _apart(theirs, at, ours, method, parts)
     way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(at.position, axis=0), axis=1))])[:count]
     size = max(_extent(at), float(way[-1]) * 1e-3, 1e-9 * at.arm)
     asked = LAW_SHARE * tolerance * (size + way)
@@ -124,12 +124,13 @@ def own_run(
     return Series(OWN_RUN, at.time[:count], distance, size, bound, float(asked[-1]), note), found
 
 
-def _apart(at: Motion, where: Array, ours: Samples, method: str, parts: slice) -> OwnRun:
+def _apart(theirs: Theirs, at: Motion, ours: Samples, method: str, parts: slice) -> OwnRun:
     last = ours.time.size - 1
-    distance = float(np.linalg.norm((where[last] - ours.position[last])[parts]))
+    sample = at.index[last]
+    distance = float(np.linalg.norm((theirs.position[sample] - ours.position[last])[parts]))
     angle = float("nan")
-    if "orientation" in at.estimates:
-        turn = Quaternion(*at.orientation[last]) * Quaternion(*ours.orientation[last]).conjugate
+    if theirs.orientation is not None:
+        turn = Quaternion(*theirs.orientation[sample]) * Quaternion(*ours.orientation[last]).conjugate
         angle = float(2 * np.arctan2(np.linalg.norm([turn.x, turn.y, turn.z]), abs(turn.w)))
     return OwnRun(ours.position, method, "", float(at.time[last] - at.time[0]), distance, angle)
 
