@@ -25,6 +25,7 @@ from .slipping import crude
 from .spinning import another_spin
 
 _GLANCE = 10  # windows on which mistakes are tried
+_SAME = 1e-9  # of a size: a mistake that changes no more changes nothing
 _NEARLY = 0.5  # of what is off, left over: worth a closer look
 _MORE_ROOM = 10.0  # times: undoing a mistake may not buy its success with a wider bound
 _FITTED = (SLIP, ACCELERATION, TURNING)
@@ -121,7 +122,11 @@ class _Trials:
         if not explains and left < _NEARLY:  # another law may make more of the noise in their states
             found = self.series(suspects, whole=False)
             explains = found is not None and self._explains(found, suspects, self.base)
-        return Tried(suspects, left, explains)
+        excused = {name for suspect in suspects for name in suspect.excused}
+        kept = {name: one for name, one in (found or {}).items() if name in self.base and name not in excused}
+        mended = sum(self.base[name].worst > 1 >= one.worst for name, one in kept.items())
+        tells = any(_differ(one, self.base[name]) for name, one in kept.items())
+        return Tried(suspects, left, explains, mended=mended, tells=tells)
 
     def confirmed(self, suspects: tuple[Suspect, ...]) -> Tried | None:
         """Try mistakes in all windows, with all that adds up over the run."""
@@ -178,6 +183,13 @@ def _off(series: Mapping[str, Series], suspects: tuple[Suspect, ...]) -> float:
     excused = {name for suspect in suspects for name in suspect.excused}
     shares = [one.typical for name, one in series.items() if name not in excused]
     return float(np.sqrt(sum((share / (1 + share)) ** 2 for share in shares)))
+
+
+def _differ(one: Series, other: Series) -> bool:
+    """Tell whether two residuals are not the same to rounding."""
+    if one.residual.shape != other.residual.shape:
+        return True
+    return not np.allclose(one.residual, other.residual, rtol=0.0, atol=_SAME * other.size)
 
 
 def _no_wider(before: Mapping[str, Series], after: Mapping[str, Series]) -> bool:

@@ -310,7 +310,7 @@ def _circles(system: RollingSystem, turning: bool) -> Iterator[Suspect]:
             yield Suspect(
                 name,
                 f"It goes round {text}: κ = {share * omega:.5g} rad/s, where ωk/(1 + k) = {omega * right:.5g}.",
-                frozenset({"law", "rate"}),
+                frozenset({"law", "circle"}),
                 law=laws.circling(share),
                 numbers={"circle": share * omega},
                 textbook=name in ("circle-upside-down", "coriolis-for-rolling"),

@@ -8,7 +8,6 @@ from typing import Any
 
 from .mistakes import Suspect, together
 
-_SAME = 1e-9  # of what is off: a mistake that changes no more changes nothing
 _FURTHER = 4  # of the best, beside which something else is looked for
 _MUCH = 0.75  # of what is off, that mistakes must take away to be worth a word where they do not explain all
 _FAR_BETTER = 0.5  # of what another leaves: two mistakes must be so much better than one
@@ -33,12 +32,18 @@ class Tried:
         Whether nothing is left beyond its bound.
     found : Any
         What whoever tried them wants to keep.
+    mended : int
+        How many checks that failed hold with them undone.
+    tells : bool
+        Whether anything changes with them undone.
     """
 
     suspects: tuple[Suspect, ...]
     left: float
     explains: bool
     found: Any = None
+    mended: int = 0
+    tells: bool = True
 
     @property
     def named(self) -> bool:
@@ -73,8 +78,9 @@ def explaining(suspects: Iterable[Suspect], tried: Trial, confirmed: Trial) -> t
     """
     singles = _all((one,) for one in suspects)(tried)
     found = _confirmed(singles, confirmed)
-    telling = [one for one in singles if abs(one.left - 1) > _SAME]
-    helpful = sorted(telling, key=lambda one: one.left)[:_HELPFUL]
+    telling = [one for one in singles if one.tells]
+    mending = sorted((one for one in telling if one.mended), key=lambda one: (-one.mended, one.left))[:_HELPFUL]
+    helpful = _once([*sorted(telling, key=lambda one: one.left)[:_HELPFUL], *mending])
     if any(one.named for one in found):  # beside others that all but explain it something small may be off
         names = {one.suspects[0].name for one in found}
         helpful = [one for one in helpful if one.left <= _LITTLE and one.named and one.suspects[0].name not in names]
@@ -89,6 +95,10 @@ def explaining(suspects: Iterable[Suspect], tried: Trial, confirmed: Trial) -> t
     more = _all((*few.suspects, one.suspects[0]) for few in best for one in telling)(tried)
     found = _confirmed([one for one in more if len(one.suspects) > 1], confirmed)
     return (found, []) if found else ([], _nearest([*singles, *pairs, *more]))
+
+
+def _once(trials: Sequence[Tried]) -> list[Tried]:
+    return list({id(one): one for one in trials}.values())
 
 
 def _pairs(helpful: Sequence[Tried], others: Sequence[Tried]) -> Iterator[tuple[Suspect, ...]]:
