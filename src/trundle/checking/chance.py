@@ -30,7 +30,7 @@ def longest(count: int, freedom: float, parts: int = 3, chance: float = CHANCE) 
     Examples
     --------
     >>> round(longest(1, 1e9, parts=1, chance=0.05), 3), round(longest(240, 1e9), 2)
-    (1.96, 5.69)
+    (1.96, 5.7)
     """
     from scipy import special
 

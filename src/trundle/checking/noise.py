@@ -88,8 +88,8 @@ def noise_of(time: Array, values: Array, known: Known) -> Noise:
     --------
     >>> t, draw = np.linspace(0.0, 6.0, 400), np.random.default_rng(0)
     >>> seen = noise_of(t, np.sin(t)[:, None] + draw.normal(scale=1e-3, size=(400, 1)), {})
-    >>> round(float(seen.spread[0]), 4), seen.alike
-    (0.001, 1.0)
+    >>> round(float(seen.spread[0]), 4), seen.step
+    (0.001, 0.0)
     """
     rounding = float(np.finfo(float).eps * np.abs(values).max())
     levels = _Levels(time, values, known, rounding)

@@ -71,7 +71,7 @@ def plans(samples: int) -> Iterator[Plan]:
     Examples
     --------
     >>> [(plan.width, plan.start.size) for plan in plans(100)]
-    [(9, 48), (13, 48), (17, 42), (33, 18)]
+    [(9, 42), (13, 28), (17, 21), (33, 10)]
     """
     nodes, stride = list(NODES), 1
     while nodes:
