@@ -159,9 +159,10 @@ class _Trials:
     def mistake(self, tried: Tried) -> Mistake:
         """Return what was tried as what is told."""
         excused = {name for suspect in tried.suspects for name in suspect.excused}
-        told = [one for one in self.case.failing if one.name in tried.found and one.name not in excused]
+        found = tried.found if tried.found is not None else self.series(tried.suspects, whole=False) or {}
+        told = [one for one in self.case.failing if one.name in found and one.name not in excused]
         worst = told[0] if told else self.case.failing[0]
-        after = tried.found.get(worst.name) or max(tried.found.values(), key=lambda one: one.worst)
+        after = found.get(worst.name) or max(found.values(), key=lambda one: one.worst, default=worst)
         numbers: dict[str, float] = {}
         for suspect in tried.suspects:
             numbers |= suspect.numbers
