@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import InvalidValueError
-from ..files import read_netcdf
+from ..netcdf import read_netcdf
 
 _MISSING = ("", "nan", "na", "n/a", "null", "none", "-", "--")  # what programs write where they have no number
 _WIDE = (b"\xff\xfe", b"\xfe\xff")  # how a file in UTF-16 begins

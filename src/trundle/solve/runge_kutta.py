@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -12,8 +12,8 @@ from ..mechanics.system import RollingSystem, State
 from . import phases
 from .following import Next, Stop
 from .patience import STEPS, Patience
-from .phases import Stretch
-from .samples import Array, Progress, Samples
+from .phases import Stretch, cut
+from .samples import AT_ONCE, Array, Progress, Samples
 from .tracing import python_law
 
 TOLERANCE = 1e-12
@@ -59,7 +59,7 @@ def solve(
 
 def integrate(
     system: RollingSystem, now: Next, times: Array, tolerance: float, progress: Progress | None = None
-) -> Stretch:
+) -> Iterator[Stretch]:
     """Follow one law to its first stop.
 
     Parameters
@@ -67,10 +67,10 @@ def integrate(
     system, now, times, tolerance, progress
         As for `trundle.solve.taylor.integrate`.
 
-    Returns
-    -------
+    Yields
+    ------
     Stretch
-        The states at the times before the stop.
+        The states at the times before the stop, a block after the other; the last comes with the stop.
 
     Raises
     ------
@@ -99,16 +99,17 @@ def integrate(
     try:
         given: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * _scale(y0)}
         if not law.stiff(y0):
-            return _steps(DOP853(rates, begin, y0, end, **given), stops, names, times, progress)
+            yield from _steps(DOP853(rates, begin, y0, end, **given), stops, names, times, progress)
+            return
         # Its first steps must be as short as the law is stiff: across a jump of direction there are other solutions.
         first = Radau(rates, begin, y0, end, first_step=min(_FIRST_STEP, end - begin), **given)
-        begun = _steps(first, stops, names, times, progress, until=lambda y: not law.stiff(y))
-        if begun.stop is None or begun.stop.name:
-            return begun
-        left, y0 = times[begun.times.size :], begun.stop.numbers
-        then = _steps(DOP853(rates, begun.stop.time, y0, end, **given), stops, names, left, progress)
-        both = np.concatenate([begun.times, then.times]), np.concatenate([begun.states, then.states])
-        return Stretch(*both, then.stop)
+        for piece in _steps(first, stops, names, times, progress, until=lambda y: not law.stiff(y)):
+            times, stop = times[piece.times.size :], piece.stop
+            if stop is None or stop.name:
+                yield piece
+                continue
+            yield Stretch(piece.times, piece.states, None)
+            yield from _steps(DOP853(rates, stop.time, stop.numbers, end, **given), stops, names, times, progress)
     except (ZeroDivisionError, ValueError, OverflowError) as error:
         raise SolverError(f"The Runge-Kutta method broke down on the way to t = {end:g} s: {error}.") from None
 
@@ -130,14 +131,13 @@ def _steps(
     times: Array,
     progress: Progress | None,
     until: Callable[[Array], bool] = lambda _: False,
-) -> Stretch:
+) -> Iterator[Stretch]:
     """Take steps to the end or the first stop; the states at the times are read off each step's own polynomial.
 
     Where `until` says so of a state, they end after the step, at a stop without a name.
     """
-    states = np.empty((times.size, stepper.n))
-    done = int(np.searchsorted(times, stepper.t, side="right"))
-    states[:done] = stepper.y
+    rows, y = _Rows(times, stepper.n), stepper.y
+    yield from rows.fill(int(np.searchsorted(times, stepper.t, side="right")), lambda t: np.tile(y[:, None], t.size))
     first = values = stops(stepper.t, stepper.y)
     patience, count = Patience(float(stepper.t), float(stepper.t_bound)), 0
     while stepper.status == "running":
@@ -148,23 +148,46 @@ def _steps(
             near = _singular(names, values, first)
             if near is None:
                 raise SolverError(_broken(stepper, message))
-            kept = times[:done] < stepper.t
-            return Stretch(times[:done][kept], states[:done][kept], Stop(float(stepper.t), near, stepper.y.copy()))
+            yield rows.rest(Stop(float(stepper.t), near, stepper.y.copy()), before=stepper.t)
+            return
         path = stepper.dense_output()
         found = _first_stop(path, stops, values)
         reach = stepper.t if found is None else found[0]
         upto = int(np.searchsorted(times, reach, side="right" if found is None else "left"))
-        if upto > done:
-            states[done:upto] = path(times[done:upto]).T
-            done = upto
+        yield from rows.fill(upto, path)
         if found is not None:
-            return Stretch(times[:done], states[:done], Stop(found[0], names[found[1]], path(found[0])))
-        if until(stepper.y) and done < times.size:
-            return Stretch(times[:done], states[:done], Stop(float(stepper.t), "", stepper.y.copy()))
+            yield rows.rest(Stop(found[0], names[found[1]], path(found[0])))
+            return
+        if until(stepper.y) and rows.done < times.size:
+            yield rows.rest(Stop(float(stepper.t), "", stepper.y.copy()))
+            return
         values = stops(stepper.t, stepper.y)
         if progress is not None:
             progress(float(stepper.t))
-    return Stretch(times[:done], states[:done], None)
+    yield rows.rest(None)
+
+
+class _Rows:
+    """The states at some times, filled in as the steps pass them, and given on in blocks."""
+
+    def __init__(self, times: Array, size: int) -> None:
+        self.times, self.begun, self.done = times, 0, 0
+        self.states = np.empty((min(times.size, AT_ONCE), size))
+
+    def fill(self, upto: int, path: Callable[[Array], Array]) -> Iterator[Stretch]:
+        """Fill in the states up to a row, and yield each block that is full."""
+        while self.done < upto:
+            if self.done - self.begun == len(self.states):
+                yield self.rest(None)
+                self.begun, self.states = self.done, np.empty_like(self.states)
+            some = min(upto, self.begun + len(self.states))
+            self.states[self.done - self.begun : some - self.begun] = path(self.times[self.done : some]).T
+            self.done = some
+
+    def rest(self, stop: Stop | None, before: float = np.inf) -> Stretch:
+        """Return what has not been given on: the last row is always in it."""
+        times, _ = cut(self.times[self.begun : self.done], before)
+        return Stretch(times, self.states[: times.size], stop)
 
 
 def _singular(names: list[str], values: Array, first: Array) -> str | None:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..errors import InvalidValueError
 from ..mechanics import checks
 
-MOST_SAMPLES = 10_000_000  # 1.7 GB of results
+MOST_SAMPLES = 10_000_000  # 1.9 GB of results
 
 
 def check_sampling(duration: Any, every: Any, prefix: str = "") -> tuple[float, float]:
@@ -47,12 +47,11 @@ def check_sampling(duration: Any, every: Any, prefix: str = "") -> tuple[float, 
         )
     count = length / step + 1
     if count > MOST_SAMPLES:
-        least = _round_up(length / (MOST_SAMPLES - 1))
         raise InvalidValueError(
             f"{prefix}every",
             f"must leave at most {MOST_SAMPLES:,} samples",
             every,
-            f"It makes {_count(count)}; ask for {least:g} s or more, or a shorter duration.",
+            f"It makes {_count(count)}; {_longer(length, MOST_SAMPLES)}.",
         )
     return length, step
 
@@ -82,6 +81,33 @@ def sample_times(duration: Any, every: Any, prefix: str = "") -> NDArray[np.floa
         return np.concatenate([times, [length]])
     times[-1] = length
     return times
+
+
+def longer_step(times: NDArray[np.float64], most: int) -> str:
+    """Say which step leaves a run fewer samples.
+
+    Parameters
+    ----------
+    times : array (n,)
+        Of the run, s.
+    most : int
+        How many samples it may have.
+
+    Returns
+    -------
+    str
+        As the end of a sentence.
+
+    Examples
+    --------
+    >>> longer_step(np.linspace(0.0, 10.0, 1001), 101)
+    'ask for 0.1 s or more, or a shorter duration'
+    """
+    return _longer(float(times[-1] - times[0]), most)
+
+
+def _longer(length: float, most: int) -> str:
+    return f"ask for {_round_up(length / (most - 1)):g} s or more, or a shorter duration"
 
 
 def _round_up(value: float) -> float:

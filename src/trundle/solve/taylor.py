@@ -24,7 +24,7 @@ from .laws import Law
 from .lowering import Lowered, lower
 from .patience import STEPS, Patience
 from .phases import Stretch, cut
-from .samples import Array, Progress, Samples
+from .samples import AT_ONCE, Array, Progress, Samples
 
 TOLERANCE = 1e-15
 _CHUNKS = 100  # of a run at most, between which progress is told and Ctrl-C is heard
@@ -92,7 +92,7 @@ def solve(
 
 def integrate(
     system: RollingSystem, now: Next, times: Array, tolerance: float, progress: Progress | None = None
-) -> Stretch:
+) -> Iterator[Stretch]:
     """Follow one law to its first stop.
 
     Parameters
@@ -108,10 +108,10 @@ def integrate(
     progress : callable, optional
         Told the time reached.
 
-    Returns
-    -------
+    Yields
+    ------
     Stretch
-        The states at the times before the stop.
+        The states at the times before the stop, a chunk after the other; the last comes with the stop.
 
     Raises
     ------
@@ -119,16 +119,18 @@ def integrate(
         If the integration breaks down.
     """
     if now.law.brief:
-        return runge_kutta.integrate(system, now, times, runge_kutta.FINEST, progress)
+        yield from runge_kutta.integrate(system, now, times, runge_kutta.FINEST, progress)
+        return
     lowered, key = _ready(system, now.law, tolerance)
     with _borrowed(lowered, key, tolerance) as integrator:
         run = _Run(integrator, lowered, [*numbers(system), *now.extras], now.time, now.numbers)
-        states, reached = _propagate(run, times, progress)
-        if reached is None:
-            return Stretch(times, states, None)
-        stop = Stop(run.time, lowered.stops[reached], integrator.state.copy())
-    kept, states = cut(times[: len(states)], states, stop.time)
-    return Stretch(kept, states, stop)
+        for chunk, states, reached in _propagate(run, times, progress):
+            if reached is None:
+                yield Stretch(chunk, states, None)
+                continue
+            stop = Stop(run.time, lowered.stops[reached], integrator.state.copy())
+            kept, _ = cut(chunk, stop.time)
+            yield Stretch(kept, states[: kept.size], stop)
 
 
 def compiled(system: RollingSystem, law: Law, tolerance: float = TOLERANCE) -> tuple[Any, Lowered]:
@@ -218,44 +220,49 @@ class _Run:
         self.integrator.pars[:] = self.values[: self.lowered.parameters]
 
 
-def _propagate(run: _Run, times: Array, progress: Progress | None) -> tuple[Array, int | None]:
-    """Return the states at the times, and which terminal event came first if one did."""
+def _propagate(run: _Run, times: Array, progress: Progress | None) -> Iterator[tuple[Array, Array, int | None]]:
+    """Yield the times and the states there, a chunk after the other, and last which terminal event came, if one did."""
     integrator = run.integrator
-    parts: list[Array] = [np.empty((0, integrator.state.size))]
     patience = Patience(run.time, float(times[-1]) if times.size else run.time)
     for chunk in _chunks(times):
         left = chunk
         while left.size:
             ended = _reach(run, float(left[0]), patience)
             if ended is not None:
-                return np.vstack(parts), ended
+                yield left[:0], np.empty((0, integrator.state.size)), ended
+                return
             result = integrator.propagate_grid(left - run.reference, max_steps=STEPS)
             states = result[-1].reshape(-1, integrator.state.size)
-            parts.append(states)
             ended = _event(run, result[0], patience)
+            yield left[: len(states)], states, ended
             if ended is not None:
-                return np.vstack(parts), ended
+                return
             left = left[len(states) :]
         if progress is not None:
             progress(float(chunk[-1]))
-    return np.vstack(parts), None
 
 
 def _reach(run: _Run, time: float, patience: Patience) -> int | None:
     """Go on to an instant, and return which terminal event came first if one did."""
+    import heyoka
+
     while run.time < time:
         until = min(time, run.reference + _LONGEST)
-        ended = _event(run, run.integrator.propagate_until(until - run.reference, max_steps=STEPS)[0], patience)
+        outcome = run.integrator.propagate_until(until - run.reference, max_steps=STEPS)[0]
+        ended = _event(run, outcome, patience)
         if ended is not None:
             return ended
-        if run.time >= until:
+        if outcome == heyoka.taylor_outcome.time_limit:  # the time reached may be a rounding less
             run.tidy(until)
     return None
 
 
-def _chunks(times: Array, most: int = _CHUNKS) -> Iterator[Array]:
-    """Part the instants so that none is long after the first of its part."""
-    count = min(most, max(1, times.size // _LEAST_CHUNK))
+def _chunks(times: Array, most: int = _CHUNKS, size: int = AT_ONCE) -> Iterator[Array]:
+    """Part the instants, where it can be into no more parts than `most`, so that none is long after its part's first.
+
+    No part has more than `size`.
+    """
+    count = max(min(most, max(1, times.size // _LEAST_CHUNK)), -(-times.size // size))
     edges = np.arange(count + 1) * times.size // count
     for first, last in itertools.pairwise(edges.tolist()):
         part = times[first:last]
