@@ -16,7 +16,7 @@ from .simulation import simulate
 from .solve import taylor
 from .solve.methods import Method
 from .solve.samples import Progress
-from .solve.sampling import MOST_SAMPLES, sample_times
+from .solve.sampling import MOST_SAMPLES, check_clock, sample_times
 
 if TYPE_CHECKING:
     import xarray
@@ -79,7 +79,9 @@ def simulate_many(
     {'member': 3, 'time': 3, 'axis': 3}
     """
     systems, starts = _members(systems, starts)
-    times = starts[0].time + sample_times(duration, every)
+    since = sample_times(duration, every)
+    check_clock(systems[0], starts[0], float(since[1]))
+    times = starts[0].time + since
     _check(systems, starts, times.size, workers)
     result = _Result(len(systems), times, progress)
     rest = _rolled(result, systems, starts, times, workers) if _batched(systems[0]) else range(len(systems))

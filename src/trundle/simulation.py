@@ -16,7 +16,7 @@ from .mechanics.system import RollingSystem, State
 from .scenario import ScenarioFile
 from .solve import methods
 from .solve.samples import Progress
-from .solve.sampling import sample_times
+from .solve.sampling import check_clock, sample_times
 from .trajectory import Trajectory
 
 
@@ -82,7 +82,9 @@ def simulate(
     ('exact', 1001)
     """
     _check_start(system, start)
-    times = start.time + sample_times(duration, every)
+    since = sample_times(duration, every)
+    check_clock(system, start, float(since[1]))
+    times = start.time + since
     check_finite(system, float(times[0]), float(times[-1]))
     chosen, samples = methods.run(method, system, start, times, progress, tolerance)
     if scenario is None:

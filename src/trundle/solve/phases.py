@@ -226,27 +226,32 @@ def _check_count(system: RollingSystem, events: list[Event]) -> None:
         )
 
 
-def cut(times: Array, states: Array, end: float) -> tuple[Array, Array]:
-    """Keep the states before an end.
+def upto(stop: Stop, times: Array, states: Array) -> Stretch:
+    """Return a stretch up to its stop, with a state for each time before it.
 
     Parameters
     ----------
+    stop : Stop
+        Where it ended.
     times : array (n,)
-        Ascending, s.
-    states : array (n, ...)
-        One a time.
-    end : float
-        s.
+        Those asked for, ascending, s.
+    states : array (m, ...)
+        At the first m of them. A method counts from an instant of its own, and rounding may put a time before the
+        stop by one count and not by the other: then the stop's own state is its state.
 
     Returns
     -------
-    times, states : array
-        Those before it.
+    Stretch
+        With the times before the stop.
 
     Examples
     --------
-    >>> cut(np.array([0.0, 1.0, 2.0]), np.zeros((3, 1)), 1.5)[0].tolist()
-    [0.0, 1.0]
+    >>> stop = Stop(1.5, "lift", np.ones(1))
+    >>> upto(stop, np.array([0.0, 1.0, 2.0]), np.zeros((1, 1))).states.tolist()
+    [[0.0], [1.0]]
     """
-    before = times < end
-    return times[before], states[before]
+    before = times[times < stop.time]
+    missing = max(0, before.size - len(states))
+    return Stretch(
+        before, np.concatenate([states[: before.size], np.repeat(stop.numbers[None], missing, axis=0)]), stop
+    )

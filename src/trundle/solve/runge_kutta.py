@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,7 +14,7 @@ from ..mechanics.system import RollingSystem, State
 from . import phases
 from .following import Next, Stop
 from .laws import Law, SlippingLaw
-from .phases import Stretch
+from .phases import Stretch, upto
 from .samples import Array, Progress, Samples
 from .tracing import python_law
 
@@ -74,40 +76,51 @@ def integrate(
     SolverError
         If the integration breaks down.
     """
+    # It counts from where the law begins to hold: far from 0 no step would be short enough.
+    found = _integrated(system, now, times - now.time, tolerance, progress)
+    if found.stop is None:
+        return replace(found, times=times)
+    return upto(replace(found.stop, time=now.time + found.stop.time), times, found.states)
+
+
+def _integrated(system: RollingSystem, now: Next, times: Array, tolerance: float, progress: Progress | None) -> Stretch:
+    """Follow one law to its first stop; all times count from its beginning."""
     from scipy.integrate import DOP853, Radau
 
     law, begin = now.law, now.time
     function, names = python_law(system, law, now.extras)
     size, y0 = len(now.numbers), np.asarray(now.numbers, dtype=float)
-    end = max(float(times[-1]) if times.size else begin, float(np.nextafter(begin, np.inf)))  # some way to go
+    end = max(float(times[-1]) if times.size else 0.0, float(np.spacing(begin)))  # some way to go
 
-    def rates(t: float, y: Array) -> Array:
+    def rates(since: float, y: Array) -> Array:
         try:
-            return np.array(function(t, y.tolist())[:size])
+            return np.array(function(begin + since, y.tolist())[:size])
         except (ArithmeticError, ValueError):  # a trial beyond the end of a formula: a shorter step stays before it
             return np.full(size, np.nan)
 
-    def stops(t: float, y: Array) -> Array:
+    def stops(since: float, y: Array) -> Array:
         try:
-            return np.array(function(t, y.tolist())[size:])
+            return np.array(function(begin + since, y.tolist())[size:])
         except (ArithmeticError, ValueError):
             return np.full(len(names), np.nan)
 
+    told = None if progress is None else lambda since: progress(begin + since)
+    steps = partial(_steps, stops=stops, names=names, begin=begin, progress=told)
     try:
         given: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * _scale(y0)}
         if not _stiff(law, y0):
-            return _steps(DOP853(rates, begin, y0, end, **given), stops, names, times, progress)
+            return steps(DOP853(rates, 0.0, y0, end, **given), times=times)
         # Its first steps must be as short as the law is stiff: across a jump of direction there are other solutions.
-        first = Radau(rates, begin, y0, end, first_step=min(_FIRST_STEP, end - begin), **given)
-        begun = _steps(first, stops, names, times, progress, until=lambda y: not _stiff(law, y))
+        first = Radau(rates, 0.0, y0, end, first_step=min(_FIRST_STEP, end), **given)
+        begun = steps(first, times=times, until=lambda y: not _stiff(law, y))
         if begun.stop is None or begun.stop.name:
             return begun
         left, y0 = times[begun.times.size :], begun.stop.numbers
-        then = _steps(DOP853(rates, begun.stop.time, y0, end, **given), stops, names, left, progress)
+        then = steps(DOP853(rates, begun.stop.time, y0, end, **given), times=left)
         both = np.concatenate([begun.times, then.times]), np.concatenate([begun.states, then.states])
         return Stretch(*both, then.stop)
     except (ZeroDivisionError, ValueError, OverflowError) as error:
-        raise SolverError(f"The Runge-Kutta method broke down on the way to t = {end:g} s: {error}.") from None
+        raise SolverError(f"The Runge-Kutta method broke down on the way to t = {begin + end:g} s: {error}.") from None
 
 
 def _stiff(law: Law, y: Array) -> bool:
@@ -131,8 +144,10 @@ def _size(part: Array) -> float:
 
 def _steps(
     stepper: Any,
+    *,
     stops: Any,
     names: list[str],
+    begin: float,
     times: Array,
     progress: Progress | None,
     until: Callable[[Array], bool] = lambda _: False,
@@ -148,7 +163,7 @@ def _steps(
     while stepper.status == "running":
         message = stepper.step()
         if stepper.status == "failed" or not np.isfinite(stepper.y).all():
-            raise SolverError(_broken(stepper, message))
+            raise SolverError(_broken(stepper, begin, message))
         path = stepper.dense_output()
         found = _first_stop(path, stops, values, len(names))
         reach = stepper.t if found is None else found[0]
@@ -166,13 +181,13 @@ def _steps(
     return Stretch(times[:done], states[:done], None)
 
 
-def _broken(stepper: Any, message: str | None) -> str:
+def _broken(stepper: Any, begin: float, message: str | None) -> str:
     """Say when and where the method broke down."""
     near = ", ".join(f"{part:.6g}" for part in stepper.y[:3])
     why = str(message or "The rates are no longer finite.").rstrip(".")
     return (
-        f"The Runge-Kutta method broke down at t = {stepper.t:.9g} s, near ({near}) m on the support: {why}. Look "
-        "for a surface, a body or a load that is not smooth there."
+        f"The Runge-Kutta method broke down at t = {begin + stepper.t:.9g} s, near ({near}) m on the support: {why}. "
+        "Look for a surface, a body or a load that is not smooth there."
     )
 
 

@@ -25,7 +25,7 @@ from . import phases
 from .following import Next, Stop
 from .laws import Law
 from .lowering import Lowered, lower
-from .phases import Stretch, cut
+from .phases import Stretch, upto
 from .samples import Array, Progress, Samples
 
 TOLERANCE = 1e-15
@@ -127,8 +127,7 @@ def integrate(
         if reached is None:
             return Stretch(times, states, None)
         stop = Stop(run.time, lowered.stops[reached], integrator.state.copy())
-    kept, states = cut(times[: len(states)], states, stop.time)
-    return Stretch(kept, states, stop)
+    return upto(stop, times, states)
 
 
 def compiled(system: RollingSystem, law: Law, tolerance: float = TOLERANCE) -> tuple[Any, Lowered]:
@@ -223,14 +222,17 @@ def _propagate(run: _Run, times: Array, progress: Progress | None) -> tuple[Arra
     integrator = run.integrator
     parts: list[Array] = [np.empty((0, integrator.state.size))]
     for chunk in _chunks(times):
-        while run.time < chunk[0]:
+        while run.reference < chunk[0]:  # also where rounding does not tell the two instants apart: it must begin there
             until = min(float(chunk[0]), run.reference + _LONGEST)
             ended = _event(run, integrator.propagate_until(until - run.reference)[0])
             if ended is not None:
                 return np.vstack(parts), ended
             run.tidy(until)
-        result = integrator.propagate_grid(chunk - run.reference)
-        parts.append(result[-1].reshape(-1, integrator.state.size))
+        # Counted from the reference, two instants may be one: what is left of a difference is rounded.
+        since, which = np.unique(chunk - run.reference, return_inverse=True)
+        result = integrator.propagate_grid(since)
+        states = result[-1].reshape(-1, integrator.state.size)
+        parts.append(states[which[which < len(states)]])
         ended = _event(run, result[0])
         if ended is not None:
             return np.vstack(parts), ended
