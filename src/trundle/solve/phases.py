@@ -227,7 +227,7 @@ def _check_count(system: RollingSystem, events: list[Event]) -> None:
 
 
 def upto(stop: Stop, times: Array, states: Array) -> Stretch:
-    """Return a stretch up to its stop, with a state for each time before it.
+    """Return a stretch up to its stop.
 
     Parameters
     ----------
@@ -236,8 +236,8 @@ def upto(stop: Stop, times: Array, states: Array) -> Stretch:
     times : array (n,)
         Those asked for, ascending, s.
     states : array (m, ...)
-        At the first m of them. A method counts from an instant of its own, and rounding may put a time before the
-        stop by one count and not by the other: then the stop's own state is its state.
+        At the first m of them; there may be more than come before the stop, since a method counts from an instant of
+        its own and rounding joins what lies close together.
 
     Returns
     -------
@@ -247,11 +247,8 @@ def upto(stop: Stop, times: Array, states: Array) -> Stretch:
     Examples
     --------
     >>> stop = Stop(1.5, "lift", np.ones(1))
-    >>> upto(stop, np.array([0.0, 1.0, 2.0]), np.zeros((1, 1))).states.tolist()
-    [[0.0], [1.0]]
+    >>> upto(stop, np.array([0.0, 1.0, 1.6, 2.0]), np.zeros((3, 1))).times.tolist()
+    [0.0, 1.0]
     """
     before = times[times < stop.time]
-    missing = max(0, before.size - len(states))
-    return Stretch(
-        before, np.concatenate([states[: before.size], np.repeat(stop.numbers[None], missing, axis=0)]), stop
-    )
+    return Stretch(before, states[: before.size], stop)

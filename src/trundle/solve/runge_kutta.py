@@ -167,10 +167,10 @@ def _steps(
         path = stepper.dense_output()
         found = _first_stop(path, stops, values, len(names))
         reach = stepper.t if found is None else found[0]
-        upto = int(np.searchsorted(times, reach, side="right" if found is None else "left"))
-        if upto > done:
-            states[done:upto] = path(times[done:upto]).T
-            done = upto
+        last = int(np.searchsorted(times, reach, side="right"))
+        if last > done:
+            states[done:last] = path(times[done:last]).T
+            done = last
         if found is not None:
             return Stretch(times[:done], states[:done], Stop(found[0], names[found[1]], path(found[0])))
         if until(stepper.y) and done < times.size:
