@@ -17,6 +17,9 @@ from ..errors import ScenarioError, did_you_mean
 
 SHIPPED = Path(__file__).resolve().parent.parent / "scenarios"
 LARGEST = 2**20  # bytes; a scenario is a page of text
+_MOST_PARTS = 20  # of a dotted key
+_PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
+_DEEP_KEY = re.compile(rf"(?<![\w-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{_MOST_PARTS}}}")
 
 
 def names() -> list[str]:
@@ -157,7 +160,7 @@ def read(name_or_path: str | os.PathLike[str]) -> str:
         remedy = f"The system says: {error.strerror or error}."
         raise ScenarioError("scenario", "must be a file that can be read", shown, remedy) from None
     if len(content) > LARGEST:
-        raise ScenarioError("scenario", "must be a text of at most 1 MiB", shown, "Is this a scenario file?")
+        raise _too_large(str(shown))
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -166,6 +169,10 @@ def read(name_or_path: str | os.PathLike[str]) -> str:
         line = content.count(b"\n", 0, error.start) + 1
         received = f"byte 0x{content[error.start]:02x} in line {line}"
         raise ScenarioError("scenario", "must be text in UTF-8", received, remedy, str(shown)) from None
+
+
+def _too_large(shown: str) -> ScenarioError:
+    return ScenarioError("scenario", "must be a text of at most 1 MiB", shown, "Is this a scenario file?")
 
 
 def _no_such(shown: str) -> ScenarioError:
@@ -200,7 +207,7 @@ def parse(text: str, source: str) -> dict[str, Any]:
     Raises
     ------
     ScenarioError
-        If the text is no TOML (with line and column), or is empty.
+        If the text is no TOML (with line and column), is empty, or is larger or nests deeper than any scenario.
 
     Examples
     --------
@@ -210,6 +217,12 @@ def parse(text: str, source: str) -> dict[str, Any]:
     if not text.strip():
         remedy = "Start from one that ships with trundle: `trundle show tilted-turntable` prints it."
         raise ScenarioError("scenario", "must hold a scenario", text[:20], remedy, source)
+    if len(text) > LARGEST:
+        raise _too_large(source)
+    if (deep := _DEEP_KEY.search(text)) is not None:  # tomllib's time grows with the cube of a key's parts
+        line = text.count("\n", 0, deep.start()) + 1
+        rule = f"must have keys of at most {_MOST_PARTS} parts"
+        raise ScenarioError(f"line {line}", rule, deep[0][:60], "The longest of the format has 4.", source)
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
