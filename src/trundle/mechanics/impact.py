@@ -18,6 +18,7 @@ from ..errors import SolverError
 from .algebra import E_X, E_Z, ZERO, Matrix, Quaternion, Vector
 from .contact import Contact
 from .onset import onset
+from .slipping import response
 
 if TYPE_CHECKING:
     from .system import RollingSystem
@@ -86,7 +87,7 @@ def land(system: RollingSystem, contact: Contact, orientation: Quaternion, slip:
     """
     J = system.body.inertia_in_space(orientation.matrix())
     basis = _basis(contact.normal)
-    answers = [response(system, contact, J, e) for e in basis]
+    answers = [response(system, contact, J, e).slip for e in basis]
     M = Matrix(*(Vector(*(float(answer.dot(d)) for answer in answers)) for d in basis))
     mu = math.inf if system.support.friction is None else float(system.support.sliding_friction)
     begin = Vector(*(float(slip.dot(d)) for d in basis))
@@ -102,33 +103,6 @@ def _basis(n: Vector) -> tuple[Vector, Vector, Vector]:
     first = n.cross(E_X if abs(n.x) < 0.9 else E_Z)
     first = first / first.norm()
     return first, n.cross(first), n
-
-
-def response(system: RollingSystem, contact: Contact, inertia: Matrix, impulse: Vector) -> Vector:
-    """Return by how much an impulse at the contact changes s, m/s.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Body and support.
-    contact : Contact
-        Where they touch.
-    inertia : Matrix
-        J of the body about its centre of mass, in the inertial support frame, kg m².
-    impulse : Vector
-        On the body, N s.
-
-    Returns
-    -------
-    Vector
-        M P, with M = 1/m + [J⁻¹(ρ×·)]×ρ, and what a free axle adds.
-    """
-    rho, motion = contact.offset, system.support.motion
-    answer = impulse / system.body.mass + inertia.solve(rho.cross(impulse)).cross(rho)
-    if motion.free:
-        lever = contact.support.lever(contact.point)
-        answer = answer + lever * (lever.dot(impulse) / motion.inertia)
-    return answer
 
 
 @dataclass
@@ -181,9 +155,9 @@ class _Course:
             )
 
         found = onset(growth)
-        if found is None:
+        if not found:
             raise SolverError("A landing jams: no direction of slipping leads on. Use less friction.")
-        return found[1]
+        return found[0][1]
 
     def _straight(self, direction: Vector, still: float = math.inf) -> Vector:
         """Go on with a fixed direction of the impulse to the end of compression, or of the impact.

@@ -11,8 +11,8 @@ import numpy as np
 _TRIED = 90  # directions in which a change of sign is looked for
 
 
-def onset(growth: Callable[[Any, Any], tuple[Any, Any]]) -> tuple[float, tuple[float, float]] | None:
-    """Return how slip begins: its direction ŝ, with dŝ = 0, and how fast it grows along it.
+def onset(growth: Callable[[Any, Any], tuple[Any, Any]]) -> list[tuple[float, tuple[float, float]]]:
+    """Return how slip can begin: the directions ŝ with dŝ = 0 along which it grows, and how fast.
 
     Parameters
     ----------
@@ -22,18 +22,18 @@ def onset(growth: Callable[[Any, Any], tuple[Any, Any]]) -> tuple[float, tuple[f
 
     Returns
     -------
-    (float, (float, float)) or None
-        The rate at which slip grows, in the unit of `growth`, and cos β and sin β: the fastest where there are several.
-        None where none grows: friction jams the contact (Painlevé's paradox).
+    list of (float, (float, float))
+        The rates at which slip grows, in the unit of `growth`, each with cos β and sin β, fastest first. None where
+        friction jams the contact (Painlevé's paradox).
 
     Examples
     --------
     Where the body answers alike in all directions, slip begins the way it is driven, if friction is too weak:
 
     >>> onset(lambda c, s: (3.0 - 2.0 * c, -2.0 * s))
-    (1.0, (1.0, 0.0))
-    >>> onset(lambda c, s: (3.0 - 4.0 * c, -4.0 * s)) is None
-    True
+    [(1.0, (1.0, 0.0))]
+    >>> onset(lambda c, s: (3.0 - 4.0 * c, -4.0 * s))
+    []
     """
     from scipy.optimize import brentq
 
@@ -55,5 +55,4 @@ def onset(growth: Callable[[Any, Any], tuple[Any, Any]]) -> tuple[float, tuple[f
         way = math.cos(angle), math.sin(angle)
         rate = growth(*way)
         found.append((float(way[0] * rate[0] + way[1] * rate[1]), way))
-    growing = [pair for pair in found if pair[0] > 0]
-    return max(growing) if growing else None
+    return sorted((pair for pair in found if pair[0] > 0), reverse=True)

@@ -29,6 +29,7 @@ class Slipping:
     angular_acceleration: Vector  # Ω̇, rad/s²
     slip_rate: Vector  # ṡ, m/s²
     normal_force: Scalar  # N, N
+    opening_per_newton: Scalar  # n·a₁: how fast each newton of N opens the contact, 1/kg
     reaction: Vector  # R, N
     axle_moment: Scalar  # of the body on the support, about the support's axle, N m
 
@@ -44,6 +45,14 @@ class Unpushed:
     angular_acceleration: Vector  # Ω̇, rad/s²
     slip_rate: Vector  # ṡ, m/s²
     opening: Scalar  # the rate of s·n: how fast it would come off, m/s²
+
+
+@dataclass(frozen=True, slots=True)
+class Response:
+    """What a push at the contact does, for a force the rates and for an impulse the changes."""
+
+    angular_velocity: Vector  # of Ω
+    slip: Vector  # of s
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,30 +136,71 @@ def slip(
     (-1.0, -3.5)
     """
     contact = touch(system, time, point, orientation, own)
-    rho, n, support = contact.offset, contact.normal, contact.support
+    n, support = contact.normal, contact.support
     free = unpushed(system, time, contact, orientation, angular_velocity, slip_velocity, own)
     acting = free.acting
     hat = slip_direction(slip_velocity) if direction is None else direction
     d = n if hat is ZERO else n - hat * system.support.sliding_friction
-    torque = rho.cross(d) + acting.couple if acting.has_couple else rho.cross(d)
-    turned = free.inertia.solve(torque)
-    answer = d / system.body.mass + turned.cross(rho)  # of s to each newton of N
-    if system.support.motion.free:
-        lever = support.lever(point)
-        moment = lever.dot(d) + support.axle.dot(acting.couple)
-        answer = answer + lever * (moment / system.support.motion.inertia)
-    N = -free.opening / n.dot(answer)
+    answer = response(system, contact, free.inertia, d, acting.couple if acting.has_couple else None)
+    opening_per_newton = n.dot(answer.slip)
+    N = -free.opening / opening_per_newton
     return Slipping(
         contact,
         free.velocity,
         free.point_rate,
         orientation.rate(angular_velocity),
-        free.angular_acceleration + turned * N,
-        free.slip_rate + answer * N,
+        free.angular_acceleration + answer.angular_velocity * N,
+        free.slip_rate + answer.slip * N,
         N,
+        opening_per_newton,
         d * N,
         acting.moment_on_axle(support, N) - support.lever(point).dot(d) * N,
     )
+
+
+def response(
+    system: RollingSystem, contact: Contact, inertia: Matrix, push: Vector, couple: Vector | None = None
+) -> Response:
+    """Return what a push P at the contact does to Ω and to s: there M P, M = 1/m + [J⁻¹(ρ×·)]×ρ and a free axle's part.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Body and support.
+    contact : Contact
+        Where they touch.
+    inertia : Matrix
+        J of the body about its centre of mass, in the inertial support frame, kg m².
+    push : Vector
+        On the body: a force, N, or an impulse, N s.
+    couple : Vector, optional
+        That comes with it, N m or N m s.
+
+    Returns
+    -------
+    Response
+        Of Ω and s: rates for a force, changes for an impulse.
+
+    Examples
+    --------
+    Pushed along the floor at its lowest point, a solid ball of 2 kg answers with 7/2 of its mass's share:
+
+    >>> import trundle as tr
+    >>> floor = tr.RollingSystem(tr.Body.solid_sphere(0.1, 2.0), tr.Support(tr.Plane()))
+    >>> still = Quaternion(1.0, 0.0, 0.0, 0.0)
+    >>> J = floor.body.inertia_in_space(still.matrix())
+    >>> response(floor, touch(floor, 0.0, ZERO, still), J, Vector(2.0, 0.0, 0.0)).slip.x
+    3.5
+    """
+    rho, motion = contact.offset, system.support.motion
+    torque = rho.cross(push) if couple is None else rho.cross(push) + couple
+    turned = inertia.solve(torque)
+    answer = push / system.body.mass + turned.cross(rho)
+    if motion.free:
+        lever = contact.support.lever(contact.point)
+        moment = lever.dot(push) if couple is None else lever.dot(push) + contact.support.axle.dot(couple)
+        answer = answer + lever * (moment / motion.inertia)
+    return Response(turned, answer)
 
 
 def unpushed(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,10 +13,10 @@ from ..mechanics.algebra import ZERO, Vector
 from ..mechanics.contact import roll
 from ..mechanics.impact import land
 from ..mechanics.placing import SLIP_TOLERANCE
-from ..mechanics.slipping import unpushed
+from ..mechanics.slipping import slip, unpushed
 from ..mechanics.system import RollingSystem, State
+from .creeping import CreepingLaw
 from .laws import (
-    CONE_SLACK,
     FlightLaw,
     Law,
     RestingLaw,
@@ -23,13 +24,15 @@ from .laws import (
     RollingWithResistance,
     SlidingFreely,
     SlippingLaw,
+    cone,
     state_turning,
 )
-from .onset_of_slip import first_moment
+from .onset_of_slip import first_moment, jammed
 from .samples import Array, Event
 from .touch import Touch, floats, moment
 
 _WEIGHTLESS = 1e-13  # share of the forces at hand below which nothing presses the body on
+_FLOOR = 1e-12  # share of the forces at hand by which the support seems to pull a weightless body: rounding
 _PULLED_BACK = 1e-8  # share of the accelerations at hand at which a body that lifts off would come straight down
 _TAKE_OFF = 1e-15  # gap, as a share of |ρ|, with which a flight begins: it must not end where it begins
 SETTLED = 1e-6  # height, as a share of |ρ|, below which a bounce is cut
@@ -118,15 +121,47 @@ def after(system: RollingSystem, law: Law, stop: Stop) -> Next:
         return Next(law, at.state, list(stop.numbers), _extras(system, at, slip))
     if name == "land":
         return _struck(system, at)
+    if name == "settled":
+        return slipping(system, Next.of(law, at))
+    if name == "jam":
+        raise jammed(at.state.time)
     if name == "lift":
-        return _lifted(system, at)
+        follows = _touching(system, at) if law.weightless else _lifted(system, at)
+        return follows if isinstance(follows.law, FlightLaw) else replace(follows, events=())
     if name in ("grip", "stop"):
         at = _come_to_it(system, law, at, stop.numbers, name)
+    if name == "held":
+        at = replace(at.moving(system, at.contact.rolling_velocity(at.Omega), at.Omega), slip=ZERO)
     follows = _touching(system, at, gave_way=name)
-    kind, said = _NAMES[type(follows.law).code] if type(follows.law).code != law.code else ("slip", _TURNED)
-    if name == "grip" and isinstance(follows.law, SlippingLaw):
-        kind, said = "slip", _TURNED
+    if name == "slip" and follows.law.code == law.code:  # friction holds again at once
+        return replace(follows, events=())
+    kind, said = _NAMES[follows.law.code] if follows.law.code != law.code else ("slip", _TURNED)
+    if name == "start" and follows.law.code == RollingLaw.code:
+        kind, said = "start", "began to roll"
     return replace(follows, events=(_event(kind, said, at), *follows.events))
+
+
+def slipping(system: RollingSystem, now: Next) -> Next:
+    """Return the same phase by the law of slipping where it is slip whose direction settles at once.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Body and support.
+    now : Next
+        The beginning of a phase.
+
+    Returns
+    -------
+    Next
+        As a closed form takes it.
+    """
+    if not isinstance(now.law, CreepingLaw):
+        return now
+    at = now.law.meant(system, now.time, now.numbers)
+    ending = _extras(system, at, at.sliding)
+    follows = _slipping(system, at, SlippingLaw, Vector(*ending[1:]), ending)
+    return replace(follows, events=now.events)
 
 
 def _event(kind: str, said: str, before: Touch, after: Touch | None = None) -> Event:
@@ -255,9 +290,9 @@ def _touching(system: RollingSystem, at: Touch, gave_way: str = "") -> Next:
     """
     support, limit = system.support, SLIP_TOLERANCE * at.speed
     if support.friction == 0:
-        return Next.of(SlidingFreely(), at)
+        return _slipping(system, at, SlidingFreely, ZERO)
     if support.friction is not None and at.sliding.norm() > limit:
-        return Next.of(SlippingLaw(), at, _extras(system, at, at.sliding))
+        return _slipping(system, at, SlippingLaw, at.sliding / at.sliding.norm(), _extras(system, at, at.sliding))
     if any(load.stops for load in system.loads) and gave_way != "start":
         resting = _resting(system, at)
         if resting is not None:
@@ -265,37 +300,62 @@ def _touching(system: RollingSystem, at: Touch, gave_way: str = "") -> Next:
     return _rolling(system, at, slips=gave_way == "slip")
 
 
-def _rolling(system: RollingSystem, at: Touch, *, slips: bool) -> Next:
+def _slipping(
+    system: RollingSystem, at: Touch, law: Callable[[bool], Law], direction: Vector, ending: tuple[float, ...] = ()
+) -> Next:
+    """Return slipping where the support pushes, else flight; what no law can follow is named."""
+    state = at.state
+    now = slip(system, state.time, at.contact.point, at.orientation, at.Omega, at.sliding, state.support, direction)
+    N, forces = float(now.normal_force), _forces(system, at)
+    if abs(N) <= _WEIGHTLESS * forces:
+        return Next.of(law(True), at, (_FLOOR * forces, *ending))
+    if now.opening_per_newton <= 0:
+        raise jammed(state.time, either=N > 0)
+    return _lifted(system, at) if N < 0 else Next.of(law(False), at, ending)
+
+
+def _forces(system: RollingSystem, at: Touch) -> float:
+    """Return the size of the forces in this motion, N."""
+    return float(system.body.mass) * at.scale(system) ** 2 / at.arm
+
+
+def _rolling(system: RollingSystem, at: Touch, *, slips: bool = False) -> Next:
     """Return rolling where the support can make it do so, else slipping or flight."""
     state = at.state
     now = roll(system, state.time, at.contact.point, at.orientation, at.Omega, state.support)
     n, R = at.contact.normal, now.reaction
     N = float(n.dot(R))
-    f = R - n * N
-    forces = system.body.mass * at.scale(system) ** 2 / at.arm
+    forces = _forces(system, at)
     weightless = abs(N) <= _WEIGHTLESS * forces
-    if N < 0 and not weightless:
+    floor = _FLOOR * forces if weightless else 0.0
+    pulled = N + floor < 0
+    if pulled and (system.support.friction is None or _pull(system, at) < 0):
         return _lifted(system, at)
-    mu = system.support.friction
-    if slips or (mu is not None and f.norm() > mu * max(N, 0.0) * (1 + CONE_SLACK) + _WEIGHTLESS * forces):
-        return Next.of(SlippingLaw(), *first_moment(system, at, f))
-    if any(load.stops for load in system.loads):
-        return _turning_on(system, at, lifts=not weightless)
-    return Next.of(RollingLaw(lifts=not weightless, grips=not weightless), at)
+    if slips or pulled or cone(system, at.contact, R, floor).get("slip", 0.0) < 0:
+        begun = first_moment(system, at)
+        if isinstance(begun, Touch):
+            return _rolling(system, begun)
+        return _slipping(system, begun.at, begun.law, begun.direction, begun.ending)
+    law = RollingWithResistance if any(load.stops for load in system.loads) else RollingLaw
+    ending: tuple[float, ...] = ()
+    if law.ending:
+        at = _turning_on(system, at)
+        ending = _extras(system, at)
+    return Next.of(law(weightless), at, (floor, *ending) if weightless else ending)
 
 
-def _turning_on(system: RollingSystem, at: Touch, *, lifts: bool) -> Next:
-    """Return rolling against a resistance; from rest, with a first little turn the way it is driven."""
+def _turning_on(system: RollingSystem, at: Touch) -> Touch:
+    """Return a body that rolls against a resistance; from rest, with a first little turn the way it is driven."""
     still = at.still(system) / at.arm
     turning = state_turning(at.contact, at.Omega)
-    if turning.norm() <= 2 * still:
-        at_rest = RestingLaw()
-        couple = at_rest.held(system, at.state.time, at_rest.numbers(at)).couple
-        driven = couple - at.contact.normal * couple.dot(at.contact.normal)
-        way = driven * (-4 * still / driven.norm()) if driven.norm() > 0 else ZERO
-        Omega = at.Omega - turning + way
-        at = at.moving(system, at.contact.rolling_velocity(Omega), Omega)
-    return Next.of(RollingWithResistance(lifts=lifts, grips=lifts), at, _extras(system, at))
+    if turning.norm() > 2 * still:
+        return at
+    at_rest = RestingLaw()
+    couple = at_rest.held(system, at.state.time, at_rest.numbers(at)).couple
+    driven = couple - at.contact.normal * couple.dot(at.contact.normal)
+    way = driven * (-4 * still / driven.norm()) if driven.norm() > 0 else ZERO
+    Omega = at.Omega - turning + way
+    return at.moving(system, at.contact.rolling_velocity(Omega), Omega)
 
 
 def _resting(system: RollingSystem, at: Touch) -> Next | None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,8 +16,8 @@ import numpy as np
 from ..mechanics.algebra import ZERO, Quaternion, Vector
 from ..mechanics.contact import Contact, Rolling, roll, touch
 from ..mechanics.loads import BodyMotion
-from ..mechanics.scalars import Scalar
-from ..mechanics.slipping import Flying, Slipping, fly, slip
+from ..mechanics.scalars import Scalar, is_zero
+from ..mechanics.slipping import Flying, Slipping, fly, slip, slip_direction
 from ..mechanics.system import RollingSystem, State
 from .samples import FLIGHT, RESTING, ROLLING, SLIPPING, Array, Samples
 from .touch import Touch, floats
@@ -35,13 +35,34 @@ class Law:
         The phase, as in `Samples.phase`.
     variables : tuple of str
         Names of the state's numbers; those of the support's own motion come after them.
-    extras : int
-        How many numbers the stops take besides the system's.
+    ending : int
+        How many numbers the stops take that end slip or turning, besides the system's.
+    brief : bool
+        Whether it holds for so short a time that to compile it would take longer than to follow it.
+
+    Parameters
+    ----------
+    weightless : bool
+        Whether nothing presses the body on, as on a plane without gravity: its stops then take one number more, the
+        pull, N, that is rounding and lifts nothing off.
     """
 
     code: int
     variables: tuple[str, ...] = CONTACT
-    extras: int = 0
+    ending: int = 0
+    brief: bool = False
+
+    def __init__(self, weightless: bool = False) -> None:
+        self.weightless = weightless
+
+    @property
+    def extras(self) -> int:
+        """How many numbers the stops take besides the system's."""
+        return self.ending + self.weightless
+
+    def _floor(self, extras: Numbers) -> tuple[Scalar, Numbers]:
+        """Return the pull that lifts nothing off, N, and the numbers that end slip or turning."""
+        return (extras[0], extras[1:]) if self.weightless else (0.0, extras)
 
     def names(self, system: RollingSystem) -> tuple[str, ...]:
         """Return the names of all numbers of the state."""
@@ -78,11 +99,27 @@ class Law:
         q = Quaternion(*(part / math.hypot(*q) for part in q))
         contact = touch(system, time, p, q, own)
         centre, V = self._moves(contact, Omega, rest)
-        return Touch.at(State(floats(centre), floats(V), floats(Omega), tuple(q), time, own), contact)
+        s = self._slip(system, time, numbers)
+        at = Touch.at(
+            State(floats(centre), floats(V if s is None else V + s), floats(Omega), tuple(q), time, own), contact
+        )
+        return at if s is None else replace(at, slip=s)
 
     def _moves(self, contact: Contact, Omega: Vector, rest: Numbers) -> tuple[Vector, Vector]:  # noqa: ARG002
-        """Return the centre of mass and its velocity, which rolling gives unless the phase adds something."""
+        """Return the centre of mass and its velocity, slip apart, which rolling gives unless the phase adds to it."""
         return contact.centre, contact.rolling_velocity(Omega)
+
+    def _slip(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array) -> Vector | None:  # noqa: ARG002
+        """Return s to its last digit, which V and Ω do not tell, m/s; None in flight."""
+        return ZERO
+
+    def direction(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array) -> Vector:
+        """Return ŝ, the direction of the slip, of a phase that slips."""
+        raise NotImplementedError
+
+    def stiff(self, numbers: Array) -> bool:  # noqa: ARG002
+        """Tell whether a part of the state settles far faster than all else changes."""
+        return False
 
     def advanced(self, system: RollingSystem, time: float, state: Sequence[float], step: float) -> list[float]:
         """Return the state after a step so short that one of the classical Runge-Kutta method is exact."""
@@ -115,15 +152,9 @@ class Law:
 
 
 class RollingLaw(Law):
-    """No slip: the state is (p, q, Ω).
-
-    Where nothing presses the body on, as with no gravity on a plane, it is not asked when it lifts off.
-    """
+    """No slip: the state is (p, q, Ω)."""
 
     code = ROLLING
-
-    def __init__(self, lifts: bool = True, grips: bool = True) -> None:
-        self.lifts, self.grips = lifts, grips
 
     def _now(self, system: RollingSystem, time: Scalar, state: Numbers) -> Rolling:
         p, q, Omega, _, own = self.split(state)
@@ -137,16 +168,11 @@ class RollingLaw(Law):
 
     def stops(self, system: RollingSystem, time: Scalar, state: Numbers, extras: Numbers) -> dict[str, Scalar]:
         """Return the normal force, the rest of the friction cone, and the bounds."""
-        now = self._now(system, time, state)
-        n, R = now.contact.normal, now.reaction
-        N = n.dot(R)
-        found = {"lift": N} if self.lifts else {}
-        if system.support.friction is not None and self.grips:
-            f, most = R - n * N, system.support.friction * N
-            found["slip"] = most * most * (1 + CONE_SLACK) - f.dot(f)
-        if self.extras:
+        now, (floor, ending) = self._now(system, time, state), self._floor(extras)
+        found = cone(system, now.contact, now.reaction, floor)
+        if ending:
             turning = state_turning(now.contact, Vector(*state[7:10]))
-            found |= _ending("stop", turning, extras)
+            found |= _ending("stop", turning, ending)
         return {**found, **self._bounds(system, now.contact, Quaternion(*state[3:7]), 0.0)}
 
     def numbers(self, at: Touch) -> list[float]:
@@ -164,15 +190,15 @@ class RollingLaw(Law):
 class RollingWithResistance(RollingLaw):
     """Rolling that comes to a stop where the body no longer turns over the support."""
 
-    extras = 4  # the square of what is all but nothing, and the direction at the beginning
+    ending = 4  # the square of what is all but nothing, and the direction at the beginning
 
 
 class SlippingLaw(Law):
     """Slipping with friction −μ N ŝ: the state is (p, q, Ω, s)."""
 
     code = SLIPPING
-    variables = (*CONTACT, "s_x", "s_y", "s_z")
-    extras = 4  # as for `RollingWithResistance`
+    variables: tuple[str, ...] = (*CONTACT, "s_x", "s_y", "s_z")
+    ending = 4  # as for `RollingWithResistance`
 
     def _now(self, system: RollingSystem, time: Scalar, state: Numbers, direction: Vector | None = None) -> Slipping:
         p, q, Omega, s, own = self.split(state)
@@ -185,12 +211,19 @@ class SlippingLaw(Law):
         return [*now.point_rate, *now.orientation_rate, *now.angular_acceleration, *now.slip_rate, *own]
 
     def stops(self, system: RollingSystem, time: Scalar, state: Numbers, extras: Numbers) -> dict[str, Scalar]:
-        """Return the normal force, what is left of the slip, and the bounds."""
-        now, s = self._now(system, time, state), Vector(*state[10:13])
-        found = {"lift": now.normal_force}
-        if self.extras:
-            found |= _ending("grip", s, extras)
+        """Return the normal force, its own effect on the gap, what is left of the slip, and the bounds."""
+        now, ending = self._now(system, time, state), self._floor(extras)[1]
+        found = self._pressing(system, now, extras)
+        if ending:
+            found |= _ending("grip", Vector(*state[10:13]), ending)
         return {**found, **self._bounds(system, now.contact, Quaternion(*state[3:7]), 0.0)}
+
+    def _pressing(self, system: RollingSystem, now: Slipping, extras: Numbers) -> dict[str, Scalar]:
+        """Return the normal force, and how it opens the contact where friction may turn that round."""
+        found = {"lift": now.normal_force + self._floor(extras)[0]}
+        if not is_zero(system.support.friction):
+            found["jam"] = now.opening_per_newton * system.body.mass - _SHORT_OF_IT
+        return found
 
     def numbers(self, at: Touch) -> list[float]:
         """Return p, q, Ω and the part of s along the support."""
@@ -203,8 +236,17 @@ class SlippingLaw(Law):
         centre, V, R = _arrays(p, now.contact.centre, now.velocity, now.reaction)
         return Samples(time, centre, p, V, Omega, q, R + 0.0, phase=_phase(time, self.code), own=own)
 
-    def _moves(self, contact: Contact, Omega: Vector, rest: Numbers) -> tuple[Vector, Vector]:
-        return contact.centre, contact.rolling_velocity(Omega) + Vector(*rest)
+    def _slip(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array) -> Vector:  # noqa: ARG002
+        return Vector(*map(float, numbers[10:13]))
+
+    def direction(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array) -> Vector:  # noqa: ARG002
+        """Return ŝ, the direction of the slip."""
+        return slip_direction(Vector(*map(float, numbers[10:13])))
+
+    def stiff(self, numbers: Array) -> bool:
+        """Tell whether it slips so slowly that the direction of its slip settles far faster than all else changes."""
+        s, Omega = (float(np.linalg.norm(part)) for part in (numbers[10:13], numbers[7:10]))
+        return self.ending > 0 and 0 < s < _SLOW_SLIP * Omega
 
     def _recorded(self, system: RollingSystem, time: Array, states: Array) -> Slipping:
         columns = list(states.T)
@@ -217,7 +259,7 @@ class SlippingLaw(Law):
 class SlidingFreely(SlippingLaw):
     """Contact without any friction: s has no part in the force, and never grips."""
 
-    extras = 0
+    ending = 0
 
     def _now(
         self,
@@ -260,6 +302,9 @@ class FlightLaw(Law):
     def _moves(self, contact: Contact, Omega: Vector, rest: Numbers) -> tuple[Vector, Vector]:  # noqa: ARG002
         return contact.centre + contact.normal * rest[3], Vector(*rest[:3])
 
+    def _slip(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array) -> None:  # noqa: ARG002
+        return None
+
     def record(self, system: RollingSystem, time: Array, states: Array) -> Samples:
         """Complete the state of a flight; nothing pushes then."""
         p, q, Omega, own = _columns(states, len(self.variables))
@@ -297,17 +342,14 @@ class RestingLaw(Law):
         couple = J @ support.angular_acceleration + system.body.gyroscopic(Q, turning) - K - contact.offset.cross(R)
         return Held(contact, V, R, couple)
 
-    def stops(self, system: RollingSystem, time: Scalar, state: Numbers, extras: Numbers) -> dict[str, Scalar]:  # noqa: ARG002
+    def stops(self, system: RollingSystem, time: Scalar, state: Numbers, extras: Numbers) -> dict[str, Scalar]:
         """Return what is left of the resistance, of the friction cone and of the normal force."""
-        held = self.held(system, time, state)
-        n, R = held.contact.normal, held.reaction
-        N = n.dot(R)
+        held, (floor, _) = self.held(system, time, state), self._floor(extras)
+        n = held.contact.normal
         over = held.couple - n * n.dot(held.couple)
-        arm = sum((load.offset for load in system.loads if load.stops), 0.0) * N
-        found = {"lift": N, "start": arm * arm * (1 + CONE_SLACK) - over.dot(over)}
-        if system.support.friction is not None:
-            f, most = R - n * N, system.support.friction * N
-            found["slip"] = most * most * (1 + CONE_SLACK) - f.dot(f)
+        arm = sum((load.offset for load in system.loads if load.stops), 0.0) * (n.dot(held.reaction) + floor)
+        found = cone(system, held.contact, held.reaction, floor)
+        found["start"] = arm * arm * (1 + CONE_SLACK) - over.dot(over)
         return {**found, **self._bounds(system, held.contact, Quaternion(*state[3:7]), 0.0)}
 
     def numbers(self, at: Touch) -> list[float]:
@@ -341,6 +383,35 @@ class Held:
 _SHORT_OF_IT = 1e-6
 # By this share static friction and resistance hold more than they say, so that rounding does not decide.
 CONE_SLACK = 1e-9
+_SLOW_SLIP = 1e-8  # m/s for each rad/s of Ω
+
+
+def cone(system: RollingSystem, contact: Contact, reaction: Vector, floor: Scalar = 0.0) -> dict[str, Scalar]:
+    """Return the normal force, and what is left of the friction cone where friction has a limit.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Its support has the friction.
+    contact : Contact
+        Where they touch.
+    reaction : Vector
+        R, N.
+    floor : Scalar
+        The pull that lifts nothing off, N.
+
+    Returns
+    -------
+    dict
+        "lift", N, and "slip", N²: the body stays and rolls while neither is negative.
+    """
+    n = contact.normal
+    N = n.dot(reaction)
+    found = {"lift": N + floor}
+    if system.support.friction is not None:
+        f, most = reaction - n * N, system.support.friction * (N + floor)
+        found["slip"] = most * most * (1 + CONE_SLACK) - f.dot(f)
+    return found
 
 
 def _ending(name: str, v: Vector, extras: Numbers) -> dict[str, Scalar]:

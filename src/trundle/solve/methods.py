@@ -18,7 +18,6 @@ from .samples import Array, Progress, Samples
 METHODS = {"exact": "closed_form", "taylor": "taylor", "runge-kutta": "runge_kutta"}
 CHOICES = ("auto", *METHODS)
 _FINEST, _COARSEST = 1e-15, 1e-6  # tolerances that can be asked for
-_FINEST_OF = {"runge-kutta": 1e-13}  # SciPy's own limit is 2e-14
 
 
 @dataclass(frozen=True)
@@ -45,7 +44,7 @@ class Method:
     def of(cls, name: str, tolerance: float | None = None) -> Method:
         """Return a method at a tolerance, or the nearest that it can keep; absent: its own."""
         own = tolerance_of(name)
-        return cls(name, own if tolerance is None or own == 0 else max(tolerance, _FINEST_OF.get(name, _FINEST)))
+        return cls(name, own if tolerance is None or own == 0 else max(tolerance, _of(name, "FINEST", _FINEST)))
 
     def solve(self, system: RollingSystem, start: State, times: Array, progress: Progress | None = None) -> Samples:
         """Return the samples of a run at ascending times, s, none before the start."""
@@ -244,4 +243,8 @@ def tolerance_of(method: str) -> float:
     >>> tolerance_of("exact")
     0.0
     """
-    return getattr(import_module(f".{METHODS[method]}", __package__), "TOLERANCE", 0.0)
+    return _of(method, "TOLERANCE", 0.0)
+
+
+def _of(method: str, name: str, absent: float) -> float:
+    return float(getattr(import_module(f".{METHODS[method]}", __package__), name, absent))

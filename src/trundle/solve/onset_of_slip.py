@@ -1,30 +1,39 @@
-"""How slipping begins: its first moment is integrated by hand, since its direction settles too fast to be followed."""
+"""How slipping begins: its first moment is worked out by hand, since it grows from nothing."""
 
 from __future__ import annotations
 
-import math
-from typing import Any
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
 
 from ..errors import SolverError
 from ..mechanics.algebra import E_X, E_Y, E_Z, ZERO, Matrix, Vector
-from ..mechanics.contact import roll
-from ..mechanics.impact import response
+from ..mechanics.creep import SlipRates, slip_rates
 from ..mechanics.onset import onset
-from ..mechanics.slipping import slip
+from ..mechanics.slipping import response
 from ..mechanics.system import RollingSystem
-from .laws import RollingLaw
+from .creeping import SETTLES_FAST, CreepingLaw, against
+from .laws import RollingLaw, SlippingLaw
 from .touch import Touch, floats
 
-_FIRST = 1e-6  # share of |ρ| over that speed that slip takes to begin, at least, and a thousand times that at most
-_SETTLED_IN = 2e3  # how much faster its direction settles than it grows once it has begun
-_JUST = 1e-8  # share of friction below which what it cannot give has no direction yet
+_FIRST = 1e-6  # share of |ρ| over its speed that the first moment of slip takes
 
 
-def first_moment(system: RollingSystem, at: Touch, needed: Vector) -> tuple[Touch, tuple[float, ...]]:
+@dataclass(frozen=True)
+class Onset:
+    """A body that has slipped for a moment: where it is, the law that it follows, what that law's stops take."""
+
+    at: Touch
+    law: Callable[[bool], SlippingLaw]  # whether weightless -> law
+    direction: Vector
+    ending: tuple[float, ...]
+
+
+def first_moment(system: RollingSystem, at: Touch) -> Onset | Touch:
     """Return a body that has slipped for a moment, in which it still rolled but for what friction could not give.
 
-    What it cannot give grows from nothing, mostly, and so the slip is the integral of a slope. Its direction would
-    settle so fast at first that no method could follow.
+    What it cannot give grows from nothing, mostly, and so the slip is the integral of a slope. Where friction settles
+    the direction of so small a slip at once, its speed alone is followed until it has grown.
 
     Parameters
     ----------
@@ -32,13 +41,11 @@ def first_moment(system: RollingSystem, at: Touch, needed: Vector) -> tuple[Touc
         Body, and a support with friction.
     at : Touch
         Where rolling gives way.
-    needed : Vector
-        The friction that rolling would take, N.
 
     Returns
     -------
-    (Touch, tuple of float)
-        The body a little later, and the numbers that the stops of `SlippingLaw` take.
+    Onset or Touch
+        The slipping body; or the body as it rolls on, where friction holds again before the moment has passed.
 
     Raises
     ------
@@ -50,67 +57,107 @@ def first_moment(system: RollingSystem, at: Touch, needed: Vector) -> tuple[Touc
     >>> import trundle as tr
     >>> slope = tr.Support(tr.Plane(), tilt=1.0, friction=0.1)
     >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), slope)
-    >>> at = Touch.of(system, system.place())
-    >>> later, _ = first_moment(system, at, _friction(system, at))
-    >>> later.state.time < 1e-6 and later.V.x > 0
+    >>> begun = first_moment(system, Touch.of(system, system.place()))
+    >>> begun.at.state.time < 1e-6 and begun.at.V.x > 0
     True
     """
     time, numbers = at.state.time, RollingLaw().numbers(at)
-    begun = _way(system, at, needed)[1]
+    moment = _FIRST * at.arm / at.scale(system)
 
-    def later(wait: float) -> tuple[Touch, Vector, float]:
+    def later(wait: float) -> tuple[Touch, _Growth | None]:
         moved = RollingLaw().advanced(system, time, numbers, wait)
         then = RollingLaw().meant(system, time + wait, moved)
-        return (then, *_way(system, then, _friction(system, then)))
+        return then, _growth(system, then)
 
-    trial = _FIRST * at.arm / at.scale(system)
-    growth = max((later(trial)[2] - begun) / trial, 1e-300)
-    J = system.body.inertia_in_space(at.orientation.matrix())
-    settling = needed.norm() * response(system, at.contact, J, needed / needed.norm()).norm()
-    wait = trial if begun > 0 else min(max(settling / (_SETTLED_IN * growth), trial), 1000 * trial)
-    (_, _, halfway), (then, hat, speed) = later(0.5 * wait), later(wait)
-    slip = hat * (wait * (begun + 4 * halfway + speed) / 6)
-    near = min((0.25 * slip.norm()) ** 2, at.still(system) ** 2)
-    return _pushed(system, then, slip), (near, *floats(hat))
+    begun, (_, halfway), (then, grown) = _growth(system, at), later(0.5 * moment), later(moment)
+    if grown is None or halfway is None:
+        if _holds(system, then):
+            return then
+        raise jammed(time)
+    speed = moment * ((0.0 if begun is None else begun.rate) + 4 * halfway.rate + grown.rate) / 6
+    hat = grown.direction
+    slipping = _pushed(system, then, hat * speed)
+    if grown.settling * moment > SETTLES_FAST * speed:
+        return Onset(slipping, partial(CreepingLaw, step=moment), hat, (time,))
+    near = min((0.25 * speed) ** 2, at.still(system) ** 2)
+    return Onset(slipping, SlippingLaw, hat, (near, *floats(hat)))
 
 
-def _friction(system: RollingSystem, at: Touch) -> Vector:
-    """Return the friction that rolling takes."""
-    state, n = at.state, at.contact.normal
-    R = roll(system, state.time, at.contact.point, at.orientation, at.Omega, state.support).reaction
-    return R - n * n.dot(R)
+def jammed(time: float, either: bool = False) -> SolverError:
+    """Name Painlevé's paradox: rigid contact with so much friction has no motion, or more than one.
+
+    Parameters
+    ----------
+    time : float
+        When, s.
+    either : bool
+        Whether the body may stay in contact as well as leave it; else it can do neither.
+
+    Returns
+    -------
+    SolverError
+        To be raised.
+
+    Examples
+    --------
+    >>> print(jammed(2.5, either=True))
+    At t = 2.5 s the body may slip on or come off ...
+    """
+    what = (
+        "the body may slip on or come off the support, and the laws of rigid contact do not say which"
+        if either
+        else "the body can neither roll, nor slip any way, nor come off the support"
+    )
+    return SolverError(f"At t = {time:.9g} s {what} (Painlevé's paradox: friction jams it). Use less friction.")
+
+
+@dataclass(frozen=True)
+class _Growth:
+    """How slip begins to grow."""
+
+    direction: Vector
+    rate: float  # m/s²
+    settling: float  # of its direction, times |s|, m/s²
+
+
+def _growth(system: RollingSystem, at: Touch) -> _Growth | None:
+    """Return how slip grows: where friction only just gives way, against the friction that rolling takes."""
+    state = at.state
+    contact, first = against(system, state.time, at.contact.point, at.orientation, at.Omega, state.support)
+    rates = slip_rates(system, state.time, contact, at.orientation, at.Omega, first, ZERO, state.support)
+    c, s, settling = rates.settled()
+    if c > 0 and settling > 0 and _grows(rates, c, s):
+        return _Growth(rates.direction(c, s), _rate(rates, c, s), settling)
+    for rate, (c, s) in onset(rates.along):
+        if rates.normal_force(c, s) > 0:
+            return _Growth(rates.direction(c, s), rate, 0.0)
+    return None
+
+
+def _rate(rates: SlipRates, c: float, s: float) -> float:
+    first, second = rates.along(c, s)
+    return float(c * first + s * second)
+
+
+def _grows(rates: SlipRates, c: float, s: float) -> bool:
+    return _rate(rates, c, s) > 0 and rates.normal_force(c, s) > 0
+
+
+def _holds(system: RollingSystem, at: Touch) -> bool:
+    """Tell whether friction gives what rolling takes."""
+    stops = RollingLaw().stops(system, at.state.time, RollingLaw().numbers(at), ())
+    return bool(stops["slip"] >= 0 and stops["lift"] >= 0)
 
 
 def _pushed(system: RollingSystem, at: Touch, slip: Vector) -> Touch:
     """Return the body after the impulse at the contact that makes it slip so."""
     J = system.body.inertia_in_space(at.orientation.matrix())
-    P = Matrix(*(response(system, at.contact, J, e) for e in (E_X, E_Y, E_Z))).transpose.solve(slip)
+    P = Matrix(*(response(system, at.contact, J, e).slip for e in (E_X, E_Y, E_Z))).transpose.solve(slip)
     own = at.state.support
     if system.support.motion.free:
         own = (
             *own[:-1],
             own[-1] - float(at.contact.support.lever(at.contact.point).dot(P) / system.support.motion.inertia),
         )
-    return at.moving(system, at.V + P / system.body.mass, at.Omega + J.solve(at.contact.offset.cross(P)), own)
-
-
-def _way(system: RollingSystem, at: Touch, needed: Vector) -> tuple[Vector, float]:
-    """Return the direction ŝ in which slip grows along ŝ when friction acts against it, and how fast, m/s²."""
-    first = needed / -needed.norm()
-    second = at.contact.normal.cross(first)
-
-    def grows(c: Any, s: Any) -> tuple[Any, Any]:
-        own, hat = at.state.support, first * c + second * s
-        rate = slip(system, at.state.time, at.contact.point, at.orientation, at.Omega, ZERO, own, hat).slip_rate
-        return rate.dot(first), rate.dot(second)
-
-    if math.hypot(*grows(1.0, 0.0)) <= _JUST * needed.norm() / system.body.mass:  # it gives way just now
-        return first, 0.0
-    found = onset(grows)
-    if found is None:
-        raise SolverError(
-            f"At t = {at.state.time:.9g} s the body can neither roll nor slip any way (friction jams it: Painlevé's "
-            "paradox of rigid contact). Use less friction."
-        )
-    speed, (c, s) = found
-    return first * c + second * s, speed
+    moved = at.moving(system, at.V + P / system.body.mass, at.Omega + J.solve(at.contact.offset.cross(P)), own)
+    return replace(moved, slip=slip)  # smaller than a rounding of V and Ω

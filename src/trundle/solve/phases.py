@@ -66,6 +66,8 @@ def solve(
     times: Array,
     tolerance: float,
     progress: Progress | None = None,
+    *,
+    creeps: bool = True,
 ) -> Samples:
     """Follow a body through its phases and return its samples with all events.
 
@@ -83,6 +85,8 @@ def solve(
         Of the method.
     progress : callable, optional
         Told the fraction done.
+    creeps : bool
+        Whether slip whose direction settles at once is a phase of its own to the method; to a closed form it is slip.
 
     Returns
     -------
@@ -96,7 +100,8 @@ def solve(
     """
     events: list[Event] = []
     parts: list[Part] = []
-    now = following.at_start(system, start)
+    begin = _same if creeps else following.slipping
+    now = begin(system, following.at_start(system, start))
     events += now.events
     left, told = times, _telling(progress, times)
     if now.time > start.time:  # it slips from rest: its first moment is behind it
@@ -113,7 +118,7 @@ def solve(
             parts.append(samples)
             events.append(event)
             break
-        now = _following(system, law, stop)
+        now = begin(system, _following(system, law, stop))
         events += now.events
         _check_count(system, events)
         left = _across(system, law, stop, now, left[left >= stop.time], parts)
@@ -121,6 +126,10 @@ def solve(
     kept = [part for part in recorded if part.time.size] or recorded[:1]
     form = next((part.form for part in recorded if part.form is not None), None)
     return replace(Samples.joined(kept, tuple(events)), form=form)
+
+
+def _same(system: RollingSystem, now: Next) -> Next:  # noqa: ARG001
+    return now
 
 
 def _recorded(system: RollingSystem, parts: list[Part]) -> list[Samples]:
@@ -164,7 +173,7 @@ def _across(system: RollingSystem, law: Law, stop: Stop, follows: Next, left: Ar
 def _giving_way(system: RollingSystem, at: Samples, follows: Next) -> Samples:
     """Return samples in which slip has begun, all but zero: the contact force is that of slipping."""
     place = Vector.of(at.contact), Quaternion.of(at.orientation), Vector.of(at.angular_velocity)
-    direction = Vector(*follows.extras[1:4])
+    direction = follows.law.direction(system, follows.time, follows.numbers)
     R = slip(system, at.time, *place, ZERO, at.support_own, direction).reaction
     force = np.broadcast_to(R.array(), at.position.shape).copy()
     return replace(at, contact_force=force, phase=np.full(at.time.size, SLIPPING, dtype=np.int8))

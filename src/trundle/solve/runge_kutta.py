@@ -13,15 +13,14 @@ from ..errors import SolverError
 from ..mechanics.system import RollingSystem, State
 from . import phases
 from .following import Next, Stop
-from .laws import Law, SlippingLaw
 from .phases import Stretch, upto
 from .samples import Array, Progress, Samples
 from .tracing import python_law
 
 TOLERANCE = 1e-12
+FINEST = 1e-13  # SciPy's own limit is 2e-14
 _LOOKS = 8  # at the stops in each step
 _EPSILON = 2.0**-52
-_SLOW_SLIP = 1e-6  # m/s for each rad/s of Ω
 _FIRST_STEP = 1e-12  # s
 
 
@@ -108,11 +107,11 @@ def _integrated(system: RollingSystem, now: Next, times: Array, tolerance: float
     steps = partial(_steps, stops=stops, names=names, begin=begin, progress=told)
     try:
         given: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * _scale(y0)}
-        if not _stiff(law, y0):
+        if not law.stiff(y0):
             return steps(DOP853(rates, 0.0, y0, end, **given), times=times)
         # Its first steps must be as short as the law is stiff: across a jump of direction there are other solutions.
         first = Radau(rates, 0.0, y0, end, first_step=min(_FIRST_STEP, end), **given)
-        begun = steps(first, times=times, until=lambda y: not _stiff(law, y))
+        begun = steps(first, times=times, until=lambda y: not law.stiff(y))
         if begun.stop is None or begun.stop.name:
             return begun
         left, y0 = times[begun.times.size :], begun.stop.numbers
@@ -121,15 +120,6 @@ def _integrated(system: RollingSystem, now: Next, times: Array, tolerance: float
         return Stretch(*both, then.stop)
     except (ZeroDivisionError, ValueError, OverflowError) as error:
         raise SolverError(f"The Runge-Kutta method broke down on the way to t = {begin + end:g} s: {error}.") from None
-
-
-def _stiff(law: Law, y: Array) -> bool:
-    """Tell whether a body slips so slowly that the direction of its slip settles far faster than all else changes."""
-    return isinstance(law, SlippingLaw) and law.extras > 0 and 0 < _length(y[10:13]) < _SLOW_SLIP * _length(y[7:10])
-
-
-def _length(v: Array) -> float:
-    return float(np.linalg.norm(v))
 
 
 def _scale(y0: Array) -> Array:

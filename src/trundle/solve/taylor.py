@@ -21,7 +21,7 @@ from ..errors import SolverError
 from ..files import written_whole
 from ..mechanics.parameters import numbers, structure_of
 from ..mechanics.system import RollingSystem, State
-from . import phases
+from . import phases, runge_kutta
 from .following import Next, Stop
 from .laws import Law
 from .lowering import Lowered, lower
@@ -120,6 +120,8 @@ def integrate(
     SolverError
         If the integration breaks down.
     """
+    if now.law.brief:
+        return runge_kutta.integrate(system, now, times, runge_kutta.FINEST, progress)
     lowered, key = _ready(system, now.law, tolerance)
     with _borrowed(lowered, key, tolerance) as integrator:
         run = _Run(integrator, lowered, [*numbers(system), *now.extras], now.time, now.numbers)

@@ -71,7 +71,7 @@ def closed_form(system: RollingSystem, start: State) -> ClosedForm | None:
     'T5'
     """
     try:
-        now = following.at_start(system, start)
+        now = following.slipping(system, following.at_start(system, start))
     except SolverError:  # it cannot go on at all
         return None
     return form_of_phase(now.law.code, system, now.start, now.numbers)

@@ -73,7 +73,7 @@ class SlidingSphere(ClosedForm):
         "or tilted, under gravity and constant force; without friction the plane may turn steadily"
     )
     phases = (SLIPPING,)
-    never = frozenset({"lift"})  # N is constant
+    never = frozenset({"lift", "jam"})  # N is constant
 
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> SlidingSphere:

@@ -1,0 +1,141 @@
+"""Slip so slow that friction settles its direction at once: how fast s would change for friction in any direction.
+
+Friction turns the slip towards the one direction that it keeps, at a rate that grows as 1/|s|. A slip that has only
+just begun, or will soon end, is therefore all but settled: ŝ follows from where the body is, and only |s| has a rate.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from .algebra import Quaternion, Vector
+from .contact import Contact
+from .scalars import Scalar, namespace
+from .slipping import response, unpushed
+
+if TYPE_CHECKING:
+    from .system import RollingSystem
+
+_STEPS = 4  # of Newton's method, each of which squares the error: friction that just gives way is off by little
+
+
+@dataclass(frozen=True, slots=True)
+class SlipRates:
+    """How s changes at one instant for friction against any direction ŝ = e₁ cos β + e₂ sin β (T4, with ŝ free).
+
+    Its vectors hold components along e₁, e₂ and n.
+    """
+
+    axes: tuple[Vector, Vector, Vector]  # e₁, e₂, n
+    friction: Scalar  # μ of slipping
+    free: Vector  # the rate of s without a contact force, m/s²
+    opening: Scalar  # the rate of s·n without a contact force, m/s²
+    pressed: Vector  # of s, for each newton of N without friction, 1/kg
+    rubbed: tuple[Vector, Vector]  # of s, for each newton along e₁ and e₂, 1/kg
+
+    def answer(self, c: Scalar, s: Scalar) -> Vector:
+        """Return a₁, how s answers to each newton of N, given cos β and sin β, 1/kg."""
+        return self.pressed - (self.rubbed[0] * c + self.rubbed[1] * s) * self.friction
+
+    def normal_force(self, c: Scalar, s: Scalar) -> Scalar:
+        """Return N, N."""
+        return -self.opening / self.answer(c, s).z
+
+    def along(self, c: Scalar, s: Scalar) -> tuple[Scalar, Scalar]:
+        """Return the rate of s along e₁ and e₂, m/s²."""
+        answer = self.answer(c, s)
+        N = -self.opening / answer.z
+        return self.free.x + answer.x * N, self.free.y + answer.y * N
+
+    def direction(self, c: Scalar, s: Scalar) -> Vector:
+        """Return ŝ."""
+        return self.axes[0] * c + self.axes[1] * s
+
+    def settled(self) -> tuple[Scalar, Scalar, Scalar]:
+        """Return cos β and sin β of the direction near e₁ that slip keeps, and |s| times the rate at which it settles.
+
+        Newton's method on t̂·ṡ = 0, t̂ = n×ŝ; the last, m/s², is −d(t̂·ṡ)/dβ.
+        """
+        beta: Scalar = 0.0
+        c, s = 1.0, 0.0
+        for step in range(_STEPS + 1):
+            first, second = self.along(c, s)
+            answer, N = self.answer(c, s), self.normal_force(c, s)
+            turned = (self.rubbed[0] * s - self.rubbed[1] * c) * self.friction  # da₁/dβ
+            N_turned = -N * turned.z / answer.z
+            first_turned, second_turned = (
+                a * N + b * N_turned for a, b in ((turned.x, answer.x), (turned.y, answer.y))
+            )
+            slope = c * (second_turned - first) - s * (first_turned + second)
+            if step == _STEPS:
+                break
+            beta = beta - (c * second - s * first) / slope
+            xp = namespace(beta)
+            c, s = xp.cos(beta), xp.sin(beta)
+        return c, s, -slope
+
+
+def slip_rates(
+    system: RollingSystem,
+    time: Scalar,
+    contact: Contact,
+    orientation: Quaternion,
+    angular_velocity: Vector,
+    first: Vector,
+    slip_velocity: Vector,
+    own: tuple[Scalar, ...] = (),
+) -> SlipRates:
+    """Return how s would change for friction in any direction.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Body, loads, and a support with friction.
+    time : Scalar
+        t, s.
+    contact : Contact
+        Where they touch.
+    orientation : Quaternion
+        Body frame to support frame.
+    angular_velocity : Vector
+        Ω, rad/s.
+    first : Vector
+        e₁, a unit vector along the support.
+    slip_velocity : Vector
+        s, along the support, m/s.
+    own : tuple of Scalar
+        The coordinates of the support's own motion, where it has some.
+
+    Returns
+    -------
+    SlipRates
+        Linear in the friction, so that no direction is worked out on its own.
+
+    Examples
+    --------
+    On a slope of 45° with μ = 1/7, half of what rolling takes, a ball begins to slip straight down:
+
+    >>> import math
+    >>> import trundle as tr
+    >>> from trundle.mechanics.algebra import E_X, ZERO
+    >>> from trundle.mechanics.contact import touch
+    >>> slope = tr.Support(tr.Plane(), tilt=math.pi / 4, friction=1 / 7)
+    >>> slope = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), slope, gravity=2**0.5)
+    >>> still = Quaternion(1.0, 0.0, 0.0, 0.0)
+    >>> rates = slip_rates(slope, 0.0, touch(slope, 0.0, ZERO, still), still, ZERO, E_X, ZERO)
+    >>> round(rates.along(1.0, 0.0)[0], 15), round(rates.settled()[2], 15)  # g sin α − (7/2) μ g cos α
+    (0.5, 1.0)
+    """
+    n = contact.normal
+    free = unpushed(system, time, contact, orientation, angular_velocity, slip_velocity, own)
+    axes = first, n.cross(first), n
+
+    def parts(v: Vector) -> Vector:
+        return Vector(*(v.dot(e) for e in axes))
+
+    couple = free.acting.couple if free.acting.has_couple else None
+    pressed = response(system, contact, free.inertia, n, couple).slip
+    rubbed, rubbed_across = (parts(response(system, contact, free.inertia, e).slip) for e in axes[:2])
+    mu = system.support.sliding_friction
+    return SlipRates(axes, mu, parts(free.slip_rate), free.opening, parts(pressed), (rubbed, rubbed_across))

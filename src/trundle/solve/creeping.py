@@ -1,0 +1,147 @@
+"""The law of slip so slow that friction settles its direction at once: only its speed is a number of the state."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..mechanics.algebra import Quaternion, Vector
+from ..mechanics.contact import Contact, roll
+from ..mechanics.creep import SlipRates, slip_rates
+from ..mechanics.scalars import Scalar
+from ..mechanics.slipping import Slipping, slip
+from ..mechanics.system import RollingSystem
+from .laws import CONTACT, Numbers, SlippingLaw
+from .touch import Touch
+
+# How many times as fast as slip has grown its direction must settle. Slower than that `SlippingLaw` follows it; faster,
+# any method would have to take steps as short as the direction takes to settle.
+SETTLES_FAST = 4e3
+
+
+class CreepingLaw(SlippingLaw):
+    """Slipping along the direction that friction keeps: the state is (p, q, Ω, |s|).
+
+    It ends where |s| falls back to nothing, "held", or where its direction settles no faster than slip grows, "settled".
+
+    Parameters
+    ----------
+    weightless : bool
+        As of `Law`.
+    step : float
+        A time in which the body hardly moves, s, over which the turning of the direction is seen.
+    """
+
+    variables = (*CONTACT, "speed")
+    ending = 1  # when it began, s
+    brief = True
+
+    def __init__(self, weightless: bool = False, step: float = 0.0) -> None:
+        super().__init__(weightless)
+        self.step = step
+
+    def stiff(self, numbers: Any) -> bool:  # noqa: ARG002
+        """Tell that no direction has to settle."""
+        return False
+
+    def _settled(self, system: RollingSystem, time: Scalar, state: Numbers) -> tuple[Vector, Vector, Scalar]:
+        """Return the direction that slip keeps, the one across it, and how fast the first settles, times |s|."""
+        p, q, Omega, (speed, *_), own = self.split(state)
+        contact, first = against(system, time, p, q, Omega, own)
+        rates = slip_rates(system, time, contact, q, Omega, first, first * speed, own)
+        c, s, settling = rates.settled()
+        return rates.direction(c, s), rates.direction(-s, c), settling
+
+    def _way(self, system: RollingSystem, time: Scalar, state: Numbers) -> tuple[Vector, Scalar]:
+        """Return ŝ, which lags behind the direction that slip keeps as that turns, and how fast it settles, times |s|.
+
+        How fast it turns is seen over a step so short that its length does not matter.
+        """
+        hat, across, settling = self._settled(system, time, state)
+        step = self.step
+        rates = self._rates(system, time, state, hat)
+        after = [number + rate * step for number, rate in zip(state, rates, strict=True)]
+        turning = (self._settled(system, time + step, after)[0] - hat).dot(across) / step
+        lag = state[10] * turning / settling
+        hat = hat - across * lag
+        return hat / hat.norm(), settling
+
+    def _now(self, system: RollingSystem, time: Scalar, state: Numbers, direction: Vector | None = None) -> Slipping:
+        p, q, Omega, (speed, *_), own = self.split(state)
+        hat = self._settled(system, time, state)[0] if direction is None else direction
+        return slip(system, time, p, q, Omega, hat * speed, own, hat)
+
+    def _rates(self, system: RollingSystem, time: Scalar, state: Numbers, hat: Vector) -> list[Scalar]:
+        now = self._now(system, time, state, hat)
+        own = system.support.motion.own_rates(time, self.split(state)[4], now.axle_moment)
+        return [*now.point_rate, *now.orientation_rate, *now.angular_acceleration, now.slip_rate.dot(hat), *own]
+
+    def rates(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:
+        """Return ṗ, q̇, Ω̇ and the rate of |s|."""
+        return self._rates(system, time, state, self._way(system, time, state)[0])
+
+    def stops(self, system: RollingSystem, time: Scalar, state: Numbers, extras: Numbers) -> dict[str, Scalar]:
+        """Return the normal force, its effect on the gap, the speed of slip, how its direction lags, and the bounds."""
+        hat, settling = self._way(system, time, state)
+        now = self._now(system, time, state, hat)
+        _, (since,) = self._floor(extras)
+        speed = state[10]
+        return {
+            **self._pressing(system, now, extras),
+            "held": speed,
+            "settled": settling * (time - since) - SETTLES_FAST * speed,
+            **self._bounds(system, now.contact, Quaternion(*state[3:7]), 0.0),
+        }
+
+    def numbers(self, at: Touch) -> list[float]:
+        """Return p, q, Ω and |s| of the slip along the support."""
+        return [*at.nearest, *at.orientation, *at.Omega, at.sliding.norm(), *at.state.support]
+
+    def direction(self, system: RollingSystem, time: float, numbers: Any) -> Vector:
+        """Return ŝ."""
+        return self._way(system, time, list(numbers))[0]
+
+    def _slip(self, system: RollingSystem, time: float, numbers: Any) -> Vector:
+        return self.direction(system, time, numbers) * float(numbers[10])
+
+    def _recorded(self, system: RollingSystem, time: Any, states: Any) -> Slipping:
+        columns = list(states.T)
+        columns[3:7] = (states[:, 3:7] / np.linalg.norm(states[:, 3:7], axis=1, keepdims=True)).T
+        return self._now(system, time, columns, self._way(system, time, columns)[0])
+
+
+def against(
+    system: RollingSystem,
+    time: Scalar,
+    point: Vector,
+    orientation: Quaternion,
+    angular_velocity: Vector,
+    own: tuple[Scalar, ...] = (),
+) -> tuple[Contact, Vector]:
+    """Return the contact, and the direction against the friction that rolling takes: close to where slip begins.
+
+    Parameters
+    ----------
+    system, time, point, orientation, angular_velocity, own
+        As for `trundle.mechanics.contact.roll`.
+
+    Returns
+    -------
+    contact : Contact
+        Where they touch.
+    direction : Vector
+        −f/|f|, f the friction that rolling takes.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> slope = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane(), tilt=0.1))
+    >>> still = Quaternion(1.0, 0.0, 0.0, 0.0)
+    >>> round(against(slope, 0.0, Vector(0.0, 0.0, 0.0), still, Vector(0.0, 0.0, 0.0))[1].x, 15)
+    1.0
+    """
+    now = roll(system, time, point, orientation, angular_velocity, own)
+    n, R = now.contact.normal, now.reaction
+    f = R - n * n.dot(R)
+    return now.contact, f / -f.norm()
