@@ -22,6 +22,7 @@ _CONSTANTS = {"pi": math.pi}
 _OPERATORS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
 _LONGEST, _DEEPEST = 500, 60
 _LARGEST_POWER = 20
+_SHOWN = 60  # characters of what is wrong
 
 
 @dataclass(frozen=True)
@@ -304,7 +305,7 @@ class _Reader:
                 if len(arguments) != wanted:
                     raise _RefusedError(f"{name} takes {wanted} argument{'s' * (wanted > 1)}.")
                 return (name, *(self.read(argument, depth + 1) for argument in arguments))
-        raise _RefusedError(f"Not allowed: {ast.get_source_segment(self.text, node) or self.text}.")
+        raise _RefusedError(f"Not allowed: {self._segment(node)}.")
 
     def _number(self, value: float, node: ast.expr) -> float:
         try:
@@ -312,8 +313,12 @@ class _Reader:
         except OverflowError:
             number = math.inf
         if not math.isfinite(number):
-            raise _RefusedError(f"{ast.get_source_segment(self.text, node)} is too large.")
+            raise _RefusedError(f"{self._segment(node)} is too large.")
         return number
+
+    def _segment(self, node: ast.expr) -> str:
+        found = ast.get_source_segment(self.text, node) or self.text
+        return found if len(found) <= _SHOWN else found[:_SHOWN] + "..."
 
     def _power(self, node: ast.expr) -> str:
         """Return a whole power as text: it belongs to the formula's structure, not to its numbers."""
