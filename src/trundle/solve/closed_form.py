@@ -135,9 +135,9 @@ def _first_stop(system: RollingSystem, now: Next, form: ClosedForm, duration: fl
     if not asked:
         return sooner
     upto = min(duration if sooner is None else sooner[0], 1.01 * max(form.repeats(name) for name in asked))
-    pace = form.pace(upto)
     values = _values(system, now, form, asked)
-    found = first_stop(values, upto, _PHASE_A_STEP / pace if pace > 0 else math.inf)
+    looks = [(t, _PHASE_A_STEP / pace if pace > 0 else math.inf) for t, pace in form.paces(upto)]
+    found = first_stop(values, looks)
     return sooner if found is None else (found[0], asked[found[1]])
 
 
