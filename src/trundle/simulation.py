@@ -81,10 +81,12 @@ def simulate(
     >>> run.method, run.data.time.size
     ('exact', 1001)
     """
-    _check_start(system, start)
+    if not isinstance(start, State):
+        raise InvalidValueError("start", "must be a State, as system.place(...) makes it", start)
     since = sample_times(duration, every)
-    check_clock(system, start, float(since[1]))
     times = start.time + since
+    _check_start(system, start, float(times[-1]))
+    check_clock(system, start, float(since[1]))
     check_finite(system, float(times[0]), float(times[-1]))
     chosen, samples = methods.run(method, system, start, times, progress, tolerance)
     if scenario is None:
@@ -105,10 +107,8 @@ def _described(system: RollingSystem, start: State, times: Any, method: str, tit
     return described.title, described.to_toml()
 
 
-def _check_start(system: RollingSystem, start: State) -> None:
+def _check_start(system: RollingSystem, start: State, until: float) -> None:
     """Refuse a hand-made start inside the support, or one that slips where nothing limits the friction."""
-    if not isinstance(start, State):
-        raise InvalidValueError("start", "must be a State, as system.place(...) makes it", start)
     own = system.support.motion.own
     if len(start.support) != len(own):
         remedy = "Let system.place(...) make the start."
@@ -125,7 +125,7 @@ def _check_start(system: RollingSystem, start: State) -> None:
     _check_loads(system, start, contact)
     if gap <= SLIP_TOLERANCE * contact.offset.norm():
         _check_slip(system, start, contact)
-    straight.check_start(system, start)
+    straight.check_start(system, start, until)
 
 
 def _check_loads(system: RollingSystem, start: State, contact: Contact) -> None:

@@ -110,10 +110,55 @@ def test_a_hand_made_start_that_lies_askew_is_refused_by_the_run() -> None:
         tr.simulate(system, askew, 1.0, 0.5)
 
 
-def test_a_load_that_turns_it_aside_later_fails_the_card() -> None:
-    system = tr.RollingSystem(LOG, SLOPE, loads=(tr.Force((0.0, "0.1*t", 0.0)),))
-    card = tr.simulate(system, system.place(), 1.0, 0.01).card()
-    assert "rolls straight" in [figure.name for figure in card.failures]
+@pytest.mark.parametrize(
+    ("support", "loads"),
+    [
+        (SLOPE, (tr.Force((0.0, "0.1*t", 0.0)),)),
+        (SLOPE, (tr.Torque(("0.1*t", 0.0, 0.0)),)),
+        (tr.Support(tr.Plane(), motion=tr.SpinBy("0.1*t")), ()),
+        (tr.Support(tr.Plane(), motion=tr.SpinBy("-0.1*t**2")), ()),
+        (tr.Support(tr.Plane(), motion=tr.Rock(0.1, 1.0)), ()),
+    ],
+)
+def test_what_would_turn_it_aside_later_is_refused_before_it_runs(support: Any, loads: Any) -> None:
+    system = tr.RollingSystem(LOG, support, loads=loads)
+    with pytest.raises(InvalidValueError, match="must roll straight") as caught:
+        tr.simulate(system, system.place(velocity=(0.2, 0.0) if support is SLOPE else (0.0, 0.2)), 1.0, 0.01)
+    assert caught.value.key == "body"
+
+
+@pytest.mark.parametrize("rate", [1.0, -1.0])
+@pytest.mark.parametrize(
+    ("support", "loads"),
+    [
+        (lambda rate: tr.Support(tr.Plane(), motion=tr.Spin(rate)), ()),
+        (lambda rate: tr.Support(tr.Plane(), motion=tr.Spin(rate), tilt=0.1), ()),
+        (lambda rate: tr.Support(tr.Plane(), motion=tr.Wobble(rate, 0.01)), ()),
+        (lambda rate: tr.Support(tr.Cylinder(0.5), motion=tr.Spin(rate), tilt=1.2), ()),
+        (lambda _: tr.Support(tr.Plane()), (tr.Drag(0.1, air_rate=1.0),)),
+    ],
+)
+def test_what_pushes_it_aside_a_little_further_on_is_refused_where_it_is_put_down(
+    support: Any, loads: Any, rate: float
+) -> None:
+    # On the axle nothing pushes it aside yet.
+    with pytest.raises(InvalidValueError, match="must roll straight"):
+        tr.RollingSystem(LOG, support(rate), loads=loads).place((0.0, 0.0), spin=None)
+
+
+@pytest.mark.parametrize(
+    "support",
+    [
+        tr.Support(tr.Plane(), motion=tr.Shake((0.02, 0.0, 0.01), 3.0)),
+        tr.Support(tr.Plane(), motion=tr.Rock(0.1, 2.0)),
+        tr.Support(tr.Plane(), tilt=-0.1),
+        tr.Support(tr.Cylinder(0.5), motion=tr.Spin(-1.0), tilt="90 deg"),
+        tr.Support(tr.Cylinder(0.5, side="outside"), motion=tr.SpinBy("cos(t)"), tilt="90 deg", friction=0.3),
+    ],
+)
+def test_what_is_the_same_on_both_sides_is_not(support: Any) -> None:
+    system = tr.RollingSystem(LOG, support)
+    assert tr.simulate(system, system.place(velocity=(0.2, 0.0)), 0.2, 0.01).card().passed
 
 
 @pytest.mark.parametrize("ratio", [0.0, -0.5, 1.01, float("nan")])

@@ -19,6 +19,7 @@ from .scalars import Scalar, is_zero
 if TYPE_CHECKING:
     from .system import RollingSystem, State
 
+_IN_PROPORTION = 100.0  # times what is asked of a start: more must not follow from it
 SLIP_TOLERANCE = 1e-9  # of the largest speed at the contact: beyond it a start slips
 
 
@@ -154,6 +155,7 @@ class Placing:
         if gap > 0:
             return V
         rolling = V + n * ((u - V).dot(rho) / n.dot(rho))  # what Ω can match: V·ρ = u·ρ
+        self._check_proportion(rolling, V, u)
         if turning is None or slips(contact, rolling, turning) is None:
             return rolling
         return V + n * (u - V - turning.cross(rho)).dot(n)  # nothing opens or closes: n·(V + Ω×ρ − u) = 0
@@ -179,7 +181,24 @@ class Placing:
         relative = V - u
         if not isinstance(self.velocity, str) and self.velocity is not None and _length(self.velocity) == 3:
             relative = relative - n * (relative.dot(rho) / n.dot(rho))
-        return _rolling_rate(relative, rho, n, about_normal)
+        Omega = _rolling_rate(relative, rho, n, about_normal)
+        self._check_proportion(Omega * rho.norm(), V, u, n * (about_normal * rho.norm()))
+        return Omega
+
+    def _check_proportion(self, follows: Vector, *given: Vector) -> None:
+        """Refuse what follows from rolling where it is out of all proportion: the body all but lies on its side."""
+        most = max(float(v.norm()) for v in given)
+        if float(follows.norm()) <= _IN_PROPORTION * most:
+            return
+        key = "orientation" if self.attitude is None else "attitude"
+        value = (1.0, 0.0, 0.0, 0.0) if self.orientation is None else self.orientation
+        raise InvalidValueError(
+            key,
+            "must not let the body all but lie on its side",
+            value if self.attitude is None else self.attitude,
+            f"Where {most:.3g} m/s are asked for it would have to move at {float(follows.norm()):.3g} m/s to roll. Let "
+            "it stand up more, or give all three components of `velocity`, and `angular_velocity`.",
+        )
 
     def _check_no_slip(self, contact: Contact, V: Vector, Omega: Vector, gap: float) -> None:
         """Refuse a start that slips where nothing says how rough the support is."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from ..errors import InvalidValueError
+from ..errors import InvalidValueError, SolverError
 from . import checks
 from .algebra import Matrix, Quaternion, Vector
 from .contact import Contact, roll, settle
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from .system import RollingSystem, State
 
 TOLERANCE = 1e-9  # share of Ω or Ω̇ that may lie across the axis
+_FURTHER = 0.7  # times |ρ|: how far on and back what pushes it is looked at
+_INSTANTS = (0.0, 0.137, 0.382, 0.618, 0.871, 1.0)  # of the run, at which it is looked at
 
 
 def facing(contact: Contact, begin: SupportState, surface: Surface, velocity: Any, turned: float) -> Quaternion:
@@ -66,8 +68,8 @@ def facing(contact: Contact, begin: SupportState, surface: Surface, velocity: An
     return Quaternion.of_matrix(Matrix(up, forward, n.cross(d)).transpose)
 
 
-def check_start(system: RollingSystem, start: State) -> None:
-    """Refuse a cylinder that lies askew, spins out of its line, or is pushed out of it.
+def check_start(system: RollingSystem, start: State, until: float | None = None) -> None:
+    """Refuse a cylinder that lies askew, spins out of its line, or is pushed out of it now or later.
 
     Parameters
     ----------
@@ -75,6 +77,8 @@ def check_start(system: RollingSystem, start: State) -> None:
         Bodies that touch at a point pass.
     start : State
         A start that touches, or falls.
+    until : float, optional
+        The end of the run, s: what pushes may change until then. Absent: only the start's own time is looked at.
 
     Raises
     ------
@@ -88,7 +92,7 @@ def check_start(system: RollingSystem, start: State) -> None:
     >>> turntable.place((0.3, 0.0))
     Traceback (most recent call last):
     ...
-    trundle.errors.InvalidValueError: `body` must roll straight, its Ω along its axis; got Roller(...). A sphere ...
+    trundle.errors.InvalidValueError: `body` must roll straight, its Ω along its axis; got ... A sphere ...
     """
     if system.body.shape.axis is None:
         return
@@ -101,24 +105,52 @@ def check_start(system: RollingSystem, start: State) -> None:
             "orientation", "must lay a cylinder's axis along the support", start.orientation, remedy
         )
     if (contact.shape_operator @ axis).norm() * contact.offset.norm() > TOLERANCE:
-        raise _crooked(system, "its axis along a straight line of the surface", "Leave `orientation` out, or turn it.")
+        raise _crooked("its axis along a straight line of the surface", "Leave `orientation` out, or turn it.")
     if _across(Omega, axis) > TOLERANCE * Omega.norm():
-        raise _crooked(system, "its Ω along its axis", "A sphere rolls in every direction.")
+        raise _crooked("its Ω along its axis", "A sphere rolls in every direction.")
     V = Vector(*start.velocity)
     along = V - contact.support.material_velocity(contact.point)
     if abs(along.dot(axis)) > TOLERANCE * max(along.norm(), V.norm()):
-        raise _crooked(system, "its way across its axis", "Leave `orientation` out and it is laid across its way.")
-    now = roll(system, start.time, contact.point, q, Omega, start.support)
-    size = max(now.angular_acceleration.norm(), Omega.dot(Omega))
-    if _across(now.angular_acceleration, axis) > TOLERANCE * size:
-        raise _crooked(
-            system, "with nothing that pushes it out of its line", "Let it start along the slope, and push it that way."
-        )
+        raise _crooked("its way across its axis", "Leave `orientation` out and it is laid across its way.")
+    _check_aside(system, start, contact, axis, start.time if until is None else until)
+
+
+def _check_aside(system: RollingSystem, start: State, contact: Contact, axis: Vector, until: float) -> None:
+    """Refuse what would turn the cylinder out of its line: there, a little further on, rolling either way, later.
+
+    What is the same on both sides of the plane across the axis never does, wherever the cylinder rolls to. What is not
+    the same may still balance at one place and instant, as on the axle of a turntable.
+    """
+    q, Omega, n, arm = Quaternion(*start.orientation), Vector(*start.angular_velocity), contact.normal, contact.offset
+    motion = contact.body_motion(system.body.mass, start.time, Vector(*start.velocity), q, Omega)
+    force, torque = system.loads_on(motion)
+    pull = float(force.norm() + torque.norm() / arm.norm()) / float(system.body.mass)
+    rate = max(
+        float(abs(Omega.dot(axis))), math.sqrt(pull / float(arm.norm())), float(contact.support.angular_velocity.norm())
+    )
+    way = n.cross(axis) * (_FURTHER * float(arm.norm()))
+    tried = [(start.time, 0.0, Omega)]
+    tried += [
+        (start.time + share * (until - start.time), side, axis * (side * rate))
+        for share in (_INSTANTS if until > start.time else (0.0,))
+        for side in (1.0, -1.0)
+    ]
+    for time, side, turning in tried:
+        try:
+            there = settle(system, time, Vector(*start.position) + way * side, q, start.support)
+            now = roll(system, time, there.point, q, turning, start.support)
+        except (SolverError, ArithmeticError, ValueError):  # the surface does not reach there
+            continue
+        size = max(float(now.angular_acceleration.norm()), rate * rate)
+        if _across(now.angular_acceleration, axis) > TOLERANCE * size or abs(axis.dot(there.normal)) > TOLERANCE:
+            when = "" if time == start.time else f" (at t = {time:.4g} s)"
+            remedy = "Let it start along the slope, and push it that way; a sphere rolls in every direction."
+            raise _crooked(f"with nothing that pushes it out of its line{when}", remedy)
 
 
 def _across(v: Vector, axis: Vector) -> float:
     return float((v - axis * v.dot(axis)).norm())
 
 
-def _crooked(system: RollingSystem, how: str, remedy: str) -> InvalidValueError:
-    return InvalidValueError("body", f"must roll straight, {how}", system.body.shape, remedy)
+def _crooked(how: str, remedy: str) -> InvalidValueError:
+    return InvalidValueError("body", f"must roll straight, {how}", "one that touches along a line", remedy)

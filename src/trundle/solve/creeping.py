@@ -8,7 +8,7 @@ import numpy as np
 
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import Contact, roll
-from ..mechanics.creep import SlipRates, slip_rates
+from ..mechanics.creep import slip_rates
 from ..mechanics.scalars import Scalar
 from ..mechanics.slipping import Slipping, slip
 from ..mechanics.system import RollingSystem
@@ -23,7 +23,7 @@ SETTLES_FAST = 4e3
 class CreepingLaw(SlippingLaw):
     """Slipping along the direction that friction keeps: the state is (p, q, Ω, |s|).
 
-    It ends where |s| falls back to nothing, "held", or where its direction settles no faster than slip grows, "settled".
+    It ends where |s| falls back to nothing, "held", or where slip has grown so fast that its direction lags, "settled".
 
     Parameters
     ----------

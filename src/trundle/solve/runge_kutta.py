@@ -20,6 +20,9 @@ from .tracing import python_law
 TOLERANCE = 1e-12
 FINEST = 1e-13  # SciPy's own limit is 2e-14
 _LOOKS = 8  # at the stops in each step
+_BLUR = 0.05  # share of a step within which a polynomial through these finds where a stop is lowest
+_SINGULAR = ("curved", "edge", "end", "jam")  # stops at which a law is singular
+_ALL_BUT = 1e-3  # share of what was left of such a stop at first
 _EPSILON = 2.0**-52
 _FIRST_STEP = 1e-12  # s
 
@@ -149,13 +152,17 @@ def _steps(
     states = np.empty((times.size, stepper.n))
     done = int(np.searchsorted(times, stepper.t, side="right"))
     states[:done] = stepper.y
-    values = stops(stepper.t, stepper.y)
+    first = values = stops(stepper.t, stepper.y)
     while stepper.status == "running":
         message = stepper.step()
         if stepper.status == "failed" or not np.isfinite(stepper.y).all():
-            raise SolverError(_broken(stepper, begin, message))
+            near = _singular(names, values, first)
+            if near is None:
+                raise SolverError(_broken(stepper, begin, message))
+            kept = times[:done] < stepper.t
+            return Stretch(times[:done][kept], states[:done][kept], Stop(float(stepper.t), near, stepper.y.copy()))
         path = stepper.dense_output()
-        found = _first_stop(path, stops, values, len(names))
+        found = _first_stop(path, stops, values)
         reach = stepper.t if found is None else found[0]
         last = int(np.searchsorted(times, reach, side="right"))
         if last > done:
@@ -171,6 +178,17 @@ def _steps(
     return Stretch(times[:done], states[:done], None)
 
 
+def _singular(names: list[str], values: Array, first: Array) -> str | None:
+    """Return the end at which the law is singular that it has all but come to: no step leads nearer."""
+    shares = {
+        name: value / begin
+        for name, value, begin in zip(names, values, first, strict=True)
+        if name in _SINGULAR and begin > 0
+    }
+    nearest = min(shares, key=lambda name: shares[name], default=None)
+    return nearest if nearest is not None and shares[nearest] < _ALL_BUT else None
+
+
 def _broken(stepper: Any, begin: float, message: str | None) -> str:
     """Say when and where the method broke down."""
     near = ", ".join(f"{part:.6g}" for part in stepper.y[:3])
@@ -181,33 +199,58 @@ def _broken(stepper: Any, begin: float, message: str | None) -> str:
     )
 
 
-def _first_stop(path: Any, stops: Any, begin: Array, count: int) -> tuple[float, int] | None:
+def _first_stop(path: Any, stops: Any, begin: Array) -> tuple[float, int] | None:
     """Return the first instant in a step at which a stop falls through zero, also where it rises again at once."""
-    from scipy.optimize import brentq, minimize_scalar
-
-    if not count:
+    if not begin.size:
         return None
-    looks = np.linspace(path.t_old, path.t, _LOOKS)
+    looks = 0.5 * (path.t_old + path.t) - 0.5 * (path.t - path.t_old) * np.cos(np.pi * np.arange(_LOOKS) / (_LOOKS - 1))
+    looks[[0, -1]] = path.t_old, path.t
     between = path(looks[1:]).T
     values = np.array([begin, *(stops(t, y) for t, y in zip(looks[1:], between, strict=True))])
     found: list[tuple[float, int]] = []
-    for which in range(count):
-        value = values[:, which]
+    for which, value in enumerate(values.T):
 
         def at(t: float, which: int = which) -> float:
             return float(stops(t, path(t))[which])
 
-        for j in range(_LOOKS - 1):
-            if value[j] >= 0 > value[j + 1]:
-                found.append((float(brentq(at, looks[j], looks[j + 1], xtol=1e-300, rtol=4 * _EPSILON)), which))
-                break
-            dips = j > 0 and value[j - 1] > value[j] < value[j + 1] and value[j] >= 0
-            # It may fall below zero in between, but hardly by more than it falls and rises from look to look.
-            if dips and value[j] < max(value[j - 1], value[j + 1]) - value[j]:
-                bounds = (looks[j - 1], looks[j + 1])
-                low = minimize_scalar(at, bounds=bounds, method="bounded", options={"xatol": 1e-9 * np.ptp(bounds)})
-                if low.fun < 0:
-                    root = brentq(at, looks[j - 1], low.x, xtol=1e-300, rtol=4 * _EPSILON)
-                    found.append((float(root), which))
-                    break
+        fall = _fall(at, looks, value)
+        if fall is not None:
+            found.append((fall, which))
     return min(found) if found else None
+
+
+def _fall(function: Callable[[float], float], looks: Array, values: Array) -> float | None:
+    """Return where a function first falls through zero, given its values at Chebyshev's points of a step."""
+    from scipy.optimize import brentq
+
+    falls = np.flatnonzero((values[:-1] >= 0) & (values[1:] < 0))
+    inside = values[: falls[0] + 1] if falls.size else values
+    # What lies between the looks is hardly lower than the lowest of them, beside how much they differ.
+    if np.nanmin(inside, initial=np.inf) < 0.5 * np.ptp(values) and (inside >= 0).all():
+        for low in _minima(function, looks, values):
+            if (not falls.size or low < looks[falls[0]]) and function(low) < 0:
+                before = looks[: np.searchsorted(looks, low)][-1]
+                return float(brentq(function, before, low, xtol=1e-300, rtol=4 * _EPSILON))
+    if not falls.size:
+        return None
+    first = int(falls[0])
+    return float(brentq(function, looks[first], looks[first + 1], xtol=1e-300, rtol=4 * _EPSILON))
+
+
+def _minima(function: Callable[[float], float], looks: Array, values: Array) -> list[float]:
+    """Return where a function is lowest between its looks, in order, near where the polynomial through them is."""
+    from numpy.polynomial import chebyshev
+    from scipy.optimize import minimize_scalar
+
+    x = -np.cos(np.pi * np.arange(_LOOKS) / (_LOOKS - 1))
+    slope = chebyshev.chebder(chebyshev.chebfit(x, values, _LOOKS - 1))
+    roots = chebyshev.chebroots(np.trim_zeros(slope, "b")) if slope.any() else np.empty(0)
+    level = np.sort(roots.real[(np.abs(roots.imag) < _BLUR) & (np.abs(roots.real) < 1)])
+    rises = chebyshev.chebval(level, chebyshev.chebder(slope)) > 0
+    begin, end = looks[0], looks[-1]
+    found = []
+    for middle in 0.5 * (begin + end) + 0.5 * (end - begin) * level[rises]:
+        bounds = max(begin, middle - _BLUR * (end - begin)), min(end, middle + _BLUR * (end - begin))
+        options = {"xatol": 1e-9 * (end - begin)}
+        found.append(float(minimize_scalar(function, bounds=bounds, method="bounded", options=options).x))
+    return found

@@ -25,12 +25,15 @@ from . import phases, runge_kutta
 from .following import Next, Stop
 from .laws import Law
 from .lowering import Lowered, lower
+from .patience import Patience
 from .phases import Stretch, upto
 from .samples import Array, Progress, Samples
 
 TOLERANCE = 1e-15
 _CHUNKS = 100  # of a run at most, between which progress is told and Ctrl-C is heard
 _LEAST_CHUNK = 60  # instants
+_AT_ONCE = 10_000  # steps, between which Ctrl-C is heard too
+_PATIENCE: dict[str, Any] = {"steps": 3e6, "spare": 5e4, "name": "Taylor's method"}  # a minute, and some seconds
 _LONGEST = 100.0  # s without a new reference of time, at most
 
 
@@ -200,6 +203,7 @@ class _Run:
         self, integrator: Any, lowered: Lowered, given: Sequence[float], begin: float, state: Sequence[float]
     ) -> None:
         self.integrator, self.lowered, self.given = integrator, lowered, given
+        self.patience: Patience
         integrator.state[:] = state
         self._refer_to(begin)
 
@@ -213,6 +217,35 @@ class _Run:
         self._refer_to(time)
         self.integrator.state[:] = self.lowered.tidy([0.0, *self.integrator.state.tolist(), *self.values])
 
+    def go_to(self, until: float) -> int | None:
+        """Propagate to a time since the reference; return which terminal event came first if one did."""
+        while True:
+            outcome, _, _, steps, *_ = self.integrator.propagate_until(until, max_steps=_AT_ONCE)
+            if not self._is_cut(outcome, steps):
+                return _event(self, outcome)
+
+    def go_through(self, since: Array) -> tuple[Array, int | None]:
+        """Return the states at times since the reference, the first of them now, and the terminal event if one came."""
+        parts: list[Array] = []
+        done = 0
+        while True:
+            ahead = np.concatenate([[self.integrator.time], since[done:]]) if done else since
+            outcome, _, _, steps, *_, found = self.integrator.propagate_grid(ahead, max_steps=_AT_ONCE)
+            found = found.reshape(-1, self.integrator.state.size)[bool(done) :]
+            parts.append(found)
+            done += len(found)
+            if not self._is_cut(outcome, steps):
+                return np.vstack(parts), _event(self, outcome)
+
+    def _is_cut(self, outcome: Any, steps: int) -> bool:
+        """Tell whether there is more to do, after so many steps that somebody may have lost patience meanwhile."""
+        import heyoka
+
+        if outcome != heyoka.taylor_outcome.step_limit:
+            return False
+        self.patience.after(steps, self.time)
+        return True
+
     def _refer_to(self, time: float) -> None:
         self.reference, self.integrator.time = time, 0.0
         self.values = self.lowered.values(self.given, time)
@@ -221,21 +254,19 @@ class _Run:
 
 def _propagate(run: _Run, times: Array, progress: Progress | None) -> tuple[Array, int | None]:
     """Return the states at the times, and which terminal event came first if one did."""
-    integrator = run.integrator
-    parts: list[Array] = [np.empty((0, integrator.state.size))]
+    parts: list[Array] = [np.empty((0, run.integrator.state.size))]
+    run.patience = Patience(run.time, float(times[-1]) if times.size else run.time, **_PATIENCE)
     for chunk in _chunks(times):
         while run.reference < chunk[0]:  # also where rounding does not tell the two instants apart: it must begin there
             until = min(float(chunk[0]), run.reference + _LONGEST)
-            ended = _event(run, integrator.propagate_until(until - run.reference)[0])
+            ended = run.go_to(until - run.reference)
             if ended is not None:
                 return np.vstack(parts), ended
             run.tidy(until)
         # Counted from the reference, two instants may be one: what is left of a difference is rounded.
         since, which = np.unique(chunk - run.reference, return_inverse=True)
-        result = integrator.propagate_grid(since)
-        states = result[-1].reshape(-1, integrator.state.size)
+        states, ended = run.go_through(since)
         parts.append(states[which[which < len(states)]])
-        ended = _event(run, result[0])
         if ended is not None:
             return np.vstack(parts), ended
         if progress is not None:

@@ -1,0 +1,47 @@
+"""How many steps a run may take, and how many more where it hardly gets on: then no run goes on for hours."""
+
+from __future__ import annotations
+
+from ..errors import SolverError
+
+
+class Patience:
+    """What refuses a run that would take longer than anyone waits.
+
+    A run may take so many steps for all of its time, evenly, and where it hardly gets on, as near a pole of a formula
+    just behind its end, some to spare.
+
+    Parameters
+    ----------
+    begin, end : float
+        Of the run, s.
+    steps : float
+        For all of it.
+    spare : float
+        Besides.
+    name : str
+        The method's.
+
+    Examples
+    --------
+    >>> patience = Patience(0.0, 10.0, steps=1e6, spare=1e4, name="Taylor's method")
+    >>> patience.after(50_000, 1.0)
+    >>> patience.after(50_000, 1.0001)
+    Traceback (most recent call last):
+    ...
+    trundle.errors.SolverError: Taylor's method hardly gets on at t = 1.0001 s: a step is 2e-09 s there. Ask for a ...
+    """
+
+    def __init__(self, begin: float, end: float, *, steps: float, spare: float, name: str) -> None:
+        self.time, self.pace, self.spare, self.name = begin, steps / max(end - begin, 1e-300), spare, name
+        self.owed = 0.0  # steps taken beyond the even ones
+
+    def after(self, steps: int, time: float) -> None:
+        """Take account of steps up to a time; refuse to go on where they are too many."""
+        gone, self.time = time - self.time, time
+        self.owed = max(0.0, self.owed + steps - gone * self.pace)
+        if self.owed > self.spare:
+            raise SolverError(
+                f"{self.name} hardly gets on at t = {time:.9g} s: a step is {gone / max(steps, 1):.1g} s there. Ask "
+                "for a shorter run, or look for what turns so fast: a rate, a force, or a formula near where it ends."
+            )
