@@ -85,9 +85,9 @@ def simulate(
         raise InvalidValueError("start", "must be a State, as system.place(...) makes it", start)
     since = sample_times(duration, every)
     times = start.time + since
+    check_finite(system, float(times[0]), float(times[-1]))
     _check_start(system, start, float(times[-1]))
     check_clock(system, start, float(since[1]))
-    check_finite(system, float(times[0]), float(times[-1]))
     chosen, samples = methods.run(method, system, start, times, progress, tolerance)
     if scenario is None:
         title, scenario = _described(system, start, times, method, title)

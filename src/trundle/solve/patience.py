@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..errors import SolverError
+from ..errors import SolverError, TrundleError
 
 
 class Patience:
@@ -21,6 +21,8 @@ class Patience:
         Besides.
     name : str
         The method's.
+    error : type
+        What to raise.
 
     Examples
     --------
@@ -32,8 +34,18 @@ class Patience:
     trundle.errors.SolverError: Taylor's method hardly gets on at t = 1.0001 s: a step is 2e-09 s there. Ask for a ...
     """
 
-    def __init__(self, begin: float, end: float, *, steps: float, spare: float, name: str) -> None:
-        self.time, self.pace, self.spare, self.name = begin, steps / max(end - begin, 1e-300), spare, name
+    def __init__(
+        self,
+        begin: float,
+        end: float,
+        *,
+        steps: float,
+        spare: float,
+        name: str,
+        error: type[TrundleError] = SolverError,
+    ) -> None:
+        self.time, self.pace, self.spare = begin, steps / max(end - begin, 1e-300), spare
+        self.name, self.error = name, error
         self.owed = 0.0  # steps taken beyond the even ones
 
     def after(self, steps: int, time: float) -> None:
@@ -41,7 +53,7 @@ class Patience:
         gone, self.time = time - self.time, time
         self.owed = max(0.0, self.owed + steps - gone * self.pace)
         if self.owed > self.spare:
-            raise SolverError(
+            raise self.error(
                 f"{self.name} hardly gets on at t = {time:.9g} s: a step is {gone / max(steps, 1):.1g} s there. Ask "
                 "for a shorter run, or look for what turns so fast: a rate, a force, or a formula near where it ends."
             )

@@ -13,6 +13,7 @@ from ..errors import SolverError
 from ..mechanics.system import RollingSystem, State
 from . import phases
 from .following import Next, Stop
+from .patience import Patience
 from .phases import Stretch, upto
 from .samples import Array, Progress, Samples
 from .tracing import python_law
@@ -24,6 +25,7 @@ _BLUR = 0.05  # share of a step within which a polynomial through these finds wh
 _SINGULAR = ("curved", "edge", "end", "jam")  # stops at which a law is singular
 _ALL_BUT = 1e-3  # share of what was left of such a stop at first
 _EPSILON = 2.0**-52
+_PATIENCE: dict[str, Any] = {"steps": 1e5, "spare": 5e3, "name": "The Runge-Kutta method"}  # minutes, and seconds
 _FIRST_STEP = 1e-12  # s
 
 
@@ -107,7 +109,8 @@ def _integrated(system: RollingSystem, now: Next, times: Array, tolerance: float
             return np.full(len(names), np.nan)
 
     told = None if progress is None else lambda since: progress(begin + since)
-    steps = partial(_steps, stops=stops, names=names, begin=begin, progress=told)
+    patience = Patience(begin, begin + end, **_PATIENCE)
+    steps = partial(_steps, stops=stops, names=names, begin=begin, patience=patience, progress=told)
     try:
         given: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * _scale(y0)}
         if not law.stiff(y0):
@@ -141,6 +144,7 @@ def _steps(
     stops: Any,
     names: list[str],
     begin: float,
+    patience: Patience,
     times: Array,
     progress: Progress | None,
     until: Callable[[Array], bool] = lambda _: False,
@@ -155,6 +159,7 @@ def _steps(
     first = values = stops(stepper.t, stepper.y)
     while stepper.status == "running":
         message = stepper.step()
+        patience.after(1, begin + float(stepper.t))
         if stepper.status == "failed" or not np.isfinite(stepper.y).all():
             near = _singular(names, values, first)
             if near is None:

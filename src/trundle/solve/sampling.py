@@ -112,7 +112,7 @@ def check_clock(system: RollingSystem, start: State, step: float) -> None:
     >>> check_clock(table, table.place(time=1e6), 0.01)
     """
     apart = float(np.spacing(abs(start.time)))
-    if apart > min(_COARSEST_OF_STEP * step, _COARSEST_OF_MOMENT * moment(system, start)):
+    if start.time and apart > min(_COARSEST_OF_STEP * step, _COARSEST_OF_MOMENT * moment(system, start)):
         rule = f"must be nearer to 0 for samples {step:g} s apart"
         remedy = f"Instants there are {apart:.1g} s apart. Let the run start nearer to 0, and shift its formulas in t."
         raise InvalidValueError("start.time", rule, start.time, remedy)

@@ -6,6 +6,7 @@ import contextlib
 import copy
 import hashlib
 import itertools
+import math
 import os
 import pickle
 import platform
@@ -294,8 +295,9 @@ def _event(run: _Run, outcome: Any) -> int | None:
     if outcome == heyoka.taylor_outcome.time_limit:
         return None
     if int(outcome) >= 0 or int(outcome) < -1000:
+        when = f"at t = {run.time:.9g} s" if math.isfinite(run.time) else f"after t = {run.reference:.9g} s"
         raise SolverError(
-            f"Taylor's method broke down at t = {run.time:.9g} s ({outcome}): the rates are no longer finite. "
+            f"Taylor's method broke down {when} ({outcome}): the rates are no longer finite. "
             "Look for a support or load that jumps, or a surface too curved for the body."
         )
     return -int(outcome) - 1
