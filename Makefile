@@ -1,7 +1,7 @@
 # Everything from a bare machine: Python 3.11 or newer and make are all it needs.
 .POSIX:
 .DELETE_ON_ERROR:
-.PHONY: help demo test bench check-web lint lint-python format clean always
+.PHONY: help demo test fuzz bench check-web lint lint-python format clean always
 
 # make PYTHON=/some/python3.12 demo  chooses the interpreter; otherwise the first of these that is new enough.
 PYTHON =
@@ -15,8 +15,9 @@ PINNED = PIP_CONSTRAINT=constraints.txt PIP_BUILD_CONSTRAINT=constraints.txt PIP
 PYTEST = $(PLAIN) $(BIN)/python -m pytest -n 2 --dist loadscope --color=no
 
 help:
-	@echo 'make demo    install into .venv, then run the shipped tilted turntable into demo/'
+	@echo 'make demo    install into .venv (from PyPI and the npm registry), then run the shipped tilted turntable into demo/'
 	@echo 'make test    install into .venv, then run every check: tests, documents, lint, types, layers, the web part'
+	@echo 'make fuzz    run 60 random scenarios of each class, and say which end badly: five minutes; COUNT=2000 for more'
 	@echo 'make bench   install the peers too, then print the ratios of one benchmark run'
 	@echo 'make lint    only ruff, mypy, the order of the layers, and types and lint of the web part'
 	@echo 'make format  let ruff and biome write their format into the sources'
@@ -24,13 +25,22 @@ help:
 
 demo: .venv/installed
 	$(PLAIN) $(BIN)/trundle run tilted-turntable -o demo
-	@echo 'To spin the table yourself, open the lab: $(BIN)/trundle lab'
+	@echo
+	@echo 'The command is $(BIN)/trundle; after ". $(BIN)/activate" it is trundle. For instance:'
+	@echo '  $(BIN)/trundle list                 the scenarios that ship with trundle'
+	@echo '  $(BIN)/trundle lab                  spin the table yourself, in a browser'
 
 # The web part first: it fetches what the browser tests put into a page to judge it. Lint and types are judged beside it.
 test: .venv/installed-test
 	@if [ -f .ci/chromium ]; then sh .ci/chromium; fi
 	@$(MAKE) --no-print-directory -j 2 lint-python check-web
 	$(PYTEST)
+
+# Scenarios that nobody thought of; those that end badly are left in fuzz/, with the table. SEED is the first of the seeds.
+COUNT = 60
+SEED = 0
+fuzz: .venv/installed-test
+	$(PLAIN) $(BIN)/python -m tests.fuzz --count $(COUNT) --seed $(SEED) --folder fuzz
 
 check-web: .venv/installed-test
 	$(PLAIN) $(BIN)/python web/build.py test
@@ -82,7 +92,8 @@ STAMP = if [ ! -f .venv/web ]; then touch .venv/web; fi; touch
 always:
 WEB = web/src web/lab.html web/package.json web/package-lock.json web/.npmrc web/tsconfig.json web/vite.config.ts web/build.py
 
-INSTALL = echo 'Installing trundle and its pinned dependencies into .venv (a minute or two the first time) ...' && \
+INSTALL = echo 'Installing trundle and its pinned dependencies into .venv (a minute or two the first time).' && \
+	echo 'They come from PyPI and, for the page of the lab, from the npm registry ...' && \
 	$(PIP) --no-compile
 
 PIP = $(PINNED) $(BIN)/python -m pip install --quiet --progress-bar off -c constraints.txt
@@ -116,6 +127,6 @@ PREPARE = \
 	$(PIP) pip
 
 clean:
-	rm -rf .venv demo out dist build web/node_modules src/trundle/viewer/static
+	rm -rf .venv demo fuzz out dist build web/node_modules src/trundle/viewer/static
 	rm -rf .pytest_cache .hypothesis .mypy_cache .ruff_cache .import_linter_cache .benchmarks
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
+from typing import Self
+
+MOST_TOLD = 20  # errors of one file
 
 
 class TrundleError(Exception):
@@ -47,25 +50,111 @@ class ScenarioError(InvalidValueError):
         The key is its path in the file, such as ``"loads[0].value[1]"``.
     source : str
         The file, where there is one.
-    others : int
-        How many more things are wrong with the same file.
+    others : sequence of ScenarioError
+        What else is wrong with the same file: the message has a line for each.
 
     Examples
     --------
-    >>> print(ScenarioError("run.every", "must be positive", 0, "A step is longer than 0 s.", "my.toml", 2))
-    my.toml: `run.every` must be positive; got 0. A step is longer than 0 s. (2 more errors in this file.)
+    >>> other = ScenarioError("body.mass", "must be positive", -1, source="my.toml")
+    >>> print(ScenarioError("run.every", "must be positive", 0, "A step is longer than 0 s.", "my.toml", [other]))
+    my.toml: `run.every` must be positive; got 0. A step is longer than 0 s.
+    my.toml: `body.mass` must be positive; got -1.
     """
 
     def __init__(
-        self, key: str, rule: str, received: object, remedy: str = "", source: str = "", others: int = 0
+        self,
+        key: str,
+        rule: str,
+        received: object,
+        remedy: str = "",
+        source: str = "",
+        others: Iterable[ScenarioError] = (),
     ) -> None:
         super().__init__(key, rule, received, remedy)
-        self.source, self.others = source, others
-        more = f" ({others} more error{'s' * (others > 1)} in this file.)" if others else ""
-        self.args = (f"{source + ': ' if source else ''}{self.args[0]}{more}",)
+        self.source, self.others = source, tuple(others)
+        lines = [f"{source + ': ' if source else ''}{self.args[0]}", *map(str, self.others)]
+        if len(lines) > MOST_TOLD:
+            lines[MOST_TOLD:] = [f"{source + ': ' if source else ''}{len(lines) - MOST_TOLD} more errors like these."]
+        self.args = ("\n".join(lines),)
+
+    @classmethod
+    def of(cls, errors: Iterable[InvalidValueError], source: str = "") -> Self:
+        """Return one error that tells several.
+
+        Parameters
+        ----------
+        errors : iterable of InvalidValueError
+            At least one.
+        source : str
+            The file, where there is one.
+
+        Returns
+        -------
+        ScenarioError
+            The first, with the others.
+
+        Examples
+        --------
+        >>> found = [InvalidValueError("run.every", "must be positive", 0)]
+        >>> print(ScenarioError.of(found, "my.toml"))
+        my.toml: `run.every` must be positive; got 0.
+        """
+        first, *others = (cls(one.key, one.rule, one.received, one.remedy, source) for one in errors)
+        return cls(first.key, first.rule, first.received, first.remedy, source, others)
+
+    def naming(self, options: Mapping[str, str]) -> Self:
+        """Return the same with other names for some keys, which then are of no file.
+
+        Parameters
+        ----------
+        options : mapping
+            The option of a command that a key stands for.
+
+        Returns
+        -------
+        ScenarioError
+            One that tells the same.
+
+        Examples
+        --------
+        >>> print(ScenarioError("run.every", "must be positive", 0, "", "my.toml").naming({"run.every": "--every"}))
+        `--every` must be positive; got 0.
+        """
+        told: list[ScenarioError] = [self, *self.others]
+        first, *others = (
+            type(self)(options.get(one.key, one.key), one.rule, one.received, one.remedy, source)
+            for one in told
+            for source in ["" if one.key in options else one.source]
+        )
+        return type(self)(first.key, first.rule, first.received, first.remedy, first.source, others)
 
     def __reduce__(self) -> tuple[type, tuple[object, ...]]:
         return type(self), (self.key, self.rule, self.received, self.remedy, self.source, self.others)
+
+
+class RunFileError(InvalidValueError):
+    """A file is not one that a run was saved to, or it is damaged.
+
+    Parameters
+    ----------
+    key, rule, received, remedy : see InvalidValueError
+        The key is "file", or a variable or attribute in it.
+    source : str
+        The file.
+
+    Examples
+    --------
+    >>> print(RunFileError("time", "must ascend", "0.1 s after 0.2 s", "Save the run again.", "run.nc"))
+    run.nc: `time` must ascend; got '0.1 s after 0.2 s'. Save the run again.
+    """
+
+    def __init__(self, key: str, rule: str, received: object, remedy: str, source: str) -> None:
+        super().__init__(key, rule, received, remedy)
+        self.source = source
+        self.args = (f"{source}: {self.args[0]}",)
+
+    def __reduce__(self) -> tuple[type, tuple[object, ...]]:
+        return type(self), (self.key, self.rule, self.received, self.remedy, self.source)
 
 
 class OutOfDomainError(TrundleError):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -33,13 +34,104 @@ _VECTORS = {
 }
 
 
+def facts(system: RollingSystem) -> dict[str, tuple[tuple[str, ...], dict[str, Any]]]:
+    """Return dimensions and attributes of every variable that a trajectory of a system has.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Its support's motion may have coordinates of its own.
+
+    Returns
+    -------
+    dict
+        By name, in the order of the dataset.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> facts(tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), tr.Support(tr.Plane())))["velocity"]
+    (('time', 'axis'), {'long_name': 'velocity of the centre of mass', 'units': 'm s-1'})
+    """
+    turning = {"long_name": "orientation, unit quaternion from body frame to this frame", "units": "1"}
+    phase = {
+        "long_name": "phase of the contact",
+        "units": "1",
+        "flag_values": np.array(list(PHASES), dtype=np.int8),
+        "flag_meanings": " ".join(PHASES.values()),
+    }
+    own = [_OWN[name.rstrip("_0123456789")] for name in system.support.motion.own]  # of two that turn: angle_2
+    return {
+        **{name: (("time", "axis"), _named(*said)) for name, said in _VECTORS.items()},
+        "orientation": (("time", "quaternion"), turning),
+        "phase": (("time",), phase),
+        **{name: (("time",), _named(*said)) for name, said in zip(own_names(system), own, strict=True)},
+    }
+
+
+def size_of(system: RollingSystem) -> int:
+    """Return how many bytes a sample takes in a dataset.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        As for `facts`.
+
+    Returns
+    -------
+    int
+        Of all variables and the time.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> size_of(tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), tr.Support(tr.Plane())))
+    185
+    """
+    widths = {"time": 1, "axis": 3, "quaternion": 4}
+    numbers = [math.prod(widths[dim] for dim in dims) for dims, _ in facts(system).values()]
+    return 8 * (1 + sum(numbers)) - 7  # the phase takes one byte
+
+
+def _named(long_name: str, unit: str) -> dict[str, Any]:
+    return {"long_name": long_name, "units": unit}
+
+
+def columns(system: RollingSystem, samples: Samples) -> dict[str, Any]:
+    """Return the values of every variable of a dataset.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Gives the slip, from velocity and Ω against the support's material.
+    samples : Samples
+        In the inertial support frame.
+
+    Returns
+    -------
+    dict
+        Arrays over time, by the names that `facts` has.
+
+    Examples
+    --------
+    See `Trajectory.data`.
+    """
+    return {
+        **{name: getattr(samples, name) for name in _VECTORS if name != "slip_velocity"},
+        "slip_velocity": _slip(system, samples),
+        "orientation": samples.orientation,
+        "phase": samples.phase.astype(np.int8, copy=False),
+        **dict(zip(own_names(system), samples.own.T, strict=True)),
+    }
+
+
 def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any]) -> xarray.Dataset:
     """Label the samples of a method.
 
     Parameters
     ----------
     system : RollingSystem
-        Gives the slip, from velocity and Ω against the support's material.
+        As for `columns`.
     samples : Samples
         In the inertial support frame.
     attributes : dict
@@ -54,39 +146,47 @@ def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any])
     --------
     See `Trajectory.data`.
     """
-    import pandas as pd
     import xarray
 
-    arrays: dict[str, Any] = {name: getattr(samples, name, None) for name in _VECTORS}
+    arrays = columns(system, samples)
+    variables = {name: (dims, arrays[name], about) for name, (dims, about) in facts(system).items()}
+    return xarray.Dataset(variables, coords=coordinates(samples.time), attrs=attributes)
+
+
+def coordinates(times: Any) -> dict[str, Any]:
+    """Return the coordinates of a dataset: the instants, and the labels of vectors and quaternions.
+
+    Parameters
+    ----------
+    times : array (n,)
+        s.
+
+    Returns
+    -------
+    dict
+        As xarray takes them.
+
+    Examples
+    --------
+    >>> list(coordinates(np.array([0.0, 1.0])))
+    ['time', 'axis', 'quaternion']
+    """
+    import pandas as pd
+
+    return {
+        # As pandas indexes: to make them, xarray would first import every package of arrays that it knows of.
+        "time": (("time",), pd.Index(times), {"long_name": "time", "units": "s", "axis": "T"}),
+        "axis": pd.Index(["x", "y", "z"], dtype=object),
+        "quaternion": pd.Index(["w", "x", "y", "z"], dtype=object),
+    }
+
+
+def _slip(system: RollingSystem, samples: Samples) -> Any:
+    """Return V + Ω×ρ − u, (n, 3), m/s; not a number where nothing touches."""
     V, carried, u = samples.speeds(system)
-    arrays["slip_velocity"] = np.broadcast_to((V + carried - u).array(), samples.position.shape).copy()
-    arrays["slip_velocity"][samples.phase == FLIGHT] = np.nan  # nothing touches
-    variables = {
-        name: (("time", "axis"), arrays[name], {"long_name": long_name, "units": unit})
-        for name, (long_name, unit) in _VECTORS.items()
-    }
-    turning = {"long_name": "orientation, unit quaternion from body frame to this frame", "units": "1"}
-    phase = {
-        "long_name": "phase of the contact",
-        "units": "1",
-        "flag_values": np.array(list(PHASES), dtype=np.int8),
-        "flag_meanings": " ".join(PHASES.values()),
-    }
-    return xarray.Dataset(
-        {
-            **variables,
-            "orientation": (("time", "quaternion"), samples.orientation, turning),
-            "phase": (("time",), samples.phase.astype(np.int8), phase),
-            **_own(system, samples),
-        },
-        coords={
-            # As pandas indexes: to make them, xarray would first import every package of arrays that it knows of.
-            "time": (("time",), pd.Index(samples.time), {"long_name": "time", "units": "s", "axis": "T"}),
-            "axis": pd.Index(["x", "y", "z"], dtype=object),
-            "quaternion": pd.Index(["w", "x", "y", "z"], dtype=object),
-        },
-        attrs={"Conventions": "CF-1.11", **attributes},
-    )
+    found = np.broadcast_to((V + carried - u).array(), samples.position.shape).copy()
+    found[samples.phase == FLIGHT] = np.nan
+    return found
 
 
 def own_names(system: RollingSystem) -> list[str]:
@@ -112,16 +212,8 @@ def own_names(system: RollingSystem) -> list[str]:
     return [f"support_{name}" if names.count(name) == 1 else f"support_{name}_{i}" for i, name in enumerate(names)]
 
 
-def _own(system: RollingSystem, samples: Samples) -> dict[str, Any]:
-    facts = [_OWN[name.rstrip("_0123456789")] for name in system.support.motion.own]  # of two that turn: angle_2
-    return {
-        variable: (("time",), column, {"long_name": long_name, "units": unit})
-        for variable, column, (long_name, unit) in zip(own_names(system), samples.own.T, facts, strict=True)
-    }
-
-
 def attributes(title: str, method: Method) -> dict[str, Any]:
-    """Return what a dataset says of itself: title, method, tolerance, frame and versions.
+    """Return what a dataset says of itself: conventions, title, method, tolerance, frame and versions.
 
     Parameters
     ----------
@@ -142,6 +234,7 @@ def attributes(title: str, method: Method) -> dict[str, Any]:
     """
     packages = ["trundle", "numpy", *{"taylor": ["heyoka"], "runge-kutta": ["scipy"]}.get(method.name, [])]
     return {
+        "Conventions": "CF-1.11",
         "title": title,
         "method": method.name,
         "tolerance": method.tolerance,

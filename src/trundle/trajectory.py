@@ -9,11 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import frames, labels
+from . import frames, labels, run_file
 from .errors import InvalidValueError, TrundleError, UnknownNameError
-from .files import written_whole
 from .mechanics.system import RollingSystem, State
-from .scenario import ScenarioFile
 from .solve.exact import ClosedForm, closed_form
 from .solve.methods import Method
 from .solve.samples import Event, Samples
@@ -62,12 +60,9 @@ class Trajectory(Viewable):
     method: str
     events: tuple[Event, ...] = ()
     scenario: str = ""
-    _kept: dict[str, Any] = field(default_factory=dict, compare=False)  # card and closed form, once asked for
-
-    def __repr__(self) -> str:
-        t = self.data.time.values
-        ending = f", {self.events[-1].text}" if self.events else ""
-        return f"<Trajectory: {t.size} samples over {t[-1] - t[0]:g} s, {self.method}, {self.frame} frame{ending}>"
+    # What was once asked for, or is known from elsewhere: `form`; `card`, with the facts it speaks of; `view`, the run
+    # of which this is another view, with the facts of the view; `file`, from which it was loaded.
+    _kept: dict[str, Any] = field(default_factory=dict, compare=False)
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
@@ -90,6 +85,12 @@ class Trajectory(Viewable):
         return float(self.data.attrs["tolerance"])
 
     @property
+    def changed(self) -> tuple[str, ...] | None:
+        """What has changed in the file of a loaded run since it was saved; None where the file cannot tell."""
+        file = self._kept.get("file")
+        return () if file is None else file.changed
+
+    @property
     def closed_form(self) -> ClosedForm | None:
         """The closed form of the phase in which it starts; None where there is none."""
         if "form" not in self._kept:
@@ -100,8 +101,9 @@ class Trajectory(Viewable):
     def samples(self) -> Samples:
         """The arrays in the inertial support frame, as the methods and the card take them."""
         data = self.in_frame("support").data
-        arrays = {part.name: data[part.name].values for part in fields(Samples) if part.name in data}
+        names = {part.name for part in fields(Samples)} & {"time", *labels.facts(self.system)}
         own = [data[name].values for name in labels.own_names(self.system)]
+        arrays = {name: data[name].values for name in names if name in data}
         return Samples(**arrays, events=self.events, own=np.stack(own, axis=-1) if own else None)
 
     def in_frame(self, frame: str) -> Trajectory:
@@ -139,7 +141,10 @@ class Trajectory(Viewable):
         if frame == self.frame:
             return self
         own = labels.own_names(self.system)
-        return replace(self, data=frames.change(self.data, self.system.support, self.frame, frame, own))
+        data = frames.change(self.data, self.system.support, self.frame, frame, own)
+        seen = replace(self, data=data, _kept=dict(self._kept))
+        seen._kept["view"] = self, seen._facts()
+        return seen
 
     def at(self, times: Any) -> Trajectory:
         """Return the motion at other instants, by the same method from the same start: nothing is interpolated.
@@ -176,7 +181,7 @@ class Trajectory(Viewable):
         samples = Method(self.method, self.tolerance).solve(self.system, self.start, once)
         samples = replace(samples, time=once).part(places)  # at the rim an integrator may stop a rounding earlier
         data = labels.dataset(self.system, samples, {**self.data.attrs, "frame": "support"})
-        return replace(self, data=data).in_frame(self.frame)
+        return replace(self, data=data, _kept=dict(self._kept)).in_frame(self.frame)
 
     def card(self) -> Card:
         """Return the verification card: what was checked, and how well it held.
@@ -184,7 +189,8 @@ class Trajectory(Viewable):
         Returns
         -------
         Card
-            Made once; a loaded trajectory brings its own.
+            Made once, and made anew where the numbers have changed since. A loaded trajectory brings the one that was
+            saved with it, as long as the digests in its file hold; its `origin` says so.
 
         Examples
         --------
@@ -192,12 +198,34 @@ class Trajectory(Viewable):
         >>> tr.Scenario.load("level-turntable-nudged").run(duration=5.0).card().passed
         True
         """
+        facts, kept = self._facts(), self._kept
+        if "view" in kept and kept["view"][1] == facts:
+            return kept["view"][0].card()
+        if "card" not in kept or kept["card"][0] != facts:
+            kept["card"] = facts, self._checked()
+        return kept["card"][1]
+
+    def _facts(self) -> tuple[Any, ...]:
+        """Return all that a card depends on: it speaks of a run for which they are the same."""
+        return self.system, self.start, self.method, self.events, run_file.digests(self.data, self.system, {})
+
+    def _checked(self) -> Card:
+        """Make the card."""
         from . import verify
 
-        if "card" not in self._kept:
-            method = Method(self.method, self.tolerance)
-            self._kept["card"] = verify.card(self.system, self.start, self.samples, method, self.title)
-        return self._kept["card"]
+        method = Method(self.method, self.tolerance)
+        file = self._kept.get("file")
+        if file is None:
+            return verify.card(self.system, self.start, self.samples, method, self.title)
+        from .verify.reread import card_of_file
+
+        def read() -> tuple[Samples, Any]:
+            seen = self.in_frame("support")
+            return seen.samples, seen.data.slip_velocity.values
+
+        made = card_of_file(self.system, self.start, self.data.time.values, read, method, self.title)
+        origin = f"made anew: changed since {file.name} was read" if file.intact else file.origin
+        return replace(made, origin=origin)
 
     def with_card(self, card: Card) -> Trajectory:
         """Return the same trajectory with a card that was made elsewhere.
@@ -219,7 +247,7 @@ class Trajectory(Viewable):
         >>> run.with_card(run.card()).card() is run.card()
         True
         """
-        return replace(self, _kept={"card": card})
+        return replace(self, _kept={**self._kept, "card": (self._facts(), card)})
 
     def plot(self, kind: str = "path") -> Figure:
         """Draw the motion.
@@ -286,20 +314,18 @@ class Trajectory(Viewable):
                 f"{target} is not written: a file holds the scenario, and the scenario format has no words for a part "
                 "of this system. Keep `run.data` with its own `to_netcdf`, or teach the format the new part."
             )
-        extra = {
+        texts = {
             "scenario": self.scenario,
             "start": json.dumps(asdict(self.start)),
             "events": json.dumps([asdict(event) for event in self.events]),
-            "card": self.card().as_json(),
+            "card": replace(self.card(), origin="").as_json(),
         }
-        with written_whole(target) as temporary:
-            # Made in memory first: HDF5 brings the process down where a disk fills while it writes.
-            temporary.write_bytes(self.data.assign_attrs(extra).to_netcdf(engine="h5netcdf"))
+        run_file.write(target, self.data, texts, self.system)
         return target
 
     @staticmethod
     def load(path: Any) -> Trajectory:
-        """Read a trajectory back; nothing is lost.
+        """Read a trajectory back; nothing is lost, and what has changed since is told.
 
         Parameters
         ----------
@@ -309,51 +335,26 @@ class Trajectory(Viewable):
         Returns
         -------
         Trajectory
-            As it was saved.
+            As it was saved. Where a digest in the file does not hold, or there is none, `card()` checks the numbers
+            as they are in the file, as soon as it is asked for.
 
         Raises
         ------
-        TrundleError
-            If the file cannot be read or is no trajectory of trundle's.
+        RunFileError
+            If the file cannot be read, is no run of trundle's, or holds what no run can be.
 
         Examples
         --------
         See `save`.
         """
-        import xarray
-
-        from . import verify
-
-        try:
-            data = xarray.load_dataset(Path(path), engine="h5netcdf")
-        except FileNotFoundError:
-            raise TrundleError(f"{path} does not exist.") from None
-        except (OSError, ValueError) as error:
-            raise TrundleError(f"{path} cannot be read as a NetCDF4 file ({error}).") from None
-        missing = [key for key in ("scenario", "start", "events", "card", "method", "frame") if key not in data.attrs]
-        if missing:
-            raise TrundleError(f"{path} is no trajectory of trundle's: it lacks the attributes {', '.join(missing)}.")
-        scenario, start, events, card = (data.attrs.pop(key) for key in ("scenario", "start", "events", "card"))
-        return Trajectory(
-            data,
-            ScenarioFile.loads(scenario, source=str(path)).system(),
-            State(**_tuples(json.loads(start))),
-            str(data.attrs["method"]),
-            tuple(_event(event) for event in json.loads(events)),
-            scenario,
-            {"card": verify.Card.from_json(card)},
-        )
+        file = run_file.read(path)
+        run = Trajectory(file.data, file.system, file.start, file.data.attrs["method"], file.events, file.scenario)
+        run._kept["file"] = file
+        if file.intact:
+            run._kept["card"] = run._facts(), replace(file.card, origin=file.origin)
+        return run
 
 
 def _public_names() -> list[str]:
     names = {part.name for part in fields(Trajectory)} | set(dir(Trajectory))
     return sorted(name for name in names if not name.startswith("_"))
-
-
-def _event(values: dict[str, Any]) -> Event:
-    states = {name: State(**_tuples(values[name])) for name in ("before", "after") if values.get(name)}
-    return Event(**{**_tuples(values), **states})
-
-
-def _tuples(values: dict[str, Any]) -> dict[str, Any]:
-    return {key: tuple(value) if isinstance(value, list) else value for key, value in values.items()}

@@ -18,6 +18,7 @@ from PIL import Image
 from playwright.sync_api import Locator, Page, expect
 
 import trundle as tr
+from trundle.lab.links import encode
 
 PATIENCE = 20.0  # s
 T = TypeVar("T")
@@ -57,10 +58,8 @@ def decoded(code: str) -> dict[str, Any]:
 
 
 def linked(scenario: dict[str, Any]) -> str:
-    """The link to a scenario, made without the lab."""
-    deflate = zlib.compressobj(wbits=-15)
-    packed = deflate.compress(json.dumps(scenario).encode()) + deflate.flush()
-    return f"#/bench?s={base64.urlsafe_b64encode(packed).decode().rstrip('=')}"
+    """The link to a scenario, made without the page."""
+    return f"#/bench?s={encode(scenario)}"
 
 
 def colours(picture: np.ndarray) -> int:

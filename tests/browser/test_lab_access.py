@@ -207,7 +207,7 @@ def test_everything_by_keyboard_alone(visitor: Visitor) -> None:
 
 
 def predicted(bench: Bench, rate: float) -> None:
-    assert bench.found(r"\Omega_c")[0] == as_shown(rate)
+    assert bench.found(r"\kappa")[0] == as_shown(rate)
 
 
 def plays(stage: Stage, playing: bool) -> None:

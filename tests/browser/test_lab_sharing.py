@@ -32,7 +32,7 @@ def shows(bench: Bench, run: tr.Trajectory) -> None:
     bench.page.keyboard.press("End")
     place = tuple(float(value) for value in run.in_frame("world").data.position.values[-1])
     assert bench.stage.drawn().place == pytest.approx(place, abs=2e-5)
-    assert bench.found(r"\Omega_c")[1] == as_shown(circle_rate(run))
+    assert bench.found(r"\kappa")[1] == as_shown(circle_rate(run))
 
 
 def test_a_copied_link_opens_the_same_scenario_elsewhere(visitor: Visitor) -> None:

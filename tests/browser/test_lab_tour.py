@@ -191,7 +191,7 @@ def test_what_is_seen_on_the_tour_is_taken_to_the_bench(visitor: Visitor) -> Non
 
 
 def found(bench: Bench, rate: float) -> None:
-    assert bench.found(r"\Omega_c") == (as_shown(rate), as_shown(rate))
+    assert bench.found(r"\kappa") == (as_shown(rate), as_shown(rate))
 
 
 @pytest.mark.parametrize(("key", "at"), [("n", 4), ("b", 2)])

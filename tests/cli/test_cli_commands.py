@@ -80,7 +80,7 @@ def test_colours_and_tables_on_a_terminal(folder: Path) -> None:
     assert "\x1b[" in listed
     assert all(name in listed for name in files.names())
     shown = on_a_terminal(["show", "tilted-turntable"], folder)
-    assert "0.367949 m/s" in shown  # g sin(3 deg) / (0.4 · 33.3 rpm), read off the closed form
+    assert "0.0368116 m/s" in shown  # g sin(0.3 deg) / (0.4 · 33.3 rpm), read off the closed form
     plain = re.sub(r"\x1b\[[0-9;]*m", "", shown)
     assert 'rate = "33.3 rpm"' in plain
 

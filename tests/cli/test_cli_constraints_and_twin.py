@@ -60,7 +60,7 @@ def test_the_twin_of_a_scenario(here: Command) -> None:
     assert (done.status, done.err) == (0, "")
     assert done.files == {"out", "out/twin.png"}
     assert "−QB/M            0.996334 rad/s" in done.out
-    assert "(0, 0.367949) m/s" in done.out
+    assert "(0, 0.0368116) m/s" in done.out
     assert "each by its own formulas" in done.out
 
 

@@ -23,7 +23,7 @@ def test_as_json(here: Command) -> None:
     assert (done.status, done.files) == (0, set())
     assert found["multipliers"] == [0.1, -0.2]
     assert "wrong" in found["warning"]
-    assert found["rows"][-1]["apart"] > 1
+    assert found["rows"][-1]["apart"] > 0.1
 
 
 @pytest.mark.parametrize(

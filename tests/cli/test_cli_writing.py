@@ -11,8 +11,10 @@ from pathlib import Path
 
 import pytest
 
+from trundle import files
 from trundle.cli.writing import CannotWriteError, check_folder, write_together
 from trundle.errors import InvalidValueError
+from trundle.files import written_whole
 
 BIG = b"x" * 1_000_000
 
@@ -159,3 +161,70 @@ def test_no_room_for_the_file(tmp_path: Path) -> None:
     assert done.stdout.startswith("could not write to ")
     assert done.stdout.endswith("a file would be larger than is allowed. Nothing was written.\n")
     assert everything_below(tmp_path) == set()
+
+
+# --- what a killed process leaves -------------------------------------------------------------------------------
+
+
+def killed_half_way(folder: Path) -> None:
+    words = [sys.executable, "-c", SLOW_WRITER, str(folder), "60"]
+    process = subprocess.Popen(words, stdout=subprocess.PIPE)  # noqa: S603
+    assert process.stdout is not None
+    assert process.stdout.readline() == b"half\n"
+    process.kill()
+    process.communicate()
+
+
+def staged(folder: Path) -> list[str]:
+    return [path.name for path in folder.iterdir() if path.name.startswith(".trundle")]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="folders cannot be locked here: they go after a day")
+def test_the_next_to_write_clears_what_a_killed_one_left(tmp_path: Path) -> None:
+    for out in (tmp_path, tmp_path / "new"):
+        killed_half_way(out)
+        assert len(staged(tmp_path)) == 1
+        write_together(out, {"a": lambda path: path.write_text("A")})
+        assert staged(tmp_path) == []
+    killed_half_way(tmp_path / "newer")  # beside the folder that it would have made
+    with written_whole(tmp_path / "one.txt") as temporary:
+        temporary.write_text("1")
+    assert everything_below(tmp_path) == {"a", "new", "new/a", "one.txt"}
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="folders cannot be locked here")
+def test_one_that_is_still_writing_is_left_alone(tmp_path: Path) -> None:
+    words = [sys.executable, "-c", SLOW_WRITER, str(tmp_path), "2"]
+    process = subprocess.Popen(words, stdout=subprocess.PIPE)  # noqa: S603
+    assert process.stdout is not None
+    assert process.stdout.readline() == b"half\n"
+    write_together(tmp_path, {"c": lambda path: path.write_text("C")})
+    assert len(staged(tmp_path)) == 1
+    process.communicate(timeout=60)
+    assert process.returncode == 0
+    assert everything_below(tmp_path) == {"a", "b", "c"}
+
+
+def test_where_no_lock_can_tell_only_what_is_old_is_cleared(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(files, "_hold", lambda _: None)
+    for name, age in ((".trundle-young", 3600.0), (".trundle-old", 90_000.0), (".trundle+old", 90_000.0)):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "run.nc").write_bytes(b"x")
+        os.utime(tmp_path / name, (time.time() - age,) * 2)
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / ".trundle-link").symlink_to(tmp_path / "elsewhere")
+    (tmp_path / ".trundle-file").write_text("mine")
+    write_together(tmp_path, {"a": lambda path: path.write_text("A")})
+    assert sorted(staged(tmp_path)) == [".trundle-file", ".trundle-link", ".trundle-young"]
+    assert (tmp_path / "elsewhere").is_dir()
+
+
+def test_many_may_write_to_one_folder_at_once(tmp_path: Path) -> None:
+    code = (
+        "import sys; from pathlib import Path; from trundle.cli.writing import write_together\n"
+        "for i in range(100):\n"
+        "    write_together(Path(sys.argv[1]), {sys.argv[2]: lambda path: path.write_bytes(b'z' * 1000)})"
+    )
+    running = [subprocess.Popen([sys.executable, "-c", code, str(tmp_path), f"f{i}"]) for i in range(4)]  # noqa: S603
+    assert [process.wait(timeout=120) for process in running] == [0] * 4
+    assert everything_below(tmp_path) == {f"f{i}" for i in range(4)}

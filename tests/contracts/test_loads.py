@@ -100,7 +100,7 @@ class TestTorqueAboutTheAxis(LoadContract):
 
 
 class TestDragByAirThatTurns(LoadContract):
-    load = Drag(0.5, air_rate=-3.0)
+    load = Drag(0.5, air=-3.0)
 
     def test_air_that_moves_along_does_not_drag(self) -> None:
         r = Vector(0.3, -0.2, 0.1)
@@ -138,7 +138,7 @@ class TestQuadraticDrag(LoadContract):
 
 
 class TestQuadraticDragByAirThatTurns(LoadContract):
-    load = QuadraticDrag(0.5, air_rate=-3.0)
+    load = QuadraticDrag(0.5, air=-3.0)
 
 
 class TestMagnus(LoadContract):

@@ -40,6 +40,15 @@ def entries() -> dict[str, dict[str, str]]:
     return {key: dict(re.findall(r"(\w+) +?= \{(.*)\},", body)) for key, body in found}
 
 
+def test_each_library_that_trundle_needs_has_its_reason() -> None:
+    project = tomllib.loads(text_of(ROOT / "pyproject.toml"))["project"]
+    named = [*project["dependencies"], *(name for names in project["optional-dependencies"].values() for name in names)]
+    table = text_of(ROOT / "docs" / "conventions.md").partition("## What trundle leans on")[2].lower()
+    reasons = " ".join(re.findall(r"^\| ([^|]*) \|", table, re.MULTILINE))
+    for name in named:
+        assert re.split(r"[\[<>=;! ]", name)[0].lower() in reasons, name
+
+
 @pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
 def test_each_code_block_has_a_language_that_is_executed_or_is_plain_text(path: Path) -> None:
     fences = re.findall(r"^```(.*)$", text_of(path), re.MULTILINE)

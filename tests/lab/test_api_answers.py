@@ -128,7 +128,7 @@ def test_the_derivation_is_told_step_by_step(lab: TestClient) -> None:
     names = {number["symbol"]: number["name"] for number in told["numbers"]}
     assert names[r"\varrho"] == "radius of the circle"
     assert names[r"\operatorname{Im} v_{d}"] == "velocity at which the circle drifts, along the second axis"
-    assert numbers[r"\operatorname{Re} \varphi"] == pytest.approx(9.80665 * np.sin(np.radians(3)) / 1.4)
+    assert numbers[r"\operatorname{Re} \varphi"] == pytest.approx(9.80665 * np.sin(np.radians(0.3)) / 1.4)
 
 
 def test_every_number_of_a_derivation_has_a_name_of_its_own() -> None:

@@ -84,6 +84,18 @@ def test_an_animation_moves_and_lasts_as_it_says() -> None:
     assert all(np.abs(one - other).max() > 30 for one, other in pairwise(pictures))
 
 
+@pytest.mark.parametrize(("duration", "wanted"), [("0.05 s", 1050), ("7 s", 8000), ("7.3 s", 8000), ("1 h", 8000)])
+def test_an_animation_lasts_eight_seconds_at_most(duration: str, wanted: float) -> None:
+    every = "1 s" if "h" in duration else "25 ms"
+    run = tr.Scenario.load("level-turntable-nudged").run(duration=duration, every=every)
+    film = Image.open(BytesIO(export(run, ".gif")))
+    lasting = 0
+    for at in range(film.n_frames):  # type: ignore[attr-defined]
+        film.seek(at)
+        lasting += film.info["duration"]
+    assert lasting == wanted
+
+
 def test_several_runs_make_one_page(say: Say) -> None:
     assert say("tilted-turntable", NAME, "both.html")[0] == 0
     assert Path("both.html").read_bytes().count(b"data-trundle-scene>") == 2

@@ -93,7 +93,7 @@ def test_air_by_hand():
 
 
 def test_moving_air():
-    rows = found(simulated(table(), NUDGED, loads=(tr.Drag(0.05, air_rate=3.5),), duration=20.0))
+    rows = found(simulated(table(), NUDGED, loads=(tr.Drag(0.05, air=3.5),), duration=20.0))
     for part in ("faster", "slower"):
         for what in (f"Angular rate of the {part} part", f"Growth of the {part} part"):
             assert rows[what]["measured"] == pytest.approx(rows[what]["predicted"], abs=1e-5)
@@ -249,8 +249,8 @@ def test_the_formula_holds_the_current_numbers():
     header = scene_of(simulated(table(rate=7.0, tilt=0.02), NUDGED)).header
     formula = header["formula"]
     assert formula["source"] == "T5"
-    assert r"\Omega_c &= \frac{k}{1+k}\,\omega" in formula["latex"]
-    assert r"\Omega_c &= \tfrac{2}{7}\cdot 7\,\mathrm{rad/s} = 2\,\mathrm{rad/s}" in formula["numbers_latex"]
+    assert r"\kappa &= \frac{k}{1+k}\,\omega" in formula["latex"]
+    assert r"\kappa &= \tfrac{2}{7}\cdot 7\,\mathrm{rad/s} = 2\,\mathrm{rad/s}" in formula["numbers_latex"]
     assert r"0.07004\,\mathrm{m/s}" in formula["numbers_latex"]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import base64
 import http.client
 import json
 import os
@@ -11,9 +12,11 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
+import zlib
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -22,6 +25,7 @@ import pytest
 from tests.lab.conftest import shipped
 
 from trundle.lab.serving import listen
+from trundle.scenario import files
 
 pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks at processes as Linux shows them")
 
@@ -43,6 +47,13 @@ class Running:
                 if int(after[3]) == self.process.pid and after[0] not in "ZX":
                     found.add(int(entry.name))
         return found
+
+    def workers(self) -> set[int]:
+        """Those of them that compute: copies of a process that is itself the server's child."""
+        parents = {
+            pid: int(Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[1]) for pid in self.family()
+        }
+        return {pid for pid, parent in parents.items() if parent in parents and parent != self.process.pid}
 
     def ask(self, path: str, asked: Any = None) -> tuple[int, bytes]:
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=60)
@@ -138,6 +149,84 @@ def test_a_long_computation_ends_when_its_client_goes() -> None:
         assert lab.ask("/api/simulate", {"scenario": shipped("tilted-turntable")})[0] == 200
 
 
+def long_runs(count: int) -> list[dict[str, Any]]:
+    """Scenarios that each take longer than the lab allows."""
+    scenario = shipped("tippe-top")
+    run = {"every": "20 ms", "method": "runge-kutta"}
+    return [{**scenario, "run": {**run, "duration": f"{3600 - i} s"}} for i in range(count)]
+
+
+@contextmanager
+def asking(lab: Running, scenarios: list[dict[str, Any]]) -> Iterator[list[tuple[int, bytes]]]:
+    """Ask for all of them at once; what is answered is in the list in the end."""
+    told: list[tuple[int, bytes]] = []
+
+    def ask(scenario: dict[str, Any]) -> None:
+        with suppress(OSError, http.client.HTTPException):  # the lab has ended
+            told.append(lab.ask("/api/simulate", {"scenario": scenario}))
+
+    threads = [threading.Thread(target=ask, args=(scenario,)) for scenario in scenarios]
+    for thread in threads:
+        thread.start()
+    try:
+        yield told
+    finally:
+        for thread in threads:
+            thread.join(60)
+
+
+def test_six_that_take_long_keep_nobody_waiting_and_ctrl_c_ends_them_too() -> None:
+    with running("--no-open", "--port", "0") as lab:
+        quick = shipped("tilted-turntable")
+        assert lab.ask("/api/simulate", {"scenario": quick})[0] == 200
+        with asking(lab, long_runs(6)):
+            for i in range(4):
+                time.sleep(0.5)
+                asked = time.monotonic()
+                assert lab.ask("/api/simulate", {"scenario": {**quick, "title": f"{i}"}, "samples": 50})[0] == 200
+                assert time.monotonic() - asked < 6.0  # on a busy machine; it was half a minute, and a refusal
+            os.killpg(lab.process.pid, signal.SIGINT)
+            told, _ = lab.process.communicate(timeout=60)
+        assert lab.gone(20)
+        assert "Traceback" not in told
+        assert len(told.splitlines()) < 6
+
+
+def test_a_worker_that_is_killed_is_one_line_on_the_terminal() -> None:
+    with running("--no-open", "--port", "0") as lab:
+        assert lab.ask("/api/simulate", {"scenario": shipped("tilted-turntable")})[0] == 200
+        with asking(lab, long_runs(1)) as answers:
+            time.sleep(0.7)
+            for pid in lab.workers():
+                os.kill(pid, signal.SIGKILL)
+        [(status, body)] = answers
+        assert (status, json.loads(body)["error"]["kind"]) == (500, "CrashError")
+        assert lab.ask("/api/simulate", {"scenario": {**shipped("tilted-turntable"), "title": "again"}})[0] == 200
+        os.killpg(lab.process.pid, signal.SIGINT)
+        told, _ = lab.process.communicate(timeout=60)
+        assert lab.gone(20)
+    assert [line for line in told.splitlines() if "died" in line] == [
+        "trundle: a process that computed died (SIGKILL): a fresh one takes its place"
+    ]
+    assert len(told.splitlines()) <= 3
+
+
+def test_visitors_who_say_nothing_keep_nobody_out_and_do_not_fill_the_terminal() -> None:
+    with running("--no-open", "--port", "0") as lab, ExitStack() as held:
+        for _ in range(100):
+            silent = held.enter_context(socket.socket())
+            if sys.platform == "linux":
+                silent.bind(("127.0.0.2", 0))
+            silent.connect(("127.0.0.1", lab.port))
+        if sys.platform == "linux":
+            assert lab.ask("/api/scenarios/tilted-turntable")[0] == 200
+        os.killpg(lab.process.pid, signal.SIGINT)
+        told, _ = lab.process.communicate(timeout=60)
+        assert lab.gone(20)
+    assert "are refused: there are 64" in told
+    assert len(told.splitlines()) <= 3
+
+
 def test_the_browser_is_opened_once_it_answers(tmp_path: Path) -> None:
     seen = tmp_path / "seen"
     browser = tmp_path / "browser"
@@ -180,6 +269,34 @@ def test_where_the_usual_port_is_taken_another_is_found() -> None:
             assert lab.port != 8765
             assert "port 8765 is taken" in lab.said
             assert lab.ask("/api/scenarios/tilted-turntable")[0] == 200
+
+
+def test_it_opens_a_scenario_of_ones_own(tmp_path: Path) -> None:
+    mine = tmp_path / "my table.toml"
+    text = files.read("tilted-turntable").replace('radius = "25 mm"', 'diameter = "40 mm"')
+    mine.write_text(text, encoding="utf-8")
+    with running(str(mine), "--no-open", "--port", "0") as lab:
+        told = lab.process.stdout.readline()  # type: ignore[union-attr]
+        assert told.startswith(f"{mine} is at http://127.0.0.1:{lab.port}/#/bench?s=")
+        code = told.strip().partition("?s=")[2]
+        scenario = json.loads(zlib.decompress(base64.urlsafe_b64decode(code + "=" * (-len(code) % 4)), -15))
+        assert scenario["body"]["radius"] == "20 mm"
+        assert scenario["title"] == "Steel ball on a tilted turntable"
+        assert lab.ask("/api/simulate", {"scenario": scenario})[1].startswith(b"TRUNDLE1")
+
+
+def test_a_scenario_that_is_none_is_refused_before_it_listens(tmp_path: Path) -> None:
+    wrong = tmp_path / "wrong.toml"
+    wrong.write_text(
+        files.read("tilted-turntable").replace("25 mm", "-25 mm").replace("510 g", "0 g"), encoding="utf-8"
+    )
+    for given, said in ((str(wrong), ("`body.radius`", "`body.mass`")), ("tilted-turntabel", ("Did you mean",))):
+        done = subprocess.run(  # noqa: S603
+            [sys.executable, "-m", "trundle", "lab", given], capture_output=True, text=True, timeout=60, check=False
+        )
+        assert (done.returncode, done.stdout) == (2, "")
+        assert all(word in done.stderr for word in said)
+        assert done.stderr.count("\n") == len(said)
 
 
 def test_what_cannot_be_is_one_line_and_status_2() -> None:

@@ -1,4 +1,4 @@
-"""Text without a unit is refused wherever a user may write it: in a file, in Python, on the command line, in the lab."""
+"""Text without a unit is refused wherever you may write it: in a file, in Python, on the command line, in the lab."""
 
 import re
 from collections.abc import Iterator

@@ -91,7 +91,7 @@ def test_quadratic_drag_slows_down_as_one_over_the_way() -> None:
 
 def test_air_that_goes_round_with_the_ball_does_not_slow_it() -> None:
     at = Vector(0.3, 0.0, 0.0)
-    now = rolling(tr.QuadraticDrag(0.3, air_rate=2.0), Vector(0.0, 0.6, 0.0), at=at)
+    now = rolling(tr.QuadraticDrag(0.3, air=2.0), Vector(0.0, 0.6, 0.0), at=at)
     assert (now.reaction - E_Z * (MASS * G)).norm() <= EXACT(16, MASS * G)
 
 

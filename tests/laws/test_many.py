@@ -13,7 +13,7 @@ from tests.tolerances import SOLVER
 
 import trundle as tr
 from trundle import many
-from trundle.solve import ensemble, runge_kutta, taylor
+from trundle.solve import ensemble, integrator_cache, runge_kutta, taylor
 
 pytest.importorskip("heyoka")
 
@@ -195,7 +195,7 @@ def test_another_radius_or_rate_compiles_nothing(monkeypatch: pytest.MonkeyPatch
     compiled: list[Any] = []
     compile_, memory = ensemble._compile, taylor._Memory()
     monkeypatch.setattr(ensemble, "_compile", lambda *parts: compiled.append(parts) or compile_(*parts))
-    monkeypatch.setattr(taylor, "cache_folder", lambda: tmp_path / "cache")
+    monkeypatch.setattr(integrator_cache, "cache_folder", lambda: tmp_path / "cache")
     monkeypatch.setattr(taylor, "_memory", lambda: memory)
     systems, starts = bowls()
     for some in (slice(0, 3), slice(3, 11)):

@@ -48,7 +48,7 @@ MOTIONS = {
     "uneven": tr.UnevenSpin(2.5, 0.3, 4.0),
     "wobbling": tr.Wobble(-1.5, 0.2),
 }
-LOADS = (tr.Force((0.25, -0.5, 0.125)), tr.Torque(("0.01*cos(2*t)", 0.02, "-0.03*t")), tr.Drag(0.3, air_rate=1.5))
+LOADS = (tr.Force((0.25, -0.5, 0.125)), tr.Torque(("0.01*cos(2*t)", 0.02, "-0.03*t")), tr.Drag(0.3, air=1.5))
 # Every body on every surface, the motions by turns; each motion meets every body and every surface.
 CASES = [
     (body, surface, list(MOTIONS)[(i + j) % len(MOTIONS)])

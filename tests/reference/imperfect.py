@@ -1,4 +1,6 @@
-"""A ball on a turntable that wobbles, turns unevenly, leans or has air about it: Newton, Euler and the constraint.
+"""A ball on a turntable with some shortcoming, by Newton, Euler and the constraint.
+
+The table may wobble, turn unevenly, lean or resist rolling, and there may be air about it.
 
 Nothing is eliminated: the reaction is solved for, with the two accelerations, at every instant. Written for the table's
 axle along the third axis and for a sphere alone, without a line of trundle's own.
@@ -32,6 +34,7 @@ class Table:
     drag: float = 0.0
     air_rate: float = 0.0
     askew: float = 0.0
+    offset: float = 0.0  # of the normal force, ahead of the contact
     variation: float = 0.0
     variation_rate: float = 1.0
     gravity: float = 9.80665
@@ -62,6 +65,8 @@ class Table:
         matrix, right = np.zeros((9, 9)), np.zeros(9)
         matrix[:3, :3], matrix[:3, 6:] = m * np.eye(3), -np.eye(3)
         matrix[3:6, 3:6], matrix[3:6, 6:] = inertia * np.eye(3), a * cross(n)
+        over = Omega - omega - n * (n @ (Omega - omega))
+        matrix[3:6, 6:] += self.offset * np.outer(over / (np.linalg.norm(over) or 1.0), n)
         matrix[6:, :3], matrix[6:, 3:6] = np.eye(3), a * cross(n)  # V = u + a Ω×n, differentiated
         right[:3] = force
         right[6:] = np.cross(omega_rate, p) + np.cross(omega, p_rate) + a * np.cross(Omega, n_rate)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import random
+import subprocess
+import sys
 from itertools import pairwise
 from typing import Any
 
@@ -356,3 +358,12 @@ def test_a_belt_that_moves_is_holonomic_with_the_time_in_it() -> None:
 def test_what_makes_no_system_is_refused(system: Any, said: str) -> None:
     with pytest.raises(tr.TrundleError, match=said):
         system(*sp.symbols("x y"))
+
+
+def test_greek_letters_do_not_depend_on_where_sympy_was_loaded() -> None:
+    # SymPy asks the standard output what letters it has when it is imported, and writes phi where it is captured.
+    code = (
+        "import contextlib, io\nwith contextlib.redirect_stdout(io.StringIO()):\n    import sympy, trundle as tr\n"
+        "assert 'x − a φ' in str(tr.PfaffianSystem.load('cylinder').analyse())"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=120)  # noqa: S603

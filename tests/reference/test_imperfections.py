@@ -18,6 +18,7 @@ from tests.tolerances import EXACT, SOLVER
 import trundle as tr
 from trundle.imperfections.circle import Demonstration
 from trundle.imperfections.measuring import measure
+from trundle.imperfections.resisted import _slope
 
 RATE, G = 3.5, 9.80665
 BALL = tr.Body.solid_sphere(radius=0.025, mass=0.51)
@@ -71,7 +72,7 @@ AIRS = [
 def test_air_against_the_roots(body: tr.Body, coefficient: float, air_rate: float) -> None:
     ideal = show(body)
     circle, centre, arm, rest = in_air(ideal, coefficient, air_rate)
-    run = simulated(ideal, ideal.on(drag=tr.Drag(coefficient, air_rate)), 20.0)
+    run = simulated(ideal, ideal.on(load=tr.Drag(coefficient, air_rate)), 20.0)
     fate = ideal.in_air(coefficient, air_rate)
     for t, z in list(zip(run.data.time.values, path_of(run), strict=True))[::40]:
         ours, about = arm * mpmath.exp(circle * mpf(t)), rest * mpmath.exp(centre * mpf(t))
@@ -96,7 +97,7 @@ def test_the_circle_grows_where_the_air_turns_faster_than_the_ball_goes_round(bo
 
 def test_in_air_at_rest_the_ball_winds_in_to_a_point_and_stays() -> None:
     ideal = show()
-    run = simulated(ideal, ideal.on(drag=tr.Drag(2.0)), 30.0, rim=0.5)
+    run = simulated(ideal, ideal.on(load=tr.Drag(2.0)), 30.0, rim=0.5)
     gamma, kappa = 2.0 / (0.51 * 1.4), KAPPA[BALL]
     rests = ideal.position - ideal.velocity / (1j * kappa - gamma)
     assert run.events == ()
@@ -123,6 +124,68 @@ def test_a_tilted_table_carries_the_circle_sideways() -> None:
     fate = ideal.tilted(tilt)
     assert fate.leaves(0.5, 200.0) == pytest.approx(earliest, rel=1e-12)
     assert earliest <= run.events[-1].time <= earliest + ideal.round_time
+
+
+# Resistance to rolling
+
+
+def resisted(start: Any, velocity: Any, offset: float, duration: float) -> tuple[Any, Any, Any, Any]:
+    """Return what theory says, the times, and the centre and radius of the circle by Newton and Euler."""
+    ideal = show(position=start, velocity=velocity)
+    theirs = Table(0.025, 0.51, 0.4, RATE, offset=offset).run(start, velocity, duration)
+    t = np.linspace(0.0, duration, 200)
+    state = theirs.sol(t)
+    z, v = state[0] + 1j * state[1], state[3] + 1j * state[4]
+    arm = v / (1j * KAPPA[BALL])
+    return ideal.resisted(offset), t, z - arm, abs(arm)
+
+
+def test_a_table_that_resists_rolling_against_newton_and_euler() -> None:
+    ideal, offset = show(), 3e-4
+    run = simulated(ideal, ideal.on(load=tr.RollingResistance(offset)), 20.0)
+    theirs = Table(0.025, 0.51, 0.4, RATE, offset=offset).run((0.2, 0.05), (0.03, 0.1), 20.0)
+    expected = theirs.sol(run.data.time.values)[:3].T
+    assert np.abs(run.data.position.values - expected).max() < SOLVER(300, 1e-11)
+    assert abs(run.data.position.values[-1] - expected[0]).max() > 0.1  # it does go somewhere
+
+
+@pytest.mark.parametrize("offset", [1e-6, 1e-5])
+@pytest.mark.parametrize(
+    ("start", "velocity"), [((0.2, 0.05), (0.03, 0.1)), ((0.1, 0.0), (0.0, 0.1)), ((0.2, 0.0), (0.0, 0.02))]
+)
+def test_resistance_takes_the_centre_in_and_the_circle_out(start: Any, velocity: Any, offset: float) -> None:
+    pull = offset * G / (0.025 * 1.4)
+    duration = 0.05 * KAPPA[BALL] / pull  # in which the circle grows by 5 cm at most
+    fate, t, centre, radius = resisted(start, velocity, offset, duration)
+    # what a round leaves out, and what is of second order in the pull
+    slack = fate.sway + 40 * pull**2 / KAPPA[BALL] ** 4 / 0.02
+    assert fate.sway == pytest.approx(4 * pull / KAPPA[BALL] ** 2, rel=1e-12)
+    assert max(abs(abs(c) - abs(fate.centre(s))) for s, c in zip(t, centre, strict=True)) < slack
+    assert max(abs(A - fate.radius(s)) for s, A in zip(t, radius, strict=True)) < slack
+    assert fate.radius(duration) > fate.radius(0.0) + 0.002
+    assert abs(fate.centre(duration)) < abs(fate.centre(0.0))
+    reach = max(abs(c) + A for c, A in zip(centre, radius, strict=True))
+    assert reach <= max(fate.reach(s) for s in t)
+
+
+def test_about_the_axis_the_circle_grows_at_the_speed_at_which_a_slope_drifts() -> None:
+    # f = μ'ζ̇/|ζ̇| turns with the circle: dA/dt = μ'/κ = δg/(a k ω), as g sin α/(k ω) of a tilt with sin α = δ/a.
+    ideal = show(position=(0.1, 0.0), velocity=(0.0, 0.1 * KAPPA[BALL]))
+    fate, drift = ideal.resisted(2e-5), ideal.tilted(math.asin(2e-5 / 0.025))
+    grown = (fate.radius(100.0) - fate.radius(0.0)) / 100.0
+    assert grown == pytest.approx(abs(drift.centre(1.0) - drift.centre(0.0)), rel=1e-9)
+    assert abs(fate.centre(100.0)) < 1e-15
+
+
+@pytest.mark.parametrize("P", [1e-6, 1e-3, 0.3, 0.999, 1.0, 1.001, 7.0, 1e5])
+def test_the_mean_over_a_round_against_quadrature(P: float) -> None:
+    def part(angle: Any) -> Any:
+        if P == 1:
+            return mpmath.cos(angle / 2)
+        return (P + mpmath.cos(angle)) / mpmath.sqrt(P * P + 1 + 2 * P * mpmath.cos(angle))
+
+    mean = mpmath.quad(part, [0, 0.999 * mpmath.pi, mpmath.pi]) / mpmath.pi
+    assert abs(_slope(P, 1.0) - float(mean)) < 1e-9 * float(mean)
 
 
 # A table askew on its axle
@@ -259,7 +322,9 @@ def test_the_worst_comes_first_and_those_that_stay_last() -> None:
     table = table_of("level-turntable-nudged")
     times = [math.inf if row.leaves is None else row.leaves for row in table.rows]
     assert times == sorted(times)
-    assert {row.name for row in table.rows} == {"tilt", "still-air", "turning-air", "wobble", "uneven-rate"}
+    assert {row.name for row in table.rows} == {
+        *("tilt", "still-air", "turning-air", "rolling-resistance", "wobble", "uneven-rate")
+    }
     assert table.rows[0].name == "tilt"
     # |c + i v t| + ϱ = 0.5 m with v = g sin 0.1° /(0.4 ω)
     omega, nudge = 33.3 * math.pi / 30, 0.1
@@ -279,8 +344,8 @@ def test_measured_and_theory_agree_on_how_the_circle_moves(name: str) -> None:
     for row in (*table_of(name).rows, table_of(name).given):
         assert row.motion is not None
         assert row.theory_motion is not None
-        if row.name in {"turning-air", "still-air"}:
-            continue  # e-folds are compared in test_air_against_the_roots; a mean over a growth is not one number
+        if row.name in {"turning-air", "still-air", "rolling-resistance"}:
+            continue  # compared in tests of their own; a mean over a growth is not one number
         # m/s: what is of second order in the angle; a sway of half a millimetre, seen for ten minutes
         second = 4 * row.size**2 * 3.49 * table_of(name).offset if row.name == "wobble" else 0.0
         slack = {"wobble": second, "uneven-rate": 5e-4 / 600}.get(row.name, 1e-12)
@@ -300,13 +365,37 @@ def test_a_scenario_that_has_a_shortcoming_keeps_its_size() -> None:
 
 def test_sizes_can_be_given() -> None:
     scenario = tr.Scenario.load("real-demonstration")
-    sizes = {"tilt": "1 deg", "drag": "2 g/s", "wobble": "0.5 deg", "variation": 0.02, "variation_rate": "10 rpm"}
+    sizes = {
+        "tilt": "1 deg",
+        "drag": "2 g/s",
+        "rolling_resistance": "10 um",
+        "wobble": "0.5 deg",
+        "variation": 0.02,
+        "variation_rate": "10 rpm",
+    }
     table = tr.sensitivity(scenario.system(), scenario.start_state(), **sizes, horizon=20.0)
     assert not any(row.own for row in table.rows)
     assert table["tilt"].size == pytest.approx(math.pi / 180)
     assert (table["still-air"].size, table["turning-air"].size, table["uneven-rate"].size) == (2e-3, 2e-3, 0.02)
     assert table["uneven-rate"].size_text == "2 %, every 6 s"
     assert table["wobble"].size_text == "0.5°"
+    assert table["rolling-resistance"].size == pytest.approx(1e-5)
+
+
+def test_a_scenario_that_resists_keeps_its_resistance() -> None:
+    system = replace(PLAIN, loads=(tr.RollingResistance("3 um"),))
+    table = tr.sensitivity(system, system.place((0.1, 0.0), (0.0, 0.1)), horizon="1 min")
+    assert [row.name for row in table.rows if row.own] == ["rolling-resistance"]
+    assert table["rolling-resistance"].size == 3e-6
+    assert table["rolling-resistance"].motion == table.given.motion
+
+
+@pytest.mark.parametrize("start", [(0.1, 0.0), (0.0, 0.0)])
+def test_a_ball_that_a_table_holds_fast_stays_or_is_said_to_stop(start: Any) -> None:
+    riding = tr.sensitivity(PLAIN, PLAIN.place(start, "co-rotating"), rolling_resistance="5 mm", horizon="1 min")
+    assert riding["rolling-resistance"].outcome == "stays"
+    spinning = tr.sensitivity(PLAIN, PLAIN.place(start, (0.0, 0.1)), rolling_resistance="5 mm", horizon="1 min")
+    assert spinning["rolling-resistance"].outcome.startswith("stops after")
 
 
 def test_json_says_the_same_in_si() -> None:
@@ -395,5 +484,9 @@ def test_the_command(tmp_path: Any, capsys: Any) -> None:
     assert json.loads(capsys.readouterr().out)["horizon"] == 60
     assert run([*words, "--uneven", "1 kg"]) == 2
     assert "`--uneven` must be a number" in capsys.readouterr().err
-    assert run(["sensitivity", "tilted-turntable"]) == 2
+    assert run([*words, "--rolling-resistance", "-1 mm"]) == 2
+    assert "`--rolling-resistance` must not be negative" in capsys.readouterr().err
+    endless = tmp_path / "endless.toml"
+    endless.write_text(tr.Scenario.load("tilted-turntable").to_toml().replace('rim = "0.5 m"\n', ""), encoding="utf-8")
+    assert run(["sensitivity", str(endless)]) == 2
     assert "`support.rim` must be given" in capsys.readouterr().err

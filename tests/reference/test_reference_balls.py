@@ -239,6 +239,23 @@ def test_a_bouncing_ball_loses_its_slip_and_comes_back() -> None:
     says(name, f"{after:.3f} m/s", f"{slip:.2f} m/s", f"{whole:.2f} s")
 
 
+def test_a_superball_jumps_forth_and_back() -> None:
+    """Garwin: V − (4/7) s at the first bounce, with the slip turned round; the second bounce undoes the first."""
+    name, a = "superball", 0.025
+    path = run(name)
+    Omega, down = -8 * 2 * math.pi, math.sqrt(2 * G * 0.5)
+    slip = 1 - a * Omega
+    back = 1 - 4 / 7 * slip
+    for n, event in enumerate(path.events):
+        V, turning = (1.0, Omega) if n % 2 else (back, (back + slip) / a)
+        assert event.kind == "land"
+        assert event.time == pytest.approx((2 * n + 1) * down / G, abs=SOLVER(1e4, TAYLOR))
+        assert event.after.velocity == pytest.approx((V, 0, down), abs=SOLVER(1e4, TAYLOR))
+        assert event.after.angular_velocity[1] == pytest.approx(turning, abs=SOLVER(1e6, TAYLOR))
+    assert len(path.events) == 6
+    says(name, f"{back:.3f} m/s", f"{slip:.2f} m/s", f"{(back + slip) / a / (2 * math.pi):.1f} turns")
+
+
 def test_a_smooth_floor_takes_less_than_the_slip() -> None:
     """Where friction cannot take all the slip in one bounce, it takes μ(1 + e)|v|."""
     path = changed("bouncing-ball-with-backspin", ("friction = 0.5", "friction = 0.1"))

@@ -7,6 +7,7 @@ import pickle
 import stat
 import subprocess
 import sys
+import time
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -21,7 +22,7 @@ from trundle.mechanics.algebra import Vector
 from trundle.mechanics.loads import BodyMotion, Load
 from trundle.mechanics.parameters import numbers
 from trundle.mechanics.shapes import Ellipsoid
-from trundle.solve import taylor
+from trundle.solve import integrator_cache, taylor
 from trundle.solve.laws import RollingLaw
 from trundle.solve.lowering import lower
 
@@ -44,7 +45,7 @@ class Machine:
             return compile_(*arguments)
 
         monkeypatch.setattr(taylor, "_compile", counted)
-        monkeypatch.setattr(taylor, "cache_folder", lambda: folder)
+        monkeypatch.setattr(integrator_cache, "cache_folder", lambda: folder)
         self.restart()
 
     def restart(self) -> None:
@@ -245,7 +246,7 @@ def test_it_works_whatever_the_umask(machine: Machine, umask: int) -> None:
 def test_without_a_folder_it_works(machine: Machine, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("in the way")
     machine.folder = tmp_path / "file" / "trundle"  # cannot be made, not even by root
-    machine.patch.setattr(taylor, "cache_folder", lambda: machine.folder)
+    machine.patch.setattr(integrator_cache, "cache_folder", lambda: machine.folder)
     assert machine.run().position.shape == (5, 3)
     assert machine.compiled == 1
 
@@ -314,3 +315,92 @@ def test_a_part_that_may_change_is_looked_at_each_time(machine: Machine) -> None
     push[0] = 0.5
     assert np.abs(machine.run(system).position - still.position).max() > 1e-3
     assert np.array_equal(still.position, machine.run(replace(SYSTEM, loads=(Moody((0.0,)),))).position)
+
+
+# --- it does not grow without end -------------------------------------------------------------------------------
+
+
+def kept(folder: Path) -> set[str]:
+    return {path.stem.removeprefix("taylor-") for path in folder.glob("taylor-*.pickle")}
+
+
+def filled(folder: Path, sizes: dict[str, int], ages: dict[str, float] | None = None) -> None:
+    """Put files into a cache, the first used longest ago, each of so many bytes; ages in days."""
+    folder.mkdir(mode=0o700, parents=True)
+    now = time.time()
+    for i, (name, size) in enumerate(sizes.items()):
+        path = folder / f"taylor-{name}.pickle"
+        path.write_bytes(b"x" * size)
+        used = now - (ages or {}).get(name, 0.0) * 86_400 - 10 * (len(sizes) - i)
+        os.utime(path, (used, used))
+
+
+def test_the_least_recently_used_go_where_there_is_too_much(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(integrator_cache, "MOST_BYTES", 1000)
+    folder = tmp_path / "cache"
+    filled(folder, {"a": 300, "b": 300, "c": 300, "d": 100})
+    (folder / "notes.txt").write_text("mine")
+    integrator_cache.prune(folder)
+    assert kept(folder) == {"a", "b", "c", "d"}  # 1000 is allowed
+    (folder / "taylor-e.pickle").write_bytes(b"x")
+    integrator_cache.prune(folder)
+    assert kept(folder) == {"b", "c", "d", "e"}  # 701, and no more than 800
+    assert (folder / "notes.txt").exists()
+
+
+def test_what_was_not_used_for_long_goes(tmp_path: Path) -> None:
+    folder = tmp_path / "cache"
+    filled(folder, {"old": 10, "older": 10, "new": 10}, {"old": 91.0, "older": 200.0, "new": 89.0})
+    integrator_cache.prune(folder)
+    assert kept(folder) == {"new"}
+
+
+def test_one_that_is_larger_than_the_whole_cache_stays_until_another_comes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(integrator_cache, "MOST_BYTES", 5)
+    filled(tmp_path / "cache", {"a": 100, "b": 100})
+    integrator_cache.prune(tmp_path / "cache")
+    assert kept(tmp_path / "cache") == {"b"}
+
+
+def test_what_is_used_stays(machine: Machine) -> None:
+    machine.run()
+    first = machine.file
+    machine.patch.setattr(integrator_cache, "MOST_BYTES", int(2.9 * first.stat().st_size))
+    others = [replace(SYSTEM, loads=(tr.Drag(0.01),)), replace(SYSTEM, loads=(tr.Force((0.1, 0.0, 0.0)),))]
+    for other in others:
+        for path in machine.folder.iterdir():  # as if an hour had passed
+            os.utime(path, (path.stat().st_mtime - 3600,) * 2)
+        machine.restart()
+        machine.run()  # of the first, from the cache: it is the one used last before the other is added
+        machine.restart()
+        machine.run(other)
+        assert first.exists()
+    assert machine.compiled == 3
+    assert sum(path.stat().st_size for path in machine.folder.iterdir()) <= 2.9 * first.stat().st_size
+
+
+def test_many_processes_may_tidy_at_once(tmp_path: Path) -> None:
+    folder = tmp_path / "cache"
+    filled(folder, {f"k{i}": 1000 for i in range(400)})
+    code = (
+        "import sys; from pathlib import Path; from trundle.solve import integrator_cache as c\n"
+        "c.MOST_BYTES = 100_000\nc.prune(Path(sys.argv[1]))"
+    )
+    running = [subprocess.Popen([sys.executable, "-c", code, str(folder)]) for _ in range(4)]  # noqa: S603
+    assert [process.wait(timeout=120) for process in running] == [0] * 4
+    assert len(kept(folder)) <= 100
+    assert "k399" in kept(folder)
+
+
+def test_a_cache_that_cannot_be_tidied_is_no_reason_to_fail(machine: Machine) -> None:
+    def refuse(*_: Any, **__: Any) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    machine.patch.setattr(integrator_cache, "MOST_BYTES", 1)
+    machine.run()
+    machine.patch.setattr(Path, "unlink", refuse)
+    machine.patch.setattr(os, "utime", refuse)
+    machine.restart()
+    assert machine.run(replace(SYSTEM, loads=(tr.Drag(0.01),))).position.shape == (5, 3)

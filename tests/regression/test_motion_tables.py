@@ -142,9 +142,7 @@ def test_air_turns_with_a_support_that_is_combined() -> None:
     motion = (
         'kind = "combined"\nparts = [{kind = "shake", amplitude = [0, 0, 0.001], rate = 9}, {kind = "spin", rate = 2}]'
     )
-    assert (
-        read(motion, 'kind = "quadratic-drag"\ncoefficient = 0.001\nair = "turning"').system().loads[0].air_rate == 2.0
-    )
+    assert read(motion, 'kind = "quadratic-drag"\ncoefficient = 0.001\nair = "turning"').system().loads[0].air == 2.0
 
 
 @pytest.mark.parametrize(

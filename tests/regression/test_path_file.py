@@ -72,7 +72,10 @@ def test_what_is_read_is_what_is_rolled() -> None:
     [
         ({**WHOLE, "body": {}}, "`body.radius` must be given; got nothing. Add for instance: radius ="),
         ({**WHOLE, "body": {"radius": "1 kg"}}, "`body.radius` must be a length; got '1 kg'"),
-        ({**WHOLE, "body": {"radius": 0.1, "mass": 1}}, "`body.mass` is no key of [body]; got 1. There are: radius."),
+        (
+            {**WHOLE, "body": {"radius": 0.1, "mass": 1}},
+            "`body.mass` is no key of [body]; got 1. There are: radius, diameter.",
+        ),
         ({**WHOLE, "path": []}, "`path` must have at least one piece; got []"),
         ({**WHOLE, "path": {"kind": "straight"}}, "`path` must be a list of tables"),
         ({**WHOLE, "support": {}}, "`support` is no key of the file"),
@@ -111,7 +114,7 @@ def test_what_is_wrong_is_said_in_one_line(data: dict[str, Any], said: str) -> N
     with pytest.raises(ScenarioError) as caught:
         PathFile.read(data, "mine.toml")
     assert str(caught.value).startswith(f"mine.toml: {said}")
-    judge_message(str(caught.value))
+    judge_message(caught.value)
 
 
 def test_a_path_is_no_motion_and_a_motion_no_path() -> None:
@@ -157,7 +160,7 @@ def test_spoiled_paths_are_refused_in_one_line_or_rolled(data: dict[str, Any]) -
         if len(scenario.path) < 30:
             assert np.isfinite(scenario.run().stages.orientation).all()
     except InvalidValueError as refusal:
-        judge_message(str(refusal))
+        judge_message(refusal)
 
 
 # --- the notes of the shipped paths tell what one sees -----------------------------------------------------------

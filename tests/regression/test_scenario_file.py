@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import pickle
+import re
 import subprocess
 import sys
 import tomllib
@@ -208,7 +209,7 @@ PIPES = [
 @pytest.mark.parametrize("support", PIPES)
 def test_pipes_and_imperfect_tables_read_back_to_a_rounding_of_the_place(support: Support) -> None:
     # An angle is read off a place on a circle, so that a coordinate may come back a last digit off.
-    loads = (Force((THIRD, "0.1*sin(3*t)", -0.1)), Torque(("t**2", 0.0, 0.0)), Drag(THIRD, air_rate=-THIRD))
+    loads = (Force((THIRD, "0.1*sin(3*t)", -0.1)), Torque(("t**2", 0.0, 0.0)), Drag(THIRD, air=-THIRD))
     system = RollingSystem(BODIES[0], support, loads)
     state = system.place((0.3, THIRD), (0.1, -0.2), spin=0.5)
     told = ScenarioFile.describe(system, state, duration=1.0, every=0.1)
@@ -244,7 +245,7 @@ def test_air_may_stand_turn_along_or_have_a_rate() -> None:
     text = WHOLE.replace('coefficient = "1 g/s"', 'coefficient = "1 g/s"\nair = {}')
     rate = ScenarioFile.loads(WHOLE).support.motion.rate
     for word, wanted in [('"still"', 0.0), ('"turning"', rate), ('"2 rad/s"', 2.0), ("-1.5", -1.5)]:
-        assert ScenarioFile.loads(text.replace("{}", word)).system().loads[2].air_rate == wanted
+        assert ScenarioFile.loads(text.replace("{}", word)).system().loads[2].air == wanted
 
 
 @given(st.tuples(*[st.floats(-1, 1)] * 4).filter(lambda q: math.hypot(*q) > 1e-3))
@@ -338,7 +339,13 @@ BAD = [  # (what stands in the file, what comes instead, the key, the value, the
     ("[0, 1, 0, 0]", "[0, 0, 0, 0]", "start.orientation", "[0.0, 0.0", "[1, 0, 0, 0]"),
     # what belongs to another surface, body or load
     ('["10 cm", 0]', '["10 deg", 0]', "start.position[0]", "'10 deg'", "must be a length"),
-    ('kind = "plane"', 'kind = "cylinder"\nradius = 1', "support.rim", "'0.5 m'", "There are: kind, radius, side"),
+    (
+        'kind = "plane"',
+        'kind = "cylinder"\nradius = 1',
+        "support.rim",
+        "'0.5 m'",
+        "There are: kind, radius, diameter, side",
+    ),
     ('kind = "sphere"', 'kind = "hoop"', "body.inertia_ratio", "0.5", "is no key of [body]"),
     ('coefficient = "1 g/s"', 'coefficient = "1 g/s"\nair = "windy"', "loads[2].air", "'windy'", "angular velocity"),
     ('"2 mN*m"', '"sinh(t)"', "loads[1].value[1]", "'sinh(t)'", "must be a formula in t"),
@@ -389,14 +396,59 @@ def test_one_message_names_key_value_and_remedy(there: str, instead: str, key: s
     assert "error" not in message.replace("ScenarioError", "")  # one thing is wrong, and one is told
 
 
-def test_several_errors_are_counted() -> None:
+def test_all_errors_of_a_file_are_told_a_line_each() -> None:
     text = WHOLE.replace('"65 g"', "-1").replace('"60 s"', '"60 m"').replace("friction", "frictoin")
     with pytest.raises(ScenarioError) as caught:
-        ScenarioFile.loads(text)
+        ScenarioFile.loads(text, "my.toml")
     assert caught.value.key == "support.frictoin"
-    assert caught.value.others == 2
-    assert str(caught.value).endswith("(2 more errors in this file.)")
-    assert pickle.loads(pickle.dumps(caught.value)).others == 2  # noqa: S301
+    assert [other.key for other in caught.value.others] == ["body.mass", "run.duration"]
+    lines = str(caught.value).split("\n")
+    assert [re.findall(r"^my.toml: `(.*?)` .*; got .+", line) for line in lines] == [
+        ["support.frictoin"],
+        ["body.mass"],
+        ["run.duration"],
+    ]
+    again = pickle.loads(pickle.dumps(caught.value))  # noqa: S301
+    assert (str(again), again.others[1].key) == (str(caught.value), "run.duration")
+
+
+START = 'position = ["10 cm", 0]'
+SPIN = 'spin = "1 rad/s"\norientation = [0, 1, 0, 0]'
+
+
+@pytest.mark.parametrize(
+    ("changes", "keys"),
+    [
+        ({START: 'position = ["10 kg", "x"]'}, ["start.position[0]", "start.position[1]"]),
+        ({START: 'position = ["10 deg", "20 deg"]'}, ["start.position[0]", "start.position[1]"]),
+        (
+            {SPIN: "spin = 1\nangular_velocity = [0, 0, 0]\norientation = [0, 0, 0, 0]"},
+            ["start.angular_velocity", "start.orientation"],
+        ),
+        (
+            {START: 'position = ["10 kg", 0]', '"65 g"': "0", '"10 ms"': "0"},
+            ["body.mass", "start.position[0]", "run.every"],
+        ),
+        ({'kind = "sphere"': 'kind = "solid"', '"10 ms"': "0"}, ["body.kind", "run.every"]),
+    ],
+)
+def test_mistakes_that_do_not_hide_each_other_are_all_told(changes: dict[str, str], keys: list[str]) -> None:
+    text = WHOLE
+    for there, instead in changes.items():
+        assert text.count(there) == 1
+        text = text.replace(there, instead)
+    with pytest.raises(ScenarioError) as caught:
+        ScenarioFile.loads(text)
+    assert [caught.value.key, *(other.key for other in caught.value.others)] == keys
+    assert str(caught.value).count("\n") == len(keys) - 1
+
+
+def test_of_very_many_errors_the_rest_is_counted() -> None:
+    with pytest.raises(ScenarioError) as caught:
+        ScenarioFile.loads(WHOLE + "".join(f"\n[wrong{i}]" for i in range(50)))
+    lines = str(caught.value).split("\n")
+    assert len(lines) == 21
+    assert lines[-1].endswith("30 more errors like these.")
 
 
 @pytest.mark.parametrize(
@@ -441,6 +493,9 @@ def fits(value: Any, schema: dict[str, Any], whole: dict[str, Any]) -> bool:
     """Judge by the few words of JSON schema that the scenario schema uses."""
     if "$ref" in schema:
         return fits(value, whole["$defs"][schema["$ref"].rpartition("/")[2]], whole)
+    for part in schema.get("allOf", ()):  # one of radius and diameter
+        if sum(each["required"][0] in value for each in part["oneOf"]) != 1:
+            return False
     if "anyOf" in schema or "oneOf" in schema:
         return any(fits(value, each, whole) for each in schema.get("anyOf") or schema["oneOf"])
     if "const" in schema or "enum" in schema:
@@ -464,9 +519,15 @@ def fits(value: Any, schema: dict[str, Any], whole: dict[str, Any]) -> bool:
 def test_the_schema_fits_what_loads_and_not_what_does_not() -> None:
     schema = json.loads(json.dumps(ScenarioFile.schema()))
     assert schema["$schema"].startswith("https://json-schema.org/")
-    for text in (WHOLE, LEAST):
+    for text in (WHOLE, LEAST, WHOLE.replace(RADIUS, 'diameter = "50 mm"')):
         assert fits(tomllib.loads(text), schema, schema)
-    for there, instead in [(RADIUS, ""), (RADIUS, "radius = 0"), ("[body]", "[bodi]"), ('"taylor"', '"x"')]:
+    for there, instead in [
+        (RADIUS, ""),
+        (RADIUS, "radius = 0"),
+        (RADIUS, f"{RADIUS}\ndiameter = 1"),
+        ("[body]", "[bodi]"),
+        ('"taylor"', '"x"'),
+    ]:
         assert not fits(tomllib.loads(WHOLE.replace(there, instead)), schema, schema)
 
 

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from trundle.errors import InvalidValueError, TrundleError
+from trundle.errors import MOST_TOLD, InvalidValueError, TrundleError
 from trundle.mechanics.system import RollingSystem, State
 from trundle.scenario import ScenarioFile, files
 from trundle.units import UNITS
@@ -84,10 +84,11 @@ def spoiled(draw: st.DrawFn) -> dict[str, Any]:
     return data
 
 
-def judge_message(message: str) -> None:
-    """One line, of a length that is read."""
-    assert "\n" not in message
-    assert len(message) < 1000
+def judge_message(refusal: InvalidValueError) -> None:
+    """One line for each mistake, of a length that is read, and no more of them than are read."""
+    lines = str(refusal).split("\n")
+    assert len(lines) == min(1 + len(getattr(refusal, "others", ())), MOST_TOLD + 1)
+    assert all(0 < len(line) < 1000 for line in lines)
 
 
 def judge(data_or_text: Any) -> None:
@@ -100,13 +101,13 @@ def judge(data_or_text: Any) -> None:
         else:
             scenario = ScenarioFile.loads(data_or_text)
     except InvalidValueError as refusal:
-        judge_message(str(refusal))
+        judge_message(refusal)
         return
     try:
         assert isinstance(scenario.system(), RollingSystem)
         assert isinstance(scenario.start_state(), State)
     except TrundleError as refusal:
-        judge_message(str(refusal))
+        judge_message(refusal)
     again = ScenarioFile.loads(scenario.to_toml())
     assert again == scenario
     assert again.to_toml() == scenario.to_toml()

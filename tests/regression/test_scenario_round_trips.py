@@ -67,7 +67,7 @@ MOTIONS = [
 LOADS = [
     tr.Force((0.1, "0.01*t", 0.0)),
     tr.Torque((0.0, 1e-3, "1e-3*sin(t)")),
-    tr.Drag(0.01, air_rate=1 / 3),
+    tr.Drag(0.01, air=1 / 3),
     tr.QuadraticDrag(0.02),
     tr.Potential("0.5*3*(x**2 + y**2)"),
     tr.RollingResistance(5e-5),

@@ -102,12 +102,14 @@ def test_tilted_turntable() -> None:
     assert (abs(u), abs(v)) < (1e-4, 1e-4)
     says(
         name,
-        f"{abs(drift):.3f} m/s",
+        f"{1000 * abs(drift):.1f} mm/s",
         f"{period:.3f} s",
-        f"{radius:.3f} m",
-        f"{abs(drift) * 20:.1f} m of it in 20 s",
+        f"{100 * radius:.1f} cm",
+        f"In 20 s the ball crosses {2000 * abs(drift):.0f} cm",
     )
-    assert abs(centre + 10 * drift) < 0.05  # half-way through, over the axis
+    assert period == pytest.approx(3.5 * 60 / 33.3, rel=1e-6)  # seven halves of a turn
+    assert abs(centre + 10 * drift) < 0.005  # half-way through, over the axis
+    assert np.hypot(*path(np.linspace(0, 20, 2001))[:2]).max() < 0.5  # it stays on the table
 
 
 def test_tilted_turntable_put_down() -> None:

@@ -9,6 +9,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from ..display import Displayed, Headline, Markup, paragraph
 from ..errors import InvalidValueError, OutOfDomainError
 from ..mechanics import checks
 from ..mechanics.bodies import Body
@@ -23,6 +24,8 @@ from ..solve.samples import ROLLING
 from .particle import ELECTRON_MASS, ELEMENTARY_CHARGE, ChargedParticle
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from matplotlib.figure import Figure
 
     from ..scenario import ScenarioFile
@@ -32,8 +35,8 @@ FASTEST = 0.1  # of the speed of light: beyond it the slow particle's formulas a
 ELECTRON_SLOW_MOTION = 1e6  # the electron's microseconds are the ball's seconds
 
 
-@dataclass(frozen=True)
-class Twin:
+@dataclass(frozen=True, repr=False)
+class Twin(Displayed):
     """A ball and the charge that moves as it does: the same path, and the same times but for slow motion.
 
     Examples
@@ -93,6 +96,25 @@ class Twin:
         radius = self.ball.circle_radius if self.ball.has_guiding_centre else 0.0
         return 2.0**-52 * (16 * size + 4 * turned * min(radius, size))
 
+    @property
+    def agrees(self) -> bool:
+        """Whether the two paths differ by no more than rounding, over the time that is shown."""
+        return self.largest_difference(self.shown_duration) <= self.rounding(self.shown_duration)
+
+    def __str__(self) -> str:
+        from .table import report
+
+        return report(self)
+
+    def _headline(self) -> Headline:
+        return Headline(self.title, f"the two paths {'agree' if self.agrees else 'DIFFER'}", self.agrees)
+
+    def _parts(self) -> Iterator[Markup]:
+        from .table import agreement, shown
+
+        yield shown(self)
+        yield paragraph(agreement(self))
+
     def table(self) -> list[tuple[str, str, str, str, str]]:
         """Return the correspondence by rows: what it is; of the ball, its formula and value; of the charge, the same.
 
@@ -119,7 +141,7 @@ class Twin:
         --------
         >>> import trundle as tr
         >>> tr.twin(tr.Scenario.load("tilted-turntable")).plot().axes[0].get_xlabel()
-        'y, level (m)'
+        'y, level (cm)'
         """
         from .figure import draw
 

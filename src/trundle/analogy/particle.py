@@ -7,12 +7,14 @@ resists the drift of a charge that collides, [chen2016], chapter 5.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..display import Displayed, Markup, number, numbers, pairs
 from ..errors import InvalidValueError, OutOfDomainError
 from ..mechanics import checks
 
@@ -23,7 +25,7 @@ _TERMS = 22  # of the power series below one radian: 1/22! is 1e-21
 
 
 @dataclass(frozen=True)
-class ChargedParticle:
+class ChargedParticle(Displayed):
     """A slow charged particle in a uniform magnetic field along n and a uniform electric field across it.
 
     It obeys the Lorentz force, M dv/dt = Q(E + v×B) − C v, in the plane that n is the normal of.
@@ -81,6 +83,21 @@ class ChargedParticle:
         store("position", checks.components(self.position, "length", "position", 2))
         store("velocity", checks.components(self.velocity, "velocity", "velocity", 2))
         store("resistance", checks.non_negative(self.resistance, "damping", "resistance"))
+
+    def _parts(self) -> Iterator[Markup]:
+        way = "out of the plane" if self.magnetic_field > 0 else "into the plane" if self.magnetic_field else ""
+        yield pairs(
+            [
+                ("mass M", number(self.mass, unit="kg")),
+                ("charge Q", number(self.charge, unit="C")),
+                ("magnetic field B", number(self.magnetic_field, unit=f"T along n, {way}".rstrip(", "))),
+                ("electric field E", numbers(self.electric_field, unit="V/m")),
+                ("at first at", numbers(self.position, unit="m")),
+                ("with the velocity", numbers(self.velocity, unit="m/s")),
+                ("resistance C", number(self.resistance, unit="kg/s")),
+                ("one turn", number(self.period, unit="s") if self.magnetic_field else ""),
+            ]
+        )
 
     # What the fields say
 

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+import re
+from typing import TYPE_CHECKING, Any
 
+from ..display import Markup, joined, mathml, pairs, table
 from ..plots.scales import short, with_unit
 
 if TYPE_CHECKING:
     from .correspondence import Twin
 
+HEADS = ("", "ball", "", "charge", "")
 Row = tuple[str, str, str, str, str]  # what it is, of the ball, its value, of the charge, its value
 
 
@@ -106,6 +109,49 @@ def settings(pair: Twin) -> list[tuple[str, str]]:
     if pair.slow_motion != 1.0:
         told.append(("slow motion", f"1 s of the ball is {with_unit(1 / pair.slow_motion, 'time', 6)} of the charge"))
     return told
+
+
+def report(pair: Twin) -> str:
+    """Write out the correspondence and how far the two paths are apart, as the command prints them.
+
+    Parameters
+    ----------
+    pair : Twin
+        Ball and charge.
+
+    Returns
+    -------
+    str
+        Several lines.
+    """
+    head = [pair.title, ""] if pair.title else []
+    return "\n".join([*head, *_columns([HEADS, *rows(pair)]), "", *_columns(settings(pair)), "", agreement(pair)])
+
+
+def agreement(pair: Twin) -> str:
+    """Say how far the two paths are apart, and how much of that rounding may do."""
+    duration = pair.shown_duration
+    apart, allowed = pair.largest_difference(duration), pair.rounding(duration)
+    return (
+        f"Over {duration:g} s the two paths, each by its own formulas, are at most {apart:.2g} m apart; "
+        f"rounding may make {allowed:.2g} m."
+    )
+
+
+def shown(pair: Twin) -> Markup:
+    """Return the correspondence and the settings as tables for a notebook."""
+    told = [(name, _formula(ball), value, _formula(charge), its) for name, ball, value, charge, its in rows(pair)]
+    return joined([table(told, HEADS), pairs(settings(pair))])
+
+
+def _formula(text: str) -> Markup:
+    """Return the formula of a row as MathML: it is LaTeX but for its bars, which have to be told left from right."""
+    return mathml(re.sub(r"\|([^|]*)\|", r"\\left|\1\\right|", text))
+
+
+def _columns(lines: list[Any]) -> list[str]:
+    widths = [max(len(line[i]) for line in lines) for i in range(len(lines[0]))]
+    return ["  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip() for line in lines]
 
 
 def _turning(pair: Twin) -> str:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InvalidValueError
+from ..files import read_netcdf
 
 _TEXT, _PARQUET, _NETCDF = (".csv", ".txt", ".tsv", ".dat"), (".parquet", ".pq"), (".nc", ".nc4", ".h5", ".cdf")
 
@@ -117,4 +118,6 @@ def _parquet(path: Path, columns: Mapping[str, str]) -> Any:  # noqa: ARG001
 def _netcdf(path: Path, columns: Mapping[str, str]) -> Any:  # noqa: ARG001
     import xarray
 
-    return xarray.load_dataset(path)
+    with path.open("rb") as stream:
+        classic = stream.read(3) == b"CDF"  # NetCDF3, which is no HDF5
+    return xarray.load_dataset(path) if classic else read_netcdf(path)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from ..display import Displayed, Headline, Markup, number, pairs, paragraph
 from ..verify import Card
 
 if TYPE_CHECKING:
@@ -12,7 +14,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Mistake:
+class Mistake(Displayed):
     """A mistake that explains what was found.
 
     Parameters
@@ -45,11 +47,18 @@ class Mistake:
     numbers: dict[str, float] = field(default_factory=dict)
     named: bool = True
 
+    def _headline(self) -> Headline:
+        return Headline(self.name, self.says)
+
+    def _parts(self) -> Iterator[Markup]:
+        values = [(self.check, number(self.before, 2)), ("with that undone", number(self.after, 1))]
+        yield pairs([*values, ("at most", number(self.bound, 2)), *((k, number(v)) for k, v in self.numbers.items())])
+
     def __str__(self) -> str:
         return f"{self.says} ({self.check}: {self.before:.2g} as it is, {self.after:.1g} with that undone)"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Check(Card):
     """The card of somebody else's motion or equations.
 
@@ -99,6 +108,10 @@ class Check(Card):
 
     def __str__(self) -> str:
         return "\n".join(filter(None, [super().__str__(), self.verdict]))
+
+    def _parts(self) -> Iterator[Markup]:
+        yield paragraph(self.verdict)
+        yield from super()._parts()
 
     def as_dict(self) -> dict[str, Any]:
         """Return the card, the first failure and the mistakes as plain dictionaries."""

@@ -95,7 +95,8 @@ def _explain(error: Exception) -> int:
     if hasattr(error, "format_message") and hasattr(error, "exit_code"):  # typer's: a wrong option or command
         return _explain_usage(error)
     if isinstance(error, (InvalidValueError, UnknownNameError)):
-        _say(str(error))
+        for line in str(error).split("\n"):  # a scenario file may have several mistakes
+            _say(line)
         return BAD_INPUT
     if isinstance(error, TrundleError):
         _say(str(error))

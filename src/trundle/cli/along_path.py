@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from ..verify import Card
 
 FILES = ("run.nc", "stages.png")
-MOST_STAGES = 24  # of a long path's stages are printed
 
 
 def run(
@@ -69,7 +68,7 @@ def run(
         "stages.png": lambda path: rolled.plot().savefig(path),
     }
     written = write_together(folder, {name: writers[name] for name in names})
-    return rolled.card(), [f"{name:<8} {what}".rstrip() for name, what in stages_of(rolled)], written
+    return rolled.card(), [f"{name:<8} {what}".rstrip() for name, what in _stages(rolled)], written
 
 
 def _load(tables: dict[str, Any], source: str, given: dict[str, str]) -> PathScenario:
@@ -84,42 +83,12 @@ def _load(tables: dict[str, Any], source: str, given: dict[str, str]) -> PathSce
     try:
         return PathScenario.read(tables, source)
     except ScenarioError as error:
-        key = error.key.removeprefix("run.")
-        if key in given:
-            raise ScenarioError(f"--{key}", error.rule, error.received, error.remedy) from None
-        raise
+        raise error.naming({f"run.{key}": f"--{key}" for key in given}) from None
 
 
-def stages_of(rolled: RolledPath) -> list[tuple[str, str]]:
-    """Say where the ball is at each stage, and where its north pole points.
-
-    Parameters
-    ----------
-    rolled : RolledPath
-        Any.
-
-    Returns
-    -------
-    list of (name, what)
-        The stages in between are left out of a long path.
-
-    Examples
-    --------
-    >>> import trundle as tr
-    >>> stages_of(tr.roll_along(tr.Straight(turn="90 deg"), radius="2 cm"))[0]
-    ('start', '(0, 0) cm, north pole up')
-    """
-    from ..geometry.evidence import direction
-    from ..plots.scales import unit_for
-
-    at = rolled.stages
-    unit = unit_for(max(float(abs(at.contact).max()), rolled.radius), "length")
-    rows = []
-    for i, (place, pole) in enumerate(zip(at.contact / unit.scale, at.north_pole, strict=True)):
-        x, y = (float(f"{round(float(part), 9):.4g}") + 0.0 for part in place)
-        rows.append((f"stage {i}" if i else "start", f"({x:g}, {y:g}) {unit.symbol}, north pole {direction(pole)}"))
-    half = MOST_STAGES // 2
-    return rows if len(rows) <= MOST_STAGES else [*rows[:half], ("...", ""), *rows[-half:]]
+def _stages(rolled: RolledPath) -> list[tuple[str, str]]:
+    """Return each stage's name, and where the ball and its north pole are."""
+    return [(name, f"{place}, north pole {pole}" if place else "") for name, place, pole in rolled.stages.told()]
 
 
 def expected(text: str, source: str) -> Callable[[], list[tuple[str, str]]]:
@@ -155,6 +124,6 @@ def expected(text: str, source: str) -> Callable[[], list[tuple[str, str]]]:
     def rows() -> list[tuple[str, str]]:
         rolled = scenario.run()
         home = "came home turned by" if rolled.is_closed else "turned in the end by"
-        return [*stages_of(rolled), (home, str(rolled.rotation))]
+        return [*_stages(rolled), (home, str(rolled.rotation))]
 
     return rows

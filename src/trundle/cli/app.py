@@ -209,10 +209,7 @@ def load(scenario: str, **overrides: str | None) -> Any:
     try:
         return Scenario.read(tables, scenario)
     except ScenarioError as error:
-        key = error.key.removeprefix("run.")
-        if key in given:
-            raise ScenarioError(f"--{key}", error.rule, error.received, error.remedy) from None
-        raise
+        raise error.naming({f"run.{key}": f"--{key}" for key in given}) from None
 
 
 def list_scenarios() -> None:

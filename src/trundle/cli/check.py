@@ -92,15 +92,13 @@ def _scenario(theirs: Path, scenario: str | None) -> object:
     """Return the scenario that was named, or the one in a file of trundle's own."""
     if scenario is not None:
         return scenario
-    if theirs.suffix == ".nc" and theirs.is_file():
-        from ..errors import TrundleError
+    if theirs.suffix == ".nc":
+        from ..run_file import scenario_in
         from ..scenario import ScenarioFile
-        from ..trajectory import Trajectory
 
-        try:
-            return ScenarioFile.loads(Trajectory.load(theirs).scenario, str(theirs))
-        except TrundleError:
-            pass
+        text = scenario_in(theirs)
+        if text:
+            return ScenarioFile.loads(text, str(theirs))
     raise InvalidValueError(
         "--scenario", "must say what moves", "none", "Name a shipped one (`trundle list`) or a TOML file."
     )

@@ -99,7 +99,10 @@ def _motion(name: str, *, bar: bool) -> tuple[Any, Callable[..., Scene]]:
     if _is_run(name):
         from ..trajectory import Trajectory
 
-        return Trajectory.load(Path(name).expanduser()), scene_of
+        run = Trajectory.load(Path(name).expanduser())
+        if bar and run.changed:
+            screen.note(f"trundle: {name} has changed since it was saved: {', '.join(run.changed)}")
+        return run, scene_of
     scenario = _scenario(name)
     if hasattr(scenario, "path"):
         from ..geometry.scene import rolled_scene

@@ -11,6 +11,10 @@ from . import screen
 
 
 def lab(
+    scenario: Annotated[
+        str | None,
+        typer.Argument(metavar="SCENARIO", help="What to open: the name of a shipped one, or a TOML file."),
+    ] = None,
     host: Annotated[str, typer.Option(metavar="ADDRESS", help="Where to listen.")] = "127.0.0.1",
     port: Annotated[
         int | None,
@@ -23,11 +27,13 @@ def lab(
 ) -> None:
     """Serve the lab on this machine and open it in a browser: a turntable to spin and tilt, a ball to put down.
 
-    Everything is computed here, by this package; nothing is asked of any other machine. Ctrl-C ends it.
+    With a scenario it opens that. Everything is computed here, by this package; nothing is asked of any other machine.
+    Ctrl-C ends it.
     """
     import gc
     from contextlib import suppress
 
+    from ..lab.links import page_of
     from ..lab.serving import is_loopback, serve
     from ..lab.settings import DEFAULT_PORT, Settings
 
@@ -38,12 +44,16 @@ def lab(
     if exposed:
         screen.note(f"trundle: warning: anyone who reaches {host} can now use this machine to compute, unencrypted")
 
+    page = "" if scenario is None else page_of(scenario)
+
     def told(address: str, taken: int) -> None:
         if port is None and taken != DEFAULT_PORT:
             screen.note(f"trundle: port {DEFAULT_PORT} is taken, so this is another")
         screen.out(f"The lab is at {address} (Ctrl-C ends it)")
+        if page and no_open:
+            screen.out(f"{scenario} is at {address}{page}")
 
     gc.enable()  # unlike other commands, this one lasts
     with suppress(KeyboardInterrupt):
-        serve(Settings(host=host, exposed=exposed), port, open_browser=not no_open, told=told)
+        serve(Settings(host=host, exposed=exposed), port, page=page, open_browser=not no_open, told=told)
     screen.out("The lab has ended.")

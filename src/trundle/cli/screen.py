@@ -98,19 +98,20 @@ def show_card(card: Card) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    verdicts = {True: Text("holds", style="green"), False: Text("FAILS", style="bold red"), None: Text("")}
+    styles = {True: "green", False: "bold red", None: ""}
     table = Table("", "", "value", "at most", "how", box=SIMPLE_HEAD)
     for figure in card.figures:
-        digits = 6 if figure.passed is None and figure.bound is None else 2
-        value = f"{figure.value:.{digits}g} {figure.unit}".rstrip()
+        value = f"{figure.value:.{figure.digits}g} {figure.unit}".rstrip()
         bound = "" if figure.bound is None else f"{figure.bound:.2g}"
         cells = [Text(cell) for cell in (figure.name, value, bound, figure.note)]
-        table.add_row(verdicts[figure.passed], *cells)
+        table.add_row(Text(figure.outcome, style=styles[figure.passed]), *cells)
     console = _console()
     console.print(Text(card.title, style="bold"))
     console.print(Text(f"method: {card.method}"))
+    if card.origin:
+        console.print(Text(f"origin: {card.origin}"))
     console.print(table)
-    console.print(Text("every check held" if card.passed else f"{len(card.failures)} of the checks FAILED"))
+    console.print(Text(card.outcome))
 
 
 def _console(*, stderr: bool = False) -> Any:

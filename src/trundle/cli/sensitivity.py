@@ -14,7 +14,11 @@ if TYPE_CHECKING:
     from ..imperfections import Sensitivity
 
 FILE = "sensitivity.png"
-OPTIONS = {"variation": "--uneven", "variation_rate": "--uneven-rate"}  # where they differ from Python's names
+OPTIONS = {  # where they differ from Python's names
+    "rolling_resistance": "--rolling-resistance",
+    "variation": "--uneven",
+    "variation_rate": "--uneven-rate",
+}
 
 
 def sensitivity(
@@ -26,6 +30,9 @@ def sensitivity(
     tilt: Annotated[str | None, typer.Option(metavar="ANGLE", help="Of the table, such as '0.1 deg'.")] = None,
     drag: Annotated[
         str | None, typer.Option(metavar="C", help="Of the air, at rest and turning, such as '0.1 g/s'.")
+    ] = None,
+    rolling_resistance: Annotated[
+        str | None, typer.Option(metavar="LENGTH", help="How far ahead the normal force acts, such as '5 um'.")
     ] = None,
     wobble: Annotated[
         str | None, typer.Option(metavar="ANGLE", help="Between table and axle, such as '0.1 deg'.")
@@ -44,7 +51,8 @@ def sensitivity(
     """Vary one shortcoming of a turntable at a time, and rank them by how soon the ball is off; write sensitivity.png.
 
     A size that is not given is the scenario's own where it has that shortcoming; else 0.1 deg of tilt, 0.1 deg of
-    wobble, a rate uneven by 1 % once a turn, and the drag of room air on the ball.
+    wobble, a rate uneven by 1 % once a turn, the drag of room air on the ball, and a resistance to rolling of a
+    ten-thousandth of the weight.
     """
     from ..imperfections import sensitivity as vary
     from .writing import check_folder, write_together
@@ -56,6 +64,7 @@ def sensitivity(
     sizes: dict[str, Any] = {
         "tilt": tilt,
         "drag": drag,
+        "rolling_resistance": rolling_resistance,
         "wobble": wobble,
         "variation": uneven,
         "variation_rate": uneven_rate,

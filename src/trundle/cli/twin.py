@@ -45,11 +45,11 @@ def twin(
     pair = _found(load(scenario), mass=mass, charge=charge, electron=electron, slow_motion=slow_motion)
     if not no_figure:
         check_folder(folder, (FILE,))
-    agree = _tell(pair)
+    screen.out(str(pair))
     if not no_figure:
         written = write_together(folder, {FILE: lambda path: pair.plot().savefig(path)})
         screen.out(f"Wrote {written[0]}")
-    if not agree:
+    if not pair.agrees:
         screen.note("trundle: the two paths differ by more than rounding")
         raise typer.Exit(CARD_FAILED)
 
@@ -64,30 +64,3 @@ def _found(scenario: Any, **options: Any) -> Twin:
             key = f"--{error.key.replace('_', '-')}"
             raise InvalidValueError(key, error.rule, error.received, error.remedy) from None
         raise
-
-
-def _tell(pair: Twin) -> bool:
-    """Print the correspondence, and tell whether the paths agree."""
-    from ..analogy.table import settings
-
-    if pair.title:
-        screen.out(pair.title)
-        screen.out()
-    for line in _columns([("", "ball", "", "charge", ""), *pair.table()]):
-        screen.out(line)
-    screen.out()
-    for line in _columns(settings(pair)):
-        screen.out(line)
-    duration = pair.shown_duration
-    apart, allowed = pair.largest_difference(duration), pair.rounding(duration)
-    screen.out()
-    screen.out(
-        f"Over {duration:g} s the two paths, each by its own formulas, are at most {apart:.2g} m apart; "
-        f"rounding may make {allowed:.2g} m."
-    )
-    return apart <= allowed
-
-
-def _columns(rows: list[Any]) -> list[str]:
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]

@@ -5,13 +5,12 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
-import shutil
 import signal
-import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 from ..errors import InvalidValueError, TrundleError
+from ..files import staging
 
 
 class CannotWriteError(TrundleError):
@@ -83,23 +82,18 @@ def write_together(folder: Path, files: Mapping[str, Callable[[Path], object]]) 
     """
     try:
         above = _nearest_folder(folder)
-        stage = Path(tempfile.mkdtemp(prefix=".trundle-", dir=above))
-    except OSError as error:
-        raise _failure(folder, error) from None
-    try:
-        for name, write in files.items():
-            write(stage / name)
-            _to_disk(stage / name)
-        with _uninterrupted():
-            _move(stage, folder, above, list(files))
+        with staging(above, folder.absolute().parent) as stage:
+            for name, write in files.items():
+                write(stage / name)
+                _to_disk(stage / name)
+            with _uninterrupted():
+                _move(stage, folder, above, list(files))
     except (OSError, RuntimeError) as error:  # RuntimeError: HDF5 on a full disk
         if isinstance(error, RuntimeError) and "HDF5" not in str(error) and "H5" not in str(error):
             raise
         raise _failure(folder, error) from None
     except TrundleError as error:  # a writer that explains itself
         raise _failure(folder, error) from None
-    finally:
-        shutil.rmtree(stage, ignore_errors=True)
     return [folder / name for name in files]
 
 

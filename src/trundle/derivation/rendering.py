@@ -1,4 +1,4 @@
-"""A derivation as text for a terminal, as Markdown, as LaTeX and as what JSON can hold."""
+"""A derivation as text for a terminal, as Markdown, as LaTeX, as HTML and as what JSON can hold."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import textwrap
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from ..display import Markup, fold, joined, mathml, paragraph, section, table
 from .printers import FormulaPrinter, TextPrinter, split
 from .symbols import MEANINGS
 
@@ -58,7 +59,7 @@ def text(derivation: Derivation, width: int) -> str:
         lines += [
             f"{_MARGIN * 2}{_in_line(n.symbol)} = {_value(n.value)} {n.unit}".rstrip() for n in derivation.numbers
         ]
-    lines += ["", *_wrapped(_PROVED.format(count=_count(derivation)), width, "")]
+    lines += ["", *_wrapped(_PROVED.format(count=derivation.count), width, "")]
     return "\n".join(lines) + "\n"
 
 
@@ -102,7 +103,7 @@ def markdown(derivation: Derivation) -> str:
     if derivation.numbers:
         lines += ["", "## With the scenario's numbers", ""]
         lines += [f"- {inline(n.symbol)} = {_value(n.value)} {n.unit}".rstrip() for n in derivation.numbers]
-    return "\n".join([*lines, "", _PROVED.format(count=_count(derivation)), ""])
+    return "\n".join([*lines, "", _PROVED.format(count=derivation.count), ""])
 
 
 def latex(derivation: Derivation) -> str:
@@ -140,7 +141,51 @@ def latex(derivation: Derivation) -> str:
     if derivation.numbers:
         values = [rf"{inline(n.symbol)} = {_latex_number(n.value)}~{_escaped(n.unit)}" for n in derivation.numbers]
         lines += ["", r"\subsection*{With the scenario's numbers}", "; ".join(values) + "."]
-    return "\n".join([*lines, "", _PROVED.format(count=_count(derivation)), ""])
+    return "\n".join([*lines, "", _PROVED.format(count=derivation.count), ""])
+
+
+def shown(derivation: Derivation) -> Markup:
+    """Return a derivation as a notebook shows it, its formulas as MathML.
+
+    Parameters
+    ----------
+    derivation : Derivation
+        What to show.
+
+    Returns
+    -------
+    Markup
+        It needs no script.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> shown(tr.derive("turntable")).count("<math") > 20
+    True
+    """
+    symbols = [(mathml(latex_of(symbol)), meaning, unit) for symbol, meaning, unit in _symbols_of(derivation)]
+    values = [(mathml(latex_of(n.symbol)), f"{_value(n.value)} {n.unit}") for n in derivation.numbers]
+    steps = [section(f"{number}. {step.title}", shown_step(step)) for number, step in enumerate(derivation.steps, 1)]
+    return joined(
+        [
+            paragraph(derivation.introduction),
+            fold("Symbols", table(symbols, ("symbol", "meaning", "unit"))),
+            *steps,
+            section("With the scenario's numbers", table(values)),
+            paragraph(_PROVED.format(count=derivation.count)),
+        ]
+    )
+
+
+def shown_step(step: Step) -> Markup:
+    """Return one step as a notebook shows it: its sentence, and its equations."""
+    told = _pieces(step, lambda expression: mathml(latex_of(expression)))
+    return joined([paragraph(*told), *(mathml(latex_of(one.formula), display=True) for one in step.equations)])
+
+
+def latex_of(expression: Any) -> str:
+    """Return a formula in LaTeX, without dollar signs."""
+    return str(FormulaPrinter().doprint(expression))
 
 
 def as_dict(derivation: Derivation) -> dict[str, Any]:
@@ -197,14 +242,14 @@ def as_dict(derivation: Derivation) -> dict[str, Any]:
     }
 
 
-def _count(derivation: Derivation) -> int:
-    return sum(len(step.equations) for step in derivation.steps)
-
-
 def _said(step: Step, inline: Callable[[Any], str], plain: Callable[[str], str] = str) -> str:
     """Put the formulas of a sentence in their places."""
+    return "".join(_pieces(step, inline, plain))
+
+
+def _pieces(step: Step, inline: Callable[[Any], str], plain: Callable[[str], str] = str) -> list[str]:
     pieces = re.split(r"\{(\w+)\}", step.sentence)
-    return "".join(inline(step.words[piece]) if i % 2 else plain(piece) for i, piece in enumerate(pieces))
+    return [inline(step.words[piece]) if i % 2 else plain(piece) for i, piece in enumerate(pieces)]
 
 
 def _symbols_of(derivation: Derivation) -> list[tuple[Any, str, str]]:

@@ -24,7 +24,7 @@ from .zero import normal_form
 _LONGEST = 60  # operations in one component that a reader may want to see
 _NAMES = {
     "mass": "m", "ratio": "k", "moment": "I", "rate": "omega", "variation": "epsilon", "variation_rate": "nu",
-    "angle": "epsilon", "tilt": "alpha", "gravity": "g", "coefficient": "c", "air_rate": "omega_a", "friction": "mu",
+    "angle": "epsilon", "tilt": "alpha", "gravity": "g", "coefficient": "c", "air": "omega_a", "friction": "mu",
 }  # fmt: skip
 _MEANT = {
     "epsilon": "how far the support's motion is from steady",

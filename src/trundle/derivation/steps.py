@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from ..display import Displayed, Headline, Markup, mathml
 from ..errors import TrundleError
 
 
@@ -14,7 +15,7 @@ class DerivationError(TrundleError):
 
 
 @dataclass(frozen=True)
-class Equation:
+class Equation(Displayed):
     """An equation as it is printed, and its residual.
 
     Parameters
@@ -32,7 +33,7 @@ class Equation:
     """
 
     formula: Any
-    residual: Any
+    residual: Any = field(repr=False)
 
     @property
     def holds(self) -> bool:
@@ -40,9 +41,17 @@ class Equation:
         parts = self.residual if hasattr(self.residual, "shape") else [self.residual]
         return all(part == 0 for part in parts)
 
+    def _headline(self) -> Headline:
+        return Headline("", "proved" if self.holds else "NOT proved", self.holds)
 
-@dataclass(frozen=True)
-class Step:
+    def _parts(self) -> Iterator[Markup]:
+        from .rendering import latex_of
+
+        yield mathml(latex_of(self.formula), display=True)
+
+
+@dataclass(frozen=True, repr=False)
+class Step(Displayed):
     """One step: what is done, in a sentence, and the equations that come of it.
 
     Parameters
@@ -72,6 +81,15 @@ class Step:
         """One for each equation; all are 0."""
         return tuple(equation.residual for equation in self.equations)
 
+    def _headline(self) -> Headline:
+        proved = all(equation.holds for equation in self.equations)
+        return Headline(self.title, "proved" if proved else "NOT proved", proved)
+
+    def _parts(self) -> Iterator[Markup]:
+        from .rendering import shown_step
+
+        yield shown_step(self)
+
 
 @dataclass(frozen=True)
 class Number:
@@ -89,8 +107,8 @@ class Number:
     unit: str
 
 
-@dataclass(frozen=True)
-class Derivation:
+@dataclass(frozen=True, repr=False)
+class Derivation(Displayed):
     """How the motion of a rolling body follows from Newton's and Euler's laws, each line of it proved.
 
     Parameters
@@ -128,6 +146,11 @@ class Derivation:
     def __post_init__(self) -> None:
         checked(self.name, self.steps)
 
+    @property
+    def count(self) -> int:
+        """How many equations it has."""
+        return sum(len(step.equations) for step in self.steps)
+
     def text(self, width: int = 100) -> str:
         """Return the derivation for a terminal, in Unicode, at most `width` columns wide where lines can break."""
         from .rendering import text
@@ -154,6 +177,14 @@ class Derivation:
 
     def __str__(self) -> str:
         return self.text()
+
+    def _headline(self) -> Headline:
+        return Headline(self.title, f"each of {self.count} equations proved", True)
+
+    def _parts(self) -> Iterator[Markup]:
+        from .rendering import shown
+
+        yield shown(self)
 
     def _repr_markdown_(self) -> str:
         return self.markdown()

@@ -51,7 +51,7 @@ def card(rolled: RolledPath) -> Card:
     >>> card["no pivoting"].passed
     True
     """
-    figures = [*_rolls(rolled), *_second_opinions(rolled), *_facts(rolled)]
+    figures = [*_rolls(rolled), *_second_opinions(rolled), *facts(rolled)]
     kinds = ["closed form G2 for straight pieces and arcs"] * bool(len(rolled.pieces) - len(rolled._laid.curves))
     kinds += ["rotation products along curves"] * bool(rolled._laid.curves)
     return Card(rolled.title, "; ".join(kinds), tuple(figures))
@@ -198,7 +198,8 @@ def _runge_kutta(rolled: RolledPath, i: int) -> tuple[float, float]:
 # --- the facts ---------------------------------------------------------------------------------------------
 
 
-def _facts(rolled: RolledPath) -> Iterator[CardFigure]:
+def facts(rolled: RolledPath) -> Iterator[CardFigure]:
+    """Return what came of it: figures that inform, without a bound."""
     turned = rolled.length / rolled.radius
     yield CardFigure("length of the path", rolled.length, "m", note=f"the ball rolls by {math.degrees(turned):.6g} deg")
     rotation = rolled.rotation

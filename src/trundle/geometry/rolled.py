@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..display import Displayed, Headline, Markup, fold, joined
 from ..errors import InvalidValueError, UnknownNameError
 from ..mechanics.algebra import Quaternion
 from ..mechanics.checks import positive
@@ -21,6 +22,8 @@ from .rotation import Rotation
 from .stages import Stages
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     import xarray
     from matplotlib.figure import Figure
 
@@ -34,8 +37,8 @@ _EPSILON = 2.0**-52
 _ROUNDING = 8.0  # units in the last place lost for each radian, piece and step
 
 
-@dataclass(frozen=True, eq=False)
-class RolledPath:
+@dataclass(frozen=True, eq=False, repr=False)
+class RolledPath(Displayed):
     """A ball rolled along a path, as `roll_along` returns it.
 
     Parameters
@@ -75,8 +78,22 @@ class RolledPath:
         object.__setattr__(self, "_laid", lay(self.pieces, self.start, self.radius))
 
     def __repr__(self) -> str:
+        return f"<RolledPath: {self._extent}>"
+
+    @property
+    def _extent(self) -> str:
         count = len(self.pieces)
-        return f"<RolledPath: {count} piece{'s' * (count != 1)}, {self.length:g} m, ball of radius {self.radius:g} m>"
+        return f"{count} piece{'s' * (count != 1)}, {self.length:g} m, ball of radius {self.radius:g} m"
+
+    def _headline(self) -> Headline:
+        return Headline(self.title, self._extent)
+
+    def _parts(self) -> Iterator[Markup]:
+        from ..verify.card import table_of
+        from .evidence import facts
+
+        yield table_of(facts(self))
+        yield fold("Stages", joined(self.stages._parts()))
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from ..display import Displayed, Headline, Markup, number, pairs
+
 
 @dataclass(frozen=True)
-class Rotation:
+class Rotation(Displayed):
     """A rotation about an axis.
 
     Parameters
@@ -55,6 +58,12 @@ class Rotation:
         sine = math.hypot(x, y, z)
         axis = (x / sine + 0.0, y / sine + 0.0, z / sine + 0.0) if sine else (0.0, 0.0, 1.0)
         return Rotation(axis, 2 * math.atan2(sine, w), 2 * math.atan2(z, w) if w or z else 0.0)
+
+    def _headline(self) -> Headline:
+        return Headline("", str(self))
+
+    def _parts(self) -> Iterator[Markup]:
+        yield pairs([("angle", number(self.angle, unit="rad")), ("about n", number(self.about_normal, unit="rad"))])
 
     def __str__(self) -> str:
         x, y, z = (float(f"{part:.6f}") + 0.0 for part in self.axis)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import sympy as sp
 
+from ..display import Displayed, Headline, Markup
 from ..errors import InvalidValueError
 from .flag import Span, Vector, bracket, flag, independent_rows, kernel, vanishes
 from .functions import prepare
@@ -30,8 +32,8 @@ class Field:
     words: str = ""
 
 
-@dataclass(frozen=True)
-class ConstraintAnalysis:
+@dataclass(frozen=True, repr=False)
+class ConstraintAnalysis(Displayed):
     """The findings about a Pfaffian system.
 
     Examples
@@ -188,6 +190,17 @@ class ConstraintAnalysis:
         from .report import report
 
         return report(self)
+
+    def _headline(self) -> Headline:
+        return Headline(self.system.telling.title, self.verdict.upper())
+
+    def _parts(self) -> Iterator[Markup]:
+        from .report import shown
+
+        yield shown(self)
+
+    def _repr_latex_(self) -> str:
+        return self.latex()
 
     def latex(self) -> str:
         """Return the findings as LaTeX."""

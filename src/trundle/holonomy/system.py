@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
+from ..display import Displayed, Headline, Markup
 from ..errors import InvalidValueError
 
 if TYPE_CHECKING:
@@ -26,8 +27,8 @@ class Telling:
     chart: str = ""  # where the coordinates themselves fail
 
 
-@dataclass(frozen=True)
-class PfaffianSystem:
+@dataclass(frozen=True, repr=False)
+class PfaffianSystem(Displayed):
     """Constraints A(q) q̇ = 0 on the velocities of a mechanical system.
 
     Parameters
@@ -73,6 +74,20 @@ class PfaffianSystem:
                 )
             motions[name] = tuple(sp.sympify(component) for component in components)
         object.__setattr__(self, "motions", motions)
+
+    def __str__(self) -> str:
+        from .report import report_system
+
+        return report_system(self)
+
+    def _headline(self) -> Headline:
+        rows, columns = self.rows.shape
+        return Headline(self.telling.title, f"{rows} constraint{'s' * (rows != 1)} on {columns} coordinates")
+
+    def _parts(self) -> Iterator[Markup]:
+        from .report import shown_system
+
+        yield shown_system(self)
 
     @classmethod
     def of_velocities(

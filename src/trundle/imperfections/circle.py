@@ -9,11 +9,12 @@ from dataclasses import dataclass, replace
 
 from ..errors import InvalidValueError
 from ..mechanics.algebra import Vector
-from ..mechanics.loads import Drag
+from ..mechanics.loads import Drag, Load, RollingResistance
 from ..mechanics.motions import Motion, Spin
 from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem, State
 from ..plots.scales import with_unit
+from .resisted import ResistedCircle
 
 
 @dataclass(frozen=True)
@@ -88,19 +89,19 @@ class Demonstration:
         Parameters
         ----------
         system : RollingSystem
-            A ball on a turntable with a rim; drag may act.
+            A ball on a turntable with a rim; drag and resistance to rolling may act.
         start : State
             Its start.
 
         Returns
         -------
         Demonstration
-            The same ball and start on a level table that turns steadily in no air.
+            The same ball and start on a level table that turns steadily and resists nothing, in no air.
 
         Raises
         ------
         InvalidValueError
-            If it is no ball on a turntable with a rim, or another load than drag acts.
+            If it is no ball on a turntable with a rim, or another load acts.
         """
         _check(system)
         support, motion = system.support, system.support.motion
@@ -140,10 +141,10 @@ class Demonstration:
         fate = self.fate()
         return math.hypot((self.kappa - air_rate) * fate.radius(0.0), air_rate * abs(fate.centre(0.0)))
 
-    def on(self, motion: Motion | None = None, tilt: float = 0.0, drag: Drag | None = None) -> RollingSystem:
+    def on(self, motion: Motion | None = None, tilt: float = 0.0, load: Load | None = None) -> RollingSystem:
         """Return the system with one thing changed."""
         support = replace(self.system.support, tilt=tilt, motion=motion or self.system.support.motion)
-        return replace(self.system, support=support, loads=() if drag is None else (drag,))
+        return replace(self.system, support=support, loads=() if load is None else (load,))
 
     def start(self, system: RollingSystem) -> State:
         """Put the ball down as at the start on a system that differs by a shortcoming."""
@@ -193,6 +194,20 @@ class Demonstration:
             lambda t: abs(arm) * math.exp(min(circle.real * t, 600.0)),  # far beyond any rim
             0.0,
             saying,
+        )
+
+    def resisted(self, offset: float) -> Fate:
+        """Return the circle against resistance to rolling, averaged over a round; it sways by what that leaves out."""
+        body, (c, arm) = self.system.body, (self.fate().centre(0.0), self.fate().radius(0.0))
+        pull = offset * float(self.system.gravity) / (float(body.radius) * (1 + float(body.inertia_ratio)))
+        pace = pull / abs(self.kappa)
+        circle = ResistedCircle(self.rate, self.kappa, pace, abs(c), arm)
+        way = c / abs(c) if c else 1.0
+        return Fate(
+            lambda t: way * circle.at(t)[0],
+            lambda t: circle.at(t)[1],
+            4 * pull / self.kappa**2,
+            f"centre comes in, circle grows, by {with_unit(pace, 'speed')} at most",
         )
 
     def wobbling(self, angle: float) -> Fate:
@@ -256,6 +271,7 @@ def _check(system: RollingSystem) -> None:
         raise InvalidValueError("support.motion", "must turn the table", type(support.motion).__name__)
     if support.surface.rim is None:
         raise InvalidValueError("support.rim", "must be given", None, 'Write for instance rim = "0.5 m".')
-    others = [type(load).__name__ for load in system.loads if not isinstance(load, Drag)]
+    others = [type(load).__name__ for load in system.loads if not isinstance(load, (Drag, RollingResistance))]
     if others:
-        raise InvalidValueError("loads", "must hold drag only", ", ".join(others), "Leave the others out.")
+        rule = "must hold drag and rolling resistance only"
+        raise InvalidValueError("loads", rule, ", ".join(others), "Leave the others out.")

@@ -72,7 +72,7 @@ def _path(ax: Axes, row: Row, table: Sensitivity) -> None:
         seen = time - time[0] <= DRAWN * table.round_time
         time, r, V = time[seen], r[seen], V[seen]
     line = thin_path(refined(time, r, V, 3), 1e-3 * rim)
-    dense = time[-1] - time[0] > 2 * DRAWN * table.round_time  # its lines merge into an area
+    dense = time[-1] - time[0] > DRAWN * table.round_time  # its lines merge into an area
     width = 0.9 if dense else 0.7 if len(r) < 1500 else 0.35
     ax.plot(*line.T, color=TINT if dense else BLUE, lw=width, zorder=2 if dense else 4)
     ax.plot(0.0, 0.0, marker="+", color=GREY, ms=5, mew=0.9, zorder=3)

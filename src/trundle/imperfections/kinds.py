@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ..mechanics.loads import Drag
+from ..mechanics.loads import Drag, RollingResistance
 from ..mechanics.motions import UnevenSpin, Wobble
 from ..mechanics.system import RollingSystem
 from ..plots.scales import short, with_unit
@@ -76,7 +76,7 @@ class StillAir(Shortcoming):
 
     def system(self, show: Demonstration) -> RollingSystem:
         """Fill the room with air."""
-        return show.on(drag=Drag(self.size, self.air_rate(show)))
+        return show.on(load=Drag(self.size, self.air_rate(show)))
 
     def fate(self, show: Demonstration) -> Fate:
         """Return the spiral."""
@@ -91,6 +91,25 @@ class TurningAir(StillAir):
     def air_rate(self, show: Demonstration) -> float:
         """Return the table's rate."""
         return show.rate
+
+
+class Resistance(Shortcoming):
+    """A table against which the ball rolls with resistance: the normal force acts `size` ahead of the contact, m."""
+
+    name, label = "rolling-resistance", "resistance to rolling"
+
+    @property
+    def size_text(self) -> str:
+        """As a length."""
+        return with_unit(self.size, "length")
+
+    def system(self, show: Demonstration) -> RollingSystem:
+        """Let the table resist."""
+        return show.on(load=RollingResistance(self.size))
+
+    def fate(self, show: Demonstration) -> Fate:
+        """Return how the centre comes in and the circle grows."""
+        return show.resisted(self.size)
 
 
 class Askew(Shortcoming):

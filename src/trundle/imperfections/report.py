@@ -6,17 +6,18 @@ import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from ..display import Displayed, Headline, Markup, paragraph, table
 from ..plots.scales import with_unit
-from .rows import Row, clock
+from .rows import HEADINGS, Row, clock
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from matplotlib.figure import Figure
 
-HEADINGS = ("shortcoming", "size", "the ball", "its circle", "theory")
 
-
-@dataclass(frozen=True)
-class Sensitivity:
+@dataclass(frozen=True, repr=False)
+class Sensitivity(Displayed):
     """What each shortcoming alone does to a demonstration, the worst first.
 
     Parameters
@@ -72,19 +73,21 @@ class Sensitivity:
     @property
     def cells(self) -> list[tuple[str, ...]]:
         """The table as text, a tuple for each row in the order of the headings."""
-        own = " (its own)"
-        lines = [
-            (f"{i}  {row.label}", row.size_text + own * row.own, row.outcome, row.moved, row.expected)
-            for i, row in enumerate(self.rows, 1)
-        ]
-        given = self.given
-        return [*lines, (f"–  {given.label}", given.size_text, given.outcome, given.moved, given.expected)]
+        ranked = [*((str(i), row) for i, row in enumerate(self.rows, 1)), ("–", self.given)]
+        return [(f"{rank}  {row.cells[0]}", *row.cells[1:]) for rank, row in ranked]
 
     def __str__(self) -> str:
         table = [HEADINGS, *self.cells]
         widths = [max(len(line[i]) for line in table) for i in range(len(HEADINGS))]
         lines = ["  ".join(f"{cell:<{width}}" for cell, width in zip(line, widths, strict=True)) for line in table]
         return "\n".join([self.title, self.heading, *(line.rstrip() for line in lines)])
+
+    def _headline(self) -> Headline:
+        return Headline(self.title, f"worst: {self.rows[0].label}, {self.rows[0].outcome}" if self.rows else "")
+
+    def _parts(self) -> Iterator[Markup]:
+        yield paragraph(self.heading)
+        yield table(self.cells, HEADINGS)
 
     def as_dict(self) -> dict[str, Any]:
         """Return the table in SI units.

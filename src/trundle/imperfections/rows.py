@@ -3,28 +3,32 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
+from ..display import Displayed, Headline, Markup, pairs
 from ..plots.scales import short, with_unit
 from ..trajectory import Trajectory
 from .measuring import CircleMotion
 
+HEADINGS = ("shortcoming", "size", "the ball", "its circle", "theory")
 LEAST = 1e-5 / 60  # m/s: a circle that moves by less than a hundredth of a millimetre in a minute
 
 
-@dataclass(frozen=True)
-class Row:
+@dataclass(frozen=True, repr=False)
+class Row(Displayed):
     """A demonstration with one shortcoming.
 
     Parameters
     ----------
     name : str
-        "tilt", "still-air", "turning-air", "wobble", "uneven-rate"; or "as-given" for the scenario as it is.
+        "tilt", "still-air", "turning-air", "rolling-resistance", "wobble", "uneven-rate"; or "as-given" for the
+        scenario as it is.
     label : str
         What it is, for the reader.
     size : float or None
-        In SI: rad, kg/s, or a share.
+        In SI: rad, kg/s, m, or a share.
     size_text : str
         The size with its unit.
     own : bool
@@ -69,8 +73,11 @@ class Row:
 
     @property
     def outcome(self) -> str:
-        """When the ball left, or that it stayed."""
-        return "stays" if self.leaves is None else f"leaves after {clock(self.leaves)}"
+        """When the ball left, or that it stayed, or stopped rolling while it still spun, where the run ends."""
+        if self.leaves is not None:
+            return f"leaves after {clock(self.leaves)}"
+        times, last = self.run.data.time.values, self.run.events[-1:]
+        return f"stops after {clock(times[-1] - times[0])}" if last and last[0].kind == "spot" else "stays"
 
     @property
     def moved(self) -> str:
@@ -85,6 +92,18 @@ class Row:
         if self.theory_leaves is None or not 0 < self.theory_leaves < math.inf:
             return self.theory
         return f"from {clock(self.theory_leaves)}: {self.theory}"
+
+    @property
+    def cells(self) -> tuple[str, ...]:
+        """The row as text, in the order of the headings of the table."""
+        size = self.size_text and self.size_text + " (its own)" * self.own
+        return self.label, size, self.outcome, self.moved, self.expected
+
+    def _headline(self) -> Headline:
+        return Headline(" ".join(filter(None, (self.label, self.size_text))), self.outcome)
+
+    def _parts(self) -> Iterator[Markup]:
+        yield pairs(list(zip(HEADINGS, self.cells, strict=True))[2:])
 
     def as_dict(self) -> dict[str, Any]:
         """Return the row in SI units, as JSON takes it.

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..errors import InvalidValueError
 from ..mechanics import checks
-from ..mechanics.loads import Drag
+from ..mechanics.loads import Drag, RollingResistance
 from ..mechanics.motions import UnevenSpin, Wobble
 from ..mechanics.system import RollingSystem, State
 from ..scenario import ScenarioFile
@@ -17,7 +17,7 @@ from ..solve.samples import Progress
 from ..trajectory import Trajectory
 from .air import air_drag
 from .circle import Demonstration, Fate
-from .kinds import Askew, Shortcoming, StillAir, Tilt, TurningAir, Uneven
+from .kinds import Askew, Resistance, Shortcoming, StillAir, Tilt, TurningAir, Uneven
 from .measuring import CircleMotion, measure
 from .report import Sensitivity
 from .rows import Row
@@ -25,6 +25,7 @@ from .rows import Row
 SAMPLES_A_ROUND = 24
 MOST_ROUNDS = 100_000
 LEANING, ASKEW, VARIATION = math.radians(0.1), math.radians(0.1), 0.01
+RESISTANCE = 1e-4  # of the weight
 
 
 def sensitivity(
@@ -33,6 +34,7 @@ def sensitivity(
     *,
     tilt: Any = None,
     drag: Any = None,
+    rolling_resistance: Any = None,
     wobble: Any = None,
     variation: Any = None,
     variation_rate: Any = None,
@@ -42,9 +44,10 @@ def sensitivity(
 ) -> Sensitivity:
     """Find out which shortcoming of a turntable demonstration matters most, and how long until the ball is off.
 
-    The scenario is first made perfect: level, at a steady rate, without drag. Then one shortcoming at a time is put
-    in. A size that is not given is the scenario's own where it has that shortcoming; else it is 0.1° of tilt, 0.1° of
-    wobble, a rate uneven by 1 % once a turn, and the drag of room air on the ball (`air_drag`).
+    The scenario is first made perfect: level, at a steady rate, without drag and resistance. Then one shortcoming at a
+    time is put in. A size that is not given is the scenario's own where it has that shortcoming; else it is 0.1° of
+    tilt, 0.1° of wobble, a rate uneven by 1 % once a turn, the drag of room air on the ball (`air_drag`), and a
+    resistance to rolling of a ten-thousandth of the weight.
 
     Parameters
     ----------
@@ -56,6 +59,8 @@ def sensitivity(
         Of the table, rad.
     drag : float or quantity, optional
         Coefficient of linear drag, kg/s, for air at rest as for air that turns with the table.
+    rolling_resistance : float or quantity, optional
+        How far ahead of the contact the normal force acts, m, as of `RollingResistance`.
     wobble : float or quantity, optional
         Angle between the table's axis and its axle, rad.
     variation : float, optional
@@ -94,7 +99,7 @@ def sensitivity(
         raise InvalidValueError("horizon", f"must be at most {MOST_ROUNDS:,} rounds", horizon, remedy)
     if length < show.round_time:
         raise InvalidValueError("horizon", "must be a round at least", horizon, f"One takes {show.round_time:.3g} s.")
-    found = _sizes(system, show, tilt, drag, wobble, variation, variation_rate)
+    found = _sizes(system, show, tilt, drag, rolling_resistance, wobble, variation, variation_rate)
     count = len(found) + 1
 
     def run(system: RollingSystem, start: State, done: int) -> Trajectory:
@@ -139,13 +144,21 @@ def _read(scenario: Any, start: State | None) -> tuple[RollingSystem, State, str
 
 
 def _sizes(
-    system: RollingSystem, show: Demonstration, tilt: Any, drag: Any, wobble: Any, variation: Any, variation_rate: Any
+    system: RollingSystem,
+    show: Demonstration,
+    tilt: Any,
+    drag: Any,
+    rolling_resistance: Any,
+    wobble: Any,
+    variation: Any,
+    variation_rate: Any,
 ) -> list[tuple[Shortcoming, bool]]:
     """Return the shortcomings, each with whether its size is the scenario's own: given, the scenario's, or usual."""
     support, motion = system.support, system.support.motion
     air = [load for load in system.loads if isinstance(load, Drag)]
-    still = sum(float(load.coefficient) for load in air if load.air_rate == 0)
-    turning = sum(float(load.coefficient) for load in air if load.air_rate != 0)
+    still = sum(float(load.coefficient) for load in air if load.air == 0)
+    turning = sum(float(load.coefficient) for load in air if load.air != 0)
+    rolling = sum(float(load.offset) for load in system.loads if isinstance(load, RollingResistance))
     askew = motion.angle if isinstance(motion, Wobble) else 0.0
     uneven = motion.variation if isinstance(motion, UnevenSpin) else 0.0
     period = motion.variation_rate if isinstance(motion, UnevenSpin) else abs(show.rate)
@@ -165,6 +178,9 @@ def _sizes(
     support.surface.check_tilt(leaning, tilt)
     calm, is_calm = size("drag", drag, still, usual_drag(0.0), checks.non_negative, "damping")
     carried, is_carried = size("drag", drag, turning, usual_drag(show.rate), checks.non_negative, "damping")
+    ahead, resists = size(
+        "rolling_resistance", rolling_resistance, rolling, lambda: RESISTANCE * radius, checks.non_negative, "length"
+    )
     angle, wobbles = size("wobble", wobble, askew, lambda: ASKEW, checks.real, "angle")
     share, varies = size("variation", variation, uneven, lambda: VARIATION, checks.real, "number")
     if variation_rate is not None:
@@ -173,6 +189,7 @@ def _sizes(
         (Tilt(leaning), leans),
         (StillAir(calm), is_calm),
         (TurningAir(carried), is_carried),
+        (Resistance(ahead), resists),
         (Askew(angle), wobbles),
         (Uneven(share, float(period)), varies),
     ]
@@ -181,7 +198,7 @@ def _sizes(
 def _row(facts: dict[str, Any], show: Demonstration, run: Trajectory, fate: Fate | None) -> Row:
     times = run.data.time.values
     begin, end = float(times[0]), float(times[-1])
-    leaves = run.events[-1].time - begin if run.events else None
+    leaves = run.events[-1].time - begin if run.events and run.events[-1].kind == "rim" else None
     found = {**facts, "leaves": leaves, "motion": measure(run, show.kappa, show.rate), "run": run}
     if fate is None:
         return Row(**found)

@@ -14,7 +14,7 @@ from starlette.responses import JSONResponse, Response
 from ..viewer.exports import FORMATS
 from . import answers, exports, pages
 from .errors import Refusal, RefusedError, of_validation
-from .pool import LeftError
+from .lanes import LeftError
 from .requests import JSON, OPENED, AboutScenario, ToDraw, ToExport, ToRoll, ToSimulate, described
 from .security import Guard
 from .service import Lab
@@ -98,26 +98,25 @@ def _asking(app: FastAPI, lab: Lab) -> None:
 
     @app.post("/api/simulate", **described("Run a scenario: a packed scene.", scene=True))
     async def simulate(request: Request, asked: ToSimulate) -> Response:
-        lane = lab.slow if asked.card else lab.quick
         wanted = asked.samples, asked.card, asked.tolerance
-        return await lab.answer(request, lane, answers.simulate, asked.scenario, *wanted)
+        return await lab.answer(request, answers.simulate, asked.scenario, *wanted, slow=asked.card)
 
     @app.post("/api/card", **described("The verification card of a run, in full precision."))
     async def card(request: Request, asked: AboutScenario) -> Response:
-        return await lab.answer(request, lab.slow, answers.card, asked.scenario)
+        return await lab.answer(request, answers.card, asked.scenario, slow=True)
 
     @app.post("/api/derivation", **described("How the motion follows, step by step."))
     async def derivation(request: Request, asked: AboutScenario) -> Response:
-        return await lab.answer(request, lab.slow, answers.derivation, asked.scenario)
+        return await lab.answer(request, answers.derivation, asked.scenario, slow=True)
 
     @app.post("/api/twin", **described("The charge in crossed fields that moves so: a packed scene.", scene=True))
     async def twin(request: Request, asked: ToDraw) -> Response:
-        return await lab.answer(request, lab.quick, answers.twin, asked.scenario, asked.samples)
+        return await lab.answer(request, answers.twin, asked.scenario, asked.samples)
 
     @app.post("/api/roll", **described("Roll a ball along a curve: a packed scene.", scene=True))
     async def roll(request: Request, asked: ToRoll) -> Response:
-        lane = lab.slow if asked.card else lab.quick
-        return await lab.answer(request, lane, answers.roll, asked.radius, asked.curve, asked.samples, asked.card)
+        wanted = asked.radius, asked.curve, asked.samples, asked.card
+        return await lab.answer(request, answers.roll, *wanted, slow=asked.card)
 
 
 def _files(app: FastAPI, lab: Lab) -> None:

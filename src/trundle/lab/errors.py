@@ -53,13 +53,17 @@ class RefusedError(TrundleError):
         self.refusal = refusal
 
 
-def refused(status: int, message: str, key: str | None = None, kind: str = "RequestError") -> RefusedError:
+def refused(
+    status: int, message: str, key: str | None = None, kind: str = "RequestError", *, after: int | None = None
+) -> RefusedError:
     """Return a refusal to raise.
 
     Parameters
     ----------
     status, message, key, kind
         As of `Refusal`.
+    after : int, optional
+        When to ask again, in s from now.
 
     Returns
     -------
@@ -71,7 +75,8 @@ def refused(status: int, message: str, key: str | None = None, kind: str = "Requ
     >>> refused(413, "too big").refusal.status
     413
     """
-    return RefusedError(Refusal(status, message, key, kind))
+    headers = () if after is None else (("retry-after", str(after)),)
+    return RefusedError(Refusal(status, message, key, kind, headers))
 
 
 def refusal_of(error: BaseException) -> Refusal | None:

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from ..errors import RunFileError
 from ..scenario import files
 from ..viewer.exports import FORMATS
 from . import limits
@@ -135,15 +136,14 @@ def _decoded(content: bytes) -> str:
 
 def _text_in(content: bytes, folder: Path) -> str:
     """Return the scenario in a NetCDF file; it is read from a name of our own, never from one that came."""
-    import xarray
+    from ..run_file import scenario_in
 
     target = folder / "upload.nc"
     target.write_bytes(content)
     try:
-        with xarray.open_dataset(target, engine="h5netcdf") as data:
-            text = data.attrs.get("scenario")
-    except Exception:  # noqa: BLE001  whatever a damaged file makes HDF5 raise
-        text = None
-    if not isinstance(text, str) or not text:
+        text = scenario_in(target)
+    except RunFileError:
+        text = ""
+    if not text:
         raise refused(422, "This is no run.nc that trundle saved, or it is damaged: it holds no scenario.", "scenario")
     return text

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import multiprocessing
 import signal
 import threading
@@ -16,44 +17,34 @@ from typing import TYPE_CHECKING, Any
 from pebble import ProcessExpired, ProcessPool
 
 from .errors import refused
+from .niceness import computed
 from .settings import Settings
 
 if TYPE_CHECKING:
     from pebble import ProcessFuture
-    from starlette.requests import Request
 
 PRELOADED = "trundle.lab.preloaded"
 TASKS_OF_A_PROCESS = 1000  # then a fresh one takes its place: what it has kept in memory goes with it
+_log = logging.getLogger("trundle.lab")
 
 
-class LeftError(Exception):
-    """Who asked has gone: nobody reads an answer."""
-
-
-class Lane:
-    """Some worker processes, and the queue before them.
-
-    Work is handed to a process only when one is free, so that what waits costs nothing to drop.
+class Processes:
+    """Worker processes that take any work, as many at once as there are processes.
 
     Parameters
     ----------
-    workers : int
-        Processes.
+    count : int
+        Of processes.
     settings : Settings
         The bounds.
-    niceness : int
-        By how much its processes stand back for those of others.
 
     Examples
     --------
-    See `trundle.lab.app.create_app`.
+    See `trundle.lab.lanes.Lanes`.
     """
 
-    def __init__(self, workers: int, settings: Settings, niceness: int = 0) -> None:
-        self.workers, self.settings, self.niceness = workers, settings, niceness
-        self._free = asyncio.Semaphore(workers)
-        self._asked: set[asyncio.Task[Any]] = set()
-        self._running: set[asyncio.Task[Any]] = set()
+    def __init__(self, count: int, settings: Settings) -> None:
+        self.count, self.settings = count, settings
         self._lock = threading.Lock()
         self._pool: ProcessPool | None = None
         self._context: Any = None
@@ -63,8 +54,9 @@ class Lane:
         with self._lock:
             if self._pool is None or not self._pool.active:
                 if self._pool is not None:
+                    _log.warning("a process that waited for work was killed: fresh ones take the place of all")
                     threading.Thread(target=_end, args=(self._pool, self._context), daemon=True).start()
-                self._pool, self._context = _new_pool(self.workers, self.niceness)
+                self._pool, self._context = _new_pool(self.count)
 
     def stop(self) -> None:
         """End the processes, whatever they do."""
@@ -73,102 +65,86 @@ class Lane:
         if pool is not None:
             _end(pool, self._context)
 
-    async def run(self, request: Request | None, function: Callable[..., Any], *arguments: Any) -> Any:
-        """Compute something in a process of the lane.
+    def computation(self, function: Callable[..., Any], arguments: tuple[Any, ...], within: float) -> Computation:
+        """Return a computation that begins once its result is awaited.
 
         Parameters
         ----------
-        request : Request or None
-            When its client goes away, the computation ends.
         function : callable
             Of a module that the processes can import.
-        *arguments : object
+        arguments : tuple
             That can be pickled.
+        within : float
+            From when on it stands back for others where the processors are busy, s.
 
         Returns
         -------
-        object
-            What the function returned.
-
-        Raises
-        ------
-        RefusedError
-            With status 503 if too many wait, 504 if it takes too long, 500 if the process died.
-        LeftError
-            If the client has gone.
+        Computation
+            Of its own process.
         """
-        if len(self._asked) >= self.settings.queue:
-            raise refused(503, "The lab is busy: too many ask at once. Try again in a moment.", kind="BusyError")
-        work = asyncio.create_task(self._computed(function, arguments))
-        self._asked.add(work)
-        work.add_done_callback(self._forget)
-        if request is None:
-            return await work
-        left = asyncio.create_task(_left(request))
-        try:
-            await asyncio.wait({work, left}, return_when=asyncio.FIRST_COMPLETED)
-        finally:
-            left.cancel()
-            if not work.done():
-                self._drop(work)
-        if not work.done():
-            raise LeftError
-        return work.result()
+        return Computation(self, function, arguments, within)
 
-    def _forget(self, work: asyncio.Task[Any]) -> None:
-        self._asked.discard(work)
-        if not work.cancelled():
-            work.exception()  # looked at, so that nobody complains of an answer that nobody waited for
-
-    def _drop(self, work: asyncio.Task[Any]) -> None:
-        """End work that nobody waits for; what runs may end by itself first, since a new process costs more."""
-        if work in self._running:
-            asyncio.get_running_loop().call_later(self.settings.grace, work.cancel)
-        else:
-            work.cancel()
-
-    async def _computed(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
-        try:
-            async with asyncio.timeout(self.settings.patience):
-                await self._free.acquire()
-        except TimeoutError:
-            raise refused(503, "The lab is busy. Try again in a moment.", kind="BusyError") from None
-        task: Any = asyncio.current_task()
-        self._running.add(task)
-        try:
-            return await self._in_process(function, arguments)
-        except ProcessExpired:
-            message = "The process that computed this died. It may have taken too much memory: ask for less."
-            raise refused(500, message, kind="CrashError") from None
-        except TimeoutError:
-            most = self.settings.wall_time
-            message = f"This takes longer than the {most:g} s that the lab allows; `trundle run` takes its time."
-            raise refused(504, message, "run.duration", kind="TimeUpError") from None
-        finally:
-            self._running.discard(task)
-            self._free.release()
-
-    async def _in_process(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
-        for _ in range(2):  # an idle process that was killed breaks its pool; the next one is whole
-            with suppress(BrokenProcessPool):
-                return await asyncio.wrap_future(await self._scheduled(function, arguments))
-        raise refused(503, "The processes that compute keep dying. Start the lab anew.", kind="CrashError")
-
-    async def _scheduled(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> ProcessFuture:
+    async def schedule(self, *work: Any) -> ProcessFuture:
         """Hand work to the pool, to a new one where there is none, or an idle process of it was killed."""
         if self._pool is None or not self._pool.active:
             await asyncio.to_thread(self.start)
         pool: Any = self._pool
         try:
-            return pool.schedule(function, arguments, timeout=self.settings.wall_time)
+            return pool.schedule(computed, work, timeout=self.settings.wall_time)
         except RuntimeError as error:
             raise BrokenProcessPool(*error.args) from None
 
 
-async def _left(request: Request) -> None:
-    """Return when the client has gone; the body has been read before."""
-    while (await request.receive())["type"] != "http.disconnect":
-        pass
+class Computation:
+    """One computation in a process; see `Processes.computation`."""
+
+    def __init__(self, processes: Processes, *work: Any) -> None:
+        self.processes, self.work = processes, work
+        self._future: ProcessFuture | None = None
+
+    @property
+    def running(self) -> bool:
+        """Whether a process has begun it: a fresh one takes a moment to be there."""
+        return self._future is not None and self._future.running()
+
+    async def result(self) -> Any:
+        """Return what the function returned; its process ends where this is cancelled.
+
+        Returns
+        -------
+        object
+            As the function returned it.
+
+        Raises
+        ------
+        RefusedError
+            With status 504 if it takes too long, 500 if the process died, 503 if that happens to one after the other.
+        """
+        try:
+            return await self._in_process()
+        except ProcessExpired as expired:
+            _log.warning("a process that computed died (%s): a fresh one takes its place", _cause(expired.exitcode))
+            message = "The process that computed this died. It may have taken too much memory: ask for less."
+            raise refused(500, message, kind="CrashError") from None
+        except TimeoutError:
+            most = self.processes.settings.wall_time
+            message = f"This takes longer than the {most:g} s that the lab allows; `trundle run` takes its time."
+            raise refused(504, message, "run.duration", kind="TimeUpError") from None
+
+    async def _in_process(self) -> Any:
+        for _ in range(2):  # an idle process that was killed breaks its pool; the next one is whole
+            with suppress(BrokenProcessPool):
+                self._future = await self.processes.schedule(*self.work)
+                return await asyncio.wrap_future(self._future)
+        raise refused(503, "The processes that compute keep dying. Start the lab anew.", kind="CrashError")
+
+
+def _cause(code: int | None) -> str:
+    """Say how a process ended."""
+    if code is not None and code < 0:
+        with suppress(ValueError):
+            return signal.Signals(-code).name
+    return f"status {code}"
 
 
 class _Context:
@@ -202,13 +178,11 @@ def preload() -> None:
     _Context()
 
 
-def _new_pool(workers: int, niceness: int) -> tuple[ProcessPool, _Context]:
+def _new_pool(workers: int) -> tuple[ProcessPool, _Context]:
     from .warm import begin_worker
 
     context: Any = _Context()
-    pool = ProcessPool(
-        workers, max_tasks=TASKS_OF_A_PROCESS, initializer=begin_worker, initargs=(niceness,), context=context
-    )
+    pool = ProcessPool(workers, max_tasks=TASKS_OF_A_PROCESS, initializer=begin_worker, context=context)
     if not pool.active:  # asking starts it
         raise RuntimeError("no process could be started")
     return pool, context

@@ -103,6 +103,7 @@ _MEANINGS = {
     413: "The request is too long.",
     421: "Asked for another host.",
     422: "What was sent is not as it should be; the message says what.",
+    429: "You ask for more at once than one visitor may; Retry-After says when to ask again.",
     503: "Too many ask at once.",
     504: "It takes too long.",
 }
@@ -134,7 +135,7 @@ def described(summary: str, *more: int, scene: bool = False, content: dict[str, 
     """
     told: dict[int | str, dict[str, Any]] = {
         status: {"model": Wrong, "description": _MEANINGS[status]}
-        for status in (403, 408, 413, 421, 422, 503, 504, *more)
+        for status in (403, 408, 413, 421, 422, 429, 503, 504, *more)
     }
     binary = {"schema": {"type": "string", "format": "binary"}}
     told[200] = {"description": "What was asked for.", "content": content or ({SCENE: binary} if scene else {JSON: {}})}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import ipaddress
 import socket
+from collections import Counter
 from collections.abc import Awaitable, Callable, MutableMapping
 from typing import Any
 from urllib.parse import urlsplit
@@ -66,6 +67,7 @@ class Guard:
 
     def __init__(self, app: Any, settings: Settings) -> None:
         self.app, self.settings = app, settings
+        self._uploads: Counter[str] = Counter()  # files that are being sent or read, by who sent them
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request, or refuse it."""
@@ -81,12 +83,38 @@ class Guard:
             check_host(headers.get("host", ""), self.settings)
             if scope["method"] not in ("GET", "HEAD", "OPTIONS"):
                 check_origin(headers, scope.get("scheme", "http"))
-            most = self.settings.upload_bytes if scope["path"] == "/api/open" else self.settings.body_bytes
+            uploads = scope["path"] == "/api/open"
+            most = self.settings.upload_bytes if uploads else self.settings.body_bytes
             check_length(headers.get("content-length"), most)
+            client = (scope.get("client") or ("",))[0]
+            if uploads:
+                self._check_uploads(client)
         except RefusedError as error:
             await refuse(error.refusal, sent)
             return
-        await self.app(scope, _bounded(receive, most, self.settings.reading_time), sent)
+        bounded = _bounded(receive, most, self.settings.reading_time)
+        if not uploads:
+            await self.app(scope, bounded, sent)
+            return
+        self._uploads[client] += 1
+        try:
+            await self.app(scope, bounded, sent)
+        finally:
+            self._uploads[client] -= 1
+            self._uploads += Counter()  # forgets those that have none
+
+    def _check_uploads(self, client: str) -> None:
+        """Refuse a file beyond those that are held in memory at once, and that one visitor may send at once."""
+        each, all_ = self.settings.uploads_each, self.settings.uploads
+        if self._uploads[client] >= each:
+            message = (
+                f"You open {each} files already, as many at once as one visitor may. Wait for them, and ask again."
+            )
+            raise refused(429, message, kind="ShareError", after=2)
+        if self._uploads.total() >= all_:
+            raise refused(
+                503, "The lab is busy: too many files are opened. Try again in a moment.", kind="BusyError", after=5
+            )
 
 
 def check_host(host: str, settings: Settings) -> None:
@@ -193,7 +221,7 @@ async def refuse(refusal: Refusal, send: Send) -> None:
     body = refusal.body
     headers = [(b"content-type", b"application/json"), (b"content-length", str(len(body)).encode())]
     headers += [(name.encode(), value.encode()) for name, value in refusal.headers]
-    if refusal.status == 413:  # the rest of the body is not read
+    if refusal.status in (413, 429, 503):  # the rest of the body is not read
         headers.append((b"connection", b"close"))
     await send({"type": "http.response.start", "status": refusal.status, "headers": headers})
     await send({"type": "http.response.body", "body": body})

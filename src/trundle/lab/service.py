@@ -15,7 +15,7 @@ from starlette.responses import Response
 from . import answers
 from .cache import Answer, Cache, key_of
 from .errors import Refusal, RefusedError
-from .pool import Lane
+from .lanes import Lanes
 from .settings import Settings
 
 _WORDY = ("application/json", "application/toml", "image/svg+xml", "text/csv", "text/html")  # worth compressing
@@ -37,26 +37,25 @@ class Lab:
     def __init__(self, settings: Settings) -> None:
         self.settings = settings
         self.cache = Cache(settings.cache_bytes)
-        self.quick = Lane(settings.workers, settings)
-        self.slow = Lane(settings.slow_workers, settings, niceness=5)
+        self.lanes = Lanes(settings)
         self.ready = False  # has a worker answered yet?
         self._coming: dict[str, asyncio.Task[Answer]] = {}
 
     async def start(self) -> None:
         """Start the workers, and prepare what every page asks for first."""
-        await asyncio.to_thread(self.quick.start)
-        await asyncio.gather(self.prepare(answers.catalogue), asyncio.to_thread(self.slow.start))
+        await asyncio.to_thread(self.lanes.processes.start)
+        await self.prepare(answers.catalogue)
 
     async def stop(self) -> None:
         """End the workers, whatever they do."""
-        await asyncio.gather(*(asyncio.to_thread(lane.stop) for lane in (self.quick, self.slow)))
+        await self.lanes.stop()
 
     async def answer(
         self,
         request: Request,
-        lane: Lane,
         function: Callable[..., Answer | Refusal],
         *arguments: Any,
+        slow: bool = False,
         unkept: tuple[Any, ...] = (),
     ) -> Response:
         """Answer from the cache, or from a worker.
@@ -65,12 +64,12 @@ class Lab:
         ----------
         request : Request
             Who asks.
-        lane : Lane
-            Where it is computed.
         function : callable
             One of `answers` or `exports`.
         *arguments : object
             What JSON can hold, or bytes.
+        slow : bool
+            Whether it is known to take seconds.
         unkept : tuple
             Further arguments, which the answer does not depend on.
 
@@ -80,13 +79,13 @@ class Lab:
             With an ETag that stands for what was asked.
         """
         key = key_of(function.__name__, *arguments)
-        tag = f'W/"{key}"'
+        tag = _tag(key)
         if tag in (part.strip() for part in request.headers.get("if-none-match", "").split(",")):
             return Response(status_code=304, headers={"etag": tag, "cache-control": "no-cache"})
         found = self.cache.get(key)
         if found is None:
-            found = await self._computed(key, request, lane, function, (*arguments, *unkept))
-        return _response(found, tag, request)
+            found = await self._computed(key, request, slow, function, (*arguments, *unkept))
+        return await self._response(key, found, request)
 
     async def at_once(self, request: Request, function: Callable[..., Answer | Refusal], *arguments: Any) -> Response:
         """Answer as `answer` does, in a thread of this process: for what only reads a file of the package's own.
@@ -105,7 +104,7 @@ class Lab:
         if isinstance(found, Refusal):
             raise RefusedError(found)
         self.cache.put(key_of(function.__name__, *arguments), found)
-        return await self.answer(request, self.quick, function, *arguments)
+        return await self.answer(request, function, *arguments)
 
     async def shared(self, request: Request, function: Callable[..., Answer | Refusal], *arguments: Any) -> Response:
         """Answer as `answer` does, by a computation that all who ask meanwhile wait for, and that none of them ends.
@@ -123,7 +122,7 @@ class Lab:
         key = key_of(function.__name__, *arguments)
         if self.cache.get(key) is None:
             await self.prepare(function, *arguments)
-        return await self.answer(request, self.quick, function, *arguments)
+        return await self.answer(request, function, *arguments)
 
     async def prepare(self, function: Callable[..., Answer | Refusal], *arguments: Any) -> None:
         """Compute what will be asked for, once.
@@ -135,7 +134,7 @@ class Lab:
         """
         key = key_of(function.__name__, *arguments)
         if key not in self._coming:
-            work = asyncio.create_task(self._computed(key, None, self.quick, function, arguments))
+            work = asyncio.create_task(self._computed(key, None, False, function, arguments))
             self._coming[key] = work
             work.add_done_callback(partial(self._came, key))
         await asyncio.wait({self._coming[key]})
@@ -148,7 +147,7 @@ class Lab:
     async def with_folder(
         self, request: Request, function: Callable[..., Answer | Refusal], *arguments: Any
     ) -> Response:
-        """Answer as `answer` does, on the slow lane, by a function whose last argument is an empty folder.
+        """Answer as `answer` does, in the slow lane, by a function whose last argument is an empty folder.
 
         The folder has a name of the server's own and goes with the answer, also where the worker was ended.
 
@@ -163,28 +162,39 @@ class Lab:
             As of `answer`.
         """
         with TemporaryDirectory(prefix="trundle-lab-", ignore_cleanup_errors=True) as folder:
-            return await self.answer(request, self.slow, function, *arguments, unkept=(folder,))
+            return await self.answer(request, function, *arguments, slow=True, unkept=(folder,))
 
     async def _computed(
-        self, key: str, request: Request | None, lane: Lane, function: Callable[..., Answer | Refusal], arguments: Any
+        self, key: str, request: Request | None, slow: bool, function: Callable[..., Answer | Refusal], arguments: Any
     ) -> Answer:
         """Compute, and keep what came out."""
-        found = await lane.run(request, function, *arguments)
+        found = await self.lanes.run(request, slow, function, *arguments)
         self.ready = True
         if isinstance(found, Refusal):
             raise RefusedError(found)
         self.cache.put(key, found)
         return found
 
+    async def _response(self, key: str, found: Answer, request: Request) -> Response:
+        """Return an answer as HTTP, packed where the client takes that: once, and while others are answered."""
+        headers = {"etag": _tag(key), "cache-control": "no-cache"}
+        body = found.body
+        if found.filename:
+            headers["content-disposition"] = f'attachment; filename="{found.filename}"'
+        if found.media_type.partition(";")[0] in _WORDY and len(body) > 1000:
+            headers["vary"] = "accept-encoding"
+            if "gzip" in request.headers.get("accept-encoding", ""):
+                body = await self._packed(f"{key} packed", body)
+                headers["content-encoding"] = "gzip"
+        return Response(body, headers=headers, media_type=found.media_type)
 
-def _response(found: Answer, tag: str, request: Request) -> Response:
-    headers = {"etag": tag, "cache-control": "no-cache"}
-    body = found.body
-    if found.filename:
-        headers["content-disposition"] = f'attachment; filename="{found.filename}"'
-    if found.media_type.partition(";")[0] in _WORDY and len(body) > 1000:
-        headers["vary"] = "accept-encoding"
-        if "gzip" in request.headers.get("accept-encoding", ""):
-            body = gzip.compress(body, 5)
-            headers["content-encoding"] = "gzip"
-    return Response(body, headers=headers, media_type=found.media_type)
+    async def _packed(self, key: str, body: bytes) -> bytes:
+        found = self.cache.get(key)
+        if found is None:
+            found = Answer(await asyncio.to_thread(gzip.compress, body, 5), "application/gzip")
+            self.cache.put(key, found)
+        return found.body
+
+
+def _tag(key: str) -> str:
+    return f'W/"{key}"'

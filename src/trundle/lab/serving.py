@@ -15,6 +15,8 @@ from typing import Any
 from ..errors import InvalidValueError
 from .settings import DEFAULT_PORT, Settings
 
+_BACKLOG = 128  # connections that wait to be taken, and that are taken in one go
+
 
 def is_loopback(host: str) -> bool:
     """Tell whether only this machine can reach an address.
@@ -78,7 +80,7 @@ def listen(host: str, port: int | None) -> socket.socket:
         try:
             taken.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             taken.bind((address[0], wanted, *address[2:]))
-            taken.listen(512)
+            taken.listen(_BACKLOG)
         except OSError as error:
             taken.close()
             reason = error.strerror or str(error)
@@ -115,7 +117,12 @@ def address_of(taken: socket.socket) -> str:
 
 
 def serve(
-    settings: Settings, port: int | None, *, open_browser: bool = True, told: Callable[[str, int], None] | None = None
+    settings: Settings,
+    port: int | None,
+    *,
+    page: str = "",
+    open_browser: bool = True,
+    told: Callable[[str, int], None] | None = None,
 ) -> None:
     """Serve the lab until Ctrl-C.
 
@@ -125,6 +132,8 @@ def serve(
         How it is run; its port is filled in.
     port : int, optional
         Where to listen; absent: the usual port, or any that is free.
+    page : str
+        What comes behind the address where it is opened, as of `page_of`.
     open_browser : bool
         Whether to open it in a browser, once it answers.
     told : callable, optional
@@ -141,7 +150,11 @@ def serve(
         preload()  # before what follows, which takes a second to import, too
         import uvicorn
 
+        from . import terminal
         from .app import create_app
+        from .connections import bounded
+
+        terminal.install()
 
         class Server(uvicorn.Server):
             @contextmanager
@@ -162,18 +175,21 @@ def serve(
                 if self.started and told is not None:
                     told(address, taken.getsockname()[1])
                 if self.started and open_browser:  # some browsers keep their caller
-                    threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
+                    threading.Thread(target=webbrowser.open, args=(address + page,), daemon=True).start()
 
         address = address_of(taken)
         app = create_app(replace(settings, port=taken.getsockname()[1]))
         config = uvicorn.Config(
             app,
+            http=bounded(settings),
+            backlog=_BACKLOG,
+            log_config=None,  # what is told, and how: terminal
             log_level="warning",
             access_log=False,
             server_header=False,
             proxy_headers=False,
             timeout_graceful_shutdown=2,
-            timeout_keep_alive=60,
+            timeout_keep_alive=settings.idle_time,  # type: ignore[arg-type]
             ws="none",
         )
         Server(config).run(sockets=[taken])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -13,6 +14,17 @@ _MIB = 2**20
 def _processors() -> int:
     available = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     return max(1, min(available, 8))
+
+
+def _connections() -> int:
+    """Return how many connections a server may have: a part of the files that the system lets a process open."""
+    with suppress(ImportError, OSError, ValueError):
+        import resource
+
+        files, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
+        if files != resource.RLIM_INFINITY:
+            return max(16, min(512, files // 2 - 64))
+    return 512
 
 
 @dataclass(frozen=True)
@@ -29,16 +41,26 @@ class Settings:
         Whether others on the network may come: they then reach it by the machine's address or name.
     workers, slow_workers : int
         Processes that answer what takes milliseconds, and what takes seconds.
+    quick_time : float
+        How long a computation may keep others from being answered quickly, s: then it goes on in the slow lane.
     wall_time : float
         The most that one computation may take, s.
     patience : float
         The most that a request waits for a free process, s.
     grace : float
         How long a computation goes on whose asker has gone, s: to end a process costs more than a few milliseconds.
-    queue : int
-        How many requests may wait or be computed at once, of each of the two kinds.
-    reading_time : float
-        The most that a request's body may take to arrive, s.
+    queue, share : int
+        How many requests may wait or be computed at once: of all visitors together, and of one.
+    uploads, uploads_each : int
+        How many files may be sent and read at once: by all visitors together, and by one.
+    connections, connections_each : int
+        How many connections may be open: of all visitors together, and of one.
+    head_time, reading_time : float
+        The most that the head of a request may take to arrive, and its body, s.
+    sending_time : float
+        How long an answer may wait to be read on, s.
+    idle_time : float
+        How long a connection stays open between two requests, s.
     cache_bytes, body_bytes, upload_bytes : int
         The most that the cache holds; of a request; of a file that is opened.
     static : pathlib.Path
@@ -55,11 +77,20 @@ class Settings:
     exposed: bool = False
     workers: int = field(default_factory=_processors)
     slow_workers: int = 2
+    quick_time: float = 1.0
     wall_time: float = 20.0
     patience: float = 30.0
     grace: float = 1.0
     queue: int = 512
+    share: int = 32
+    uploads: int = 8
+    uploads_each: int = 2
+    connections: int = field(default_factory=_connections)
+    connections_each: int = 64
+    head_time: float = 10.0
     reading_time: float = 15.0
+    sending_time: float = 30.0
+    idle_time: float = 60.0
     cache_bytes: int = 64 * _MIB
     body_bytes: int = _MIB // 2
     upload_bytes: int = 32 * _MIB

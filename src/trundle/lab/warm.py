@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import signal
+import threading
 from functools import cache
 
+from . import terminal
+
+_STACK = 16 * 2**20  # bytes, of the thread that computes: some systems give it little
 _SHOWN = ("tilted-turntable", "level-turntable-nudged", "ball-in-a-trough")
 
 
@@ -30,19 +33,14 @@ def begin() -> None:
         answers.warm(name)
 
 
-def begin_worker(niceness: int = 0) -> None:
+def begin_worker() -> None:
     """Make a worker ready; what a copy has already costs nothing.
-
-    Parameters
-    ----------
-    niceness : int
-        By how much it stands back for others where the processors are busy.
 
     Examples
     --------
     In a worker only: it changes what a signal does.
     """
     signal.signal(signal.SIGTERM, signal.SIG_DFL)  # ends at once, also within compiled code
-    if niceness and hasattr(os, "nice"):
-        os.nice(niceness)
+    threading.stack_size(_STACK)
+    terminal.install()
     begin()

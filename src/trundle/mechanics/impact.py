@@ -2,7 +2,8 @@
 
 The normal impulse P grows while the body stays where it is; the slip velocity follows ds/dP = M(n − μ ŝ), and slipping
 may stop or turn on the way (Keller 1986). Compression ends where s·n = 0, and the impact where the share e² of the work
-of compression is given back (Stronge 1990): so no landing makes energy, whatever the body.
+of compression is given back (Stronge 1990). Then the share e_t² of what friction took is given back too, as far as
+friction can: Garwin's superball (1969) and Cross's grip and slip (2002). So no landing makes energy, whatever the body.
 """
 
 from __future__ import annotations
@@ -54,7 +55,7 @@ def land(system: RollingSystem, contact: Contact, orientation: Quaternion, slip:
     Parameters
     ----------
     system : RollingSystem
-        Body, and a support with friction or without limit to it, and a restitution.
+        Body, and a support with friction or without limit to it, a restitution and a tangential one.
     contact : Contact
         Where they touch.
     orientation : Quaternion
@@ -84,6 +85,13 @@ def land(system: RollingSystem, contact: Contact, orientation: Quaternion, slip:
     >>> struck = land(floor, contact, still, Vector(1.0, 0.0, -3.0))
     >>> round(1.0 + struck.velocity_change.x, 12) == round(5 / 7, 12), struck.velocity_change.z
     (True, 3.0)
+
+    On a floor that gives the slip back as well it keeps 3/7 (Garwin 1969):
+
+    >>> elastic = tr.Support(tr.Plane(), restitution=1.0, tangential_restitution=1.0)
+    >>> rough = tr.RollingSystem(floor.body, elastic)
+    >>> round(1.0 + land(rough, contact, still, Vector(1.0, 0.0, -3.0)).velocity_change.x, 12) == round(3 / 7, 12)
+    True
     """
     J = system.body.inertia_in_space(orientation.matrix())
     basis = _basis(contact.normal)
@@ -91,7 +99,8 @@ def land(system: RollingSystem, contact: Contact, orientation: Quaternion, slip:
     M = Matrix(*(Vector(*(float(answer.dot(d)) for answer in answers)) for d in basis))
     mu = math.inf if system.support.friction is None else float(system.support.sliding_friction)
     begin = Vector(*(float(slip.dot(d)) for d in basis))
-    parts = _Course(M, mu, float(system.support.restitution), begin).impulse()
+    shares = float(system.support.restitution), float(system.support.tangential_restitution)
+    parts = _Course(M, mu, *shares, begin).impulse()
     P = sum((d * part for d, part in zip(basis, parts, strict=True)), start=ZERO)
     motion = system.support.motion
     axle = -contact.support.lever(contact.point).dot(P) / motion.inertia if motion.free else 0.0
@@ -112,16 +121,30 @@ class _Course:
     M: Matrix  # 1/kg
     mu: float  # inf: no limit
     restitution: float
+    tangential_restitution: float
     slip: Vector  # m/s
     work: float = 0.0  # of the normal impulse, J; falls in compression
     aim: float | None = None  # the work at which it ends, once compression is over
+    taken: float = 0.0  # by friction, J
+    unused: float = 0.0  # what friction could have given besides while it held, N s
 
     def impulse(self) -> Vector:
         """Return the whole impulse, N s."""
+        ending = self._ending()
+        total = self._to_the_end(ending)
+        return total + self._given_back(ending) if self.unused * self.tangential_restitution > 0 else total
+
+    def _ending(self) -> Vector:
+        """Return the impulse along the support that would end the slip by itself, N s."""
+        (xx, xy, _), (yx, yy, _), _ = self.M.rows
+        x, y, _ = self.slip
+        return Vector(xy * y - yy * x, yx * x - xx * y, 0.0) / (xx * yy - xy * yx)
+
+    def _to_the_end(self, ending: Vector) -> Vector:
+        """Return the impulse of Keller's course, up to where the share e² of compression is given back, N s."""
         total, size = ZERO, self.slip.norm()
         if math.isinf(self.mu):  # friction without limit: slip ends at once
-            ending = self.M.solve(Vector(-self.slip.x, -self.slip.y, 0.0))
-            total = ending - self._held * ending.z
+            total, self.taken = ending, -0.5 * self.slip.dot(ending)
             self.slip = Vector(0.0, 0.0, self.slip.z + self.M.c.dot(total))
         for _ in range(_MOST_PIECES):
             if self.aim is None and self.slip.z >= 0:
@@ -131,6 +154,27 @@ class _Course:
             sliding = self.mu and math.hypot(self.slip.x, self.slip.y) > 2 * _SLOW * size
             total = total + (self._slide(size) if sliding else self._straight(self._held))
         raise SolverError("A landing does not end: friction and the body's shape jam it. Use less friction.")
+
+    def _given_back(self, direction: Vector) -> Vector:
+        """Return the impulse by which a contact that holds gives back the share e_t² of what friction took, N s.
+
+        It is along the one that ends the slip, and at most what friction left unused. Where it presses the body onto
+        the support, the support holds against it and does no work.
+        """
+        given, left, turned = ZERO, self.tangential_restitution**2 * max(0.0, self.taken), 0.0
+        pressing = -self.M.c.dot(direction)
+        free = max(0.0, self.slip.z) / pressing if pressing > 0 else math.inf
+        while True:
+            change = self.M @ direction
+            gain = direction.x * change.x + direction.y * change.y
+            size = math.hypot(direction.x, direction.y) - (self.mu * direction.z if direction.z else 0.0)
+            root = math.sqrt(turned**2 + 2 * gain * left)
+            amount = min(2 * left / (turned + root) if root else 0.0, self.unused / size if size > 0 else math.inf)
+            if amount <= free:
+                return given + direction * amount
+            given, left = given + direction * free, max(0.0, left - 0.5 * gain * free**2)
+            turned, self.unused = gain * free, self.unused - size * free
+            direction, free = direction + E_Z * (pressing / self.M.c.z), math.inf
 
     @cached_property
     def _held(self) -> Vector:
@@ -175,6 +219,9 @@ class _Course:
             upto = (-s.z + math.sqrt(s.z * s.z + 2 * change.z * (self.aim - self.work))) / change.z
         amount = min(upto, still)
         self.work += s.z * amount + 0.5 * change.z * amount**2
+        half = s + change * (0.5 * amount)
+        self.taken -= amount * (direction.x * half.x + direction.y * half.y)
+        self.unused += (self.mu - math.hypot(direction.x, direction.y)) * amount if amount else 0.0
         x, y, z = s + change * amount
         if still <= upto:
             x = y = 0.0
@@ -210,7 +257,7 @@ class _Course:
             direction = np.array([*(-self.mu * hat), 1.0])
             first, second, up = M @ direction
             along, aside = hat[0] * first + hat[1] * second, hat[0] * second - hat[1] * first
-            return np.array([along, aside / y[0], up, y[2], *direction])
+            return np.array([along, aside / y[0], up, y[2], *direction, self.mu * y[0]])
 
         ends = [lambda _, y: y[0] - _SLOW * size]
         ends.append((lambda _, y: y[2]) if self.aim is None else (lambda _, y: y[3] - self.aim))
@@ -218,8 +265,8 @@ class _Course:
             end.terminal, end.direction = True, direction  # type: ignore[attr-defined]
         far = 100 * size / float(np.linalg.eigvalsh(M)[0])
         first, second, up = self.slip
-        y0 = np.array([math.hypot(first, second), math.atan2(second, first), up, self.work, 0.0, 0.0, 0.0])
-        scale = np.array([size, 1.0, size, size * far, far, far, far])
+        y0 = np.array([math.hypot(first, second), math.atan2(second, first), up, self.work, 0.0, 0.0, 0.0, self.taken])
+        scale = np.array([size, 1.0, size, size * far, far, far, far, size * far])
         found = solve_ivp(rates, (0.0, far), y0, method="DOP853", rtol=1e-12, atol=1e-14 * scale, events=ends)
         if found.status != 1:
             raise SolverError("A landing does not end: friction and the body's shape jam it. Use less friction.")
@@ -228,10 +275,11 @@ class _Course:
         if stopped:
             y = y - y[0] / rates(0.0, y)[0] * rates(0.0, y)  # straight on to σ = 0
         sigma, beta, up, work = y[:4].tolist()
+        self.taken = float(y[7])
         if stopped:
             self.slip, self.work = Vector(0.0, 0.0, up), work
         elif self.aim is None:
             self.slip, self.work = Vector(sigma * math.cos(beta), sigma * math.sin(beta), 0.0), work
         else:
             self.slip, self.work = Vector(sigma * math.cos(beta), sigma * math.sin(beta), up), self.aim
-        return Vector(*y[4:].tolist())
+        return Vector(*y[4:7].tolist())

@@ -28,7 +28,7 @@ def numbers(thing: Any) -> list[float]:
     --------
     >>> import trundle as tr
     >>> numbers(tr.Support(tr.Plane(rim=0.5), motion=tr.Spin(3.5), tilt=0.05))
-    [0.5, 3.5, 0.05, 0.0]
+    [0.5, 3.5, 0.05, 0.0, 0.0]
     """
     return [float(value) for value in _walk(thing)]
 

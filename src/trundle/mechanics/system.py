@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
+from ..display import Displayed, Markup, number, numbers, pairs
 from ..errors import InvalidValueError
 from . import checks
 from .algebra import E_Z, ZERO, Vector
@@ -37,6 +39,9 @@ class Support:
         Of slipping, at most `friction`; absent: the same.
     restitution : float
         e of a landing, by Stronge's hypothesis: the share e² of the work of compression is given back; 0 to 1.
+    tangential_restitution : float
+        e_t of a landing: the share e_t² of what friction took is given back, so that a ball that grips comes off with
+        −e_t of its slip (Garwin, Cross); 0 to 1.
 
     Examples
     --------
@@ -51,6 +56,7 @@ class Support:
     friction: Scalar | None = None
     kinetic_friction: Scalar | None = None
     restitution: Scalar = 0.0
+    tangential_restitution: Scalar = 0.0
 
     def __post_init__(self) -> None:
         checks.instance(self.surface, Surface, "surface", "Give for instance tr.Plane(rim=0.5).")
@@ -73,10 +79,11 @@ class Support:
                 raise InvalidValueError("kinetic_friction", "must stand beside `friction`", kinetic, remedy)
             if is_number(kinetic) and is_number(self.friction) and kinetic > self.friction:
                 raise InvalidValueError("kinetic_friction", "must be at most `friction`", kinetic)
-        e = checks.non_negative(self.restitution, "number", "restitution")
-        if is_number(e) and e > 1:
-            raise InvalidValueError("restitution", "must lie in [0, 1]", self.restitution)
-        object.__setattr__(self, "restitution", e)
+        for key in ("restitution", "tangential_restitution"):
+            e = checks.non_negative(getattr(self, key), "number", key)
+            if is_number(e) and e > 1:
+                raise InvalidValueError(key, "must lie in [0, 1]", getattr(self, key))
+            object.__setattr__(self, key, e)
 
     @property
     def sliding_friction(self) -> Scalar:
@@ -85,7 +92,7 @@ class Support:
 
 
 @dataclass(frozen=True)
-class State:
+class State(Displayed):
     """Where a body is and how it moves, in the inertial support frame.
 
     Parameters
@@ -115,6 +122,18 @@ class State:
     orientation: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
     time: float = 0.0
     support: tuple[float, ...] = ()
+
+    def _parts(self) -> Iterator[Markup]:
+        yield pairs(
+            [
+                ("position r", numbers(self.position, unit="m")),
+                ("velocity V", numbers(self.velocity, unit="m/s")),
+                ("angular velocity Ω", numbers(self.angular_velocity, unit="rad/s")),
+                ("orientation q", numbers(self.orientation)),
+                ("time", number(self.time, unit="s")),
+                ("support", numbers(self.support) if self.support else ""),
+            ]
+        )
 
 
 @dataclass(frozen=True)
@@ -154,7 +173,7 @@ class RollingSystem:
         loads = self.loads if isinstance(self.loads, (list, tuple)) else (self.loads,)
         for i, load in enumerate(loads):
             checks.instance(load, Load, f"loads[{i}]", example)
-        object.__setattr__(self, "loads", tuple(loads))
+        object.__setattr__(self, "loads", tuple(load.over(self.support.motion) for load in loads))
         object.__setattr__(self, "gravity", checks.non_negative(self.gravity, "acceleration", "gravity"))
 
     @property

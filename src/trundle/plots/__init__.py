@@ -61,7 +61,7 @@ def series_figure(run: Trajectory) -> Figure:
     >>> import trundle as tr
     >>> run = tr.Scenario.load("tilted-turntable").run()
     >>> series_figure(run).axes[0].get_ylabel()
-    'position (m)'
+    'position (cm)'
     """
     from .series import draw
 

@@ -217,8 +217,9 @@ def key_numbers(system: RollingSystem, own: tuple[float, ...] | None = None) -> 
         kinetic = support.kinetic_friction
         also = "" if kinetic is None or kinetic == support.friction else f", slipping {short(float(kinetic), 3)}"
         parts.append(f"friction μ = {short(float(support.friction), 3)}{also}")
-    if not is_zero(support.restitution):
-        parts.append(f"restitution e = {short(float(support.restitution), 3)}")
+    for e, what in ((support.restitution, "restitution e"), (support.tangential_restitution, "of the slip e_t")):
+        if not is_zero(e):
+            parts.append(f"{what} = {short(float(e), 3)}")
     return SEPARATOR.join(parts + [text for load in system.loads for text in _of_load(load)])
 
 
@@ -312,7 +313,7 @@ def _constant(load: Any) -> bool:
 
 
 def _air(load: Any) -> str:
-    return "" if is_zero(load.air_rate) else ", air turning"
+    return "" if is_zero(load.air) else ", air turning"
 
 
 def _formula(value: Any, name: str, unit: str) -> str:

@@ -11,6 +11,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from ..errors import InvalidValueError, ScenarioError, did_you_mean
+from .fields import Diameter, diameter_of
 
 # Which class stands for which table, by path and kind.
 Kinds = Mapping[str, Mapping[str, type[BaseModel]]]
@@ -36,7 +37,7 @@ class Complaint:
 
 
 def complain(error: ValidationError, model: type[BaseModel], source: str = "") -> ScenarioError:
-    """Turn a pydantic error into the one message that a reader gets.
+    """Turn a pydantic error into the message that a reader gets, a line for each thing that is wrong.
 
     Parameters
     ----------
@@ -50,13 +51,11 @@ def complain(error: ValidationError, model: type[BaseModel], source: str = "") -
     Returns
     -------
     ScenarioError
-        It names the first thing that is wrong and counts the rest. A key that does not exist goes before all
-        others: it may be why another is missing.
+        A key that does not exist goes before all others: it may be why another is missing.
     """
-    found = [_translate(detail, model) for detail in error.errors(include_url=False)]
+    found = [complaint for detail in error.errors(include_url=False) for complaint in _translate(detail, model)]
     found = _without_echoes(sorted(found, key=lambda complaint: not complaint.unknown))
-    first = found[0]
-    return ScenarioError(first.path, first.rule, first.received, first.remedy, source, len(found) - 1)
+    return ScenarioError.of((InvalidValueError(one.path, one.rule, one.received, one.remedy) for one in found), source)
 
 
 def _without_echoes(found: list[Complaint]) -> list[Complaint]:
@@ -65,7 +64,8 @@ def _without_echoes(found: list[Complaint]) -> list[Complaint]:
         path_of(complaint.path, name)
         for complaint in found
         if complaint.unknown
-        for name in re.findall(r"^Did you mean '(.*?)'", complaint.remedy)
+        for suggested in re.findall(r"^Did you mean '(.*?)'", complaint.remedy)
+        for name in (suggested, suggested.replace("diameter", "radius"))
     }
     return [complaint for complaint in found if not (complaint.missing and complaint.path in meant)]
 
@@ -75,12 +75,31 @@ def path_of(beside: str, name: str) -> str:
     return beside.rpartition(".")[0] + "." * ("." in beside) + name
 
 
-def _translate(detail: Any, model: type[BaseModel]) -> Complaint:
+def _translate(detail: Any, model: type[BaseModel]) -> list[Complaint]:
     path, table, key, inside = _locate(detail["loc"], model)
     kind, received = detail["type"], detail["input"]
     if kind == "value_error" and isinstance(detail["ctx"]["error"], InvalidValueError):
+        if isinstance(received, Diameter):
+            path = path_of(path, received.key)
         told = detail["ctx"]["error"]
-        return Complaint(_join(path, told.key), told.rule, told.received, told.remedy)
+        return [
+            Complaint(_join(path, one.key), one.rule, one.received, one.remedy)
+            for one in (told, *getattr(told, "others", ()))
+        ]
+    return [_complaint(kind, received, detail["msg"], path, table, key, inside, model)]
+
+
+def _complaint(
+    kind: str,
+    received: Any,
+    message: str,
+    path: str,
+    table: type[BaseModel],
+    key: str,
+    inside: type[BaseModel] | None,
+    model: Any,
+) -> Complaint:
+    """Return what pydantic's own checks found."""
     if kind == "missing":
         return Complaint(path, "must be given", Nothing(), _how_to_add(_keys(table)[key], key, model), missing=True)
     if kind == "extra_forbidden":
@@ -97,7 +116,7 @@ def _translate(detail: Any, model: type[BaseModel]) -> Complaint:
         offered = get_args(_keys(table)[key].annotation)
         known = list(offered) if key != "kind" else list(_kinds(path.rpartition(".")[0], model))
         return _not_one_of(path, received, known)
-    rule, remedy = _SHAPES.get(kind, (f"is not as it should be ({detail['msg']})", ""))
+    rule, remedy = _SHAPES.get(kind, (f"is not as it should be ({message})", ""))
     return Complaint(path, rule, received, remedy.format(path=path))
 
 
@@ -114,7 +133,7 @@ _SHAPES = {
 
 
 def _no_key(path: str, key: str, received: Any, table: type[BaseModel]) -> Complaint:
-    known = list(_keys(table))
+    known = [name for own in _keys(table) for name in (own, diameter_of(table, own)) if name]
     place = f"[{path.removesuffix(quoted(key)).removesuffix('.')}]" if path != quoted(key) else "the file"
     remedy = f"{did_you_mean(key, known)} {_there_are(known)}".strip()
     return Complaint(path, f"is no key of {place}", received, remedy, unknown=True)
@@ -186,12 +205,22 @@ def _how_to_add(field: FieldInfo, key: str, model: Any) -> str:
         table = next(iter(model.kinds[key].values()))
     if table is None:
         return f"Add for instance: {_example(field, key)}"
-    lines = [_example(inner, name) for name, inner in _keys(table).items() if inner.is_required()]
+    wanted = {name: inner for name, inner in _keys(table).items() if inner.is_required() or _one_of_two(inner)}
+    lines = [_example(inner, name) for name, inner in wanted.items()]
     head = f"[[{key}]]" if get_origin(field.annotation) is tuple else f"[{key}]"
     return f"Add for instance, each on a line of its own: {head} {' ; '.join(lines)}"
 
 
+def _one_of_two(field: FieldInfo) -> bool:
+    """Tell whether a key may be left out only where another stands for it, as a mass may for a density."""
+    return (field.description or "").startswith("Required")
+
+
 _LISTS = {"parts": '[[support.motion.parts]] kind = "spin" ; rate = "33.3 rpm"'}  # of tables
+
+
+def _notes(part: Any) -> tuple[Any, ...]:
+    return getattr(part, "__metadata__", ())
 
 
 def _example(field: FieldInfo, key: str) -> str:
@@ -199,10 +228,10 @@ def _example(field: FieldInfo, key: str) -> str:
         return _LISTS[key]
     if field.examples:
         offer = f'"{field.examples[0]}"' if isinstance(field.examples[0], str) else str(field.examples[0])
-    elif get_args(field.annotation):
+    elif get_origin(field.annotation) is Literal:
         offer = f'"{get_args(field.annotation)[0]}"'
     else:
         offer = ""
-    for note in field.metadata:
+    for note in (*(note for part in get_args(field.annotation) for note in _notes(part)), *field.metadata):
         offer = getattr(note, "offer", None) or offer
     return f"{key} = {offer}"

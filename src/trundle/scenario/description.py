@@ -64,8 +64,9 @@ def _support(support: Support) -> Words:
     for key in ("friction", "kinetic_friction"):
         if getattr(support, key) is not None:
             words[key] = number_of(getattr(support, key), f"support.{key}")
-    if support.restitution != 0:
-        words["restitution"] = number_of(support.restitution, "support.restitution")
+    for key in ("restitution", "tangential_restitution"):
+        if getattr(support, key) != 0:
+            words[key] = number_of(getattr(support, key), f"support.{key}")
     return {**words, "motion": one_of(MOTIONS, support.motion, "support.motion")}
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 from pydantic import Field, model_validator
@@ -12,6 +12,7 @@ from ..errors import InvalidValueError, ScenarioError
 from .complaints import Kinds
 from .fields import Measure, written
 from .tables import KINDS, Bodies, Loads, Run, Start, Supports
+from .together import tell_all
 from .whole import Document
 
 if TYPE_CHECKING:
@@ -105,17 +106,26 @@ class ScenarioFile(Document):
     def _check(self) -> Self:
         from ..mechanics.finiteness import check_finite
 
-        system = self.system()
-        kinds = system.support.surface.coordinates
-        for i, (part, kind) in enumerate(zip(self.start.position, kinds, strict=True)):
-            Measure(kind)(part, f"start.position[{i}]")
-        for i, (part, kind) in enumerate(zip(self.start.support or (), system.support.motion.own_kinds, strict=False)):
-            Measure(kind)(part, f"start.support[{i}]")
-        begin = float(self.start.time)
-        with _named_in(""):
-            check_finite(system, begin, begin + float(self.timing.duration))
+        system, begin = self.system(), float(self.start.time)
+        coordinates = [
+            partial(Measure(kind), part, f"{key}[{i}]")
+            for key, kinds in self._kinds_of_components().items()
+            for i, (part, kind) in enumerate(
+                zip(getattr(self.start, key.removeprefix("start.")) or (), kinds, strict=False)
+            )
+        ]
+
+        def finite() -> None:
+            with _named_in(""):
+                check_finite(system, begin, begin + float(self.timing.duration))
+
+        tell_all(*coordinates, finite)
         self.start_state()  # placing it tells whether the body fits there, and whether the start rolls
         return self
+
+    def _kinds_of_components(self) -> dict[str, tuple[str, ...]]:
+        support = self.system().support
+        return {"start.position": support.surface.coordinates, "start.support": tuple(support.motion.own_kinds)}
 
     # --- what it describes -------------------------------------------------------------------------------
 
@@ -169,7 +179,7 @@ class ScenarioFile(Document):
 
         with _named_in(""):
             body, support = self.body.build(), self.support.build()
-            loads = tuple(load.build(support.motion.mean_rate) for load in self.applied_loads)
+            loads = tuple(tell_all(*(load.build for load in self.applied_loads)))
             return RollingSystem(body, support, loads, float(self.gravity))
 
     @cached_property

@@ -6,14 +6,16 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import date, time
+from decimal import Decimal
 from typing import Any
 
-from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic import BaseModel, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from ..errors import InvalidValueError, did_you_mean
 from ..mechanics.expressions import Expression, is_formula
 from ..units import UNITS, to_si
+from .together import each_checked
 
 
 class Quantity(float):
@@ -76,6 +78,67 @@ def written(value: Any) -> Any:
     return value.written if isinstance(value, Quantity) else value
 
 
+@dataclass(frozen=True)
+class Diameter:
+    """What a user wrote for a diameter, on its way to the radius of the same table.
+
+    Parameters
+    ----------
+    key : str
+        ``"diameter"``, or ``"ring_diameter"`` of a ``"ring_radius"``.
+    value : object
+        What stands there.
+    radius : object
+        What stands beside it as the radius; None where nothing does.
+    """
+
+    key: str
+    value: Any
+    radius: Any = None
+
+    def __repr__(self) -> str:
+        return repr(self.value)
+
+    def halved(self, measure: Measure) -> Quantity:
+        """Return the radius, written in the unit of the diameter."""
+        if self.radius is not None:
+            radius = self.key.replace("diameter", "radius")
+            raise InvalidValueError("", f"must not stand beside `{radius}`", self.value, "Give one of the two.")
+        whole = measure(self.value)
+        found = _NUMBER.match(whole.text or "")
+        text = f"{Decimal(found[0]) / 2}{whole.text[found.end() :]}" if found and whole.text else None
+        half = float(whole) / 2
+        return Quantity(half, text if text is not None and to_si(text, measure.kind, "") == half else None)
+
+
+def diameter_of(table: type[BaseModel], key: str) -> str | None:
+    """Return the key that may stand instead of a radius of a table; None where the key is none.
+
+    Parameters
+    ----------
+    table : type
+        A table of the file.
+    key : str
+        One of its fields.
+
+    Returns
+    -------
+    str or None
+        ``"diameter"`` of ``"radius"``, ``"ring_diameter"`` of ``"ring_radius"``.
+
+    Examples
+    --------
+    >>> from trundle.scenario.tables import SUPPORTS
+    >>> diameter_of(SUPPORTS["bowl"], "radius"), diameter_of(SUPPORTS["bowl"], "rim")
+    ('diameter', None)
+    """
+    notes = table.model_fields[key].metadata if key.endswith("radius") and key in table.model_fields else ()
+    lengths = [note for note in notes if isinstance(note, Measure) and (note.kind, note.sign) == ("length", "positive")]
+    return key.removesuffix("radius") + "diameter" if lengths else None
+
+
+_NUMBER = re.compile(r"\s*[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?")
+
 Check = Callable[[float, Any], None]
 
 
@@ -107,6 +170,8 @@ class Measure:
 
     def __call__(self, value: Any, key: str = "") -> Quantity:
         """Return the checked number; `key` is its place inside its own field, such as ``"[1]"``."""
+        if isinstance(value, Diameter):
+            return value.halved(self)
         if isinstance(value, Quantity) and value.text is not None:
             value = value.text
         if isinstance(value, bool) or not isinstance(value, (int, float, str)):
@@ -233,7 +298,7 @@ class Measures:
             raise InvalidValueError("", self._rule, value, (did_you_mean(value, [self.word]) or self._remedy).strip())
         if not isinstance(value, (list, tuple)) or not self.size <= len(value) <= (self.most or self.size):
             raise InvalidValueError("", self._rule, value, self._remedy)
-        return tuple(self.each(part, f"[{index}]") for index, part in enumerate(value))
+        return each_checked(self.each, value)
 
     @property
     def offer(self) -> str:

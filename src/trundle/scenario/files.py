@@ -163,6 +163,9 @@ def read(name_or_path: str | os.PathLike[str]) -> str:
     except OSError as error:
         remedy = f"The system says: {error.strerror or error}."
         raise ScenarioError("scenario", "must be a file that can be read", shown, remedy) from None
+    if content.startswith(b"\x89HDF"):
+        remedy = f"It is NetCDF: `trundle export {shown} my.toml` writes the scenario of a run that was saved."
+        raise ScenarioError("scenario", "must be text in UTF-8", "NetCDF", remedy, str(shown))
     if len(content) > LARGEST:
         raise _too_large(str(shown))
     try:

@@ -13,6 +13,7 @@ from ..errors import InvalidValueError
 from .complaints import Kinds, Nothing
 from .fields import Measure, Measures, Quantity, written
 from .tables import Place2, Radius, Table, Turn4
+from .together import each_checked
 from .whole import Document
 
 
@@ -41,13 +42,13 @@ class Several:
         if not isinstance(value, (list, tuple)) or len(value) < self.least:
             rule = f"must be a list of at least {self.least} points"
             raise InvalidValueError("", rule, value, f"Write for instance {self.offer}.")
-        return tuple(self._point(point, index) for index, point in enumerate(value))
+        return each_checked(self._point, value)
 
-    def _point(self, value: Any, index: int) -> Any:
+    def _point(self, value: Any, key: str) -> Any:
         try:
             return self.each(value)
         except InvalidValueError as error:
-            raise InvalidValueError(f"[{index}]{error.key}", error.rule, error.received, error.remedy) from None
+            raise InvalidValueError(f"{key}{error.key}", error.rule, error.received, error.remedy) from None
 
     @property
     def offer(self) -> str:

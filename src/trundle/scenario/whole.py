@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import os
 import unicodedata
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, ClassVar, Self
 
 from pydantic import Field, ValidationError, field_validator
 
+from ..display import Displayed, Headline, Markup, paragraph
 from ..errors import InvalidValueError, ScenarioError
 from . import files
 from .complaints import Kinds, complain
@@ -19,7 +20,7 @@ from .tables import Table
 _LONGEST_TITLE = 300  # characters; it heads figures
 
 
-class Document(Table):
+class Document(Displayed, Table):
     """A scenario file of some kind.
 
     Every number is a float in SI; it remembers the text that it was written as, and `to_toml` writes that.
@@ -165,6 +166,24 @@ class Document(Table):
             lines = "" if allowed else " on one line"
             raise InvalidValueError("", f"must be text{lines} without control characters", text, "Leave them out.")
         return text
+
+    # --- showing -----------------------------------------------------------------------------------------
+
+    def __str__(self) -> str:
+        return self.to_toml().rstrip("\n")
+
+    def _headline(self) -> Headline:
+        return Headline(self.title)
+
+    def _parts(self) -> Iterator[Markup]:
+        from .shown import shown
+
+        yield paragraph(" ".join(self.notes.split("\n")).strip())
+        yield shown(self, self._kinds_of_components())
+
+    def _kinds_of_components(self) -> dict[str, tuple[str, ...]]:
+        """Return what the components of a key are where another key says so: each a length or an angle."""
+        return {}
 
     # --- writing -----------------------------------------------------------------------------------------
 

@@ -57,7 +57,7 @@ def formula_of(system: RollingSystem, form: ClosedForm | None) -> dict[str, str]
     >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.025, 0.065), table)
     >>> form = tr.solve.exact.closed_form(system, system.place((0.1, 0.0)))
     >>> formula_of(system, form)["numbers_latex"]
-    '\\Omega_c = \\tfrac{2}{7}\\cdot 3.5\\,\\mathrm{rad/s} = 1\\,\\mathrm{rad/s}'
+    '\\kappa = \\tfrac{2}{7}\\cdot 3.5\\,\\mathrm{rad/s} = 1\\,\\mathrm{rad/s}'
     """
     write = _FORMULAS.get(type(form)) if form is not None else None
     lines = write(form, system) if write is not None else []
@@ -207,8 +207,8 @@ def _sphere_on_plane(form: SphereOnPlane, system: RollingSystem) -> Lines:
 def _circle(form: SphereOnPlane, system: RollingSystem) -> Lines:
     rate, kappa, radius = float(form.rate), float(form.kappa), float(form.circle_radius)
     drift = complex(*(float(part) for part in form.drift_velocity))
-    numbers = rf"\Omega_c = {number(_share(form))}\cdot {quantity(rate, 'rad/s')} = {quantity(kappa, 'rad/s')}"
-    lines = [(r"\Omega_c = \frac{k}{1+k}\,\omega", numbers)]
+    numbers = rf"\kappa = {number(_share(form))}\cdot {quantity(rate, 'rad/s')} = {quantity(kappa, 'rad/s')}"
+    lines = [(r"\kappa = \frac{k}{1+k}\,\omega", numbers)]
     if drift:
         shown = rf"v_d = {quantity(abs(drift), 'm/s')}"
         if not system.loads:
@@ -223,14 +223,14 @@ def _circle(form: SphereOnPlane, system: RollingSystem) -> Lines:
                 )
             )
         else:
-            lines.append((r"v_d = \frac{i\varphi}{\Omega_c}", f"|{shown.replace(' =', '| =', 1)}"))
+            lines.append((r"v_d = \frac{i\varphi}{\kappa}", f"|{shown.replace(' =', '| =', 1)}"))
     if radius:
         speed = radius * abs(kappa)
         above = r"|\dot\zeta_0 - v_d|" if drift else r"|\dot\zeta_0|"
         shown = (
             rf"\varrho = \frac{{{quantity(speed, 'm/s')}}}{{{quantity(abs(kappa), 'rad/s')}}} = {quantity(radius, 'm')}"
         )
-        lines.append((rf"\varrho = \frac{{{above}}}{{|\Omega_c|}}", shown))
+        lines.append((rf"\varrho = \frac{{{above}}}{{|\kappa|}}", shown))
     return lines
 
 

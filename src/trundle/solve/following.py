@@ -17,6 +17,7 @@ from ..mechanics.slipping import slip, unpushed
 from ..mechanics.system import RollingSystem, State
 from .creeping import CreepingLaw
 from .laws import (
+    JAMS,
     FlightLaw,
     Law,
     RestingLaw,
@@ -124,7 +125,7 @@ def after(system: RollingSystem, law: Law, stop: Stop) -> Next:
     if name == "settled":
         return slipping(system, Next.of(law, at))
     if name == "jam":
-        raise jammed(at.state.time)
+        raise jammed(at.state.time, JAMS)
     if name == "lift":
         follows = _touching(system, at) if law.weightless else _lifted(system, at)
         return follows if isinstance(follows.law, FlightLaw) else replace(follows, events=())
@@ -248,9 +249,14 @@ def _struck(system: RollingSystem, at: Touch) -> Next:
         V, Omega = V + struck.velocity_change, Omega + struck.angular_velocity_change
         if system.support.motion.free:
             own = (*own[:-1], own[-1] + float(struck.axle_rate_change))
-        off = float(at.contact.slip_velocity(V, Omega).dot(n)) if system.support.restitution > 0 else 0.0
+        off = float(at.contact.slip_velocity(V, Omega).dot(n))
+        if system.support.restitution == 0 and off <= SLIP_TOLERANCE * at.speed:
+            off = 0.0  # slip that is given back may throw a body off, rounding does not
     pull = _pull(system, at)
     bounces = off > 0 and not (pull > 0 and off * off < 2 * pull * SETTLED * at.arm)
+    if not bounces and system.support.friction is None and system.support.tangential_restitution > 0:
+        holding = replace(system.support, tangential_restitution=0.0)  # nothing slips that stays on it
+        return _struck(replace(system, support=holding), at)
     said = f"landed at {-at.approach:.4g} m/s"
     after = at.moving(system, V, Omega, own)
     if bounces:
@@ -309,8 +315,9 @@ def _slipping(
     N, forces = float(now.normal_force), _forces(system, at)
     if abs(N) <= _WEIGHTLESS * forces:
         return Next.of(law(True), at, (_FLOOR * forces, *ending))
-    if now.opening_per_newton <= 0:
-        raise jammed(state.time, either=N > 0)
+    share = float(now.opening_per_newton * system.body.mass)
+    if share <= JAMS:
+        raise jammed(state.time, share, opens=N * share < 0)
     return _lifted(system, at) if N < 0 else Next.of(law(False), at, ending)
 
 

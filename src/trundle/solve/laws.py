@@ -222,7 +222,7 @@ class SlippingLaw(Law):
         """Return the normal force, and how it opens the contact where friction may turn that round."""
         found = {"lift": now.normal_force + self._floor(extras)[0]}
         if not is_zero(system.support.friction):
-            found["jam"] = now.opening_per_newton * system.body.mass - _SHORT_OF_IT
+            found["jam"] = now.opening_per_newton * system.body.mass - JAMS
         return found
 
     def numbers(self, at: Touch) -> list[float]:
@@ -383,6 +383,8 @@ class Held:
 _SHORT_OF_IT = 1e-6
 # By this share static friction and resistance hold more than they say, so that rounding does not decide.
 CONE_SLACK = 1e-9
+# Friction all but jams a body where a newton of N opens the contact by so small a share of 1/m.
+JAMS = 1e-3
 _SLOW_SLIP = 1e-8  # m/s for each rad/s of Ω
 
 

@@ -83,15 +83,17 @@ def first_moment(system: RollingSystem, at: Touch) -> Onset | Touch:
     return Onset(slipping, SlippingLaw, hat, (near, *floats(hat)))
 
 
-def jammed(time: float, either: bool = False) -> SolverError:
+def jammed(time: float, share: float = -1.0, opens: bool = False) -> SolverError:
     """Name Painlevé's paradox: rigid contact with so much friction has no motion, or more than one.
 
     Parameters
     ----------
     time : float
         When, s.
-    either : bool
-        Whether the body may stay in contact as well as leave it; else it can do neither.
+    share : float
+        How much the normal force opens the contact, m n·a₁; where it is negative, it closes it.
+    opens : bool
+        Whether the contact would open without it.
 
     Returns
     -------
@@ -100,15 +102,16 @@ def jammed(time: float, either: bool = False) -> SolverError:
 
     Examples
     --------
-    >>> print(jammed(2.5, either=True))
+    >>> print(jammed(2.5, -0.3, opens=True))
     At t = 2.5 s the body may slip on or come off ...
     """
-    what = (
-        "the body may slip on or come off the support, and the laws of rigid contact do not say which"
-        if either
-        else "the body can neither roll, nor slip any way, nor come off the support"
-    )
-    return SolverError(f"At t = {time:.9g} s {what} (Painlevé's paradox: friction jams it). Use less friction.")
+    if share > 0:
+        what = "friction all but jams the body, and presses it on without limit"
+    elif opens:
+        what = "the body may slip on or come off the support, and the laws of rigid contact do not say which"
+    else:
+        what = "the body can neither roll, nor slip any way, nor come off the support"
+    return SolverError(f"At t = {time:.9g} s {what} (Painlevé's paradox). Use less friction.")
 
 
 @dataclass(frozen=True)

@@ -176,7 +176,7 @@ def _resolved(angular_velocity: AngularVelocity, middle: Array, half: Array) -> 
     for _ in range(31):
         left -= middle.size
         if left < 0:
-            raise SolverError("Ω(t) changes too fast for its orientation to be followed, or is known too roughly for it.")
+            raise SolverError("Ω(t) changes too fast, or is known too roughly, for the orientation to be followed.")
         mean, legendre = _polynomials(angular_velocity, middle, half)
         size = np.linalg.norm(mean, axis=0)
         tail = np.abs(legendre[:, -2:]).max(axis=(0, 1))

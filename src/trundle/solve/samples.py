@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cache
 from typing import Any
@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..display import Displayed, Headline, Markup, number, numbers, pairs
+from ..errors import InvalidValueError
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import normal_at
 from ..mechanics.loads import BodyMotion
@@ -21,10 +23,12 @@ Progress = Callable[[float], None]  # told the fraction done, 0 to 1
 
 
 ROLLING, SLIPPING, FLIGHT, RESTING = range(4)  # phases of the contact
+ENDS = ("rim", "end", "edge", "curved", "spot")  # kinds of event that end a run
+KINDS = ("slip", "grip", "lift", "land", "settle", "stop", "start", *ENDS)
 
 
-@dataclass(frozen=True)
-class Event:
+@dataclass(frozen=True, repr=False)
+class Event(Displayed):
     """Something that happened at one instant of a run.
 
     Parameters
@@ -36,13 +40,19 @@ class Event:
         body. ``"land"``: a flight ended, the body bouncing or not. ``"settle"``: it landed, and its bounces were cut
         short. ``"stop"``, ``"start"``: it came to rest on the support, or left it. The run ended at ``"rim"``: the
         contact reached the rim; ``"end"``: the end of the surface; ``"edge"``: of what the body's shape covers;
-        ``"curved"``: where the support is too hollow for the body.
+        ``"curved"``: where the support is too hollow for the body; ``"spot"``: rolling stopped while the body still
+        spins.
     text : str
         What happened, for the reader.
     before, after : State, optional
         The state just before and just after; they differ where something struck.
     contact : triple of float, optional
         Where the body touched, p in the inertial support frame, m.
+
+    Raises
+    ------
+    InvalidValueError
+        If there is no such kind.
 
     Examples
     --------
@@ -57,10 +67,21 @@ class Event:
     after: State | None = None
     contact: tuple[float, float, float] | None = None
 
+    def __post_init__(self) -> None:
+        if self.kind not in KINDS:
+            raise InvalidValueError("kind", f"must be one of {', '.join(KINDS)}", self.kind)
+
+    def _headline(self) -> Headline:
+        return Headline(self.kind, self.text)
+
+    def _parts(self) -> Iterator[Markup]:
+        contact = "" if self.contact is None else numbers(self.contact, unit="m")
+        yield pairs([("time", number(self.time, 9, "s")), ("contact", contact)])
+
     @property
     def final(self) -> bool:
         """Whether the run ended here."""
-        return self.kind in ("rim", "end", "edge", "curved", "spot")
+        return self.kind in ENDS
 
 
 @dataclass(frozen=True)

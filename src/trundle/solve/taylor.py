@@ -7,10 +7,8 @@ import copy
 import hashlib
 import itertools
 import math
-import os
 import pickle
 import platform
-import stat
 from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
@@ -19,10 +17,9 @@ from typing import Any
 import numpy as np
 
 from ..errors import SolverError
-from ..files import written_whole
 from ..mechanics.parameters import numbers, structure_of
 from ..mechanics.system import RollingSystem, State
-from . import phases, runge_kutta
+from . import integrator_cache, phases, runge_kutta
 from .following import Next, Stop
 from .laws import Law
 from .lowering import Lowered, lower
@@ -321,10 +318,10 @@ def _compiled(key: str, compile_: Any) -> Any:
     known = _memory().known
     if key not in known:
         _quiet()
-        known[key] = _load(key)
+        known[key] = integrator_cache.load(key)
         if known[key] is None:
             known[key] = compile_()
-            _store(key, known[key])
+            integrator_cache.store(key, known[key])
     return known[key]
 
 
@@ -368,51 +365,3 @@ def _processor() -> str:
         lines = Path("/proc/cpuinfo").read_text(errors="replace").splitlines()
         return "".join(sorted({line for line in lines if line.startswith(("model name", "flags", "Features"))}))
     return platform.machine() + platform.processor()
-
-
-def cache_folder() -> Path:
-    """Return the folder of the user's cache in which compiled integrators are kept.
-
-    Returns
-    -------
-    pathlib.Path
-        It may not exist yet.
-
-    Examples
-    --------
-    >>> cache_folder().name
-    'trundle'
-    """
-    from platformdirs import user_cache_path
-
-    return user_cache_path("trundle", appauthor=False)
-
-
-def _load(key: str) -> Any:
-    """Read a compiled integrator; anything wrong with it means to compile again.
-
-    A pickle can run code, so it must belong to this user and be writable by nobody else.
-    """
-    path = cache_folder() / f"taylor-{key}.pickle"
-    try:
-        for place in (path.parent, path):
-            facts = place.stat()
-            if facts.st_uid != os.getuid() or facts.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
-                return None
-        digest, _, body = path.read_bytes().partition(b"\n")
-        if hashlib.sha256(body).hexdigest().encode() != digest:
-            return None
-        return pickle.loads(body)  # noqa: S301  own file, checked above
-    except Exception:  # noqa: BLE001  a cache must never be a reason to fail
-        return None
-
-
-def _store(key: str, integrator: Any) -> None:
-    """Write a compiled integrator, whole or not at all; a cache that cannot be written is done without."""
-    folder = cache_folder()
-    with contextlib.suppress(Exception):
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        body = pickle.dumps(integrator)
-        with written_whole(folder / f"taylor-{key}.pickle") as temporary:
-            temporary.touch(mode=0o600)  # whatever the umask, or `_load` would not trust it
-            temporary.write_bytes(hashlib.sha256(body).hexdigest().encode() + b"\n" + body)

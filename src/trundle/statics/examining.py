@@ -92,6 +92,7 @@ def examine(
         moves=tuple(_name(system, mode, (first, second), size) for mode in modes),
         free=free,
         dimension=dimension,
+        kinds=system.support.surface.coordinates,
         angle=angle,
     )
 

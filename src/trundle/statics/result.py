@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from ..display import Displayed, Headline, Markup, pairs, paragraph, records
 from ..mechanics.system import RollingSystem, State
 from .line import Line
 from .stability import Mode
@@ -17,8 +18,8 @@ if TYPE_CHECKING:
 Triple = tuple[float, float, float]
 
 
-@dataclass(frozen=True)
-class Equilibrium:
+@dataclass(frozen=True, repr=False)
+class Equilibrium(Displayed):
     """A place where the body stays, put down at rest.
 
     Parameters
@@ -51,6 +52,8 @@ class Equilibrium:
         What may be changed without leaving equilibrium; empty where it stands alone.
     dimension : int
         Of the family of equilibria that it belongs to; 0 where it stands alone.
+    kinds : tuple of 2 str
+        Whether each coordinate is a "length" or an "angle".
     """
 
     state: State
@@ -68,6 +71,7 @@ class Equilibrium:
     moves: tuple[str, ...]
     free: tuple[str, ...]
     dimension: int
+    kinds: tuple[str, str] = ("length", "length")
     angle: float | None = field(default=None, repr=False)  # along the line of a figure, rad
 
     @property
@@ -86,6 +90,21 @@ class Equilibrium:
     def stands(self) -> bool:
         """Whether the support has to push, not to pull."""
         return self.normal_force >= -1e-12 * math.hypot(*self.reaction)
+
+    def __str__(self) -> str:
+        from .words import report_one
+
+        return report_one(self)
+
+    def _headline(self) -> Headline:
+        from .words import kind_of, where
+
+        return Headline(f"at {where(self)}", kind_of(self))
+
+    def _parts(self) -> Iterator[Markup]:
+        from .words import record_of
+
+        yield pairs((name, value) for name, value in record_of(self).items() if name != "at")
 
     def as_dict(self) -> dict[str, Any]:
         """Return everything in SI units and plain types, for JSON."""
@@ -113,8 +132,8 @@ class Equilibrium:
         }
 
 
-@dataclass(frozen=True)
-class Equilibria:
+@dataclass(frozen=True, repr=False)
+class Equilibria(Displayed):
     """The equilibria of a system, and what was searched for them.
 
     It is a sequence: the lowest first where there is an energy, else the nearest to the start.
@@ -175,6 +194,17 @@ class Equilibria:
         from .words import report
 
         return report(self)
+
+    def _headline(self) -> Headline:
+        from .words import count_of
+
+        return Headline(self.title, count_of(self))
+
+    def _parts(self) -> Iterator[Markup]:
+        from .words import kind_of, record_of, remarks
+
+        yield records([{"equilibrium": kind_of(one), **record_of(one, len(self))} for one in self.found])
+        yield paragraph("\n".join(remarks(self)))
 
     def as_dict(self) -> dict[str, Any]:
         """Return everything in SI units and plain types, for JSON.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from ..display import verdict
 from ..mechanics.system import RollingSystem
 from .stability import Mode
 
@@ -53,24 +54,68 @@ def report(result: Equilibria) -> str:
         Several lines.
     """
     lines = [result.title] if result.title else []
-    lines.append(_count(result))
+    lines.append(count_of(result))
     for i, one in enumerate(result.found, 1):
-        lines += ["", f"{i}. {one.stability}{_detail(one)}", *(f"   {line}" for line in _facts(result, one))]
-    if result.found:
-        lines.append("")
-    elif result.reason:
-        lines.append(result.reason)
+        lines += ["", f"{i}. {report_one(one, len(result.found))}"]
+    return "\n".join([*lines, *[""] * bool(result.found), *remarks(result)])
+
+
+def report_one(one: Equilibrium, count: int = 1) -> str:
+    """Write out one equilibrium.
+
+    Parameters
+    ----------
+    one : Equilibrium
+        Any.
+    count : int
+        Of how many: of several, how their energies compare is told.
+
+    Returns
+    -------
+    str
+        Several lines.
+    """
+    said = facts(one, count)
+    energy = said["energy"] if one.energy == 0 else f"energy {said['energy']}"
+    force = f"contact force {said['contact force']}; {said['friction']}"
+    lines = [f"at {said['at']}", *[energy] * bool(said["energy"]), force, *said["a nudge"].splitlines()]
+    return "\n   ".join([kind_of(one), *lines])
+
+
+def record_of(one: Equilibrium, count: int = 1) -> dict[str, str]:
+    """Return what `facts` does for a notebook, where a verdict is seen."""
+    said = facts(one, count)
+    return {**said, "friction": verdict(one.holds, said["friction"])}
+
+
+def facts(one: Equilibrium, count: int) -> dict[str, str]:
+    """Return what there is to say of one equilibrium among several, each fact under its name."""
+    energy = ""
+    if one.energy is not None and count > 1:
+        energy = "lowest" if one.energy == 0 else f"{one.energy:.6g} J over the lowest"
+    return {
+        "at": where(one),
+        "energy": energy,
+        "contact force": f"N = {one.normal_force:.6g} N, f = {one.friction_force:.6g} N",
+        "friction": _friction(one),
+        "a nudge": "\n".join(_nudges(one)),
+    }
+
+
+def remarks(result: Equilibria) -> list[str]:
+    """Return what there is to say beyond the equilibria, line by line."""
+    lines = [] if result.found or not result.reason else [result.reason]
     if result.pulled:
         lines.append(_pulled(result))
     if result.repeats is not None and result.found:
         lines.append(_repeats(result.repeats, result.found))
     if not result.conservative:
         lines.append("no energy: some load has no potential; searched by virtual work")
-    lines.append(f"searched: {result.searched}")
-    return "\n".join(lines)
+    return [*lines, f"searched: {result.searched}"]
 
 
-def _count(result: Equilibria) -> str:
+def count_of(result: Equilibria) -> str:
+    """Say how many there are."""
     if not result.found:
         return "no equilibrium"
     families = sum(one.dimension > 0 for one in result.found)
@@ -85,30 +130,29 @@ def _plural(one: str, more: str, count: int) -> str:
     return one if count == 1 else more
 
 
-def _detail(one: Equilibrium) -> str:
-    return f", {'' if one.free[0].startswith('in ') else 'anywhere '}{' and '.join(one.free)}" if one.free else ""
+def kind_of(one: Equilibrium) -> str:
+    """Say whether it is stable, and what may be changed without leaving it."""
+    detail = f", {'' if one.free[0].startswith('in ') else 'anywhere '}{' and '.join(one.free)}" if one.free else ""
+    return f"{one.stability}{detail}"
 
 
-def _facts(result: Equilibria, one: Equilibrium) -> list[str]:
-    facts = [f"at {_where(result, one)}"]
-    if one.energy is not None and len(result.found) > 1:
-        facts.append("lowest" if one.energy == 0 else f"energy {one.energy:.6g} J over the lowest")
-    facts.append(f"contact force N = {one.normal_force:.6g} N, f = {one.friction_force:.6g} N; {_friction(one)}")
+def _nudges(one: Equilibrium) -> list[str]:
     motions: dict[str, list[str]] = {}
     for mode, moves in zip(one.modes, one.moves, strict=True):
         if not (mode.kind == "indifferent" and moves == SPOT):
             motions.setdefault(_motion(mode, one), []).append(moves)
-    return facts + [f"{moves[0] if len(moves) == 1 else 'every way'}: {motion}" for motion, moves in motions.items()]
+    return [f"{moves[0] if len(moves) == 1 else 'every way'}: {motion}" for motion, moves in motions.items()]
 
 
-def _where(result: Equilibria, one: Equilibrium) -> str:
-    kinds = result.system.support.surface.coordinates
+def where(one: Equilibrium) -> str:
+    """Say at which coordinates it is."""
+    kinds = one.kinds
     u, v = (_tidy(math.degrees(x) if kind == "angle" else x) for x, kind in zip(one.position, kinds, strict=True))
     u = 180.0 if kinds[0] == "angle" and u == -180 else u
-    where = f"{u:.6g}° round, {v:.6g} m along" if kinds[0] == "angle" else f"x = {u:.6g} m, y = {v:.6g} m"
+    place = f"{u:.6g}° round, {v:.6g} m along" if kinds[0] == "angle" else f"x = {u:.6g} m, y = {v:.6g} m"
     if one.roll is None:
-        return where
-    return f"{where}, mark {_tidy(math.degrees(one.roll)):.6g}° from the normal"
+        return place
+    return f"{place}, mark {_tidy(math.degrees(one.roll)):.6g}° from the normal"
 
 
 def _tidy(value: float) -> float:
@@ -164,10 +208,8 @@ def motion_words(mode: Mode, digits: int = 6) -> str:
 def _pulled(result: Equilibria) -> str:
     one, count = result.pulled[0], len(result.pulled)
     if count == 1:
-        return f"not one: {_where(result, one)}, where the support would have to pull with {-one.normal_force:.4g} N"
-    return (
-        f"not equilibria: {count} stationary points where the support would have to pull, as at {_where(result, one)}"
-    )
+        return f"not one: {where(one)}, where the support would have to pull with {-one.normal_force:.4g} N"
+    return f"not equilibria: {count} stationary points where the support would have to pull, as at {where(one)}"
 
 
 def _repeats(repeats: tuple[float, float], found: tuple[Equilibrium, ...]) -> str:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from ..display import Displayed, Headline, Markup, pairs
 from ..errors import SolverError
 from ..mechanics import checks
 from ..mechanics.system import RollingSystem, State
@@ -31,8 +33,8 @@ _TRIES = 25  # steps from each
 _OTHER_SIGN = np.diag([1.0] * 3 + [-1.0] * 4 + [1.0] * 4)  # q and −q are one orientation
 
 
-@dataclass(frozen=True)
-class PeriodicMotion:
+@dataclass(frozen=True, repr=False)
+class PeriodicMotion(Displayed):
     """A motion that repeats after a period, seen after a shift and a turn that change nothing that matters.
 
     Parameters
@@ -85,6 +87,14 @@ class PeriodicMotion:
         from .words import periodic_report
 
         return periodic_report(self)
+
+    def _headline(self) -> Headline:
+        return Headline("", self.verdict)
+
+    def _parts(self) -> Iterator[Markup]:
+        from .words import periodic_facts
+
+        yield pairs(periodic_facts(self).items())
 
     def as_dict(self) -> dict[str, Any]:
         """Return everything in SI units and plain types, for JSON."""

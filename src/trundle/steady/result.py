@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from ..display import Displayed, Headline, Markup, pairs, paragraph, records
 from ..mechanics.system import RollingSystem, State
 from .finding import Relative
 from .modes import Mode, Reduced
@@ -18,8 +19,8 @@ if TYPE_CHECKING:
     from .sweep import Sweep
 
 
-@dataclass(frozen=True)
-class SteadyMotion:
+@dataclass(frozen=True, repr=False)
+class SteadyMotion(Displayed):
     """A motion in which all that matters stays as it is, and how it answers a nudge.
 
     Parameters
@@ -137,9 +138,17 @@ class SteadyMotion:
         return follow(self, name, lowest, highest, holding, count)
 
     def __str__(self) -> str:
-        from .words import facts
+        from .words import report_one
 
-        return "\n   ".join([f"{self.kind}, {self.verdict}", *facts(self)])
+        return report_one(self)
+
+    def _headline(self) -> Headline:
+        return Headline("", f"{self.kind}, {self.verdict}")
+
+    def _parts(self) -> Iterator[Markup]:
+        from .words import record_of
+
+        yield pairs(record_of(self).items())
 
     def as_dict(self) -> dict[str, Any]:
         """Return everything in SI units and plain types, for JSON."""
@@ -169,8 +178,8 @@ class SteadyMotion:
         }
 
 
-@dataclass(frozen=True)
-class SteadyMotions:
+@dataclass(frozen=True, repr=False)
+class SteadyMotions(Displayed):
     """The steady motions found, the nearest to the start first; a sequence.
 
     Parameters
@@ -222,6 +231,17 @@ class SteadyMotions:
         from .words import report
 
         return report(self)
+
+    def _headline(self) -> Headline:
+        from .words import count_of
+
+        return Headline(self.title, count_of(self))
+
+    def _parts(self) -> Iterator[Markup]:
+        from .words import record_of, remarks
+
+        yield records([{"motion": f"{one.kind}, {one.verdict}", **record_of(one)} for one in self.found])
+        yield paragraph("\n".join(remarks(self)))
 
     def as_dict(self) -> dict[str, Any]:
         """Return everything in SI units and plain types, for JSON.

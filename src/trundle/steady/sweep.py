@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..display import Displayed, Headline, Markup, fold, joined, number, table
 from ..errors import InvalidValueError, SolverError
 from ..mechanics import checks
 from ..mechanics.motions import Spin
@@ -42,8 +43,8 @@ _NOTHING_TO_TWICE = (0.02, 2.0)
 _FROM_REST = 20.0  # scales of the rate, for a quantity that is zero
 
 
-@dataclass(frozen=True)
-class Sweep:
+@dataclass(frozen=True, repr=False)
+class Sweep(Displayed):
     """Growth and frequencies of a family of steady motions against one quantity.
 
     Parameters
@@ -104,6 +105,18 @@ class Sweep:
         changes = f"stability changes at {self.name} {said_limits}"
         kinds = [self.motions[0].verdict, self.motions[-1].verdict]
         return f"{where}: {changes}; {kinds[0]} at the lower end, {kinds[1]} at the upper{self.ended}"
+
+    def _headline(self) -> Headline:
+        return Headline("", str(self))
+
+    def _parts(self) -> Iterator[Markup]:
+        rows = [
+            (number(value), joined((number(part) for part in one.frequencies), ", "), number(one.growth), one.verdict)
+            for value, one in zip(self.values, self.motions, strict=True)
+        ]
+        unit = f" ({self.unit})" if self.unit else ""
+        heads = (f"{self.name}{unit}", "frequencies (rad/s)", "fastest growth (1/s)", "verdict")
+        yield fold(f"{len(rows)} values", table(rows, heads, numbers=(0, 1, 2)))
 
     def as_dict(self) -> dict[str, Any]:
         """Return everything in SI units and plain types, for JSON."""

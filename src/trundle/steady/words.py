@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from ..display import verdict
 from .modes import Mode
 from .quantities import UNITS
 
@@ -26,27 +27,67 @@ def report(result: SteadyMotions) -> str:
     str
         Several lines.
     """
-    lines = [result.title] if result.title else []
-    count = len(result.found)
-    lines.append("no steady motion" if not count else f"{count} steady motion{'s' * (count > 1)}")
+    lines, count = [result.title] if result.title else [], len(result.found)
+    lines.append(count_of(result))
     for i, one in enumerate(result.found, 1):
-        lines += ["", f"{i}. {one.kind}, {one.verdict}", *(f"   {line}" for line in facts(one))]
-    lines += ["", f"from the start: {_moved(result.moved)}"] if count else [result.reason]
+        lines += ["", f"{i}. {report_one(one)}"]
+    return "\n".join([*lines, *[""] * bool(count), *remarks(result)])
+
+
+def remarks(result: SteadyMotions) -> list[str]:
+    """Return what there is to say beyond the motions, line by line."""
+    lines = [f"from the start: {_moved(result.moved)}" if result.found else result.reason]
     if result.pulled:
         lines.append(f"not counted: {result.pulled} more, in which the support would have to pull")
-    lines.append(f"searched: {result.searched}")
-    return "\n".join(lines)
+    return [*lines, f"searched: {result.searched}"]
+
+
+def count_of(result: SteadyMotions) -> str:
+    """Say how many there are."""
+    count = len(result.found)
+    return "no steady motion" if not count else f"{count} steady motion{'s' * (count > 1)}"
 
 
 def _moved(distance: float) -> str:
     return "it is one already" if distance < 1e-9 else f"{distance:.3g} away, in units of the body's size and rates"
 
 
-def facts(one: SteadyMotion) -> list[str]:
-    """Return what there is to say of one steady motion, line by line."""
-    values = ", ".join(f"{name} {said(name, value)}" for name, value in one.quantities.items())
-    force = f"contact force N = {one.normal_force:.6g} N, f = {one.friction_force:.6g} N; {_friction(one)}"
-    return [values, force, *_nudges(one), _family(one), _evidence(one)]
+def report_one(one: SteadyMotion) -> str:
+    """Write out one steady motion.
+
+    Parameters
+    ----------
+    one : SteadyMotion
+        Any.
+
+    Returns
+    -------
+    str
+        Several lines.
+    """
+    told = facts(one)
+    force = f"contact force {told['contact force']}; {told['friction']}"
+    nudges = [f"a nudge {line}" for line in told["a nudge"].splitlines()]
+    lines = [told["quantities"], force, *nudges, told["family"], f"evidence: {told['evidence']}"]
+    return "\n   ".join([f"{one.kind}, {one.verdict}", *lines])
+
+
+def record_of(one: SteadyMotion) -> dict[str, str]:
+    """Return what `facts` does for a notebook, where a verdict is seen."""
+    told = facts(one)
+    return {**told, "friction": verdict(one.holds, told["friction"])}
+
+
+def facts(one: SteadyMotion) -> dict[str, str]:
+    """Return what there is to say of one steady motion, each fact under its name."""
+    return {
+        "quantities": ", ".join(f"{name} {said(name, value)}" for name, value in one.quantities.items()),
+        "contact force": f"N = {one.normal_force:.6g} N, f = {one.friction_force:.6g} N",
+        "friction": _friction(one),
+        "a nudge": "\n".join(_nudges(one)),
+        "family": _family(one),
+        "evidence": _evidence(one),
+    }
 
 
 def said(name: str, value: float) -> str:
@@ -65,10 +106,10 @@ def _friction(one: SteadyMotion) -> str:
 
 def _nudges(one: SteadyMotion) -> list[str]:
     if not one.modes:
-        return ["a nudge only changes it into another steady motion"]
+        return ["only changes it into another steady motion"]
     said_once = list(dict.fromkeys(mode_words(mode) for mode in one.modes if not _twin(mode, one.modes)))
     frame = "" if one.frame == "inertial" else ", seen turning with the support"
-    return [f"a nudge {words}{frame}" for words in said_once]
+    return [f"{words}{frame}" for words in said_once]
 
 
 def _twin(mode: Mode, modes: tuple[Mode, ...]) -> bool:
@@ -118,7 +159,7 @@ def _family(one: SteadyMotion) -> str:
 
 
 def _evidence(one: SteadyMotion) -> str:
-    return f"evidence: steady to {one.residual:.1g}; nudged runs follow the linear law to {one.checked:.1g}"
+    return f"steady to {one.residual:.1g}; nudged runs follow the linear law to {one.checked:.1g}"
 
 
 def periodic_report(motion: PeriodicMotion) -> str:
@@ -134,15 +175,21 @@ def periodic_report(motion: PeriodicMotion) -> str:
     str
         Several lines.
     """
+    told = periodic_facts(motion)
+    lines = [f"repeats {told['repeats']}", f"multipliers: {told['multipliers']}", f"evidence: {told['evidence']}"]
+    return "\n".join([f"periodic, {motion.verdict}", *(f"   {row}" for line in lines for row in line.splitlines())])
+
+
+def periodic_facts(motion: PeriodicMotion) -> dict[str, str]:
+    """Return what there is to say of a periodic motion, each fact under its name."""
     rest = motion.multipliers[motion.free :]
-    lines = [
-        f"periodic, {motion.verdict}",
-        f"   repeats after {motion.period:.9g} s, turned on by {math.degrees(motion.turned) + 0.0:.6g}° about the axis",
-        f"   multipliers: {', '.join(map(_multiplier, rest)) or 'none besides 1'}",
-        f"   and {motion.free} equal to 1, along the motion and its family",
-        f"   evidence: closes to {motion.residual:.1g} of its scale",
-    ]
-    return "\n".join(lines)
+    turned = f"turned on by {math.degrees(motion.turned) + 0.0:.6g}° about the axis"
+    several = ", ".join(map(_multiplier, rest)) or "none besides 1"
+    return {
+        "repeats": f"after {motion.period:.9g} s, {turned}",
+        "multipliers": f"{several}\nand {motion.free} equal to 1, along the motion and its family",
+        "evidence": f"closes to {motion.residual:.1g} of its scale",
+    }
 
 
 def _multiplier(value: complex) -> str:

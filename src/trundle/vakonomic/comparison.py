@@ -7,11 +7,14 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from ..display import Displayed, Headline, Markup, paragraph, table
 from ..mechanics import checks
 from ..mechanics.system import RollingSystem
 from .equations import VakonomicPath, vakonomic_path
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     import numpy as np
     from numpy.typing import NDArray
 
@@ -27,8 +30,8 @@ _SAMPLES = 2001
 _SAME = 1e-9  # share of the distance from the axis, below which two paths are one
 
 
-@dataclass(frozen=True)
-class VakonomicComparison:
+@dataclass(frozen=True, repr=False)
+class VakonomicComparison(Displayed):
     """A ball's path and the vakonomic ones from the same start.
 
     Parameters
@@ -137,20 +140,45 @@ class VakonomicComparison:
             ],
         }
 
+    @property
+    def warning(self) -> str:
+        """What is wrong with the vakonomic path, in a sentence."""
+        return "Its equations are wrong." if self.agree else "It is wrong: no ball moves so."
+
     def __str__(self) -> str:
-        from ..plots.scales import short, unit_for, with_unit
+        lines = [self.title] if self.title else []
+        lines += [f"The vakonomic path beside the true one. {self.warning}", ""]
+        lines += ["     time            ball, x and y           vakonomic, x and y        apart"]
+        lines += [f"{t:>9}  {ball}  {other}  {apart:>9}" for t, ball, other, apart in self._cells()]
+        return "\n".join([*lines, "", *self._findings()])
+
+    def _headline(self) -> Headline:
+        return Headline(self.title, f"the vakonomic path beside the true one. {self.warning}")
+
+    def _parts(self) -> Iterator[Markup]:
+        heads = ("time", "ball, x and y", "vakonomic, x and y", "apart")
+        yield table(self._cells(), heads, numbers=range(4))
+        yield paragraph("\n".join(self._findings()))
+
+    def _cells(self) -> list[tuple[str, ...]]:
+        """Return `rows` as text."""
+        from ..plots.scales import short, unit_for
 
         unit = unit_for(float(self.apart.max()), "length")
-        lam = self.vakonomic.multipliers[0]
-        lines = [self.title] if self.title else []
-        wrong = "Its equations are wrong." if self.agree else "It is wrong: no ball moves so."
-        lines += [f"The vakonomic path beside the true one. {wrong}", ""]
-        lines += ["     time            ball, x and y           vakonomic, x and y        apart"]
-        for t, ball, other in self.rows():
-            pair = [f"({z.real:9.4f}, {z.imag:9.4f}) m" for z in (ball, other)]
-            apart = f"{short(abs(other - ball) / unit.scale, 3)} {unit.symbol}"
-            lines.append(f"{t:7.3f} s  {pair[0]}  {pair[1]}  {apart:>9}")
-        lines.append("")
+        return [
+            (
+                f"{t:.3f} s",
+                *(f"({z.real:9.4f}, {z.imag:9.4f}) m" for z in (ball, other)),
+                f"{short(abs(other - ball) / unit.scale, 3)} {unit.symbol}",
+            )
+            for t, ball, other in self.rows()
+        ]
+
+    def _findings(self) -> list[str]:
+        """Return what there is to say, line by line."""
+        from ..plots.scales import with_unit
+
+        lines, lam = [], self.vakonomic.multipliers[0]
         if self.agree:
             lines.append("From this start and these multipliers the two agree, one of them by luck.")
         if self.radius is not None or self.stays:
@@ -163,7 +191,7 @@ class VakonomicComparison:
             lines.append(
                 f"with {len(self.family)} others there are as many other paths, and none of them is the ball's."
             )
-        return "\n".join(lines)
+        return lines
 
 
 def compare_vakonomic(

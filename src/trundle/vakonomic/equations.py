@@ -20,6 +20,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from ..display import Displayed, Headline, Markup, numbers, pairs
 from ..errors import InvalidValueError, OutOfDomainError, SolverError
 from ..mechanics import checks
 from ..mechanics.loads import Force, Gravity, at_rest
@@ -28,6 +29,8 @@ from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem, State
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     import numpy as np
     from numpy.typing import NDArray
 
@@ -67,8 +70,8 @@ class _Ball:
         return np.array([v.real, v.imag, v_rate.real, v_rate.imag, lam_rate.real, lam_rate.imag, s_rate])
 
 
-@dataclass(frozen=True)
-class VakonomicPath:
+@dataclass(frozen=True, repr=False)
+class VakonomicPath(Displayed):
     """A path by the vakonomic equations, which no ball follows.
 
     Parameters
@@ -94,6 +97,19 @@ class VakonomicPath:
     multipliers: Array
     potential: Array
     system: RollingSystem
+
+    def _headline(self) -> Headline:
+        span = self.time[-1] - self.time[0]
+        return Headline("", f"{self.time.size} samples over {span:g} s of wrong mechanics, for comparison only")
+
+    def _parts(self) -> Iterator[Markup]:
+        yield pairs(
+            [
+                ("multipliers at first", numbers(self.multipliers[0], unit="kg m/s")),
+                ("centre at first", numbers(self.position[0], unit="m")),
+                ("centre in the end", numbers(self.position[-1], unit="m")),
+            ]
+        )
 
     @property
     def energy(self) -> Array:

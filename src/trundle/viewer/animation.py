@@ -17,15 +17,16 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 _RATE = 20  # frames a second
-_MOST_FRAMES = 160
+_HOLD = 1000  # ms, on the last frame
+_LONGEST = 8000  # ms, with that
+_MOST_FRAMES = 1 + (_LONGEST - _HOLD) * _RATE // 1000
 _INCHES, _DPI, _FINER = 4.8, 100, 2  # drawn twice as large, for smooth edges
 _LEAST_RADIUS = 7.0  # of the ball, in pixels
 _SPOTS = np.array([[0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]], dtype=float)
-_HOLD = 1000  # ms, on the last frame
 
 
 def gif_of(scene: Scene) -> bytes:
-    """Return a scene as a GIF of at most a few seconds.
+    """Return a scene as a GIF of at most eight seconds.
 
     Parameters
     ----------

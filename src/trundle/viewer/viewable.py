@@ -1,10 +1,12 @@
-"""What every run can do to be looked at: a widget, a page, a model."""
+"""What every run can do to be looked at: in a line, as a table, as a widget, as a page, as a model."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
+from ..display import Displayed, Headline, Markup, fold, joined, mathml, number, pairs, paragraph, section, table
 from ..errors import TrundleError
 from ..files import written_whole
 
@@ -13,11 +15,14 @@ if TYPE_CHECKING:
     from .widget import SceneWidget
 
 
+_MOST_EVENTS = 12  # listed
+
+
 class NoWidgetsError(TrundleError):
     """A notebook's widget was asked for, and what it needs is not installed."""
 
 
-class Viewable:
+class Viewable(Displayed):
     """The part of a Trajectory that shows it.
 
     Examples
@@ -26,6 +31,43 @@ class Viewable:
     >>> isinstance(tr.Scenario.load("level-turntable-nudged").run(), Viewable)
     True
     """
+
+    def __repr__(self) -> str:
+        run = cast("Trajectory", self)
+        ending = f", {run.events[-1].text}" if run.events else ""
+        return f"<Trajectory: {_extent(run)}, {run.method}, {run.frame} frame{ending}>"
+
+    def _headline(self) -> Headline:
+        from ..plots.words import title_of
+
+        run = cast("Trajectory", self)
+        card = run._kept.get("card")  # to make one takes seconds, and nobody asked for it
+        told = ("not checked yet: card() checks it", None) if card is None else (card.outcome, card.passed)
+        return Headline(run.title or title_of(run.system), *told)
+
+    def _parts(self) -> Iterator[Markup]:
+        from ..plots.words import key_numbers
+        from ..scene.formulas import formula_of
+
+        run = cast("Trajectory", self)
+        form = run._kept.get("form") if run.method == "exact" else None
+        tolerance = joined([f"{run.method}, tolerance ", number(run.tolerance)])
+        yield paragraph(key_numbers(run.system, run.start.support))
+        yield pairs(
+            [
+                ("samples", _extent(run)),
+                ("method", "exact: a closed form" if run.method == "exact" else tolerance),
+                ("frame", run.frame),
+            ]
+        )
+        yield mathml(formula_of(run.system, form)["latex"], display=True) if form is not None else Markup()
+        told = [(number(event.time, 9, "s"), event.kind, event.text) for event in run.events[:_MOST_EVENTS]]
+        left = len(run.events) - len(told)
+        yield section("Events", table(told, numbers=(0,)), paragraph(f"and {left} more" if left else ""))
+        named = [
+            (str(name), str(v.attrs["long_name"]), str(v.attrs["units"])) for name, v in run.data.data_vars.items()
+        ]
+        yield fold("Variables of data", table(named, ("name", "what it is", "unit")))
 
     def view(self, *others: Trajectory, **options: Any) -> SceneWidget:
         """Show the motion in a notebook: Jupyter, VS Code or marimo.
@@ -125,6 +167,11 @@ class Viewable:
         from .exports import export
 
         return _written(Path(path), export(cast("Trajectory", self), ".glb"))
+
+
+def _extent(run: Trajectory) -> str:
+    t = run.data.time.values
+    return f"{t.size} samples over {t[-1] - t[0]:g} s"
 
 
 def _written(target: Path, content: bytes) -> Path:

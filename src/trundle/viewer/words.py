@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from html import escape
 from typing import Any
 
+from ..display import Markup, escaped, mathml, number, table, verdict
 from ..scene import Scene
-from .formulas import mathml
+from ..verify import Card
+from ..verify.card import table_of
 
-_VERDICTS = {
-    True: '<span class="page-good">holds</span>',
-    False: '<strong class="page-bad">fails</strong>',
-    None: "",
-}
 _METHODS = {"exact": "closed form", "taylor": "Taylor integration", "runge-kutta": "Runge-Kutta integration"}
 
 
@@ -85,7 +82,7 @@ def formula_of(scenes: Sequence[Scene]) -> str:
         return ""
     lines = "".join(mathml(formula[key], display=True) for key in ("latex", "numbers_latex") if formula.get(key))
     name = escape(str(formula["name"]))
-    return f'<section class="page-formula"><h2>{name}</h2><div class="page-wide">{lines}</div></section>'
+    return f'<section class="page-formula"><h2>{name}</h2><div class="trundle-wide">{lines}</div></section>'
 
 
 def findings_of(scenes: Sequence[Scene]) -> str:
@@ -105,23 +102,23 @@ def findings_of(scenes: Sequence[Scene]) -> str:
     rows = []
     for scene, name in zip(scenes, names_of(scenes), strict=True):
         found = scene.header.get("findings") or []
-        rows += [([escape(name)] if named else []) + _finding(finding) for finding in found]
+        rows += [([name] if named else []) + _finding(finding) for finding in found]
     if not rows:
         return ""
     heads = (["Body"] if named else []) + ["", "", "Predicted", "Measured", "Unit", "Apart by"]
-    table = _table(heads, rows, numbers=(len(heads) - 4, len(heads) - 3, len(heads) - 1))
-    return f"<section><h2>Theory and motion</h2>{table}</section>"
+    shown = table(rows, heads, numbers=(len(heads) - 4, len(heads) - 3, len(heads) - 1))
+    return f"<section><h2>Theory and motion</h2>{shown}</section>"
 
 
 def _finding(finding: dict[str, Any]) -> list[str]:
     note = f"<small>{escape(str(finding['note']))}</small>" if finding.get("note") else ""
     difference = finding.get("difference")
     return [
-        f"{escape(str(finding['name']))}{note}",
+        Markup(f"{escape(str(finding['name']))}{note}"),
         mathml(str(finding.get("symbol") or "")),
         number(finding.get("predicted")),
         number(finding.get("measured")),
-        escape(str(finding.get("unit") or "")),
+        str(finding.get("unit") or ""),
         "" if difference is None else number(difference, 2),
     ]
 
@@ -141,34 +138,14 @@ def card_of(scene: Scene, name: str = "") -> str:
     str
         Markup; empty where there is no card.
     """
-    card = scene.header.get("card")
-    if not card:
+    if not scene.header.get("card"):
         return ""
-    failed = sum(figure["passed"] is False for figure in card["figures"])
-    verdict = "every check held" if card["passed"] else f"{failed} of the checks failed"
-    state = "good" if card["passed"] else "bad"
-    rows = [_figure(figure) for figure in card["figures"]]
-    table = _table(["", "Check", "Value", "At most", "How"], rows, numbers=(2, 3))
+    card = Card.from_dict(scene.header["card"])
     who = f": {escape(name)}" if name else ""
-    head = f'<summary><h2>Verification{who}</h2> <strong class="page-{state}">{verdict}</strong></summary>'
-    method = str(card["method"])
-    told = f"<p>{escape(method[:1].upper() + method[1:])}.</p>"
-    return f"<details{' open' * (not name)}>{head}{told}{table}</details>"
-
-
-def _figure(figure: dict[str, Any]) -> list[str]:
-    passed = figure["passed"]
-    verdict = {True: '<span class="page-good">holds</span>', False: '<strong class="page-bad">fails</strong>'}.get(
-        passed, ""
-    )
-    digits = 6 if passed is None and figure["bound"] is None else 2
-    return [
-        verdict,
-        escape(str(figure["name"])),
-        f"{number(figure['value'], digits)} {escape(str(figure['unit']))}".strip(),
-        number(figure["bound"], 2),
-        escape(str(figure["note"])),
-    ]
+    head = f"<summary><h2>Verification{who}</h2> {verdict(card.passed, card.outcome)}</summary>"
+    origin = f" The card is {escaped(card.origin)}." if card.origin else ""
+    told = f"<p>{escaped(card.method[:1].upper() + card.method[1:])}.{origin}</p>"
+    return f"<details{' open' * (not name)}>{head}{told}{table_of(card.figures)}</details>"
 
 
 def scenario_of(scene: Scene, name: str = "") -> str:
@@ -192,42 +169,3 @@ def scenario_of(scene: Scene, name: str = "") -> str:
     who = f": {escape(name)}" if name else ""
     told = "<p>Saved as <code>my.toml</code>, it gives this motion again: <code>trundle run my.toml</code></p>"
     return f'<details><summary><h2>Scenario{who}</h2></summary>{told}<pre tabindex="0">{escape(text)}</pre></details>'
-
-
-def number(value: Any, digits: int = 6) -> str:
-    """Return a number as a page shows it.
-
-    Parameters
-    ----------
-    value : float, str or None
-        Text stays as it is, none becomes nothing.
-    digits : int
-        At most.
-
-    Returns
-    -------
-    str
-        With a proper minus, and powers of ten as such.
-
-    Examples
-    --------
-    >>> number(-0.25), number(1.5e-16, 2), number(None)
-    ('−0.25', '1.5·10<sup>−16</sup>', '')
-    """
-    if value is None or isinstance(value, str):
-        return escape(value or "")
-    mantissa, _, power = f"{float(value):.{digits}g}".replace("-", "−").partition("e")
-    if not power:
-        return mantissa
-    sign, size = "−" * power.startswith("−"), power.lstrip("+−0")
-    return f"{mantissa + '·' if mantissa != '1' else ''}10<sup>{sign}{size}</sup>"
-
-
-def _table(heads: Sequence[str], rows: Iterable[Sequence[str]], numbers: Iterable[int]) -> str:
-    right = set(numbers)
-    kind = ['class="page-number"' if i in right else "" for i in range(len(heads))]
-    head = "".join(f'<th scope="col" {kind[i]}>{name}</th>' if name else "<td></td>" for i, name in enumerate(heads))
-    body = "".join("<tr>" + "".join(f"<td {kind[i]}>{c}</td>" for i, c in enumerate(row)) + "</tr>" for row in rows)
-    return (
-        f'<div class="page-wide" tabindex="0"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>'
-    )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, Self
 
 from ...errors import InvalidValueError
@@ -10,7 +11,7 @@ from ..scalars import is_number, namespace
 from ..shapes import Sphere
 from ..shapes.base import centre_of
 from .inertia import RatioInertia, inertia_of
-from .rigid import HOLLOW_SPHERE, SOLID_SPHERE, RigidBody
+from .rigid import HOLLOW_SPHERE, SOLID_SPHERE, RigidBody, mass_of
 
 
 class SphereBuilders(RigidBody):
@@ -49,13 +50,15 @@ class SphereBuilders(RigidBody):
         return cls(mass, RatioInertia(inertia_ratio), Sphere(radius))
 
     @classmethod
-    def solid_sphere(cls, radius: Any, mass: Any) -> Self:
+    def solid_sphere(cls, radius: Any, mass: Any = None, density: Any = None) -> Self:
         """Make a homogeneous ball, I = (2/5) m a².
 
         Parameters
         ----------
-        radius, mass : float or quantity
-            a in m, m in kg.
+        radius : float or quantity
+            a, m.
+        mass, density : float or quantity
+            One of the two, kg or kg/m³.
 
         Returns
         -------
@@ -67,8 +70,12 @@ class SphereBuilders(RigidBody):
         >>> from trundle import Body
         >>> Body.solid_sphere(radius=1.0, mass=5.0).inertia_ratio
         0.4
+        >>> f"{Body.solid_sphere('25 mm', density='7.8 g/cm^3').mass:.3f} kg"
+        '0.511 kg'
         """
-        return cls.sphere(radius, mass, SOLID_SPHERE)
+        shape = Sphere(radius)
+        a = shape.radius
+        return cls.sphere(a, mass_of(mass, density, 4 / 3 * math.pi * a * a * a), SOLID_SPHERE)
 
     @classmethod
     def hollow_sphere(cls, radius: Any, mass: Any) -> Self:

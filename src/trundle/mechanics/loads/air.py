@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 from .. import checks
 from ..algebra import E_Z, Vector
 from ..scalars import Scalar, is_zero, namespace
 from .base import BodyMotion, Load
 
+if TYPE_CHECKING:
+    from ..motions import Motion
+
+STANDING, TURNING = "still", "turning"
 STILL = 1e-6  # m/s: below it the length of a velocity is rounded off, so that it has slopes also at rest
 
 
@@ -52,16 +57,35 @@ class _OfAir(Load):
         return True
 
 
+class _ThroughAir(_OfAir):
+    """A force that depends on the velocity through the air, which may turn."""
+
+    air: Scalar  # ω_a, rad/s; the word "turning" until it is known with which support
+
+    def _check_air(self) -> None:
+        if not self._turns_along:
+            air = 0.0 if isinstance(self.air, str) and self.air == STANDING else self.air
+            object.__setattr__(self, "air", checks.real(air, "angular velocity", "air"))
+
+    @property
+    def _turns_along(self) -> bool:
+        return isinstance(self.air, str) and self.air == TURNING
+
+    def over(self, motion: Motion) -> Any:
+        """Return the same over a support: air that turns with it has its rate on the whole."""
+        return replace(self, air=motion.mean_rate) if self._turns_along else self  # type: ignore[type-var]
+
+
 @dataclass(frozen=True)
-class Drag(_OfAir):
+class Drag(_ThroughAir):
     """Linear drag −c(V − ω_a×r) in air that is still or turns about the support's third axis.
 
     Parameters
     ----------
     coefficient : float or quantity
         c, kg/s.
-    air_rate : float or quantity
-        ω_a, at which the air turns, rad/s; the support's own rate for air that it carries along.
+    air : float, quantity or str
+        ω_a, at which the air turns, rad/s; "still", or "turning" with the support.
 
     Examples
     --------
@@ -70,25 +94,25 @@ class Drag(_OfAir):
     """
 
     coefficient: Scalar
-    air_rate: Scalar = 0.0
+    air: Any = 0.0
 
     def __post_init__(self) -> None:
         value = checks.non_negative(self.coefficient, "damping", "coefficient")
         object.__setattr__(self, "coefficient", value)
-        object.__setattr__(self, "air_rate", checks.real(self.air_rate, "angular velocity", "air_rate"))
+        self._check_air()
 
     @property
     def linear_drag(self) -> Scalar | None:
         """C in still air, kg/s."""
-        return self.coefficient if is_zero(self.air_rate) else None
+        return self.coefficient if is_zero(self.air) else None
 
     def force(self, motion: BodyMotion) -> Vector:
         """Return −c(V − ω_a×r)."""
-        return through_air(motion, self.air_rate) * -self.coefficient
+        return through_air(motion, self.air) * -self.coefficient
 
 
 @dataclass(frozen=True)
-class QuadraticDrag(_OfAir):
+class QuadraticDrag(_ThroughAir):
     """Quadratic drag −c|v|v with v = V − ω_a×r, in air that is still or turns about the support's third axis.
 
     |v| is computed as √(v² + v₀²) with v₀ = 1 µm/s, since |v| itself has no slopes at rest: the force is off by less
@@ -98,8 +122,8 @@ class QuadraticDrag(_OfAir):
     ----------
     coefficient : float or quantity
         c, kg/m: ½ρ C_d A of a body of frontal area A in air of density ρ.
-    air_rate : float or quantity
-        ω_a, at which the air turns, rad/s.
+    air : float, quantity or str
+        ω_a, at which the air turns, rad/s; "still", or "turning" with the support.
 
     Examples
     --------
@@ -108,16 +132,16 @@ class QuadraticDrag(_OfAir):
     """
 
     coefficient: Scalar
-    air_rate: Scalar = 0.0
+    air: Any = 0.0
 
     def __post_init__(self) -> None:
         value = checks.non_negative(self.coefficient, "quadratic damping", "coefficient")
         object.__setattr__(self, "coefficient", value)
-        object.__setattr__(self, "air_rate", checks.real(self.air_rate, "angular velocity", "air_rate"))
+        self._check_air()
 
     def force(self, motion: BodyMotion) -> Vector:
         """Return −c|v|v."""
-        v = through_air(motion, self.air_rate)
+        v = through_air(motion, self.air)
         square = v.dot(v) + STILL * STILL
         return v * (-self.coefficient * namespace(square).sqrt(square))
 

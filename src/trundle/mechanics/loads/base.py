@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..algebra import ZERO, Quaternion, Vector
-from ..motions import SupportState
+from ..motions import Motion, SupportState
 from ..scalars import Scalar, is_zero
 
 
@@ -79,6 +79,10 @@ class Load:
     at_contact: bool = False  # its torque is exchanged with the support
     stops: bool = False  # it brings rolling to rest in a finite time, where its direction is lost
     offset: Scalar  # of a load that stops: its couple for each newton of normal force, m
+
+    def over(self, motion: Motion) -> Load:  # noqa: ARG002
+        """Return the load as it is over a support that moves so, which for most loads is the same."""
+        return self
 
     @property
     def linear_drag(self) -> Scalar | None:

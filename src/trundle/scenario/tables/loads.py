@@ -11,7 +11,7 @@ from pydantic_core import CoreSchema, core_schema
 from ...errors import InvalidValueError
 from ...mechanics.expressions import Expression
 from ..fields import Measure
-from .motions import RotationalDamping, plains
+from .motions import RotationalDamping, plain, plains
 from .values import AirRate, Coefficient, Force3, PositiveRate, Table, Torque3
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ class ForceLoad(Table):
     kind: Literal["force"]
     value: Force3 = Field(description="In the support frame, which does not turn with the support.")
 
-    def build(self, support_rate: float = 0.0) -> Load:  # noqa: ARG002  only the air knows of it
+    def build(self) -> Load:
         """Return the load."""
         from ...mechanics.loads import Force
 
@@ -77,17 +77,11 @@ class TorqueLoad(Table):
     kind: Literal["torque"]
     value: Torque3 = Field(description="In the support frame, which does not turn with the support.")
 
-    def build(self, support_rate: float = 0.0) -> Load:  # noqa: ARG002  only the air knows of it
+    def build(self) -> Load:
         """Return the load."""
         from ...mechanics.loads import Torque
 
         return Torque(plains(self.value))
-
-
-def _air_rate(air: float | str, support_rate: float) -> float:
-    """Return the rate of the air; that of air that turns with the support is the support's on the whole."""
-    rates = {"still": 0.0, "turning": float(support_rate)}
-    return rates[air] if isinstance(air, str) else float(air)
 
 
 _ABOUT_AIR = '"still", "turning" with the support, or a rate of its own.'
@@ -100,11 +94,11 @@ class DragLoad(Table):
     coefficient: Coefficient
     air: AirRate = Field(default="still", description=_ABOUT_AIR)
 
-    def build(self, support_rate: float = 0.0) -> Load:
+    def build(self) -> Load:
         """Return the load."""
         from ...mechanics.loads import Drag
 
-        return Drag(float(self.coefficient), _air_rate(self.air, support_rate))
+        return Drag(float(self.coefficient), plain(self.air))
 
 
 class QuadraticDragLoad(Table):
@@ -114,11 +108,11 @@ class QuadraticDragLoad(Table):
     coefficient: QuadraticDamping = Field(description="0.5 times the air's density, the area and its coefficient.")
     air: AirRate = Field(default="still", description=_ABOUT_AIR)
 
-    def build(self, support_rate: float = 0.0) -> Load:
+    def build(self) -> Load:
         """Return the load."""
         from ...mechanics.loads import QuadraticDrag
 
-        return QuadraticDrag(float(self.coefficient), _air_rate(self.air, support_rate))
+        return QuadraticDrag(float(self.coefficient), plain(self.air))
 
 
 class PotentialLoad(Table):
@@ -127,7 +121,7 @@ class PotentialLoad(Table):
     kind: Literal["potential"]
     formula: Energy = Field(description="U in J, in x, y, z of the centre in m and the time t in s.")
 
-    def build(self, support_rate: float = 0.0) -> Load:  # noqa: ARG002
+    def build(self) -> Load:
         """Return the load."""
         from ...mechanics.loads import Potential
 
@@ -140,7 +134,7 @@ class RollingResistanceLoad(Table):
     kind: Literal["rolling-resistance"]
     offset: Offset = Field(description="How far ahead of the contact the normal force acts.", examples=["0.05 mm"])
 
-    def build(self, support_rate: float = 0.0) -> Load:  # noqa: ARG002
+    def build(self) -> Load:
         """Return the load."""
         from ...mechanics.loads import RollingResistance
 
@@ -154,7 +148,7 @@ class PivotFrictionLoad(Table):
     offset: Offset = Field(description="Friction coefficient times the area's mean radius.", examples=["20 um"])
     below: PositiveRate = Field(default=0.01, description="The spin below which it eases off.")
 
-    def build(self, support_rate: float = 0.0) -> Load:  # noqa: ARG002
+    def build(self) -> Load:
         """Return the load."""
         from ...mechanics.loads import PivotFriction
 
@@ -168,7 +162,7 @@ class RollingCoupleLoad(Table):
     coefficient: RotationalDamping
     pivot_coefficient: RotationalDamping | None = Field(default=None, description="About the normal; absent: the same.")
 
-    def build(self, support_rate: float = 0.0) -> Load:  # noqa: ARG002
+    def build(self) -> Load:
         """Return the load."""
         from ...mechanics.loads import RollingCouple
 
@@ -182,7 +176,7 @@ class MagnusLoad(Table):
     kind: Literal["magnus"]
     coefficient: MagnusMass = Field(description="Positive: topspin pushes down.", examples=["0.1 g"])
 
-    def build(self, support_rate: float = 0.0) -> Load:  # noqa: ARG002
+    def build(self) -> Load:
         """Return the load."""
         from ...mechanics.loads import Magnus
 
@@ -195,7 +189,7 @@ class MotorLoad(Table):
     kind: Literal["motor"]
     value: Torque3 = Field(description="Along the body's axes, which turn with it.")
 
-    def build(self, support_rate: float = 0.0) -> Load:  # noqa: ARG002
+    def build(self) -> Load:
         """Return the load."""
         from ...mechanics.loads import Motor
 

@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 
 from ...errors import InvalidValueError
 from ..fields import written
+from ..together import tell_all
 from .values import Angle, Angle3, Duration, Height, Instant, Own, Place2, Rate, Rate3, Step, Table, Turn4, Velocity
 
 Method = Literal["auto", "exact", "taylor", "runge-kutta"]
@@ -32,19 +33,26 @@ class Start(Table):
 
     @model_validator(mode="after")
     def _check(self) -> Start:
+        tell_all(self._check_spin, self._check_attitude, self._check_length)
+        return self
+
+    def _check_spin(self) -> None:
         if self.spin is not None and self.angular_velocity is not None:
             remedy = "Give `spin` and the rest follows from no slip, or all three components and no `spin`."
             shown = written(self.angular_velocity)
             raise InvalidValueError("angular_velocity", "must not stand beside `spin`", shown, remedy)
+
+    def _check_attitude(self) -> None:
         if self.orientation is not None and self.attitude is not None:
             shown = written(self.attitude)
             raise InvalidValueError("attitude", "must not stand beside `orientation`", shown, "Give one of the two.")
+
+    def _check_length(self) -> None:
         length = 1.0 if self.orientation is None else math.hypot(*self.orientation)
         if not 1e-150 < length < 1e150:
             shown = written(self.orientation)
             remedy = "Write [1, 0, 0, 0] for a body that is not turned."
             raise InvalidValueError("orientation", "must be a quaternion of unit length", shown, remedy)
-        return self
 
     def arguments(self) -> dict[str, Any]:
         """Return what `RollingSystem.place` takes."""

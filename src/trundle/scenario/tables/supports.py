@@ -11,6 +11,7 @@ from pydantic_core import CoreSchema, core_schema
 
 from ...errors import InvalidValueError
 from ..fields import Measure, Measures, Quantity, written
+from ..together import each_checked
 from .motions import FixedMotion, Motions
 from .values import AnyTilt, Friction, Radius, Restitution, Rim, Table, Tilt
 
@@ -59,7 +60,7 @@ class Lengths:
             kind = "a list of lists of lengths" if self.rows else "a list of lengths"
             raise InvalidValueError(key, f"must be {kind}", value, f"Write for instance {self.offer}.")
         each = Lengths() if self.rows else Measure("length")
-        return tuple(each(part, f"{key}[{i}]") for i, part in enumerate(value))
+        return each_checked(each, value, key)
 
     @property
     def offer(self) -> str:
@@ -85,23 +86,32 @@ Side = Literal["inside", "outside"]
 Motion = Annotated[Motions, Field(discriminator="kind")]
 
 _TILT = Field(default=0.0, description="Angle of the axis to the vertical; down the first axis.")
-_FRICTION = Field(default=None, description="Coulomb coefficient; absent: never slips.")
-_KINETIC = Field(default=None, description="Coefficient while it slips, at most `friction`; absent: the same.")
-_RESTITUTION = Field(default=0.0, description="Of a landing, 0 to 1: e, of which e² of the energy comes back.")
-_FIXED = FixedMotion(kind="fixed")
 _FORMULA = "In SI: numbers, the variables, pi, + - * / **, sin, cos, tan, sqrt, exp, log, abs and hypot."
 
 
 class OnSurface(Table):
-    """What every support does with its keys: each lists its own first and then these."""
+    """The keys of every support: each lists its own first and then these."""
 
-    if TYPE_CHECKING:  # not here, or pydantic would put them before the surface's own
+    if TYPE_CHECKING:
         kind: str
         tilt: float
-        friction: float | None
-        kinetic_friction: float | None
-        restitution: float
-        motion: Motions
+
+    friction: Friction | None = Field(default=None, description="Coulomb coefficient; absent: never slips.")
+    kinetic_friction: Friction | None = Field(
+        default=None, description="Coefficient while it slips, at most `friction`; absent: the same."
+    )
+    restitution: Restitution = Field(
+        default=0.0, description="Of a landing, 0 to 1: e, of which e² of the energy comes back."
+    )
+    tangential_restitution: Restitution = Field(
+        default=0.0, description="Of a landing, 0 to 1: e_t, of which e_t² of what friction took comes back."
+    )
+    motion: Motion = FixedMotion(kind="fixed")
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **_: Any) -> None:
+        for key in OnSurface.model_fields:  # pydantic puts what is inherited first
+            cls.model_fields[key] = cls.model_fields.pop(key)
 
     def surface(self) -> Surface:
         """Return the surface."""
@@ -129,6 +139,7 @@ class OnSurface(Table):
             friction=None if self.friction is None else float(self.friction),
             kinetic_friction=kinetic,
             restitution=float(self.restitution),
+            tangential_restitution=float(self.tangential_restitution),
         )
 
 
@@ -138,10 +149,6 @@ class PlaneSupport(OnSurface):
     kind: Literal["plane"]
     tilt: Tilt = Field(default=0.0, description="Angle of the plane's normal to the vertical; down the first axis.")
     rim: Rim | None = Field(default=None, description="Radius of the rim; absent: unbounded.")
-    friction: Friction | None = _FRICTION
-    kinetic_friction: Friction | None = _KINETIC
-    restitution: Restitution = _RESTITUTION
-    motion: Motion = _FIXED
 
     def surface(self) -> Surface:
         """Return the plane."""
@@ -157,10 +164,6 @@ class CylinderSupport(OnSurface):
     radius: Radius
     side: Side = "inside"
     tilt: AnyTilt = Field(default=0.0, description="Angle of the axis to the vertical; 90 deg: a trough or a log.")
-    friction: Friction | None = _FRICTION
-    kinetic_friction: Friction | None = _KINETIC
-    restitution: Restitution = _RESTITUTION
-    motion: Motion = _FIXED
     rim: ClassVar[None] = None
 
     def surface(self) -> Surface:
@@ -177,10 +180,6 @@ class BowlSupport(OnSurface):
     radius: Radius
     rim: Rim | None = Field(default=None, description="Distance of the edge from the axis; absent: a closed sphere.")
     tilt: Upright = _TILT
-    friction: Friction | None = _FRICTION
-    kinetic_friction: Friction | None = _KINETIC
-    restitution: Restitution = _RESTITUTION
-    motion: Motion = _FIXED
 
     def surface(self) -> Surface:
         """Return the bowl."""
@@ -196,10 +195,6 @@ class DomeSupport(OnSurface):
     radius: Radius
     rim: Rim | None = Field(default=None, description="Distance of the edge from the axis; absent: the whole sphere.")
     tilt: Upright = _TILT
-    friction: Friction | None = _FRICTION
-    kinetic_friction: Friction | None = _KINETIC
-    restitution: Restitution = _RESTITUTION
-    motion: Motion = _FIXED
 
     def surface(self) -> Surface:
         """Return the dome."""
@@ -216,10 +211,6 @@ class ConeSupport(OnSurface):
     side: Side = "inside"
     rim: Rim | None = Field(default=None, description="Distance of the edge from the axis; absent: unbounded.")
     tilt: AnyTilt = _TILT
-    friction: Friction | None = _FRICTION
-    kinetic_friction: Friction | None = _KINETIC
-    restitution: Restitution = _RESTITUTION
-    motion: Motion = _FIXED
 
     def surface(self) -> Surface:
         """Return the cone."""
@@ -235,10 +226,6 @@ class ParaboloidSupport(OnSurface):
     radius: VertexRadius = Field(description="Radius of curvature at the vertex; negative: a mound.")
     rim: Rim | None = Field(default=None, description="Distance of the edge from the axis; absent: unbounded.")
     tilt: Upright = _TILT
-    friction: Friction | None = _FRICTION
-    kinetic_friction: Friction | None = _KINETIC
-    restitution: Restitution = _RESTITUTION
-    motion: Motion = _FIXED
 
     def surface(self) -> Surface:
         """Return the paraboloid."""
@@ -254,10 +241,6 @@ class EllipsoidalBowlSupport(OnSurface):
     semi_axes: SemiAxes = Field(description="Along the three axes.")
     depth: Radius | None = Field(default=None, description="Height of the edge over the lowest point; absent: closed.")
     tilt: Upright = _TILT
-    friction: Friction | None = _FRICTION
-    kinetic_friction: Friction | None = _KINETIC
-    restitution: Restitution = _RESTITUTION
-    motion: Motion = _FIXED
     rim: ClassVar[None] = None
 
     def surface(self) -> Surface:
@@ -275,10 +258,6 @@ class TorusTrackSupport(OnSurface):
     tube_radius: Radius = Field(description="Of the tube.")
     side: Side = "inside"
     tilt: AnyTilt = _TILT
-    friction: Friction | None = _FRICTION
-    kinetic_friction: Friction | None = _KINETIC
-    restitution: Restitution = _RESTITUTION
-    motion: Motion = _FIXED
     rim: ClassVar[None] = None
 
     def surface(self) -> Surface:
@@ -297,10 +276,6 @@ class RevolutionSupport(OnSurface):
     z: Row | None = Field(default=None, description="Heights there; the surface is a smooth spline through them.")
     rim: Rim | None = Field(default=None, description="Of a formula: distance of the edge from the axis.")
     tilt: Upright = _TILT
-    friction: Friction | None = _FRICTION
-    kinetic_friction: Friction | None = _KINETIC
-    restitution: Restitution = _RESTITUTION
-    motion: Motion = _FIXED
 
     def surface(self) -> Surface:
         """Return the surface."""
@@ -321,10 +296,6 @@ class HeightFieldSupport(OnSurface):
     z: Rows | None = Field(default=None, description="A list for each x with a height for each y.")
     rim: Rim | None = Field(default=None, description="Of a formula: distance of the edge from the axis.")
     tilt: Upright = _TILT
-    friction: Friction | None = _FRICTION
-    kinetic_friction: Friction | None = _KINETIC
-    restitution: Restitution = _RESTITUTION
-    motion: Motion = _FIXED
 
     def surface(self) -> Surface:
         """Return the surface."""

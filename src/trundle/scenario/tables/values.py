@@ -6,16 +6,44 @@ import math
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, model_validator
+from pydantic_core import CoreSchema
 
 from ...errors import InvalidValueError
-from ..fields import Coordinate, Measure, Measures, Varying
+from ...mechanics.loads.air import STANDING, TURNING
+from ..fields import Coordinate, Diameter, Measure, Measures, Varying, diameter_of
 
 
 class Table(BaseModel):
-    """A table of the file: frozen, and no key but those named."""
+    """A table of the file: frozen, and no key but those named. A diameter may stand instead of a radius."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, defer_build=True)
+
+    @classmethod
+    def _diameters(cls) -> dict[str, str]:
+        """Return the key of each radius that may be given as a diameter, with that key."""
+        return {key: whole for key in cls.model_fields if (whole := diameter_of(cls, key)) is not None}
+
+    @model_validator(mode="before")
+    @classmethod
+    def _halve(cls, data: Any) -> Any:
+        given = {key: whole for key, whole in cls._diameters().items() if isinstance(data, dict) and whole in data}
+        if not given:
+            return data
+        rest = {key: value for key, value in data.items() if key not in given.values()}
+        return rest | {key: Diameter(whole, data[whole], data.get(key)) for key, whole in given.items()}
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        """Return what an editor may know of it: one of radius and diameter."""
+        schema = handler.resolve_ref_schema(handler(core_schema))
+        for key, whole in cls._diameters().items():
+            described = {**schema["properties"][key], "description": f"Twice `{key}`, to be given instead of it."}
+            schema["properties"][whole] = described
+            if key in schema.get("required", ()):
+                schema["required"].remove(key)
+                schema.setdefault("allOf", []).append({"oneOf": [{"required": [key]}, {"required": [whole]}]})
+        return schema
 
 
 def _check_tilt(tilt: float, received: Any) -> None:
@@ -65,7 +93,7 @@ class Air(Measure):
         return {**described, "anyOf": [{"enum": list(AIRS)}, *described["anyOf"]]}
 
 
-AIRS = ("still", "turning")
+AIRS = (STANDING, TURNING)
 
 Radius = Annotated[float, Measure("length", "positive")]
 Mass = Annotated[float, Measure("mass", "positive")]

@@ -20,7 +20,7 @@ from .parts import Describe, Words
 
 def _through_air(kind: str, load: Drag | QuadraticDrag, key: str) -> Words:
     words = words_of(kind, load, key)
-    rate = words.pop("air_rate")
+    rate = words.pop("air")
     return words if rate == 0 else {**words, "air": rate}
 
 

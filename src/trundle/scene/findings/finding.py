@@ -28,7 +28,7 @@ class Finding:
 
     Examples
     --------
-    >>> Finding("Angular rate of the circle", r"\Omega_c", 1.0, 1.001, "rad/s").as_dict()["difference"]
+    >>> Finding("Angular rate of the circle", r"\kappa", 1.0, 1.001, "rad/s").as_dict()["difference"]
     0.001
     """
 

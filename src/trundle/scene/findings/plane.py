@@ -48,11 +48,9 @@ def _circling(form: SphereOnPlane, system: RollingSystem, seen: Seen) -> Iterato
     found = circle(seen, abs(kappa))
     note = "" if found else _LITTLE
     rate = found.rate if found else None
-    yield Finding("Angular rate of the circle", r"\Omega_c", kappa, rate, "rad/s", note)
+    yield Finding("Angular rate of the circle", r"\kappa", kappa, rate, "rad/s", note)
     of_table = f"{as_ratio(share)} of the table's rate, whatever its size and mass"
-    yield Finding(
-        "Share of the table's rate", r"\Omega_c/\omega", share, rate and rate / float(form.rate), "", of_table
-    )
+    yield Finding("Share of the table's rate", r"\kappa/\omega", share, rate and rate / float(form.rate), "", of_table)
     yield Finding("Radius of the circle", r"\varrho", radius, abs(found.arm) if found else None, "m", note)
     measured = abs(found.centre) if found else None
     if not drift:

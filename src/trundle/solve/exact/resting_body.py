@@ -108,7 +108,7 @@ class RestingBody(ClosedForm):
         for load in system.loads:
             if not load.constant and not isinstance(load, _SILENT):
                 reasons.append(f"the load {type(load).__name__} is not constant")
-            elif isinstance(load, (Drag, QuadraticDrag)) and not is_zero(load.air_rate):
+            elif isinstance(load, (Drag, QuadraticDrag)) and not is_zero(load.air):
                 reasons.append("the air moves")
         if start is not None and any((*start.velocity, *start.angular_velocity)):
             reasons.append("the body moves")

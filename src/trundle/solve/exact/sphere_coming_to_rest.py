@@ -166,7 +166,7 @@ class SphereComingToRest(ClosedForm):
             reasons.append("the support moves")
         others = [load for load in system.loads if not (load.constant or isinstance(load, _BRAKES))]
         reasons += [f"the load {type(load).__name__} is no resistance of this kind" for load in others]
-        if any(not is_zero(load.air_rate) for load in system.loads if isinstance(load, (Drag, QuadraticDrag))):
+        if any(not is_zero(load.air) for load in system.loads if isinstance(load, (Drag, QuadraticDrag))):
             reasons.append("the air moves")
         constant = tuple(load for load in system.all_loads if load.constant)
         force, torque, _ = constant_part(constant, system.body.mass)

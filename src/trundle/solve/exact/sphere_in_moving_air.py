@@ -125,7 +125,7 @@ class SphereInMovingAir(ClosedForm):
             force=tuple(force),
             torque=tuple(torque),
             drag=sum((load.coefficient for load in drags), 0.0),
-            carried=sum((load.coefficient * load.air_rate for load in drags), 0.0),
+            carried=sum((load.coefficient * load.air for load in drags), 0.0),
             couple=sum((load.coefficient for load in couples), 0.0),
             pivot_couple=sum(pivots, 0.0),
         )

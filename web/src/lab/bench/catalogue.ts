@@ -56,6 +56,7 @@ const SUPPORT: Record<string, Entry> = {
   friction: { label: 'Friction coefficient', kind: 'number', min: 0, max: 1 },
   kinetic_friction: { label: 'While it slips', kind: 'number', min: 0, max: 1 },
   restitution: { label: 'Restitution', kind: 'number', min: 0, max: 1 },
+  tangential_restitution: { label: 'Restitution of the slip', kind: 'number', min: 0, max: 1 },
 }
 
 const MOTION: Record<string, Entry> = {

@@ -92,8 +92,8 @@ export function withBody(scenario: Scenario, kind: string): Scenario {
 export function withSurface(scenario: Scenario, kind: string): Scenario {
   const chosen = SURFACES[kind]
   if (!chosen) return scenario
-  const { motion, friction, kinetic_friction, restitution } = scenario.support
-  const kept = { motion, friction, kinetic_friction, restitution }
+  const { motion, friction, kinetic_friction, restitution, tangential_restitution } = scenario.support
+  const kept = { motion, friction, kinetic_friction, restitution, tangential_restitution }
   const support = { kind, ...chosen.keys } as Scenario['support']
   for (const [key, value] of Object.entries(kept)) if (value !== undefined) support[key] = value
   const position = ANGULAR.has(kind) ? ['30 deg', 0] : ['15 cm', 0]

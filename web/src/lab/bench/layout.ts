@@ -94,7 +94,7 @@ function bodySection(scenario: Scenario): Section {
       set: withBody,
     })
   const ratio: Record<string, number> = { 'solid-sphere': 0.4, 'hollow-sphere': 2 / 3 }
-  if (ROUND.has(body.kind) && body.kind !== 'sphere-with-moment') {
+  if (ROUND.has(body.kind) && body.kind !== 'sphere-with-moment' && body.density === undefined) {
     const of = entry('body', 'inertia_ratio') as Entry
     const fallback = ratio[body.kind]
     const set = (now: Scenario, value: Json) =>
@@ -117,6 +117,8 @@ function bodySection(scenario: Scenario): Section {
   return { id: 'body', title: 'Body', items }
 }
 
+const LANDING = ['kinetic_friction', 'restitution', 'tangential_restitution']
+
 function supportSection(scenario: Scenario): Section {
   const { support } = scenario
   const optional = (key: string, label: string, value: Json, hint: string): Item => ({
@@ -138,7 +140,7 @@ function supportSection(scenario: Scenario): Section {
       set: withSurface,
     },
     ...field('support.tilt', entry('support', 'tilt'), '0 deg'),
-    ...present('support', support, ['tilt', 'rim', 'friction', 'kinetic_friction', 'restitution', 'r', 'x', 'y', 'z']),
+    ...present('support', support, ['tilt', 'rim', 'friction', ...LANDING, 'r', 'x', 'y', 'z']),
     ...formula('support', support, 'Height, in m'),
     optional('rim', 'Has a rim', '50 cm', 'without one it has no end'),
     ...(support.rim !== undefined ? field('support.rim', entry('support', 'rim')) : []),
@@ -146,6 +148,7 @@ function supportSection(scenario: Scenario): Section {
     ...(slips ? field('support.friction', entry('support', 'friction')) : []),
     ...(slips ? field('support.kinetic_friction', entry('support', 'kinetic_friction'), support.friction as Json) : []),
     ...(slips ? field('support.restitution', entry('support', 'restitution'), 0) : []),
+    ...(slips ? field('support.tangential_restitution', entry('support', 'tangential_restitution'), 0) : []),
   ]
   return { id: 'support', title: 'Support', items }
 }

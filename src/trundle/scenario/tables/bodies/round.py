@@ -2,30 +2,27 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
 from ....errors import InvalidValueError
 from ...fields import written
 from ..values import CylinderRatio, Mass, Moment, Radius, Ratio, Table
+from .built import Built, DensityOr, MassOr
 
 if TYPE_CHECKING:
     from ....mechanics.bodies import Body
 
 
-class SolidSphere(Table):
+class SolidSphere(Built):
     """A homogeneous ball, k = 2/5."""
 
     kind: Literal["solid-sphere"]
+    builder: ClassVar[str] = "solid_sphere"
     radius: Radius
-    mass: Mass
-
-    def build(self) -> Body:
-        """Return the body."""
-        from ....mechanics.bodies import Body
-
-        return Body.solid_sphere(radius=float(self.radius), mass=float(self.mass))
+    mass: MassOr = None
+    density: DensityOr = None
 
 
 class HollowSphere(Table):

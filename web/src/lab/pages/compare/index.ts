@@ -99,7 +99,7 @@ function layout(stage: HTMLElement, tools: HTMLElement, body: HTMLElement): HTML
         formula('k = I/ma^2'),
         '.',
       ),
-      formula('\\Omega_c = \\frac{k}{1+k}\\;\\omega', true),
+      formula('\\kappa = \\frac{k}{1+k}\\;\\omega', true),
       tools,
     ),
     h('div', { class: 'spread-stage' }, stage),
@@ -123,9 +123,9 @@ function layout(stage: HTMLElement, tools: HTMLElement, body: HTMLElement): HTML
             {},
             h('th', { scope: 'col' }, 'Shown'),
             h('th', { scope: 'col' }, formula('k'), h('span', { class: 'sr-only' }, 'inertia ratio')),
-            h('th', { scope: 'col' }, formula('\\Omega_c/\\omega'), ' predicted'),
+            h('th', { scope: 'col' }, formula('\\kappa/\\omega'), ' predicted'),
             h('th', { scope: 'col' }, 'measured'),
-            h('th', { scope: 'col' }, formula('\\Omega_c'), ' measured'),
+            h('th', { scope: 'col' }, formula('\\kappa'), ' measured'),
           ),
         ),
         body,
@@ -227,5 +227,5 @@ function predicted(share: string): string {
 function measuredRate(one: Contestant, scene: Scene, tilt: number): number | null {
   // Down a slope what slides flies a parabola: there is no rate to speak of.
   if (one.id === 'puck' || one.wrong) return tilt ? null : headingRate(scene)
-  return finding(scene, '\\Omega_c')?.measured ?? null
+  return finding(scene, '\\kappa')?.measured ?? null
 }

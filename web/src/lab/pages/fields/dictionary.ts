@@ -22,11 +22,11 @@ export interface Entry {
 /** The server's names of rows, with the two formulas in LaTeX. */
 const FORMULAS: Readonly<Record<string, readonly [string, string]>> = {
   mass: ['m', 'm_q'],
-  'rate of turning': ['\\Omega_c = \\tfrac{k}{1+k}\\,\\omega', '-\\,qB/m_q'],
+  'rate of turning': ['\\kappa = \\tfrac{k}{1+k}\\,\\omega', '-\\,qB/m_q'],
   push: ['\\tfrac{1}{1+k}\\,g\\sin\\alpha', 'qE/m_q'],
   slowing: ['\\gamma', 'C/m_q'],
-  'one turn': ['2\\pi/\\Omega_c', '2\\pi\\,m_q/qB'],
-  radius: ['|\\mathbf{v} - \\mathbf{v}_d|/\\Omega_c', 'm_q|\\mathbf{v} - \\mathbf{v}_d|/qB'],
+  'one turn': ['2\\pi/\\kappa', '2\\pi\\,m_q/qB'],
+  radius: ['|\\mathbf{v} - \\mathbf{v}_d|/\\kappa', 'm_q|\\mathbf{v} - \\mathbf{v}_d|/qB'],
   drift: ['v_d = g\\sin\\alpha/(k\\omega)', '\\mathbf{E}\\times\\mathbf{B}/B^2'],
 }
 

@@ -21,7 +21,7 @@ export const mountNudge: StepMount = ({ app, stage: host, controls, numbers, wor
     stage.viewer.setScenes([scene], { keepTime: false, keepCamera: shown !== null })
     shown = scene
     playUnlessCalm(app, stage.viewer)
-    numbers.set([rowOf(finding(scene, '\\varrho'), 100, 'cm'), rowOf(finding(scene, '\\Omega_c'))])
+    numbers.set([rowOf(finding(scene, '\\varrho'), 100, 'cm'), rowOf(finding(scene, '\\kappa'))])
     worked(scene)
     remark.textContent = nudged
       ? 'It comes back to where it was nudged.'

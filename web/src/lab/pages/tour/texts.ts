@@ -68,7 +68,7 @@ export const TEXTS: readonly StepText[] = [
     task: 'Change the table’s rate, or drag the ball to another start. What stays the same?',
     formulas: [
       '\\dot{\\mathbf{r}} = \\frac{\\omega}{1 + ma^2/I}\\;\\hat n\\times(\\mathbf{r} - \\mathbf{r}_0)',
-      '\\Omega_c = \\tfrac27\\,\\omega \\quad\\text{where } I = \\tfrac25\\,ma^2',
+      '\\kappa = \\tfrac27\\,\\omega \\quad\\text{where } I = \\tfrac25\\,ma^2',
     ],
     question: 'A hollow ball has its mass further out. Does it go round faster or slower than a solid one?',
     answer: [
@@ -80,10 +80,10 @@ export const TEXTS: readonly StepText[] = [
     title: 'Put it down gently. Then nudge it.',
     text: [
       'Hold the ball over the turning table until it spins as fast as the table runs away beneath it, and let go. *It stays there.* Nothing holds it; its circle has shrunk to a point.',
-      'Now nudge it. It goes round a circle of radius $v/\\Omega_c$ and comes back to where you touched it, again and again. In a lecture hall it goes on so until air and the shortcomings of the table have their way.',
+      'Now nudge it. It goes round a circle of radius $v/\\kappa$ and comes back to where you touched it, again and again. In a lecture hall it goes on so until air and the shortcomings of the table have their way.',
     ],
     task: 'Watch it stay. Then nudge it: draw an arrow from the ball, or use the buttons.',
-    formulas: ['\\varrho = \\frac{v}{\\Omega_c} = \\frac{7}{2}\\,\\frac{v}{\\omega}'],
+    formulas: ['\\varrho = \\frac{v}{\\kappa} = \\frac{7}{2}\\,\\frac{v}{\\omega}'],
     question:
       'A ball rides along with the table, 5 cm from the axis, and is let go. Does it fly off? Does it stay on its spot of the table?',
     answer: [
@@ -99,7 +99,7 @@ export const TEXTS: readonly StepText[] = [
     ],
     task: 'Draw the ball’s path on the table, or pick a guess. Then let go.',
     formulas: [
-      '\\dot{\\mathbf{r}} = \\Omega_c\\;\\hat\\imath\\times\\Big[\\mathbf{r} - \\mathbf{r}_0 + \\frac{ma^2/I}{\\omega}\\,g\\,t\\,\\hat k\\,\\sin\\alpha\\Big]',
+      '\\dot{\\mathbf{r}} = \\kappa\\;\\hat\\imath\\times\\Big[\\mathbf{r} - \\mathbf{r}_0 + \\frac{ma^2/I}{\\omega}\\,g\\,t\\,\\hat k\\,\\sin\\alpha\\Big]',
       'v_d = \\frac{ma^2}{I}\\,\\frac{g\\sin\\alpha}{\\omega}',
     ],
     question: 'The table turns twice as fast. Does the ball drift faster or slower?',
@@ -116,7 +116,7 @@ export const TEXTS: readonly StepText[] = [
     ],
     task: 'Tilt the table further and watch the fields follow. Do the two ever part?',
     formulas: [
-      '\\ddot{\\mathbf{r}} = \\Omega_c\\,\\hat n\\times\\dot{\\mathbf{r}} + \\tfrac57\\,\\mathbf{g}_\\parallel',
+      '\\ddot{\\mathbf{r}} = \\kappa\\,\\hat n\\times\\dot{\\mathbf{r}} + \\tfrac57\\,\\mathbf{g}_\\parallel',
       '\\ddot{\\mathbf{r}} = -\\tfrac{q}{m}\\,\\mathbf{B}\\times\\dot{\\mathbf{r}} + \\tfrac{q}{m}\\,\\mathbf{E}',
     ],
     question: 'The ball is thrown level, exactly at the drift. What path does it take?',

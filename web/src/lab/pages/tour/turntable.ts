@@ -28,8 +28,8 @@ export const mountTurntable: StepMount = ({ app, stage: host, controls, numbers,
     stage.viewer.setScenes([scene], { keepTime: !first, keepCamera: !first })
     if (first) playUnlessCalm(app, stage.viewer)
     first = false
-    const share = rowOf(finding(scene, '\\Omega_c/\\omega'))
-    numbers.set([rowOf(finding(scene, '\\Omega_c')), share && { ...share, ...fraction(asked) }])
+    const share = rowOf(finding(scene, '\\kappa/\\omega'))
+    numbers.set([rowOf(finding(scene, '\\kappa')), share && { ...share, ...fraction(asked) }])
     worked(scene)
   })
 

@@ -1,0 +1,36 @@
+"""What results look like in a notebook: a title, a verdict, tables and formulas, as HTML that suits any theme."""
+
+from .formulas import mathml
+from .markup import (
+    Markup,
+    escaped,
+    fold,
+    joined,
+    number,
+    numbers,
+    pairs,
+    paragraph,
+    records,
+    section,
+    table,
+    verdict,
+)
+from .result import Displayed, Headline
+
+__all__ = [
+    "Displayed",
+    "Headline",
+    "Markup",
+    "escaped",
+    "fold",
+    "joined",
+    "mathml",
+    "number",
+    "numbers",
+    "pairs",
+    "paragraph",
+    "records",
+    "section",
+    "table",
+    "verdict",
+]

@@ -1,0 +1,57 @@
+"""Work that takes long stands back for work that does not, where the processors are busy."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
+
+NICENESS = 5
+
+
+def computed(function: Callable[..., Any], arguments: tuple[Any, ...], within: float) -> Any:
+    """Return what a function returns; what takes longer goes on with less of the processors.
+
+    Parameters
+    ----------
+    function : callable
+        Anything.
+    arguments : tuple
+        Of the function.
+    within : float
+        How long it has the processors as all others do, s.
+
+    Returns
+    -------
+    object
+        What the function returned.
+
+    Examples
+    --------
+    >>> computed(divmod, (7, 2), 1.0)
+    (3, 1)
+    """
+    if not sys.platform.startswith("linux"):  # where a thread cannot stand back by itself, or not come forward again
+        return function(*arguments)
+    done: list[Any] = []
+
+    def compute() -> None:
+        try:
+            done.append((function(*arguments), None))
+        except BaseException as error:  # noqa: BLE001  raised again below
+            done.append((None, error))
+
+    thread = threading.Thread(target=compute)
+    thread.start()
+    thread.join(within)
+    if thread.is_alive() and thread.native_id is not None:
+        with suppress(OSError):
+            os.setpriority(os.PRIO_PROCESS, thread.native_id, NICENESS)
+    thread.join()
+    result, error = done[0]
+    if error is not None:
+        raise error
+    return result

@@ -1,0 +1,271 @@
+"""The fuzz itself: it draws what it says, it tells one ending from another, and a few of its scenarios run."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tests.fuzz import drawing, report
+from tests.fuzz.classes import CLASSES, candidate, shipped
+from tests.fuzz.leaves import Leaf, kind_of, leaves, tables_of, times
+from tests.fuzz.running import OUTCOMES, Outcome
+
+import trundle as tr
+from trundle.scenario import ScenarioFile
+from trundle.scenario.tables import KINDS
+
+ROOT = Path(__file__).parents[2]
+pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="each scenario runs in a copy of a process")
+
+
+def command(*words: str) -> subprocess.CompletedProcess[str]:
+    """Run the command, or some code, in a process that has no threads, as copies are made of it."""
+    first = ["-m", "tests.fuzz"] if words[0] != "-c" else []
+    return subprocess.run(  # noqa: S603
+        [sys.executable, *first, *words], cwd=ROOT, capture_output=True, text=True, timeout=300, check=False
+    )
+
+
+# --- what it draws --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", CLASSES)
+def test_a_seed_gives_the_same_scenario_again(name: str) -> None:
+    drawn = [[candidate(name, drawing.seeded(seed)) for seed in range(10)] for _ in range(2)]
+    assert drawn[0] == drawn[1]
+    assert len({str(one) for one in drawn[0]}) == 10
+
+
+@pytest.mark.parametrize("name", CLASSES)
+def test_what_it_draws_runs_mostly_as_it_is_or_when_it_is_mended(name: str, tmp_path: Path) -> None:
+    done = command("--class", name, "--count", "3", "--folder", str(tmp_path))
+    found = [json.loads(line) for line in (tmp_path / "outcomes.jsonl").read_text(encoding="utf-8").splitlines()]
+    assert done.returncode in (0, 1), done.stderr
+    assert sorted((one["name"], one["seed"]) for one in found) == [(name, seed) for seed in range(3)]
+    assert all(one["outcome"] in OUTCOMES for one in found)
+    assert sum(one["outcome"] == "refused" for one in found) <= 1
+    assert f"| {name} | 3 |" in (tmp_path / "table.md").read_text(encoding="utf-8")
+    assert done.returncode == any(one["outcome"] in report.BAD for one in found)
+
+
+@pytest.mark.parametrize("family", KINDS)
+def test_it_draws_every_kind_that_the_format_has(family: str) -> None:
+    part = {"body": "body", "support": "support", "loads": "loads"}.get(family, "motion")
+    for kind, table in KINDS[family].items():
+        drawn = [drawing.Draw(drawing.seeded(seed), part).table([table]) for seed in range(3)]
+        assert {one["kind"] for one in drawn} == {kind}
+        assert len({str(one) for one in drawn}) > (1 if len(table.model_fields) > 1 else 0)
+
+
+def test_it_leaves_no_key_of_the_format_out() -> None:
+    for family, kinds in KINDS.items():
+        part = {"body": "body", "support": "support", "loads": "loads"}.get(family, "motion")
+        for kind, table in kinds.items():
+            missing = set(table.model_fields)
+            for seed in range(200):
+                missing -= set(drawing.Draw(drawing.seeded(seed), part).table([table]))
+                if not missing:
+                    break
+            assert not missing, kind
+
+
+def numbers(tables: Any) -> Iterator[str]:
+    """Return every number, and every text with one, in nested tables: found without the format's classes."""
+    parts = tables.values() if isinstance(tables, dict) else tables
+    for part in parts:
+        if isinstance(part, (dict, list)):
+            yield from numbers(part)
+        elif not isinstance(part, bool) and any(letter.isdigit() for letter in str(part)):
+            yield str(part)
+
+
+@pytest.mark.parametrize("name", list(shipped()))
+def test_it_finds_every_number_of_a_scenario(name: str) -> None:
+    tables = {key: value for key, value in shipped()[name].items() if key not in ("title", "notes")}
+    assert sorted(str(leaf.value) for leaf in leaves(ScenarioFile, tables)) == sorted(numbers(tables))
+    assert all(leaf.allows(leaf.value) for leaf in leaves(ScenarioFile, tables))
+
+
+@pytest.mark.parametrize(
+    ("value", "wanted"),
+    [
+        (0.25, 0.5),
+        (3, 6.0),
+        ("25 mm", "50.0 mm"),
+        ("-3.5 deg", "-7.0 deg"),
+        ("0.5*3*(x**2 + y**2)", "1.0*3*(x**2 + y**2)"),
+        ("x**2", "x**2"),
+        ("co-rotating", "co-rotating"),
+        ("1e-3*sin(2*t)", "0.002*sin(2*t)"),
+    ],
+)
+def test_a_value_times_a_factor(value: Any, wanted: Any) -> None:
+    assert times(value, 2.0) == wanted
+
+
+def test_what_the_format_refuses_is_not_put_there() -> None:
+    tables = tomllib.loads('[body]\nkind = "sphere"\nradius = "1 cm"\nmass = 1\ninertia_ratio = 0.4')
+    (ratio,) = (leaf for leaf in leaves(ScenarioFile, tables) if leaf.key == "inertia_ratio")
+    assert isinstance(ratio, Leaf)
+    assert [ratio.allows(value) for value in (0.4, 0.7, -0.4, 0.0)] == [True, False, False, False]
+
+
+def test_kinds_are_those_of_the_tables() -> None:
+    for kind, table in KINDS["body"].items():
+        assert kind_of(table) == kind
+    assert set(tables_of(ScenarioFile.model_fields["support"].annotation)) == set(KINDS["support"].values())
+
+
+# --- how it tells one ending from another ---------------------------------------------------------------
+
+ENDINGS = """
+import json, os, pathlib, sys, time, warnings
+from trundle import frames
+from tests.fuzz.running import Child
+
+def hangs(say):
+    while True:
+        sum(range(1000))
+
+def asks_for_too_much(say):
+    say(text="large")
+    bytearray(1 << 40)
+
+def warns(say):
+    warnings.warn("3 things look odd", RuntimeWarning)
+    say(outcome="passed")
+
+def begins_again(say):
+    for _ in range(4):
+        say(begins=True)
+        until = time.process_time() + 0.2
+        while time.process_time() < until:
+            pass
+    say(outcome="passed")
+
+endings = {
+    "hangs": hangs,
+    "breaks": lambda say: {}["nothing"],
+    "breaks inside": lambda say: frames.change(None, None, "support", "world"),
+    "asks for too much": asks_for_too_much,
+    "warns": warns,
+    "dies": lambda say: os.abort(),
+    "sleeps": lambda say: time.sleep(1000),
+    "begins again": begins_again,
+}
+found = {}
+for name, work in endings.items():
+    child = Child(work, pathlib.Path(sys.argv[1]) / "work", 0.5)
+    if name == "sleeps":
+        child.began -= 1000
+        time.sleep(0.3)
+        child.check()
+    _, status, usage = os.wait4(child.process, 0)
+    found[name] = child.ended(status, usage.ru_utime)
+print(json.dumps(found))
+"""
+
+
+def test_endings_are_told_apart(tmp_path: Path) -> None:
+    done = command("-c", ENDINGS, str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    outcomes = {name: one.get("outcome") for name, one in found.items()}
+    assert outcomes == {
+        "hangs": "hang",
+        "breaks": "traceback",
+        "breaks inside": "traceback",
+        "asks for too much": "traceback",
+        "warns": "passed",
+        "dies": "crash",
+        "sleeps": "hang",
+        "begins again": "passed",
+    }
+    assert "hangs" in found["hangs"]["detail"]  # the stack says where
+    assert found["breaks"]["cause"].startswith("KeyError in outside")
+    assert found["breaks inside"]["cause"].startswith("AttributeError in frames.py:change")
+    assert found["asks for too much"]["cause"].startswith("MemoryError")
+    assert found["asks for too much"]["text"] == "large"
+    assert "# things look odd" in found["warns"]["warned"]
+
+
+SCENARIO = """
+[body]
+kind = "solid-sphere"
+radius = "25 mm"
+mass = "65 g"
+[support]
+kind = "plane"
+{support}
+[start]
+position = [0.1, 0]
+{start}
+[run]
+duration = 1
+every = 0.1
+"""
+
+
+def test_a_run_is_judged_as_its_user_would(monkeypatch: pytest.MonkeyPatch) -> None:
+    from tests.fuzz.running import run_as_a_user_does
+
+    said: dict[str, Any] = {}
+    run_as_a_user_does(SCENARIO.format(support="", start=""), said.update)
+    assert said == {"outcome": "passed"}
+    with pytest.raises(tr.ScenarioError, match="rim"):
+        run_as_a_user_does(SCENARIO.format(support="rim = 0.05", start=""), said.update)
+
+    def broken(*_: Any) -> None:
+        raise tr.SolverError("At t = 0.25 s nothing goes on.")
+
+    with monkeypatch.context() as planted:
+        planted.setattr("trundle.solve.methods.run", broken)
+        run_as_a_user_does(SCENARIO.format(support="", start=""), said.update)
+    assert said["outcome"] == "gave up in words"
+    assert said["cause"] == "SolverError: At t = # s nothing goes on."
+    from trundle import verify
+
+    monkeypatch.setattr(verify, "_events", lambda _: [verify.CardFigure("planted", 2.0, "", 1.0, False)])
+    run_as_a_user_does(SCENARIO.format(support="", start=""), said.update)
+    assert said["outcome"] == "card failed"
+    assert said["cause"] == "exact: planted"
+    assert said["detail"].startswith("FAIL planted 2 at most 1 (phases r;")
+
+
+# --- what it reports ------------------------------------------------------------------------------------
+
+FOUND = [
+    Outcome("gentle", 0, "passed", seconds=1.0),
+    Outcome("gentle", 1, "refused", refusals={"ScenarioError": 60}),
+    Outcome("gentle", 2, "hang", "run, solve/a.py:f", "stack", text='title = "a"', seconds=6.0),
+    Outcome("gentle", 3, "card failed", "exact: energy", text='title = "b"', warned="odd"),
+    Outcome("harsh", 0, "gave up in words", "SolverError: no"),
+]
+
+
+def test_the_table_counts_what_came_of_those_that_ran(tmp_path: Path) -> None:
+    text = report.table(FOUND, markdown=True)
+    assert "| gentle | 4 | 3 | 1 | 1 | 0 | 1 | 0 | 0 | 1 | 2 (67 %) | 1 | 60 | 7 |" in text.splitlines()
+    assert "| all | 5 | 4 | 1 | 1 | 1 | 1 | 0 | 0 | 1 | 2 (50 %) | 1 | 60 | 7 |" in text.splitlines()
+    assert len({len(line) for line in report.table(FOUND).splitlines()}) == 1
+    causes = report.causes(FOUND)
+    for line in ("hang, 1: run, solve/a.py:f (gentle 2)", "warned, 1: odd (gentle 3)"):
+        assert line in causes.splitlines()
+    kept = [report.keep(one, tmp_path) for one in FOUND]
+    assert [path.name for path in kept if path] == ["hang-gentle-2.toml", "card-failed-gentle-3.toml"]
+    assert tomllib.loads((tmp_path / "hang-gentle-2.toml").read_text(encoding="utf-8")) == {"title": "a"}
+
+
+def test_one_seed_is_run_alone() -> None:
+    done = command("--class", "gentle", "--seed", "2", "--one")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "outcome: passed" in done.stdout
+    assert '[body]\nkind = "solid-sphere"' in done.stdout
+    assert command("--seed", "2", "--one").returncode == 2

@@ -1,0 +1,162 @@
+"""A support pushes and never pulls: what slips comes off where it must, and what has no answer is named."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+from tests.tolerances import SOLVER
+
+import trundle as tr
+from trundle.mechanics.system import STANDARD_GRAVITY
+
+G = STANDARD_GRAVITY
+BALL = tr.Body.solid_sphere(0.05, 1.0)
+METHODS = ("auto", "taylor", "runge-kutta")
+
+
+def run_of(system: tr.RollingSystem, start: tr.State, duration: float = 0.3, method: str = "auto") -> tr.Trajectory:
+    run = tr.simulate(system, start, duration, duration / 30, method)
+    pushed = np.einsum("ni,ni->n", run.samples.contact_force, run.samples.normals(system))
+    assert pushed.min() >= -1e-12 * max(1.0, np.abs(pushed).max())
+    assert run.card().passed
+    return run
+
+
+def flies_from_the_start(system: tr.RollingSystem, start: tr.State, method: str, pull: float = G) -> None:
+    """It comes off at once, and its centre follows a parabola."""
+    run = run_of(system, start, 0.05, method)
+    assert run.events[0].kind == "lift"
+    assert run.events[0].time == start.time
+    t = run.data.time.values[:, None]
+    parabola = np.array(start.position) + np.array(start.velocity) * t - 0.5 * np.array([0.0, 0.0, pull]) * t * t
+    assert np.abs(run.data.position.values - parabola).max() <= SOLVER(10, 1e-15)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("friction", [0.0, 0.05, 0.3, 2.0])
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_too_fast_over_a_dome_it_flies_however_it_slips(friction: float, way: float, method: str) -> None:
+    dome = tr.RollingSystem(BALL, tr.Support(tr.Dome(0.3), friction=friction))
+    speed = way * math.sqrt(G * 0.35) * (1 + 1e-6)  # v² = gL: just too fast
+    flies_from_the_start(dome, dome.place((0.0, 0.0), (speed, 0.0), angular_velocity=(0.0, 0.0, 0.0)), method)
+    hill = tr.HeightField("-0.2*x**2 + 0.1*y")  # as curved along x at its crest as a circle of 2.5 m
+    if method != "auto":
+        crest = tr.RollingSystem(BALL, tr.Support(hill, friction=friction))
+        start = crest.place((0.0, 0.0), (6 * way, 0.6 * way), angular_velocity=(0.0, 0.0, 0.0))
+        assert run_of(crest, start, 0.05, method).events[0].time == 0.0
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.9, 1 - 1e-6])
+def test_without_friction_it_leaves_a_dome_where_a_particle_does(share: float, method: str) -> None:
+    dome = tr.RollingSystem(BALL, tr.Support(tr.Dome(0.3), friction=0.0))
+    speed = math.sqrt(share * G * 0.35) + 1e-4
+    start = dome.place((0.0, 0.0), (speed, 0.0), angular_velocity=(0.0, 3.0, 1.0))
+    off = run_of(dome, start, 2.0, method).events[0]
+    # m v²/L = m g cos θ with v² = v₀² + 2gL(1 − cos θ)
+    leaves = (2 + speed * speed / (G * 0.35)) / 3
+    assert off.kind == "lift"
+    assert abs((off.before.position[2] + 0.3) / 0.35 - leaves) <= SOLVER(1000, 1e-13)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("restitution", [0.0, 0.5])
+@pytest.mark.parametrize("friction", [None, 0.0, 0.1])
+def test_it_strikes_a_dome_and_goes_on_through_the_air(friction: Any, restitution: float, method: str) -> None:
+    dome = tr.RollingSystem(BALL, tr.Support(tr.Dome(0.3), friction=friction, restitution=restitution))
+    start = dome.place((0.0, 0.0), (3.0, 0.0, -2.0), angular_velocity=(0.0, 0.0, 0.0))
+    run = run_of(dome, start, 0.1, method)
+    assert [event.kind for event in run.events] == (["land"] if restitution else ["land", "lift"])
+    after = run.events[0].after
+    assert after is not None
+    t = run.data.time.values[:, None]
+    parabola = np.array(after.position) + np.array(after.velocity) * t - 0.5 * np.array([0.0, 0.0, G]) * t * t
+    assert np.abs(run.data.position.values - parabola).max() <= SOLVER(10, 1e-15)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("friction", [0.0, 0.1])
+def test_a_force_that_lifts_does_so_whether_it_rolls_or_slips(friction: float, method: str) -> None:
+    for lift in (G * (1 + 1e-9), 20.0):
+        pulled = tr.RollingSystem(BALL, tr.Support(tr.Plane(), friction=friction), (tr.Force((0.0, 0.0, lift)),))
+        for turning in (None, (0.0, 0.0, 0.0), (0.0, 20.0, 0.0)):
+            start = pulled.place((0.0, 0.0), (1.0, 0.0), angular_velocity=turning)
+            flies_from_the_start(pulled, start, method, G - lift)
+    held = tr.RollingSystem(BALL, tr.Support(tr.Plane(), friction=friction), (tr.Force((0.0, 0.0, G * (1 - 1e-9))),))
+    start = held.place((0.0, 0.0), (1.0, 0.0), angular_velocity=(0.0, 0.0, 0.0))
+    assert not run_of(held, start, 0.3, method).events
+
+
+@pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
+@pytest.mark.parametrize("turning", [None, (0.0, 0.0, 0.0)])
+def test_a_table_that_falls_away_leaves_it_behind_until_it_comes_back(turning: Any, method: str) -> None:
+    shaken = tr.Support(
+        tr.Plane(), motion=tr.Shake((0.0, 0.0, 0.05), 20.0, "90 deg"), friction=0.1
+    )  # 20 m/s² downwards
+    table = tr.RollingSystem(BALL, shaken)
+    run = run_of(table, table.place((0.0, 0.0), (1.0, 0.0), angular_velocity=turning), 0.2, method)
+    assert [event.kind for event in run.events[:2]] == ["lift", "land"]
+    assert run.events[0].time == 0.0
+    meets = brentq(lambda t: 0.05 - 0.5 * G * t * t - 0.05 * math.cos(20 * t), 0.05, 0.16, xtol=1e-15)
+    assert abs(run.events[1].time - meets) <= SOLVER(1000, 1e-15)
+
+
+@pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
+@pytest.mark.parametrize("friction", [None, 0.0, 0.3])
+def test_nothing_presses_it_on_until_something_does(friction: Any, method: str) -> None:
+    def pushed(force: str) -> tr.RollingSystem:
+        support = tr.Support(tr.Plane(), friction=friction)
+        return tr.RollingSystem(BALL, support, (tr.Force((0.0, 0.0, force)),), gravity=0.0)
+
+    for velocity in ((0.0, 0.0), (2.0, -1.0)):
+        still = tr.RollingSystem(BALL, tr.Support(tr.Plane(), friction=friction), gravity=0.0)
+        assert not run_of(still, still.place((0.0, 0.0), velocity), 2.0, method).events
+        up = pushed("0.3*t")
+        run = run_of(up, up.place((0.0, 0.0), velocity), 0.4, method)
+        assert [event.kind for event in run.events] == ["lift"]
+        assert abs(run.data.position.values[-1, 2] - (0.05 + 0.3 * 0.4**3 / 6)) <= SOLVER(1000, 1e-12)
+        down = pushed("-sin(5*t)")
+        run = run_of(down, down.place((0.0, 0.0), velocity), 0.8, method)
+        assert [event.kind for event in run.events] == ["lift"]
+        assert abs(run.events[0].time - math.pi / 5) <= 1e-6  # it leaves slowly: a rounding of N is worth so much time
+
+
+# Painlevé: a rod that is dragged towards its tip
+
+
+ROD, LENGTH, THICKNESS = tr.Body.ellipsoid((0.005, 0.005, 0.5), 1.0), 0.5, 0.005
+
+
+def dragged(friction: float, lean: float, speed: float, rate: float = 0.0) -> tuple[tr.RollingSystem, tr.State]:
+    """Return a rod that leans from the vertical towards +x, and is dragged along x."""
+    system = tr.RollingSystem(ROD, tr.Support(tr.Plane(), friction=friction))
+    q = (math.cos(lean / 2), 0.0, math.sin(lean / 2), 0.0)
+    return system, system.place((0.0, 0.0), (speed, 0.0), orientation=q, angular_velocity=(0.0, rate, 0.0))
+
+
+def jams_at(lean: float) -> float:
+    """Return the μ at which n·a₁ = 0: (κ² + x²)/(xz), (x, z) from the contact to the centre, κ² = J/m, in the plane."""
+    b2, c2 = THICKNESS**2, LENGTH**2
+    z = math.sqrt(b2 * math.sin(lean) ** 2 + c2 * math.cos(lean) ** 2)
+    x = (c2 - b2) * math.sin(lean) * math.cos(lean) / z
+    return ((b2 + c2) / 5 + x * x) / (x * z)
+
+
+@pytest.mark.parametrize("lean", [0.3, 0.5, 0.8, 1.2])
+def test_where_friction_jams_a_rod_is_named_and_nowhere_else(lean: float) -> None:
+    limit = jams_at(lean)
+    for friction, speed in ((limit * 3, 1.0), (0.5 * limit, -1.0), (limit * 0.99, -1.0)):
+        system, start = dragged(friction, lean, speed)
+        assert tr.simulate(system, start, 1e-5, 1e-6).data.phase.values.tolist() == [1] * 11
+    with pytest.raises(tr.SolverError, match=r"all but jams.*Painlevé"):
+        tr.simulate(*dragged(limit * (1 - 1e-9), lean, -1.0), 0.02, 0.005)
+    for friction in (limit * (1 + 1e-9), limit * (1 + 1e-3), 2 * limit):
+        with pytest.raises(tr.SolverError, match=r"neither roll.*Painlevé"):
+            tr.simulate(*dragged(friction, lean, -1.0), 0.02, 0.005)
+        # Turning fast enough to leave by itself, it may also stay: there are two answers.
+        with pytest.raises(tr.SolverError, match=r"slip on or come off.*Painlevé"):
+            tr.simulate(*dragged(friction, lean, -1.0, 30.0), 0.02, 0.005)
