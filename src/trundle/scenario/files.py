@@ -295,7 +295,9 @@ class Bounds:
             deeper: list[Any] = []
             for part in level:
                 if type(part) is int and part.bit_length() > _MOST_BITS:
-                    raise ScenarioError(_path_to(part, tables), "must be a finite number", _TOO_LONG, "", source)
+                    raise ScenarioError(
+                        _path_to(part, tables, self.deepest), "must be a finite number", _TOO_LONG, "", source
+                    )
                 deeper += self._inside(part, source)
             count += len(deeper)
             if count > self.values:
@@ -315,14 +317,14 @@ class Bounds:
         return part if isinstance(part, list) else ()
 
 
-def _path_to(wanted: Any, tables: Any, path: str = "") -> str:
-    """Return the path of a value in tables and lists, or nothing where it is not in them."""
-    if tables is wanted:
-        return path
+def _path_to(wanted: Any, tables: Any, deepest: int, path: str = "") -> str:
+    """Return the path of a value in tables and lists, or nothing where it is not in them so deep."""
+    if tables is wanted or deepest < 0:
+        return path if tables is wanted else ""
     inside = tables.items() if isinstance(tables, Mapping) else enumerate(tables) if isinstance(tables, list) else ()
     for key, part in inside:
         step = f"[{key}]" if isinstance(key, int) else f"{'.' * bool(path)}{key[:60]}"
-        if found := _path_to(wanted, part, path + step):
+        if found := _path_to(wanted, part, deepest - 1, path + step):
             return found
     return ""
 
