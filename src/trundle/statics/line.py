@@ -25,7 +25,6 @@ Array = NDArray[np.float64]
 TOLERANCE = 1e-13  # of the integration along the line
 PER_TURN = 360  # places at which roots are bracketed
 ROOT = 1e-12  # share of the scale below which the work is nothing
-HARDLY = 5e-4  # rad by which a support turns for each of the body, where it does not come round
 NEAR = 1e-6  # rad: roots nearer than this are one
 
 
@@ -252,8 +251,8 @@ def _ends(
         return furthest - abs(y[4])
 
     def does_not_come_round(angle: float, y: Array) -> float:
-        going_round = sign * math.copysign(1.0, y[4]) * rates(angle, y)[4]  # rad of the normal for one of the body
-        return max(most[0] - abs(angle), going_round - HARDLY)
+        pace = sign * math.copysign(1.0, y[4]) * rates(angle, y)[4]  # rad of the normal for one of the body
+        return max(most[0] - abs(angle), pace * (most[1] - abs(angle)) - (furthest - abs(y[4])))
 
     def has_room(angle: float, y: Array) -> float:
         now = _turned(axis, angle, q)
