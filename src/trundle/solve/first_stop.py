@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from ..errors import SolverError
+from .roots import root
 
 _LOOKS_AT_ONCE = 100_000
 _LEAST_LOOKS, _MOST_LOOKS = 256, 3e8  # these take minutes
 _DEEPEST = 4.0  # times the larger step to its neighbours: a look at a minimum is no further above it
-_EPSILON = 2.0**-52
 
 
 def first_stop(values: Callable[[Any], Any], looks: Sequence[tuple[float, float]]) -> tuple[float, int] | None:
@@ -94,10 +94,8 @@ def _lowest(function: Callable[[float], float], begin: float, end: float) -> flo
 
 
 def _root(function: Callable[[float], float], begin: float, end: float) -> float:
-    from scipy.optimize import brentq
-
     if not function(begin) > 0:  # it falls at once: alone and among others, rounding may differ
         return begin
     if function(end) >= 0:
         return end
-    return float(brentq(function, begin, end, xtol=1e-300, rtol=4 * _EPSILON))
+    return root(function, begin, end)

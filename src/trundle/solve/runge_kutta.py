@@ -15,6 +15,7 @@ from . import phases
 from .following import Next, Stop
 from .patience import Patience
 from .phases import Stretch, upto
+from .roots import root
 from .samples import Array, Progress, Samples
 from .tracing import python_law
 
@@ -24,7 +25,6 @@ _LOOKS = 8  # at the stops in each step
 _BLUR = 0.05  # share of a step within which a polynomial through these finds where a stop is lowest
 _SINGULAR = ("curved", "edge", "end", "jam")  # stops at which a law is singular
 _ALL_BUT = 1e-3  # share of what was left of such a stop at first
-_EPSILON = 2.0**-52
 _PATIENCE: dict[str, Any] = {"steps": 1e5, "spare": 5e3, "name": "The Runge-Kutta method"}  # minutes, and seconds
 _FIRST_STEP = 1e-12  # s
 
@@ -226,8 +226,6 @@ def _first_stop(path: Any, stops: Any, begin: Array) -> tuple[float, int] | None
 
 def _fall(function: Callable[[float], float], looks: Array, values: Array) -> float | None:
     """Return where a function first falls through zero, given its values at Chebyshev's points of a step."""
-    from scipy.optimize import brentq
-
     falls = np.flatnonzero((values[:-1] >= 0) & (values[1:] < 0))
     inside = values[: falls[0] + 1] if falls.size else values
     # What lies between the looks is hardly lower than the lowest of them, beside how much they differ.
@@ -235,11 +233,11 @@ def _fall(function: Callable[[float], float], looks: Array, values: Array) -> fl
         for low in _minima(function, looks, values):
             if (not falls.size or low < looks[falls[0]]) and function(low) < 0:
                 before = looks[: np.searchsorted(looks, low)][-1]
-                return float(brentq(function, before, low, xtol=1e-300, rtol=4 * _EPSILON))
+                return root(function, before, low)
     if not falls.size:
         return None
     first = int(falls[0])
-    return float(brentq(function, looks[first], looks[first + 1], xtol=1e-300, rtol=4 * _EPSILON))
+    return root(function, looks[first], looks[first + 1])
 
 
 def _minima(function: Callable[[float], float], looks: Array, values: Array) -> list[float]:

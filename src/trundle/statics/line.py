@@ -5,6 +5,7 @@ It is the whole of what a cylinder can do, and a section through what a ball can
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -18,6 +19,7 @@ from ..errors import SolverError
 from ..mechanics.algebra import ZERO, Quaternion, Vector
 from ..mechanics.contact import Contact, roll, touch
 from ..mechanics.system import RollingSystem
+from ..solve.roots import root
 from . import rest
 
 Array = NDArray[np.float64]
@@ -25,6 +27,7 @@ Array = NDArray[np.float64]
 TOLERANCE = 1e-13  # of the integration along the line
 PER_TURN = 360  # places at which roots are bracketed
 ROOT = 1e-12  # share of the scale below which the work is nothing
+LOOKS, LOOKS_A_RADIAN = 6000, 250  # that it may take: more take a body that all but fits a hollow no further
 NEAR = 1e-6  # rad: roots nearer than this are one
 
 
@@ -104,14 +107,12 @@ class Line:
 
     def roots(self) -> list[float]:
         """Return the angles at which the virtual work changes sign, rad; none where it vanishes everywhere."""
-        from scipy.optimize import brentq
-
         if self.flat:
             return []
         works, angles = self.works, self.angles
         found = [float(angle) for angle, work in zip(angles, works, strict=True) if abs(work) <= 1e-3 * self._small]
         found += [
-            brentq(lambda x: float(self.work(x)), angles[i], angles[i + 1], xtol=1e-15, rtol=1e-15)
+            root(lambda x: float(self.work(x)), angles[i], angles[i + 1], 1e-15)
             for i in np.flatnonzero(works[:-1] * works[1:] < 0)
         ]
         return [root for root in _apart(sorted(found)) if all(abs(root - ledge) > NEAR for ledge in self.ledges)]
@@ -199,7 +200,11 @@ def _half(
     """Integrate (p, distance, turn of the normal, work against the loads) over the angle."""
     from scipy.integrate import solve_ivp
 
+    looks = itertools.count()
+
     def rates(angle: float, y: Array) -> list[float]:
+        if next(looks) > LOOKS + LOOKS_A_RADIAN * abs(angle):
+            return [math.nan] * y.size
         now = _turned(axis, angle, q)
         try:
             contact = touch(system, time, Vector(*y[:3]), now)
