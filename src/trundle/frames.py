@@ -8,7 +8,7 @@ angular velocities and orientation are those seen by somebody who rides on the s
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,11 +18,13 @@ from .errors import OutOfDomainError
 from .mechanics.algebra import E_Z, Matrix, Quaternion, Vector
 from .mechanics.motions import Motion, SupportState
 from .mechanics.system import Support
+from .solve.samples import AT_ONCE
 
 if TYPE_CHECKING:
     import xarray
 
 Array = NDArray[np.float64]
+Vectors = dict[Any, Vector]
 
 FRAMES = ("support", "world", "corotating")
 _STEP = 1.0  # rad: the support is followed in steps that turn it by less, so that half a turn is never missed
@@ -74,47 +76,58 @@ def _tilted(data: xarray.Dataset, tilt: float) -> xarray.Dataset:
     c, s = np.cos(tilt), np.sin(tilt)
     turn = Matrix(Vector(c, 0.0, s), Vector(0.0, 1.0, 0.0), Vector(-s, 0.0, c))
     half = Quaternion(np.cos(tilt / 2), 0.0, np.sin(tilt / 2), 0.0)
-    return _with(data, {name: turn @ vector for name, vector in _vectors(data).items()}, half)
+
+    def seen(vectors: Vectors, _: slice) -> tuple[Vectors, Quaternion]:
+        return {name: turn @ vector for name, vector in vectors.items()}, half
+
+    return _changed(data, seen)
 
 
 def _turning(data: xarray.Dataset, rate: float, forwards: bool) -> xarray.Dataset:
     """Go to the frame that turns steadily with the support, or back."""
-    angle = rate * data.time.values
-    c, s = np.cos(angle), np.sin(angle) * (-1 if forwards else 1)
-    turn = Matrix(Vector(c, -s, 0.0), Vector(s, c, 0.0), E_Z)
-    half = Quaternion(np.cos(angle / 2), 0.0, 0.0, np.sin(angle / 2) * (-1 if forwards else 1))
-    omega, vectors = Vector(0.0, 0.0, rate), _vectors(data)
-    carried = omega.cross(vectors["position"])
-    if forwards:
-        vectors["velocity"] = vectors["velocity"] - carried
-        vectors["angular_velocity"] = vectors["angular_velocity"] - omega
-    turned = {name: turn @ vector for name, vector in vectors.items()}
-    if not forwards:
-        turned["velocity"] = turned["velocity"] + omega.cross(turned["position"])
-        turned["angular_velocity"] = turned["angular_velocity"] + omega
-    return _with(data, turned, half)
+    time, omega = data.time.values, Vector(0.0, 0.0, rate)
+
+    def seen(vectors: Vectors, where: slice) -> tuple[Vectors, Quaternion]:
+        angle = rate * time[where]
+        c, s = np.cos(angle), np.sin(angle) * (-1 if forwards else 1)
+        turn = Matrix(Vector(c, -s, 0.0), Vector(s, c, 0.0), E_Z)
+        half = Quaternion(np.cos(angle / 2), 0.0, 0.0, np.sin(angle / 2) * (-1 if forwards else 1))
+        if forwards:
+            vectors["velocity"] = vectors["velocity"] - omega.cross(vectors["position"])
+            vectors["angular_velocity"] = vectors["angular_velocity"] - omega
+        turned = {name: turn @ vector for name, vector in vectors.items()}
+        if not forwards:
+            turned["velocity"] = turned["velocity"] + omega.cross(turned["position"])
+            turned["angular_velocity"] = turned["angular_velocity"] + omega
+        return turned, half
+
+    return _changed(data, seen)
 
 
 def _carried(data: xarray.Dataset, motion: Motion, names: Sequence[str], forwards: bool) -> xarray.Dataset:
     """Go to the frame that is fixed to a support that moves in any way, or back."""
     own = _own(data, motion, names)
     time = np.asarray(data.time.values, dtype=float)
-    state, vectors = motion.at(time, *own), _vectors(data)
-    turn, half = state.rotation, _followed(motion, time, own)
-    if forwards:
-        r = vectors["position"]
-        seen = {
-            "velocity": vectors["velocity"] - state.material_velocity(r),
-            "angular_velocity": vectors["angular_velocity"] - state.angular_velocity,
-        }
-        vectors |= seen | {name: vectors[name] - state.origin for name in _PLACES if name in vectors}
-        back = turn.transpose
-        return _with(data, {name: back @ vector for name, vector in vectors.items()}, half.conjugate)
-    turned = {name: turn @ vector for name, vector in vectors.items()}
-    turned |= {name: turned[name] + state.origin for name in _PLACES if name in turned}
-    turned["velocity"] = turned["velocity"] + state.material_velocity(turned["position"])
-    turned["angular_velocity"] = turned["angular_velocity"] + state.angular_velocity
-    return _with(data, turned, half)
+    followed = _followed(motion, time, own)
+
+    def seen(vectors: Vectors, where: slice) -> tuple[Vectors, Quaternion]:
+        state, half = motion.at(time[where], *(part[where] for part in own)), Quaternion.of(followed[where])
+        turn = state.rotation
+        if forwards:
+            relative = {
+                "velocity": vectors["velocity"] - state.material_velocity(vectors["position"]),
+                "angular_velocity": vectors["angular_velocity"] - state.angular_velocity,
+            }
+            vectors |= relative | {name: vectors[name] - state.origin for name in _PLACES if name in vectors}
+            back = turn.transpose
+            return {name: back @ vector for name, vector in vectors.items()}, half.conjugate
+        turned = {name: turn @ vector for name, vector in vectors.items()}
+        turned |= {name: turned[name] + state.origin for name in _PLACES if name in turned}
+        turned["velocity"] = turned["velocity"] + state.material_velocity(turned["position"])
+        turned["angular_velocity"] = turned["angular_velocity"] + state.angular_velocity
+        return turned, half
+
+    return _changed(data, seen)
 
 
 _PLACES = ("position", "contact")  # what counts from the support's origin
@@ -130,8 +143,8 @@ def _own(data: xarray.Dataset, motion: Motion, names: Sequence[str]) -> tuple[Ar
     return tuple(np.asarray(data[name].values, dtype=float) for name in names)
 
 
-def _followed(motion: Motion, time: Array, own: tuple[Array, ...]) -> Quaternion:
-    """Return how the support has turned, with the sign that is continuous from the start of its motion on.
+def _followed(motion: Motion, time: Array, own: tuple[Array, ...]) -> Array:
+    """Return how the support has turned, (n, 4), with the sign that is continuous from the start of its motion on.
 
     The turn is a continuous function of the time and the support's own coordinates. Any way through these that joins
     the samples therefore gives the sign: straight from one to the next, in steps too small to miss half a turn.
@@ -158,7 +171,7 @@ def _followed(motion: Motion, time: Array, own: tuple[Array, ...]) -> Quaternion
         q = q * np.where(np.cumsum(against) % 2, -1.0, 1.0)[:, None]
         found[first:stop], last = q[np.cumsum(count) - 1], q[-1]
         first = stop
-    return Quaternion.of(found)
+    return found
 
 
 def _at(motion: Motion, points: Array) -> SupportState:
@@ -180,15 +193,15 @@ def _quaternions(state: SupportState, count: int) -> Array:
     return q * np.where(q[:, :1] < 0, -1.0, 1.0) / np.linalg.norm(q, axis=1, keepdims=True)
 
 
-def _vectors(data: xarray.Dataset) -> dict[Any, Vector]:
-    return {name: Vector.of(data[name].values) for name in data.data_vars if data[name].dims[1:] == ("axis",)}
-
-
-def _with(data: xarray.Dataset, vectors: dict[Any, Vector], turn: Quaternion) -> xarray.Dataset:
-    changed = {name: data[name].copy(data=_filled(vector, data[name].shape)) for name, vector in vectors.items()}
-    q = turn * Quaternion.of(data.orientation.values)
-    return data.assign({**changed, "orientation": data.orientation.copy(data=q.array())})
-
-
-def _filled(vector: Vector, shape: tuple[int, ...]) -> Array:
-    return np.broadcast_to(vector.array(), shape)
+def _changed(data: xarray.Dataset, seen: Callable[[Vectors, slice], tuple[Vectors, Quaternion]]) -> xarray.Dataset:
+    """Return a dataset with other vectors and orientations, worked out some at a time: those seen, and the turn."""
+    names = [name for name in data.data_vars if data[name].dims[1:] == ("axis",)]
+    old = {name: data[name].values for name in (*names, "orientation")}
+    new = {name: np.empty(array.shape) for name, array in old.items()}
+    for first in range(0, data.time.size, AT_ONCE):
+        where = slice(first, first + AT_ONCE)
+        vectors, turn = seen({name: Vector.of(old[name][where]) for name in names}, where)
+        for name, vector in vectors.items():
+            new[name][where] = vector.array()
+        new["orientation"][where] = (turn * Quaternion.of(old["orientation"][where])).array()
+    return data.assign({name: data[name].copy(data=array) for name, array in new.items()})

@@ -183,9 +183,11 @@ def coordinates(times: Any) -> dict[str, Any]:
 
 def _slip(system: RollingSystem, samples: Samples) -> Any:
     """Return V + Ω×ρ − u, (n, 3), m/s; not a number where nothing touches."""
-    V, carried, u = samples.speeds(system)
-    found = np.broadcast_to((V + carried - u).array(), samples.position.shape).copy()
-    found[samples.phase == FLIGHT] = np.nan
+    found = np.empty_like(samples.position)
+    for where, some in samples.blocks():
+        V, carried, u = some.speeds(system)
+        found[where] = (V + carried - u).array()
+        found[where][some.phase == FLIGHT] = np.nan
     return found
 
 

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import math
 import threading
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import labels
-from .errors import InvalidValueError, SolverError, TrundleError
+from .errors import InvalidValueError, TrundleError
+from .mechanics.finiteness import check_finite, varies
 from .mechanics.parameters import structure_of
 from .mechanics.system import RollingSystem, State
-from .simulation import simulate
+from .memory import check_room
+from .simulation import check_state, simulate
 from .solve import taylor
 from .solve.methods import Method
 from .solve.samples import Progress
@@ -22,6 +26,7 @@ if TYPE_CHECKING:
     import xarray
 
     from .solve.ensemble import Block
+    from .trajectory import Trajectory
 
 ENDED = -1  # the phase of a member whose run is over
 
@@ -59,15 +64,16 @@ def simulate_many(
     -------
     xarray.Dataset
         The variables of `Trajectory.data` over `member` and `time`, and for each member `end`, the time its run
-        reached, `events`, how many there were, and `ending`, what ended it early, or nothing. After its end a member
-        is NaN, its phase −1. Its events and its card are those of `simulate` for that member alone.
+        reached, `events`, how many there were, `ending`, what ended it early, or nothing, and `reason`, the same in
+        words. After its end a member is NaN, its phase −1. Its events and its card are those of `simulate` for that
+        member alone. Where `simulate` would refuse a member, its ending is "refused", and where it would break down,
+        "failed": such a member is NaN throughout, and the others are what they are without it.
 
     Raises
     ------
     InvalidValueError
-        If the systems are not of one structure, or a start is refused; the message names the member.
-    SolverError
-        If a member breaks down.
+        If the systems are not of one structure, the starts not at one time, or there would be too many samples: what
+        is wrong with the call, not with one member.
 
     Examples
     --------
@@ -79,11 +85,11 @@ def simulate_many(
     {'member': 3, 'time': 3, 'axis': 3}
     """
     systems, starts = _members(systems, starts)
-    since = sample_times(duration, every)
-    check_clock(systems[0], starts[0], float(since[1]))
-    times = starts[0].time + since
-    _check(systems, starts, times.size, workers)
-    result = _Result(len(systems), times, progress)
+    instants = sample_times(duration, every)
+    _check(systems, starts, instants.size, every, workers)
+    check_clock(systems[0], starts[0], float(instants[1]))
+    times = starts[0].time + instants
+    result = _Result(systems[0], len(systems), times, progress)
     rest = _rolled(result, systems, starts, times, workers) if _batched(systems[0]) else range(len(systems))
     for member in rest:
         result.put_alone(member, systems[member], starts[member], duration, every)
@@ -114,21 +120,26 @@ def _listed(values: Any, key: str, kind: type) -> list[Any]:
     return found
 
 
-def _check(systems: list[RollingSystem], starts: list[State], instants: int, workers: int | None) -> None:
+def _check(systems: list[RollingSystem], starts: list[State], instants: int, every: Any, workers: int | None) -> None:
     first = structure_of(systems[0])
     for i, system in enumerate(systems):
         if system is not systems[0] and structure_of(system) != first:
             remedy = "Members differ in numbers only; run other bodies, supports or loads in another call."
             raise InvalidValueError(f"systems[{i}]", "must be made of the same parts as systems[0]", system, remedy)
+    if not (isinstance(starts[0].time, (int, float)) and math.isfinite(starts[0].time)):
+        raise InvalidValueError("starts[0].time", "must be a finite number, s", starts[0].time)
     for i, start in enumerate(starts):
-        if start.time != starts[0].time or len(start.support) != len(starts[0].support):
-            rule = f"must be at the time of starts[0], {starts[0].time:g} s, with as many support coordinates"
-            raise InvalidValueError(f"starts[{i}]", rule, start)
+        if start.time != starts[0].time:
+            raise InvalidValueError(f"starts[{i}].time", f"must be that of starts[0], {starts[0].time:g} s", start.time)
+
+    def fewer(most: int) -> str:
+        each = max(most // len(systems), 2)
+        return f"ask each of the {len(systems):,} members for {each:,} instants or fewer, or part the members"
+
     if len(systems) * instants > MOST_SAMPLES:
-        rule = f"must leave at most {MOST_SAMPLES:,} samples of all members together"
-        most = max(MOST_SAMPLES // len(systems), 2)
-        remedy = f"Ask each of the {len(systems):,} members for {most:,} instants or fewer, or part the members."
-        raise InvalidValueError("every", rule, f"{len(systems) * instants:,}", remedy)
+        rule, count = f"must leave at most {MOST_SAMPLES:,} samples of all members together", len(systems) * instants
+        raise InvalidValueError("every", rule, every, f"It makes {count:,}; {fewer(MOST_SAMPLES)}.")
+    check_room(len(systems) * instants, labels.size_of(systems[0]), "every", every, fewer)
     if workers is not None and (not isinstance(workers, int) or workers < 1):
         raise InvalidValueError("workers", "must be a whole number, 1 or more, or None", workers)
 
@@ -148,94 +159,125 @@ def _rolled(
     """Run the members that roll, and return those that are left."""
     from .solve import ensemble
 
-    states, rolls = ensemble.rolling_from(systems, starts)
+    sound = np.flatnonzero(_sound(systems, starts, times))  # `simulate` says what is wrong with the others
+    some = [systems[i] for i in sound]
+    if not some:
+        return list(range(len(systems)))
+    states, rolls = ensemble.rolling_from(some, [starts[i] for i in sound])
     members = np.flatnonzero(rolls).tolist()
     count = min(workers or ensemble.cores(), -(-len(members) // ensemble.LANES) or 1)
-    stopped = ensemble.integrate(systems, states, members, times, result.put, workers=count) if members else []
-    return sorted([*np.flatnonzero(~rolls).tolist(), *stopped])
+
+    def done(block: Block) -> None:
+        result.put(replace(block, members=sound[block.members]))
+
+    stopped = ensemble.integrate(some, states, members, times, done, workers=count) if members else []
+    rolled = np.zeros(len(systems), dtype=bool)
+    rolled[sound[members]] = True
+    rolled[sound[stopped]] = False
+    return np.flatnonzero(~rolled).tolist()
+
+
+def _sound(systems: list[RollingSystem], starts: list[State], times: Any) -> list[bool]:
+    """Tell of which members start and formulas in the time are numbers, throughout the run."""
+    finite: dict[int, bool] = {}  # of each system, once
+    for system in systems if varies(systems[0]) else ():
+        if id(system) not in finite:
+            finite[id(system)] = _passes(check_finite, system, float(times[0]), float(times[-1]))
+    pairs = zip(systems, starts, strict=True)
+    return [finite.get(id(system), True) and _passes(check_state, system, start) for system, start in pairs]
+
+
+def _passes(check: Callable[..., None], *given: Any) -> bool:
+    try:
+        check(*given)
+    except InvalidValueError:
+        return False
+    return True
 
 
 class _Result:
     """The arrays of all members, filled as the members come in."""
 
-    def __init__(self, members: int, times: Any, progress: Progress | None) -> None:
-        self.members, self.times, self.progress = members, times, progress
-        self.template: xarray.Dataset | None = None
-        self.arrays: dict[str, Any] = {}
+    def __init__(self, system: RollingSystem, members: int, times: Any, progress: Progress | None) -> None:
+        self.times, self.progress = times, progress
+        self.facts = labels.facts(system)
+        sizes = {"time": times.size, "axis": 3, "quaternion": 4}
+        self.arrays = {
+            name: np.full(
+                (members, *(sizes[dim] for dim in dims)),
+                ENDED if name == "phase" else np.nan,
+                dtype=np.int8 if name == "phase" else np.float64,
+            )
+            for name, (dims, _) in self.facts.items()
+        }
         self.end = np.full(members, float(times[-1]))
         self.events = np.zeros(members, dtype=np.int32)
-        self.ending = np.full(members, "", dtype=object)
-        self.done, self.lock = 0, threading.Lock()
+        self.ending, self.reason = (np.full(members, "", dtype=object) for _ in range(2))
+        self.done, self.told, self.lock = np.zeros(members), 0.0, threading.Lock()
 
     def put(self, block: Block) -> None:
-        """Take the members of a block that rolled to the end."""
-        data = labels.dataset(block.system, block.samples, {})
-        count = block.members.size
-        with self.lock:
-            self._begin_with(data)
-            for name, array in self.arrays.items():
-                values = data[name].values
-                array[block.members] = values.reshape(-1, count, *values.shape[1:]).swapaxes(0, 1)
-            self._tell(count)
+        """Take members that rolled through some of the instants."""
+        for name, values in labels.columns(block.system, block.samples).items():
+            shaped = values.reshape(-1, block.members.size, *values.shape[1:]).swapaxes(0, 1)
+            self.arrays[name][block.members, block.rows] = shaped
+        self._tell(block.members, block.rows.stop / self.times.size)
 
     def put_alone(self, member: int, system: RollingSystem, start: State, duration: Any, every: Any) -> None:
-        """Run one member by itself, through all its phases."""
+        """Run one member by itself, through all its phases; what `simulate` has against it becomes its ending."""
         method = "taylor" if system.support.surface.analytic else "runge-kutta"
+        run, refused = None, None
         try:
             run = simulate(system, start, duration, every, method=method, scenario="")
         except InvalidValueError as error:
             key = error.key.replace("start", f"starts[{member}]", 1) if error.key.startswith("start") else error.key
-            raise InvalidValueError(key, error.rule, error.received, error.remedy) from None
+            refused = "refused", str(InvalidValueError(key, error.rule, error.received, error.remedy))
         except TrundleError as error:
-            raise SolverError(f"Member {member}: {error}") from None
+            refused = "failed", str(error)
+        except (ArithmeticError, ValueError) as error:  # a load of somebody's own divides by nothing, for one
+            refused = "failed", f"{type(error).__name__}: {error}"
+        for name, array in self.arrays.items():  # it may have come some way with others
+            array[member] = ENDED if name == "phase" else np.nan
+        if refused is not None:
+            self.end[member], (self.ending[member], self.reason[member]) = np.nan, refused
+        if run is not None:
+            self._take(member, run)
+        self._tell(member, 1.0)
+
+    def _take(self, member: int, run: Trajectory) -> None:
+        """Take a run that a member made by itself."""
         reached = run.data.time.values  # the last may be the instant of the event that ended it, between two samples
         count = min(reached.size, self.times.size)
         kept = int((reached[:count] == self.times[:count]).sum())
+        for name, array in self.arrays.items():
+            array[member, :kept] = run.data[name].values[:kept]
+        self.end[member], self.events[member] = reached[-1], len(run.events)
+        if run.events and reached[-1] < self.times[-1]:
+            self.ending[member], self.reason[member] = run.events[-1].kind, run.events[-1].text
+
+    def _tell(self, members: Any, share: float) -> None:
         with self.lock:
-            self._begin_with(run.data)
-            for name, array in self.arrays.items():
-                array[member, :kept] = run.data[name].values[:kept]
-            self.end[member] = reached[-1]
-            self.events[member] = len(run.events)
-            if run.events and reached[-1] < self.times[-1]:
-                self.ending[member] = run.events[-1].kind
-            self._tell(1)
-
-    def _begin_with(self, data: xarray.Dataset) -> None:
-        """Make room, once it is known which variables there are."""
-        if self.template is not None:
-            return
-        self.template = data
-        for name, variable in data.data_vars.items():
-            shape, kind = (self.members, self.times.size, *variable.shape[1:]), variable.dtype
-            self.arrays[str(name)] = np.full(shape, ENDED if kind.kind == "i" else np.nan, dtype=kind)
-
-    def _tell(self, count: int) -> None:
-        self.done += count
-        if self.progress is not None:
-            self.progress(self.done / self.members)
+            self.done[members] = share
+            self.told = max(self.told, float(self.done.mean()))
+            if self.progress is not None:
+                self.progress(self.told)
 
     def dataset(self) -> xarray.Dataset:
         """Return all members as one dataset."""
         import pandas as pd
         import xarray
 
-        assert self.template is not None  # noqa: S101  there is at least one member
-        facts = {name: (self.template[name].dims, dict(self.template[name].attrs)) for name in self.arrays}
-        phase = facts["phase"][1]
+        phase = self.facts["phase"][1]
         phase["flag_values"] = np.append(phase["flag_values"], np.int8(ENDED))
         phase["flag_meanings"] += " ended"
-        variables = {name: (("member", *facts[name][0]), array, facts[name][1]) for name, array in self.arrays.items()}
+        variables = {name: (("member", *dims), self.arrays[name], said) for name, (dims, said) in self.facts.items()}
         about = {
             "end": (("member",), self.end, {"long_name": "time that the run reached", "units": "s"}),
             "events": (("member",), self.events, {"long_name": "events on the way", "units": "1"}),
-            "ending": (("member",), self.ending, {"long_name": "event that ended the run early"}),
+            "ending": (("member",), self.ending, {"long_name": "what ended the run early"}),
+            "reason": (("member",), self.reason, {"long_name": "what ended the run early, in words"}),
         }
-        template = self.template
-        coordinates: dict[str, Any] = {name: template[name] for name in ("axis", "quaternion")}
-        time = (("time",), pd.Index(self.times), {"long_name": "time", "units": "s", "axis": "T"})
-        coordinates |= {"member": pd.RangeIndex(self.members), "time": time}
-        attributes = {"Conventions": "CF-1.11", **labels.attributes("", Method.of("taylor"))}
+        coordinates = {**labels.coordinates(self.times), "member": pd.RangeIndex(self.end.size)}
+        attributes = labels.attributes("", Method.of("taylor"))
         return xarray.Dataset({**variables, **about}, coords=coordinates, attrs=attributes)
 
 

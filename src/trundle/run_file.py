@@ -13,9 +13,10 @@ import numpy as np
 
 from . import labels
 from .errors import InvalidValueError, RunFileError, TrundleError
-from .files import first_line, read_netcdf, written_whole
+from .files import first_line
 from .frames import FRAMES
 from .mechanics.system import RollingSystem, State
+from .netcdf import read_netcdf, write_dataset
 from .scenario import ScenarioFile
 from .solve.methods import METHODS, check_tolerance
 from .solve.samples import FLIGHT, Event
@@ -160,14 +161,11 @@ def write(target: Path, data: xarray.Dataset, texts: Mapping[str, str], system: 
     _check_data(data, system, str(target), "Leave the variables of a run as they are, and put yours beside them.")
     extra = {**texts, DIGESTS: json.dumps(digests(data, system, texts))}
     try:
-        # Made in memory first: HDF5 brings the process down where a disk fills while it writes.
-        content = data.assign_attrs(extra).to_netcdf(engine="h5netcdf")
+        write_dataset(data.assign_attrs(extra), target)
     except (TypeError, ValueError) as error:  # an attribute or variable that somebody added
         raise TrundleError(
             f"{target} is not written: NetCDF cannot hold all of `run.data` ({first_line(error)})."
         ) from None
-    with written_whole(target) as temporary:
-        temporary.write_bytes(content)
 
 
 def read(path: Any) -> RunFile:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Any
 
 from . import labels
@@ -13,11 +14,14 @@ from .mechanics.contact import Contact, settle
 from .mechanics.finiteness import check_finite
 from .mechanics.placing import SLIP_TOLERANCE, slips
 from .mechanics.system import RollingSystem, State
+from .memory import check_room
 from .scenario import ScenarioFile
 from .solve import methods
 from .solve.samples import Progress
-from .solve.sampling import check_clock, sample_times
+from .solve.sampling import check_clock, longer_step, sample_times
 from .trajectory import Trajectory
+
+_OFF_UNIT = 1e-6  # by which the length of a quaternion may be off: it is made 1 on the way
 
 
 def simulate(
@@ -65,7 +69,8 @@ def simulate(
     Raises
     ------
     InvalidValueError
-        If a value is refused, the start does not roll, or a formula in the time is not finite throughout the run.
+        If a value is refused, the start does not roll, a formula in the time is not finite throughout the run, or the
+        samples find no room in memory.
     OutOfDomainError
         If method is "exact" and no closed form covers a phase that the run comes to.
     SolverError
@@ -81,10 +86,10 @@ def simulate(
     >>> run.method, run.data.time.size
     ('exact', 1001)
     """
-    if not isinstance(start, State):
-        raise InvalidValueError("start", "must be a State, as system.place(...) makes it", start)
+    check_state(system, start)
     since = sample_times(duration, every)
     times = start.time + since
+    check_room(times.size, labels.size_of(system), "every", every, partial(longer_step, times))
     check_finite(system, float(times[0]), float(times[-1]))
     _check_start(system, start, float(times[-1]))
     check_clock(system, start, float(since[1]))
@@ -109,10 +114,6 @@ def _described(system: RollingSystem, start: State, times: Any, method: str, tit
 
 def _check_start(system: RollingSystem, start: State, until: float) -> None:
     """Refuse a hand-made start inside the support, or one that slips where nothing limits the friction."""
-    own = system.support.motion.own
-    if len(start.support) != len(own):
-        remedy = "Let system.place(...) make the start."
-        raise InvalidValueError("start.support", f"must hold {', '.join(own) or 'nothing'}", start.support, remedy)
     q, centre = Quaternion(*start.orientation), Vector(*start.position)
     contact = settle(system, start.time, centre, q, start.support)
     point = centre + contact.offset
@@ -126,6 +127,50 @@ def _check_start(system: RollingSystem, start: State, until: float) -> None:
     if gap <= SLIP_TOLERANCE * contact.offset.norm():
         _check_slip(system, start, contact)
     straight.check_start(system, start, until)
+
+
+def check_state(system: RollingSystem, start: State) -> None:
+    """Refuse what is no state of a system.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Says which coordinates its support's own motion has.
+    start : State
+        Made by hand, perhaps.
+
+    Raises
+    ------
+    InvalidValueError
+        If it lacks numbers, or they are not finite.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> system = tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), tr.Support(tr.Plane()))
+    >>> check_state(system, system.place())
+    """
+    if not isinstance(start, State):
+        raise InvalidValueError("start", "must be a State, as system.place(...) makes it", start)
+    own, remedy = system.support.motion.own, "Let system.place(...) make the start."
+    wanted = {"position": 3, "velocity": 3, "angular_velocity": 3, "orientation": 4, "support": len(own)}
+    for name, count in wanted.items():
+        given = getattr(start, name)
+        if not _are_numbers(given, count):
+            rule = f"{count} finite numbers" if name != "support" else f"{', '.join(own) or 'nothing'}"
+            raise InvalidValueError(f"start.{name}", f"must hold {rule}", given, remedy)
+    if not _are_numbers((start.time,), 1):
+        raise InvalidValueError("start.time", "must be a finite number, s", start.time, remedy)
+    if abs(math.hypot(*start.orientation) - 1) > _OFF_UNIT:
+        rule = "must be a unit quaternion (w, x, y, z)"
+        raise InvalidValueError("start.orientation", rule, start.orientation, "Divide it by its length.")
+
+
+def _are_numbers(values: Any, count: int) -> bool:
+    try:
+        return len(values) == count and all(math.isfinite(value) for value in values)
+    except TypeError:
+        return False
 
 
 def _check_loads(system: RollingSystem, start: State, contact: Contact) -> None:

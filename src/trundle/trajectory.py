@@ -12,6 +12,7 @@ import numpy as np
 from . import frames, labels, run_file
 from .errors import InvalidValueError, TrundleError, UnknownNameError
 from .mechanics.system import RollingSystem, State
+from .memory import check_room
 from .solve.exact import ClosedForm, closed_form
 from .solve.methods import Method
 from .solve.samples import Event, Samples
@@ -162,7 +163,7 @@ class Trajectory(Viewable):
         Raises
         ------
         InvalidValueError
-            If the times are not finite, ascending and within the run.
+            If the times are not finite, ascending and within the run, or find no room in memory.
 
         Examples
         --------
@@ -177,6 +178,8 @@ class Trajectory(Viewable):
         inside = wanted.size and np.isfinite(wanted).all() and wanted[0] >= first and wanted[-1] <= last
         if not inside or (np.diff(wanted) < 0).any():
             raise InvalidValueError("times", f"must ascend within the run, {first:g} to {last:g} s", times)
+        each, received = labels.size_of(self.system), f"{wanted.size:,} times"
+        check_room(wanted.size, each, "times", received, "ask for {:,} at a time".format)
         once, places = np.unique(wanted, return_inverse=True)
         samples = Method(self.method, self.tolerance).solve(self.system, self.start, once)
         samples = replace(samples, time=once).part(places)  # at the rim an integrator may stop a rounding earlier
@@ -198,12 +201,27 @@ class Trajectory(Viewable):
         >>> tr.Scenario.load("level-turntable-nudged").run(duration=5.0).card().passed
         True
         """
-        facts, kept = self._facts(), self._kept
-        if "view" in kept and kept["view"][1] == facts:
-            return kept["view"][0].card()
-        if "card" not in kept or kept["card"][0] != facts:
-            kept["card"] = facts, self._checked()
-        return kept["card"][1]
+        run = self._whole()
+        facts = run._facts()
+        made = run._card_of(facts)
+        if made is None:
+            made = run._checked()
+            run._kept["card"] = facts, made
+        return made
+
+    def _card_if_made(self) -> Card | None:
+        """Return the card if it has been made, and nothing has changed since."""
+        run = self._whole()
+        return run._card_of(run._facts())
+
+    def _card_of(self, facts: tuple[Any, ...]) -> Card | None:
+        since, card = self._kept.get("card", (None, None))
+        return card if since == facts else None
+
+    def _whole(self) -> Trajectory:
+        """Return the run of which this is a view, as long as nothing has changed in it; otherwise itself."""
+        run, since = self._kept.get("view", (self, None))
+        return run if since == self._facts() else self
 
     def _facts(self) -> tuple[Any, ...]:
         """Return all that a card depends on: it speaks of a run for which they are the same."""

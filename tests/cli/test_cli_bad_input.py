@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from trundle import memory
 from trundle.scenario import files
 
 from .conftest import Command
@@ -73,6 +74,14 @@ def test_bad_words(here: Command, folder: Path, words: list[str], said: str) -> 
     assert (done.status, done.out, done.files) == (2, "", {"file"})
     assert said in done.err
     assert len(done.err.splitlines()) == 1
+
+
+def test_more_samples_than_find_room_in_memory(here: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(memory, "free", lambda: 5e8)
+    done = here("run", "tilted-turntable", "--every", "10 us")
+    assert (done.status, done.out, done.files) == (2, "", set())
+    assert "`every` must leave no more samples than find room in memory" in done.err
+    assert "2,000,001 of them take 555 MB, and 500 MB are free: ask for 1.2e-05 s or more" in done.err
 
 
 @pytest.mark.parametrize("option", ["--quiet", "--json"])

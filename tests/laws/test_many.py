@@ -14,6 +14,7 @@ from tests.tolerances import SOLVER
 import trundle as tr
 from trundle import many
 from trundle.solve import ensemble, integrator_cache, runge_kutta, taylor
+from trundle.solve.exact import SphereOnPlane
 
 pytest.importorskip("heyoka")
 
@@ -78,6 +79,115 @@ def test_the_same_numbers_as_one_by_one(made: Any, alone: list[int]) -> None:
             found, scale = runs[name].isel(member=member), max(float(np.abs(values).max()), 1e-3)
             assert found.dims == values.dims
             assert float(np.abs(found - values).max()) <= SOLVER(3000, taylor.TOLERANCE, scale), name
+
+
+def tables(sign: float = 1.0, begin: float = 0.0) -> tuple[list[tr.RollingSystem], list[tr.State]]:
+    """Balls of all sizes on turntables of all rates: more than fill a register, not all of a second."""
+    systems = [
+        tr.RollingSystem(
+            tr.Body.solid_sphere(0.02 + 0.003 * j, 0.1),
+            tr.Support(tr.Plane(), motion=tr.Spin(sign * (1.0 + 0.2 * j)), tilt=1e-4 * j),
+        )
+        for j in range(11)
+    ]
+    return systems, [system.place((0.1, 0.01 * j), (0.1, 0.2), 1.0, time=begin) for j, system in enumerate(systems)]
+
+
+def free_axles(sign: float = 1.0, begin: float = 0.0) -> tuple[list[tr.RollingSystem], list[tr.State]]:
+    systems = [
+        tr.RollingSystem(BALL, tr.Support(tr.Plane(), motion=tr.FreeAxle(inertia=0.01 * (1 + j), rate=sign * (2 + j))))
+        for j in range(3)
+    ]
+    return systems, [system.place((0.1, 0.0), (0.0, 0.05), time=begin) for system in systems]
+
+
+def uneven(sign: float = 1.0, begin: float = 0.0) -> tuple[list[tr.RollingSystem], list[tr.State]]:
+    """The law knows the time: from a table that turns unevenly, and a force that swings."""
+    systems = [
+        tr.RollingSystem(
+            BALL,
+            tr.Support(tr.Plane(), motion=tr.UnevenSpin(sign * 2.0, 0.3, 1.0 + 0.1 * j)),
+            loads=[tr.Force((f"{0.01 + 0.001 * j} * sin({2 + j} * t)", 0.0, 0.0))],
+        )
+        for j in range(3)
+    ]
+    return systems, [system.place((0.1, 0.0), (0.0, 0.1), time=begin) for system in systems]
+
+
+def test_any_number_of_samples() -> None:
+    """Against the closed form: the parts of a run have 60 instants, 119 fall into one, 120 into two."""
+    made = [tables(sign) for sign in (1.0, -1.0)]
+    exact = [[SphereOnPlane.of(*pair) for pair in zip(*members, strict=True)] for members in made]
+    for steps in range(1, 301):
+        (systems, starts), forms = made[steps % 2], exact[steps % 2]
+        runs = tr.simulate_many(systems, starts, duration=3.0, every=3.0 / steps)
+        assert runs.time.size == steps + 1
+        for member, form in enumerate(forms):
+            assert form is not None
+            r, V, Omega, _ = form.motion_at(runs.time.values)
+            for name, wanted in (("position", r), ("velocity", V), ("angular_velocity", Omega)):
+                values = np.broadcast_to(wanted.array(), (steps + 1, 3))
+                apart = np.abs(runs[name].values[member] - values).max()
+                assert apart <= SOLVER(1000, taylor.TOLERANCE, max(np.abs(values).max(), 1.0)), (steps, member, name)
+
+
+# Edges of the parts, last steps that are shorter, steps longer than a reference of time serves, ends across 100 s.
+RUNS = [
+    (0.0, 1.0, 1 / 119),
+    (-7.25, 1.0, 1 / 120.5),
+    (1e5, 7.0, 0.01),
+    (0.0, 99.99, 0.7),
+    (3.5, 100.0, 1.0),
+    (1e5, 100.5, 100.5),
+    (-40.0, 101.0, 0.33),
+    (0.0, 250.0, 120.0),
+    (1e5, 250.0, 0.4),
+]
+
+
+@pytest.mark.parametrize(("begin", "duration", "every"), RUNS)
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("made", [tables, free_axles, uneven])
+def test_any_duration_step_and_beginning(
+    made: Any, sign: float, begin: float, duration: float, every: float, alone: list[int]
+) -> None:
+    systems, starts = made(sign, begin)
+    runs = tr.simulate_many(systems, starts, duration, every, workers=2)
+    assert not alone
+    assert set(runs.ending.values) == {""}
+    for member in {0, len(systems) - 1}:
+        single = tr.simulate(systems[member], starts[member], duration, every, method="taylor").data
+        assert np.array_equal(runs.time, single.time)
+        turned = 1.0 + float(np.abs(single.angular_velocity).max()) * duration
+        for name, values in single.data_vars.items():
+            scale = max(float(np.abs(values).max()), 1.0)
+            apart = float(np.abs(runs[name].isel(member=member) - values).max())
+            assert apart <= SOLVER(30, taylor.TOLERANCE, scale * turned), name
+
+
+def test_instants_at_any_distance() -> None:
+    """The engine takes any ascending instants, close together and far apart."""
+    systems, _ = bowls()
+    numbers = np.random.default_rng(3)
+    times = 2.5 + np.cumsum(np.concatenate([[0.0], 10 ** numbers.uniform(-6, -1, 700), [130.0], [1e-3] * 5]))
+    starts = [system.place((0.1, 0.01 * j), (0.1, 0.2), 1.0, time=2.5) for j, system in enumerate(systems)]
+    states, rolls = ensemble.rolling_from(systems, starts)
+    assert rolls.all()
+    found: dict[int, list[Any]] = {}
+
+    def done(block: ensemble.Block) -> None:
+        for i, member in enumerate(block.members.tolist()):
+            found.setdefault(member, []).append((block.rows, block.samples.part(slice(i, None, block.members.size))))
+
+    assert ensemble.integrate(systems, states, range(len(systems)), times, done, workers=2) == []
+    for member in (0, 7, 10):
+        rows = np.concatenate([np.arange(times.size)[rows] for rows, _ in found[member]])
+        assert np.array_equal(rows, np.arange(times.size))
+        mine = np.concatenate([part.position for _, part in found[member]])
+        wanted = taylor.solve(systems[member], starts[member], times).position
+        early = times < 20.0  # then motions in a bowl have grown far apart
+        assert np.abs(mine - wanted)[early].max() <= SOLVER(3000, taylor.TOLERANCE)
+        assert np.abs(mine - wanted).max() <= 1e-9
 
 
 def test_balls_on_a_tilted_turntable_against_the_closed_form(alone: list[int]) -> None:
@@ -154,7 +264,7 @@ def test_starts_at_a_later_time() -> None:
     runs = tr.simulate_many(level, [replace(level.place(velocity=(v, 0.0)), time=4.0) for v in (1.0, 2.0)], 1.0, 0.5)
     assert runs.time.values.tolist() == [4.0, 4.5, 5.0]
     assert np.abs(runs.position.sel(axis="x").values - [[0, 0.5, 1], [0, 1, 2]]).max() <= SOLVER(100, taylor.TOLERANCE)
-    with pytest.raises(tr.InvalidValueError, match=r"starts\[1\].*at the time of starts\[0\]"):
+    with pytest.raises(tr.InvalidValueError, match=r"starts\[1\].time` must be that of starts\[0\], 0 s; got 1.0"):
         tr.simulate_many(systems, later, 1.0, 0.5)
 
 
@@ -169,8 +279,9 @@ def refused() -> Iterator[Any]:
     yield pytest.param(4, start, {}, r"systems\[0\].*must be a RollingSystem", id="system")
     yield pytest.param(system, [start] * 100, {"every": 1e-5}, "10,000,000 samples", id="samples")
     yield pytest.param(system, start, {"workers": 0}, "workers", id="workers")
-    sunk = replace(start, position=(0.1, 0.0, 0.02))
-    yield pytest.param(system, [start, sunk], {}, r"starts\[1\]\.position", id="inside the support")
+    yield pytest.param(system, replace(start, time=float("nan")), {}, r"starts\[0\].time` must be a finite", id="time")
+    yield pytest.param(system, start, {"duration": -1.0}, "`duration` must be positive", id="duration")
+    yield pytest.param(system, start, {"every": 2.0}, "`every` must not be longer than the run", id="step")
 
 
 @pytest.mark.parametrize(("systems", "starts", "more", "said"), list(refused()))

@@ -332,7 +332,7 @@ DAMAGED: dict[str, tuple[Callable[[Any], object], str]] = {
         "`events` must ascend",
     ),
     "scenario: no TOML": (becomes("scenario", "[body"), "is not valid TOML"),
-    "scenario: no scenario": (becomes("scenario", "gravity = 0"), "body"),
+    "scenario: no scenario": (attribute("scenario", lambda text: text.replace("[body]", "[bdy]", 1)), "body"),
     "scenario: a path": (becomes("scenario", '[[path]]\nkind = "straight"'), "`path` has no place"),
     "method: unknown": (becomes("method", "euler"), "`method` must be one of exact, taylor, runge-kutta"),
     "method: a number": (becomes("method", 3), "`method`"),

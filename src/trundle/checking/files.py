@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InvalidValueError
-from ..files import read_netcdf
+from ..netcdf import read_netcdf
 
 _TEXT, _PARQUET, _NETCDF = (".csv", ".txt", ".tsv", ".dat"), (".parquet", ".pq"), (".nc", ".nc4", ".h5", ".cdf")
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..files import written_whole
+from ..netcdf import write_dataset
 
 if TYPE_CHECKING:
     import xarray
@@ -98,7 +98,5 @@ def save(rolled: RolledPath, target: Path, every: float | None = None) -> Path:
     See `RolledPath.save`.
     """
     extra = {"scenario": rolled.scenario, "card": rolled.card().as_json()}
-    with written_whole(target) as temporary:
-        # Made in memory first: HDF5 brings the process down where a disk fills while it writes.
-        temporary.write_bytes(dataset(rolled, every).assign_attrs(extra).to_netcdf(engine="h5netcdf"))
+    write_dataset(dataset(rolled, every).assign_attrs(extra), target)
     return target

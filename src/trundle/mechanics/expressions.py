@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import ast
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from ..errors import InvalidValueError
@@ -44,7 +44,7 @@ class Expression:
     """
 
     tree: Any
-    text: str
+    text: str = field(compare=False)
 
     @staticmethod
     def parse(text: str, variables: tuple[str, ...], key: str) -> Expression:

@@ -104,6 +104,32 @@ def check_finite(thing: Any, start: float, end: float, key: str = "") -> None:
             check_finite(getattr(thing, field.name), start, end, f"{key}.{field.name}" if key else field.name)
 
 
+def varies(thing: Any) -> bool:
+    """Tell whether a system has a formula in the time.
+
+    Parameters
+    ----------
+    thing : RollingSystem or any part of it
+        In numbers.
+
+    Returns
+    -------
+    bool
+        Whether `check_finite` has anything to look at.
+
+    Examples
+    --------
+    >>> from trundle.mechanics.motions import Spin, SpinBy
+    >>> varies(SpinBy("1/(t - 3)")), varies(Spin(1.0))
+    (True, False)
+    """
+    if isinstance(thing, Expression):
+        return thing.variables <= {"t"}
+    if isinstance(thing, (tuple, Vector)):
+        return any(varies(part) for part in thing)
+    return is_dataclass(thing) and any(varies(getattr(thing, field.name)) for field in fields(thing))
+
+
 def _bounds(tree: Any, a: float, b: float) -> Any:
     """Return an interval that holds all values of a formula over [a, b]."""
     from mpmath import iv

@@ -65,7 +65,7 @@ def structure_of(thing: Any) -> Any:
     (True, False)
     """
     if is_dataclass(thing) and not isinstance(thing, type):
-        return type(thing), tuple(structure_of(getattr(thing, field.name)) for field in fields(thing))
+        return type(thing), tuple(structure_of(getattr(thing, field.name)) for field in fields(thing) if field.compare)
     if isinstance(thing, tuple):
         return tuple(structure_of(part) for part in thing)
     return float if is_number(thing) and not isinstance(thing, bool) else thing

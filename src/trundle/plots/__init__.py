@@ -21,7 +21,8 @@ def path_figure(run: Trajectory) -> Figure:
     Parameters
     ----------
     run : Trajectory
-        What to draw, in any frame; lengths of every magnitude choose their own unit.
+        What to draw, in any frame; lengths of every magnitude choose their own unit. Of more than half a million
+        samples only as many are drawn as the lines need.
 
     Returns
     -------
@@ -35,9 +36,10 @@ def path_figure(run: Trajectory) -> Figure:
     >>> [panel.get_title(loc="left") for panel in path_figure(run).axes]
     ['Support frame', 'World frame, from above', '', 'Corotating frame']
     """
+    from .fewer import fewer
     from .path import draw
 
-    return draw(run)
+    return draw(fewer(run))
 
 
 def series_figure(run: Trajectory) -> Figure:
@@ -49,7 +51,8 @@ def series_figure(run: Trajectory) -> Figure:
     Parameters
     ----------
     run : Trajectory
-        What to draw, in any frame; the series are those of the support frame.
+        What to draw, in any frame; the series are those of the support frame. Of more than half a million samples
+        only as many are drawn as the lines need.
 
     Returns
     -------
@@ -63,6 +66,7 @@ def series_figure(run: Trajectory) -> Figure:
     >>> series_figure(run).axes[0].get_ylabel()
     'position (cm)'
     """
+    from .fewer import fewer
     from .series import draw
 
-    return draw(run)
+    return draw(fewer(run))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -21,12 +21,11 @@ from .following import Next, Stop
 from .laws import Law
 from .monodromy import Monodromy
 from .orientation import orientation, periodic_orientation
-from .phases import Stretch
-from .samples import FLIGHT, SLIPPING, Array, Progress, Samples
+from .phases import Stretch, cut
+from .samples import AT_ONCE, FLIGHT, SLIPPING, Array, Progress, Samples
 from .touch import Touch, floats
 
 _PHASE_A_STEP = 0.05  # rad of the motion's own phase between two looks at what may end it
-_AT_ONCE = 100_000
 _SHORT = 1000  # samples of a stretch, up to which it is completed with those around it
 _PERIODS_WORTH_A_MONODROMY = 10.0  # to work one out takes ten times as long as to follow two circles
 _BOUNDS = {"rim", "end", "edge", "curved"}  # which the place of the contact decides
@@ -71,7 +70,7 @@ def integrate(
     times: Array,
     tolerance: float = 0.0,  # noqa: ARG001
     progress: Progress | None = None,
-) -> Stretch:
+) -> Iterator[Stretch]:
     """Follow one law to its first stop by the closed form of its phase.
 
     Parameters
@@ -81,10 +80,11 @@ def integrate(
     tolerance : float
         Not used.
 
-    Returns
-    -------
+    Yields
+    ------
     Stretch
-        The orientations at the times before the stop, and what completes them; or the samples, where they are many.
+        The orientations at the times before the stop, a block after the other, and what completes them; the last comes
+        with the stop.
 
     Raises
     ------
@@ -102,15 +102,20 @@ def integrate(
         q = orientations(form, start, times) if times.size else np.empty((0, 4))
     else:
         reached = now.time + found[0]
-        kept = times[times < reached]
+        kept, _ = cut(times, reached)
         q = orientations(form, start, np.append(kept, reached))
         at = _place(system, law, form, start, found[0], q[-1])
         stop, q = Stop(reached, found[1], np.array(law.numbers(at), dtype=float), at), q[:-1]
-    along = Along(law, form, start.time, start.support)
-    samples = None if kept.size <= _SHORT else along.samples(system, kept, q, progress)
+    along = Along(law, form, start.time, start.support, together=kept.size <= _SHORT)
+    last = max(kept.size - 1, 0) // AT_ONCE * AT_ONCE
+    for first in range(0, last, AT_ONCE):
+        block = slice(first, first + AT_ONCE)
+        yield Stretch(kept[block], q[block], None, along)
+        if progress is not None:
+            progress(float(kept[block][-1]))
+    yield Stretch(kept[last:], q[last:], stop, along)
     if progress is not None:
         progress(end if stop is None else stop.time)
-    return Stretch(kept, q, stop, along, samples)
 
 
 def _place(system: RollingSystem, law: Law, form: ClosedForm, start: State, t: float, q: Array) -> Touch:
@@ -182,10 +187,11 @@ class Along:
     form: ClosedForm
     since: Any  # s; an array where the form's numbers are arrays
     own: tuple[Any, ...]  # of the support's motion, then
+    together: bool = True  # whether it is completed with others, which makes arrays of its numbers
 
     def goes_on(self, other: Any) -> bool:
         """Tell whether the next stretch has the same formula, so that arrays of its numbers give both."""
-        if not isinstance(other, Along) or not self.form.of_arrays:
+        if not (isinstance(other, Along) and self.together and other.together and self.form.of_arrays):
             return False
         return type(other.form) is type(self.form) and other.law.code == self.law.code
 
@@ -201,20 +207,13 @@ class Along:
         samples = together.samples(system, times, np.concatenate([stretch.states for stretch in stretches]))
         return replace(samples, form=self.form)
 
-    def samples(self, system: RollingSystem, times: Array, q: Array, progress: Progress | None = None) -> Samples:
+    def samples(self, system: RollingSystem, times: Array, q: Array) -> Samples:
         """Return the samples at given times, at which the orientations are known."""
-        position, velocity, turning, force = (np.empty((times.size, 3)) for _ in range(4))
+        parts, grown = self.form.motion_and_own_at(times - self.since)
+        position, velocity, turning, force = (np.broadcast_to(part.array(), (times.size, 3)) for part in parts)
         own = np.empty((times.size, len(self.own)))
-        at_once = _AT_ONCE if is_number(self.since) else max(times.size, 1)
-        for first in range(0, times.size, at_once):
-            part = slice(first, first + at_once)
-            parts, grown = self.form.motion_and_own_at(times[part] - self.since)
-            for array, vector in zip((position, velocity, turning, force), parts, strict=True):
-                array[part] = vector.array()
-            for i, (of_start, gone) in enumerate(zip(self.own, grown, strict=True)):
-                own[part, i] = of_start + gone
-            if progress is not None:
-                progress(float(times[part][-1]))
+        for i, (of_start, gone) in enumerate(zip(self.own, grown, strict=True)):
+            own[:, i] = of_start + gone
         contact = _contact(system, self.law, times, Vector.of(position), Quaternion.of(q), tuple(own.T)).array()
         phase: Any = np.full(times.size, self.law.code, dtype=np.int8)
         return Samples(

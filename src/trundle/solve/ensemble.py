@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import copy
 import os
+import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -24,7 +25,7 @@ from ..mechanics.system import RollingSystem, State
 from . import taylor
 from .laws import Law, RollingLaw
 from .lowering import Lowered
-from .samples import Array, Samples
+from .samples import AT_ONCE, Array, Samples
 
 LANES = 8  # doubles in the widest registers; where they are half as wide, two at a time still gain
 _MOST_CHUNKS = 10
@@ -34,12 +35,14 @@ _PRESSED = 1e-9  # share of the weight with which a member must press on to be t
 
 @dataclass(frozen=True)
 class Block:
-    """What one register's worth of members did.
+    """What one register's worth of members did, or a part of it.
 
     Parameters
     ----------
     members : array (k,)
         Which they are.
+    rows : slice
+        The instants that this is about.
     samples : Samples
         Of all at the first instant, then of all at the second, and so on.
     system : RollingSystem
@@ -47,6 +50,7 @@ class Block:
     """
 
     members: Array
+    rows: slice
     samples: Samples
     system: RollingSystem
 
@@ -172,9 +176,10 @@ def integrate(
     members : sequence of int
         Which to follow.
     times : array (n,)
-        Ascending, s, none before the starts.
+        Ascending, s, the first that of the starts.
     done : callable
-        Given each block as it is done, from any thread.
+        Given each part of a block as it is done, from any thread. What it was given of members that are returned is to
+        be forgotten.
     tolerance : float
         Of each step, relative.
     workers : int
@@ -183,28 +188,37 @@ def integrate(
     Returns
     -------
     list of int
-        Members that came to a stop of the law, or broke down, and are in no block.
+        Members that came to a stop of the law, or broke down.
     """
     law = RollingLaw()
     lowered, key = taylor._ready(systems[0], law, tolerance)
     integrator = taylor._compiled(f"{LANES}-{key}", lambda: _compile(lowered, tolerance))
     blocks = [list(members[i : i + LANES]) for i in range(0, len(members), LANES)]
+    halt = threading.Event()  # somebody pressed Ctrl-C, or another thread failed
 
     def work(which: int) -> list[int]:
         mine = copy.copy(integrator)
         stopped: list[int] = []
-        for block in blocks[which::workers]:
-            path, left = _follow(mine, lowered, [systems[i] for i in block], states[block], times)
-            kept = [lane for lane in range(len(block)) if lane not in left]
-            stopped += [block[lane] for lane in sorted(left)]
-            if kept:
-                done(_block(law, systems, [block[lane] for lane in kept], times, path[:, :, kept]))
+        try:
+            for block in blocks[which::workers]:
+                run = _Lanes(mine, lowered, [systems[i] for i in block], states[block])
+                for rows, lanes, path in run.follow(times):
+                    done(_block(law, systems, [block[lane] for lane in lanes], times, rows, path))
+                    if halt.is_set():
+                        return stopped
+                stopped += [block[lane] for lane in sorted(run.left)]
+        except BaseException:
+            halt.set()
+            raise
         return stopped
 
     if workers == 1:
         return sorted(work(0))
     with ThreadPoolExecutor(workers) as pool:
-        return sorted(member for part in pool.map(work, range(workers)) for member in part)
+        try:
+            return sorted(member for part in pool.map(work, range(workers)) for member in part)
+        finally:
+            halt.set()
 
 
 def cores() -> int:
@@ -223,43 +237,74 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _block(law: Law, systems: Sequence[RollingSystem], members: list[int], times: Array, path: Array) -> Block:
-    system = together([systems[i] for i in members], times.size)
+def _block(
+    law: Law, systems: Sequence[RollingSystem], members: list[int], times: Array, rows: slice, path: Array
+) -> Block:
+    system = together([systems[i] for i in members], len(path))
     flat = path.transpose(0, 2, 1).reshape(-1, path.shape[1])
-    samples = law.record(system, np.repeat(times, len(members)), flat)
-    return Block(np.array(members), samples, system)
+    samples = law.record(system, np.repeat(times[rows], len(members)), flat)
+    return Block(np.array(members), rows, samples, system)
 
 
-def _follow(
-    integrator: Any, lowered: Lowered, systems: list[RollingSystem], states: Array, times: Array
-) -> tuple[Array, set[int]]:
-    """Return the states (n, size, LANES) at the times, and the lanes that did not come through.
+class _Lanes:
+    """Members on their way, one in each lane of an integrator.
 
-    Where a lane stops, all go back to where the part of the run began, and another's state takes its place.
+    Where a lane stops, all go back to where the leg began, and another's state takes its place.
     """
-    lane = [min(i, len(systems) - 1) for i in range(LANES)]  # a short block repeats its last member
-    given = [numbers(systems[i]) for i in lane]
-    state, left = states[lane].T.copy(), set[int]()
-    path = np.empty((times.size, state.shape[0], LANES))
-    place = 0
-    for first, chunk in _chunks(times):
-        while len(left) < len(systems):
-            alive = next(i for i in range(len(systems)) if i not in left)
+
+    def __init__(self, integrator: Any, lowered: Lowered, systems: list[RollingSystem], states: Array) -> None:
+        self.integrator, self.lowered, self.count = integrator, lowered, len(systems)
+        self.lane = [min(i, self.count - 1) for i in range(LANES)]  # a short block repeats its last member
+        self.given = [numbers(systems[i]) for i in self.lane]
+        self.state, self.left = states[self.lane].T.copy(), set[int]()
+
+    def follow(self, times: Array) -> Iterator[tuple[slice, list[int], Array]]:
+        """Yield rows, the lanes that came so far, and their states (rows, size, lanes), leg by leg."""
+        place = 0
+        for begin, instants, end in _legs(times):
+            path = self._leg(begin, instants, end)
+            if path is None:
+                return
+            rows, place = slice(place, place + instants.size), place + instants.size
+            if instants.size:
+                kept = [lane for lane in range(self.count) if lane not in self.left]
+                yield rows, kept, path[:, :, kept]
+
+    def _leg(self, begin: float, instants: Array, end: float) -> Array | None:
+        """Return the states (instants, size, LANES) of those that come through; None where nobody does."""
+        grid = np.concatenate([[0.0], (instants if instants.size else np.array([end])) - begin])
+        first = 0 if instants.size and instants[0] == begin else 1  # heyoka's grid begins where the integrator is
+        grid = np.repeat(grid[1 - first :, None], LANES, axis=1)
+        while len(self.left) < self.count:
+            alive = next(i for i in range(self.count) if i not in self.left)
             for i in range(LANES):
-                if lane[i] in left:
-                    state[:, i], given[i] = state[:, alive], given[alive]
-            _begin(integrator, lowered, given, state, first)
-            part = integrator.propagate_grid(np.repeat((chunk - first)[:, None], LANES, axis=1))[-1]
-            ended = [_ended(result[0]) for result in integrator.propagate_res]
-            failed = {lane[i] for i in range(LANES) if lane[i] not in left and ended[i]}
+                if self.lane[i] in self.left:
+                    self.state[:, i], self.given[i] = self.state[:, alive], self.given[alive]
+            failed = self._begin(begin)
             if not failed:
-                break
-            left |= failed
-        else:
-            break
-        path[place : place + len(chunk)], state = part, integrator.state.copy()
-        place += len(chunk)
-    return path, left
+                path = self.integrator.propagate_grid(grid)[-1]
+                ended = [_ended(result[0]) for result in self.integrator.propagate_res]
+                failed = {self.lane[i] for i in range(LANES) if self.lane[i] not in self.left and ended[i]}
+            if not failed:
+                self.state = path[-1].copy()
+                return path[first : first + instants.size]
+            self.left |= failed
+        return None
+
+    def _begin(self, time: float) -> set[int]:
+        """Set states and parameters at a new reference of time, and return the lanes for which these are no numbers."""
+        self.integrator.set_time(0.0)
+        self.integrator.reset_cooldowns()
+        failed = set()
+        for i in range(LANES):
+            try:
+                values = self.lowered.values(self.given[i], time)
+                self.integrator.pars[:, i] = values[: self.lowered.parameters]
+                self.integrator.state[:, i] = self.lowered.tidy([0.0, *self.state[:, i].tolist(), *values])
+            except (ArithmeticError, ValueError):
+                failed.add(self.lane[i])
+        finite = np.isfinite(self.integrator.pars).all(axis=0) & np.isfinite(self.integrator.state).all(axis=0)
+        return failed | {self.lane[i] for i in np.flatnonzero(~finite)}
 
 
 def _ended(outcome: Any) -> bool:
@@ -269,21 +314,15 @@ def _ended(outcome: Any) -> bool:
     return int(outcome) >= -1000 or outcome == heyoka.taylor_outcome.err_nf_state
 
 
-def _begin(integrator: Any, lowered: Lowered, given: list[list[float]], state: Array, time: float) -> None:
-    integrator.set_time(0.0)
-    integrator.reset_cooldowns()
-    for i in range(LANES):
-        values = lowered.values(given[i], time)
-        integrator.pars[:, i] = values[: lowered.parameters]
-        integrator.state[:, i] = lowered.tidy([0.0, *state[:, i].tolist(), *values])
-
-
-def _chunks(times: Array) -> Iterator[tuple[float, Array]]:
-    """Yield the parts of a run, each with the instant from which it counts: the last of the part before."""
-    first = float(times[0])
-    for part in taylor._chunks(times, _MOST_CHUNKS):
-        yield first, part
-        first = float(part[-1])
+def _legs(times: Array) -> Iterator[tuple[float, Array, float]]:
+    """Yield the legs of a run: where each begins, its instants, none where it only leads on, and where it ends."""
+    begin = float(times[0])
+    for part in taylor._chunks(times, _MOST_CHUNKS, AT_ONCE // LANES):
+        while part[0] - begin > taylor._LONGEST:
+            yield begin, part[:0], begin + taylor._LONGEST
+            begin += taylor._LONGEST
+        yield begin, part, float(part[-1])
+        begin = float(part[-1])
 
 
 def _compile(lowered: Lowered, tolerance: float) -> Any:

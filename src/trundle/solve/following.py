@@ -13,8 +13,9 @@ from ..mechanics.algebra import ZERO, Vector
 from ..mechanics.contact import roll
 from ..mechanics.impact import land
 from ..mechanics.placing import SLIP_TOLERANCE
-from ..mechanics.slipping import slip, unpushed
+from ..mechanics.slipping import response, slip, unpushed
 from ..mechanics.system import RollingSystem, State
+from .coming_off import lift_at_hand
 from .creeping import CreepingLaw
 from .laws import (
     JAMS,
@@ -30,9 +31,8 @@ from .laws import (
 )
 from .onset_of_slip import first_moment, jammed
 from .samples import Array, Event
-from .touch import Touch, floats, moment
+from .touch import WEIGHTLESS, Touch, floats, moment
 
-_WEIGHTLESS = 1e-13  # share of the forces at hand below which nothing presses the body on
 _FLOOR = 1e-12  # share of the forces at hand by which the support seems to pull a weightless body: rounding
 _PULLED_BACK = 1e-8  # share of the accelerations at hand at which a body that lifts off would come straight down
 _TAKE_OFF = 1e-15  # gap, as a share of |ρ|, with which a flight begins: it must not end where it begins
@@ -117,6 +117,12 @@ def after(system: RollingSystem, law: Law, stop: Stop) -> Next:
         The next law, and the event.
     """
     at, name = stop.at(system, law), stop.name.removeprefix("near ")
+    if name in ("slip", "start"):
+        extras = (_FLOOR * at.forces(system),) * law.weightless + (0.0,) * law.ending
+        lift = lift_at_hand(system, law, stop.time, stop.numbers.tolist(), name, extras)
+        if lift is not None:
+            advanced = law.advanced(system, stop.time, stop.numbers.tolist(), lift - stop.time)
+            return _lifted(system, law.meant(system, lift, advanced))
     if name in ("grip", "stop") and _goes_on(system, at, stop.numbers, name):
         slip = Vector(*map(float, stop.numbers[10:13])) if name == "grip" else None
         return Next(law, at.state, list(stop.numbers), _extras(system, at, slip))
@@ -226,12 +232,22 @@ def _fly(at: Touch, least_gap: float = 0.0, events: tuple[Event, ...] = ()) -> N
 
 def _lifted(system: RollingSystem, at: Touch) -> Next:
     state = at.state
-    if system.support.friction is None and _pull(system, at) > _PULLED_BACK * at.scale(system) ** 2 / at.arm:
+    if system.support.friction is None and _pulled_back(system, at):
         raise SolverError(
             f"At t = {state.time:.9g} s friction without limit would have to hold the body down, which no support "
             "does. Give the support a `friction`, so that the body slips before that."
         )
     return _fly(at, _TAKE_OFF * at.arm, (_event("lift", _NAMES[FlightLaw.code][1], at),))
+
+
+def _pulled_back(system: RollingSystem, at: Touch) -> bool:
+    """Tell whether friction alone keeps a body from coming straight down again."""
+    pull, limit = _pull(system, at), _PULLED_BACK * at.scale(system) ** 2 / at.arm
+    n, own = at.contact.normal, at.state.support
+    R = roll(system, at.state.time, at.contact.point, at.orientation, at.Omega, own).reaction
+    J = system.body.inertia_in_space(at.orientation.matrix())
+    by_friction = pull - float(response(system, at.contact, J, n * n.dot(R)).slip.dot(n))
+    return bool(min(pull, by_friction) > limit)
 
 
 def _pull(system: RollingSystem, at: Touch) -> float:
@@ -312,18 +328,13 @@ def _slipping(
     """Return slipping where the support pushes, else flight; what no law can follow is named."""
     state = at.state
     now = slip(system, state.time, at.contact.point, at.orientation, at.Omega, at.sliding, state.support, direction)
-    N, forces = float(now.normal_force), _forces(system, at)
-    if abs(N) <= _WEIGHTLESS * forces:
+    N, forces = float(now.normal_force), at.forces(system)
+    if abs(N) <= WEIGHTLESS * forces:
         return Next.of(law(True), at, (_FLOOR * forces, *ending))
     share = float(now.opening_per_newton * system.body.mass)
     if share <= JAMS:
         raise jammed(state.time, share, opens=N * share < 0)
     return _lifted(system, at) if N < 0 else Next.of(law(False), at, ending)
-
-
-def _forces(system: RollingSystem, at: Touch) -> float:
-    """Return the size of the forces in this motion, N."""
-    return float(system.body.mass) * at.scale(system) ** 2 / at.arm
 
 
 def _rolling(system: RollingSystem, at: Touch, *, slips: bool = False) -> Next:
@@ -332,14 +343,18 @@ def _rolling(system: RollingSystem, at: Touch, *, slips: bool = False) -> Next:
     now = roll(system, state.time, at.contact.point, at.orientation, at.Omega, state.support)
     n, R = at.contact.normal, now.reaction
     N = float(n.dot(R))
-    forces = _forces(system, at)
-    weightless = abs(N) <= _WEIGHTLESS * forces
+    forces = at.forces(system)
+    weightless = abs(N) <= WEIGHTLESS * forces
     floor = _FLOOR * forces if weightless else 0.0
     pulled = N + floor < 0
     if pulled and (system.support.friction is None or _pull(system, at) < 0):
         return _lifted(system, at)
     if slips or pulled or cone(system, at.contact, R, floor).get("slip", 0.0) < 0:
         begun = first_moment(system, at)
+        if begun is None:
+            if _pull(system, at) < 0:
+                return _lifted(system, at)
+            raise jammed(state.time)
         if isinstance(begun, Touch):
             return _rolling(system, begun)
         return _slipping(system, begun.at, begun.law, begun.direction, begun.ending)

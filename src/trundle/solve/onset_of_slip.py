@@ -14,7 +14,7 @@ from ..mechanics.slipping import response
 from ..mechanics.system import RollingSystem
 from .creeping import SETTLES_FAST, CreepingLaw, against
 from .laws import RollingLaw, SlippingLaw
-from .touch import Touch, floats
+from .touch import WEIGHTLESS, Touch, floats
 
 _FIRST = 1e-6  # share of |ρ| over its speed that the first moment of slip takes
 
@@ -29,7 +29,7 @@ class Onset:
     ending: tuple[float, ...]
 
 
-def first_moment(system: RollingSystem, at: Touch) -> Onset | Touch:
+def first_moment(system: RollingSystem, at: Touch) -> Onset | Touch | None:
     """Return a body that has slipped for a moment, in which it still rolled but for what friction could not give.
 
     What it cannot give grows from nothing, mostly, and so the slip is the integral of a slope. Where friction settles
@@ -44,13 +44,9 @@ def first_moment(system: RollingSystem, at: Touch) -> Onset | Touch:
 
     Returns
     -------
-    Onset or Touch
-        The slipping body; or the body as it rolls on, where friction holds again before the moment has passed.
-
-    Raises
-    ------
-    SolverError
-        If friction jams the body.
+    Onset, Touch or None
+        The slipping body; or the body as it rolls on, where friction holds again before the moment has passed. None
+        where it can slip no way, since the support would have to pull, or since friction jams it.
 
     Examples
     --------
@@ -71,9 +67,7 @@ def first_moment(system: RollingSystem, at: Touch) -> Onset | Touch:
 
     begun, (_, halfway), (then, grown) = _growth(system, at), later(0.5 * moment), later(moment)
     if grown is None or halfway is None:
-        if _holds(system, then):
-            return then
-        raise jammed(time)
+        return then if _holds(system, then) else None
     speed = moment * ((0.0 if begun is None else begun.rate) + 4 * halfway.rate + grown.rate) / 6
     hat = grown.direction
     slipping = _pushed(system, then, hat * speed)
@@ -126,13 +120,17 @@ class _Growth:
 def _growth(system: RollingSystem, at: Touch) -> _Growth | None:
     """Return how slip grows: where friction only just gives way, against the friction that rolling takes."""
     state = at.state
-    contact, first = against(system, state.time, at.contact.point, at.orientation, at.Omega, state.support)
+    try:
+        contact, first = against(system, state.time, at.contact.point, at.orientation, at.Omega, state.support)
+    except ZeroDivisionError:  # nothing asks for friction
+        return None
     rates = slip_rates(system, state.time, contact, at.orientation, at.Omega, first, ZERO, state.support)
+    least = -WEIGHTLESS * at.forces(system)
     c, s, settling = rates.settled()
-    if c > 0 and settling > 0 and _grows(rates, c, s):
+    if c > 0 and settling > 0 and _rate(rates, c, s) > 0 and rates.normal_force(c, s) > least:
         return _Growth(rates.direction(c, s), _rate(rates, c, s), settling)
     for rate, (c, s) in onset(rates.along):
-        if rates.normal_force(c, s) > 0:
+        if rates.normal_force(c, s) > least:
             return _Growth(rates.direction(c, s), rate, 0.0)
     return None
 
@@ -140,10 +138,6 @@ def _growth(system: RollingSystem, at: Touch) -> _Growth | None:
 def _rate(rates: SlipRates, c: float, s: float) -> float:
     first, second = rates.along(c, s)
     return float(c * first + s * second)
-
-
-def _grows(rates: SlipRates, c: float, s: float) -> bool:
-    return _rate(rates, c, s) > 0 and rates.normal_force(c, s) > 0
 
 
 def _holds(system: RollingSystem, at: Touch) -> bool:

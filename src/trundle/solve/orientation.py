@@ -83,7 +83,7 @@ def orientation(
     edges = _edges(start_time, float(times[-1]), np.asarray(kinks, dtype=float))
     panels = _panels_needed(angular_velocity, edges)
     upto = np.cumsum(panels)
-    result = np.empty((2, times.size), dtype=complex)
+    result = np.empty((times.size, 4))
     q, done = _paired(start), 0
     for first in range(0, int(upto[-1]), _AT_ONCE // _PANEL):
         index = np.arange(first, min(first + _AT_ONCE // _PANEL, int(upto[-1])))
@@ -94,9 +94,9 @@ def orientation(
         end = times.size if index[-1] == upto[-1] - 1 else int(np.searchsorted(times, course.end, side="right"))
         for begin in range(done, end, _AT_ONCE):
             part = slice(begin, min(begin + _AT_ONCE, end))
-            result[:, part] = course.at(times[part])
+            result[part] = _unit(course.at(times[part]))
         q, done = course.last, max(done, end)
-    return _unit(result)
+    return result
 
 
 def _edges(begin: float, end: float, kinks: Array) -> Array:
@@ -376,10 +376,14 @@ def periodic_orientation(
     turns -= _rest(elapsed, turns, monodromy) < 0  # the quotient was rounded up to a whole turn
     rest = np.clip(_rest(elapsed, turns, monodromy), 0.0, None)
     order = np.argsort(rest, kind="stable")
-    within = np.empty((2, rest.size), dtype=complex)
-    within[:, order] = orientation(angular_velocity, rest[order], (1.0, 0.0, 0.0, 0.0)).view(complex).T
-    w, x, y, z = monodromy.power(turns)
-    return _unit(_product(within, _product(np.stack([w + 1j * x, y + 1j * z]), _paired(start))))
+    result = np.empty((rest.size, 4))
+    result[order] = orientation(angular_velocity, rest[order], (1.0, 0.0, 0.0, 0.0))  # within a period
+    for first in range(0, rest.size, _AT_ONCE):
+        part = slice(first, first + _AT_ONCE)
+        w, x, y, z = monodromy.power(turns[part])
+        before = _product(np.stack([w + 1j * x, y + 1j * z]), _paired(start))
+        result[part] = _unit(_product(result[part].view(complex).T, before))
+    return result
 
 
 def _rest(elapsed: Array, turns: Array, monodromy: Monodromy) -> Array:

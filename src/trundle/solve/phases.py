@@ -6,9 +6,8 @@ the slip, the normal force, the friction cone.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from itertools import zip_longest
 from typing import Any, Protocol
 
 import numpy as np
@@ -20,10 +19,10 @@ from ..mechanics.system import RollingSystem, State
 from . import following
 from .following import Next, Stop
 from .laws import Law, RollingLaw
-from .samples import SLIPPING, Array, Event, Progress, Samples
+from .samples import AT_ONCE, SLIPPING, Array, Event, Progress, Recording, Samples
 
 _MOST_EVENTS = 10_000
-_AT_ONCE = 20  # events at one instant: more means that no phase goes on
+_AT_ONE_INSTANT = 20  # events: more means that no phase goes on
 _MANY, _MANY_WITHIN = 50, 1e-3  # events, and the share of the time in which the motion changes: no bounces are so close
 _ENDS = {
     "rim": "ran off the rim ({rim:g} m from the axis)",
@@ -46,17 +45,15 @@ class Known(Protocol):
 
 @dataclass(frozen=True)
 class Stretch:
-    """One law's part of a run: states at the times before its stop, if it came to one."""
+    """One law's part of a run, or a piece of it: states at the times before its stop, if it came to one."""
 
     times: Array
     states: Array
     stop: Stop | None
     known: Known | None = None  # what completes the states, if not the law
-    samples: Samples | None = None  # completed already
 
 
-Part = Samples | tuple[Law, Stretch]  # of a run: known, or to be completed
-Integrate = Callable[[RollingSystem, Next, Array, float, Progress | None], Stretch]
+Integrate = Callable[[RollingSystem, Next, Array, float, Progress | None], Iterator[Stretch]]
 
 
 def solve(
@@ -74,7 +71,7 @@ def solve(
     Parameters
     ----------
     integrate : callable
-        A method's way through one stretch.
+        A method's way through one stretch, in pieces: only the last may have a stop.
     system : RollingSystem
         Any system.
     start : State
@@ -99,75 +96,102 @@ def solve(
         If the method breaks down, or events follow each other without end.
     """
     events: list[Event] = []
-    parts: list[Part] = []
+    record = _Record(system, times.size + 1)  # an event that ends a run is sampled, too
     begin = _same if creeps else following.slipping
     now = begin(system, following.at_start(system, start))
     events += now.events
     left, told = times, _telling(progress, times)
     if now.time > start.time:  # it slips from rest: its first moment is behind it
         held = RollingLaw()
-        left = _across(system, held, Stop(start.time, "", np.array(held.pack(system, start))), now, left, parts)
+        left = _across(system, held, Stop(start.time, "", np.array(held.pack(system, start))), now, left, record)
     while True:
-        stretch = integrate(system, now, left, tolerance, told)
-        parts.append((now.law, stretch) if stretch.samples is None else stretch.samples)
-        if stretch.stop is None:
+        law, stop, taken = now.law, None, 0
+        for piece in integrate(system, now, left, tolerance, told):
+            record.take(law, piece)
+            stop, taken = piece.stop, taken + piece.times.size
+        if stop is None:
             break
-        stop, law = stretch.stop, now.law
         if stop.name in _ENDS or _spinning_on(system, law, stop):
             samples, event = _ended(system, law, stop)
-            parts.append(samples)
+            record.put(samples)
             events.append(event)
             break
         now = begin(system, _following(system, law, stop))
         events += now.events
         _check_count(system, events)
-        left = _across(system, law, stop, now, left[left >= stop.time], parts)
-    recorded = _recorded(system, parts)
-    kept = [part for part in recorded if part.time.size] or recorded[:1]
-    form = next((part.form for part in recorded if part.form is not None), None)
-    return replace(Samples.joined(kept, tuple(events)), form=form)
+        left = _across(system, law, stop, now, left[taken:], record)
+    return record.samples(tuple(events))
 
 
 def _same(system: RollingSystem, now: Next) -> Next:  # noqa: ARG001
     return now
 
 
-def _recorded(system: RollingSystem, parts: list[Part]) -> list[Samples]:
-    """Return all parts as samples; those that follow each other in one and the same way are completed together."""
-    found: list[Samples] = []
-    waiting: list[Stretch] = []
-    for part, ahead in zip_longest(parts, parts[1:]):
-        if isinstance(part, Samples):
-            found.append(part)
-            continue
-        waiting.append(part[1])
-        if isinstance(ahead, tuple) and _goes_on(part, ahead):
-            continue
-        found.append(_completed(system, part[0], waiting))
-        waiting = []
-    return found
+class _Record:
+    """The samples of a run as its pieces come in; small ones that go on in one and the same way are completed together.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        What moves.
+    most : int
+        How many samples there may be.
+    """
+
+    def __init__(self, system: RollingSystem, most: int) -> None:
+        self.system, self.recording, self.form = system, Recording(most), None
+        self.waiting: list[tuple[Law, Stretch]] = []
+        self.rows = 0  # of those that wait
+
+    def take(self, law: Law, piece: Stretch) -> None:
+        """Take a piece of a stretch, to be completed now or with those that follow."""
+        if self.waiting and not self._goes_on(law, piece):
+            self._complete()
+        self.waiting.append((law, piece))
+        self.rows += piece.times.size
+
+    def put(self, samples: Samples) -> None:
+        """Take samples that are complete."""
+        self._complete()
+        self.recording.add(samples)
+
+    def samples(self, events: tuple[Event, ...]) -> Samples:
+        """Return all of them."""
+        self._complete()
+        return self.recording.samples(events, self.form)
+
+    def _goes_on(self, law: Law, piece: Stretch) -> bool:
+        """Tell whether a piece can be completed with those that wait."""
+        before, last = self.waiting[-1]
+        if self.rows + piece.times.size > AT_ONCE:
+            return False
+        return law is before if last.known is None else last.known.goes_on(piece.known)
+
+    def _complete(self) -> None:
+        if not self.waiting:
+            return
+        law, (first, *others) = self.waiting[0][0], [piece for _, piece in self.waiting]
+        self.waiting, self.rows = [], 0
+        if first.known is not None:
+            samples = first.known.record(self.system, [first, *others])
+        elif others:
+            times = np.concatenate([first.times, *(one.times for one in others)])
+            states = np.concatenate([first.states, *(one.states for one in others)])
+            samples = law.record(self.system, times, states)
+        else:
+            samples = law.record(self.system, first.times, first.states)
+        self.form = samples.form if self.form is None else self.form
+        self.recording.add(samples)
 
 
-def _goes_on(part: tuple[Law, Stretch], ahead: tuple[Law, Stretch]) -> bool:
-    known = part[1].known
-    return part[0] is ahead[0] if known is None else known.goes_on(ahead[1].known)
-
-
-def _completed(system: RollingSystem, law: Law, stretches: list[Stretch]) -> Samples:
-    if stretches[0].known is not None:
-        return stretches[0].known.record(system, stretches)
-    times = np.concatenate([one.times for one in stretches])
-    return law.record(system, times, np.concatenate([one.states for one in stretches]))
-
-
-def _across(system: RollingSystem, law: Law, stop: Stop, follows: Next, left: Array, parts: list[Part]) -> Array:
+def _across(system: RollingSystem, law: Law, stop: Stop, follows: Next, left: Array, record: _Record) -> Array:
     """Add the samples in the short step across an event, and return the times after it."""
-    early = left[left < follows.time]
+    early, left = cut(left, follows.time)
     if early.size:
         steps = [law.advanced(system, stop.time, stop.numbers.tolist(), t - stop.time) for t in early.tolist()]
         samples = law.record(system, early, np.array(steps))
-        parts.append(_giving_way(system, samples, follows) if follows.law.code == SLIPPING else samples)
-    return left[early.size :]
+        record.put(_giving_way(system, samples, follows) if follows.law.code == SLIPPING else samples)
+    return left
 
 
 def _giving_way(system: RollingSystem, at: Samples, follows: Next) -> Samples:
@@ -216,8 +240,8 @@ def _check_count(system: RollingSystem, events: list[Event]) -> None:
             f"More than {_MOST_EVENTS} events by t = {events[-1].time:.9g} s: the contact chatters. Ask for a shorter "
             "run, or give the landing a smaller restitution."
         )
-    recent = events[-_AT_ONCE:]
-    if len(recent) == _AT_ONCE and recent[-1].time - recent[0].time <= 1e-14 * abs(recent[-1].time):
+    recent = events[-_AT_ONE_INSTANT:]
+    if len(recent) == _AT_ONE_INSTANT and recent[-1].time - recent[0].time <= 1e-14 * abs(recent[-1].time):
         kinds = ", ".join(dict.fromkeys(event.kind for event in recent))
         raise SolverError(
             f"No phase goes on at t = {recent[-1].time:.9g} s ({kinds}): rigid contact has no answer there. Change the "
@@ -235,29 +259,27 @@ def _check_count(system: RollingSystem, events: list[Event]) -> None:
         )
 
 
-def upto(stop: Stop, times: Array, states: Array) -> Stretch:
-    """Return a stretch up to its stop.
+def cut(times: Array, end: float) -> tuple[Array, Array]:
+    """Part ascending instants where something ends.
 
     Parameters
     ----------
     stop : Stop
         Where it ended.
     times : array (n,)
-        Those asked for, ascending, s.
-    states : array (m, ...)
-        At the first m of them; there may be more than come before the stop, since a method counts from an instant of
-        its own and rounding joins what lies close together.
+        Ascending, s.
+    end : float
+        s.
 
     Returns
     -------
-    Stretch
-        With the times before the stop.
+    before, after : array
+        Those before the end, and the others: views.
 
     Examples
     --------
-    >>> stop = Stop(1.5, "lift", np.ones(1))
-    >>> upto(stop, np.array([0.0, 1.0, 1.6, 2.0]), np.zeros((3, 1))).times.tolist()
-    [0.0, 1.0]
+    >>> [part.tolist() for part in cut(np.array([0.0, 1.0, 2.0]), 1.0)]
+    [[0.0], [1.0, 2.0]]
     """
-    before = times[times < stop.time]
-    return Stretch(before, states[: before.size], stop)
+    count = int(np.searchsorted(times, end))
+    return times[:count], times[count:]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -14,9 +14,9 @@ from ..mechanics.system import RollingSystem, State
 from . import phases
 from .following import Next, Stop
 from .patience import Patience
-from .phases import Stretch, upto
+from .phases import Stretch, cut
 from .roots import root
-from .samples import Array, Progress, Samples
+from .samples import AT_ONCE, Array, Progress, Samples
 from .tracing import python_law
 
 TOLERANCE = 1e-12
@@ -62,7 +62,7 @@ def solve(
 
 def integrate(
     system: RollingSystem, now: Next, times: Array, tolerance: float, progress: Progress | None = None
-) -> Stretch:
+) -> Iterator[Stretch]:
     """Follow one law to its first stop.
 
     Parameters
@@ -70,10 +70,10 @@ def integrate(
     system, now, times, tolerance, progress
         As for `trundle.solve.taylor.integrate`.
 
-    Returns
-    -------
+    Yields
+    ------
     Stretch
-        The states at the times before the stop.
+        The states at the times before the stop, a block after the other; the last comes with the stop.
 
     Raises
     ------
@@ -81,13 +81,19 @@ def integrate(
         If the integration breaks down.
     """
     # It counts from where the law begins to hold: far from 0 no step would be short enough.
-    found = _integrated(system, now, times - now.time, tolerance, progress)
-    if found.stop is None:
-        return replace(found, times=times)
-    return upto(replace(found.stop, time=now.time + found.stop.time), times, found.states)
+    for piece in _integrated(system, now, times - now.time, tolerance, progress):
+        here, times = times[: piece.times.size], times[piece.times.size :]
+        if piece.stop is None:
+            yield replace(piece, times=here)
+            continue
+        stop = replace(piece.stop, time=now.time + piece.stop.time)
+        before, _ = cut(here, stop.time)
+        yield Stretch(before, piece.states[: before.size], stop)
 
 
-def _integrated(system: RollingSystem, now: Next, times: Array, tolerance: float, progress: Progress | None) -> Stretch:
+def _integrated(
+    system: RollingSystem, now: Next, times: Array, tolerance: float, progress: Progress | None
+) -> Iterator[Stretch]:
     """Follow one law to its first stop; all times count from its beginning."""
     from scipy.integrate import DOP853, Radau
 
@@ -114,16 +120,17 @@ def _integrated(system: RollingSystem, now: Next, times: Array, tolerance: float
     try:
         given: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * _scale(y0)}
         if not law.stiff(y0):
-            return steps(DOP853(rates, 0.0, y0, end, **given), times=times)
+            yield from steps(DOP853(rates, 0.0, y0, end, **given), times=times)
+            return
         # Its first steps must be as short as the law is stiff: across a jump of direction there are other solutions.
         first = Radau(rates, 0.0, y0, end, first_step=min(_FIRST_STEP, end), **given)
-        begun = steps(first, times=times, until=lambda y: not law.stiff(y))
-        if begun.stop is None or begun.stop.name:
-            return begun
-        left, y0 = times[begun.times.size :], begun.stop.numbers
-        then = steps(DOP853(rates, begun.stop.time, y0, end, **given), times=left)
-        both = np.concatenate([begun.times, then.times]), np.concatenate([begun.states, then.states])
-        return Stretch(*both, then.stop)
+        for piece in steps(first, times=times, until=lambda y: not law.stiff(y)):
+            times, stop = times[piece.times.size :], piece.stop
+            if stop is None or stop.name:
+                yield piece
+                continue
+            yield Stretch(piece.times, piece.states, None)
+            yield from steps(DOP853(rates, stop.time, stop.numbers, end, **given), times=times)
     except (ZeroDivisionError, ValueError, OverflowError) as error:
         raise SolverError(f"The Runge-Kutta method broke down on the way to t = {begin + end:g} s: {error}.") from None
 
@@ -148,14 +155,13 @@ def _steps(
     times: Array,
     progress: Progress | None,
     until: Callable[[Array], bool] = lambda _: False,
-) -> Stretch:
+) -> Iterator[Stretch]:
     """Take steps to the end or the first stop; the states at the times are read off each step's own polynomial.
 
     Where `until` says so of a state, they end after the step, at a stop without a name.
     """
-    states = np.empty((times.size, stepper.n))
-    done = int(np.searchsorted(times, stepper.t, side="right"))
-    states[:done] = stepper.y
+    rows, y = _Rows(times, stepper.n), stepper.y
+    yield from rows.fill(int(np.searchsorted(times, stepper.t, side="right")), lambda t: np.tile(y[:, None], t.size))
     first = values = stops(stepper.t, stepper.y)
     while stepper.status == "running":
         message = stepper.step()
@@ -164,23 +170,46 @@ def _steps(
             near = _singular(names, values, first)
             if near is None:
                 raise SolverError(_broken(stepper, begin, message))
-            kept = times[:done] < stepper.t
-            return Stretch(times[:done][kept], states[:done][kept], Stop(float(stepper.t), near, stepper.y.copy()))
+            yield rows.rest(Stop(float(stepper.t), near, stepper.y.copy()), before=stepper.t)
+            return
         path = stepper.dense_output()
         found = _first_stop(path, stops, values)
         reach = stepper.t if found is None else found[0]
-        last = int(np.searchsorted(times, reach, side="right"))
-        if last > done:
-            states[done:last] = path(times[done:last]).T
-            done = last
+        upto = int(np.searchsorted(times, reach, side="right" if found is None else "left"))
+        yield from rows.fill(upto, path)
         if found is not None:
-            return Stretch(times[:done], states[:done], Stop(found[0], names[found[1]], path(found[0])))
-        if until(stepper.y) and done < times.size:
-            return Stretch(times[:done], states[:done], Stop(float(stepper.t), "", stepper.y.copy()))
+            yield rows.rest(Stop(found[0], names[found[1]], path(found[0])))
+            return
+        if until(stepper.y) and rows.done < times.size:
+            yield rows.rest(Stop(float(stepper.t), "", stepper.y.copy()))
+            return
         values = stops(stepper.t, stepper.y)
         if progress is not None:
             progress(float(stepper.t))
-    return Stretch(times[:done], states[:done], None)
+    yield rows.rest(None)
+
+
+class _Rows:
+    """The states at some times, filled in as the steps pass them, and given on in blocks."""
+
+    def __init__(self, times: Array, size: int) -> None:
+        self.times, self.begun, self.done = times, 0, 0
+        self.states = np.empty((min(times.size, AT_ONCE), size))
+
+    def fill(self, upto: int, path: Callable[[Array], Array]) -> Iterator[Stretch]:
+        """Fill in the states up to a row, and yield each block that is full."""
+        while self.done < upto:
+            if self.done - self.begun == len(self.states):
+                yield self.rest(None)
+                self.begun, self.states = self.done, np.empty_like(self.states)
+            some = min(upto, self.begun + len(self.states))
+            self.states[self.done - self.begun : some - self.begun] = path(self.times[self.done : some]).T
+            self.done = some
+
+    def rest(self, stop: Stop | None, before: float = np.inf) -> Stretch:
+        """Return what has not been given on: the last row is always in it."""
+        times, _ = cut(self.times[self.begun : self.done], before)
+        return Stretch(times, self.states[: times.size], stop)
 
 
 def _singular(names: list[str], values: Array, first: Array) -> str | None:

@@ -20,6 +20,7 @@ from ..mechanics.system import RollingSystem, State
 
 Array = NDArray[np.float64]
 Progress = Callable[[float], None]  # told the fraction done, 0 to 1
+AT_ONCE = 50_000  # samples that are worked on together, lest what is worked out on the way outgrow the result
 
 
 ROLLING, SLIPPING, FLIGHT, RESTING = range(4)  # phases of the contact
@@ -105,6 +106,7 @@ class Samples:
     events: tuple[Event, ...] = ()
     phase: Any = None  # (n,) int8: ROLLING, SLIPPING, FLIGHT or RESTING; absent: rolling
     own: Any = None  # (n, k): the coordinates of the support's own motion; absent: none
+    slip_velocity: Any = None  # (n, 3): as a dataset holds it; absent: what V, Ω and the support make of it
     form: Any = None  # the closed form of the phase in which they start, where they come from one
 
     def __post_init__(self) -> None:
@@ -155,7 +157,14 @@ class Samples:
 
     def part(self, where: Any) -> Samples:
         """Return some of the samples, chosen as an array is indexed."""
-        return replace(self, **{name: getattr(self, name)[where] for name in _columns()})
+        slips = None if self.slip_velocity is None else self.slip_velocity[where]
+        return replace(self, **{name: getattr(self, name)[where] for name in _columns()}, slip_velocity=slips)
+
+    def blocks(self) -> Iterator[tuple[slice, Samples]]:
+        """Yield all samples, `AT_ONCE` of them at a time, and where these stand."""
+        for first in range(0, self.time.size, AT_ONCE):
+            where = slice(first, min(first + AT_ONCE, self.time.size))
+            yield where, self.part(where)
 
     def state(self, index: int) -> State:
         """Return one sample as a state to start from."""
@@ -173,6 +182,46 @@ class Samples:
         )
 
 
+class Recording:
+    """Samples in the making: one array for each column, long enough for all of a run, and filled from the front.
+
+    Parameters
+    ----------
+    most : int
+        How many samples there may be.
+
+    Examples
+    --------
+    >>> still = Samples(np.zeros(1), *[np.zeros((1, 3))] * 4, np.array([[1.0, 0, 0, 0]]), np.zeros((1, 3)))
+    >>> recording = Recording(5)
+    >>> recording.add(still)
+    >>> recording.add(still)
+    >>> recording.samples().position.shape
+    (2, 3)
+    """
+
+    def __init__(self, most: int) -> None:
+        self.most, self.count = most, 0
+        self._arrays: dict[str, Any] = {}
+
+    def add(self, part: Samples) -> None:
+        """Put samples behind those that are there."""
+        upto = self.count + part.time.size
+        for name in _columns():
+            column = getattr(part, name)
+            if name not in self._arrays:
+                self._arrays[name] = np.empty((self.most, *column.shape[1:]), column.dtype)
+            self._arrays[name][self.count : upto] = column
+        self.count = upto
+
+    def samples(self, events: tuple[Event, ...] = (), form: Any = None) -> Samples:
+        """Return what was added; where it is little, without the room that was kept for more."""
+        kept = {name: array[: self.count] for name, array in self._arrays.items()}
+        if self.count < self.most // 2:
+            kept = {name: array.copy() for name, array in kept.items()}
+        return Samples(**kept, events=events, form=form)
+
+
 @cache
 def _columns() -> tuple[str, ...]:
-    return tuple(field.name for field in fields(Samples) if field.name not in ("events", "form"))
+    return tuple(field.name for field in fields(Samples) if field.name not in ("events", "slip_velocity", "form"))

@@ -13,7 +13,7 @@ from ..mechanics import checks
 from ..mechanics.system import RollingSystem, State
 from .touch import moment
 
-MOST_SAMPLES = 10_000_000  # 1.7 GB of results
+MOST_SAMPLES = 10_000_000  # 1.9 GB of results
 # How far apart two floats may be at the start of a run, as a share of the step, and of a time in which it changes.
 _COARSEST_OF_STEP, _COARSEST_OF_MOMENT = 1e-3, 1e-7
 
@@ -51,12 +51,11 @@ def check_sampling(duration: Any, every: Any, prefix: str = "") -> tuple[float, 
         )
     count = length / step + 1
     if count > MOST_SAMPLES:
-        least = _round_up(length / (MOST_SAMPLES - 1))
         raise InvalidValueError(
             f"{prefix}every",
             f"must leave at most {MOST_SAMPLES:,} samples",
             every,
-            f"It makes {_count(count)}; ask for {least:g} s or more, or a shorter duration.",
+            f"It makes {_count(count)}; {_longer(length, MOST_SAMPLES)}.",
         )
     return length, step
 
@@ -116,6 +115,33 @@ def check_clock(system: RollingSystem, start: State, step: float) -> None:
         rule = f"must be nearer to 0 for samples {step:g} s apart"
         remedy = f"Instants there are {apart:.1g} s apart. Let the run start nearer to 0, and shift its formulas in t."
         raise InvalidValueError("start.time", rule, start.time, remedy)
+
+
+def longer_step(times: NDArray[np.float64], most: int) -> str:
+    """Say which step leaves a run fewer samples.
+
+    Parameters
+    ----------
+    times : array (n,)
+        Of the run, s.
+    most : int
+        How many samples it may have.
+
+    Returns
+    -------
+    str
+        As the end of a sentence.
+
+    Examples
+    --------
+    >>> longer_step(np.linspace(0.0, 10.0, 1001), 101)
+    'ask for 0.1 s or more, or a shorter duration'
+    """
+    return _longer(float(times[-1] - times[0]), most)
+
+
+def _longer(length: float, most: int) -> str:
+    return f"ask for {_round_up(length / (most - 1)):g} s or more, or a shorter duration"
 
 
 def _round_up(value: float) -> float:

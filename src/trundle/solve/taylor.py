@@ -24,8 +24,8 @@ from .following import Next, Stop
 from .laws import Law
 from .lowering import Lowered, lower
 from .patience import Patience
-from .phases import Stretch, upto
-from .samples import Array, Progress, Samples
+from .phases import Stretch, cut
+from .samples import AT_ONCE, Array, Progress, Samples
 
 TOLERANCE = 1e-15
 _CHUNKS = 100  # of a run at most, between which progress is told and Ctrl-C is heard
@@ -95,7 +95,7 @@ def solve(
 
 def integrate(
     system: RollingSystem, now: Next, times: Array, tolerance: float, progress: Progress | None = None
-) -> Stretch:
+) -> Iterator[Stretch]:
     """Follow one law to its first stop.
 
     Parameters
@@ -111,10 +111,10 @@ def integrate(
     progress : callable, optional
         Told the time reached.
 
-    Returns
-    -------
+    Yields
+    ------
     Stretch
-        The states at the times before the stop.
+        The states at the times before the stop, a chunk after the other; the last comes with the stop.
 
     Raises
     ------
@@ -122,15 +122,18 @@ def integrate(
         If the integration breaks down.
     """
     if now.law.brief:
-        return runge_kutta.integrate(system, now, times, runge_kutta.FINEST, progress)
+        yield from runge_kutta.integrate(system, now, times, runge_kutta.FINEST, progress)
+        return
     lowered, key = _ready(system, now.law, tolerance)
     with _borrowed(lowered, key, tolerance) as integrator:
         run = _Run(integrator, lowered, [*numbers(system), *now.extras], now.time, now.numbers)
-        states, reached = _propagate(run, times, progress)
-        if reached is None:
-            return Stretch(times, states, None)
-        stop = Stop(run.time, lowered.stops[reached], integrator.state.copy())
-    return upto(stop, times, states)
+        for chunk, states, reached in _propagate(run, times, progress):
+            if reached is None:
+                yield Stretch(chunk, states, None)
+                continue
+            stop = Stop(run.time, lowered.stops[reached], integrator.state.copy())
+            kept, _ = cut(chunk, stop.time)
+            yield Stretch(kept, states[: kept.size], stop)
 
 
 def compiled(system: RollingSystem, law: Law, tolerance: float = TOLERANCE) -> tuple[Any, Lowered]:
@@ -250,31 +253,34 @@ class _Run:
         self.integrator.pars[:] = self.values[: self.lowered.parameters]
 
 
-def _propagate(run: _Run, times: Array, progress: Progress | None) -> tuple[Array, int | None]:
-    """Return the states at the times, and which terminal event came first if one did."""
-    parts: list[Array] = [np.empty((0, run.integrator.state.size))]
+def _propagate(run: _Run, times: Array, progress: Progress | None) -> Iterator[tuple[Array, Array, int | None]]:
+    """Yield the times and the states there, a chunk after the other, and last which terminal event came, if one did."""
     run.patience = Patience(run.time, float(times[-1]) if times.size else run.time, **_PATIENCE)
     for chunk in _chunks(times):
         while run.reference < chunk[0]:  # also where rounding does not tell the two instants apart: it must begin there
             until = min(float(chunk[0]), run.reference + _LONGEST)
             ended = run.go_to(until - run.reference)
             if ended is not None:
-                return np.vstack(parts), ended
+                yield chunk[:0], np.empty((0, run.integrator.state.size)), ended
+                return
             run.tidy(until)
         # Counted from the reference, two instants may be one: what is left of a difference is rounded.
         since, which = np.unique(chunk - run.reference, return_inverse=True)
         states, ended = run.go_through(since)
-        parts.append(states[which[which < len(states)]])
+        which = which[which < len(states)]
+        yield chunk[: which.size], states[which], ended
         if ended is not None:
-            return np.vstack(parts), ended
+            return
         if progress is not None:
             progress(float(chunk[-1]))
-    return np.vstack(parts), None
 
 
-def _chunks(times: Array, most: int = _CHUNKS) -> Iterator[Array]:
-    """Part the instants so that none is long after the first of its part."""
-    count = min(most, max(1, times.size // _LEAST_CHUNK))
+def _chunks(times: Array, most: int = _CHUNKS, size: int = AT_ONCE) -> Iterator[Array]:
+    """Part the instants, where it can be into no more parts than `most`, so that none is long after its part's first.
+
+    No part has more than `size`.
+    """
+    count = max(min(most, max(1, times.size // _LEAST_CHUNK)), -(-times.size // size))
     edges = np.arange(count + 1) * times.size // count
     for first, last in itertools.pairwise(edges.tolist()):
         part = times[first:last]

@@ -9,6 +9,7 @@ from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import Contact, settle, touch
 from ..mechanics.system import RollingSystem, State
 
+WEIGHTLESS = 1e-13  # share of the forces at hand below which nothing presses the body on
 _STILL = 1e-12  # share of the speeds at the contact at which slip or turning has all but ended
 
 
@@ -78,6 +79,10 @@ class Touch:
         support, p = self.contact.support, self.contact.point
         pull = max(pull, support.material_acceleration(p, support.material_velocity(p)).norm())
         return max(self.speed, math.sqrt(pull * self.arm), 1e-30)
+
+    def forces(self, system: RollingSystem) -> float:
+        """Return the size of the forces in this motion, N."""
+        return float(system.body.mass) * self.scale(system) ** 2 / self.arm
 
     def still(self, system: RollingSystem) -> float:
         """Return the speed at which slip has all but ended, m/s."""

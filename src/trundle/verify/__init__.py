@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,19 +16,19 @@ from ..mechanics.system import RollingSystem, State
 from ..solve.exact import ClosedForm, SphereOnPlane, closed_form
 from ..solve.methods import Method
 from ..solve.samples import FLIGHT, ROLLING, SLIPPING, Samples
-from .bounds import EXACT, SOLVER, Array, bound_of, speed_of, turned_in
+from .again import Again
+from .bounds import EXACT, SOLVER, Array, bound_of, turned_in
 from .card import Card, CardFigure, checked
 from .circle import measure
 from .compared import cross_check, same_again
+from .each_sample import EachSample
 from .energy import balance
-from .friction import contact_force, friction_law
-from .law import residuals
+from .events import AtEvents
+from .friction import contact_force, friction_law, looked_into
+from .landings import Landing, landing_figures, landings_of
 from .plane import reactions, straightness
-from .stretches import Stretch, stretches
 
 _MOST_SAMPLES = 20_000  # looked at for integrals
-_RUN_AGAIN = 2000  # samples
-_MOST_STRETCHES = 200  # looked at
 _EVENTS_TOLD = 4
 _MEANWHILE = {"rolling": "while it rolls", "slipping": "while it slips", "flight": "in flight"}
 _FITTED, _CIRCLES_FITTED = 2000, 20  # points and, where they are taken anew, circles
@@ -66,16 +67,22 @@ def card(system: RollingSystem, start: State, samples: Samples, method: Method, 
     some = samples.part(slice(None, None, every)) if every > 1 else samples
     rolls = bool((samples.phase == ROLLING).all()) and all(event.final for event in samples.events)
     bound = bound_of(method, turned_in(some))
+    again, landings = Again(system, start, some, method), landings_of(system, samples.events)
     figures = [
-        *_no_slip(system, some, method),
+        *again.figures(),
+        *EachSample(system, some, bound).figures(),
         *(straightness(system, some, bound) if rolls else ()),
-        *_law(system, start, some, method),
+        *_friction(system, some, bound),
+        *_balance(again, landings, bound),
         *(reactions(system, some, bound) if rolls else ()),
         *_integrals(system, some, method),
         *(_guiding_centre(motion, start, some, method) if rolls else ()),
+        *same_again(system, start, again.sampled, again.samples, method),
         *cross_check(system, start, some, method, motion),
         *(_circle(system, motion, start, samples, method) if rolls else ()),
-        *contact_force(system, samples),
+        *contact_force(system, samples, looked_into(system, again.samples, again.follow)),
+        *landing_figures(landings),
+        *AtEvents(system, again.samples, bound).figures(),
         *_events(samples),
     ]
     return Card(title, _described(method, motion), tuple(figures))
@@ -98,58 +105,31 @@ def _described(method: Method, motion: ClosedForm | None) -> str:
     return f"{name}, tolerance {method.tolerance:g}"
 
 
-def _no_slip(system: RollingSystem, at: Samples, method: Method) -> Iterator[CardFigure]:
-    rolling = at.part(at.phase == ROLLING)
-    if rolling.time.size:
-        V, turning, u = rolling.speeds(system)
-        slip, size = (V + turning - u).norm(), max(speed_of(system, rolling), 1e-300)
-        while_ = "" if rolling.time.size == at.time.size else ", while it rolls"
-        note = f"|V + Ω×ρ − u| over the speed{while_}"
-        yield checked("no slip", float(np.max(slip)) / size, bound_of(method), note)
+def _friction(system: RollingSystem, at: Samples, bound: float) -> Iterator[CardFigure]:
+    """Check the law of friction where it slips."""
     slipping = at.part(at.phase == SLIPPING)
     if slipping.time.size:
-        yield friction_law(system, slipping, bound_of(method, turned_in(at)))
+        yield friction_law(system, slipping, bound)
 
 
-def _law(system: RollingSystem, start: State, at: Samples, method: Method) -> Iterator[CardFigure]:
-    found = stretches(system, start.time, at)
-    total = sum(stretch.length for stretch in found)
-    windows = np.vstack([stretch.windows(stretch.length / total) for stretch in found[:_MOST_STRETCHES]])
-    sampled = at.part(slice(None, None, max(1, at.time.size // _RUN_AGAIN)))
-    every = [windows.ravel(), sampled.time, np.array([start.time, at.time[-1]])]
-    again = method.solve(system, start, np.unique(np.concatenate(every)))
-    yield same_again(system, start, sampled, again, method)
-    looked_at = again.part(_places(again.time, windows.ravel()))
-    law = residuals(system, looked_at, windows)
-    # A slope taken over a third of a radian of turning multiplies a method's own error by some tens.
-    bound = max(EXACT * 10, 100 * SOLVER * method.tolerance)
-    count = len(windows)
-    yield checked("velocity is the slope of the path", law.path, bound, f"at {count} instants, share of the speed")
-    yield checked("law of motion", law.law, bound, "Newton, Euler and the constraint as one 9×9 system; T2 not used")
-    if (looked_at.phase == ROLLING).any():
-        note = "over the admissible velocities (d'Alembert)"
-        yield checked("virtual power of the reaction", law.virtual_power, bound, note)
-    if _wants_balance(system, at, found):
-        ends = again.part(_places(again.time, np.array([start.time, at.time[-1]])))
-
-        def follow(times: Array) -> Samples:
-            there = method.solve(system, start, np.unique(times))
-            return there.part(_places(there.time, times))
-
-        panels = np.vstack([stretch.panels() for stretch in found])
-        yield balance(system, ends, panels, follow, at.events, bound_of(method, turned_in(at)))
-
-
-def _places(times: Array, wanted: Array) -> Any:
-    """Return where instants stand among ascending times, the last one for what a run's end left out."""
-    return np.minimum(np.searchsorted(times, wanted), times.size - 1)
-
-
-def _wants_balance(system: RollingSystem, at: Samples, found: list[Stretch]) -> bool:
-    """Tell whether the energy is to be balanced: where no integral says the same, and the run can be followed."""
+def _balance(again: Again, landings: list[Landing], bound: float) -> Iterator[CardFigure]:
+    """Balance the energy where no integral says the same, and the run can be followed."""
+    system, at = again.system, again.at
     kept = any(integral.name in ("energy", "moving energy") for integral in invariants_of(system))
     plain = kept and not any(not event.final for event in at.events)
-    return not plain and len(found) <= _MOST_STRETCHES and all(stretch.resolved for stretch in found)
+    if plain or not again.can_be_followed:
+        return
+    ends = again.places(np.array([again.start.time, at.time[-1]]))
+    ends = Samples.joined([_before(again.start, ends.part(slice(0, 1))), ends.part(slice(1, 2))])
+    panels = np.vstack([stretch.panels() for stretch in again.stretches])
+    yield balance(system, ends, panels, again.follow, sum(landing.work for landing in landings), bound)
+
+
+def _before(start: State, at: Samples) -> Samples:
+    """Return the first sample as the run was started: it may have landed since, at the same instant."""
+    names = ("position", "velocity", "angular_velocity", "orientation")
+    given: dict[str, Any] = {name: np.array([getattr(start, name)], dtype=float) for name in names}
+    return replace(at, **given, own=np.array([start.support], dtype=float))
 
 
 def _integrals(system: RollingSystem, at: Samples, method: Method) -> Iterator[CardFigure]:
@@ -248,17 +228,23 @@ def _even_path(
     system: RollingSystem, start: State, samples: Samples, method: Method, kappa: float
 ) -> tuple[Array, NDArray[np.complex128]]:
     """Return times and path for a fit: the samples at an even step, or new ones where they are too far apart."""
-    t = samples.time - start.time
-    even = np.allclose(np.diff(t[:-1]), t[1] - t[0], rtol=1e-6)  # the last may be the run's end
-    if t.size > 2 and t[-1] - t[-2] < 0.999 * (t[1] - t[0]):
-        t = t[:-1]
-    if t.size < 32 or not even or (t[1] - t[0]) * kappa > 1:
-        t = np.linspace(0.0, min(float(samples.time[-1] - start.time), _CIRCLES_FITTED * 2 * math.pi / kappa), _FITTED)
-        samples = method.solve(system, start, start.time + t)
-        t = samples.time - start.time
-    stride = max(1, int(0.5 / (kappa * (t[1] - t[0]))), t.size // _FITTED // 100)
-    keep = slice(0, stride * _FITTED, stride)
-    return t[keep], samples.position[keep, 0] + 1j * samples.position[keep, 1]
+    t = samples.time
+    step = float(t[1] - t[0])
+    count = t.size - bool(t.size > 2 and t[-1] - t[-2] < 0.999 * step)  # the last may be the run's end
+    keep = _fitted(count, step * kappa)
+    even = step > 0 and np.allclose(np.diff(t[keep]), keep.step * step, rtol=1e-6)
+    if count < 32 or not even or step * kappa > 1:
+        span = min(float(t[-1] - start.time), _CIRCLES_FITTED * 2 * math.pi / kappa)
+        samples = method.solve(system, start, start.time + np.linspace(0.0, span, _FITTED))
+        keep = _fitted(samples.time.size, float(samples.time[1] - samples.time[0]) * kappa)
+    place = samples.position[keep]
+    return samples.time[keep] - start.time, place[:, 0] + 1j * place[:, 1]
+
+
+def _fitted(count: int, turned: float) -> slice:
+    """Return which of many points to fit, given how far the circle turns from one to the next."""
+    stride = max(1, int(0.5 / turned) if turned > 0 else 1, count // _FITTED // 100)
+    return slice(0, min(count, stride * _FITTED), stride)
 
 
 def _pair(value: complex, unit: str) -> str:

@@ -38,10 +38,16 @@ def speed_of(system: RollingSystem, at: Samples) -> float:
 
 
 def sizes_of(system: RollingSystem, at: Samples) -> dict[str, float]:
-    """Return against what a difference of position, velocity and Ω is small or not."""
+    """Return against what a difference of position, velocity, Ω and contact force is small or not.
+
+    The contact force may be the small difference of what turns the body's centre and its contact, and of the loads.
+    """
     arm, turning = largest(at.contact - at.position), largest(at.angular_velocity)
     fastest = max(speed_of(system, at), arm * turning)
-    return {"position": largest(at.position), "velocity": fastest, "angular_velocity": fastest / arm}
+    loads = np.broadcast_to(system.loads_on(at.motion(system))[0].array(), at.position.shape)
+    force = max(largest(at.contact_force), float(system.body.mass) * turning * fastest, largest(loads))
+    sizes = {"position": largest(at.position), "velocity": fastest, "angular_velocity": fastest / arm}
+    return sizes | {"contact_force": force}
 
 
 def pace_of(system: RollingSystem, at: Samples) -> float:

@@ -3,27 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..errors import OutOfDomainError
-from ..mechanics.algebra import E_X, E_Z, Quaternion, Vector
-from ..mechanics.contact import settle
 from ..mechanics.system import RollingSystem, State
 from ..solve.exact import ClosedForm
 from ..solve.methods import Method
-from ..solve.samples import Samples
-from .bounds import EXACT, SOLVER, bound_of, largest, sizes_of, turned_in
+from ..solve.samples import Event, Samples
+from .bounds import EXACT, Array, bound_of, largest, sizes_of, turned_in
 from .card import CardFigure, checked
+from .growth import MOST, Growth, alike, at_the_same_times, growth, numerical, parted, same_events
 
 _INSTANTS = 200
 _MOST_RADIANS = 50_000.0  # of turning that a cross-check follows
-_NUDGE = 1e-10  # of the largest Ω: small beside a motion that magnifies it a billionfold, large beside rounding
-_A_STEP = 10.0  # times its tolerance that a method may err in a step
 
 
-def same_again(system: RollingSystem, start: State, ours: Samples, again: Samples, method: Method) -> CardFigure:
+def same_again(
+    system: RollingSystem, start: State, ours: Samples, again: Samples, method: Method
+) -> Iterator[CardFigure]:
     """Compare samples with the same method run again: then what is checked of that run holds for them.
 
     Parameters
@@ -37,24 +38,21 @@ def same_again(system: RollingSystem, start: State, ours: Samples, again: Sample
     method : Method
         Of both.
 
-    Returns
-    -------
+    Yields
+    ------
     CardFigure
-        The largest difference, as a share.
+        The largest difference, as a share; and the samples whose phase is another.
     """
-    theirs = again.part(np.clip(np.searchsorted(again.time, ours.time), 0, again.time.size - 1))
-    known = theirs.time == ours.time
-    ours, theirs = ours.part(known), theirs.part(known)
+    ours, theirs = at_the_same_times(ours, again)
     turned, sizes = turned_in(ours), sizes_of(system, ours)
-    sizes |= {"contact": sizes["position"], "contact_force": largest(ours.contact_force)}
-    side = np.sign((ours.orientation * theirs.orientation).sum(axis=1, keepdims=True))  # q and −q are one rotation
-    angle = largest(ours.orientation - side * theirs.orientation)
-    rounding = max(EXACT, 1e-15 * turned, 100 * method.tolerance * turned)  # of an angle, which adds up
-    bound = bound_of(method, turned)
-    share = max(_difference(ours, theirs, sizes), angle * bound / rounding)
-    bound, grown = _allowing_growth(share, bound, system, start, ours, method, sizes)
-    note = f"gives the same motion, force and orientation at {known.sum()} instants{grown}"
-    return checked("the method run again", share, bound, note)
+    sizes |= {"contact": sizes["position"]}
+    both = Compared(system, start, ours, theirs, method, sizes, turned)
+    turned_apart = both.turns * both.bound / both.angle_bound
+    said = f"gives the same motion, force, orientation and events at {ours.time.size} instants"
+    yield both.figure("the method run again", np.maximum(both.share, turned_apart), both.bound, said)
+    other = int(((ours.phase != theirs.phase) & both.alike).sum())
+    if ours.events or other or (ours.phase != ours.phase[0]).any():
+        yield checked("phase", other, 0, "samples in another phase than the method run again has")
 
 
 def cross_check(
@@ -76,91 +74,172 @@ def cross_check(
     """
     if motion is None:
         return
-    from ..solve.taylor import available
-
-    closed = method.name == "exact"
-    other = Method.of(("taylor" if available() else "runge-kutta") if closed else "exact")
-    numerical = other if closed else method
+    other = numerical(method) if method.name == "exact" else Method.of("exact")
+    finer = numerical(method)
     span, speed = float(at.time[-1] - start.time), largest(at.angular_velocity)
     times = start.time + np.linspace(0.0, min(span, _MOST_RADIANS / max(speed, 1e-300)), _INSTANTS)
+    ours = method.solve(system, start, times)
     try:
+        theirs = other.solve(system, start, times)
+    except OutOfDomainError:  # the run comes into a phase that no closed form covers: up to there
+        times = times[times < min((event.time for event in ours.events), default=times[-1])]
+        if not times.size:
+            return
         ours, theirs = (one.solve(system, start, times) for one in (method, other))
-    except OutOfDomainError:  # the run comes into a phase that no closed form covers
-        return
-    count = min(theirs.time.size, ours.time.size)  # one may reach the rim first, by a rounding
-    ours, theirs = ours.part(slice(0, count)), theirs.part(slice(0, count))
+    ours, theirs = at_the_same_times(ours, theirs)
     turned = speed * float(ours.time[-1] - start.time)
-    name = f"closed form against {'Taylor' if numerical.name == 'taylor' else 'Runge-Kutta'}"
-    difference, bound = _difference(ours, theirs, sizes_of(system, ours)), bound_of(numerical, turned)
-    turn = Quaternion.of(ours.orientation) * Quaternion.of(theirs.orientation).conjugate
-    angle = 2 * largest(turn.array()[:, 1:])
-    allowed = 100 * numerical.tolerance * max(10.0, turned)  # the error of Ω added up over the turning
-    share = max(difference, angle * bound / allowed)
-    wider, grown = _allowing_growth(share, bound, system, start, ours, numerical, sizes_of(system, ours))
-    over = f"over {ours.time[-1] - start.time:g} s, {count} instants"
-    yield checked(name, difference, wider, f"position, velocity, Ω; {over}{grown}")
+    both = Compared(system, start, ours, theirs, finer, sizes_of(system, ours), turned)
+    name = f"closed form against {'Taylor' if finer.name == 'taylor' else 'Runge-Kutta'}"
+    over = f"over {ours.time[-1] - start.time:g} s, {ours.time.size} instants"
+    yield both.figure(name, both.share, both.bound, f"position, velocity, Ω, force, events; {over}")
     alone = "; exact from the place alone" if motion.straight_turn(0.0) is not None else ""
     note = f"angle between the two, after {turned:.3g} rad{alone}"
-    yield checked(f"{name}, orientation", angle, allowed * wider / bound, note, "rad")
+    allowed = 100 * finer.tolerance * max(10.0, turned)  # the error of Ω added up over the turning
+    yield both.figure(f"{name}, orientation", both.turns, allowed, note, "rad")
 
 
-def _difference(ours: Samples, theirs: Samples, sizes: dict[str, float]) -> float:
-    """Return the largest difference as a share of the quantity's size."""
-    return max(
-        largest(getattr(ours, field) - getattr(theirs, field)) / max(size, 1e-300) for field, size in sizes.items()
-    )
+@dataclass(frozen=True)
+class Compared:
+    """Two runs from one start at the same times.
 
-
-def _allowing_growth(
-    share: float,
-    bound: float,
-    system: RollingSystem,
-    start: State,
-    at: Samples,
-    method: Method,
-    sizes: dict[str, float],
-) -> tuple[float, str]:
-    """Widen a bound by what the motion itself does to a small difference, where the plain bound does not hold.
-
-    A numerical method errs a little at each step, about one a radian, and these errors add up as a random walk; then
-    the motion magnifies them. How much, a run from a start changed by a known little shows.
+    Parameters
+    ----------
+    system, start : RollingSystem, State
+        What moved, and from where.
+    ours, theirs : Samples
+        At the same times.
+    method : Method
+        The coarser of the two.
+    sizes : dict
+        Against what a difference of each quantity is small or not.
+    turned : float
+        By about how many radians the body turned.
     """
-    if share <= bound:
-        return bound, ""
-    magnified = _magnified(system, start, at, method, sizes)
-    wider = bound * max(1.0, _A_STEP * magnified * np.sqrt(max(turned_in(at), 1.0)) / SOLVER)
-    return (wider, f"; a change of the start shows {magnified:.2g} times larger") if wider > bound else (bound, "")
+
+    system: RollingSystem
+    start: State
+    ours: Samples
+    theirs: Samples
+    method: Method
+    sizes: dict[str, float]
+    turned: float
+
+    @property
+    def bound(self) -> float:
+        """The share that the method may be off; more than a hundredth says nothing."""
+        return min(bound_of(self.method, self.turned), MOST)
+
+    @property
+    def angle_bound(self) -> float:
+        """The angle that the method may be off, rad: rounding, and the error of Ω, add up over the turning."""
+        return max(EXACT, 1e-15 * self.turned, 100 * self.method.tolerance * self.turned)
+
+    @cached_property
+    def alike(self) -> NDArray[np.bool_]:
+        """Which samples can be compared: those between the same events."""
+        return alike(self.ours, self.theirs)
+
+    @cached_property
+    def share(self) -> Array:
+        """The difference at each sample, as a share."""
+        return np.where(self.alike, _difference(self.ours, self.theirs, self.sizes), 0.0)
+
+    @cached_property
+    def turns(self) -> Array:
+        """The largest of the angle between the orientations, rad, and the shares of the support's angle and rate."""
+        own = np.abs(self.ours.own - self.theirs.own)
+        own = own / np.maximum(np.abs(self.ours.own).max(axis=0, initial=0.0), 1e-300)
+        return np.maximum(self.angle, np.where(self.alike, own.max(axis=1, initial=0.0), 0.0))
+
+    @cached_property
+    def angle(self) -> Array:
+        """The angle between the orientations, rad, each with the sign that is continuous from the start on."""
+        ours, theirs = self.ours.orientation, self.theirs.orientation
+        side = np.sign(ours[0] @ theirs[0]) if len(ours) else 1.0
+        apart = 2 * np.linalg.norm(ours - side * theirs, axis=1)
+        return np.where(self.alike, apart, 0.0)
+
+    @cached_property
+    def growth(self) -> Growth:
+        """What the motion does to a small difference; worked out only where the plain bound does not hold."""
+        return growth(
+            self.system, self.start, self.ours, self.method, lambda one, two: _difference(one, two, self.sizes)
+        )
+
+    @cached_property
+    def _shifts(self) -> Array:
+        """How far events of the same kinds are apart: their times as a share of the run, their states of the sizes."""
+        count = same_events(self.ours.events, self.theirs.events)
+        pairs = zip(self.ours.events[:count], self.theirs.events, strict=False)
+        span = max(float(self.ours.time[-1] - self.start.time), 1e-300)
+        return np.array([max(abs(mine.time - other.time) / span, self._apart(mine, other)) for mine, other in pairs])
+
+    def _apart(self, mine: Event, other: Event) -> float:
+        """Return how far the states at an event differ, as a share."""
+        pairs = [(mine.before, other.before), (mine.after, other.after)]
+        moved = np.subtract(mine.contact or other.contact or 0.0, other.contact or mine.contact or 0.0)
+        sizes = {field: self.sizes[field] for field in ("position", "velocity", "angular_velocity")}
+        apart = [
+            float(np.linalg.norm(np.subtract(getattr(one, field), getattr(its, field)))) / max(size, 1e-300)
+            for one, its in pairs
+            if one is not None and its is not None
+            for field, size in {**sizes, "orientation": self.angle_bound / self.bound}.items()
+        ]
+        return max(float(np.linalg.norm(moved)) / max(sizes["position"], 1e-300), *apart)
+
+    def figure(self, name: str, share: Array, bound: float, said: str, unit: str = "") -> CardFigure:
+        """Return the figure of a difference: where a plain bound does not hold, with what the motion magnifies.
+
+        Parameters
+        ----------
+        name, said, unit
+            Of the figure.
+        share : array (n,)
+            At each sample.
+        bound : float
+            How much it may be while nothing is magnified.
+
+        Returns
+        -------
+        CardFigure
+            Of the instant that is farthest from its bound, among those of which anything can be told; without a
+            verdict where that is none.
+        """
+        parts = parted(self.ours, self.theirs)
+        plain = max(float(np.max(share, initial=0.0)), float(np.max(self._shifts, initial=0.0)) * bound / self.bound)
+        if plain <= bound and parts == np.inf:
+            return checked(name, plain, bound, said, unit)
+        grown = self.growth
+        until = grown.told_until(bound, self.turned)
+        events = np.array([event.time for event in self.ours.events[: self._shifts.size]])
+        told, known = self.ours.time <= until, events <= until
+        allowed = grown.widened(bound, self.turned, grown.at(self.ours.time))
+        later = np.pad(grown.shifted, (0, max(0, events.size - grown.shifted.size)))[: events.size]
+        later = np.maximum(later, grown.at(events))  # of the times and of the states
+        values = np.concatenate(
+            [share[told], self._shifts[known] * bound / self.bound, [np.inf] if parts <= until else []]
+        )
+        bounds = np.concatenate(
+            [allowed[told], grown.widened(bound, self.turned, later)[known], [bound] if parts <= until else []]
+        )
+        worst = int(np.argmax(values / bounds)) if values.size else 0
+        said += (
+            f"; a change of the start shows {grown.at(np.array([min(until, self.ours.time[-1])]))[0]:.2g} times larger"
+        )
+        if until < self.ours.time[-1]:
+            said += f"; nothing can be told beyond t = {until:.6g} s, where a rounding has grown too large"
+        if told.sum() < 2:
+            return CardFigure(name, float(np.max(share)), unit, note=f"{said}: no verdict")
+        return checked(name, float(values[worst]), float(bounds[worst]), said, unit)
 
 
-def _magnified(system: RollingSystem, start: State, at: Samples, method: Method, sizes: dict[str, float]) -> float:
-    """Return how many times larger than in Ω of the start a small change shows in the motion."""
-    span = float(at.time[-1] - at.time[0])
-    size = max(largest(at.angular_velocity), 1 / max(span, 1e-300))
-    times = np.union1d(at.time[:: max(1, at.time.size // _INSTANTS)], at.time[-1:])
-    starts = [start, *_nudged(system, start, _NUDGE * size)]
-    first, *others = (method.solve(system, begin, times) for begin in starts)
-    found = []
-    for other in others:
-        count = min(first.time.size, other.time.size)
-        one, changed = (run.part(slice(0, count)) for run in (first, other))
-        found.append(_difference(one, changed, sizes) / _NUDGE)
-    return max(found)
-
-
-def _nudged(system: RollingSystem, start: State, change: float) -> list[State]:
-    """Return starts that roll a little differently: along the axis of a cylinder, or else each way a body can turn."""
-    q, Omega = Quaternion(*start.orientation), Vector(*start.angular_velocity)
-    contact = settle(system, start.time, Vector(*start.position), q, start.support)
-    n, axis = contact.normal, system.body.shape.axis
-    first = n.cross(E_X if abs(n.x) < 0.9 else E_Z)
-    first = first / first.norm()
-    found = []
-    for way in (first, n.cross(first), n) if axis is None else (q.matrix() @ axis,):
-        turned = Omega + way * change
-        rolling = contact.rolling_velocity(turned)
-        (vx, vy, vz), (wx, wy, wz) = map(float, rolling), map(float, turned)
-        found.append(replace(start, velocity=(vx, vy, vz), angular_velocity=(wx, wy, wz)))
-    return found
+def _difference(ours: Samples, theirs: Samples, sizes: dict[str, float]) -> Array:
+    """Return the largest difference at each sample as a share of the quantity's size."""
+    shares = [
+        np.linalg.norm(getattr(ours, field) - getattr(theirs, field), axis=1) / max(size, 1e-300)
+        for field, size in sizes.items()
+    ]
+    return np.max(shares, axis=0)
 
 
 __all__ = ["cross_check", "same_again"]

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..mechanics.algebra import Vector
 from ..mechanics.loads import BodyMotion, Load
-from ..mechanics.system import RollingSystem, State
+from ..mechanics.system import RollingSystem
 from ..solve.samples import FLIGHT, Samples
 from .bounds import Array
 from .card import CardFigure, checked
@@ -115,31 +115,12 @@ def _integrals(system: RollingSystem, panels: Array, follow: Callable[[Array], S
     return total, size
 
 
-def _striking(events: tuple[Any, ...]) -> list[Any]:
-    return [event for event in events if event.before is not None and event.before != event.after]
-
-
-def _energy_of(system: RollingSystem, state: State) -> float:
-    row = np.array
-    at = Samples(
-        row([state.time]),
-        row([state.position]),
-        row([state.position]),
-        row([state.velocity]),
-        row([state.angular_velocity]),
-        row([state.orientation]),
-        np.zeros((1, 3)),
-        own=row([state.support]),
-    )
-    return float(energy(system, at)[0])
-
-
 def balance(
     system: RollingSystem,
     ends: Samples,
     panels: Array,
     follow: Callable[[Array], Samples],
-    events: tuple[Any, ...],
+    struck: float,
     bound: float,
 ) -> CardFigure:
     """Compare what the energy gained over a run with the work done.
@@ -154,8 +135,8 @@ def balance(
         Beginning and end of the panels of a quadrature, none of them across an event, s.
     follow : callable
         Takes ascending instants, returns the run's samples there.
-    events : tuple of Event
-        Of the run: what struck changed the energy at once.
+    struck : float
+        The work of the impulses at its landings, J.
     bound : float
         The share that may be left over.
 
@@ -166,7 +147,6 @@ def balance(
     """
     first, last = energy(system, ends)[[0, -1]]
     (friction, support, loads), size = _integrals(system, panels, follow)
-    struck = sum(_energy_of(system, event.after) - _energy_of(system, event.before) for event in _striking(events))
     size = max(abs(first), abs(last), abs(struck), size, 1e-300)
     parts = {"friction": friction, "the support": support, "loads": loads, "landings": struck}
     said = ", ".join(f"{name} {value:+.6g} J" for name, value in parts.items() if abs(value) > 1e-15 * size)

@@ -2,39 +2,106 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
 from ..mechanics.system import RollingSystem
-from ..solve.samples import FLIGHT, ROLLING, Samples
-from .bounds import Array, largest
+from ..solve.samples import FLIGHT, RESTING, ROLLING, Samples
+from .acting import acting
+from .bounds import Array, largest, sizes_of
 from .card import CardFigure, checked
+from .each_sample import Shares, worst_of
 
 _SLACK = 1e-8  # by which rolling may pass the cone before it gives way: what `CONE_SLACK` leaves, and rounding
+_LOOKS, _FINER, _MOST_DIPS, _CLOSE = 3, 14, 100, 1e-9  # how often, how finely and at how many dips it looks closer
+_PULLS = 2e-12  # share of the forces at hand by which the support seems to pull: what docs/phases.md leaves to rounding
+_FIRST = 1e-3  # how far the normal may turn in the first moment of slip
+_TOLD = 1e-2  # sharpness of a direction beyond which nothing is said of it
 
 
-def _parts(system: RollingSystem, at: Samples) -> tuple[Array, Array]:
-    """Return N and f of the contact force."""
+def normal_and_friction(system: RollingSystem, at: Samples) -> tuple[Array, Array]:
+    """Return N and f of the contact force.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        What moved.
+    at : Samples
+        Any n of a run.
+
+    Returns
+    -------
+    N, f : array
+        (n,) and (n, 3), N.
+    """
     normal = at.normals(system)
     N = np.einsum("ni,ni->n", at.contact_force, normal)
     return N, at.contact_force - N[:, None] * normal
 
 
-def contact_force(system: RollingSystem, samples: Samples) -> Iterator[CardFigure]:
+def looked_into(system: RollingSystem, at: Samples, follow: Callable[[Array], Samples]) -> Samples:
+    """Return samples with more of them where, between two, the support might pull or friction might not do.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        What moved.
+    at : Samples
+        Of a run, in any order.
+    follow : callable
+        Takes ascending instants, returns the run's samples there.
+
+    Returns
+    -------
+    Samples
+        The same where N and what is left of the friction cone hardly fall between samples.
+    """
+    at = at.part(np.unique(at.time, return_index=True)[1])
+    for _ in range(_LOOKS):
+        between = _dips(system, at)
+        if not between.size:
+            break
+        more = follow(np.unique(between))
+        at = Samples.joined([at, more])
+        at = at.part(np.unique(at.time, return_index=True)[1])
+    return at
+
+
+def _dips(system: RollingSystem, at: Samples) -> Array:
+    """Return instants around where N, or μN − |f|, is lowest and might fall below zero unseen."""
+    N, f = normal_and_friction(system, at)
+    holds = (at.phase == ROLLING) | (at.phase == RESTING)
+    watched = [(N, at.phase != FLIGHT)]
+    if system.support.friction is not None:
+        watched.append((float(system.support.friction) * N - np.linalg.norm(f, axis=1), holds))
+    found = [np.empty(0)]
+    for value, asked in watched:
+        left, here, right = value[:-2], value[1:-1], value[2:]
+        ours = asked[:-2] & asked[1:-1] & asked[2:] & (at.phase[:-2] == at.phase[2:])
+        # In between it may fall below zero, but hardly by more than it falls and rises from look to look.
+        may = ours & (here >= 0) & (here < left) & (here <= right) & (here < np.maximum(left, right) - here)
+        wide = at.time[2:] - at.time[:-2] > _CLOSE * np.abs(at.time[1:-1])
+        some = np.flatnonzero(may & wide)[:_MOST_DIPS]
+        found += [np.linspace(at.time[i], at.time[i + 2], _FINER + 2)[1:-1] for i in some]
+    return np.concatenate(found)
+
+
+def contact_force(system: RollingSystem, *parts: Samples) -> Iterator[CardFigure]:
     """Say what friction rolling needs, and whether the support pushes rather than pulls.
 
     Parameters
     ----------
     system : RollingSystem
         What moved.
-    samples : Samples
-        Of the run.
+    parts : Samples
+        Of the run, one or several.
 
     Yields
     ------
     CardFigure
-        Two, for the parts of the run in which the body touches, and rolls.
+        Two, for the parts of the run in which the body touches, and rolls; and one of a body at rest.
 
     Examples
     --------
@@ -42,29 +109,90 @@ def contact_force(system: RollingSystem, samples: Samples) -> Iterator[CardFigur
     >>> tr.Scenario.load("tilted-turntable").run().card()["normal force"].passed
     True
     """
-    touching = samples.part(samples.phase != FLIGHT)
-    if not touching.time.size:
-        return
-    N, f = _parts(system, touching)
-    least = int(np.argmin(N))
-    size = largest(touching.contact_force)
-    pushed = None if size == 0 else bool(N[least] >= -1e-12 * size)
+    least, needed, resisted = (math.inf, 0.0), (-1.0, 0.0), (-1.0, 0.0)  # what, and when
+    size = 0.0
+    for some in (some for part in parts for _, some in part.blocks()):
+        size = max(size, sizes_of(system, some)["contact_force"])
+        touching = some.part(some.phase != FLIGHT)
+        if not touching.time.size:
+            continue
+        N, f = normal_and_friction(system, touching)
+        least = min(least, _at(touching, N, int(np.argmin(N))))
+        rests = touching.phase == RESTING
+        share = np.where((touching.phase == ROLLING) | rests, _share(np.linalg.norm(f, axis=1), N), -1.0)
+        needed = max(needed, _at(touching, share, int(np.argmax(share))), key=lambda found: found[0])
+        if rests.any():
+            resisted = max(resisted, _lever(system, touching.part(rests)), key=lambda found: found[0])
+    if least[0] < math.inf:
+        yield _pushing(*least, size)
+    if needed[0] >= 0:
+        yield _holding(system, *needed)
+    if resisted[0] >= 0:
+        yield _resistance(system, *resisted)
+
+
+def _at(samples: Samples, values: Array, index: int) -> tuple[float, float]:
+    return float(values[index]), float(samples.time[index])
+
+
+def _share(f: Array, N: Array) -> Array:
+    """Return |f|/N, which is without bound where nothing presses the body on and something holds it."""
+    return np.where(N > 0, f / np.where(N > 0, N, 1.0), np.where(f > 0, np.inf, 0.0))
+
+
+def _pushing(least: float, time: float, size: float) -> CardFigure:
+    """Say whether the support pushed all the time, given the least N and the largest force."""
+    pushed = None if size == 0 else least >= -_PULLS * size
     held = "; a support cannot pull: it would come off" if pushed is False else ""
-    said = f"least, at t = {touching.time[least]:.6g} s{held}"
-    yield CardFigure("normal force", float(N[least]), "N", None, pushed, said)
-    rolls = touching.phase == ROLLING
-    if not rolls.any():
-        return
-    N, f_size, times = N[rolls], np.linalg.norm(f[rolls], axis=1), touching.time[rolls]
-    needed = np.where(N > 0, f_size / np.where(N > 0, N, 1.0), np.where(f_size > 0, np.inf, 0.0))
-    worst = int(np.argmax(needed))
-    mu, note = system.support.friction, f"max |f|/N, at t = {times[worst]:.6g} s"
+    return CardFigure("normal force", least, "N", None, pushed, f"least, at t = {time:.6g} s{held}")
+
+
+def _holding(system: RollingSystem, needed: float, time: float) -> CardFigure:
+    """Say whether friction sufficed for rolling and for rest, given the largest |f|/N."""
+    mu, note = system.support.friction, f"max |f|/N, at t = {time:.6g} s"
     if mu is None:
-        yield CardFigure("friction coefficient needed", float(needed[worst]), note=note)
-    else:
-        enough = bool(needed[worst] <= mu * (1 + _SLACK))
-        note += "" if enough else "; it would slip"
-        yield CardFigure("friction coefficient needed", float(needed[worst]), "", float(mu), enough, note)
+        return CardFigure("friction coefficient needed", needed, note=note)
+    enough = bool(needed <= mu * (1 + _SLACK))
+    note += "" if enough else "; it would slip"
+    return CardFigure("friction coefficient needed", needed, "", float(mu), enough, note)
+
+
+def _resistance(system: RollingSystem, needed: float, time: float) -> CardFigure:
+    """Say whether resistance to rolling sufficed for rest."""
+    most = float(sum(float(load.offset) for load in system.loads if load.stops))
+    note = f"couple over N of a body at rest, at t = {time:.6g} s"
+    return CardFigure("resistance needed", needed, "m", most, bool(needed <= most * (1 + _SLACK)), note)
+
+
+def _lever(system: RollingSystem, rests: Samples) -> tuple[float, float]:
+    """Return the largest lever of N that a body at rest needs, m, and when."""
+    couple, N = holding(system, rests)
+    needed = np.linalg.norm(couple, axis=1) / np.maximum(N, 1e-300)
+    return _at(rests, needed, int(np.argmax(needed)))
+
+
+def holding(system: RollingSystem, rests: Samples) -> tuple[Array, Array]:
+    """Return the couple along the support that rest takes, N m, and the normal force.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        What rests.
+    rests : Samples
+        At rest on the support, which carries the body along.
+
+    Returns
+    -------
+    couple, N : array
+        (n, 3) and (n,).
+    """
+    _, K, J, gyroscopic = acting(system, rests)
+    support, n = rests.support(system), rests.normals(system)
+    change = np.broadcast_to(support.angular_acceleration.array(), n.shape)
+    arm = rests.contact - rests.position
+    whole = np.einsum("nij,nj->ni", J, change) + gyroscopic - K - np.cross(arm, rests.contact_force)
+    N, _ = normal_and_friction(system, rests)
+    return whole - (whole * n).sum(axis=1, keepdims=True) * n, N
 
 
 def friction_law(system: RollingSystem, slipping: Samples, bound: float) -> CardFigure:
@@ -77,23 +205,33 @@ def friction_law(system: RollingSystem, slipping: Samples, bound: float) -> Card
     slipping : Samples
         Samples in which it slips.
     bound : float
-        The share of μN by which friction may be off.
+        The share of the contact force by which friction may be off.
 
     Returns
     -------
     CardFigure
-        The largest departure.
+        The largest departure, beside what is allowed there: V is the small difference that slip is made of, so that the
+        direction of a slow slip is only as sharp as that. How large friction is does not depend on it, but in the first
+        moment of slip, which has the direction of its end.
     """
-    N, f = _parts(system, slipping)
-    V, turning, u = slipping.speeds(system)
-    s = (V + turning - u).array()
-    speed = np.linalg.norm(s, axis=1)
-    mu = float(system.support.sliding_friction)
-    clear = speed > 1e-6 * max(float(speed.max()), 1e-300)  # of less, rounding decides the direction
-    off = f[clear] + mu * (N / np.where(speed > 0, speed, 1.0))[clear, None] * s[clear]
-    share = largest(off) / max(largest(slipping.contact_force), 1e-300) if clear.any() else 0.0
-    # V is the small difference that slip is made of: its direction is as sharp as that.
-    sharp = max(
-        1.0, float((np.max(V.norm()) + np.max(turning.norm())) / max(float(speed[clear].min(initial=1.0)), 1e-300))
-    )
-    return checked("friction while slipping", share, bound * sharp, f"f = −μ N ŝ, μ = {mu:g}")
+    support = system.support
+    coefficient = support.friction if support.kinetic_friction is None else support.kinetic_friction
+    if coefficient is None:
+        return checked("friction while slipping", np.inf, bound, "nothing limits its friction: it cannot slip")
+    mu = float(coefficient)
+    N, f = normal_and_friction(system, slipping)
+    V, turning, u = (np.broadcast_to(v.array(), f.shape) for v in slipping.speeds(system))
+    s = V + turning - u
+    speed, size = np.linalg.norm(s, axis=1), max(largest(slipping.contact_force), 1e-300)
+    at_contact = np.linalg.norm([V, turning, u], axis=2).sum(axis=0)
+    sharp = np.where(speed > 0, bound * (1 + at_contact / np.maximum(speed, 1e-300)), np.inf)
+    off = np.linalg.norm(f + mu * (N / np.maximum(speed, 1e-300))[:, None] * s, axis=1) / size
+    conditions = [
+        Shares(
+            "its size",
+            np.abs(np.linalg.norm(f, axis=1) - mu * np.abs(N)) / size,
+            np.where(sharp < _TOLD, bound, _FIRST),
+        ),
+        Shares("its direction", np.where(sharp < _TOLD, off, 0.0), sharp),
+    ]
+    return worst_of("friction while slipping", conditions, slipping.time, f"f = −μ N ŝ, μ = {mu:g}")

@@ -5,20 +5,24 @@ Rates come from the trajectory's own numbers: each is the slope at the middle of
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..mechanics.algebra import Quaternion, Vector
+from ..mechanics.contact import touch
 from ..mechanics.system import RollingSystem
-from ..solve.samples import RESTING, ROLLING, Samples
-
-Array = NDArray[np.float64]
+from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
+from .acting import acting, exerted, rotated
+from .bounds import Array, largest
 
 WINDOWS = 24
 _HALF_NODES = 6  # a polynomial of degree 12
+# Of a place, over half a window: a slope takes 20 times an error of its 13 places, each of ten roundings or so.
+_ROUNDING = 4e-14
+_NARROWEST = 1e-10  # of what the clock shows: in less, 13 instants have too few digits
 _PHASE_A_WINDOW = 0.3  # rad of the fastest rotation: what a polynomial leaves of a body that is no sphere is rounding
 
 
@@ -26,7 +30,9 @@ _PHASE_A_WINDOW = 0.3  # rad of the fastest rotation: what a polynomial leaves o
 class Residuals:
     """How far a trajectory is from the law, each as a share of the terms that it is made of."""
 
-    path: float  # the slope of the position against the velocity
+    path: float  # the slope of the position against V
+    turning: float  # the slope of the orientation against Ω
+    slip: float  # how the two points that touch move apart, by the slopes of position, orientation and support
     law: float  # accelerations and reaction against the 9 × 9 system
     virtual_power: float  # of the reaction over the admissible velocities
 
@@ -51,7 +57,8 @@ def window_times(begin: float, end: float, fastest: float) -> Array:
     >>> window_times(0.0, 10.0, 1.0).shape
     (24, 13)
     """
-    width = min(end - begin, _PHASE_A_WINDOW / max(fastest, 1e-300))
+    least = _NARROWEST * max(abs(begin), abs(end))
+    width = min(end - begin, max(least, _PHASE_A_WINDOW / max(fastest, 1e-300)))
     golden = 0.6180339887498949
     middles = begin + width / 2 + np.sort((golden * (1 + np.arange(WINDOWS))) % 1.0) * (end - begin - width)
     nodes = -np.cos(np.pi * np.arange(2 * _HALF_NODES + 1) / (2 * _HALF_NODES))
@@ -75,7 +82,7 @@ def _slope_at_middle(times: Array, values: Array) -> Array:
     return np.einsum("wn,wn...->w...", row / half, change)
 
 
-def residuals(system: RollingSystem, windows: Samples, times: Array) -> Residuals:
+def residuals(system: RollingSystem, windows: Samples, times: Array, bound: float) -> Residuals:
     """Compare a trajectory with the law by the independent route.
 
     Parameters
@@ -86,6 +93,8 @@ def residuals(system: RollingSystem, windows: Samples, times: Array) -> Residual
         The trajectory at `times.ravel()`.
     times : array (windows, nodes)
         As `window_times` returns them, none across an event.
+    bound : float
+        The share that is allowed; rounding is allowed besides.
 
     Returns
     -------
@@ -102,94 +111,195 @@ def residuals(system: RollingSystem, windows: Samples, times: Array) -> Residual
     for phase in np.unique(phases):
         which = np.flatnonzero(phases == phase)
         index = (which[:, None] * nodes + np.arange(nodes)).ravel()
-        found.append(_residuals_of(system, windows.part(index), times[which], int(phase)))
-    return Residuals(*(max(getattr(part, name) for part in found) for name in ("path", "law", "virtual_power")))
+        found.append(_Windows(system, windows.part(index), times[which], int(phase), bound).residuals())
+    return Residuals(*(max(getattr(part, field.name) for part in found) for field in fields(Residuals)))
 
 
-def _residuals_of(system: RollingSystem, windows: Samples, times: Array, phase: int) -> Residuals:
-    """Return the residuals of windows of one phase."""
-    shape = times.shape
+@dataclass(frozen=True)
+class _Windows:
+    """Windows of one phase, and what the slopes at their middles say."""
 
-    def slope(array: Array) -> Array:
-        return _slope_at_middle(times, array.reshape(*shape, -1))
+    system: RollingSystem
+    all: Samples
+    times: Array
+    phase: int
+    bound: float
 
-    V_rate, Omega_rate = slope(windows.velocity), slope(windows.angular_velocity)
-    p_rate, r_rate = slope(windows.contact), slope(windows.position)
-    rho_rate = slope(windows.contact - windows.position)
-    own_rate = slope(windows.own) if windows.own.size else None
-    middle = windows.part(np.arange(_HALF_NODES, times.size, shape[1]))
-    m, V, Omega = float(system.body.mass), middle.velocity, middle.angular_velocity
-    rho = middle.contact - middle.position
-    F, K, J, gyroscopic, u_rate = applied(system, middle, p_rate, own_rate)
-    R = middle.contact_force
-    if phase == ROLLING:  # what holds the body to the support is not asked for, but found
-        solved = newton_euler(m, J, rho, F, K - gyroscopic, u_rate - np.cross(Omega, rho_rate))
-    else:
-        turned = Omega_rate if phase == RESTING else _euler(J, K - gyroscopic + np.cross(rho, R))
-        solved = (F + R) / m, turned, R
+    def slope(self, array: Array) -> Array:
+        return _slope_at_middle(self.times, array.reshape(*self.times.shape, -1))
 
-    rate = np.linalg.norm(Omega, axis=1).max() + np.abs(V_rate).max() / max(np.abs(V).max(), 1e-300)
-    a_size = max(np.abs(F).max() / m, np.abs(V_rate).max(), np.abs(V).max() * rate, 1e-300)
-    lever = m * a_size * np.linalg.norm(rho, axis=1).max() / np.trace(J, axis1=1, axis2=2).min()  # what R may turn
-    turn_size = max(np.abs(Omega_rate).max(), np.abs(Omega).max() * rate, lever)
-    law = max(
-        np.abs(solved[0] - V_rate).max() / a_size,
-        np.abs(solved[1] - Omega_rate).max() / turn_size,
-        np.abs(solved[2] - R).max() / (m * a_size),
-    )
-    half = (times[:, -1] - times[:, 0]).min() / 2
-    path = np.abs(r_rate - V).max() / max(np.abs(V).max(), np.abs(middle.position).max() / half)
-    if phase != ROLLING:
-        return Residuals(float(path), float(law), 0.0)
+    @cached_property
+    def middle(self) -> Samples:
+        return self.all.part(np.arange(_HALF_NODES, self.times.size, self.times.shape[1]))
 
-    force = m * V_rate - F  # the reaction and its torque as the motion shows them
-    torque = np.einsum("nij,nj->ni", J, Omega_rate) + gyroscopic - K
-    power = [
-        np.abs((force * np.cross(rho, turn)).sum(axis=1) + torque @ turn).max()  # δV = −δΩ×ρ = ρ×δΩ
-        for turn in np.eye(3)
-    ]
-    turning = np.abs(J).max() * np.abs(Omega).max() * rate
-    torque_size = max(m * a_size * np.linalg.norm(rho, axis=1).max(), turning)
-    return Residuals(float(path), float(law), float(max(power) / torque_size))
+    @cached_property
+    def half(self) -> float:
+        """Half a window, s: a slope is as sharp as rounding over this."""
+        return float((self.times[:, -1] - self.times[:, 0]).min()) / 2
+
+    @cached_property
+    def rate(self) -> float:
+        """How fast the motion changes, 1/s."""
+        V, V_rate = self.middle.velocity, self.slope(self.all.velocity)
+        return largest(self.middle.angular_velocity) + float(np.abs(V_rate).max() / max(np.abs(V).max(), 1e-300))
+
+    def residuals(self) -> Residuals:
+        """Return all of them."""
+        path, turning, slip = self._kinematics()
+        law = self._law()
+        power = self._virtual_power() if self.phase == ROLLING else 0.0
+        return Residuals(path, turning, slip, max(law, self._axle()), power)
+
+    @cached_property
+    def _speeds(self) -> list[Array]:
+        """V, Ω×ρ and u at the middles, m/s."""
+        return [np.broadcast_to(v.array(), self.middle.position.shape) for v in self.middle.speeds(self.system)]
+
+    @cached_property
+    def _clock(self) -> float:
+        """How far the clock has come, s: of all that moves steadily, the place is only as sharp as this."""
+        return float(np.abs(self.times).max())
+
+    @cached_property
+    def _sharp(self) -> float:
+        """The speed that rounding of places makes, over the bound, m/s: no smaller one is told from none."""
+        at, fastest = self.middle, sum(map(largest, self._speeds))
+        place = largest(at.position) + largest(at.contact) + self._bend + fastest * self._clock
+        return max(_ROUNDING * place / self.half / self.bound, 1e-300)
+
+    @cached_property
+    def _bend(self) -> float:
+        """The support's radius, m: of what is worked out from its centre, the place is only as sharp as that."""
+        at = self.middle
+        q = Quaternion.of(at.orientation)
+        S = touch(self.system, at.time, Vector.of(at.contact), q, at.support_own).shape_operator
+        most = max(float(np.abs(row.array()).max()) for row in S.rows)
+        return 1 / most if most > 0 else 0.0
+
+    def _kinematics(self) -> tuple[float, float, float]:
+        """Compare what is said of V, Ω and slip with the slopes of position, orientation and support."""
+        at, V, Omega = self.middle, self.middle.velocity, self.middle.angular_velocity
+        path = largest(self.slope(self.all.position) - V) / max(float(np.abs(V).max()), self._sharp)
+        # 2 q̇ q*, of which the first part is the rate of |q|
+        turned = Quaternion.of(self.slope(self.all.orientation)) * Quaternion.of(at.orientation).conjugate
+        off = float(np.linalg.norm(2 * turned.array() - np.pad(Omega, ((0, 0), (1, 0))), axis=1).max())
+        angle = 1 + largest(Omega) * self._clock + self._bend / largest(at.contact - at.position)
+        turning = off / max(largest(Omega), _ROUNDING * angle / self.half / self.bound)
+        if self.phase == FLIGHT:
+            return path, turning, 0.0
+        apart = self.slope(self._body_points() - self._support_points())
+        V, carried, u = self._speeds
+        if self.phase == SLIPPING:
+            apart = apart - (V + carried - u)
+        return path, turning, largest(apart) / max(*map(largest, self._speeds), self._sharp)
+
+    def _body_points(self) -> Array:
+        """Return where the body's point that touches at the middle of a window is at each of its instants."""
+        nodes, at = self.times.shape[1], self.middle
+        onward = Quaternion.of(self.all.orientation) * Quaternion.of(np.repeat(at.orientation, nodes, axis=0)).conjugate
+        return self.all.position + rotated(onward.array(), np.repeat(at.contact - at.position, nodes, axis=0))
+
+    def _support_points(self) -> Array:
+        """Return the same of the support's point."""
+        pose, nodes = self.middle.support(self.system), self.times.shape[1]
+        own = (pose.rotation.transpose @ (Vector.of(self.middle.contact) - pose.origin)).array()
+        own = np.repeat(np.broadcast_to(own, self.middle.contact.shape), nodes, axis=0)
+        carried = self.all.support(self.system).carried(Vector.of(own)).array()
+        return np.broadcast_to(carried, own.shape)
+
+    def _law(self) -> float:
+        """Compare V̇, Ω̇ and R with Newton, Euler and, of a body that rolls, the constraint."""
+        at, V_rate, Omega_rate = self.middle, self.slope(self.all.velocity), self.slope(self.all.angular_velocity)
+        m, Omega, R = float(self.system.body.mass), at.angular_velocity, at.contact_force
+        rho = at.contact - at.position
+        F, K, J, gyroscopic = acting(self.system, at)
+        if self.phase == ROLLING:  # what holds the body to the support is not asked for, but found
+            u = np.broadcast_to(self.all.speeds(self.system)[2].array(), self.all.position.shape)
+            rho_rate = self.slope(self.all.contact - self.all.position)
+            solved = newton_euler(m, J, rho, F, K - gyroscopic, self.slope(u) - np.cross(Omega, rho_rate))
+        else:
+            turned = Omega_rate if self.phase == RESTING else _euler(J, K - gyroscopic + np.cross(rho, R))
+            solved = (F + R) / m, turned, R
+        a_size = self._acceleration(F, V_rate)
+        lever = m * a_size * largest(rho) / np.trace(J, axis1=1, axis2=2).min()  # what R may turn
+        turn_size = max(np.abs(Omega_rate).max(), np.abs(Omega).max() * self.rate, lever, self._sharp_turn)
+        return float(
+            max(
+                np.abs(solved[0] - V_rate).max() / a_size,
+                np.abs(solved[1] - Omega_rate).max() / turn_size,
+                np.abs(solved[2] - R).max() / (m * a_size),
+            )
+        )
+
+    def _acceleration(self, F: Array, V_rate: Array) -> float:
+        """Return against what an acceleration is small or not, and over the bound what rounding makes of a slope."""
+        V, fastest = np.abs(self.middle.velocity).max(), sum(map(largest, self._speeds))
+        sharp = _ROUNDING * fastest / self.half / self.bound
+        acting = np.abs(F).max() / float(self.system.body.mass)
+        return float(max(acting, np.abs(V_rate).max(), V * self.rate, sharp, 1e-300))
+
+    @property
+    def _sharp_turn(self) -> float:
+        """The same of Ω̇, 1/s²."""
+        return _ROUNDING * largest(self.middle.angular_velocity) / self.half / self.bound
+
+    def _axle(self) -> float:
+        """Compare ω̇ of a free axle with I ω̇ = τ − e·[(p − X)×R] − e·(couples of the contact)."""
+        motion, at = self.system.support.motion, self.middle
+        if not motion.free:
+            return 0.0
+        pose, R = at.support(self.system), at.contact_force
+        axle, arm = (np.broadcast_to(v.array(), R.shape) for v in (pose.axle, Vector.of(at.contact) - pose.origin))
+        own = tuple(at.own.T)
+        parts = [np.broadcast_to(np.asarray(motion.axle_torque(at.time, own), dtype=float), at.time.shape)]
+        if self.phase != FLIGHT:
+            from_support = exerted(self.system, at)[2]
+            parts += [-(axle * np.cross(arm, R)).sum(axis=1), -(axle * from_support).sum(axis=1)]
+        change, rate = self.slope(self.all.own), at.own[:, -1]
+        size = max(*(float(np.abs(part).max()) for part in parts), motion.inertia * np.abs(rate).max() * self.rate)
+        law = np.abs(motion.inertia * change[:, -1] - sum(parts)).max() / max(size, 1e-300)
+        angle = float(np.abs(at.own[:, -2]).max()) + np.abs(rate).max() * self._clock
+        turned = np.abs(change[:, -2] - rate).max()
+        sharp = _ROUNDING * angle / self.half / self.bound
+        return float(max(law, turned / max(np.abs(rate).max(), sharp, 1e-300)))
+
+    def _virtual_power(self) -> float:
+        """Return the power of the reaction, as the motion shows it, over δV = −δΩ×ρ."""
+        at, V_rate, Omega_rate = self.middle, self.slope(self.all.velocity), self.slope(self.all.angular_velocity)
+        m, rho = float(self.system.body.mass), at.contact - at.position
+        F, K, J, gyroscopic = acting(self.system, at)
+        force = m * V_rate - F
+        torque = np.einsum("nij,nj->ni", J, Omega_rate) + gyroscopic - K
+        power = [
+            np.abs((force * np.cross(rho, turn)).sum(axis=1) + torque @ turn).max()  # δV = −δΩ×ρ = ρ×δΩ
+            for turn in np.eye(3)
+        ]
+        turning = np.abs(J).max() * max(np.abs(at.angular_velocity).max() * self.rate, self._sharp_turn)
+        size = max(m * self._acceleration(F, V_rate) * largest(rho), turning)
+        return float(max(power) / size)
 
 
 def _euler(J: Array, torque: Array) -> Array:
     return np.asarray(np.linalg.solve(J, torque[..., None])[..., 0])
 
 
-def applied(system: RollingSystem, at: Samples, p_rate: Array, own_rate: Array | None = None) -> tuple[Array, ...]:
-    """Return F, K, J, Ω×JΩ and u̇ at each instant, as arrays.
+def applied(system: RollingSystem, at: Samples, p_rate: Array) -> tuple[Array, Array, Array, Array, Array]:
+    """Return F, K, J, Ω×JΩ and u̇ at each instant, for a motion of which no slopes are at hand.
 
     Parameters
     ----------
-    system : RollingSystem
-        Body, support and loads.
-    at : Samples
-        Instants of a motion, n of them; their contact force gives the normal force that couples follow.
+    system, at
+        As for `acting`.
     p_rate : array (n, 3)
         ṗ, m/s.
-    own_rate : array (n, k), optional
-        Rates of the coordinates of the support's own motion: the last is the ω̇ of a free axle.
 
     Returns
     -------
     tuple of array
         (n, 3) each, J (n, 3, 3); SI, inertial support frame.
     """
-    q, shape = Quaternion.of(at.orientation), at.position.shape
-    acting = system.acting_on(at.motion(system))
-    torque = acting.torque
-    if acting.has_couple:
-        torque = torque + acting.couple * Vector.of(at.contact_force).dot(Vector.of(at.normals(system)))
-    tensor = system.body.inertia_in_space(q.matrix())
-    J = np.stack([np.broadcast_to(row.array(), shape) for row in tensor.rows], axis=1)
-    JOmega = np.einsum("nij,nj->ni", J, at.angular_velocity)
-    support, p = at.support(system), Vector.of(at.contact)
-    u_rate = support.material_acceleration(p, Vector.of(p_rate))
-    if system.support.motion.free and own_rate is not None:
-        u_rate = u_rate + support.lever(p) * own_rate[:, -1]
-    F, K, u = (np.broadcast_to(v.array(), shape) for v in (acting.force, torque, u_rate))
-    return F, K, J, np.cross(at.angular_velocity, JOmega), u
+    change = at.support(system).material_acceleration(Vector.of(at.contact), Vector.of(p_rate))
+    return *acting(system, at), np.broadcast_to(change.array(), at.position.shape)
 
 
 def newton_euler(m: float, J: Array, rho: Array, F: Array, K: Array, constraint: Array) -> tuple[Any, Any, Any]:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import io
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import xarray
+
+_ROWS = 50_000  # written at once
 
 
 def csv_of(data: xarray.Dataset) -> bytes:
@@ -29,7 +32,16 @@ def csv_of(data: xarray.Dataset) -> bytes:
     """
     import pandas as pd
 
-    main = "time" if "time" in data.dims else "distance"
+    main, text = "time" if "time" in data.dims else "distance", io.BytesIO()
+    for first in range(0, data.sizes[main], _ROWS):
+        columns = _columns(data.isel({main: slice(first, first + _ROWS)}), main)
+        lines = pd.DataFrame(columns).to_csv(index=False, header=first == 0, lineterminator="\r\n")
+        text.write(lines.encode())
+    return text.getvalue()
+
+
+def _columns(data: xarray.Dataset, main: str) -> dict[str, Any]:
+    """Return the columns of a table, by their headings."""
     columns = {_heading(main, data[main]): data[main].values}
     for name, variable in data.data_vars.items():
         if variable.dims == (main,):
@@ -38,7 +50,7 @@ def csv_of(data: xarray.Dataset) -> bytes:
             for part in data[variable.dims[1]].values:
                 values = variable.sel({variable.dims[1]: part}).values
                 columns[_heading(f"{name}_{part}", variable)] = values
-    return pd.DataFrame(columns).to_csv(index=False, lineterminator="\r\n").encode()
+    return columns
 
 
 def _heading(name: str, variable: xarray.DataArray) -> str:

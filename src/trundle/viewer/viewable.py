@@ -41,7 +41,7 @@ class Viewable(Displayed):
         from ..plots.words import title_of
 
         run = cast("Trajectory", self)
-        card = run._kept.get("card")  # to make one takes seconds, and nobody asked for it
+        card = run._card_if_made()  # to make one takes seconds, and nobody asked for it
         told = ("not checked yet: card() checks it", None) if card is None else (card.outcome, card.passed)
         return Headline(run.title or title_of(run.system), *told)
 

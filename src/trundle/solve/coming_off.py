@@ -1,0 +1,70 @@
+"""Where a body comes off that friction hardly held: the cone's tip, at which friction only seems to give way first."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ..mechanics.system import RollingSystem
+from .laws import Law
+
+_AT_HAND = 1e-3  # of the time in which the motion changes
+_UNASKED = 1e-7  # share of what friction can give when the body is pressed on as usual
+
+
+def lift_at_hand(
+    system: RollingSystem, law: Law, time: float, numbers: Sequence[float], name: str, extras: Sequence[float]
+) -> float | None:
+    """Return when the body comes off in whose contact friction, or resistance to rolling, seems to give way.
+
+    What is left of friction, μ²N² − f², has a double root where N has a single one and nothing asks for friction. Of a
+    double root only half the digits are found: so the stop may come too soon, and is no slip.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Body and support.
+    law : Law
+        Of rolling, or of rest.
+    time : float
+        Of the stop, s.
+    numbers : sequence of float
+        The state's.
+    name : str
+        Of the stop.
+    extras : sequence of float
+        What the law's stops take besides the system's numbers.
+
+    Returns
+    -------
+    float or None
+        s; None where the body is not about to come off, or friction does give way first.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> from trundle.solve.laws import RollingLaw
+    >>> shaken = tr.Support(tr.Plane(), motion=tr.Shake((0.0, 0.0, 0.01), 45.0), friction=0.3)
+    >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.05, 1.0), shaken)
+    >>> law = RollingLaw()
+    >>> numbers = law.pack(system, system.place(time=0.011234))
+    >>> round(lift_at_hand(system, law, 0.011234, numbers, "slip", ()), 9)  # asin(g/(Aω²))/ω
+    0.011234198
+    """
+    from scipy.optimize import brentq
+
+    def look(wait: float) -> tuple[float, float]:
+        found = law.stops(system, time + wait, law.advanced(system, time, numbers, wait), extras)
+        return float(found["lift"]), float(found[name])
+
+    at = law.meant(system, time, numbers)
+    moment = at.arm / at.scale(system)
+    limit = _AT_HAND * moment
+    now, later = look(0.0)[0], look(limit)[0]
+    if not later < 0 or later > now:
+        return None
+    wait = 0.0 if now <= 0 else float(brentq(lambda wait: look(wait)[0], 0.0, limit, xtol=1e-15 * limit, rtol=1e-15))
+    holds = float(system.support.friction or 0.0)
+    if name == "start":
+        holds = sum(float(load.offset) for load in system.loads if load.stops)
+    usual = (now - later) / limit * moment  # N
+    return time + wait if -look(wait)[1] <= (_UNASKED * holds * usual) ** 2 else None

@@ -1,0 +1,106 @@
+"""What acts on a body, and how hard it is to turn: worked out again, without the sums and matrices of the law."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..mechanics.algebra import Matrix, Vector
+from ..mechanics.system import RollingSystem
+from ..solve.samples import Samples
+from .bounds import Array
+
+
+def rotated(q: Array, v: Array) -> Array:
+    """Return vectors turned by unit quaternions, v + 2w(u×v) + 2u×(u×v).
+
+    Parameters
+    ----------
+    q : array (n, 4)
+        (w, x, y, z), u = (x, y, z).
+    v : array (n, 3)
+        What is turned.
+
+    Returns
+    -------
+    array (n, 3)
+        Turned.
+
+    Examples
+    --------
+    >>> rotated(np.array([[0.0, 0.0, 0.0, 1.0]]), np.array([[1.0, 2.0, 3.0]])).tolist()
+    [[-1.0, -2.0, 3.0]]
+    """
+    across = 2 * np.cross(q[:, 1:], v)
+    return v + q[:, :1] * across + np.cross(q[:, 1:], across)
+
+
+def inertia_of(system: RollingSystem, q: Array) -> Array:
+    """Return J in the inertial support frame, turned by `rotated` and not by the law's own matrices.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Gives J in the body frame.
+    q : array (n, 4)
+        Orientations.
+
+    Returns
+    -------
+    array (n, 3, 3)
+        kg m².
+    """
+    own = np.array([list(row) for row in system.body.inertia_in_space(Matrix.identity()).rows], dtype=float)
+    axes = np.stack([rotated(q, np.broadcast_to(e, (len(q), 3))) for e in np.eye(3)], axis=2)
+    return axes @ own @ axes.transpose(0, 2, 1)
+
+
+def acting(system: RollingSystem, at: Samples) -> tuple[Array, Array, Array, Array]:
+    """Return F, K, J and Ω×JΩ at each instant, as arrays.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Body, support and loads. Its weight is g(sin α, 0, −cos α) m, worked out here.
+    at : Samples
+        Instants of a motion, n of them; their contact force gives the normal force that couples follow.
+
+    Returns
+    -------
+    tuple of array
+        (n, 3) each, J (n, 3, 3); SI, inertial support frame.
+    """
+    tilt = float(system.support.tilt)
+    weight = float(system.body.mass * system.gravity) * np.array([np.sin(tilt), 0.0, -np.cos(tilt)])
+    F, K, _ = exerted(system, at)
+    J = inertia_of(system, at.orientation)
+    JOmega = np.einsum("nij,nj->ni", J, at.angular_velocity)
+    return F + weight, K, J, np.cross(at.angular_velocity, JOmega)
+
+
+def exerted(system: RollingSystem, at: Samples) -> tuple[Array, Array, Array]:
+    """Return force and torque of the loads besides the weight, and the part of the torque that the support exerts.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Its loads.
+    at : Samples
+        Instants of a motion, n of them, all in flight or none.
+
+    Returns
+    -------
+    force, torque, from_support : array (n, 3)
+        N and N m.
+    """
+    force, torque, from_support = np.zeros((3, *at.position.shape))
+    if not system.loads:
+        return force, torque, from_support
+    motion = at.motion(system)
+    N = 0.0 if motion.normal is None else Vector.of(at.contact_force).dot(motion.normal)
+    for load in system.loads:
+        couple = (load.torque_per_normal_force(motion) * N).array()
+        turning = load.torque(motion).array()
+        force = force + load.force(motion).array()
+        torque = torque + turning + couple
+        from_support = from_support + couple + (turning if load.at_contact else 0.0)
+    return force, torque, from_support

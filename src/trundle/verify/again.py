@@ -1,0 +1,132 @@
+"""The method run a second time, at instants of the card's own choice: short windows for slopes, and all events."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..mechanics.system import RollingSystem, State
+from ..solve.methods import Method
+from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
+from .bounds import EXACT, SOLVER, Array
+from .card import CardFigure, checked
+from .events import instants_of
+from .law import Residuals, residuals
+from .stretches import Stretch, stretches
+
+_RUN_AGAIN = 2000  # samples
+_MOST_STRETCHES = 200  # looked at
+_SHORTEST = 1e-9  # of what the clock shows: in less, instants have too few digits
+
+
+@dataclass(frozen=True)
+class Again:
+    """A run followed once more by its own method.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        What moved.
+    start : State
+        Where it started.
+    at : Samples
+        The run.
+    method : Method
+        That made it.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> run = tr.Scenario.load("off-the-rim").run()
+    >>> again = Again(run.system, run.start, run.samples, Method.of("exact"))
+    >>> [figure.name for figure in again.figures()][:2]
+    ['no slip', 'velocity is the slope of the path']
+    """
+
+    system: RollingSystem
+    start: State
+    at: Samples
+    method: Method
+
+    @cached_property
+    def stretches(self) -> list[Stretch]:
+        """What lies between the events."""
+        return stretches(self.system, self.start.time, self.at)
+
+    @cached_property
+    def windows(self) -> Array:
+        """Instants of short windows, spread over the stretches that are long enough to have slopes."""
+        total = sum(stretch.length for stretch in self.stretches)
+        least = _SHORTEST * max(abs(self.start.time), abs(float(self.at.time[-1])))
+        long = [stretch for stretch in self.stretches if stretch.length > least] or self.stretches
+        return np.vstack([stretch.windows(stretch.length / total) for stretch in long[:_MOST_STRETCHES]])
+
+    @cached_property
+    def sampled(self) -> Samples:
+        """The samples that are compared with the second run."""
+        return self.at.part(slice(None, None, max(1, self.at.time.size // _RUN_AGAIN)))
+
+    @cached_property
+    def samples(self) -> Samples:
+        """The second run: at the windows, the samples, both ends and the events."""
+        ends = np.array([self.start.time, self.at.time[-1]])
+        times = np.concatenate([self.windows.ravel(), self.sampled.time, ends])
+        events = self.at.events
+        for _ in range(2):  # elsewhere than where the run was made an event may lie a rounding aside
+            now = np.unique(np.concatenate([times, instants_of(events, self.start.time)]))
+            found = self.method.solve(self.system, self.start, now[now <= ends[1]])
+            if [event.time for event in found.events] == [event.time for event in events]:
+                break
+            events = found.events
+        return found
+
+    def places(self, wanted: Array) -> Samples:
+        """Return the second run at some of its instants; the last one for what a run's end left out."""
+        times = self.samples.time
+        return self.samples.part(np.minimum(np.searchsorted(times, wanted), times.size - 1))
+
+    def follow(self, times: Array) -> Samples:
+        """Follow the run to other instants, ascending, s."""
+        there = self.method.solve(self.system, self.start, np.unique(times))
+        return there.part(np.minimum(np.searchsorted(there.time, times), there.time.size - 1))
+
+    @property
+    def bound(self) -> float:
+        """Of a slope: taken over a third of a radian of turning, it multiplies a method's own error by some tens."""
+        return max(EXACT * 10, 100 * SOLVER * self.method.tolerance)
+
+    @cached_property
+    def _looked_at(self) -> tuple[Residuals, Any]:
+        looked_at = self.places(self.windows.ravel())
+        return residuals(self.system, looked_at, self.windows, self.bound), set(looked_at.phase.tolist())
+
+    def figures(self) -> Iterator[CardFigure]:
+        """Yield what the slopes in the windows say: how it moves, and by which law."""
+        (found, phases), bound, count = self._looked_at, self.bound, len(self.windows)
+        if phases - {FLIGHT}:
+            held, slips = bool(phases & {ROLLING, RESTING}), SLIPPING in phases
+            said = " and ".join(["move alike"] * held + ["apart as s while it slips"] * slips)
+            note = f"the two points that touch {said}; slopes of position, orientation and support"
+            yield checked("no slip" if held else "slip", found.slip, bound, note)
+        yield checked(
+            "velocity is the slope of the path", found.path, bound, f"at {count} instants, share of the speed"
+        )
+        yield checked("Ω is the slope of the orientation", found.turning, bound, "2 q̇ q* against Ω, share of Ω")
+        yield checked(
+            "law of motion",
+            found.law,
+            bound,
+            "Newton, Euler and the constraint as one 9×9 system, T2 not used; loads as given",
+        )
+        if ROLLING in phases:
+            note = "over the admissible velocities (d'Alembert)"
+            yield checked("virtual power of the reaction", found.virtual_power, bound, note)
+
+    @property
+    def can_be_followed(self) -> bool:
+        """Whether its stretches are few and slow enough for a quadrature over all of it."""
+        return len(self.stretches) <= _MOST_STRETCHES and all(stretch.resolved for stretch in self.stretches)

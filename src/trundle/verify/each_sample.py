@@ -1,0 +1,195 @@
+"""Each sample by itself: whether its numbers fit each other, and the phase that it is said to be in.
+
+None of this says anything of the law. It ties the columns of a run together: what is found of one holds for all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..mechanics.algebra import Quaternion, Vector
+from ..mechanics.contact import touch
+from ..mechanics.system import RollingSystem
+from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
+from .bounds import EXACT, Array, largest, speed_of
+from .card import CardFigure, checked
+
+_WORTH_TELLING = 1e-3  # of its bound
+_STEP = 1e-6  # of a length, for the slope of the level function
+
+
+@dataclass(frozen=True)
+class Shares:
+    """One condition at each sample: how far it is from being met, as a share, and how far it may be."""
+
+    name: str
+    share: Array
+    bound: Any
+
+    @property
+    def ratio(self) -> Array:
+        """The share over its bound; what is no number is as far off as can be."""
+        ratio = np.asarray(self.share / self.bound, dtype=float)
+        return np.where(np.isnan(ratio), np.inf, ratio)
+
+
+def worst_of(name: str, conditions: list[Shares], time: Array, said: str) -> CardFigure:
+    """Return one figure for several conditions: that of the one which is farthest from its bound.
+
+    Parameters
+    ----------
+    name : str
+        Of the figure.
+    conditions : list of Shares
+        One entry for each instant, or none.
+    time : array (n,)
+        The instants, s.
+    said : str
+        What they are, for the note.
+
+    Returns
+    -------
+    CardFigure
+        With the condition and the instant in its note.
+
+    Examples
+    --------
+    >>> parts = [Shares("a", np.array([0.0, 2e-13]), 1e-12), Shares("b", np.array([0.0, 0.0]), 1.0)]
+    >>> print(worst_of("fits", parts, np.array([0.0, 1.0]), "a and b"))
+    ok    fits                                      2e-13            at most 1e-12    a and b; most: a, t = 1 s
+    """
+    most = max(conditions, key=lambda condition: condition.ratio.max())
+    at = int(np.argmax(most.ratio))
+    bound = float(np.broadcast_to(most.bound, most.share.shape)[at])
+    told = f"; most: {most.name}, t = {time[at]:.6g} s" if most.ratio[at] > _WORTH_TELLING else ""
+    return checked(name, max(0.0, float(most.share[at])), bound, said + told)
+
+
+@dataclass(frozen=True)
+class EachSample:
+    """Samples of a run, each looked at by itself.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        What moved.
+    at : Samples
+        Any of a run.
+    bound : float
+        The share that the method may be off.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> run = tr.Scenario.load("billiard-draw").run()
+    >>> each = EachSample(run.system, run.samples, 1e-12)
+    >>> [figure.passed for figure in each.figures()]
+    [True, True]
+    """
+
+    system: RollingSystem
+    at: Samples
+    bound: float
+
+    @cached_property
+    def flies(self) -> Any:
+        """Where nothing touches."""
+        return self.at.phase == FLIGHT
+
+    @cached_property
+    def speeds(self) -> tuple[Array, Array, Array]:
+        """V, Ω×ρ and u, m/s."""
+        V, turning, u = (np.broadcast_to(v.array(), self.at.position.shape) for v in self.at.speeds(self.system))
+        return V, turning, u
+
+    @cached_property
+    def slip(self) -> Array:
+        """The slip s = V + Ω×ρ − u, m/s."""
+        return self.speeds[0] + self.speeds[1] - self.speeds[2]
+
+    @cached_property
+    def normals(self) -> Array:
+        """The support's normal at each contact."""
+        return self.at.normals(self.system)
+
+    @cached_property
+    def apart(self) -> tuple[Array, Array]:
+        """From p to the point of the body whose normal is −n, m; and how high p is over the surface, m."""
+        at, q = self.at, Quaternion.of(self.at.orientation)
+        contact = touch(self.system, at.time, Vector.of(at.contact), q, at.support_own)
+        offset = np.broadcast_to(contact.offset.array(), at.position.shape)
+        support, surface = contact.support, self.system.support.surface
+        back = support.rotation.transpose
+        there, n = back @ (Vector.of(at.contact) - support.origin), back @ contact.normal
+        step = _STEP * (largest(offset) + largest(at.contact))
+        slope = (surface.level(there + n * step) - surface.level(there - n * step)) / (2 * step)
+        height = np.broadcast_to(np.asarray(surface.level(there) / slope, dtype=float), at.time.shape)
+        return at.position + offset - at.contact, height
+
+    def figures(self) -> Iterator[CardFigure]:
+        """Yield whether it touches, and whether the numbers fit."""
+        yield self._touching()
+        said = "V, Ω, q, slip, force and phase of each, one against the other; of the law it says nothing"
+        yield worst_of("samples fit together", list(self._fitting()), self.at.time, said)
+
+    def _touching(self) -> CardFigure:
+        """Check that the body touches where it is said to, and is over the support where not."""
+        apart, height = self.apart
+        gap = (apart * self.normals).sum(axis=1)
+        aside = np.linalg.norm(apart - gap[:, None] * self.normals, axis=1)
+        size = largest(self.at.contact - self.at.position) + largest(self.at.contact)
+        conditions = [
+            Shares("the contact is on the surface", np.abs(height) / size, self.bound),
+            Shares("and nearest to the body", aside / size, self.bound),
+            Shares("the gap", np.where(self.flies, -gap, np.abs(gap)) / size, self.bound),
+            *self._ends(size),
+        ]
+        over = f"; in flight the gap is {gap[self.flies].max():.3g} m at most" if self.flies.any() else ""
+        return worst_of("touches the support", conditions, self.at.time, f"gap, share of the size{over}")
+
+    def _ends(self, size: float) -> Iterator[Shares]:
+        """Yield how far a body is beyond the rim, the surface's end, or what its shape covers."""
+        system, surface = self.system, self.system.support.surface
+        support = self.at.support(system)
+        there = support.rotation.transpose @ (Vector.of(self.at.contact) - support.origin)
+        shape = self.at.time.shape
+        if surface.rim is not None:
+            beyond = np.hypot(there.x, there.y) - float(surface.rim)
+            yield Shares("inside the rim", np.broadcast_to(beyond, shape) / size, self.bound)
+        nu = Quaternion.of(self.at.orientation).matrix().transpose @ Vector.of(self.normals)
+        for name, inside in (
+            ("before the end", surface.inside(there)),
+            ("on its shape", system.body.shape.covers(-nu)),
+        ):
+            if inside is not None:
+                yield Shares(name, -np.broadcast_to(np.asarray(inside, dtype=float), shape), self.bound)
+
+    def _fitting(self) -> Iterator[Shares]:
+        """Yield what ties the numbers of a sample together."""
+        at, s, phase = self.at, self.slip, self.at.phase
+        speed, force = max(speed_of(self.system, at), 1e-300), max(largest(at.contact_force), 1e-300)
+        yield Shares("|q| = 1", np.abs(np.linalg.norm(at.orientation, axis=1) - 1), EXACT)
+        held = (phase == ROLLING) | (phase == RESTING)
+        yield Shares("no slip", np.linalg.norm(s, axis=1) * held / speed, self.bound)
+        off = np.abs((s * self.normals).sum(axis=1)) * (phase == SLIPPING)
+        yield Shares("slips along the support", off / speed, self.bound)
+        yield Shares("no force in flight", np.linalg.norm(at.contact_force, axis=1) * self.flies / force, EXACT)
+        turning = at.angular_velocity - np.broadcast_to(
+            at.support(self.system).angular_velocity.array(), at.position.shape
+        )
+        arm = largest(at.contact - at.position)
+        yield Shares("rests", np.linalg.norm(turning, axis=1) * arm * (phase == RESTING) / speed, self.bound)
+        if at.slip_velocity is not None:
+            yield self._slip_column(speed)
+
+    def _slip_column(self, speed: float) -> Shares:
+        """Compare the slip that was stored, not a number in flight, with what V, Ω and u make of it."""
+        stored = self.at.slip_velocity
+        off = np.linalg.norm(stored - self.slip, axis=1) / speed
+        off = np.where(self.flies, np.where(np.isnan(stored).all(axis=1), 0.0, np.inf), off)
+        return Shares("slip_velocity", np.where(np.isnan(off), np.inf, off), EXACT)

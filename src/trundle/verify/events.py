@@ -1,0 +1,239 @@
+"""Each event by itself: whether what made it happen was so at its instant, no sooner and no later.
+
+The states just before and just after come from the method run again at these instants; the figures on the normal force,
+on friction and on the gap say that no event was missed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import groupby, pairwise
+from typing import Any
+
+import numpy as np
+
+from ..mechanics.algebra import Quaternion, Vector
+from ..mechanics.contact import touch
+from ..mechanics.system import RollingSystem, State
+from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Event, Samples
+from .bounds import Array, largest, sizes_of
+from .card import CardFigure
+from .each_sample import EachSample, Shares, worst_of
+from .friction import holding, normal_and_friction
+
+_SLACK = 1e-8  # by which static friction and resistance hold more than they say (docs/phases.md), and rounding
+_SHORT = 2e-6  # a run stops a millionth short of an end at which the law is singular
+_MOST = 1000  # events looked at
+_GOES_ON = 100.0  # times the bound: a run goes straight on from where slip or turning has all but ended
+_STRIKES = ("land", "settle")
+_ANY, _TOUCHING = frozenset(range(4)), frozenset((ROLLING, SLIPPING, RESTING))
+# What an event may lie between: the phases before it and after it.
+_BETWEEN = {
+    "slip": (_TOUCHING, {SLIPPING}),
+    "grip": ({SLIPPING, RESTING}, {ROLLING}),
+    "lift": (_TOUCHING, {FLIGHT}),
+    "land": ({FLIGHT}, _ANY),
+    "settle": ({FLIGHT}, _TOUCHING),
+    "stop": ({ROLLING, SLIPPING}, {RESTING}),
+    "start": ({RESTING}, {ROLLING}),
+}
+
+
+def instants_of(events: tuple[Event, ...], begin: float) -> Array:
+    """Return the last instant before each event and its own, s: where the method run again is asked for them.
+
+    Parameters
+    ----------
+    events : tuple of Event
+        Of a run.
+    begin : float
+        Of the run, s.
+
+    Returns
+    -------
+    array (n,)
+        Not sorted.
+
+    Examples
+    --------
+    >>> instants_of((Event(1.0, "lift", ""),), 0.0).tolist() == [np.nextafter(1.0, 0.0), 1.0]
+    True
+    """
+    times = np.array([event.time for event in _looked_at(events)])
+    both = np.concatenate([np.nextafter(times, -np.inf), times])
+    return both[both >= begin]
+
+
+def _looked_at(events: tuple[Event, ...]) -> tuple[Event, ...]:
+    """Return the events of the first instants of a run, no more than are looked at."""
+    return events[:_MOST]
+
+
+@dataclass(frozen=True)
+class AtEvents:
+    """The events of a run beside the method's states at their instants.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        What moved.
+    again : Samples
+        The method run again, at `instants_of` its events and at other times.
+    bound : float
+        The share that the method may be off.
+
+    Examples
+    --------
+    See `trundle.verify.card`.
+    """
+
+    system: RollingSystem
+    again: Samples
+    bound: float
+
+    def figures(self) -> Iterator[CardFigure]:
+        """Yield the figure, if anything happened."""
+        events = _looked_at(self.again.events)
+        if not events:
+            return
+        found = [one for _, group in groupby(events, key=lambda event: event.time) for one in self._group(list(group))]
+        conditions = [Shares(f"{event.kind}: {what}", np.array([share]), bound) for event, what, share, bound in found]
+        worst = max(range(len(found)), key=lambda i: conditions[i].ratio[0])
+        looked = f"{len(events)} event{'s' if len(events) > 1 else ''}"
+        said = f"{looked}: N = 0 at lift, |f| = μN at slip, s = 0 at grip, gap 0 at landing; no jump but by landing"
+        yield worst_of("events at their instants", [conditions[worst]], np.array([found[worst][0].time]), said)
+
+    @cached_property
+    def _sizes(self) -> dict[str, float]:
+        sizes = sizes_of(self.system, self.again)
+        return {**sizes, "position": sizes["position"] + self._arm, "orientation": 1.0}
+
+    @cached_property
+    def _arm(self) -> float:
+        return largest(self.again.contact - self.again.position)
+
+    def _sample(self, time: float) -> Samples | None:
+        """Return the sample at an instant, if there is one."""
+        at = int(np.searchsorted(self.again.time, time))
+        known = at < self.again.time.size and self.again.time[at] == time
+        return self.again.part(slice(at, at + 1)) if known else None
+
+    def _group(self, group: list[Event]) -> Iterator[tuple[Event, str, float, float]]:
+        """Yield the conditions of events that happen at one instant: event, name, share, bound."""
+        time = group[0].time
+        before, after = self._sample(float(np.nextafter(time, -np.inf))), self._sample(time)
+        for event in group:
+            if event.before is not None and event.kind not in _STRIKES:
+                yield from self._same(event, event.before, event.after, "no jump")
+        for event, other in pairwise(group):
+            yield from self._same(other, event.after, other.before, "no jump")
+        first, last = group[0], group[-1]
+        if before is not None:
+            yield from self._same(first, before.state(0), first.before, "no jump before")
+            yield from self._met(first, before)
+        if last.final:
+            return
+        if after is not None:
+            yield from self._same(last, last.after, after.state(0), "no jump after")
+        if before is not None and after is not None and len(group) == 1:
+            may, then = _BETWEEN.get(first.kind, (_ANY, _ANY))
+            fits = int(before.phase[0]) in may and int(after.phase[0]) in then
+            yield first, "the phases that it lies between", 0.0 if fits else np.inf, 1.0
+
+    def _same(
+        self, event: Event, one: State | None, other: State | None, what: str
+    ) -> Iterator[tuple[Event, str, float, float]]:
+        """Yield how far two states of one instant are apart."""
+        if one is None or other is None:
+            return
+        for field, size in self._sizes.items():
+            if field == "contact_force":
+                continue
+            apart = float(np.linalg.norm(np.subtract(getattr(one, field), getattr(other, field))))
+            yield event, f"{what} of the {field.replace('_', ' ')}", apart / max(size, 1e-300), _GOES_ON * self.bound
+        if one.support:
+            apart = float(np.abs(np.subtract(one.support, other.support)).max())
+            size = float(np.abs(self.again.own).max())
+            yield event, f"{what} of the support", apart / max(size, 1e-300), _GOES_ON * self.bound
+
+    def _met(self, event: Event, at: Samples) -> Iterator[tuple[Event, str, float, float]]:
+        """Yield whether the condition of an event was met just before it."""
+        phase, each = int(at.phase[0]), EachSample(self.system, at, self.bound)
+        if event.final:
+            yield from self._ended(event, at, each)
+            return
+        if phase == FLIGHT:
+            apart, height = each.apart
+            gap = abs(float(apart[0] @ each.normals[0])) + abs(float(height[0]))
+            yield event, "gap 0", gap / self._sizes["position"], _GOES_ON * self.bound
+            return
+        N, f = (np.asarray(part)[0] for part in normal_and_friction(self.system, at))
+        force = max(self._sizes["contact_force"], 1e-300)
+        if event.kind == "lift":
+            yield event, "N = 0", self._pulled(phase, float(N), f) / force, _GOES_ON * self.bound
+        elif phase == SLIPPING:
+            s = each.slip[0]
+            yield event, "s = 0", float(np.linalg.norm(s)) / self._sizes["velocity"], _GOES_ON * self.bound
+        elif phase == RESTING and event.kind != "slip":
+            couple, N_there = holding(self.system, at)
+            most = sum(float(load.offset) for load in self.system.loads if load.stops) * float(N_there[0])
+            short = most - float(np.linalg.norm(couple[0]))
+            yield event, "the resistance is overcome", short / max(most, 1e-300), _SLACK
+        elif event.kind == "slip":
+            yield event, "|f| = μN", self._short_of_slipping(float(N), f) / force, _SLACK + _GOES_ON * self.bound
+        elif event.kind == "stop":
+            yield (
+                event,
+                "it no longer turns",
+                self._turning(at, each) / self._sizes["angular_velocity"],
+                _GOES_ON * self.bound,
+            )
+
+    def _turning(self, at: Samples, each: EachSample) -> float:
+        """Return how fast a body turns over the support, rad/s."""
+        relative = at.angular_velocity[0] - _row(at.support(self.system).angular_velocity)
+        return float(np.linalg.norm(relative - (relative @ each.normals[0]) * each.normals[0]))
+
+    def _short_of_slipping(self, N: float, f: Array) -> float:
+        """Return by how much friction could have given more than it was asked for, N."""
+        mu = self.system.support.friction
+        return np.inf if mu is None else float(mu) * N - float(np.linalg.norm(f))
+
+    def _pulled(self, phase: int, N: float, f: Array) -> float:
+        """Return how far N is from 0 at a lift; one that follows slip that would pull begins where slip does."""
+        gives_way = phase == ROLLING and self.system.support.friction is not None
+        return min(abs(N), abs(self._short_of_slipping(N, f))) if gives_way else abs(N)
+
+    def _ended(self, event: Event, at: Samples, each: EachSample) -> Iterator[tuple[Event, str, float, float]]:
+        """Yield whether a run ended where it says."""
+        surface, support = self.system.support.surface, at.support(self.system)
+        there = support.rotation.transpose @ (Vector.of(at.contact) - support.origin)
+        q = Quaternion.of(at.orientation)
+        if event.kind == "rim":
+            off = np.hypot(_number(there.x), _number(there.y)) - _number(surface.rim)
+            yield event, "at the rim", abs(float(off)) / self._sizes["position"], _GOES_ON * self.bound
+        elif event.kind in ("end", "edge"):
+            nu = -(q.matrix().transpose @ Vector.of(at.normals(self.system)))
+            inside = surface.inside(there) if event.kind == "end" else self.system.body.shape.covers(nu)
+            yield event, "at the end", abs(_number(inside)), _SHORT
+        elif event.kind == "curved":
+            contact = touch(self.system, at.time, Vector.of(at.contact), q, at.support_own)
+            gap = float(each.apart[0][0] @ each.normals[0]) if each.flies[0] else 0.0
+            yield event, "1 + C S singular", abs(_number(contact.clearance(gap))), _SHORT + _GOES_ON * self.bound
+        elif event.kind == "spot":
+            yield (
+                event,
+                "it no longer turns",
+                self._turning(at, each) / self._sizes["angular_velocity"],
+                _GOES_ON * self.bound,
+            )
+
+
+def _number(value: Any) -> float:
+    return np.inf if value is None else float(np.asarray(value, dtype=float).ravel()[0])
+
+
+def _row(v: Vector) -> Array:
+    return np.array([_number(part) for part in v])

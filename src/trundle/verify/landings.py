@@ -1,0 +1,326 @@
+"""Each landing by itself: one impulse at the contact, inside the friction cone, by Keller's course and Stronge's work.
+
+`mechanics.impact`, which makes the landings of a run, is not asked: the states before and after are held against the
+momentum that one impulse carries, and against the impulse of `course`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..mechanics.algebra import Quaternion, Vector
+from ..mechanics.contact import normal_at, touch
+from ..mechanics.slipping import unpushed
+from ..mechanics.system import RollingSystem, State
+from ..solve.samples import Event
+from .acting import inertia_of
+from .bounds import EXACT, SOLVER, Array
+from .card import CardFigure
+from .course import Course
+from .each_sample import Shares, worst_of
+
+_KINDS = ("land", "settle")
+_MOST = 1000  # landings looked at
+_TURNED = SOLVER * 1e-12  # the tolerance at which a run follows slip that turns
+_CUT = 1e-6  # of |ρ|: how high a bounce may rise that is cut
+_ROUNDING = 1e-15  # of the speeds at hand
+
+
+@dataclass(frozen=True)
+class Landing:
+    """One landing: where, with what momentum, and what its impulse should have been.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        What landed.
+    event : Event
+        With the states before and after, and the contact.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> run = tr.Scenario.load("bouncing-ball-with-backspin").run(duration=0.5)
+    >>> landing = Landing(run.system, run.events[0])
+    >>> bool(abs(landing.wanted - landing.impulse).max() < 1e-15)
+    True
+    """
+
+    system: RollingSystem
+    event: Event
+
+    @property
+    def before(self) -> State:
+        """Just before."""
+        assert self.event.before is not None  # noqa: S101  landings have both
+        return self.event.before
+
+    @property
+    def after(self) -> State:
+        """Just after."""
+        assert self.event.after is not None  # noqa: S101
+        return self.event.after
+
+    @cached_property
+    def n(self) -> Array:
+        """The support's normal where it touches."""
+        own = self.before.support
+        return _row(normal_at(self.system, self.before.time, Vector(*self._point), own))
+
+    @property
+    def _point(self) -> tuple[float, float, float]:
+        assert self.event.contact is not None  # noqa: S101
+        return self.event.contact
+
+    @cached_property
+    def rho(self) -> Array:
+        """From the centre of mass to the contact, m."""
+        return np.array(self._point) - np.array(self.before.position)
+
+    @cached_property
+    def J(self) -> Array:
+        """The inertia tensor, kg m²."""
+        return inertia_of(self.system, np.array([self.before.orientation]))[0]
+
+    @cached_property
+    def lever(self) -> Array | None:
+        """e×(p − X) of a free axle, m."""
+        motion = self.system.support.motion
+        pose = motion.at(self.before.time, *self.before.support)
+        return _row(pose.axle.cross(Vector(*self._point) - pose.origin)) if motion.free else None
+
+    def point_velocity(self, V: Array, Omega: Array) -> Array:
+        """Return V + Ω×ρ, m/s."""
+        return V + _cross(Omega, self.rho)
+
+    @cached_property
+    def comes(self) -> Array:
+        """The slip s just before, m/s."""
+        return self._slip(self.before)
+
+    @cached_property
+    def goes(self) -> Array:
+        """The slip s just after, m/s."""
+        return self._slip(self.after)
+
+    def _slip(self, state: State) -> Array:
+        u = self.system.support.motion.at(state.time, *state.support).material_velocity(Vector(*self._point))
+        return self.point_velocity(*_speeds(state)) - _row(u)
+
+    @cached_property
+    def speed(self) -> float:
+        """The fastest of V, Ω×ρ and u before it, m/s: what rounding is a share of."""
+        V, Omega = _speeds(self.before)
+        carried = _cross(Omega, self.rho)
+        u = V + carried - self.comes
+        return float(max(np.linalg.norm(v) for v in (V, carried, u)))
+
+    @cached_property
+    def course(self) -> Course:
+        """What its slip went through; it has run its course."""
+        turn = np.cross(np.eye(3), self.rho)  # row i is e_i×ρ, and ρ×P is turn P
+        M = np.eye(3) / float(self.system.body.mass) + turn.T @ np.linalg.solve(self.J, turn)
+        if self.lever is not None:
+            M = M + np.outer(self.lever, self.lever) / float(self.system.support.motion.inertia)
+        support, axes = self.system.support, self._axes
+        coefficient = support.friction if support.kinetic_friction is None else support.kinetic_friction
+        mu = None if coefficient is None else float(coefficient)
+        shares = float(support.restitution), float(getattr(support, "tangential_restitution", 0.0))
+        return Course(axes @ M @ axes.T, mu, shares[0], axes @ self.comes, shares[1])
+
+    @cached_property
+    def _axes(self) -> Array:
+        """Two tangents and n, as rows."""
+        smallest = np.eye(3)[np.argmin(np.abs(self.n))]
+        first = _cross(self.n, smallest)
+        first /= np.linalg.norm(first)
+        return np.stack([first, _cross(self.n, first), self.n])
+
+    @cached_property
+    def wanted(self) -> Array:
+        """The impulse that the course makes, N s; none where it does not come down."""
+        if self.comes @ self.n >= 0:
+            return np.zeros(3)
+        return self._axes.T @ self.course.impulse()
+
+    @cached_property
+    def off(self) -> float:
+        """How fast the body would come off again after that impulse, m/s; a bounce that is cut loses it."""
+        V, Omega = self._struck
+        u = self.point_velocity(*_speeds(self.before)) - self.comes
+        if self.lever is not None:
+            u = u + self.lever * self._axle
+        return float((self.point_velocity(V, Omega) - u) @ self.n)
+
+    @property
+    def _axle(self) -> float:
+        """By how much that impulse changes the rate of a free axle, rad/s."""
+        lever = np.zeros(3) if self.lever is None else self.lever
+        return -float(lever @ self.wanted) / float(self.system.support.motion.inertia)
+
+    @cached_property
+    def _struck(self) -> tuple[Array, Array]:
+        """V and Ω after that impulse."""
+        V, Omega = _speeds(self.before)
+        m = float(self.system.body.mass)
+        return V + self.wanted / m, Omega + np.linalg.solve(self.J, _cross(self.rho, self.wanted))
+
+    @cached_property
+    def stays(self) -> bool:
+        """Whether the body was set down: what is left of the speed off the support is gone."""
+        return self.event.kind == "settle" or float(self.goes @ self.n) <= 0 < self.off
+
+    @cached_property
+    def expected(self) -> tuple[Array, Array]:
+        """V and Ω after that impulse, and after the bounces to come were cut where they were."""
+        V, Omega = self._struck
+        return (V - self.off * self.n, Omega) if self.stays else (V, Omega)
+
+    @cached_property
+    def impulse(self) -> Array:
+        """The impulse that the change of V shows, N s."""
+        lost = self.off * self.n if self.stays else 0.0
+        return float(self.system.body.mass) * (_speeds(self.after)[0] - _speeds(self.before)[0] + lost)
+
+    @cached_property
+    def size(self) -> float:
+        """Of the impulse, N s: what an error of it is a share of."""
+        return max(float(np.linalg.norm(self.wanted)), float(np.linalg.norm(self.impulse)), 1e-300)
+
+    @cached_property
+    def sharp(self) -> float:
+        """The share of the impulse that rounding of V, Ω and ρ leaves open, and the course where a cut needs it."""
+        momentum = float(self.system.body.mass) * self.speed / self.size
+        far = float(np.linalg.norm(self._point)) / float(np.linalg.norm(self.rho))
+        return EXACT + _ROUNDING * (momentum + far) + (_TURNED if self.stays and self.course.turned else 0.0)
+
+    @property
+    def work(self) -> float:
+        """What the impulse did to the body's energy, and the cut, J: half of P times both velocities of the contact."""
+        before, struck, after = _speeds(self.before), self._struck, self.expected
+        mean = 0.5 * (self.point_velocity(*before) + self.point_velocity(*struck))
+        cut = 0.5 * float(self.system.body.mass) * float((after[0] - struck[0]) @ (after[0] + struck[0]))
+        return float(self.wanted @ mean) + cut
+
+    def one_impulse(self) -> Iterator[tuple[str, float, float]]:
+        """Yield what must hold of any impulse at the contact: name, share, and how much it may be."""
+        P, arm = self.impulse, float(np.linalg.norm(self.rho))
+        spin = self.J @ (_speeds(self.after)[1] - _speeds(self.before)[1]) - _cross(self.rho, P)
+        turned = float(np.linalg.norm(self.J @ _speeds(self.before)[1]))
+        yield (
+            "J ΔΩ = ρ×m ΔV",
+            float(np.linalg.norm(spin)) / (arm * self.size),
+            self.sharp + _ROUNDING * turned / (arm * self.size),
+        )
+        if self.lever is not None:
+            inertia, rate = float(self.system.support.motion.inertia), self.before.support[-1]
+            change = inertia * (self.after.support[-1] - rate) + float(self.lever @ P)
+            size = self.size * max(float(np.linalg.norm(self.lever)), arm)
+            yield "the axle", abs(change) / size, self.sharp + _ROUNDING * abs(inertia * rate) / size
+        along = float(P @ self.n)
+        yield "it pushes", -along / self.size, self.sharp
+        if self.course.mu is not None:
+            aside = float(np.linalg.norm(P - along * self.n))
+            yield "the friction cone", (aside - self.course.mu * along) / self.size, self.sharp
+        yield "comes down before", float(self.comes @ self.n) / self.speed, EXACT
+        yield "and not after", -float(self.goes @ self.n) / self.speed, EXACT
+        place = np.subtract(self.after.position, self.before.position)
+        yield "the place stays", float(np.abs(place).max()), 0.0
+        yield (
+            "and the orientation",
+            float(np.abs(np.subtract(self.after.orientation, self.before.orientation)).max()),
+            0.0,
+        )
+        if self.event.kind == "settle":
+            yield "only low bounces are cut", max(0.0, self._rise() / _CUT - 1), 1e-3
+
+    def _rise(self) -> float:
+        """Return how high the bounce would have risen that was cut, as a share of |ρ|."""
+        q, own = Quaternion(*self.before.orientation), self.after.support
+        contact = touch(self.system, self.before.time, Vector(*self._point), q, own)
+        slip = self.goes
+        sliding = Vector(*(slip - self.n * (slip @ self.n)))
+        Omega = Vector(*self.after.angular_velocity)
+        back = -float(unpushed(self.system, self.before.time, contact, q, Omega, sliding, own).opening)
+        return self.off**2 / (2 * max(back, 1e-300)) / float(np.linalg.norm(self.rho))
+
+    def by_its_course(self) -> Iterator[tuple[str, float, float]]:
+        """Yield how far V and Ω after it are from what the impulse of its course makes of them."""
+        (V, Omega), (found, turned) = self.expected, _speeds(self.after)
+        m, arm = float(self.system.body.mass), float(np.linalg.norm(self.rho))
+        bound = max(self.sharp, _TURNED) if self.course.turned else 10 * self.sharp
+        yield "V after it", m * float(np.linalg.norm(found - V)) / self.size, bound
+        moment = float(np.linalg.norm(self.J @ (turned - Omega))) / (arm * self.size)
+        spun = _ROUNDING * float(np.linalg.norm(self.J @ Omega)) / (arm * self.size)
+        yield "Ω after it", moment, bound + spun
+
+
+def landings_of(system: RollingSystem, events: tuple[Event, ...]) -> list[Landing]:
+    """Return the landings of a run, or as many as are looked at, spread over it.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        What moved.
+    events : tuple of Event
+        Of the run.
+
+    Returns
+    -------
+    list of Landing
+        In order.
+    """
+    found = [Landing(system, event) for event in events if event.kind in _KINDS and event.contact is not None]
+    return found[:: -(-len(found) // _MOST)] if len(found) > _MOST else found
+
+
+def landing_figures(landings: list[Landing]) -> Iterator[CardFigure]:
+    """Yield two figures: what holds of any impulse, and the impulse itself.
+
+    Parameters
+    ----------
+    landings : list of Landing
+        Of a run; none, no figures.
+
+    Yields
+    ------
+    CardFigure
+        With the worst landing in its note.
+    """
+    if not landings:
+        return
+    times = np.array([landing.before.time for landing in landings])
+    count = f"{len(landings)} landing{'s' if len(landings) > 1 else ''}"
+    one = [list(landing.one_impulse()) for landing in landings]
+    said = f"{count}: m ΔV turns the body as J ΔΩ = ρ×m ΔV, pushes, inside the friction cone"
+    yield _figure("landings: one impulse at the contact", one, times, said)
+    course = [list(landing.by_its_course()) for landing in landings]
+    e = float(landings[0].system.support.restitution)
+    said = f"{count}: slip followed again by Keller's equations, e² = {e * e:g} of the work given back"
+    yield _figure("landings: slip and restitution", course, times, said)
+
+
+def _figure(name: str, found: list[list[tuple[str, float, float]]], times: Array, said: str) -> CardFigure:
+    """Return the worst of what was found of each landing."""
+    flat = [(time, *one) for time, each in zip(times, found, strict=True) for one in each]
+    conditions = [Shares(what, np.array([share]), max(bound, 1e-300)) for _, what, share, bound in flat]
+    worst = max(range(len(flat)), key=lambda i: conditions[i].ratio[0])
+    return worst_of(name, [conditions[worst]], np.array([flat[worst][0]]), said)
+
+
+def _cross(a: Array, b: Array) -> Array:
+    """Return a×b: `np.cross`, at a tenth of its price for two vectors."""
+    (x, y, z), (u, v, w) = a.tolist(), b.tolist()
+    return np.array([y * w - z * v, z * u - x * w, x * v - y * u])
+
+
+def _row(v: Vector) -> Array:
+    return np.array([float(part) for part in v])
+
+
+def _speeds(state: State) -> tuple[Array, Array]:
+    return np.array(state.velocity), np.array(state.angular_velocity)

@@ -1,0 +1,282 @@
+"""Members that end early, are refused or break down: each is a row that says why, and changes no other."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray
+
+import trundle as tr
+from trundle import many
+from trundle.mechanics.algebra import Vector
+from trundle.mechanics.loads import Load
+from trundle.solve import ensemble
+
+pytest.importorskip("heyoka")
+
+BALL = tr.Body.solid_sphere(radius=0.025, mass=0.065)
+NAN = float("nan")
+
+
+@dataclass(frozen=True)
+class Pull(Load):
+    """A pull to the line x = 0, F = −c/x² along the first axis: whoever gets there breaks down."""
+
+    strength: float
+
+    def force(self, motion: Any) -> Vector:
+        x = motion.position.x
+        return Vector(-self.strength / (x * x), 0.0, 0.0)
+
+
+def pulled(strength: float) -> tr.RollingSystem:
+    return tr.RollingSystem(BALL, tr.Support(tr.Plane(rim=0.5)), loads=[Pull(strength)])
+
+
+Member = tuple[tr.RollingSystem, tr.State]
+
+
+def company(begin: float = 0.0) -> list[Member]:
+    """All that may become of a member where nothing slips, among many that roll to the end."""
+    calm, hard = pulled(1e-6), pulled(1e-3)
+    rolls = [(calm, calm.place((0.1, 0.01 * j), (0.01, 0.0), time=begin)) for j in range(16)]
+    here = calm.place((0.1, 0.0), time=begin)
+    others = [
+        (calm, calm.place((0.1, 0.0), (0.4, 0.0), time=begin)),
+        (calm, calm.place((0.1, 0.0), (1.0, 0.0), time=begin)),
+        (calm, calm.place((0.2, 0.0), height=0.05, time=begin)),  # falls, lands, rolls
+        (hard, hard.place((0.1, 0.0), time=begin)),
+        (pulled(1e-4), pulled(1e-4).place((0.1, 0.0), time=begin)),
+        (calm, replace(here, position=(0.1, 0.0, 0.02))),
+        (calm, replace(here, position=(NAN, 0.0, 0.025))),
+        (calm, replace(here, position=(0.1, 0.0))),
+        (calm, replace(here, velocity=(0.0, NAN, 0.0))),
+        (calm, replace(here, orientation=(0.0, 0.0, 0.0, 0.0))),
+        (calm, replace(here, support=(1.0,))),
+        (calm, replace(here, position=(0.6, 0.0, 0.025))),
+    ]
+    return _mixed(rolls, others)
+
+
+def slippery(begin: float = 0.0) -> list[Member]:
+    """The same where there is friction, and so slip, on tables that turn either way."""
+    systems = [
+        tr.RollingSystem(BALL, tr.Support(tr.Plane(rim=0.5), motion=tr.Spin(rate), friction=mu, restitution=0.5))
+        for rate, mu in [(2.0, 0.3), (-2.0, 0.3), (0.5, 0.01)]
+    ]
+    rolls = [(systems[j % 2], systems[j % 2].place((0.1, 0.0), (0.03 * j, 0.05), time=begin)) for j in range(16)]
+    still = (0.0, 0.0, 0.0)
+    others = [(system, system.place((0.1, 0.0), (0.0, 0.1), angular_velocity=still, time=begin)) for system in systems]
+    others += [(system, system.place((0.1, 0.0), height=0.05, time=begin)) for system in systems]
+    sunk = replace(others[0][1], position=(0.1, 0.0, 0.0))
+    return _mixed(rolls, [*others, (systems[1], sunk)])
+
+
+def _mixed(rolls: list[Member], others: list[Member]) -> list[Member]:
+    return [*rolls[:3], *others[:5], *rolls[3:13], *others[5:], *rolls[13:]]
+
+
+def many_of(members: list[Member], *timing: float, **options: Any) -> xarray.Dataset:
+    systems, starts = zip(*members, strict=True)
+    return tr.simulate_many(systems, starts, *timing, **options)
+
+
+@pytest.mark.parametrize(("duration", "every"), [(2.0, 0.5), (2.0, 0.004), (2.0, 0.0003)])
+@pytest.mark.parametrize("workers", [1, 3])
+@pytest.mark.parametrize("made", [company, slippery])
+def test_each_member_is_what_it_is_alone(made: Any, duration: float, every: float, workers: int) -> None:
+    members = made()
+    runs = many_of(members, duration, every, workers=workers)
+    for i, (system, start) in enumerate(members):
+        mine, found = runs.isel(member=i), outcome(i, system, start, duration, every)
+        assert (str(mine.ending.values), str(mine.reason.values), int(mine.events)) == found[:3]
+        data = found[3]
+        kept = np.isin(runs.time.values, [] if data is None else data.time.values)
+        assert (mine.phase.values[~kept] == -1).all()
+        for name in ("position", "velocity", "orientation", "contact_force"):
+            assert np.isnan(mine[name].values[~kept]).all()
+        if data is None:
+            assert np.isnan(mine.end)
+            continue
+        assert float(mine.end) == data.time.values[-1]
+        assert np.array_equal(mine.phase.values[kept], data.phase.values[: kept.sum()])
+        assert np.abs(mine.position.values[kept] - data.position.values[: kept.sum()]).max() <= 1e-12
+    assert set(runs.ending.values) == {"", "rim", "refused", *(["failed"] if made is company else [])}
+    assert set(np.unique(runs.phase)) >= ({-1, 0} if made is company else {-1, 0, 1, 2})
+
+
+def outcome(i: int, system: tr.RollingSystem, start: tr.State, *timing: float) -> tuple[str, str, int, Any]:
+    """What is to be said of a member, and its data, by itself."""
+    try:
+        run = tr.simulate(system, start, *timing, method="taylor")
+    except tr.InvalidValueError as error:
+        return "refused", str(error).replace("`start", f"`starts[{i}]", 1), 0, None
+    except tr.TrundleError as error:
+        return "failed", str(error), 0, None
+    final = [(event.kind, event.text) for event in run.events if event.final] or [("", "")]
+    return *final[0], len(run.events), run.data
+
+
+@pytest.mark.parametrize("made", [company, slippery])
+def test_the_others_are_what_they_are_without_it(made: Any) -> None:
+    """To the last bit, also where a neighbour stops half-way and the register is filled up with somebody else."""
+    members = made(begin=3.0)
+    whole = many_of(members, 2.0, 0.004)
+    good = np.flatnonzero(whole.ending == "").tolist()
+    alone = many_of([members[i] for i in good], 2.0, 0.004, workers=2)
+    assert alone.identical(whole.isel(member=good).assign_coords(member=alone.member))
+
+
+def test_a_refusal_names_the_member_and_what_is_wrong_with_it() -> None:
+    runs = many_of(company(), 2.0, 0.5)
+    endings = runs.ending.values.tolist()
+    said = {i: str(runs.reason.values[i]) for i, ending in enumerate(endings) if ending in ("refused", "failed")}
+    refusals = [
+        ("position", "must put the body on the support or over it"),
+        ("position", "must hold 3 finite numbers"),
+        ("position", "must hold 3 finite numbers"),
+        ("velocity", "must hold 3 finite numbers"),
+        ("orientation", "must be a unit quaternion"),
+        ("support", "must hold nothing"),
+    ]
+    refused = [i for i in said if endings[i] == "refused"]
+    for i, (key, rule) in zip(refused, refusals, strict=False):
+        assert said[i].startswith(f"`starts[{i}].{key}` {rule}"), said[i]
+    assert "must lie inside the rim at 0.5 m" in said[refused[-1]]
+    assert all("broke down at t =" in said[i] for i in said if endings[i] == "failed")
+
+
+def test_formulas_that_end_within_the_run_are_refused_for_their_member() -> None:
+    """The engine might step across a pole; what `simulate` refuses is refused here."""
+    systems = [
+        tr.RollingSystem(BALL, tr.Support(tr.Plane()), loads=[tr.Force((f"0.001/(t - {pole})", 0.0, 0.0))])
+        for pole in (5.0, 0.5, 1.0, 0.25, 1.5)
+    ]
+    runs = tr.simulate_many(systems, [system.place() for system in systems], 1.0, 0.1)
+    assert runs.ending.values.tolist() == ["", "refused", "refused", "refused", ""]
+    assert "It is not at t = 0.5 s." in str(runs.reason.values[1])
+
+
+def test_no_member_need_come_through() -> None:
+    system = tr.RollingSystem(BALL, tr.Support(tr.Plane()))
+    sunk = replace(system.place(), position=(0.0, 0.0, 0.02))
+    runs = tr.simulate_many(system, [sunk, sunk], 1.0, 0.5)
+    assert runs.ending.values.tolist() == ["refused"] * 2
+    assert np.isnan(runs.position).all()
+    fine = tr.simulate_many(system, [system.place()] * 2, 1.0, 0.5)
+    assert set(runs.data_vars) == set(fine.data_vars)
+    assert all(runs[name].dtype == fine[name].dtype for name in fine)
+
+
+@pytest.mark.parametrize("error", [ZeroDivisionError("float division by zero"), ValueError("math domain error")])
+def test_arithmetic_that_fails_is_a_row(error: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As a load of somebody's own may fail, for some numbers only."""
+    system = tr.RollingSystem(BALL, tr.Support(tr.Plane(), friction=0.1))
+    slips = system.place(velocity=(0.1, 0.0), angular_velocity=(0.0, 0.0, 0.0))
+
+    def broken(*_: Any, **__: Any) -> None:
+        raise error
+
+    monkeypatch.setattr(many, "simulate", broken)
+    runs = tr.simulate_many(system, [system.place(), slips], 1.0, 0.5)
+    assert runs.ending.values.tolist() == ["", "failed"]
+    assert str(runs.reason.values[1]) == f"{type(error).__name__}: {error}"
+
+
+def test_what_nobody_foresaw_is_not_made_a_row(monkeypatch: pytest.MonkeyPatch) -> None:
+    system = tr.RollingSystem(BALL, tr.Support(tr.Plane(), friction=0.1))
+
+    def broken(*_: Any, **__: Any) -> None:
+        raise TypeError("a mistake in the program")
+
+    monkeypatch.setattr(many, "simulate", broken)
+    with pytest.raises(TypeError, match="a mistake in the program"):
+        tr.simulate_many(system, system.place(velocity=(0.1, 0.0), angular_velocity=(0.0, 0.0, 0.0)), 1.0, 0.5)
+
+
+def test_the_result_can_be_saved(tmp_path: Path) -> None:
+    runs = many_of(company(), 1.0, 0.5)
+    runs.to_netcdf(tmp_path / "runs.nc", engine="h5netcdf")
+    assert (
+        xarray.load_dataset(tmp_path / "runs.nc", engine="h5netcdf").ending.values.tolist()
+        == runs.ending.values.tolist()
+    )
+
+
+def test_progress_never_goes_back() -> None:
+    told: list[float] = []
+    many_of(company(), 2.0, 0.004, workers=2, progress=told.append)
+    assert told == sorted(told)
+    assert told[-1] == 1.0
+    assert len(told) > 20
+
+
+@pytest.mark.parametrize("workers", [1, 3])
+def test_whoever_is_told_of_progress_may_end_it(workers: int) -> None:
+    """All threads leave at their next leg, and what was raised is raised."""
+    system = tr.RollingSystem(BALL, tr.Support(tr.EllipsoidalBowl((0.5, 0.4, 0.3))))
+    starts = [system.place((0.1, 0.01), (0.1, 0.001 * j)) for j in range(2000)]
+    told: list[float] = []
+
+    def tell(share: float) -> None:
+        told.append(share)
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        tr.simulate_many(system, starts, 10.0, 0.1, workers=workers, progress=tell)
+    assert len(told) <= 3 * workers
+
+
+ENDLESS = """
+import sys
+import trundle as tr
+system = tr.RollingSystem(tr.Body.solid_sphere(0.02, 0.1), tr.Support(tr.EllipsoidalBowl((0.5, 0.4, 0.3))))
+starts = [system.place((0.1, 0.01), (0.1, 0.0001 * j)) for j in range(200)]
+tr.simulate_many(system, starts[:8], 1.0, 0.5)
+
+def tell(share):
+    print(share, flush=True)
+
+print("begun", flush=True)
+tr.simulate_many(system, starts, 5e4, 50.0, workers=int(sys.argv[1]), progress=tell)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+@pytest.mark.parametrize("workers", ["1", "2"])
+def test_control_c_is_heard(workers: str) -> None:
+    """Hours of work end within a leg, whichever thread is at it."""
+    words = [sys.executable, "-c", ENDLESS, workers]
+    process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)  # noqa: S603
+    assert process.stdout is not None
+    assert process.stdout.readline() == "begun\n"
+    process.stdout.readline()
+    time.sleep(0.5)
+    process.send_signal(signal.SIGINT)
+    begun = time.monotonic()
+    _, said = process.communicate(timeout=60)
+    assert "KeyboardInterrupt" in said
+    assert process.returncode != 0
+    assert time.monotonic() - begun < 20.0
+
+
+def test_a_lane_whose_numbers_are_none_is_left_out() -> None:
+    """What a member's parameters come to may be no numbers: it is run by itself, and the others go on."""
+    system = tr.RollingSystem(BALL, tr.Support(tr.Plane(), motion=tr.Spin(1.0)))
+    starts = [system.place((0.1, 0.0), (0.0, 0.1 * j)) for j in range(5)]
+    states, _ = ensemble.rolling_from([system] * 5, starts)
+    states[2] = np.nan
+    found: list[int] = []
+    left = ensemble.integrate(
+        [system] * 5, states, range(5), np.linspace(0.0, 1.0, 11), lambda block: found.extend(block.members.tolist())
+    )
+    assert left == [2]
+    assert found == [0, 1, 3, 4]

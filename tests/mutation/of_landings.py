@@ -1,0 +1,139 @@
+"""Faults planted in the landings."""
+
+from __future__ import annotations
+
+from .planting import Mutant
+
+FOLLOWING = "solve.following"
+IMPACT = "mechanics.impact"
+BOUNCES = "egg_bounces"
+
+LANDINGS = (
+    Mutant(
+        "landing: e for e²",
+        IMPACT,
+        "self.aim = (1 - self.restitution**2) * self.work",
+        "self.aim = (1 - self.restitution) * self.work",
+        "ball_bounces",
+    ),
+    Mutant(
+        "landing: e 1 % too large",
+        IMPACT,
+        "float(system.support.restitution)",
+        "1.01 * float(system.support.restitution)",
+        "ball_bounces",
+    ),
+    Mutant(
+        "landing: friction 1 % too large",
+        IMPACT,
+        "mu = math.inf if system.support.friction is None else float(",
+        "mu = math.inf if system.support.friction is None else 1.01 * float(",
+        "ball_lands_on_ice",
+    ),
+    Mutant(
+        "landing: without friction",
+        IMPACT,
+        "mu = math.inf if system.support.friction is None else float(",
+        "mu = math.inf if system.support.friction is None else 0.0 * float(",
+        "ball_bounces",
+    ),
+    Mutant(
+        "landing: effective mass 1 % off",
+        IMPACT,
+        "answer = impulse / system.body.mass + inertia",
+        "answer = impulse / (1.01 * system.body.mass) + inertia",
+        "ball_bounces",
+    ),
+    Mutant(
+        "landing: effective inertia 1 % off",
+        IMPACT,
+        "inertia.solve(rho.cross(impulse)).cross(rho)",
+        "inertia.solve(rho.cross(impulse)).cross(rho) * 1.01",
+        "ball_bounces",
+    ),
+    Mutant(
+        "landing: ΔV 1 % too large",
+        IMPACT,
+        "return Impact(P, P / system.body.mass,",
+        "return Impact(P, P * 1.01 / system.body.mass,",
+        "ball_bounces",
+    ),
+    Mutant(
+        "landing: ΔΩ 1 % too large",
+        IMPACT,
+        "J.solve(contact.offset.cross(P)), axle)",
+        "J.solve(contact.offset.cross(P)) * 1.01, axle)",
+        "ball_bounces",
+    ),
+    Mutant(
+        "landing: ΔΩ with the other sign",
+        IMPACT,
+        "J.solve(contact.offset.cross(P)), axle)",
+        "-J.solve(contact.offset.cross(P)), axle)",
+        "ball_bounces",
+    ),
+    Mutant(
+        "landing: the axle left out of M",
+        IMPACT,
+        "answer = answer + lever * (lever.dot(impulse) / motion.inertia)",
+        "pass",
+        "ball_on_free_table",
+    ),
+    Mutant(
+        "landing: the axle turned 1 % too much",
+        IMPACT,
+        "axle = -contact.support.lever(contact.point).dot(P) / motion.inertia",
+        "axle = -1.01 * contact.support.lever(contact.point).dot(P) / motion.inertia",
+        "ball_on_free_table",
+    ),
+    Mutant(
+        "landing: Keller's friction 1 % too large",
+        IMPACT,
+        "direction = np.array([*(-self.mu * hat), 1.0])",
+        "direction = np.array([*(-1.01 * self.mu * hat), 1.0])",
+        BOUNCES,
+    ),
+    Mutant(
+        "landing: slip does not turn",
+        IMPACT,
+        "np.array([along, aside / y[0], up, y[2], *direction])",
+        "np.array([along, 0.0, up, y[2], *direction])",
+        BOUNCES,
+    ),
+    Mutant(
+        "landing: slip turns the other way",
+        IMPACT,
+        "np.array([along, aside / y[0], up, y[2], *direction])",
+        "np.array([along, -aside / y[0], up, y[2], *direction])",
+        BOUNCES,
+    ),
+    Mutant(
+        "landing: Stronge's work 1 % off",
+        IMPACT,
+        "np.array([along, aside / y[0], up, y[2], *direction])",
+        "np.array([along, aside / y[0], up, 1.01 * y[2] + 0.01, *direction])",
+        BOUNCES,
+    ),
+    Mutant(
+        "landing: slip that has ended begins again",
+        IMPACT,
+        "if math.hypot(direction.x, direction.y) > self.mu:",
+        "if math.hypot(direction.x, direction.y) > 0.0 * self.mu:",
+        "egg_grips_as_it_lands",
+        refused="jams",
+    ),
+    Mutant(
+        "landing: slip that has ended stays so",
+        IMPACT,
+        "if math.hypot(direction.x, direction.y) > self.mu:",
+        "if False:",
+        "egg_slips_as_it_lands",
+    ),
+    Mutant(
+        "landing: at the wrong place of the body",
+        FOLLOWING,
+        "state, now, floats(before.nearest))",
+        "state, now, floats(before.nearest * 1.001))",
+        "ball_bounces",
+    ),
+)

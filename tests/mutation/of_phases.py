@@ -1,0 +1,176 @@
+"""Faults planted in the phases: events that come too soon, too late or never, and what is recorded of them."""
+
+from __future__ import annotations
+
+from .planting import Mutant
+
+SLIPPING = "mechanics.slipping"
+LAWS = "solve.laws"
+FOLLOWING = "solve.following"
+RK = "solve.runge_kutta"
+DOME = "egg_slips_off_dome"
+AIR = "egg_over_bowl"
+LOCATED = "    return min(found) if found else None"
+LATE = "    return (path.t_old + 1.01 * (min(found)[0] - path.t_old), min(found)[1]) if found else None"
+EARLY = "    return (path.t_old + 0.99 * (min(found)[0] - path.t_old), min(found)[1]) if found else None"
+RECORDED = """phase=_phase(time, self.code), own=own)
+
+    def _moves(self, contact: Contact, Omega: Vector, rest: Numbers) -> tuple[Vector, Vector]:
+        return contact.centre, contact.rolling_velocity(Omega) + Vector(*rest)"""
+RECORDED_ROLLING = """phase=_phase(time, self.code), own=own)
+
+
+class RollingWithResistance"""
+CONE = """and self.grips:
+            f, most = R - n * N, system.support.friction * N"""
+
+PHASES = (
+    Mutant(
+        "lift 1 % late",
+        LAWS,
+        'found = {"lift": N} if self.lifts else {}',
+        'found = {"lift": N + 0.01 * system.body.mass * system.gravity} if self.lifts else {}',
+        "ball_off_dome",
+    ),
+    Mutant(
+        "lift 1 % early",
+        LAWS,
+        'found = {"lift": N} if self.lifts else {}',
+        'found = {"lift": N - 0.01 * system.body.mass * system.gravity} if self.lifts else {}',
+        "ball_off_dome",
+        refused="hold the body down",
+    ),
+    Mutant("lift missed", LAWS, 'found = {"lift": N} if self.lifts else {}', "found = {}", "ball_off_dome"),
+    Mutant(
+        "lift from slipping 1 % late",
+        LAWS,
+        'found = {"lift": now.normal_force}',
+        'found = {"lift": now.normal_force + 0.01 * system.body.mass * system.gravity}',
+        DOME,
+    ),
+    Mutant("lift from slipping missed", LAWS, 'found = {"lift": now.normal_force}', "found = {}", DOME),
+    Mutant("slip 1 % late", LAWS, CONE, CONE.replace("N, system", "N, 1.01 * system"), "ball_on_rocking_table"),
+    Mutant(
+        "slip 1 % early",
+        LAWS,
+        CONE,
+        CONE.replace("N, system", "N, 0.99 * system"),
+        "ball_on_rocking_table",
+        refused="can neither roll nor slip",
+    ),
+    Mutant(
+        "slip missed",
+        LAWS,
+        "if system.support.friction is not None and self.grips:",
+        "if False:",
+        "ball_on_rocking_table",
+    ),
+    Mutant(
+        "grip 0.1 ms late",
+        FOLLOWING,
+        "wait = length / closing if closing > 0 else 0.0",
+        "wait = 1e-4",
+        "egg_grips_in_bowl",
+    ),
+    Mutant("all events 1 % of a step late: lift", RK, LOCATED, LATE, "ball_slips_off_dome"),
+    Mutant("all events 1 % of a step late: the rim", RK, LOCATED, LATE, "off_the_rim"),
+    Mutant("all events 1 % of a step late: rest", RK, LOCATED, LATE, "ball_comes_to_rest"),
+    Mutant("all events 1 % of a step early: lift", RK, LOCATED, EARLY, DOME),
+    Mutant("all events 1 % of a step early: landing", RK, LOCATED, EARLY, AIR),
+    Mutant(
+        "dips between two looks are not looked for",
+        RK,
+        "if dips and value[j]",
+        "if False and value[j]",
+        "ball_over_a_crest",
+    ),
+    Mutant(
+        "grip where the cone does not hold",
+        FOLLOWING,
+        "f.norm() > mu * max(N, 0.0) * (1 + CONE_SLACK)",
+        "f.norm() > 2 * mu * max(N, 0.0) * (1 + CONE_SLACK)",
+        "incline_too_steep",
+    ),
+    Mutant(
+        "slips from the start, taken for rolling",
+        FOLLOWING,
+        "if support.friction is not None and at.sliding.norm() > limit:",
+        "if support.friction is not None and at.sliding.norm() > 100:",
+        "billiard",
+    ),
+    Mutant(
+        "landing late, 10 μm deep",
+        LAWS,
+        'return {"land": rest[3], **',
+        'return {"land": rest[3] + 1e-5, **',
+        "ball_lands_on_ice",
+    ),
+    Mutant(
+        "landing early, 10 μm over it",
+        LAWS,
+        'return {"land": rest[3], **',
+        'return {"land": rest[3] - 1e-5, **',
+        "ball_bounces",
+    ),
+    Mutant("landing missed", LAWS, 'return {"land": rest[3], **', "return {**", "ball_bounces"),
+    Mutant(
+        "set down without its slip",
+        FOLLOWING,
+        "(ZERO if held else at.sliding), at.Omega)",
+        "ZERO, at.Omega)",
+        "ball_lands_on_ice",
+    ),
+    Mutant("bounces cut at a thousandth of the body", FOLLOWING, "SETTLED = 1e-6", "SETTLED = 1e-3", "ball_bounces"),
+    Mutant(
+        "rest left 1 % late",
+        LAWS,
+        "arm = sum((load.offset for load in system.loads if load.stops), 0.0) * N",
+        "arm = 1.01 * sum((load.offset for load in system.loads if load.stops), 0.0) * N",
+        "ball_comes_to_rest",
+    ),
+    Mutant(
+        "rest left 1 % early",
+        LAWS,
+        "arm = sum((load.offset for load in system.loads if load.stops), 0.0) * N",
+        "arm = 0.99 * sum((load.offset for load in system.loads if load.stops), 0.0) * N",
+        "ball_comes_to_rest",
+        refused="chatters",
+    ),
+    Mutant(
+        "rest: R 1 % too large",
+        LAWS,
+        "R = support.material_acceleration(contact.centre, V) * m - F",
+        "R = (support.material_acceleration(contact.centre, V) * m - F) * 1.01",
+        "ball_comes_to_rest",
+    ),
+    Mutant(
+        "the rim 1 % further out",
+        LAWS,
+        'found["rim"] = surface.rim * surface.rim -',
+        'found["rim"] = 1.02 * surface.rim * surface.rim -',
+        "off_the_rim",
+    ),
+    Mutant("the edge of the shape missed", LAWS, 'found["edge"] = covered', "pass", "over_its_edge"),
+    Mutant(
+        "V jumps by 1e-6 where it grips",
+        FOLLOWING,
+        "return at.moving(system, at.contact.rolling_velocity(Omega), Omega)",
+        "return at.moving(system, at.contact.rolling_velocity(Omega * (1 + 1e-6)), Omega * (1 + 1e-6))",
+        "billiard",
+    ),
+    Mutant("recorded as rolling while it slips", LAWS, RECORDED, RECORDED.replace("self.code", "ROLLING"), "billiard"),
+    Mutant(
+        "recorded as slipping while it rolls",
+        LAWS,
+        RECORDED_ROLLING,
+        RECORDED_ROLLING.replace("self.code", "SLIPPING"),
+        "ball_on_rocking_table",
+    ),
+    Mutant(
+        "flight recorded with a force",
+        LAWS,
+        "Omega, q, np.zeros_like(p), phase=phase, own=own)",
+        "Omega, q, np.ones_like(p), phase=phase, own=own)",
+        "ball_bounces",
+    ),
+)
