@@ -122,7 +122,8 @@ def _balance(again: Again, landings: list[Landing], bound: float) -> Iterator[Ca
     ends = again.places(np.array([again.start.time, at.time[-1]]))
     ends = Samples.joined([_before(again.start, ends.part(slice(0, 1))), ends.part(slice(1, 2))])
     panels = np.vstack([stretch.panels() for stretch in again.stretches])
-    yield balance(system, ends, panels, again.follow, sum(landing.work for landing in landings), bound)
+    struck = [(landing.gained, landing.work) for landing in landings]
+    yield balance(system, ends, panels, again.follow, struck, bound)
 
 
 def _before(start: State, at: Samples) -> Samples:
