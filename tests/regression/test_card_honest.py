@@ -1,0 +1,82 @@
+"""Honest runs of kinds that the card once condemned: what a motion makes of roundings is no fault of the run."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import trundle as tr
+from trundle.solve.methods import Method
+from trundle.verify.bounds import sizes_of
+from trundle.verify.growth import growth
+
+pytest.importorskip("heyoka")
+
+PLANE, STEEP = {"kind": "plane"}, {"kind": "height-field", "formula": "0.1*exp(3*x)"}
+
+
+def passes(**tables: Any) -> tr.Trajectory:
+    """Run a scenario, and ask for a card without a failure."""
+    import tomli_w
+
+    run = tr.Scenario.loads(tomli_w.dumps(tables)).run()
+    card = run.card()
+    assert card.passed, str(card)
+    return run
+
+
+# --- what a motion makes of an error ------------------------------------------------------------------------
+
+
+def stone(heading: float, spin: float) -> dict[str, Any]:
+    """A flat stone, nearly plane where it touches: a small turn moves its contact far."""
+    body = {"kind": "ellipsoid", "semi_axes": [0.2, 0.03, 0.02], "mass": 1.0, "moments": [2e-4, 1.6e-3, 1.7e-3]}
+    body |= {"products": [2e-5, 0, 0], "centre": [0, 0, 0.01]}
+    load = {"kind": "rolling-couple", "coefficient": 1e-4}
+    start = {"position": [0, 0], "velocity": [-0.06285, 0.06008], "attitude": ["0 deg", "0.7071 deg", f"{heading} deg"]}
+    start |= {"spin": spin}
+    return {"loads": [load], "body": body, "support": PLANE, "start": start, "run": {"duration": 3, "every": 0.02}}
+
+
+def coin(spin: float, lean: float) -> dict[str, Any]:
+    """A coin that falls almost flat and rises again: for a moment it turns much faster than before and after."""
+    start = {"position": [0, 0], "spin": spin, "attitude": ["0 deg", f"{lean} deg", "0 deg"]}
+    body = {"kind": "disc", "radius": "12 mm", "mass": "8 g"}
+    return {"body": body, "support": PLANE, "start": start, "run": {"duration": 3, "every": 0.02}}
+
+
+def ring(x: float, spin: float) -> dict[str, Any]:
+    """A ring thrown down a steep slope."""
+    body = {"kind": "ring", "radius": 0.007107, "mass": 0.2735}
+    start = {"position": [x, 0.04889], "spin": spin}
+    return {"body": body, "support": STEEP, "start": start, "run": {"duration": 2, "every": 0.02}}
+
+
+MAGNIFIED = {
+    "a flat stone": stone(44.999, 5.0),
+    "a flat stone, turned": stone(20.0, -5.0),
+    "a coin almost flat": coin(15.468, 89.5),
+    "a coin almost flat, slower": coin(13.1, 89.2),
+    "a ring on a steep slope": ring(0.1659, -0.48),
+    "a ring on a steep slope, faster": ring(0.11, 1.1),
+}
+
+
+@pytest.mark.parametrize("kind", MAGNIFIED)
+def test_what_a_motion_magnifies_in_any_direction_passes(kind: str) -> None:
+    passes(**MAGNIFIED[kind])
+
+
+def test_a_ball_on_top_of_a_dome_magnifies_by_the_rate_at_which_it_falls() -> None:
+    # θ̈ = (5/7) g θ/(R + r) near the top, and so e^{λt} for whatever is small there.
+    system = tr.RollingSystem(tr.Body.solid_sphere(0.025, 0.065), tr.Support(tr.Dome(1.0)))
+    start = system.place((0.0, 0.0))
+    run = tr.simulate(system, start, duration=3.0, every=0.05)
+    sizes = sizes_of(system, run.samples) | {"velocity": 1.0, "angular_velocity": 40.0}
+    found = growth(system, start, run.samples, Method.of("taylor"), sizes)
+    rate = math.sqrt(5 / 7 * 9.80665 / 1.025)
+    one, other = found.at(np.array([1.5, 3.0]))
+    assert other / one == pytest.approx(math.exp(1.5 * rate), rel=0.02)
