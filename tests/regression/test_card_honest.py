@@ -80,3 +80,26 @@ def test_a_ball_on_top_of_a_dome_magnifies_by_the_rate_at_which_it_falls() -> No
     rate = math.sqrt(5 / 7 * 9.80665 / 1.025)
     one, other = found.at(np.array([1.5, 3.0]))
     assert other / one == pytest.approx(math.exp(1.5 * rate), rel=0.02)
+
+
+# --- how slip begins ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("coefficient", [0.0, 1e-3])
+@pytest.mark.parametrize("offset", [0.0, 1e-3, -1])
+def test_slip_that_begins_at_once_loses_no_energy_to_what_resists(offset: float, coefficient: float) -> None:
+    # When slip begins the normal force jumps, where the body is no ball, and with it the couple that resists rolling.
+    egg = {"kind": "ellipsoid", "semi_axes": [0.03, 0.04, 0.05], "mass": 0.2}
+    start = {"position": [0, 0], "velocity": [0.4, -0.2], "spin": -12, "attitude": ["20 deg", "55 deg", "70 deg"]}
+    loads = [{"kind": "rolling-resistance", "offset": offset}] if offset > 0 else []
+    loads += [{"kind": "rolling-couple", "coefficient": coefficient}] if coefficient else []
+    loads += [{"kind": "pivot-friction", "offset": 1e-3}] if offset < 0 else []
+    run = passes(
+        body=egg,
+        support={"kind": "plane", "friction": 0.02},
+        start=start,
+        loads=loads,
+        run={"duration": 0.02, "every": 0.001},
+    )
+    assert [event.kind for event in run.events] in ([], ["slip"])
+    assert (run.data.phase.values == 1).all()
