@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -103,3 +104,38 @@ def test_slip_that_begins_at_once_loses_no_energy_to_what_resists(offset: float,
     )
     assert [event.kind for event in run.events] in ([], ["slip"])
     assert (run.data.phase.values == 1).all()
+
+
+# --- where the law is singular ------------------------------------------------------------------------------
+
+CURVED = {
+    # Nearly straight down into the tip of a cone, where it ends almost as hollow as the ball is round.
+    "a ball in a cone": {
+        "body": {"kind": "solid-sphere", "radius": "10 mm", "mass": "32.7 g"},
+        "support": {"kind": "cone", "half_angle": "45 deg", "rim": "40 cm"},
+        "start": {"position": ["20 cm", "0 cm"], "velocity": ["0 m/s", "8e-9 m/s"]},
+        "run": {"duration": 1, "every": "5 ms"},
+    },
+    "an ellipsoid that slips in a funnel": {
+        "body": {"kind": "ellipsoid", "semi_axes": [0.1294, 0.05665, 0.03186], "mass": 0.01047, "turn": "-12.63 deg"},
+        "support": {
+            "kind": "revolution",
+            "formula": "0.2*r",
+            "friction": 0.01831,
+            "motion": {"kind": "uneven-spin", "rate": -1.216, "variation": -0.08564, "variation_rate": 7.828},
+        },
+        "start": {"position": [0.1, 0], "velocity": [-0.5623, 0.5265], "spin": 15.4},
+        "run": {"duration": 2, "every": 0.02},
+    },
+}
+
+
+@pytest.mark.parametrize("kind", CURVED)
+def test_a_run_that_ends_where_the_support_is_as_hollow_as_the_body_is_round(kind: str) -> None:
+    run = passes(**CURVED[kind])
+    assert [event.kind for event in run.events] == ["curved"]
+    # What is off by more than the end makes of a rounding is told.
+    *others, last = run.events
+    before = replace(last.before, velocity=tuple(v * 1.001 for v in last.before.velocity))
+    later = replace(run, events=(*others, replace(last, before=before)), _kept={})
+    assert "the method run again" in {figure.name for figure in later.card().failures}

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,14 +21,13 @@ from ..mechanics.algebra import Quaternion
 from ..mechanics.system import RollingSystem, State
 from ..solve.methods import Method
 from ..solve.samples import Event, Samples
-from .bounds import SOLVER, Array, largest
+from .bounds import A_STEP, SOLVER, Array, largest
 from .nudging import nudged
 
 MOST = 1e-2  # of the size of a quantity: beyond it nothing is told
 _NUDGE = 1e-10  # of the largest Ω: small beside a motion that magnifies it a millionfold, large beside rounding
 _OVER_TOLERANCE = 100.0  # and so many times the method's tolerance
 _MOST_NUDGE = 1e-4
-_A_STEP = 10.0  # times its tolerance that a method may err in a step
 _FLOOR = 1e-4  # of the largest change: of less, rounding is part
 _INSTANTS = 200
 
@@ -56,7 +56,7 @@ class Growth:
 
     def widened(self, bound: float, turned: float, magnified: Array) -> Array:
         """Return a bound by what the motion makes of a method's errors in so many radians."""
-        return np.minimum(MOST, bound * np.maximum(1.0, _A_STEP * magnified * np.sqrt(max(turned, 1.0)) / SOLVER))
+        return np.minimum(MOST, bound * np.maximum(1.0, A_STEP * magnified * np.sqrt(max(turned, 1.0)) / SOLVER))
 
     def at(self, times: Array) -> Array:
         """Return how many times larger a change shows by then."""
@@ -155,18 +155,25 @@ def growth(system: RollingSystem, start: State, at: Samples, method: Method, siz
     span = max(float(times[-1] - start.time), 1e-300)
     share = min(max(_NUDGE, _OVER_TOLERANCE * method.tolerance), _MOST_NUDGE)
     change = share * max(largest(at.angular_velocity), 1 / span)
-    first, others = method.solve(system, start, times), []
+    first, starts, others = method.solve(system, start, times), [], []
     for begin in nudged(system, start, change, share, share * sizes["position"]):
         with suppress(SolverError):  # a changed start may come to where no law goes on
             others.append(method.solve(system, begin, times))
+            starts.append(begin)
     until = min([float(times[-1]), *(parted(first, other) for other in others)])
     count = min([len(first.events), *(same_events(first.events, other.events) for other in others)])
-    for other in others:  # a run may end sooner
-        times = np.intersect1d(times, other.time)
+    end, times = times[-1], reduce(np.intersect1d, (other.time for other in others), times)
     if not others or not times.size:
         return Growth(times, np.zeros(times.size), np.zeros(0), until)
     pairs = [at_the_same_times(first.part(np.isin(first.time, times)), other) for other in others]
     told = np.all([alike(*pair) for pair in pairs], axis=0)
+    if times[-1] < end <= until:  # where some of them have ended already
+        lasts = _lasts(system, method, end, [(start, first), *zip(starts, others, strict=True)])
+        pairs = [
+            (Samples.joined([one, its_last]), Samples.joined([other, other_last]))
+            for (one, other), (its_last, other_last) in zip(pairs, lasts, strict=True)
+        ]
+        times, told = np.append(times, end), np.append(told, True)
     state, shown = _responses(pairs, sizes)
     nonlinear = times[told & (np.linalg.norm(shown, axis=2).max(axis=(1, 2)) > MOST)]
     until = min(until, float(nonlinear[0])) if nonlinear.size else until
@@ -180,6 +187,19 @@ def growth(system: RollingSystem, start: State, at: Samples, method: Method, siz
         if count:
             shifted = np.maximum(shifted, np.linalg.norm(lags @ back, axis=1) * (at_events >= times[i]))
     return Growth(times, np.maximum.accumulate(magnified), shifted, until)
+
+
+def _lasts(
+    system: RollingSystem, method: Method, end: float, runs: list[tuple[State, Samples]]
+) -> list[tuple[Samples, Samples]]:
+    """Return the first run and each of the others at the last instant that both have."""
+    ends = [min([end, *(event.time for event in run.events if event.final)]) for _, run in runs]
+    times = np.minimum(ends[0], ends[1:])
+    firsts = method.solve(system, runs[0][0], np.unique(times))
+    return [
+        (firsts.part(np.searchsorted(firsts.time, [time])), method.solve(system, start, np.array([time])))
+        for time, (start, _) in zip(times, runs[1:], strict=True)
+    ]
 
 
 def _responses(pairs: list[tuple[Samples, Samples]], sizes: dict[str, float]) -> tuple[Array, Array]:
