@@ -20,7 +20,7 @@ from .simulation import check_state, simulate
 from .solve import taylor
 from .solve.methods import Method
 from .solve.samples import Progress
-from .solve.sampling import MOST_SAMPLES, sample_times
+from .solve.sampling import MOST_SAMPLES, check_clock, sample_times
 
 if TYPE_CHECKING:
     import xarray
@@ -87,6 +87,7 @@ def simulate_many(
     systems, starts = _members(systems, starts)
     instants = sample_times(duration, every)
     _check(systems, starts, instants.size, every, workers)
+    check_clock(systems[0], starts[0], float(instants[1]))
     times = starts[0].time + instants
     result = _Result(systems[0], len(systems), times, progress)
     rest = _rolled(result, systems, starts, times, workers) if _batched(systems[0]) else range(len(systems))

@@ -18,7 +18,7 @@ from .memory import check_room
 from .scenario import ScenarioFile
 from .solve import methods
 from .solve.samples import Progress
-from .solve.sampling import longer_step, sample_times
+from .solve.sampling import check_clock, longer_step, sample_times
 from .trajectory import Trajectory
 
 _OFF_UNIT = 1e-6  # by which the length of a quaternion may be off: it is made 1 on the way
@@ -87,10 +87,12 @@ def simulate(
     ('exact', 1001)
     """
     check_state(system, start)
-    times = start.time + sample_times(duration, every)
+    since = sample_times(duration, every)
+    times = start.time + since
     check_room(times.size, labels.size_of(system), "every", every, partial(longer_step, times))
-    _check_start(system, start, float(times[-1]))
     check_finite(system, float(times[0]), float(times[-1]))
+    _check_start(system, start, float(times[-1]))
+    check_clock(system, start, float(since[1]))
     chosen, samples = methods.run(method, system, start, times, progress, tolerance)
     if scenario is None:
         title, scenario = _described(system, start, times, method, title)

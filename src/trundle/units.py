@@ -42,7 +42,8 @@ _LARGE_POWER = re.compile(r"\d{2,}|(?:\^|\*\*)[^0-9-]*-?\d{2,}|(?:\^|\*\*).*(?:\
 def to_si(value: Any, kind: str, key: str) -> Any:
     """Turn a number, a text with a unit or a pint quantity into SI.
 
-    A bare number is SI already. Arrays and symbolic scalars pass through unchanged. A text in metres, grams,
+    A bare number is SI already; a text has a unit, except for what has no dimension: "45" might be rad/s or rpm, and
+    "0.3" can only be 0.3. Arrays and symbolic scalars pass through unchanged. A text in metres, grams,
     seconds, newtons, joules, degrees, turns or rpm (with the usual prefixes, products and powers) is
     converted exactly and rounded once: "35 mm" is the float 0.035. Other units are pint's to convert.
 
@@ -63,7 +64,7 @@ def to_si(value: Any, kind: str, key: str) -> Any:
     Raises
     ------
     InvalidValueError
-        If the text is no quantity, the dimension is another, or the number is NaN or infinite.
+        If the text is no quantity, has no unit or that of another dimension, or the number is NaN or infinite.
 
     Examples
     --------
@@ -120,6 +121,14 @@ def _example(kind: str) -> str:
     return f"Write for instance '{example}', {bare}"
 
 
+def _with_units(kind: str, digits: str) -> str:
+    """Say how a number that came as text without a unit may be written."""
+    unit, example = UNITS[kind]
+    offered = dict.fromkeys([unit, example.partition(" ")[2]])
+    quoted = ", ".join(f"'{digits} {one}'" for one in offered)
+    return f"Write {quoted} or, in a file or in Python, the bare number {digits}, which is in {unit}."
+
+
 def _as_float(value: int | float, key: str) -> float:
     try:
         return float(value)
@@ -137,7 +146,11 @@ def _from_text(text: str, kind: str, key: str) -> float:
     unit = (match[2] or "").strip()
     unit = "1" + unit if unit.startswith("/") else unit  # "3/s" is "3 1/s"
     number = float(match[1])
-    if not unit or not math.isfinite(number):
+    if not math.isfinite(number):
+        return number
+    if not unit:
+        if UNITS[kind][0]:
+            raise InvalidValueError(key, f"{_must_be(kind)} with its unit", text, _with_units(kind, match[1]))
         return number
     factor = _exact_factor(unit)
     if factor is None:

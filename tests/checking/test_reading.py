@@ -132,7 +132,7 @@ def test_uneven_samples() -> None:
         ({"t": [0, 1], "x": [0, 1]}, {}, "must hold time and position; got 'no column for y"),
         ({"t": np.arange(5.0), "x": np.arange(5.0), "y": np.arange(5.0)}, {}, "12 samples or more"),
         (run() | {"t": run()["t"][::-1]}, {}, "`time` must ascend"),
-        (run() | {"vx": np.full(200, np.nan)}, {}, "`velocity` must be finite"),
+        (run() | {"vx": np.full(200, np.nan)}, {}, "`vx` must hold a number in most rows"),
         (run() | {"qw": 2 * run()["qw"]}, {}, "unit quaternions"),
         ({name: array for name, array in run().items() if name != "wy"}, {}, "no wy"),
         (run() | {"pos_x": run()["x"]}, {}, "two could be `x`"),

@@ -41,6 +41,23 @@ def test_a_wrong_one_leaves_with_3_and_names_the_mistake(here: Command, folder: 
     assert "out/check.png" in done.files
 
 
+def test_data_that_cannot_decide_leave_with_4(here: Command, folder: Path) -> None:
+    noise = np.random.default_rng(1).normal(scale=0.05, size=(200, 2))
+    rows = np.column_stack([np.arange(200) / 60, noise])
+    np.savetxt(folder / "theirs.csv", rows, header="t,x,y", comments="", delimiter=",")
+    done = here("check", "theirs.csv", *NUDGED)
+    assert (done.status, done.err) == (4, "trundle: these data cannot decide\n")
+    assert "every check held" not in done.out
+    assert "They would look the same with" in done.out
+    assert "theirs/check.png" in done.files
+    told = json.loads(here("check", "theirs.csv", *NUDGED, "--json", "--no-figure").out)
+    assert (told["passed"], told["answer"], bool(told["could_not_show"])) == (False, "cannot decide", True)
+
+
+def test_the_help_says_what_each_status_means(here: Command) -> None:
+    assert "4, these data cannot decide" in " ".join(here("check", "--help").out.split())
+
+
 def test_json_and_nothing_else(here: Command, folder: Path) -> None:
     write(folder, share=2 / 5)
     done = here("check", "theirs.csv", *NUDGED, "--json", "--no-figure")

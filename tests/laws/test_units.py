@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import subprocess
 import sys
 from fractions import Fraction
@@ -77,7 +78,7 @@ def test_other_units_go_through_pint(text: str, kind: str, expected: float) -> N
 @pytest.mark.parametrize(
     ("text", "number"),
     [
-        ("0.5", 0.5),
+        ("0.5 m", 0.5),
         (".5 m", 0.5),
         ("1e-3 m", 0.001),
         ("1_000 m", 1000.0),
@@ -94,14 +95,32 @@ def test_ways_of_writing_a_number(text: str, number: float) -> None:
 @pytest.mark.parametrize("given_kind", UNITS)
 def test_a_wrong_dimension_is_refused(wanted: str, given_kind: str) -> None:
     text = f"2 {UNITS[given_kind][0]}".strip()
-    if wanted == given_kind or given_kind == "number":  # a bare number is SI, whatever the kind
+    if wanted == given_kind:
         assert to_si(text, wanted, "x") == 2.0
     else:
         with pytest.raises(
             InvalidValueError,
-            match=f"`x` must be an? {wanted}; got '{text.replace('^', '.').replace('*', '.')}'",
+            match=f"`x` must be an? {wanted}(?: with its unit)?; got '{text.replace('^', '.').replace('*', '.')}'",
         ):
             to_si(text, wanted, "x")
+
+
+@pytest.mark.parametrize("kind", UNITS)
+@pytest.mark.parametrize("digits", ["45", "0", "-2.5", "1e3", ".5", "1_000", " 7 ", "\u22123"])
+def test_text_without_a_unit_is_refused_with_what_to_write(kind: str, digits: str) -> None:
+    bare = digits.strip().replace("\u2212", "-")
+    if kind == "number":  # no unit is missing
+        assert to_si(digits, kind, "x") == float(bare)
+        return
+    with pytest.raises(InvalidValueError) as caught:
+        to_si(digits, kind, "x")
+    message = str(caught.value)
+    assert f"`x` must be a{'n' * (kind[0] in 'aei')} {kind} with its unit; got {digits!r}." in message
+    offered = re.findall(r"'([^']+)'", message.partition("Write ")[2])
+    assert len(offered) == len(dict.fromkeys([UNITS[kind][0], UNITS[kind][1].split(" ")[1]]))
+    assert to_si(offered[0], kind, "x") == float(bare)  # what the bare number means
+    assert all(to_si(one, kind, "x") == 0 for one in offered) == (float(bare) == 0)
+    assert f"the bare number {bare}, which is in {UNITS[kind][0]}." in message
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from .planting import Mutant
 
 FOLLOWING = "solve.following"
+RESPONSE = "mechanics.slipping"
 IMPACT = "mechanics.impact"
 BOUNCES = "egg_bounces"
 
@@ -39,16 +40,16 @@ LANDINGS = (
     ),
     Mutant(
         "landing: effective mass 1 % off",
-        IMPACT,
-        "answer = impulse / system.body.mass + inertia",
-        "answer = impulse / (1.01 * system.body.mass) + inertia",
+        RESPONSE,
+        "answer = push / system.body.mass + turned.cross(rho)",
+        "answer = push / (1.01 * system.body.mass) + turned.cross(rho)",
         "ball_bounces",
     ),
     Mutant(
         "landing: effective inertia 1 % off",
-        IMPACT,
-        "inertia.solve(rho.cross(impulse)).cross(rho)",
-        "inertia.solve(rho.cross(impulse)).cross(rho) * 1.01",
+        RESPONSE,
+        "answer = push / system.body.mass + turned.cross(rho)",
+        "answer = push / system.body.mass + turned.cross(rho) * 1.01",
         "ball_bounces",
     ),
     Mutant(
@@ -74,8 +75,8 @@ LANDINGS = (
     ),
     Mutant(
         "landing: the axle left out of M",
-        IMPACT,
-        "answer = answer + lever * (lever.dot(impulse) / motion.inertia)",
+        RESPONSE,
+        "answer = answer + lever * (moment / motion.inertia)",
         "pass",
         "ball_on_free_table",
     ),
@@ -96,22 +97,22 @@ LANDINGS = (
     Mutant(
         "landing: slip does not turn",
         IMPACT,
-        "np.array([along, aside / y[0], up, y[2], *direction])",
-        "np.array([along, 0.0, up, y[2], *direction])",
+        "np.array([along, aside / y[0], up, y[2], *direction, self.mu * y[0]])",
+        "np.array([along, 0.0, up, y[2], *direction, self.mu * y[0]])",
         BOUNCES,
     ),
     Mutant(
         "landing: slip turns the other way",
         IMPACT,
-        "np.array([along, aside / y[0], up, y[2], *direction])",
-        "np.array([along, -aside / y[0], up, y[2], *direction])",
+        "np.array([along, aside / y[0], up, y[2], *direction, self.mu * y[0]])",
+        "np.array([along, -aside / y[0], up, y[2], *direction, self.mu * y[0]])",
         BOUNCES,
     ),
     Mutant(
         "landing: Stronge's work 1 % off",
         IMPACT,
-        "np.array([along, aside / y[0], up, y[2], *direction])",
-        "np.array([along, aside / y[0], up, 1.01 * y[2] + 0.01, *direction])",
+        "np.array([along, aside / y[0], up, y[2], *direction, self.mu * y[0]])",
+        "np.array([along, aside / y[0], up, 1.01 * y[2] + 0.01, *direction, self.mu * y[0]])",
         BOUNCES,
     ),
     Mutant(

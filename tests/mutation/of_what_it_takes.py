@@ -67,8 +67,8 @@ ORIENTATION = (
     Mutant(
         "closed form: q by ½ q Ω",
         "solve.orientation",
-        "return _unit(result)",
-        "return _unit(result) * np.array([1.0, -1.0, -1.0, -1.0])",
+        "result[part] = _unit(course.at(times[part]))",
+        "result[part] = _unit(course.at(times[part])) * np.array([1.0, -1.0, -1.0, -1.0])",
         "turntable_exactly",
     ),
     Mutant(
@@ -206,8 +206,8 @@ ON_LOADS = (
     Mutant(
         "drag 1 % too strong, with a closed form",
         LOADS + ".air",
-        "return through_air(motion, self.air_rate) * -self.coefficient",
-        "return through_air(motion, self.air_rate) * (-1.01 * self.coefficient)",
+        "return through_air(motion, self.air) * -self.coefficient",
+        "return through_air(motion, self.air) * (-1.01 * self.coefficient)",
         "ball_in_air",
     ),
     Mutant(

@@ -142,8 +142,8 @@ def ball_over_a_crest() -> Trajectory:
 def egg_under_loads() -> Trajectory:
     """Most loads at once."""
     loads = (
-        tr.Drag(0.05, air_rate=2.0),
-        tr.QuadraticDrag(0.1, air_rate=-1.0),
+        tr.Drag(0.05, air=2.0),
+        tr.QuadraticDrag(0.1, air=-1.0),
         tr.Magnus(0.01),
         tr.Potential("2*x**2 + 3*y**2 + 0.1*x*y"),
         tr.Force((0.1, 0.05, 0.02)),

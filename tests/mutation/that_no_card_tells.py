@@ -17,8 +17,8 @@ SHARED = (
     Mutant(
         "drag 1 % too strong",
         LOADS + ".air",
-        "return through_air(motion, self.air_rate) * -self.coefficient",
-        "return through_air(motion, self.air_rate) * (-1.01 * self.coefficient)",
+        "return through_air(motion, self.air) * -self.coefficient",
+        "return through_air(motion, self.air) * (-1.01 * self.coefficient)",
         LOADED,
         _GIVEN,
     ),

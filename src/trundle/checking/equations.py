@@ -3,23 +3,29 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from ..errors import InvalidValueError
+from ..errors import InvalidValueError, TrundleError
 from ..mechanics.algebra import Matrix, Quaternion, Vector
-from ..mechanics.contact import roll, touch
+from ..mechanics.contact import touch
 from ..mechanics.system import RollingSystem
 from ..verify import CardFigure
-from . import laws, wrong_laws
+from .fitting import FAMILIES, fitted
+from .laws import Law, Rates, eliminated_law
+from .mistakes import Suspect, law_of, mechanical, with_mistakes
+from .motion import Instants
 from .record import Array, check_covered
 from .result import Check, Mistake
+from .searching import Tried, explaining
 from .symbols import callable_of
 
 EXACT = 1e-9  # of the largest acceleration: two ways to write one law differ by rounding
+_FITS = 1e-8  # what a fit of numbers may leave
 NAMES = ("acceleration", "angular acceleration")
 
 
@@ -33,6 +39,11 @@ class States:
     velocity: Array
     orientation: Array
     angular_velocity: Array
+
+    def instants(self, system: RollingSystem) -> Instants:
+        """Return them with their contact with a support."""
+        contact = touch(system, self.time, Vector.of(self.point), Quaternion.of(self.orientation))
+        return Instants(self.time, self.position, self.velocity, self.angular_velocity, self.orientation, contact)
 
     def one(self, i: int) -> tuple[float, Array, Array, Array, Array]:
         """Return t, r, V, q and Ω of one state, as equations take them."""
@@ -102,29 +113,6 @@ def _on_surface(system: RollingSystem, time: float, rough: Vector) -> Vector:
     return now.origin + now.rotation @ own
 
 
-def accelerations(system: RollingSystem, at: States) -> tuple[Array, Array]:
-    """Return V̇ and Ω̇ by the package's own law.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Body, support and loads.
-    at : States
-        Where.
-
-    Returns
-    -------
-    acceleration, angular_acceleration : array (n, 3)
-        m/s² and rad/s².
-    """
-    q, Omega = Quaternion.of(at.orientation), Vector.of(at.angular_velocity)
-    now = roll(system, at.time, Vector.of(at.point), q, Omega)
-    state = now.contact.body_motion(system.body.mass, at.time, now.velocity, q, Omega)
-    V_rate = (now.reaction + system.loads_on(state)[0]) / system.body.mass
-    shape = at.position.shape
-    return np.broadcast_to(V_rate.array(), shape), np.broadcast_to(now.angular_acceleration.array(), shape)
-
-
 def check_equations(
     equations: Any,
     system: RollingSystem,
@@ -181,28 +169,26 @@ def check_equations(
         raise InvalidValueError("system", "must be a RollingSystem", system)
     check_covered(system)
     at = _states(system, _count(samples), seed)
-    theirs = _evaluated(callable_of(equations, values or {}), at)
-    case = _Case(system, at, theirs, tolerance)
-    shares, worst = case.off(accelerations(system, at))
+    case = _Case(system, at, _evaluated(callable_of(equations, values or {}), at), tolerance)
+    shares, worst = case.off(case.true)
     figures = [
         CardFigure(f"{name} against the law", share, "", tolerance, bool(share <= tolerance), f"at {samples} states")
         for name, share in zip(NAMES, shares, strict=False)
     ]
     failed = max(shares) > tolerance
-    explained = {mistake.says: mistake for mistake in _explained(case, shares)} if failed else {}
-    likely = tuple(sorted(explained.values(), key=lambda mistake: not mistake.named))
+    likely, nearest = _diagnosed(case, max(shares)) if failed else ((), ())
     state = dict(zip(("t", "r", "V", "q", "Ω"), map(_shown, at.one(worst)), strict=True))
-    ours = accelerations(system, at)
-    for i, name in enumerate(("V̇", "Ω̇")[: len(theirs)]):
-        width = theirs[i].shape[1]
-        state |= {f"their {name}": _shown(theirs[i][worst]), f"our {name}": _shown(ours[i][worst][:width])}
+    for i, name in enumerate(("V̇", "Ω̇")[: len(case.theirs)]):
+        width = case.theirs[i].shape[1]
+        state |= {f"their {name}": _shown(case.theirs[i][worst]), f"our {name}": _shown(case.true[i][worst][:width])}
     remark = "" if likely or not failed else "No wrong law that was tried here agrees with these equations."
     return Check(
         "Their equations against the law of rolling",
         f"{samples} random states that roll; ours: T1-T3, every state and rate in the inertial support frame",
         tuple(figures),
         likely=likely,
-        remark=remark,
+        nearest=nearest,
+        remark=f"{remark} Nearest:" if nearest else remark,
         worst_state=state if failed else None,
     )
 
@@ -258,19 +244,20 @@ def _one(returned: Any) -> list[list[float]]:
 
 @dataclass(frozen=True)
 class _Case:
+    """Their accelerations and ours at the same states."""
+
     system: RollingSystem
     at: States
     theirs: list[Array]
     tolerance: float
 
-    def off(self, ours: tuple[Array, Array]) -> tuple[list[float], int]:
+    def off(self, ours: Rates) -> tuple[list[float], int]:
         """Return the largest difference of each part as a share of the largest acceleration, and where it is worst."""
-        each = self.shares(ours)
-        lengths = [np.linalg.norm(part, axis=1) for part in each]
+        lengths = [np.linalg.norm(part, axis=1) for part in self.shares(ours)]
         worst = int(np.argmax(np.max(lengths, axis=0)))
         return [float(length.max()) for length in lengths], worst
 
-    def shares(self, ours: tuple[Array, Array]) -> list[Array]:
+    def shares(self, ours: Rates) -> list[Array]:
         """Return the differences over the largest acceleration of the right law, or of theirs."""
         found = []
         for part, right, true in zip(self.theirs, ours, self.true, strict=False):
@@ -279,90 +266,89 @@ class _Case:
             found.append((part - right[:, :width]) / max(size, 1e-300))
         return found
 
-    @property
-    def true(self) -> tuple[Array, Array]:
-        return accelerations(self.system, self.at)
+    @cached_property
+    def true(self) -> Rates:
+        """The right V̇ and Ω̇."""
+        return eliminated_law(self.system, self.states)
+
+    @cached_property
+    def states(self) -> Instants:
+        """The states, with their contact."""
+        return self.at.instants(self.system)
+
+    def rates(self, suspects: Sequence[Suspect]) -> Rates:
+        """Return V̇ and Ω̇ with some mistakes in them."""
+        return law_of(suspects, eliminated_law)(with_mistakes(self.system, suspects), self.states_of(suspects))
+
+    def states_of(self, suspects: Sequence[Suspect]) -> Instants:
+        """Return the states on the support that somebody had who made mistakes."""
+        same = all(suspect.system is None for suspect in suspects)
+        return self.states if same else self.at.instants(with_mistakes(self.system, suspects))
+
+    def tried(self, suspects: tuple[Suspect, ...]) -> Tried | None:
+        """Try mistakes at all states."""
+        try:
+            with np.errstate(all="ignore"):
+                each = self.shares(self.rates(suspects))
+        except (TrundleError, ArithmeticError, ValueError):
+            return None
+        left = max(float(np.linalg.norm(part, axis=1).max()) for part in each)
+        fits = any(not suspect.named for suspect in suspects)
+        before = max(self.off(self.true)[0])
+        return Tried(suspects, left / before, left <= max(self.tolerance, _FITS if fits else 0.0), left)
+
+    def residual(self, suspect: Suspect) -> Array:
+        """Return what a fit makes small."""
+        return np.concatenate([part.ravel() for part in self.shares(self.rates((suspect,)))]) / self.tolerance
 
 
-def _explained(case: _Case, before: list[float]) -> Iterator[Mistake]:
-    """Yield the wrong laws that the equations agree with."""
-    for name, says, law, numbers, named in (*_terms(case), *_axes(case), *_fitted(case)):
-        after = max(case.off(law)[0])
-        if after <= max(case.tolerance, 1e-8 if numbers else 0.0):
-            yield Mistake(name, says, f"{NAMES[0]} against the law", max(before), after, case.tolerance, numbers, named)
+def _diagnosed(case: _Case, before: float) -> tuple[tuple[Mistake, ...], tuple[Mistake, ...]]:
+    """Return the wrong laws that the equations agree with, and where there is none, those that they nearly do."""
+    with np.errstate(all="ignore"):
+        suspects = [*_axes(), *mechanical(case.system)]
+        suspects += [suspect for family in FAMILIES for suspect in fitted(family, case.system, case.residual)]
+        explain, nearest = explaining(suspects, case.tried, case.tried)
+
+    def mistake(tried: Tried) -> Mistake:
+        numbers = {name: number for suspect in tried.suspects for name, number in suspect.numbers.items()}
+        return Mistake(
+            " + ".join(suspect.name for suspect in tried.suspects),
+            " ".join(suspect.says for suspect in tried.suspects),
+            f"{NAMES[0]} against the law",
+            before,
+            tried.found,
+            case.tolerance,
+            numbers,
+            tried.named,
+            max(0.0, 1 - tried.left),
+        )
+
+    return tuple(map(mistake, explain)), tuple(map(mistake, nearest))
 
 
-_Wrong = tuple[str, str, tuple[Array, Array], dict[str, float], bool]
-
-
-def _terms(case: _Case) -> Iterator[_Wrong]:
-    system, at = case.system, case.at
-    yield (
-        "missing-gyroscopic-term",
-        "Ω×JΩ was left out of Euler's equation.",
-        accelerations(laws.without_gyroscopic(system), at),
-        {},
-        True,
-    )
-    bare = accelerations(laws.without_carrying(system), at)
-    text = "u̇, the table's motion under the moving contact, was left out of the law"
-    yield "missing-carrying-term", f"{text}.", bare, {}, True
-    full, half = accelerations(system, at)
-    carried = full + np.cross(half, _offset(case)) - (bare[0] + np.cross(bare[1], _offset(case)))
-    yield "missing-carrying-term", f"{text} of Ω, and kept in V = u − Ω×ρ.", (bare[0] + carried, bare[1]), {}, True
-    for load in system.loads:
-        law = accelerations(laws.without_load(system, load), at)
-        yield "load-left-out", f"A load was left out: {type(load).__name__}.", law, {}, True
-
-
-def _offset(case: _Case) -> Array:
-    return case.at.point - case.at.position
-
-
-def _axes(case: _Case) -> Iterator[_Wrong]:
-    """Take their Ω, or their Ω̇, for one along the axes of the body."""
-    at, Q = case.at, Quaternion.of(case.at.orientation).matrix()
-    name = "body-axes-for-space-axes"
-    V_rate, Omega_rate = accelerations(case.system, at)
-    yield name, "Ω̇ has its components along the axes of the body.", (V_rate, _turned(Q.transpose, Omega_rate)), {}, True
-    spun = replace(at, angular_velocity=_turned(Q, at.angular_velocity))
-    V_rate, Omega_rate = accelerations(case.system, spun)
+def _axes() -> Iterator[Suspect]:
+    """Yield what else their Ω, or their Ω̇, may mean."""
+    name, axes = "body-axes-for-space-axes", frozenset({"axes"})
     text = "Ω is taken for one along the axes of the body; it comes along space axes."
-    yield name, text, (V_rate, Omega_rate), {}, True
-    yield name, text, (V_rate, _turned(Q.transpose, Omega_rate)), {}, True
-    degrees = replace(at, angular_velocity=np.degrees(at.angular_velocity))
-    yield "degrees-for-radians", "Ω is taken for deg/s.", accelerations(case.system, degrees), {}, True
+    yield Suspect(name, "Ω̇ has its components along the axes of the body.", axes, law=_answered)
+    yield Suspect(name, text, axes, law=_turned_in)
+    yield Suspect(name, text, axes, law=lambda system, at: _answered(system, at, _turned_in))
+    yield Suspect("degrees-for-radians", "Ω is taken for deg/s.", axes, law=_in_degrees)
+
+
+def _answered(system: RollingSystem, at: Instants, law: Law = eliminated_law) -> Rates:
+    V_rate, Omega_rate = law(system, at)
+    return V_rate, _turned(Quaternion.of(at.orientation).matrix().transpose, Omega_rate)
+
+
+def _turned_in(system: RollingSystem, at: Instants) -> Rates:
+    Omega = _turned(Quaternion.of(at.orientation).matrix(), at.angular_velocity)
+    return eliminated_law(system, replace(at, angular_velocity=Omega))
+
+
+def _in_degrees(system: RollingSystem, at: Instants) -> Rates:
+    return eliminated_law(system, replace(at, angular_velocity=np.degrees(at.angular_velocity)))
 
 
 def _turned(Q: Matrix, vectors: Array) -> Array:
     return np.asarray((Q @ Vector.of(vectors)).array(), dtype=float)
-
-
-def _fitted(case: _Case) -> Iterator[_Wrong]:
-    """Fit the numbers of the system to the equations, as for a trajectory."""
-    for family in wrong_laws.FAMILIES:
-        if not family.applies(case.system):
-            continue
-        for law in (accelerations, _from_velocity) if family is wrong_laws.RATE else (accelerations,):
-            found = _fit(case, family, law)
-            trials = () if found is None else family.named(case.system, *found)
-            for trial in trials:
-                if trial.system is not None:
-                    yield trial.name, trial.says, law(trial.system, case.at), trial.numbers, trial.named
-
-
-def _from_velocity(system: RollingSystem, at: States) -> tuple[Array, Array]:
-    """Return the law for equations that use V and no Ω: on a table of another rate the two do not go together."""
-    contact = touch(system, at.time, Vector.of(at.point), Quaternion.of(at.orientation))
-    rho, relative = contact.offset, Vector.of(at.velocity) - contact.support.material_velocity(contact.point)
-    across = relative.cross(rho) / rho.dot(rho)
-    Omega = across + rho * (Vector.of(at.angular_velocity).dot(rho) / rho.dot(rho))
-    return accelerations(system, replace(at, angular_velocity=np.asarray(Omega.array(), dtype=float)))
-
-
-def _fit(case: _Case, family: wrong_laws.Family, law: Callable[..., Any]) -> tuple[Array, Array] | None:
-    def residual(numbers: Array) -> Array:
-        parts = case.shares(law(family.system(case.system, numbers), case.at))
-        return np.concatenate([part.ravel() for part in parts]) / case.tolerance
-
-    return wrong_laws.least_squares(residual, family.guess(case.system))

@@ -1,161 +1,138 @@
-"""The motion of somebody else against contact, constraint and law, instant by instant, each with its own bound."""
+"""The motion of somebody else against contact, constraint and law, each residual beside what it may be by chance."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import roll
-from ..mechanics.surfaces import Plane
+from ..mechanics.algebra import Vector
 from ..mechanics.system import RollingSystem, State
-from ..verify.law import applied, newton_euler
-from .motion import INSTANTS, Motion, motion_of, rate_of, turning_of
+from .chance import longest
+from .comparisons import (
+    ACCELERATION,
+    LIFTS,
+    PATH,
+    SHIFTED,
+    SLIPS,
+    TURN,
+    TURNING,
+    Comparison,
+    Sensitivity,
+    comparisons,
+    nodes_of,
+    sensitivity_of,
+)
+from .laws import Law, Rates, independent_law
+from .looking import Open, left_open, seen, share_left
+from .motion import Instants, Motion, motion_of, rate_of
 from .record import Array, Theirs, gap_of
+from .series import Series
+from .slopes import SIGMAS, Index
+from .windows import Plan, Weights, plans, spread_of, weights_of
 
 LAW_SHARE = 10.0  # times the tolerance: an acceleration is a slope, and multiplies what a method leaves
-GAP, PATH, TURN, SLIP = "touches the support", "velocity is the slope of the path", "orientation turns as Ω", "no slip"
-ACCELERATION, TURNING = "law of motion, acceleration", "law of motion, angular acceleration"
+GAP, SLIP = "touches the support", "no slip"
+INSTANTS = 240  # looked at for gap and slip
+_TRIAL = 8  # windows of each width on which the width is chosen
+_AS_GOOD = 1.3  # times the least bound: of widths that tell as much the narrowest is taken
+_DIMMEST = 0.05  # share of a mismatch that is left where it turns about within a window
+
+_UNITS = {
+    PATH: "share of the speed",
+    TURN: "2 q̇ q* against Ω, share of Ω",
+    ACCELERATION: "Newton, Euler and constraint as one 9×9 system",
+    TURNING: "Newton, Euler and constraint as one 9×9 system",
+}
 
 
 @dataclass(frozen=True)
-class Series:
-    """One residual over time beside its bound.
+class View:
+    """How their motion is looked at: what is compared over which windows, and at which instants contact and slip are.
 
-    Parameters
-    ----------
-    name : str
-        Of the check.
-    time : array (m,)
-        s.
-    residual : array (m, c)
-        As vectors.
-    size : float
-        Beside which a residual is small or not: the shares are shares of it.
-    bound : array (m,)
-        The longest vector allowed.
-    asked : float
-        The part of the bound that the tolerance makes; the rest is what the data themselves leave open.
-    note : str
-        How it was measured.
-
-    Examples
-    --------
-    >>> one = Series("no slip", np.arange(2.0), np.array([[0.0], [0.5]]), 1.0, np.array([0.25, 0.25]), 0.1, "")
-    >>> float(one.worst), one.share, one.first_failure
-    (2.0, 0.5, 1.0)
+    It is found once, for the system as it was given; whoever asks for another law looks in the same way.
     """
 
-    name: str
-    time: Array
-    residual: Array
-    size: float
-    bound: Array
-    asked: float
-    note: str
+    compared: tuple[tuple[Comparison, Plan], ...]
+    instants: Index
+    _known: dict[Any, Any] = field(default_factory=dict, compare=False, repr=False)
 
-    @property
-    def length(self) -> Array:
-        """The residual's length at each instant."""
-        return np.asarray(np.linalg.norm(self.residual, axis=1), dtype=float)
+    def open(
+        self, one: Comparison, plan: Plan, theirs: Theirs, at: Motion, place: Index, reacts: Sensitivity
+    ) -> tuple[Weights, Open]:
+        """Return the weights of a comparison, and what it leaves open; neither asks for the law, once it reacts."""
+        key = (one.name, id(theirs), id(reacts))
+        if key not in self._known:  # with what it was worked out of, so that nothing else takes its place in memory
+            weights = weights_of(plan, theirs.time, one.order)
+            self._known[key] = weights, left_open(one, weights, theirs, at, place, reacts), theirs, reacts
+        return self._known[key][:2]
 
-    @property
-    def ratio(self) -> Array:
-        """The residual over its bound."""
-        return self.length / self.bound
+    def thinned(self, count: int) -> View:
+        """Return no more than some of the windows and instants."""
+        some = np.unique(np.linspace(0, self.instants.size - 1, min(self.instants.size, 2 * count)).round().astype(int))
+        return View(tuple((one, plan.thinned(count)) for one, plan in self.compared), self.instants[some])
 
-    @property
-    def worst(self) -> float:
-        """The largest residual over its bound."""
-        return float(self.ratio.max())
-
-    @property
-    def share(self) -> float:
-        """The residual as a share of the size, where it is worst against its bound."""
-        return float(self.length[np.argmax(self.ratio)] / self.size)
-
-    @property
-    def allowed(self) -> float:
-        """The bound as a share of the size, at the same instant."""
-        return float(self.bound[np.argmax(self.ratio)] / self.size)
-
-    @property
-    def first_failure(self) -> float | None:
-        """The first instant at which the bound is exceeded, s."""
-        over = np.flatnonzero(self.ratio > 1)
-        return float(self.time[over[0]]) if over.size else None
+    def fitting(self, theirs: Theirs) -> View:
+        """Return what of it can be looked at in changed samples, which may lack a part."""
+        able = {(one.name, one.array) for one in comparisons(theirs)}
+        return View(
+            tuple(pair for pair in self.compared if (pair[0].name, pair[0].array) in able), self.instants, self._known
+        )
 
 
-Law = Callable[[RollingSystem, Motion], tuple[Array, Array]]
-
-
-def independent_law(system: RollingSystem, at: Motion) -> tuple[Array, Array]:
-    """Return V̇ and Ω̇ from Newton, Euler and the differentiated constraint as one 9×9 system; T2 is not used.
+def view_of(system: RollingSystem, theirs: Theirs, tolerance: float, start: State | None) -> View:
+    """Choose for each comparison the windows in which a wrong rate would show best.
 
     Parameters
     ----------
     system : RollingSystem
-        Body, support and loads.
-    at : Motion
-        The states.
+        What is said to move.
+    theirs : Theirs
+        Their samples, checked.
+    tolerance : float
+        As for `examine`.
+    start : State, optional
+        As for `motion_of`.
 
     Returns
     -------
-    acceleration, angular_acceleration : array (m, 3)
-        m/s² and rad/s².
+    View
+        Of widths that tell as much as each other, the narrowest.
     """
-    slip = Vector.of(at.slip)
-    Omega, V = Vector.of(at.angular_velocity), Vector.of(at.velocity)
-    p_rate, rho_rate = (np.broadcast_to(v.array(), at.position.shape) for v in at.contact.rates(slip, Omega, V))
-    samples = at.samples()
-    F, K, J, gyroscopic, u_rate = applied(system, samples, p_rate)
-    constraint = u_rate - np.cross(at.angular_velocity, rho_rate)
-
-    def solved(moment: Array) -> tuple[Array, Array, Array]:
-        return newton_euler(float(system.body.mass), J, at.offset, F, moment - gyroscopic, constraint)
-
-    V_rate, Omega_rate, R = solved(K)
-    acting = system.acting_on(samples.motion(system))
-    if not acting.has_couple:
-        return V_rate, Omega_rate
-    # A couple that grows with N: all is linear in it, and N = n·R closes the circle.
-    V_more, Omega_more, R_more = solved(K + np.broadcast_to(acting.couple.array(), K.shape))
-    n = samples.normals(system)
-    N = (n * R).sum(axis=1) / (1.0 - (n * (R_more - R)).sum(axis=1))
-    return V_rate + N[:, None] * (V_more - V_rate), Omega_rate + N[:, None] * (Omega_more - Omega_rate)
-
-
-def eliminated_law(system: RollingSystem, at: Motion) -> tuple[Array, Array]:
-    """Return V̇ and Ω̇ from T2 and T3, for systems that leave a term out: the 9×9 route knows all terms.
-
-    Parameters
-    ----------
-    system, at
-        As for `independent_law`.
-
-    Returns
-    -------
-    acceleration, angular_acceleration : array (m, 3)
-        m/s² and rad/s².
-    """
-    q, Omega = Quaternion.of(at.orientation), Vector.of(at.angular_velocity)
-    now = roll(system, at.time, at.contact.point, q, Omega)
-    state = now.contact.body_motion(system.body.mass, at.time, now.velocity, q, Omega)
-    V_rate = (now.reaction + system.loads_on(state)[0]) / system.body.mass
-    shape = at.position.shape
-    return np.broadcast_to(V_rate.array(), shape), np.broadcast_to(now.angular_acceleration.array(), shape)
+    n = theirs.time.size
+    tried = {f"{i}": plan.thinned(_TRIAL) for i, plan in enumerate(plans(n))}
+    whole = list(plans(n))
+    index, places = nodes_of({name: plan.index for name, plan in tried.items()})
+    at = motion_of(system, theirs, start, index)
+    rates, reacts = independent_law(system, at), sensitivity(system, theirs, start, independent_law)
+    best: dict[str, list[tuple[float, int, Comparison]]] = {}
+    for one in comparisons(theirs):
+        for i, (name, plan) in enumerate(tried.items()):
+            weights = weights_of(plan, theirs.time, one.order)
+            here = theirs, at, places[name]
+            found = seen(one, weights, *here, rates, left_open(one, weights, *here, reacts))
+            asked = _times(one.name) * tolerance * _size(one.name, system, at, found.mismatch + found.rate, rates)
+            left = max(share_left(one, weights, *here[1:], rates), _DIMMEST)
+            bound = float(np.median(SIGMAS * found.spread + found.bias + asked)) / left
+            best.setdefault(one.name, []).append((bound, i, one))
+    chosen = []
+    for entries in best.values():
+        least = min(bound for bound, _, _ in entries)
+        _, i, one = min((entry for entry in entries if entry[0] <= _AS_GOOD * least), key=lambda entry: entry[1])
+        chosen.append((one, whole[i]))
+    return View(tuple(chosen), np.unique(np.linspace(0, n - 1, min(n, INSTANTS)).round().astype(int)))
 
 
 def examine(
     system: RollingSystem,
     theirs: Theirs,
     tolerance: float,
-    start: State | None = None,
+    start: State | None,
+    view: View,
     law: Law = independent_law,
-    instants: int = INSTANTS,
+    reacts: Sensitivity | None = None,
 ) -> tuple[dict[str, Series], Motion]:
     """Compare their motion with contact, constraint and law.
 
@@ -169,56 +146,117 @@ def examine(
         To which they are held, as a share; the data's own noise and spacing may ask for more room.
     start : State, optional
         As for `motion_of`.
+    view : View
+        How to look.
     law : callable
         Gives the accelerations.
-    instants : int
-        How many at most.
+    reacts : Sensitivity, optional
+        Of a law much like it, where the errors of the states need not be followed again.
 
     Returns
     -------
     series : dict from str to Series
         By name.
     motion : Motion
-        That they are of.
+        That they are of, at all instants looked at.
     """
-    at = motion_of(system, theirs, start, instants)
-    arm = float(np.linalg.norm(at.offset, axis=1).max())
-    speed = _largest(at.velocity, np.cross(at.angular_velocity, at.offset), at.carried)
-    rate = rate_of(system)
-    found: list[Series] = []
-
-    def add(name: str, residual: Array, size: float, error: Array, times: float, note: str) -> None:
-        residual = residual if residual.ndim == 2 else residual[:, None]
-        asked = times * tolerance * size
-        found.append(Series(name, at.time, residual, size, asked + error, asked, note))
-
-    if theirs.height_given:
-        add(GAP, gap_of(system, at.contact), arm, at.position_error, 1.0, "gap, share of the radius")
-    if theirs.velocity is not None:
-        slope = theirs.slope("position", at.index)
-        error = slope.error + at.velocity_error
-        add(PATH, slope.values - at.velocity, speed, error, 1.0, "share of the speed")
-    if theirs.orientation is not None and theirs.angular_velocity is not None and theirs.doubt is None:
-        turned, error, _ = turning_of(theirs, at.index)
-        size = _largest(at.angular_velocity, turned)
-        error = error + at.angular_velocity_error
-        add(TURN, turned - at.angular_velocity, size, error, 1.0, "2 q̇ q* against Ω, share of Ω")
-    if at.turning_known:
-        error = at.velocity_error + arm * at.angular_velocity_error + rate * at.position_error
-        add(SLIP, at.slip, speed, error, 1.0, "|V + Ω×ρ − u| over the speed")
-    V_rate, Omega_rate = law(system, at)
-    simple = system.body.is_isotropic_sphere and isinstance(system.support.surface, Plane)
-    quick = rate if simple else rate + _largest(at.angular_velocity)
-    weight = 1e-3 * float(np.max(Vector(*system.weight.acceleration).norm()))
-    size = max(_largest(at.acceleration, V_rate), 1e-2 * rate * speed, weight)
-    passed_on = quick * (at.velocity_error + arm * at.angular_velocity_error)
-    note = "Newton, Euler and constraint as one 9×9 system"
-    add(ACCELERATION, at.acceleration - V_rate, size, at.acceleration_error + passed_on, LAW_SHARE, note)
-    if at.turning_known:
-        size = max(size / arm, _largest(at.angular_acceleration, Omega_rate))
-        error = at.angular_acceleration_error + passed_on / arm
-        add(TURNING, at.angular_acceleration - Omega_rate, size, error, LAW_SHARE, note)
+    view = view.fitting(theirs)
+    windows = {one.name: plan.index for one, plan in view.compared}
+    index, places = nodes_of(windows | {"": view.instants[None]})
+    at = motion_of(system, theirs, start, index)
+    rates = law(system, at)
+    reacts = sensitivity(system, theirs, start, law) if reacts is None else reacts
+    found = list(_contact(system, theirs, at, places[""][0], tolerance, reacts))
+    for one, plan in view.compared:
+        weights, open_ = view.open(one, plan, theirs, at, places[one.name], reacts)
+        one_ = seen(one, weights, theirs, at, places[one.name], rates, open_)
+        slope = one_.mismatch + one_.rate
+        size = _size(one.name, system, at, slope, rates)
+        asked = _times(one.name) * tolerance * size
+        bound = asked + one_.bias + longest(len(one_.spread), one_.freedom) * one_.spread
+        note = f"{_UNITS[one.name]}, means over {_span(theirs, plan)}"
+        motion = _largest(slope, one_.rate)
+        found.append(Series(one.name, plan.moment(theirs.time), one_.mismatch, size, bound, asked, note, motion))
     return {series.name: series for series in found}, at
+
+
+def _span(theirs: Theirs, plan: Plan) -> str:
+    ends = theirs.time[plan.start + plan.width - 1] - theirs.time[plan.start]
+    return f"{float(np.median(ends)):.3g} s"
+
+
+def _times(name: str) -> float:
+    return LAW_SHARE if name in (ACCELERATION, TURNING) else 1.0
+
+
+def sensitivity(system: RollingSystem, theirs: Theirs, start: State | None, law: Law) -> Sensitivity:
+    """Return what errors of their states do to V̇, Ω̇, slip and gap.
+
+    Parameters
+    ----------
+    system, theirs, start, law
+        As of `examine`.
+
+    Returns
+    -------
+    Sensitivity
+        At some instants all along their samples.
+    """
+    n = theirs.time.size
+    few = np.unique(np.linspace(0, n - 1, min(n, SHIFTED)).round().astype(int))
+
+    def asked(states: Instants) -> tuple[Array, ...]:
+        return (*law(system, states), states.slip, gap_of(system, states.contact))
+
+    return sensitivity_of(system, asked, motion_of(system, theirs, start, few))[0]
+
+
+def _size(name: str, system: RollingSystem, at: Motion, slope: Array, rates: Rates) -> float:
+    """Return what a residual is small beside, or not; never nothing, where something might move."""
+    if name == TURN:
+        return _largest(at.angular_velocity, slope)
+    speed = _largest(at.velocity, np.cross(at.angular_velocity, at.offset), at.carried)
+    if name == PATH:
+        return speed
+    weight = 1e-3 * float(np.max(Vector(*system.weight.acceleration).norm()))
+    if name == ACCELERATION:
+        return max(_largest(slope, rates[0]), 1e-2 * rate_of(system) * speed, weight)
+    least = max(_largest(rates[0]), 1e-2 * rate_of(system) * speed, weight) / at.arm
+    return max(least, _largest(slope, rates[1]))
+
+
+def _contact(
+    system: RollingSystem, theirs: Theirs, at: Motion, some: Index, tolerance: float, reacts: Sensitivity
+) -> Iterator[Series]:
+    """Yield gap and slip at some instants."""
+    speed = _largest(at.velocity, np.cross(at.angular_velocity, at.offset), at.carried)
+    if theirs.height_given:
+        gap = gap_of(system, at.contact)[:, None]
+        yield _at_instants(GAP, gap, at.arm, LIFTS, at, some, tolerance, reacts, "gap, share of the radius")
+    if at.turning_known:
+        yield _at_instants(SLIP, at.slip, speed, SLIPS, at, some, tolerance, reacts, "|V + Ω×ρ − u| over the speed")
+
+
+def _at_instants(
+    name: str,
+    residual: Array,
+    size: float,
+    which: int,
+    at: Motion,
+    some: Index,
+    tolerance: float,
+    reacts: Sensitivity,
+    note: str,
+) -> Series:
+    """Return the series of something that the states themselves must make zero."""
+    gains = {part: gain for part, gain in reacts.gains_at(which, at.time).items() if part in at.estimates}
+    asked = tolerance * size
+    parts = [(at.sources[part], gain * at.estimates[part].spread) for part, gain in gains.items()]
+    spread = spread_of(parts, {source: np.ones(1) for source, _ in parts})
+    bias = reacts.curvature_at(which, at.time) + sum(gain * at.estimates[part].bias for part, gain in gains.items())
+    freedom = min(at.estimates[part].freedom for part in gains)
+    bound = asked + bias + longest(some.size, freedom, residual.shape[1]) * spread
+    return Series(name, at.time[some], residual[some], size, bound[some], asked, note)
 
 
 def _largest(*arrays: Any) -> float:

@@ -12,13 +12,14 @@ from ..plots.scales import Unit, unit_for, with_unit
 from ..plots.sheet import BLUE, GREY, INK, VERMILION, Sheet, look
 
 if TYPE_CHECKING:
-    from .examining import Series
     from .result import Check
+    from .series import Series
     from .trajectories import Drawn
 
 WIDTH, LEFT, STRIPS, BETWEEN, EDGE = 11.4, 0.72, 5.1, 0.95, 0.2
 FOOT, HEADER, EACH, GAP, LEAST = 0.55, 1.02, 0.66, 0.3, 4.7
 _KEY = "residuals as shares; dashed: the most allowed"
+_LONGEST = 165  # letters of the line under the title
 _DEEPEST = 1e-9  # of the bound: what lies lower is drawn there
 
 
@@ -49,10 +50,13 @@ def draw(check: Check, drawn: Drawn) -> Sheet:
 def _says(check: Check) -> str:
     if check.passed:
         return "it rolls without slipping and obeys the law, within the bounds"
-    if not check.likely:
-        return check.remark.partition(": look")[0].partition(": no single")[0]
-    text = " Or: ".join(one.says for one in check.likely)
-    return "likely: " + (text if len(text) < 165 else text[:164] + "…")
+    if check.answer == "cannot decide":
+        return "these data cannot decide: most mistakes would look the same in them"
+    told, lead = (check.likely, "likely: ") if check.likely else (check.nearest, "nearest: ")
+    if not told:
+        return check.remark.rpartition("\n")[2].partition(": look")[0].partition(": no change")[0]
+    text = " Or: ".join(one.says for one in told)
+    return lead + (text if len(text) < _LONGEST else text[: _LONGEST - 1] + "…")
 
 
 def _strip(ax: Axes, series: Series, clock: Unit, first: float | None) -> None:

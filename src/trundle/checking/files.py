@@ -2,15 +2,29 @@
 
 from __future__ import annotations
 
+import csv
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from ..errors import InvalidValueError
 from ..netcdf import read_netcdf
 
+_MISSING = ("", "nan", "na", "n/a", "null", "none", "-", "--")  # what programs write where they have no number
+_WIDE = (b"\xff\xfe", b"\xfe\xff")  # how a file in UTF-16 begins
 _TEXT, _PARQUET, _NETCDF = (".csv", ".txt", ".tsv", ".dat"), (".parquet", ".pq"), (".nc", ".nc4", ".h5", ".cdf")
+
+
+@dataclass(frozen=True)
+class Table:
+    """The columns of a text file, of numbers or of text, and the line in which each of their rows stands."""
+
+    columns: dict[str, Any]
+    lines: tuple[int, ...]
 
 
 def open_file(path: Path, columns: Mapping[str, str]) -> Any:
@@ -25,7 +39,7 @@ def open_file(path: Path, columns: Mapping[str, str]) -> Any:
 
     Returns
     -------
-    pandas.DataFrame or xarray.Dataset
+    Table, pandas.DataFrame or xarray.Dataset
         Not yet looked at.
 
     Raises
@@ -36,7 +50,7 @@ def open_file(path: Path, columns: Mapping[str, str]) -> Any:
     Examples
     --------
     >>> _ = Path("theirs.csv").write_text("t,x,y\n0,1,2\n")
-    >>> open_file(Path("theirs.csv"), {}).columns.tolist()
+    >>> list(open_file(Path("theirs.csv"), {}).columns)
     ['t', 'x', 'y']
     """
     ending = path.suffix.lower()
@@ -62,39 +76,77 @@ def open_file(path: Path, columns: Mapping[str, str]) -> Any:
 
 
 def _text(path: Path, columns: Mapping[str, str]) -> Any:
-    import pandas as pd
-
-    with path.open(encoding="utf-8-sig") as stream:
-        head = [line.rstrip("\r\n") for _, line in zip(range(200), stream, strict=False)]
-    remarks = [line for line in head if line.lstrip().startswith("#")]
-    rows = [line for line in head if line.strip() and line not in remarks]
+    content = path.read_bytes()
+    lines = content.decode("utf-16" if content[:2] in _WIDE else "utf-8-sig").splitlines()
+    remarks = [line for line in lines if line.lstrip().startswith("#")]
+    rows = [(i + 1, bare) for i, line in enumerate(lines) if (bare := line.partition("#")[0].strip("\r\n")).strip()]
     if not rows:
         raise InvalidValueError("file", "must hold rows of numbers", str(path))
-    separator = next((sign for sign in ("\t", ";", ",") if sign in rows[0]), r"\s+")
-    decimal = "," if separator == ";" and re.search(r"\d,\d", rows[-1]) else "."
-    first = re.split(separator, rows[0].strip())
-    headless = all(_is_number(cell, decimal) for cell in first)
-    given: dict[str, Any] = {"sep": separator, "comment": "#", "decimal": decimal, "encoding": "utf-8-sig"}
-    given["skipinitialspace"] = True
-    if headless:
-        names = _names_of(remarks, separator, len(first)) or [str(i + 1) for i in range(len(first))]
-        given |= {"header": None, "names": names}
-    table = pd.read_csv(path, **given)
-    table.columns = [str(name).strip() for name in table.columns]
-    if headless and not columns and names[0] == "1":
-        raise InvalidValueError(
-            "file",
-            "must begin with a line of headings",
-            str(path),
-            "Add one, such as t,x,y,z, or name the columns by number: columns t=1, x=2, y=3.",
-        )
-    return table
+    separator = next((sign for sign in ("\t", ";", ",") if sign in rows[0][1]), None)
+    decimal = "," if separator != "," and re.search(r"\d,\d", rows[-1][1]) else "."
+    cells = [(line, _cells(text, separator)) for line, text in rows]
+    headless = all(_is_number(cell, decimal) for cell in cells[0][1])
+    names = _names_of(remarks, separator, len(cells[0][1])) if headless else _trimmed(cells.pop(0)[1])
+    if headless and not names:
+        if not columns:
+            raise InvalidValueError(
+                "file",
+                "must begin with a line of headings",
+                str(path),
+                "Add one, such as t,x,y,z, or name the columns by number: columns t=1, x=2, y=3.",
+            )
+        names = [str(i + 1) for i in range(len(_trimmed(cells[0][1])))]
+    return _table(names, cells, decimal)
 
 
-def _names_of(remarks: list[str], separator: str, count: int) -> list[str]:
+def _cells(text: str, separator: str | None) -> list[str]:
+    if separator is None:
+        return text.split()
+    cells = next(csv.reader([text], delimiter=separator)) if '"' in text else text.split(separator)
+    return [cell.strip() for cell in cells]
+
+
+def _trimmed(cells: list[str]) -> list[str]:
+    """Return the cells without empty ones at the end, which a separator at the end of a line makes."""
+    while cells and not cells[-1]:
+        cells = cells[:-1]
+    return cells
+
+
+def _table(names: list[str], cells: list[tuple[int, list[str]]], decimal: str) -> Table:
+    """Return columns of numbers, or of text where one of them is none."""
+    names = [name or f"column {i + 1}" for i, name in enumerate(names)]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise InvalidValueError("headings", "must differ from each other", f"{twice!r} twice", "Rename one.")
+    count, rows = len(names), []
+    for line, row in cells:
+        if len(row) > count:
+            row = row[:count] + _trimmed(row[count:])
+        if len(row) != count:
+            raise InvalidValueError(
+                "file",
+                f"must have a cell for each of its {count} headings in every line",
+                f"{len(row)} in line {line}",
+                "Is a heading missing, or part of the line?",
+            )
+        rows.append(row)
+    return Table({name: _column([row[i] for row in rows], decimal) for i, name in enumerate(names)},
+                 tuple(line for line, _ in cells))  # fmt: skip
+
+
+def _column(cells: list[str], decimal: str) -> Any:
+    plain = [cell.replace(decimal, ".") for cell in cells] if decimal != "." else cells
+    try:
+        return np.array([float("nan" if cell.lower() in _MISSING else cell) for cell in plain])
+    except ValueError:
+        return np.array(plain, dtype=object)
+
+
+def _names_of(remarks: list[str], separator: str | None, count: int) -> list[str]:
     """Return the headings from the last remark that has as many words as there are columns (as numpy.savetxt does)."""
     for line in reversed(remarks):
-        for sign in (separator, r"[,;\s]+"):
+        for sign in (separator or r"\s+", r"[,;\s]+"):
             words = [word.strip() for word in re.split(sign, line.lstrip("# \t").strip())]
             if len(words) == count:
                 return words
@@ -105,7 +157,7 @@ def _is_number(cell: str, decimal: str) -> bool:
     try:
         float(cell.strip().strip('"').replace(decimal, "."))
     except ValueError:
-        return False
+        return cell.lower() in _MISSING
     return True
 
 

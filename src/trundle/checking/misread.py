@@ -3,141 +3,196 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.shapes import concentric_sphere
 from ..mechanics.surfaces import Plane
-from .diagnosing import Case, Trial
-from .examining import GAP, TURN, Series
-from .motion import turning_of
+from ..mechanics.system import RollingSystem, State
+from .case import Case
+from .comparisons import TURN
+from .examining import GAP
+from .mistakes import Suspect
+from .motion import added_up, turning_of, with_orientation
 from .reading import from_frame
-from .record import Array, orientation_from
+from .record import Array, Theirs
+from .series import Series
 from .slopes import SIGMAS
 
 _MOST_RADIANS = 1e4  # of turning that are added up to an orientation
+_TIME, _LENGTH, _OMEGA, _PLACE, _FRAME, _TURNED, _AXES = (
+    frozenset({part}) for part in ("time", "length", "Ω", "place", "frame", "orientation", "axes")
+)
 
 
-def units(case: Case) -> Iterator[Trial]:
+def misreadings(case: Case) -> Iterator[Suspect]:
+    """Yield what their numbers may mean instead, the commonest first.
+
+    Parameters
+    ----------
+    case : Case
+        What was found of them.
+
+    Yields
+    ------
+    Suspect
+        Each undoes a misreading.
+    """
+    for some in (_units, _body_axes, _places, _quaternions, _holonomic):
+        yield from some(case)
+
+
+def _times(theirs: Theirs, factors: dict[str, float]) -> Theirs:
+    changed = {name: getattr(theirs, name) for name in factors}
+    return replace(theirs, **{name: array * factors[name] for name, array in changed.items() if array is not None})
+
+
+def _longer(theirs: Theirs, factor: float, names: tuple[str, ...]) -> Theirs:
+    changed = _times(theirs, dict.fromkeys(names, factor))
+    if theirs.height_given:
+        return changed
+    return replace(changed, position=np.column_stack([changed.position[:, :2], theirs.position[:, 2]]))
+
+
+def _units(case: Case) -> Iterator[Suspect]:
     """Try other units of time, length and angle."""
-    theirs, tell = case.theirs, {series.name for series in case.failing}
+    theirs = case.theirs
     for factor, unit in ((1e-3, "ms"), (1e-6, "µs"), (60.0, "minutes")):
-        yield Trial("time-unit", f"The time column is in {unit}, not in s.", replace(theirs, time=theirs.time * factor))
+        says = f"The time column is in {unit}, not in s."
+        yield Suspect("time-unit", says, _TIME, theirs=partial(_times, factors={"time": factor}))
     for factor, unit in ((1e-3, "mm"), (1e-2, "cm")):
-        position = theirs.position * factor
-        if not theirs.height_given:
-            position = np.column_stack([position[:, :2], theirs.position[:, 2]])
-        for velocity in [theirs.velocity] if theirs.velocity is None else [theirs.velocity, theirs.velocity * factor]:
-            changed = replace(theirs, position=position, velocity=velocity)
-            yield Trial("length-unit", f"Positions are in {unit}, not in m.", changed)
-    if theirs.angular_velocity is None or tell == {GAP}:
+        for names in (("position",), ("position", "velocity"))[: 1 if theirs.velocity is None else 2]:
+            says = f"Positions are in {unit}, not in m."
+            yield Suspect("length-unit", says, _LENGTH, theirs=partial(_longer, factor=factor, names=names))
+    if theirs.angular_velocity is None or {one.name for one in case.failing} == {GAP}:
         return
     for factor, unit in ((math.pi / 180, "deg/s"), (math.pi / 30, "rpm"), (2 * math.pi, "turns per second")):
-        changed = replace(theirs, angular_velocity=theirs.angular_velocity * factor)
         name = "degrees-for-radians" if unit == "deg/s" else "rate-unit"
-        yield Trial(name, f"Ω is in {unit}, not in rad/s.", changed)
-    changed = replace(theirs, angular_velocity=-theirs.angular_velocity)
-    yield Trial("sign-of-angular-velocity", "Ω has the wrong sign: a ball rolling along +x turns about +y.", changed)
+        undo = partial(_times, factors={"angular_velocity": factor})
+        yield Suspect(name, f"Ω is in {unit}, not in rad/s.", _OMEGA, theirs=undo)
+    says = "Ω has the wrong sign: a ball rolling along +x turns about +y."
+    yield Suspect("sign-of-angular-velocity", says, _OMEGA, theirs=partial(_times, factors={"angular_velocity": -1.0}))
 
 
-def places(case: Case) -> Iterator[Trial]:
+def _places(case: Case) -> Iterator[Suspect]:
     """Try another point of the body, and another frame."""
-    theirs = case.theirs
-    offset = np.broadcast_to(case.motion.contact.offset.array(), case.motion.position.shape)
-    if theirs.height_given and concentric_sphere(case.system.body.shape) and np.ptp(offset, axis=0).max() == 0.0:
-        a = float(case.system.body.radius)
-        yield Trial(
-            "contact-for-centre",
-            f"The position is that of the contact, not of the centre: it is off by the radius, {a:g} m.",
-            replace(theirs, position=theirs.position - offset[0]),
-        )
-    rate = case.system.support.motion.steady_rate
-    if rate:
-        yield Trial(
-            "corotating-frame",
-            "The motion is given in the frame that turns with the table, not in the inertial one.",
-            from_frame(theirs, case.system, "corotating"),
-        )
+    theirs, system, offset = case.theirs, case.system, case.motion.offset
+    if theirs.height_given and concentric_sphere(system.body.shape) and np.ptp(offset, axis=0).max() == 0.0:
+        a = float(system.body.radius)
+        says = f"The position is that of the contact, not of the centre: it is off by the radius, {a:g} m."
+        yield Suspect("contact-for-centre", says, _PLACE, theirs=partial(_moved, by=offset[0]))
+    if system.support.motion.steady_rate:
+        says = "The motion is given in the frame that turns with the table, not in the inertial one."
+        turned = partial(from_frame, system=system, frame="corotating")
+        yield Suspect("corotating-frame", says, _FRAME, theirs=turned)
         if theirs.velocity is not None or theirs.angular_velocity is not None:
-            turned = from_frame(replace(theirs, velocity=None, angular_velocity=None), case.system, "corotating")
-            kept = replace(theirs, position=turned.position, orientation=theirs.orientation)
-            yield Trial(
-                "corotating-frame",
-                "Positions are given in the frame that turns with the table, velocities in the inertial one.",
-                kept,
-            )
-    if case.system.support.tilt and theirs.height_given:
-        yield Trial(
-            "world-frame",
-            "The motion is given in world axes, the third one vertical, not in those of the tilted support.",
-            from_frame(theirs, case.system, "world"),
-        )
+            says = "Positions are given in the frame that turns with the table, velocities in the inertial one."
+            yield Suspect("corotating-frame", says, _FRAME, theirs=partial(_only_places, turned=turned))
+    if system.support.tilt and theirs.height_given:
+        says = "The motion is given in world axes, the third one vertical, not in those of the tilted support."
+        yield Suspect("world-frame", says, _FRAME, theirs=partial(from_frame, system=system, frame="world"))
 
 
-def body_axes(case: Case) -> Iterator[Trial]:
+def _moved(theirs: Theirs, by: Array) -> Theirs:
+    return replace(theirs, position=theirs.position - by)
+
+
+def _only_places(theirs: Theirs, turned: Callable[[Theirs], Theirs]) -> Theirs:
+    path = turned(replace(theirs, velocity=None, angular_velocity=None))
+    return replace(theirs, position=path.position)
+
+
+def _body_axes(case: Case) -> Iterator[Suspect]:
     """Try Ω along the axes of the body: in the column, or where the orientation was integrated."""
-    theirs = case.theirs
-    if theirs.angular_velocity is None or theirs.doubt is not None:
+    theirs, start, name = case.theirs, case.start, "body-axes-for-space-axes"
+    if theirs.angular_velocity is None or "angular_velocity" in theirs.doubts:
         return
-    name = "body-axes-for-space-axes"
-    if theirs.orientation is not None:
-        Q = Quaternion.of(theirs.orientation).matrix()
-        spun = (Q @ Vector.of(theirs.angular_velocity)).array()
-        text = "Ω has its components along the axes of the body; it was taken for the one along space axes."
-        yield Trial(name, text, replace(theirs, angular_velocity=spun))
-        turned, error, _ = turning_of(theirs, case.motion.index)
-        Q = Quaternion.of(theirs.orientation[case.motion.index]).matrix()
-        own = (Q.transpose @ Vector.of(turned)).array() - case.motion.angular_velocity
-        size = float(np.linalg.norm(turned, axis=1).max())
-        asked = case.tolerance * size
-        bound = asked + error + case.motion.angular_velocity_error
-        match = Series(TURN, case.motion.time, own, size, bound, asked, "Qᵀ 2 q̇ q* against Ω")
-        text = (
+    if theirs.orientation is not None and "orientation" not in theirs.doubts:
+        says = "Ω has its components along the axes of the body; it was taken for the one along space axes."
+        yield Suspect(name, says, _AXES, theirs=_spun, textbook=True)
+        says = (
             "The orientation was integrated as q̇ = ½ q Ω, which is for body axes, from an Ω along space axes: "
             "that is q̇ = ½ Ω q."
         )
-        yield Trial(name, text, replace(theirs, orientation=None), extra=(match,))
+        undo = partial(_without_orientation, system=case.system, start=start)
+        yield Suspect(name, says, _TURNED | _AXES, theirs=undo, further=partial(_own_axes, case))
         return
     span = float(theirs.time[-1] - theirs.time[0])
     if span * float(np.linalg.norm(theirs.angular_velocity, axis=1).max()) > _MOST_RADIANS:
         return
-    q0 = case.start.orientation if case.start is not None else (1.0, 0.0, 0.0, 0.0)
-    q, doubt = orientation_from(theirs.time, theirs.angular_velocity, q0, body_axes=True)
+    says = "Ω has its components along the axes of the body, which starts along those of the support frame."
+    undo = partial(_spun_by_itself, start=start, keep="orientation" in theirs.doubts)
+    yield Suspect(name, says, _AXES, theirs=undo, textbook=True)
+
+
+def _spun(theirs: Theirs) -> Theirs:
+    assert theirs.orientation is not None  # noqa: S101  who yields it has looked
+    Q = Quaternion.of(theirs.orientation).matrix()
+    return replace(theirs, angular_velocity=(Q @ Vector.of(theirs.angular_velocity)).array())
+
+
+def _spun_by_itself(theirs: Theirs, start: State | None, keep: bool) -> Theirs:
+    q, doubt = added_up(theirs, start, body_axes=True)
     spun = (Quaternion.of(q).matrix() @ Vector.of(theirs.angular_velocity)).array()
-    doubt = doubt * np.linalg.norm(theirs.angular_velocity, axis=1)
-    text = "Ω has its components along the axes of the body, which starts along those of the support frame."
-    yield Trial(name, text, replace(theirs, angular_velocity=spun, doubt=doubt))
+    doubts = {"angular_velocity": doubt * np.linalg.norm(spun, axis=1)}
+    if not keep:
+        return replace(theirs, angular_velocity=spun, doubts=doubts)
+    return replace(theirs, angular_velocity=spun, orientation=q, doubts=doubts | {"orientation": doubt})
 
 
-def quaternions(case: Case) -> Iterator[Trial]:
+def _without_orientation(theirs: Theirs, system: RollingSystem, start: State | None) -> Theirs:
+    """Return what they gave without the orientation, unless the law needs one: then with that of their Ω."""
+    return with_orientation(system, replace(theirs, orientation=None), start)
+
+
+def _own_axes(case: Case, _: object) -> tuple[Series, ...]:
+    """Compare the slope of the orientation, along the axes of the body, with Ω."""
+    index = case.motion.index
+    turned = turning_of(case.theirs, index)
+    Q = Quaternion.of(case.motion.orientation).matrix()
+    own = (Q.transpose @ Vector.of(turned.values)).array() - case.motion.angular_velocity
+    size = float(np.linalg.norm(turned.values, axis=1).max())
+    asked = case.tolerance * size
+    bound = asked + turned.error + case.motion.estimates["angular_velocity"].error
+    return (Series(TURN, case.motion.time, own, size, bound, asked, "Qᵀ 2 q̇ q* against Ω"),)
+
+
+def _quaternions(case: Case) -> Iterator[Suspect]:
     """Try another order of the quaternion's parts, and the inverse rotation."""
-    q = case.theirs.orientation
-    if q is None or case.theirs.doubt is not None:
+    if case.theirs.orientation is None or "orientation" in case.theirs.doubts:
         return
-    xyzw = q[:, [3, 0, 1, 2]]
-    yield Trial("quaternion-order", "Quaternions are in the order x, y, z, w.", replace(case.theirs, orientation=xyzw))
-    inverse = [1.0, -1.0, -1.0, -1.0]
-    for parts, more in ((q, ""), (xyzw, ", in the order x, y, z, w")):
-        yield Trial(
-            "inverse-orientation",
-            f"The orientation is its inverse: it takes space components to those of the body{more}.",
-            replace(case.theirs, orientation=parts * inverse),
-        )
+    order, inverse = [3, 0, 1, 2], [1.0, -1.0, -1.0, -1.0]
+    same = [1.0, 1.0, 1.0, 1.0]
+    for name, says, parts, signs in (
+        ("quaternion-order", "Quaternions are in the order x, y, z, w", order, same),
+        ("inverse-orientation", _INVERSE, [0, 1, 2, 3], inverse),
+        ("inverse-orientation", f"{_INVERSE}, in the order x, y, z, w", order, inverse),
+    ):
+        yield Suspect(name, f"{says}.", _TURNED, theirs=partial(_quaternion, parts=parts, signs=signs))
 
 
-def holonomic(case: Case) -> Iterator[Trial]:
+_INVERSE = "The orientation is its inverse: it takes space components to those of the body"
+
+
+def _quaternion(theirs: Theirs, parts: list[int], signs: list[float]) -> Theirs:
+    assert theirs.orientation is not None  # noqa: S101  who yields it has looked
+    return replace(theirs, orientation=theirs.orientation[:, parts] * signs)
+
+
+def _holonomic(case: Case) -> Iterator[Suspect]:
     """Try an orientation that was computed from the displacement, as if rolling could be integrated."""
     theirs, body = case.theirs, case.system.body
-    if theirs.orientation is None or theirs.doubt is not None or not concentric_sphere(body.shape):
+    if theirs.orientation is None or "orientation" in theirs.doubts or not concentric_sphere(body.shape):
         return
     if not isinstance(case.system.support.surface, Plane) or not body.is_isotropic_sphere:
         return
     index, a = case.motion.index, float(body.radius)
-    q = theirs.orientation[index]
-    noise = theirs.slope("orientation", index).noise + case.motion.position_error / a
+    q, where = theirs.orientation[index], case.motion.estimates["position"]
+    noise = case.motion.estimates["orientation"].noise + where.noise / a
     for from_start in (True, False):
         moved = theirs.position[index] - (theirs.position[0] if from_start else 0.0)
         before = Quaternion.of(theirs.orientation[0]) if from_start else Quaternion(1.0, 0.0, 0.0, 0.0)
@@ -147,11 +202,17 @@ def holonomic(case: Case) -> Iterator[Trial]:
             off = 2 * (turn * before * Quaternion.of(q).conjugate).array()[:, 1:]
             bound = asked + 2 * SIGMAS * noise
             match = Series(TURN, case.motion.time, off, size, bound, asked, "angle from that of the displacement")
-            text = (
+            matches = partial(_given, match)
+            says = (
                 f"The constraint was taken for a holonomic one: the orientation is {how}, "
                 "a function of the place alone. It depends on the way there; integrate q̇ = ½ Ω q."
             )
-            yield Trial("holonomic-constraint", text, replace(theirs, orientation=None), extra=(match,))
+            undo = partial(_without_orientation, system=case.system, start=case.start)
+            yield Suspect("holonomic-constraint", says, _TURNED | _AXES, theirs=undo, further=matches)
+
+
+def _given(match: Series, _: object) -> tuple[Series, ...]:
+    return (match,)
 
 
 def _from_displacement(x: Array, y: Array) -> Iterator[tuple[str, Quaternion]]:
@@ -164,8 +225,3 @@ def _from_displacement(x: Array, y: Array) -> Iterator[tuple[str, Quaternion]]:
     yield "one turn by |d|/a about n×d, d the net displacement", at_once
     yield "a turn by x/a and then one by y/a", about_x * about_y
     yield "a turn by y/a and then one by x/a", about_y * about_x
-
-
-READINGS = (units, places, body_axes, quaternions, holonomic)
-
-__all__ = ["READINGS"]

@@ -1,45 +1,34 @@
-"""Their motion at some instants: what they gave, and what was worked out of it, each with its error."""
+"""Their motion at some instants: what they gave, and what was worked out of it, each with what noise leaves open."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import Contact
+from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem, State
 from ..solve.samples import Samples
 from .record import Array, Theirs, contact_of, orientation_from
-from .slopes import SIGMAS, Estimate
+from .slopes import SIGMAS, Estimate, Index
 
-INSTANTS = 240  # looked at
+_SPINNING = 400  # instants at which a spin that nothing tells is followed
+_AVERAGED = 0.3  # share of the noise that is left where windows take their means
 
 
 @dataclass(frozen=True)
-class Motion:
-    """Their motion at some instants: what they gave, and what was worked out of it, each with its error.
+class Instants:
+    """States at some instants, and the contact there; arrays (m,), (m, 3) and (m, 4), inertial support frame, SI."""
 
-    Lengths of vectors, (m,): `position_error`, ... ; `angular_velocity` follows from no slip where they gave nothing
-    that tells it, and then `turning_known` is False.
-    """
-
-    index: NDArray[np.int_]
     time: Array
     position: Array
     velocity: Array
     angular_velocity: Array
     orientation: Array
-    acceleration: Array
-    angular_acceleration: Array
-    position_error: Array
-    velocity_error: Array
-    angular_velocity_error: Array
-    acceleration_error: Array
-    angular_acceleration_error: Array
     contact: Contact
-    turning_known: bool
 
     @property
     def offset(self) -> Array:
@@ -56,6 +45,11 @@ class Motion:
         """Slip s = V + Ω×ρ − u, (m, 3), m/s."""
         return self.velocity + np.cross(self.angular_velocity, self.offset) - self.carried
 
+    @property
+    def arm(self) -> float:
+        """The largest |ρ|, m."""
+        return float(np.linalg.norm(self.offset, axis=1).max())
+
     def samples(self) -> Samples:
         """Return the record that the independent law takes; the contact force is not known, and stands as zero."""
         point = np.broadcast_to(self.contact.point.array(), self.position.shape)
@@ -63,8 +57,74 @@ class Motion:
         return Samples(self.time, self.position, point, self.velocity, self.angular_velocity, self.orientation, zero)
 
 
-def motion_of(system: RollingSystem, theirs: Theirs, start: State | None = None, instants: int = INSTANTS) -> Motion:
-    """Work out what they did not give, at instants spread over the run.
+@dataclass(frozen=True)
+class Motion(Instants):
+    """Their states at some of their samples, with what noise and spacing leave open of each part.
+
+    `estimates` has position, velocity, angular_velocity and orientation, as far as they were given or follow from
+    what was; `sources` says of which of their arrays each is made. Where nothing tells Ω it follows from no slip,
+    and its part along the normal from `spin`.
+    """
+
+    index: Index
+    estimates: Mapping[str, Estimate]
+    sources: Mapping[str, str]
+    spin: Array
+
+    @property
+    def turning_known(self) -> bool:
+        """Whether what they gave tells Ω."""
+        return "angular_velocity" in self.estimates
+
+    def shifted(self, system: RollingSystem, steps: Sequence[tuple[str, Array]]) -> Instants:
+        """Return the states as they are and behind them, one after the other, with one part changed by each step.
+
+        A step is a part's name and a change of it, (m, 3); an orientation is turned by its, a spin grows by the first.
+        """
+        names = ("position", "velocity", "angular_velocity", "orientation", "spin")
+        stacked = {name: [getattr(self, name)] * (1 + len(steps)) for name in names}
+        for i, (name, step) in enumerate(steps):
+            stacked[name][i + 1] = _changed(name, getattr(self, name), step)
+        parts = {name: np.concatenate(arrays) for name, arrays in stacked.items()}
+        spin = None if self.turning_known else parts["spin"]
+        return instants(system, np.tile(self.time, 1 + len(steps)), parts, spin)
+
+
+def _changed(name: str, part: Array, step: Array) -> Array:
+    if name == "spin":
+        return part + step[:, 0]
+    if name != "orientation":
+        return part + step
+    turned = (Quaternion(1.0, *(Vector.of(step) * 0.5)) * Quaternion.of(part)).array()
+    return np.asarray(turned / np.linalg.norm(turned, axis=1, keepdims=True))
+
+
+def instants(system: RollingSystem, time: Array, parts: Mapping[str, Array], spin: Array | None = None) -> Instants:
+    """Return states with their contact.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Body and support.
+    time : array (m,)
+        s.
+    parts : mapping from str to array
+        position, velocity, orientation, and angular_velocity where `spin` is absent.
+    spin : array (m,), optional
+        Ω·n where Ω follows from no slip, rad/s.
+
+    Returns
+    -------
+    Instants
+        As they were given.
+    """
+    contact = contact_of(system, time, parts["position"], parts["orientation"])
+    Omega = parts["angular_velocity"] if spin is None else _from_no_slip(contact, parts["velocity"], spin)
+    return Instants(time, parts["position"], parts["velocity"], Omega, parts["orientation"], contact)
+
+
+def motion_of(system: RollingSystem, theirs: Theirs, start: State | None, index: Index) -> Motion:
+    """Work out what they did not give, at some of their samples.
 
     Parameters
     ----------
@@ -74,61 +134,65 @@ def motion_of(system: RollingSystem, theirs: Theirs, start: State | None = None,
         Their samples.
     start : State, optional
         Gives orientation and spin where they do not tell.
-    instants : int
-        How many at most.
+    index : int array (m,)
+        At which samples, ascending.
 
     Returns
     -------
     Motion
-        At those instants.
+        At those samples.
     """
-    n = theirs.time.size
-    index = np.unique(np.linspace(0, n - 1, min(n, instants)).round().astype(int))
-    q = _orientation(theirs, start)
-    r = theirs.slope("position", index, 0)
-    position_error = SIGMAS * r.noise
-    if theirs.velocity is not None:
-        slope = theirs.slope("velocity", index)
-        V, V_error = theirs.velocity[index], SIGMAS * slope.noise
+    estimates, sources = _estimates(theirs, index)
+    time, parts = theirs.time[index], {name: estimate.values for name, estimate in estimates.items()}
+    if "orientation" in parts:
+        parts["orientation"] = parts["orientation"] / np.linalg.norm(parts["orientation"], axis=1, keepdims=True)
     else:
-        first, slope = (theirs.slope("position", index, order) for order in (1, 2))
-        V, V_error = first.values, first.error
-    contact = contact_of(system, theirs.time[index], theirs.position[index], q[index])
-    known = theirs.angular_velocity is not None or theirs.orientation is not None
-    if theirs.angular_velocity is not None:
-        turning = theirs.slope("angular_velocity", index)
-        Omega, Omega_error = theirs.angular_velocity[index], SIGMAS * turning.noise
-        if theirs.doubt is not None:
-            Omega_error = Omega_error + theirs.doubt[index]
-            turning = Estimate(turning.values, turning.error + _growth(theirs, index), turning.noise)
-    elif theirs.orientation is not None:
-        Omega, Omega_error, turning = turning_of(theirs, index)
-    else:
-        Omega = _from_no_slip(contact, V, start)
-        rho = np.broadcast_to(contact.offset.array(), V.shape)
-        Omega_error = (V_error + float(np.abs(rate_of(system))) * position_error) / np.linalg.norm(rho, axis=1)
-        turning = Estimate(np.zeros_like(V), np.zeros(index.size), np.zeros(index.size))
+        q0 = start.orientation if start is not None else (1.0, 0.0, 0.0, 0.0)
+        parts["orientation"] = np.tile(q0, (index.size, 1))
+    spin = np.zeros(index.size)
+    if "angular_velocity" not in parts:
+        spin, doubt = spin_of(system, theirs, start, index)
+        if doubt.any():
+            estimates["spin"], sources["spin"] = _doubtful(spin, doubt, estimates["position"]), "position"
+    now = instants(system, time, parts, spin if "angular_velocity" not in parts else None)
     return Motion(
+        time,
+        now.position,
+        now.velocity,
+        now.angular_velocity,
+        now.orientation,
+        now.contact,
         index,
-        theirs.time[index],
-        theirs.position[index],
-        V,
-        Omega,
-        q[index],
-        slope.values,
-        turning.values,
-        position_error,
-        V_error,
-        Omega_error,
-        slope.error,
-        turning.error,
-        contact,
-        known,
+        estimates,
+        sources,
+        spin,
     )
 
 
-def turning_of(theirs: Theirs, index: NDArray[np.int_]) -> tuple[Array, Array, Estimate]:
-    """Return Ω = 2 q̇ q* and Ω̇ = 2 q̈ q* from their orientations.
+def _estimates(theirs: Theirs, index: Index) -> tuple[dict[str, Estimate], dict[str, str]]:
+    """Return what their arrays tell of the state, and which array tells it."""
+
+    def value(name: str, order: int = 0) -> Estimate:
+        found = theirs.slope(name, index, order, _AVERAGED)
+        doubt = theirs.doubts.get(name)
+        return found if doubt is None or order else replace(found, bias=found.bias + doubt[index])
+
+    found, sources = {"position": value("position")}, {"position": "position"}
+    if theirs.velocity is not None:
+        found["velocity"], sources["velocity"] = value("velocity"), "velocity"
+    else:
+        found["velocity"], sources["velocity"] = value("position", 1), "position"
+    if theirs.orientation is not None:
+        found["orientation"], sources["orientation"] = value("orientation"), "orientation"
+    if theirs.angular_velocity is not None:
+        found["angular_velocity"], sources["angular_velocity"] = value("angular_velocity"), "angular_velocity"
+    elif theirs.orientation is not None:
+        found["angular_velocity"], sources["angular_velocity"] = turning_of(theirs, index), "orientation"
+    return found, sources
+
+
+def turning_of(theirs: Theirs, index: Index) -> Estimate:
+    """Return Ω = 2 q̇ q* from their orientations.
 
     Parameters
     ----------
@@ -139,40 +203,75 @@ def turning_of(theirs: Theirs, index: NDArray[np.int_]) -> tuple[Array, Array, E
 
     Returns
     -------
-    angular_velocity : array (m, 3)
-        rad/s.
-    error : array (m,)
-        Of it, rad/s.
-    angular_acceleration : Estimate
-        rad/s².
+    Estimate
+        Ω in the support frame, rad/s.
     """
-    assert theirs.orientation is not None  # noqa: S101  for the type checker; callers have looked
-    q = theirs.orientation
-    first, second = (theirs.slope("orientation", index, order) for order in (1, 2))
-    back = Quaternion.of(q[index]).conjugate
-
-    def vector(rate: Array) -> Array:
-        return 2 * (Quaternion.of(rate) * back).array()[:, 1:]
-
-    # A noisy q shakes q̈ q* as well.
-    shaken = 2 * SIGMAS * first.noise * np.linalg.norm(second.values, axis=1)
-    alpha = Estimate(vector(second.values), 2 * second.error + shaken, second.noise)
-    Omega_error = 2 * first.error + 2 * SIGMAS * first.noise * np.linalg.norm(first.values, axis=1)
-    return vector(first.values), Omega_error, alpha
+    rate, q = (theirs.slope("orientation", index, order, _AVERAGED) for order in (1, 0))
+    Omega = 2 * (Quaternion.of(rate.values) * Quaternion.of(q.values).conjugate).array()[:, 1:]
+    size = np.linalg.norm(rate.values, axis=1)
+    found = rate.scaled(2.0, Omega, 2 * (rate.bias + q.bias * size))
+    return replace(found, spread=2 * np.hypot(rate.spread, q.spread * size))
 
 
-def _growth(theirs: Theirs, index: NDArray[np.int_]) -> Array:
-    """Return what a doubt about Ω leaves of its slope: it turns with Ω as the body does."""
-    assert theirs.doubt is not None  # noqa: S101
-    assert theirs.angular_velocity is not None  # noqa: S101
-    return theirs.doubt[index] * float(np.linalg.norm(theirs.angular_velocity, axis=1).max())
+def _doubtful(spin: Array, doubt: Array, like: Estimate) -> Estimate:
+    """Return a spin whose error is no noise of the samples."""
+    none, nowhere = np.zeros(spin.size), np.zeros((spin.size, 1))
+    return Estimate(spin[:, None], none, doubt, none, like.freedom, 1.0, nowhere.astype(int), nowhere)
 
 
-def _orientation(theirs: Theirs, start: State | None) -> Array:
-    if theirs.orientation is not None:
-        return theirs.orientation
-    q0 = start.orientation if start is not None else (1.0, 0.0, 0.0, 0.0)
-    return np.tile(q0, (theirs.time.size, 1))
+def spin_of(system: RollingSystem, theirs: Theirs, start: State | None, index: Index) -> tuple[Array, Array]:
+    """Return Ω·n where nothing that was given tells it: as at the start, and as a ball's goes on from there.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        A ball, and its support.
+    theirs : Theirs
+        Their path.
+    start : State, optional
+        Gives the spin at the first sample, unless theirs has one.
+    index : int array (m,)
+        At which samples.
+
+    Returns
+    -------
+    spin, doubt : array (m,)
+        rad/s; the doubt is what half of the instants would change. No contact force turns a ball about the normal, so
+        that the rate of Ω·n is Ω·ṅ.
+    """
+    n = theirs.time.size
+    some = np.unique(np.linspace(0, n - 1, min(n, _SPINNING)).round().astype(int))
+    flat = isinstance(system.support.surface, Plane)
+    at = some[:1] if flat else some
+    position, velocity = theirs.slope("position", at, 0).values, _velocity(theirs, at)
+    q = np.tile(start.orientation if start is not None else (1.0, 0.0, 0.0, 0.0), (at.size, 1))
+    contact = contact_of(system, theirs.time[at], position, q)
+    normal = np.broadcast_to(contact.normal.array(), position.shape)
+    first = theirs.spin
+    if first is None:
+        first = 0.0 if start is None else float(np.asarray(start.angular_velocity) @ normal[0])
+    if flat:
+        return np.full(index.size, first), np.zeros(index.size)
+    across = _from_no_slip(contact, velocity, np.zeros(at.size))
+    half = np.unique(np.append(np.arange(0, at.size, 2), at.size - 1))
+    fine, coarse = (
+        _turned_along(theirs.time[at[some]], normal[some], across[some], theirs.time[index])
+        for some in (slice(None), half)
+    )
+    return first + fine, np.maximum.accumulate(np.abs(fine - coarse))
+
+
+def _turned_along(time: Array, normal: Array, across: Array, wanted: Array) -> Array:
+    """Return the integral of Ω·ṅ from the first instant on."""
+    from scipy.interpolate import CubicSpline
+
+    along = CubicSpline(time, normal).derivative()(time)
+    rate = CubicSpline(time, (across * along).sum(axis=1))
+    return np.asarray(rate.antiderivative()(wanted), dtype=float)
+
+
+def _velocity(theirs: Theirs, index: Index) -> Array:
+    return theirs.velocity[index] if theirs.velocity is not None else theirs.slope("position", index, 1).values
 
 
 def with_orientation(system: RollingSystem, theirs: Theirs, start: State | None) -> Theirs:
@@ -194,25 +293,67 @@ def with_orientation(system: RollingSystem, theirs: Theirs, start: State | None)
     """
     if system.body.is_isotropic_sphere or theirs.orientation is not None or theirs.angular_velocity is None:
         return theirs
+    q, doubt = added_up(theirs, start)
+    return replace(theirs, orientation=q, doubts={**theirs.doubts, "orientation": doubt})
+
+
+def added_up(theirs: Theirs, start: State | None, *, body_axes: bool = False) -> tuple[Array, Array]:
+    """Return the orientation that their Ω adds up to, and the angle by which it may be off.
+
+    Parameters
+    ----------
+    theirs : Theirs
+        With Ω.
+    start : State, optional
+        Gives the orientation at the first sample.
+    body_axes : bool
+        Whether Ω has its components along the body's axes.
+
+    Returns
+    -------
+    orientation : array (n, 4)
+        Unit quaternions.
+    doubt : array (n,)
+        rad: half of the gain in steps twice as long, and what noise adds up to.
+    """
+    assert theirs.angular_velocity is not None  # noqa: S101  for the type checker; callers have looked
     q0 = start.orientation if start is not None else (1.0, 0.0, 0.0, 0.0)
-    q, doubt = orientation_from(theirs.time, theirs.angular_velocity, q0)
-    size = np.linalg.norm(theirs.angular_velocity, axis=1)
-    return replace(theirs, orientation=q, doubt=doubt * size)
+    q, doubt = orientation_from(theirs.time, theirs.angular_velocity, q0, body_axes=body_axes)
+    few = np.unique(np.linspace(0, theirs.time.size - 1, 24).round().astype(int))
+    noise = float(np.median(theirs.slope("angular_velocity", few, 0).noise))
+    span = theirs.time - theirs.time[0]
+    return q, doubt + SIGMAS * noise * np.sqrt(span * float(np.median(np.diff(theirs.time))))
 
 
-def _from_no_slip(contact: Contact, V: Array, start: State | None) -> Array:
-    """Return the Ω that rolling asks for, its part along the normal as at the start."""
+def _from_no_slip(contact: Contact, V: Array, spin: Array) -> Array:
+    """Return the Ω that rolling asks for, with a given part along the normal."""
     u = contact.support.material_velocity(contact.point)
     rho, n = contact.offset, contact.normal
-    spin = 0.0 if start is None else float(np.asarray(start.angular_velocity) @ np.broadcast_to(n.array(), V.shape)[0])
     across = (Vector.of(V) - u).cross(rho) / rho.dot(rho)
     Omega = across + rho * ((spin - across.dot(n)) / rho.dot(n))
-    return np.broadcast_to(Omega.array(), V.shape)
+    return np.broadcast_to(Omega.array(), V.shape).astype(float)
 
 
 def rate_of(system: RollingSystem) -> float:
-    """Return the support's rate, or the largest of its first instants', rad/s."""
+    """Return the size of the support's rate, or the largest of its first instants', rad/s.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        With a support that may turn.
+
+    Returns
+    -------
+    float
+        Never negative, whichever way it turns.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> rate_of(tr.RollingSystem(tr.Body.solid_sphere(0.5, 1.0), tr.Support(tr.Plane(), motion=tr.Spin(-2.0))))
+    2.0
+    """
     rate = system.support.motion.steady_rate
     if rate is not None:
-        return float(rate)
+        return abs(float(rate))
     return max(float(system.support.motion.at(t).angular_velocity.norm()) for t in (0.0, 0.3, 0.7))

@@ -15,7 +15,9 @@ from ..errors import InvalidValueError, UnknownNameError
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.system import RollingSystem
 from . import names
+from .files import Table, open_file
 from .record import Array, Theirs
+from .rows import whole_rows
 
 AXES, ORDERS, DIRECTIONS = ("space", "body"), ("wxyz", "xyzw"), ("body-to-space", "space-to-body")
 _ARRAYS = {
@@ -122,12 +124,13 @@ def read(data: Any, system: RollingSystem, conventions: Conventions) -> Theirs:
     """
     source = ""
     if isinstance(data, (str, Path)):
-        from .files import open_file
-
         source, data = Path(data).name, open_file(Path(data), conventions.columns)
     elif hasattr(data, "samples") and hasattr(data, "in_frame"):  # a Trajectory
         source, data = data.title, data.data
-    if hasattr(data, "data_vars"):
+    lines: tuple[int, ...] = ()
+    if isinstance(data, Table):
+        data, lines = data.columns, data.lines
+    elif hasattr(data, "data_vars"):
         conventions = _told(data, conventions)
         data = _variables(data)
     elif hasattr(data, "columns"):
@@ -140,7 +143,9 @@ def read(data: Any, system: RollingSystem, conventions: Conventions) -> Theirs:
     table = _flat(data, conventions)
     found = names.recognise(name for name in table if name not in conventions.columns.values())
     found |= names.mapped(conventions.columns, table)
-    return replace(_in_space(_arrays(table, found, conventions, headings), system, conventions), source=source)
+    table, remarks = whole_rows(table, [heading for heading, _ in found.values()], lines)
+    theirs = _in_space(_arrays(table, found, conventions, headings), system, conventions)
+    return replace(theirs, source=source, remarks=remarks)
 
 
 def _told(data: Any, conventions: Conventions) -> Conventions:
@@ -172,12 +177,12 @@ def _flat(data: Mapping[str, Any], conventions: Conventions) -> dict[str, Array]
         try:
             array = np.asarray(values, dtype=float)
         except (TypeError, ValueError):
-            continue  # a column of text
+            array = np.asarray(values, dtype=object)  # text: to be refused where a number is needed
         if array.ndim == 1:
             table[str(name)] = array
             continue
         bare, unit = names.apart(str(name))
-        if bare not in whole:
+        if bare not in whole or array.dtype == object:
             continue
         key, behind = whole[bare], f" [{unit}]" if unit else ""
         if array.ndim == 2:

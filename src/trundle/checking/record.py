@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -15,11 +15,14 @@ from ..mechanics.contact import Contact, settle, touch
 from ..mechanics.shapes import concentric_sphere
 from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem
-from .slopes import Estimate, Known, derivative
+from .noise import noise_of
+from .polynomials import Known
+from .slopes import Estimate, Index, best_fit, derivative
 
 Array = NDArray[np.float64]
 
 FEWEST = 12  # samples that a slope and its error can be taken from
+_SPLINE = 7  # degree: the components of Ω along the body's axes turn with the body
 _SEARCH = 50  # steps at most to the place of contact; spheres on planes and cylinders need two
 
 
@@ -41,8 +44,12 @@ class Theirs:
         Quaternions (w, x, y, z), body frame to support frame.
     height_given : bool
         Whether the third component of the position is theirs, or follows from touching the plane.
-    doubt : array (n,), optional
-        What an Ω that was worked out may be off by, rad/s.
+    doubts : mapping from str to array (n,)
+        What may be off besides noise: of an orientation that was added up from Ω, rad; of an Ω turned by one, rad/s.
+    spin : float, optional
+        Ω·n at the first sample, where nothing that was given tells it, rad/s.
+    remarks : tuple of str
+        What was left out in reading.
     source : str
         Where it comes from, for titles.
 
@@ -59,17 +66,27 @@ class Theirs:
     angular_velocity: Array | None = None
     orientation: Array | None = None
     height_given: bool = True
-    doubt: Array | None = None
+    doubts: Mapping[str, Array] = field(default_factory=dict)
+    spin: float | None = None
+    remarks: tuple[str, ...] = ()
     source: str = ""
-    _windows: Known = field(default_factory=dict, compare=False, repr=False)  # goes on to changed copies
-    _kept: dict[Any, Estimate] = field(default_factory=dict, init=False, compare=False, repr=False)
+    # What was worked out goes on to changed copies, by the arrays that it was worked out of.
+    _windows: Known = field(default_factory=dict, compare=False, repr=False)
+    _kept: dict[Any, Any] = field(default_factory=dict, compare=False, repr=False)
 
-    def slope(self, name: str, index: NDArray[np.int_], order: int = 1) -> Estimate:
+    def slope(self, name: str, index: Index, order: int = 1, kept: float = 1.0) -> Estimate:
         """Return a derivative of one of the arrays at some samples; it is worked out once."""
-        key = (name, order, index.size)
-        if key not in self._kept:
-            self._kept[key] = derivative(self.time, getattr(self, name), index, order, self._windows)
-        return self._kept[key]
+        time, values = self.time, getattr(self, name)
+        own, key = (id(time), id(values)), (name, order, kept)
+        if own not in self._kept:  # with the arrays, so that no others take their places in memory
+            self._kept[own] = noise_of(time, values, self._windows), time, values
+        noise = self._kept[own][0]
+        if key not in self._kept:  # changed copies bend as much: units and axes are what changes
+            self._kept[key] = best_fit(time, values, order, self._windows, noise, kept)
+        whole = (*own, *key, index.tobytes())
+        if whole not in self._kept:
+            self._kept[whole] = derivative(time, values, index, order, self._windows, self._kept[key], noise)
+        return self._kept[whole]
 
     @property
     def parts(self) -> str:
@@ -82,12 +99,6 @@ class Theirs:
         }
         given = [name for name, array in names.items() if array is not None]
         return given[0] if len(given) == 1 else f"{', '.join(given[:-1])} and {given[-1]}"
-
-    def thinned(self, index: Any) -> Theirs:
-        """Return some of the samples, chosen as an array is indexed."""
-        arrays = ("time", "position", "velocity", "angular_velocity", "orientation", "doubt")
-        kept = {name: getattr(self, name)[index] for name in arrays if getattr(self, name) is not None}
-        return replace(self, **kept)
 
 
 def checked(theirs: Theirs, system: RollingSystem) -> Theirs:
@@ -117,7 +128,6 @@ def checked(theirs: Theirs, system: RollingSystem) -> Theirs:
     t = theirs.time
     if t.size < FEWEST:
         raise InvalidValueError("time", f"must hold {FEWEST} samples or more", f"{t.size}", "Write more of the run.")
-    _check_finite(theirs)
     backwards = np.flatnonzero(np.diff(t) <= 0)
     if backwards.size:
         i = int(backwards[0])
@@ -136,17 +146,6 @@ def checked(theirs: Theirs, system: RollingSystem) -> Theirs:
             "Add wx, wy, wz or qw, qx, qy, qz.",
         )
     return theirs
-
-
-def _check_finite(theirs: Theirs) -> None:
-    for name in ("time", "position", "velocity", "angular_velocity", "orientation"):
-        array = getattr(theirs, name)
-        if array is None:
-            continue
-        bad = np.flatnonzero(~np.isfinite(array.reshape(array.shape[0], -1)).all(axis=1))
-        if bad.size and not (name == "position" and not theirs.height_given):
-            row = array[bad[0]].tolist()
-            raise InvalidValueError(name, "must be finite numbers", f"{row} in sample {bad[0] + 1}", "Leave it out.")
 
 
 def _with_height(position: Array, system: RollingSystem) -> Array:
@@ -305,7 +304,7 @@ def orientation_from(
     found = []
     for stride in (1, 2):
         kept = np.unique(np.append(np.arange(0, time.size, stride), time.size - 1))
-        spline = make_interp_spline(time[kept], sign * angular_velocity[kept], k=3)
+        spline = make_interp_spline(time[kept], sign * angular_velocity[kept], k=min(_SPLINE, kept.size - 1))
         found.append(orientation(_columns_of(spline), time, q0, float(time[0]), time[kept]))
     q, coarse = found
     side = np.sign((q * coarse).sum(axis=1, keepdims=True))

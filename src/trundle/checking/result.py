@@ -31,6 +31,8 @@ class Mistake(Displayed):
         What was fitted, by name, in SI.
     named : bool
         Whether what was fitted is a number with a reason, such as k = 2/3; a free number explains more easily.
+    removes : float
+        Share of all that is off that is gone once the mistake is allowed for.
 
     Examples
     --------
@@ -46,6 +48,7 @@ class Mistake(Displayed):
     bound: float
     numbers: dict[str, float] = field(default_factory=dict)
     named: bool = True
+    removes: float = 1.0
 
     def _headline(self) -> Headline:
         return Headline(self.name, self.says)
@@ -69,9 +72,19 @@ class Check(Card):
     first_failure : float or None
         The first instant at which a figure is beyond its bound, s; None where all hold, or there is no time.
     likely : tuple of Mistake
-        Each explains all that was found; more than one where the data cannot tell them apart.
+        Each explains all that was found, alone or as several at once; more than one where the data cannot tell them
+        apart.
+    nearest : tuple of Mistake
+        Where none explains all: those that explain most of it.
+    blind : tuple of str
+        Mistakes of the textbook that the data could not show if they had been made.
+    decides : bool
+        Whether the data could have shown most of the mistakes of the textbook; where not, nothing that holds means
+        anything.
     remark : str
-        What to make of it where no mistake explains it.
+        What else there is to say.
+    apart : str
+        How far their body is from ours in the end, in plain units.
     worst_state : dict or None
         Of a check of equations: the state at which they are furthest from the law.
 
@@ -80,20 +93,42 @@ class Check(Card):
     >>> import trundle as tr
     >>> run = tr.Scenario.load("level-turntable-nudged").run()
     >>> checked = tr.check(run, "level-turntable-nudged")
-    >>> checked.passed, checked.first_failure, checked.likely
-    (True, None, ())
+    >>> checked.answer, checked.passed, checked.first_failure, checked.likely
+    ('holds', True, None, ())
     """
 
     first_failure: float | None = None
     likely: tuple[Mistake, ...] = ()
+    nearest: tuple[Mistake, ...] = ()
+    blind: tuple[str, ...] = ()
+    decides: bool = True
     remark: str = ""
+    apart: str = ""
     worst_state: dict[str, Any] | None = None
     _drawn: Any = field(default=None, compare=False, repr=False)
 
     @property
+    def answer(self) -> str:
+        """The verdict in a word or two: "holds", "fails", or "cannot decide"."""
+        if self.failures:
+            return "fails"
+        return "holds" if self.decides else "cannot decide"
+
+    @property
+    def passed(self) -> bool:
+        """Whether no figure failed, and the data could have shown it."""
+        return self.answer == "holds"
+
+    @property
+    def outcome(self) -> str:
+        """What came of the checks, in words."""
+        return super().outcome if self.decides or self.failures else "these data cannot decide"
+
+    @property
     def verdict(self) -> str:
         """What was found beyond the figures, in lines."""
-        lines = [] if self.first_failure is None else [f"first goes wrong at t = {self.first_failure:.6g} s"]
+        lines = [self.apart] if self.apart else []
+        lines += [] if self.first_failure is None else [f"first goes wrong at t = {self.first_failure:.6g} s"]
         if len(self.likely) == 1:
             lines.append(f"likely: {self.likely[0]}")
         elif self.likely:
@@ -101,6 +136,10 @@ class Check(Card):
             lines += [f"  - {mistake}" for mistake in self.likely]
         if self.remark:
             lines.append(self.remark)
+        lines += [f"  - {mistake} It takes away {mistake.removes:.1%} of what is off." for mistake in self.nearest]
+        if self.blind and not self.failures:
+            could = "These data could not show" if self.decides else "They would look the same with"
+            lines += [f"{could}:", *(f"  - {says}" for says in self.blind)]
         if self.worst_state is not None and not self.passed:
             lines.append("furthest off in this state:")
             lines += [f"  {name} = {value}" for name, value in self.worst_state.items()]
@@ -114,20 +153,17 @@ class Check(Card):
         yield from super()._parts()
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the card, the first failure and the mistakes as plain dictionaries."""
-        mistakes = [
-            {
-                "name": mistake.name,
-                "says": mistake.says,
-                "check": mistake.check,
-                "before": mistake.before,
-                "after": mistake.after,
-                "bound": mistake.bound,
-                "numbers": mistake.numbers,
-            }
-            for mistake in self.likely
-        ]
-        found = {"first_failure": self.first_failure, "likely": mistakes, "remark": self.remark}
+        """Return the card, the verdict, the first failure and the mistakes as plain dictionaries."""
+        names = ("name", "says", "check", "before", "after", "bound", "numbers", "named", "removes")
+        found = {
+            "answer": self.answer,
+            "first_failure": self.first_failure,
+            "likely": [{name: getattr(mistake, name) for name in names} for mistake in self.likely],
+            "nearest": [{name: getattr(mistake, name) for name in names} for mistake in self.nearest],
+            "could_not_show": list(self.blind),
+            "apart": self.apart,
+            "remark": self.remark,
+        }
         return super().as_dict() | found
 
     def plot(self) -> Figure:

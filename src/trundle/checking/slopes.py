@@ -1,43 +1,53 @@
-"""Rates of change of somebody else's samples, with the error that the samples themselves show.
+"""Values and rates of change of somebody else's samples, with what noise and spacing leave open.
 
-Around each instant a polynomial is fitted to some samples by least squares. What the fit leaves over tells the noise
-(of a camera, of digits cut off when the file was written), and what two degrees less would change tells the
-truncation; degree and width are those for which the two together are least.
+Around each instant a polynomial is fitted to some samples by least squares. Noise of a known size makes its spread.
+What the last two degrees add, beyond what noise makes of that, and how much less it is than what the two before them
+did, tells the truncation. Degree and width are those for which noise and truncation together are least.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cache
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
-from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from .noise import Noise, noise_of
+from .polynomials import Array, Index, Known, polynomials
 
-_DEGREES = (4, 6, 8)
+SIGMAS = 5.5  # of the noise, against which truncation is weighed; about what the longest of some hundred reaches
+_DEGREES = (4, 6, 8, 12)
 _WIDEST = 768  # samples
+_WIDER = 1.6  # times, from one width to the next
 _TRIED = 24  # windows on which degree and width are chosen
-SIGMAS = 6.0  # of the noise; thousands of numbers are looked at, and none of them may fail by chance
-_TRUNCATION = 2.0
-_UNEVEN = 10.0  # times the usual noise: numbers of so many digits are rounded at another place where they are larger
+_TRUNCATION = 2.0  # times what the next two degrees would add
+_ROUNDED = 4.0  # units in the last place: there is no noise to smooth
+_NEIGHBOURS = 15  # windows among which a truncation is taken to be the same
+_DOUBT = 2.0  # standard deviations by which a truncation must stand out of the noise
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """A derivative at some of the samples.
+    """Values, or a derivative, at some of the samples.
 
     Parameters
     ----------
     values : array (m, c)
-        The derivative.
-    error : array (m,)
-        What it may be off by, as the length of a vector.
+        What was estimated.
+    spread : array (m,)
+        Standard deviation of the worst of its components.
+    bias : array (m,)
+        What too few samples for so much bending may add, as the length of a vector.
     noise : array (m,)
-        Standard deviation of one sample about a smooth curve, as the length of a vector.
-    reach : int
-        How many samples to either side it was taken from.
+        Standard deviation of one sample about a smooth curve, the worst component.
+    freedom : float
+        Degrees of freedom from which the noise was estimated.
+    alike : float
+        Times the variance of a mean over many samples that noise makes which is not independent from one to the next.
+    index : int array (m, w), optional
+        The samples that each was taken from.
+    row : array (m, w), optional
+        Their weights.
 
     Examples
     --------
@@ -45,30 +55,47 @@ class Estimate:
     """
 
     values: Array
-    error: Array
+    spread: Array
+    bias: Array
     noise: Array
-    reach: int = 0
+    freedom: float = np.inf
+    alike: float = 1.0
+    index: Any = field(default=None, repr=False)
+    row: Any = field(default=None, repr=False)
+
+    @property
+    def error(self) -> Array:
+        """What the values may be off by, as the length of a vector."""
+        return SIGMAS * self.spread + self.bias
+
+    @property
+    def reach(self) -> int:
+        """How many samples to either side it was taken from."""
+        return int(self.index.shape[1]) // 2 + 1
+
+    def scaled(self, factor: float, values: Array, bias: Array) -> Estimate:
+        """Return what follows from it by a map that lengthens no vector by more than a factor."""
+        return replace(self, values=values, spread=factor * self.spread, bias=bias, row=factor * self.row)
 
 
 @dataclass(frozen=True)
-class _Windows:
-    """What a fit needs of the instants alone, so that all arrays over the same instants share it."""
+class Fit:
+    """A degree and a width in samples; a width of one takes the samples as they are."""
 
-    time: Array  # kept, so that no other array takes its place in memory, by which windows are found again
-    index: NDArray[np.int_]
-    row: Array  # (m, width), gives the derivative
-    fewer: Array  # what two degrees less take off it
-    basis: Array
-    inverse: Array
-
-
-Known = dict[tuple[int, ...], _Windows]
+    degree: int
+    width: int
 
 
 def derivative(
-    time: Array, values: Array, centres: NDArray[np.int_], order: int = 1, known: Known | None = None
+    time: Array,
+    values: Array,
+    centres: Index,
+    order: int = 1,
+    known: Known | None = None,
+    fit: Fit | None = None,
+    noise: Noise | None = None,
 ) -> Estimate:
-    """Return a derivative of sampled values, with its error.
+    """Return a derivative of sampled values, with what noise and spacing leave open.
 
     Parameters
     ----------
@@ -77,16 +104,20 @@ def derivative(
     values : array (n, c)
         Samples of c quantities.
     centres : int array (m,)
-        At which samples.
+        At which samples, ascending.
     order : int
-        1 or 2; 0 smooths.
+        1 or 2; 0 smooths, where that is better than the samples as they are.
     known : dict, optional
         Keeps what was worked out of the instants, for other values at the same ones.
+    fit : Fit, optional
+        As `best_fit` returns it, where it was asked already.
+    noise : Noise, optional
+        As `noise_of` returns it, where it was asked already.
 
     Returns
     -------
     Estimate
-        With an error that is meant never to be exceeded: six standard deviations and twice the truncation.
+        With its spread and bias.
 
     Examples
     --------
@@ -99,73 +130,75 @@ def derivative(
     (True, True)
     """
     known = {} if known is None else known
-    some = centres[:: max(1, centres.size // _TRIED)]
-    best, chosen = np.inf, (_DEGREES[0], min(time.size, _DEGREES[0] + 3))
+    noise = noise_of(time, values, known) if noise is None else noise
+    fit = best_fit(time, values, order, known, noise) if fit is None else fit
+    if fit.width > 1:
+        found = _fit(time, values, centres, order, fit, known, noise)
+    else:
+        one, spread = np.ones((centres.size, 1)), noise.at(centres)
+        found = Estimate(values[centres], spread, 0 * spread, spread, noise.freedom, noise.alike, centres[:, None], one)
+    return found if order else replace(found, bias=found.bias + 0.5 * noise.step)
+
+
+def best_fit(time: Array, values: Array, order: int, known: Known, noise: Noise, kept: float = 1.0) -> Fit:
+    """Return the degree and the width for which noise and truncation together are least.
+
+    Parameters
+    ----------
+    time, values, order, known, noise
+        As of `derivative`.
+    kept : float
+        Share of the noise that counts against the truncation: less than 1 where means are taken of many estimates.
+
+    Returns
+    -------
+    Fit
+        Found at some instants all along the samples.
+    """
+    some = np.unique(np.linspace(0, time.size - 1, min(time.size, _TRIED)).round().astype(int))
+    best, chosen = np.inf, Fit(_DEGREES[0], min(time.size, _DEGREES[0] + 3))
     for degree in _DEGREES:
         width, rising = degree + 3, 0
         while width <= min(time.size, _WIDEST) and rising < 2:
-            error = float(np.median(_fit(time, values, some, order, degree, width, known).error))
+            found = _fit(time, values, some, order, Fit(degree, width), known, noise)
+            error = float(np.median(kept * SIGMAS * found.spread + found.bias))
             if error < best:
-                best, chosen, rising = error, (degree, width), 0
+                best, chosen, rising = error, Fit(degree, width), 0
             else:
                 rising += 1
-            width = max(width + 2, int(width * 1.6))
-    return _fit(time, values, centres, order, *chosen, known)
+            width = max(width + 2, int(width * _WIDER))
+    usual = float(np.median(noise.spread))
+    rounded = usual <= _ROUNDED * noise.rounding  # which is not independent
+    raw = order == 0 and (rounded or best >= kept * SIGMAS * usual)
+    return Fit(chosen.degree, 1) if raw else chosen
 
 
-def _fit(
-    time: Array,
-    values: Array,
-    centres: NDArray[np.int_],
-    order: int,
-    degree: int,
-    width: int,
-    known: Known,
-) -> Estimate:
-    key = (id(time), centres.size, int(centres[-1]), order, degree, width)
-    if key not in known:
-        known[key] = _windows(time, centres, order, degree, width)
-    at = known[key]
+def _fit(time: Array, values: Array, centres: Index, order: int, fit: Fit, known: Known, noise: Noise) -> Estimate:
+    at = polynomials(time, centres, order, fit.degree, fit.width, known)
     about = values[centres]
     y = values[at.index] - about[:, None, :]
     estimate = np.einsum("mn,mnc->mc", at.row, y) + (about if order == 0 else 0.0)
-    truncation = np.linalg.norm(np.einsum("mn,mnc->mc", at.fewer, y), axis=1)
-    rest = y - at.basis @ (at.inverse @ y)
-    noise = np.sqrt((rest * rest).sum(axis=(1, 2)) / (width - degree - 1))
-    rounding = np.finfo(float).eps * float(np.abs(values).max())
-    noise = np.maximum(np.maximum(noise, float(np.median(noise))), rounding)
-    error = SIGMAS * noise * np.linalg.norm(at.row, axis=1) + _TRUNCATION * truncation
-    # A bend that no polynomial follows is no noise of the samples themselves.
-    return Estimate(estimate, error, np.minimum(noise, _UNEVEN * float(np.median(noise))), width // 2 + 1)
+    spread = noise.at(centres)
+    one = np.sqrt(noise.alike) * spread  # of a mean over many samples
+    last, before = (
+        _beyond(np.einsum("mn,mnc->mc", row, y), (one * np.linalg.norm(row, axis=1)) ** 2, at.index)
+        for row in at.changes
+    )
+    truncation = _TRUNCATION * last * np.minimum(last / np.where(before > 0, before, np.inf), 1.0)
+    gain = np.linalg.norm(at.row, axis=1)
+    return Estimate(estimate, one * gain, truncation, spread, noise.freedom, noise.alike, at.index, at.row)
 
 
-def _windows(time: Array, centres: NDArray[np.int_], order: int, degree: int, width: int) -> _Windows:
-    first = np.clip(centres - width // 2, 0, time.size - width)
-    index = first[:, None] + np.arange(width)
-    half = (time[index[:, -1]] - time[index[:, 0]]) / 2
-    middle = (time[index[:, -1]] + time[index[:, 0]]) / 2
-    x = (time[index] - middle[:, None]) / half[:, None]
-    here = (time[centres] - middle) / half
-    basis = chebyshev.chebvander(x, degree)
-    inverse = np.linalg.pinv(basis)
-    unit = half[:, None] ** order
-    row = _row(here, inverse, order) / unit
-    fewer = row - _row(here, np.linalg.pinv(basis[..., : degree - 1]), order) / unit
-    return _Windows(time, index, row, fewer, basis, inverse)
+def _beyond(change: Array, by_chance: Array, index: Index) -> Array:
+    """Return the root mean square length of changes among neighbours, beyond what noise of a known variance makes."""
+    size, parts = min(_NEIGHBOURS, len(change)), change.shape[1]
+    pad = (size // 2, size - 1 - size // 2)
 
+    def mean(squares: Array) -> Array:
+        return np.convolve(np.pad(squares, pad, mode="edge"), np.full(size, 1 / size), "valid")
 
-def _row(here: Array, inverse: Array, order: int) -> Array:
-    """Return the weights (m, width) that give a derivative at `here` from the samples of each window."""
-    degree = inverse.shape[1] - 1
-    at = chebyshev.chebvander(here, degree) @ _differentiation(degree, order)
-    return np.einsum("md,mdn->mn", at, inverse)
-
-
-@cache
-def _differentiation(degree: int, order: int) -> Array:
-    """Return the matrix that takes Chebyshev coefficients to those of the derivative."""
-    matrix = np.zeros((degree + 1, degree + 1))
-    if order == 0:
-        return np.eye(degree + 1)
-    matrix[: degree + 1 - order] = chebyshev.chebder(np.eye(degree + 1), m=order)
-    return matrix
+    step = float(np.median(np.diff(index[:, 0]))) if len(index) > 1 else 0.0
+    apart = min(size, 1 + step * (size - 1) / index.shape[1])  # windows that share no sample
+    doubt = _DOUBT * np.sqrt(2 / (parts * apart))
+    noise = mean(by_chance) * parts
+    return np.asarray(np.sqrt(np.maximum(mean((change**2).sum(axis=1)) - noise * (1 + doubt), 0.0)))

@@ -10,18 +10,22 @@ import numpy as np
 
 from ..errors import InvalidValueError
 from ..mechanics.system import RollingSystem, State
+from ..plots.scales import with_unit
 from ..scenario import ScenarioFile
 from ..verify import CardFigure
-from .comparing import OWN_RUN, OwnRun, integrals, own_run
-from .diagnosing import Case, diagnose
-from .examining import ACCELERATION, Series, examine
-from .misread import READINGS
+from .case import Case
+from .comparisons import ACCELERATION
+from .deciding import Power, power_of
+from .diagnosing import diagnose
+from .examining import examine, view_of
+from .integrals import integrals
 from .motion import Motion, motion_of, with_orientation
+from .own_run import OWN_RUN, OwnRun, own_run
 from .reading import Conventions, read
 from .record import Theirs, check_covered, checked
-from .result import Check
-from .slipping import CRUDE
-from .wrong_laws import LAWS
+from .result import Check, Mistake
+from .series import Series
+from .spinning import acts, fitted_spin
 
 TOLERANCE = 1e-5  # a share; what good methods leave is far below, and what a wrong law leaves far above
 _TELLS = 0.2  # a bound, as a share, beyond which the data say nothing of a check
@@ -134,25 +138,61 @@ def check(
     given = theirs.parts
     theirs, coarse = followed(theirs, system)
     theirs = with_orientation(system, theirs, start)
-    series, at = examine(system, theirs, tolerance, start)
-    series |= {one.name: one for one in integrals(system, at, tolerance)}
-    compared, ours = own_run(system, theirs, at, tolerance)
-    series |= {} if compared is None else {compared.name: compared}
-    figures = [*_told(theirs, at, start), *coarse, *map(_figure, series.values())]
-    if compared is None:
+    if start is None and acts(system, theirs):
+        theirs, found = _with_spin(system, theirs, tolerance)
+        coarse += found
+    case, ours = _looked_at(system, theirs, tolerance, start)
+    figures = [*_told(case), *coarse, *map(_figure, case.series.values())]
+    if OWN_RUN not in case.series:
         figures.append(CardFigure(OWN_RUN, float("nan"), note=f"not compared: {ours.remark}"))
-    case = Case(system, theirs, tolerance, start, series, at)
-    likely = diagnose(case, (*READINGS, *LAWS, *CRUDE)) if case.failing else ()
+    likely, nearest = diagnose(case) if case.failing else ((), ())
+    power = Power({}, {}) if case.failing else power_of(case)
     span = float(theirs.time[-1] - theirs.time[0])
     return Check(
         f"{theirs.source or 'Their motion'} against {title or 'the system given'}",
-        f"their {given}, {theirs.time.size} samples over {span:g} s, rates by local polynomials",
+        f"their {given}, {theirs.time.size} samples over {span:g} s, compared over windows of the run",
         tuple(figures),
         _first_failure(case),
         likely,
-        _remark(case, bool(likely)),
-        _drawn=Drawn(system, at, tuple(series.values()), ours),
+        nearest,
+        tuple(power.blind.values()),
+        _decides(case, power),
+        "\n".join([*theirs.remarks, *filter(None, [_remark(case, likely, nearest)])]),
+        _apart(ours),
+        _drawn=Drawn(system, case.motion, tuple(case.series.values()), ours),
     )
+
+
+def _with_spin(system: RollingSystem, theirs: Theirs, tolerance: float) -> tuple[Theirs, list[CardFigure]]:
+    """Add the spin that the path tells, where neither data nor start do."""
+    spin = fitted_spin(system, theirs, tolerance, None)
+    if spin is None:
+        return theirs, []
+    note = "nothing that was given tells it: fitted to the path"
+    return replace(theirs, spin=spin), [CardFigure("spin at the start", spin, "rad/s", note=note)]
+
+
+def _looked_at(system: RollingSystem, theirs: Theirs, tolerance: float, start: State | None) -> tuple[Case, OwnRun]:
+    """Compare a motion with all there is to compare it with."""
+    view = view_of(system, theirs, tolerance, start)
+    series, at = examine(system, theirs, tolerance, start, view)
+    series |= {one.name: one for one in integrals(system, theirs, tolerance, start)}
+    compared, ours = own_run(system, theirs, tolerance, start)
+    series |= {} if compared is None else {compared.name: compared}
+    return Case(system, theirs, tolerance, start, view, series, at), ours
+
+
+def _decides(case: Case, power: Power) -> bool:
+    """Tell whether most mistakes that matter would have been seen, or, if none matters, the law itself."""
+    return power.decides if power.shown or power.blind else case.series[ACCELERATION].room <= _TELLS
+
+
+def _apart(ours: OwnRun) -> str:
+    """Say how far apart the two bodies are in the end."""
+    if not np.isfinite(ours.distance):
+        return ""
+    turned = "" if np.isnan(ours.angle) else f" and {np.degrees(ours.angle):.3g}°"
+    return f"{with_unit(ours.distance, 'length')}{turned} from our own run after {ours.after:.4g} s"
 
 
 def followed(theirs: Theirs, system: RollingSystem) -> tuple[Theirs, list[CardFigure]]:
@@ -177,7 +217,8 @@ def followed(theirs: Theirs, system: RollingSystem) -> tuple[Theirs, list[CardFi
     if theirs.angular_velocity is not None:
         fastest = float(np.linalg.norm(theirs.angular_velocity, axis=1).max())
     else:
-        at = motion_of(system, theirs)
+        some = np.unique(np.linspace(0, theirs.time.size - 1, min(theirs.time.size, 240)).round().astype(int))
+        at = motion_of(system, theirs, None, some)
         fastest = float(np.linalg.norm((at.velocity - at.carried) / np.linalg.norm(at.offset[0]), axis=1).max())
     turn = fastest * float(np.median(np.diff(theirs.time)))
     if turn <= _FOLLOWED:
@@ -208,16 +249,16 @@ def _system_of(scenario: Any, start: State | None) -> tuple[RollingSystem, State
     return scenario.system(), start or scenario.start_state(), scenario.title
 
 
-def _told(theirs: Theirs, at: Motion, start: State | None) -> list[CardFigure]:
-    step = np.diff(theirs.time)
+def _told(case: Case) -> list[CardFigure]:
+    step = np.diff(case.theirs.time)
     even = np.ptp(step) <= 1e-3 * step.mean()
-    noise = float(np.median(theirs.slope("position", at.index, 0).noise))
+    noise = float(np.median(case.motion.estimates["position"].noise))
     found = [
         CardFigure("time between samples", float(np.median(step)), "s", note="even" if even else "the median; uneven"),
-        CardFigure("scatter of the positions", noise, "m", note="about a smooth path: noise, or digits cut off"),
+        CardFigure("scatter of the positions", noise, "m", note="each component, about a smooth path"),
     ]
-    if start is not None:
-        away = float(np.linalg.norm((at.position[0] - np.asarray(start.position))[:2]))
+    if case.start is not None:
+        away = float(np.linalg.norm((case.theirs.position[0] - np.asarray(case.start.position))[:2]))
         found.append(CardFigure("start, from that of the scenario", away, "m", note="any start may be checked"))
     return found
 
@@ -229,7 +270,7 @@ def _figure(series: Series) -> CardFigure:
     note = series.note
     if room > 2 * series.asked:
         note += "; noise and spacing of the data leave that much open"
-    if holds and allowed > _TELLS:
+    if holds and series.room > _TELLS:
         return CardFigure(series.name, share, "", allowed, None, f"{note}: too much to tell")
     return CardFigure(series.name, share, "", allowed, holds, note)
 
@@ -241,11 +282,11 @@ def _first_failure(case: Case) -> float | None:
     return min(found) if found else None
 
 
-def _remark(case: Case, explained: bool) -> str:
+def _remark(case: Case, likely: tuple[Mistake, ...], nearest: tuple[Mistake, ...]) -> str:
     if not case.failing:
-        coarse = [one.name for one in case.series.values() if one.allowed > _TELLS]
+        coarse = [one.name for one in case.series.values() if one.room > _TELLS]
         return f"The data are too few or too noisy to tell: {', '.join(coarse)}." if coarse else ""
-    if explained:
+    if likely:
         return ""
     failing = {series.name for series in case.failing}
     if failing == {OWN_RUN}:
@@ -253,6 +294,8 @@ def _remark(case: Case, explained: bool) -> str:
             "At each instant the law holds as closely as the data can show, and yet the path departs from ours: "
             "small errors add up. Shorter steps, or a smaller tolerance of the integrator, would tell."
         )
+    if nearest:
+        return "Nothing tried here explains all of it. Nearest:"
     first, law = _first_failure(case), case.series[ACCELERATION]
     if first is not None and first > float(case.theirs.time[0]) + _LATER * np.ptp(case.theirs.time):
         return f"Until t = {first:.4g} s all holds. Nothing tried here explains the whole: look for what changes there."
@@ -261,4 +304,4 @@ def _remark(case: Case, explained: bool) -> str:
             f"Nothing tried here explains it. The law is off by {law.share:.2g} at most: so little is more often a "
             "matter of steps and tolerances than of mechanics. Halve the step and see whether it falls."
         )
-    return "Nothing tried here explains it: no single change of units, axes, numbers or terms leaves nothing over."
+    return "Nothing tried here explains it: no change of units, axes, numbers or terms leaves nothing over."

@@ -1,6 +1,7 @@
 """The `trundle` command: what happens around the commands themselves, which are in `app`.
 
-Exit status: 0, all is well; 2, bad input; 3, a figure of the card failed; 130, interrupted; 1, anything else.
+Exit status: 0, all is well; 2, bad input; 3, a figure of the card failed; 4, the data of a check
+cannot decide; 130, interrupted; 1, anything else.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from typing import Any
 
 from .signals import INTERRUPTED, ending
 
-OTHER, BAD_INPUT, CARD_FAILED = 1, 2, 3
+OTHER, BAD_INPUT, CARD_FAILED, CANNOT_DECIDE = 1, 2, 3, 4
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

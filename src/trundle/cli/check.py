@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..errors import InvalidValueError
-from . import CARD_FAILED, screen
+from . import CANNOT_DECIDE, CARD_FAILED, screen
 
 if TYPE_CHECKING:
     from ..checking import Check
@@ -47,7 +47,8 @@ def check(
 ) -> None:
     """Say whether somebody else's trajectory rolls without slipping and obeys the law, and if not, why.
 
-    Exit status: 0, it holds; 2, bad input; 3, it does not hold; 130, interrupted; 1, all else.
+    Exit status: 0, it holds; 2, bad input; 3, it does not hold; 4, these data cannot decide; 130, interrupted;
+    1, all else.
     """
     from ..checking import check as check_trajectory
     from .writing import check_folder, write_together
@@ -74,6 +75,9 @@ def check(
         screen.out(found.as_json())
     elif not quiet:
         _tell(found, written)
+    if found.answer == "cannot decide":
+        screen.note("trundle: these data cannot decide")
+        raise typer.Exit(CANNOT_DECIDE)
     if not found.passed:
         failed = ", ".join(figure.name for figure in found.failures)
         screen.note(f"trundle: it does not hold: {failed}")

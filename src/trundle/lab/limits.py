@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from ..errors import ScenarioError
+from ..scenario.files import Bounds
 
 MOST_SAMPLES = 10_000  # of a scene; what a screen can show
 MOST_SAVED = 200_000  # of a file
@@ -12,15 +14,16 @@ LONGEST = 3600.0  # s
 MOST_VALUES = 20_000  # numbers and texts in a scenario; a height field of 100 by 100 fits
 MOST_LOADS = 20
 MOST_PIECES = 500  # of a path
-DEEPEST = 12
+_NO_MORE = "The lab computes no more for one request; `trundle run` does."
+_BOUNDS = Bounds(MOST_LOADS, MOST_PIECES, MOST_VALUES, deepest=12, remedy=_NO_MORE)
 
 
-def check_size(data: Any) -> None:
+def check_size(data: Mapping[str, Any]) -> None:
     """Refuse a scenario of more parts than any page of text has.
 
     Parameters
     ----------
-    data : object
+    data : mapping
         As JSON gave it.
 
     Raises
@@ -36,21 +39,7 @@ def check_size(data: Any) -> None:
     ...
     trundle.errors.ScenarioError: `loads` must have at most 20 parts; got 21. The lab computes no more ...
     """
-    for key, most in (("loads", MOST_LOADS), ("path", MOST_PIECES)):
-        parts = data.get(key) if isinstance(data, dict) else None
-        if isinstance(parts, list) and len(parts) > most:
-            _refuse(key, f"must have at most {most} parts", len(parts))
-    count, level = 0, [data]
-    for _ in range(DEEPEST + 1):
-        deeper: list[Any] = []
-        for part in level:
-            deeper += part.values() if isinstance(part, dict) else part if isinstance(part, list) else ()
-        count += len(deeper)
-        if count > MOST_VALUES:
-            _refuse("scenario", f"must have at most {MOST_VALUES} values", "more")
-        level = deeper
-    if level:
-        _refuse("scenario", f"must nest at most {DEEPEST} deep", "deeper tables")
+    _BOUNDS.check(data)
 
 
 def check_timing(duration: float, every: float, most: int) -> None:
@@ -83,4 +72,4 @@ def check_timing(duration: float, every: float, most: int) -> None:
 
 
 def _refuse(key: str, rule: str, received: Any) -> None:
-    raise ScenarioError(key, rule, received, "The lab computes no more for one request; `trundle run` does.")
+    raise ScenarioError(key, rule, received, _NO_MORE)

@@ -21,7 +21,8 @@ _TWO_ARGUMENTS = ("hypot",)
 _CONSTANTS = {"pi": math.pi}
 _OPERATORS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
 _LONGEST, _DEEPEST = 500, 60
-_LARGEST_POWER = 20
+_LARGEST_POWER, _MOST_FACTORS = 20, 8
+_SHOWN = 60  # characters of what is wrong
 
 
 @dataclass(frozen=True)
@@ -304,7 +305,7 @@ class _Reader:
                 if len(arguments) != wanted:
                     raise _RefusedError(f"{name} takes {wanted} argument{'s' * (wanted > 1)}.")
                 return (name, *(self.read(argument, depth + 1) for argument in arguments))
-        raise _RefusedError(f"Not allowed: {ast.get_source_segment(self.text, node) or self.text}.")
+        raise _RefusedError(f"Not allowed: {self._segment(node)}.")
 
     def _number(self, value: float, node: ast.expr) -> float:
         try:
@@ -312,8 +313,12 @@ class _Reader:
         except OverflowError:
             number = math.inf
         if not math.isfinite(number):
-            raise _RefusedError(f"{ast.get_source_segment(self.text, node)} is too large.")
+            raise _RefusedError(f"{self._segment(node)} is too large.")
         return number
+
+    def _segment(self, node: ast.expr) -> str:
+        found = ast.get_source_segment(self.text, node) or self.text
+        return found if len(found) <= _SHOWN else found[:_SHOWN] + "..."
 
     def _power(self, node: ast.expr) -> str:
         """Return a whole power as text: it belongs to the formula's structure, not to its numbers."""
@@ -336,6 +341,16 @@ def _names(tree: Any) -> tuple[str, ...]:
     return (tree,) if isinstance(tree, str) else ()
 
 
+def _power(base: Scalar, exponent: int) -> Scalar:
+    """Return a whole power; a high one by squares, since heyoka would take logarithms of it, which 0 has not."""
+    if abs(exponent) <= _MOST_FACTORS:
+        return base**exponent
+    half, odd = divmod(abs(exponent), 2)
+    square = _power(base, half) ** 2
+    power = square * base if odd else square
+    return power if exponent > 0 else 1 / power
+
+
 def _value(tree: Any, values: dict[str, Scalar], xp: Any) -> Scalar:
     if isinstance(tree, str):
         return values[tree]
@@ -343,7 +358,7 @@ def _value(tree: Any, values: dict[str, Scalar], xp: Any) -> Scalar:
         return tree
     operator, *rest = tree
     if operator == "**":
-        return _value(rest[0], values, xp) ** int(rest[1])
+        return _power(_value(rest[0], values, xp), int(rest[1]))
     parts = [_value(part, values, xp) for part in rest]
     if operator in FUNCTIONS:
         return getattr(xp, operator)(*parts)

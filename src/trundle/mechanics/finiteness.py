@@ -16,6 +16,7 @@ from .expressions import Expression
 _MOST_LOOKS = 4000
 _FINEST = 1e-12  # of the run: an instant is found to this
 _LARGEST = 1e300
+_NEAR = 1e-5  # of an instant
 
 
 class _UnclearError(Exception):
@@ -61,6 +62,9 @@ def first_singular(formula: Expression, start: float, end: float) -> float | Non
 def check_finite(thing: Any, start: float, end: float, key: str = "") -> None:
     """Refuse a system whose formulas in the time are not finite throughout a run, by key and instant.
 
+    Nor may a formula end so near to the run, at an instant t, that the rounding of t would show in it: nearer than 1e-5
+    of t a pole makes an error of 1e-11.
+
     Parameters
     ----------
     thing : RollingSystem or any part of it
@@ -86,8 +90,11 @@ def check_finite(thing: Any, start: float, end: float, key: str = "") -> None:
 '1/(t - 3)'. It is not at t = 3 s.
     """
     if isinstance(thing, Expression):
-        if thing.variables <= {"t"} and (instant := first_singular(thing, start, end)) is not None:
-            remedy = f"It is not at t = {instant + 0.0:.6g} s."
+        near = (start - _NEAR * abs(start), end + _NEAR * abs(end))
+        if thing.variables <= {"t"} and (instant := first_singular(thing, *near)) is not None:
+            remedy = f"It is not at t = {instant + 0.0:.9g} s."
+            if not start <= instant <= end:
+                remedy += " Begin later than that." if instant < start else " End the run sooner before that."
             raise InvalidValueError(key, "must be finite, with its slopes, throughout the run", thing.text, remedy)
     elif isinstance(thing, (tuple, Vector)):
         for i, part in enumerate(thing):

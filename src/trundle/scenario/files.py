@@ -8,7 +8,8 @@ from __future__ import annotations
 import os
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,12 @@ from ..errors import ScenarioError, did_you_mean
 
 SHIPPED = Path(__file__).resolve().parent.parent / "scenarios"
 LARGEST = 2**20  # bytes; a scenario is a page of text
+_MOST_PARTS = 20  # of a dotted key
+_MOST_KEYS = 100  # of a table; none of the format has half as many
+_TOO_LONG = "an integer beyond 1e308"
+_MOST_BITS = 1024  # of an integer: what floats hold, and what Python shows
+_PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
+_DEEP_KEY = re.compile(rf"(?<![\w-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{_MOST_PARTS}}}")
 
 
 def names() -> list[str]:
@@ -160,7 +167,7 @@ def read(name_or_path: str | os.PathLike[str]) -> str:
         remedy = f"It is NetCDF: `trundle export {shown} my.toml` writes the scenario of a run that was saved."
         raise ScenarioError("scenario", "must be text in UTF-8", "NetCDF", remedy, str(shown))
     if len(content) > LARGEST:
-        raise ScenarioError("scenario", "must be a text of at most 1 MiB", shown, "Is this a scenario file?")
+        raise _too_large(str(shown))
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -169,6 +176,10 @@ def read(name_or_path: str | os.PathLike[str]) -> str:
         line = content.count(b"\n", 0, error.start) + 1
         received = f"byte 0x{content[error.start]:02x} in line {line}"
         raise ScenarioError("scenario", "must be text in UTF-8", received, remedy, str(shown)) from None
+
+
+def _too_large(shown: str) -> ScenarioError:
+    return ScenarioError("scenario", "must be a text of at most 1 MiB", shown, "Is this a scenario file?")
 
 
 def _no_such(shown: str) -> ScenarioError:
@@ -203,7 +214,7 @@ def parse(text: str, source: str) -> dict[str, Any]:
     Raises
     ------
     ScenarioError
-        If the text is no TOML (with line and column), or is empty.
+        If the text is no TOML (with line and column), is empty, or is larger or nests deeper than any scenario.
 
     Examples
     --------
@@ -213,6 +224,12 @@ def parse(text: str, source: str) -> dict[str, Any]:
     if not text.strip():
         remedy = "Start from one that ships with trundle: `trundle show tilted-turntable` prints it."
         raise ScenarioError("scenario", "must hold a scenario", text[:20], remedy, source)
+    if len(text) > LARGEST:
+        raise _too_large(source)
+    if (deep := _DEEP_KEY.search(text)) is not None:  # tomllib's time grows with the cube of a key's parts
+        line = text.count("\n", 0, deep.start()) + 1
+        rule = f"must have keys of at most {_MOST_PARTS} parts"
+        raise ScenarioError(f"line {line}", rule, deep[0][:60], "The longest of the format has 4.", source)
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -222,6 +239,94 @@ def parse(text: str, source: str) -> dict[str, Any]:
     except ValueError:  # Python reads no integer of more than 4300 digits
         remedy = "Is there an integer of thousands of digits?"
         raise ScenarioError("scenario", "must hold numbers that can be read", text[:60], remedy, source) from None
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """How much a scenario may hold, so that nobody waits for what is none.
+
+    Parameters
+    ----------
+    loads, path : int
+        Entries of these lists.
+    values : int
+        Numbers, texts, lists and tables, all together.
+    deepest : int
+        Levels of lists and tables.
+    remedy : str
+        What a message says besides.
+
+    Examples
+    --------
+    >>> Bounds().check({"loads": [{"kind": "force"}]})
+    >>> Bounds().check({"loads": [{}] * 101})
+    Traceback (most recent call last):
+    ...
+    trundle.errors.ScenarioError: `loads` must have at most 100 parts; got 101. Is this a scenario?
+    """
+
+    loads: int = 100  # to check a run with 300 of them by a second method takes a minute
+    path: int = 10_000
+    values: int = 1_000_000
+    deepest: int = 20
+    remedy: str = "Is this a scenario?"
+
+    def check(self, tables: Mapping[str, Any], source: str = "") -> None:
+        """Refuse tables that hold more, before anything looks closely at each of them.
+
+        Parameters
+        ----------
+        tables : mapping
+            As TOML or JSON holds them.
+        source : str
+            Their name, for messages.
+
+        Raises
+        ------
+        ScenarioError
+            That names what there is too much of.
+        """
+        for key, most in (("loads", self.loads), ("path", self.path)):
+            parts = tables.get(key)
+            if isinstance(parts, list) and len(parts) > most:
+                raise ScenarioError(key, f"must have at most {most} parts", len(parts), self.remedy, source)
+        count, level = 0, [tables]
+        for _ in range(self.deepest + 1):
+            deeper: list[Any] = []
+            for part in level:
+                if type(part) is int and part.bit_length() > _MOST_BITS:
+                    raise ScenarioError(
+                        _path_to(part, tables, self.deepest), "must be a finite number", _TOO_LONG, "", source
+                    )
+                deeper += self._inside(part, source)
+            count += len(deeper)
+            if count > self.values:
+                raise ScenarioError("scenario", f"must have at most {self.values} values", "more", self.remedy, source)
+            level = deeper
+        if level:
+            rule = f"must nest at most {self.deepest} deep"
+            raise ScenarioError("scenario", rule, "deeper tables", self.remedy, source)
+
+    def _inside(self, part: Any, source: str) -> Iterable[Any]:
+        """Return what a table or list holds; refuse a table of too many keys."""
+        if isinstance(part, Mapping):
+            if len(part) > _MOST_KEYS:
+                rule = f"must have at most {_MOST_KEYS} keys in a table"
+                raise ScenarioError("scenario", rule, len(part), self.remedy, source)
+            return part.values()
+        return part if isinstance(part, list) else ()
+
+
+def _path_to(wanted: Any, tables: Any, deepest: int, path: str = "") -> str:
+    """Return the path of a value in tables and lists, or nothing where it is not in them so deep."""
+    if tables is wanted or deepest < 0:
+        return path if tables is wanted else ""
+    inside = tables.items() if isinstance(tables, Mapping) else enumerate(tables) if isinstance(tables, list) else ()
+    for key, part in inside:
+        step = f"[{key}]" if isinstance(key, int) else f"{'.' * bool(path)}{key[:60]}"
+        if found := _path_to(wanted, part, deepest - 1, path + step):
+            return found
+    return ""
 
 
 _STATEMENT = re.compile(r"\s*([\w.-]+)\s*=\s*([+-]?[\d.]+(?:[eE][+-]?\d+)?\s*[A-Za-z°µμ%][^#\"']*?)\s*(?:#.*)?")

@@ -17,6 +17,8 @@ from .complaints import Kinds, complain
 from .layout import layout
 from .tables import Table
 
+_LONGEST_TITLE = 300  # characters; it heads figures
+
 
 class Document(Displayed, Table):
     """A scenario file of some kind.
@@ -124,6 +126,7 @@ class Document(Displayed, Table):
         >>> scenario.start_state().angular_velocity
         (0.0, 4.0, 0.0)
         """
+        files.Bounds().check(data, source)
         if files.rolls_along_path(data) and not cls.rolls_along_path:
             remedy = "It rolls a ball along a path, without forces: load it with `tr.PathScenario`."
             raise ScenarioError("path", "has no place in a file with forces and a start", data["path"], remedy, source)
@@ -155,6 +158,10 @@ class Document(Displayed, Table):
     @classmethod
     def _printable(cls, text: str, info: Any) -> str:
         allowed = "\n\t" if info.field_name == "notes" else ""
+        if not allowed and len(text) > _LONGEST_TITLE:
+            raise InvalidValueError(
+                "", f"must have at most {_LONGEST_TITLE} characters", text, "Put the rest into `notes`."
+            )
         if any(unicodedata.category(letter) in ("Cc", "Cs") and letter not in allowed for letter in text):
             lines = "" if allowed else " on one line"
             raise InvalidValueError("", f"must be text{lines} without control characters", text, "Leave them out.")

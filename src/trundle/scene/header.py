@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from copy import deepcopy
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -14,6 +13,7 @@ from ..mechanics.system import RollingSystem
 from ..plots.scales import as_ratio
 from ..plots.words import moves as way_of
 from ..plots.words import noun_of, title_of
+from ..scenario import files
 from .support_mesh import Ground
 from .wire import FORMAT
 
@@ -136,7 +136,7 @@ def support_table(
 
 @lru_cache(maxsize=64)
 def _parsed(text: str) -> dict[str, Any]:
-    return tomllib.loads(text)
+    return files.parse(text, "scenario")
 
 
 def tables(text: str) -> dict[str, Any] | None:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import OutOfDomainError
+from ..errors import OutOfDomainError, SolverError
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import touch
 from ..mechanics.scalars import is_number
@@ -140,9 +140,9 @@ def _first_stop(system: RollingSystem, now: Next, form: ClosedForm, duration: fl
     if not asked:
         return sooner
     upto = min(duration if sooner is None else sooner[0], 1.01 * max(form.repeats(name) for name in asked))
-    pace = form.pace(upto)
     values = _values(system, now, form, asked)
-    found = first_stop(values, upto, _PHASE_A_STEP / pace if pace > 0 else math.inf)
+    looks = [(t, _PHASE_A_STEP / pace if pace > 0 else math.inf) for t, pace in form.paces(upto)]
+    found = first_stop(values, looks)
     return sooner if found is None else (found[0], asked[found[1]])
 
 
@@ -284,7 +284,10 @@ def orientations(motion: ClosedForm, start: State, times: Array) -> Array:
     long = times[-1] - start.time > _PERIODS_WORTH_A_MONODROMY * motion.period
     if long and isinstance(motion, SphereOnPlane) and motion.torque[2] == 0:
         return periodic_orientation(angular_velocity, _monodromy(motion), times, start.orientation, start.time)
-    return orientation(absolute, times, start.orientation, start.time)
+    try:
+        return orientation(absolute, times, start.orientation, start.time)
+    except SolverError as error:  # a method that takes steps may still follow it
+        raise OutOfDomainError(f"{error} A numerical method may do.") from None
 
 
 def _monodromy(motion: SphereOnPlane) -> Monodromy:

@@ -33,7 +33,8 @@ _LOOKS = 16  # at how fast the body turns, at least, before the steps are chosen
 _MOST_TERMS = 40  # of q's series on a step
 _AT_ONCE = 20_000  # steps, or instants
 _TOGETHER = 500  # steps whose series have the same number of terms
-_MOST_STEPS = 3e8  # half an hour
+_MOST_STEPS = 3e6  # twenty seconds
+_MORE, _MOST_TRIED = 16, 20_000  # times as many panels as seemed needed, and more, at once: a second
 _EPSILON = 2.0**-53
 # The last two Legendre coefficients of Ω on a panel, for each rad that it turns by: rounding alone makes them some
 # 1e-16, and what comes after them is a tenth of them at most, divided by as many as there are nodes when integrated.
@@ -171,7 +172,11 @@ class _Course:
 def _resolved(angular_velocity: AngularVelocity, middle: Array, half: Array) -> tuple[Array, Array, Array, Array]:
     """Return panels and Ω on each as `_polynomials` does; those on which it is not resolved are halved."""
     done: list[tuple[Array, ...]] = []
+    left = _MORE * middle.size + _MOST_TRIED
     for _ in range(31):
+        left -= middle.size
+        if left < 0:
+            raise SolverError("Ω(t) changes too fast, or is known too roughly, for the orientation to be followed.")
         mean, legendre = _polynomials(angular_velocity, middle, half)
         size = np.linalg.norm(mean, axis=0)
         tail = np.abs(legendre[:, -2:]).max(axis=(0, 1))

@@ -1,41 +1,59 @@
-"""When to give a motion up: its steps have become so short that the run would not end."""
+"""How many steps a run may take, and how many more where it hardly gets on: then no run goes on for hours."""
 
 from __future__ import annotations
 
-from ..errors import SolverError
-
-STEPS = 5000  # after which the pace is looked at
-_MOST_STEPS = 1e8  # that what is left of a run may take at the pace of the last steps
-_GIVEN = 12  # looks in a row at a pace slower than that
+from ..errors import SolverError, TrundleError
 
 
 class Patience:
-    """Counts the steps of a method on its way, and gives up where they lead nowhere.
+    """What refuses a run that would take longer than anyone waits.
+
+    A run may take so many steps for all of its time, evenly, and where it hardly gets on, as near a pole of a formula
+    just behind its end, some to spare.
 
     Parameters
     ----------
     begin, end : float
-        Of what the method follows, s.
+        Of the run, s.
+    steps : float
+        For all of it.
+    spare : float
+        Besides.
+    name : str
+        The method's.
+    error : type
+        What to raise.
 
     Examples
     --------
-    >>> patience = Patience(0.0, 1.0)
-    >>> for look in range(100):
-    ...     patience.look(1e-15 * look)
+    >>> patience = Patience(0.0, 10.0, steps=1e6, spare=1e4, name="Taylor's method")
+    >>> patience.after(50_000, 1.0)
+    >>> patience.after(50_000, 1.0001)
     Traceback (most recent call last):
     ...
-    trundle.errors.SolverError: At t = 1.2e-14 s the steps ...
+    trundle.errors.SolverError: Taylor's method hardly gets on at t = 1.0001 s: a step is 2e-09 s there. Ask for a ...
     """
 
-    def __init__(self, begin: float, end: float) -> None:
-        self._reached, self._end, self._slow = begin, end, 0
+    def __init__(
+        self,
+        begin: float,
+        end: float,
+        *,
+        steps: float,
+        spare: float,
+        name: str,
+        error: type[TrundleError] = SolverError,
+    ) -> None:
+        self.time, self.pace, self.spare = begin, steps / max(end - begin, 1e-300), spare
+        self.name, self.error = name, error
+        self.owed = 0.0  # steps taken beyond the even ones
 
-    def look(self, time: float) -> None:
-        """Note the time reached after another `STEPS` steps, s; raise SolverError where the end will not be reached."""
-        step, self._reached = (time - self._reached) / STEPS, time
-        self._slow = 0 if step * _MOST_STEPS > self._end - time else self._slow + 1
-        if self._slow > _GIVEN:
-            raise SolverError(
-                f"At t = {time:.9g} s the steps have become so short ({step:.2g} s) that the run would not end. Look "
-                "for forces that grow without limit there, or ask for a shorter run."
+    def after(self, steps: int, time: float) -> None:
+        """Take account of steps up to a time; refuse to go on where they are too many."""
+        gone, self.time = time - self.time, time
+        self.owed = max(0.0, self.owed + steps - gone * self.pace)
+        if self.owed > self.spare:
+            raise self.error(
+                f"{self.name} hardly gets on at t = {time:.9g} s: a step is {gone / max(steps, 1):.1g} s there. Ask "
+                "for a shorter run, or look for what turns so fast: a rate, a force, or a formula near where it ends."
             )

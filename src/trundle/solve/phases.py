@@ -105,10 +105,10 @@ def solve(
         held = RollingLaw()
         left = _across(system, held, Stop(start.time, "", np.array(held.pack(system, start))), now, left, record)
     while True:
-        law, stop = now.law, None
+        law, stop, taken = now.law, None, 0
         for piece in integrate(system, now, left, tolerance, told):
             record.take(law, piece)
-            stop = piece.stop
+            stop, taken = piece.stop, taken + piece.times.size
         if stop is None:
             break
         if stop.name in _ENDS or _spinning_on(system, law, stop):
@@ -119,7 +119,7 @@ def solve(
         now = begin(system, _following(system, law, stop))
         events += now.events
         _check_count(system, events)
-        left = _across(system, law, stop, now, cut(left, stop.time)[1], record)
+        left = _across(system, law, stop, now, left[taken:], record)
     return record.samples(tuple(events))
 
 
@@ -264,6 +264,8 @@ def cut(times: Array, end: float) -> tuple[Array, Array]:
 
     Parameters
     ----------
+    stop : Stop
+        Where it ended.
     times : array (n,)
         Ascending, s.
     end : float

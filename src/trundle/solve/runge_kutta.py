@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,8 +13,9 @@ from ..errors import SolverError
 from ..mechanics.system import RollingSystem, State
 from . import phases
 from .following import Next, Stop
-from .patience import STEPS, Patience
+from .patience import Patience
 from .phases import Stretch, cut
+from .roots import root
 from .samples import AT_ONCE, Array, Progress, Samples
 from .tracing import python_law
 
@@ -22,7 +25,7 @@ _LOOKS = 8  # at the stops in each step
 _BLUR = 0.05  # share of a step within which a polynomial through these finds where a stop is lowest
 _SINGULAR = ("curved", "edge", "end", "jam")  # stops at which a law is singular
 _ALL_BUT = 1e-3  # share of what was left of such a stop at first
-_EPSILON = 2.0**-52
+_PATIENCE: dict[str, Any] = {"steps": 1e5, "spare": 5e3, "name": "The Runge-Kutta method"}  # minutes, and seconds
 _FIRST_STEP = 1e-12  # s
 
 
@@ -77,41 +80,59 @@ def integrate(
     SolverError
         If the integration breaks down.
     """
+    # It counts from where the law begins to hold: far from 0 no step would be short enough.
+    for piece in _integrated(system, now, times - now.time, tolerance, progress):
+        here, times = times[: piece.times.size], times[piece.times.size :]
+        if piece.stop is None:
+            yield replace(piece, times=here)
+            continue
+        stop = replace(piece.stop, time=now.time + piece.stop.time)
+        before, _ = cut(here, stop.time)
+        yield Stretch(before, piece.states[: before.size], stop)
+
+
+def _integrated(
+    system: RollingSystem, now: Next, times: Array, tolerance: float, progress: Progress | None
+) -> Iterator[Stretch]:
+    """Follow one law to its first stop; all times count from its beginning."""
     from scipy.integrate import DOP853, Radau
 
     law, begin = now.law, now.time
     function, names = python_law(system, law, now.extras)
     size, y0 = len(now.numbers), np.asarray(now.numbers, dtype=float)
-    end = max(float(times[-1]) if times.size else begin, float(np.nextafter(begin, np.inf)))  # some way to go
+    end = max(float(times[-1]) if times.size else 0.0, float(np.spacing(begin)))  # some way to go
 
-    def rates(t: float, y: Array) -> Array:
+    def rates(since: float, y: Array) -> Array:
         try:
-            return np.array(function(t, y.tolist())[:size])
+            return np.array(function(begin + since, y.tolist())[:size])
         except (ArithmeticError, ValueError):  # a trial beyond the end of a formula: a shorter step stays before it
             return np.full(size, np.nan)
 
-    def stops(t: float, y: Array) -> Array:
+    def stops(since: float, y: Array) -> Array:
         try:
-            return np.array(function(t, y.tolist())[size:])
+            return np.array(function(begin + since, y.tolist())[size:])
         except (ArithmeticError, ValueError):
             return np.full(len(names), np.nan)
 
+    told = None if progress is None else lambda since: progress(begin + since)
+    patience = Patience(begin, begin + end, **_PATIENCE)
+    steps = partial(_steps, stops=stops, names=names, begin=begin, patience=patience, progress=told)
     try:
         given: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * _scale(y0)}
         if not law.stiff(y0):
-            yield from _steps(DOP853(rates, begin, y0, end, **given), stops, names, times, progress)
+            yield from steps(DOP853(rates, 0.0, y0, end, **given), times=times)
             return
         # Its first steps must be as short as the law is stiff: across a jump of direction there are other solutions.
-        first = Radau(rates, begin, y0, end, first_step=min(_FIRST_STEP, end - begin), **given)
-        for piece in _steps(first, stops, names, times, progress, until=lambda y: not law.stiff(y)):
+        first = Radau(rates, 0.0, y0, end, first_step=min(_FIRST_STEP, end), **given)
+        for piece in steps(first, times=times, until=lambda y: not law.stiff(y)):
             times, stop = times[piece.times.size :], piece.stop
             if stop is None or stop.name:
                 yield piece
                 continue
             yield Stretch(piece.times, piece.states, None)
-            yield from _steps(DOP853(rates, stop.time, stop.numbers, end, **given), stops, names, times, progress)
+            yield from steps(DOP853(rates, stop.time, stop.numbers, end, **given), times=times)
     except (ZeroDivisionError, ValueError, OverflowError) as error:
-        raise SolverError(f"The Runge-Kutta method broke down on the way to t = {end:g} s: {error}.") from None
+        raise SolverError(f"The Runge-Kutta method broke down on the way to t = {begin + end:g} s: {error}.") from None
 
 
 def _scale(y0: Array) -> Array:
@@ -126,8 +147,11 @@ def _size(part: Array) -> float:
 
 def _steps(
     stepper: Any,
+    *,
     stops: Any,
     names: list[str],
+    begin: float,
+    patience: Patience,
     times: Array,
     progress: Progress | None,
     until: Callable[[Array], bool] = lambda _: False,
@@ -139,15 +163,13 @@ def _steps(
     rows, y = _Rows(times, stepper.n), stepper.y
     yield from rows.fill(int(np.searchsorted(times, stepper.t, side="right")), lambda t: np.tile(y[:, None], t.size))
     first = values = stops(stepper.t, stepper.y)
-    patience, count = Patience(float(stepper.t), float(stepper.t_bound)), 0
     while stepper.status == "running":
-        message, count = stepper.step(), count + 1
-        if count % STEPS == 0:
-            patience.look(float(stepper.t))
+        message = stepper.step()
+        patience.after(1, begin + float(stepper.t))
         if stepper.status == "failed" or not np.isfinite(stepper.y).all():
             near = _singular(names, values, first)
             if near is None:
-                raise SolverError(_broken(stepper, message))
+                raise SolverError(_broken(stepper, begin, message))
             yield rows.rest(Stop(float(stepper.t), near, stepper.y.copy()), before=stepper.t)
             return
         path = stepper.dense_output()
@@ -201,13 +223,13 @@ def _singular(names: list[str], values: Array, first: Array) -> str | None:
     return nearest if nearest is not None and shares[nearest] < _ALL_BUT else None
 
 
-def _broken(stepper: Any, message: str | None) -> str:
+def _broken(stepper: Any, begin: float, message: str | None) -> str:
     """Say when and where the method broke down."""
     near = ", ".join(f"{part:.6g}" for part in stepper.y[:3])
     why = str(message or "The rates are no longer finite.").rstrip(".")
     return (
-        f"The Runge-Kutta method broke down at t = {stepper.t:.9g} s, near ({near}) m on the support: {why}. Look "
-        "for a surface, a body or a load that is not smooth there."
+        f"The Runge-Kutta method broke down at t = {begin + stepper.t:.9g} s, near ({near}) m on the support: {why}. "
+        "Look for a surface, a body or a load that is not smooth there."
     )
 
 
@@ -233,8 +255,6 @@ def _first_stop(path: Any, stops: Any, begin: Array) -> tuple[float, int] | None
 
 def _fall(function: Callable[[float], float], looks: Array, values: Array) -> float | None:
     """Return where a function first falls through zero, given its values at Chebyshev's points of a step."""
-    from scipy.optimize import brentq
-
     falls = np.flatnonzero((values[:-1] >= 0) & (values[1:] < 0))
     inside = values[: falls[0] + 1] if falls.size else values
     # What lies between the looks is hardly lower than the lowest of them, beside how much they differ.
@@ -242,11 +262,11 @@ def _fall(function: Callable[[float], float], looks: Array, values: Array) -> fl
         for low in _minima(function, looks, values):
             if (not falls.size or low < looks[falls[0]]) and function(low) < 0:
                 before = looks[: np.searchsorted(looks, low)][-1]
-                return float(brentq(function, before, low, xtol=1e-300, rtol=4 * _EPSILON))
+                return root(function, before, low)
     if not falls.size:
         return None
     first = int(falls[0])
-    return float(brentq(function, looks[first], looks[first + 1], xtol=1e-300, rtol=4 * _EPSILON))
+    return root(function, looks[first], looks[first + 1])
 
 
 def _minima(function: Callable[[float], float], looks: Array, values: Array) -> list[float]:

@@ -10,8 +10,12 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidValueError
 from ..mechanics import checks
+from ..mechanics.system import RollingSystem, State
+from .touch import moment
 
 MOST_SAMPLES = 10_000_000  # 1.9 GB of results
+# How far apart two floats may be at the start of a run, as a share of the step, and of a time in which it changes.
+_COARSEST_OF_STEP, _COARSEST_OF_MOMENT = 1e-3, 1e-7
 
 
 def check_sampling(duration: Any, every: Any, prefix: str = "") -> tuple[float, float]:
@@ -81,6 +85,36 @@ def sample_times(duration: Any, every: Any, prefix: str = "") -> NDArray[np.floa
         return np.concatenate([times, [length]])
     times[-1] = length
     return times
+
+
+def check_clock(system: RollingSystem, start: State, step: float) -> None:
+    """Refuse a start so far from 0 on the clock that rounding of the time would show in the motion.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        What moves.
+    start : State
+        With its time.
+    step : float
+        Between samples, s.
+
+    Raises
+    ------
+    InvalidValueError
+        If the floats there are too far apart.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> table = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane()))
+    >>> check_clock(table, table.place(time=1e6), 0.01)
+    """
+    apart = float(np.spacing(abs(start.time)))
+    if start.time and apart > min(_COARSEST_OF_STEP * step, _COARSEST_OF_MOMENT * moment(system, start)):
+        rule = f"must be nearer to 0 for samples {step:g} s apart"
+        remedy = f"Instants there are {apart:.1g} s apart. Let the run start nearer to 0, and shift its formulas in t."
+        raise InvalidValueError("start.time", rule, start.time, remedy)
 
 
 def longer_step(times: NDArray[np.float64], most: int) -> str:

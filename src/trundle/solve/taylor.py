@@ -6,6 +6,7 @@ import contextlib
 import copy
 import hashlib
 import itertools
+import math
 import pickle
 import platform
 from collections.abc import Iterator, Sequence
@@ -22,13 +23,15 @@ from . import integrator_cache, phases, runge_kutta
 from .following import Next, Stop
 from .laws import Law
 from .lowering import Lowered, lower
-from .patience import STEPS, Patience
+from .patience import Patience
 from .phases import Stretch, cut
 from .samples import AT_ONCE, Array, Progress, Samples
 
 TOLERANCE = 1e-15
 _CHUNKS = 100  # of a run at most, between which progress is told and Ctrl-C is heard
 _LEAST_CHUNK = 60  # instants
+_AT_ONCE = 10_000  # steps, between which Ctrl-C is heard too
+_PATIENCE: dict[str, Any] = {"steps": 3e6, "spare": 5e4, "name": "Taylor's method"}  # a minute, and some seconds
 _LONGEST = 100.0  # s without a new reference of time, at most
 
 
@@ -201,6 +204,7 @@ class _Run:
         self, integrator: Any, lowered: Lowered, given: Sequence[float], begin: float, state: Sequence[float]
     ) -> None:
         self.integrator, self.lowered, self.given = integrator, lowered, given
+        self.patience: Patience
         integrator.state[:] = state
         self._refer_to(begin)
 
@@ -214,6 +218,35 @@ class _Run:
         self._refer_to(time)
         self.integrator.state[:] = self.lowered.tidy([0.0, *self.integrator.state.tolist(), *self.values])
 
+    def go_to(self, until: float) -> int | None:
+        """Propagate to a time since the reference; return which terminal event came first if one did."""
+        while True:
+            outcome, _, _, steps, *_ = self.integrator.propagate_until(until, max_steps=_AT_ONCE)
+            if not self._is_cut(outcome, steps):
+                return _event(self, outcome)
+
+    def go_through(self, since: Array) -> tuple[Array, int | None]:
+        """Return the states at times since the reference, the first of them now, and the terminal event if one came."""
+        parts: list[Array] = []
+        done = 0
+        while True:
+            ahead = np.concatenate([[self.integrator.time], since[done:]]) if done else since
+            outcome, _, _, steps, *_, found = self.integrator.propagate_grid(ahead, max_steps=_AT_ONCE)
+            found = found.reshape(-1, self.integrator.state.size)[bool(done) :]
+            parts.append(found)
+            done += len(found)
+            if not self._is_cut(outcome, steps):
+                return np.vstack(parts), _event(self, outcome)
+
+    def _is_cut(self, outcome: Any, steps: int) -> bool:
+        """Tell whether there is more to do, after so many steps that somebody may have lost patience meanwhile."""
+        import heyoka
+
+        if outcome != heyoka.taylor_outcome.step_limit:
+            return False
+        self.patience.after(steps, self.time)
+        return True
+
     def _refer_to(self, time: float) -> None:
         self.reference, self.integrator.time = time, 0.0
         self.values = self.lowered.values(self.given, time)
@@ -222,39 +255,24 @@ class _Run:
 
 def _propagate(run: _Run, times: Array, progress: Progress | None) -> Iterator[tuple[Array, Array, int | None]]:
     """Yield the times and the states there, a chunk after the other, and last which terminal event came, if one did."""
-    integrator = run.integrator
-    patience = Patience(run.time, float(times[-1]) if times.size else run.time)
+    run.patience = Patience(run.time, float(times[-1]) if times.size else run.time, **_PATIENCE)
     for chunk in _chunks(times):
-        left = chunk
-        while left.size:
-            ended = _reach(run, float(left[0]), patience)
+        while run.reference < chunk[0]:  # also where rounding does not tell the two instants apart: it must begin there
+            until = min(float(chunk[0]), run.reference + _LONGEST)
+            ended = run.go_to(until - run.reference)
             if ended is not None:
-                yield left[:0], np.empty((0, integrator.state.size)), ended
+                yield chunk[:0], np.empty((0, run.integrator.state.size)), ended
                 return
-            result = integrator.propagate_grid(left - run.reference, max_steps=STEPS)
-            states = result[-1].reshape(-1, integrator.state.size)
-            ended = _event(run, result[0], patience)
-            yield left[: len(states)], states, ended
-            if ended is not None:
-                return
-            left = left[len(states) :]
+            run.tidy(until)
+        # Counted from the reference, two instants may be one: what is left of a difference is rounded.
+        since, which = np.unique(chunk - run.reference, return_inverse=True)
+        states, ended = run.go_through(since)
+        which = which[which < len(states)]
+        yield chunk[: which.size], states[which], ended
+        if ended is not None:
+            return
         if progress is not None:
             progress(float(chunk[-1]))
-
-
-def _reach(run: _Run, time: float, patience: Patience) -> int | None:
-    """Go on to an instant, and return which terminal event came first if one did."""
-    import heyoka
-
-    while run.time < time:
-        until = min(time, run.reference + _LONGEST)
-        outcome = run.integrator.propagate_until(until - run.reference, max_steps=STEPS)[0]
-        ended = _event(run, outcome, patience)
-        if ended is not None:
-            return ended
-        if outcome == heyoka.taylor_outcome.time_limit:  # the time reached may be a rounding less
-            run.tidy(until)
-    return None
 
 
 def _chunks(times: Array, most: int = _CHUNKS, size: int = AT_ONCE) -> Iterator[Array]:
@@ -273,18 +291,16 @@ def _chunks(times: Array, most: int = _CHUNKS, size: int = AT_ONCE) -> Iterator[
             yield from np.split(part, np.flatnonzero(np.diff(which)) + 1)
 
 
-def _event(run: _Run, outcome: Any, patience: Patience) -> int | None:
-    """Return which terminal event ended it, None if none did; refuse a breakdown, and what leads nowhere."""
+def _event(run: _Run, outcome: Any) -> int | None:
+    """Return which terminal event ended it, None if none did; refuse a breakdown."""
     import heyoka
 
-    if outcome == heyoka.taylor_outcome.step_limit:
-        patience.look(run.time)
-        return None
     if outcome == heyoka.taylor_outcome.time_limit:
         return None
     if int(outcome) >= 0 or int(outcome) < -1000:
+        when = f"at t = {run.time:.9g} s" if math.isfinite(run.time) else f"after t = {run.reference:.9g} s"
         raise SolverError(
-            f"Taylor's method broke down at t = {run.time:.9g} s ({outcome}): the rates are no longer finite. "
+            f"Taylor's method broke down {when} ({outcome}): the rates are no longer finite. "
             "Look for a support or load that jumps, or a surface too curved for the body."
         )
     return -int(outcome) - 1

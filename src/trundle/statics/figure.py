@@ -262,7 +262,7 @@ def _body(ax: Axes, page: _Page, line: Line, q: Quaternion, centre: Vector) -> N
     if c is not None and c.norm() > 0:
         middle = centre + Q @ c
         heavy = -(Q @ c) / c.norm()
-        far = page(middle + heavy * (0.8 * shape.radius))  # type: ignore[attr-defined]
+        far = page(middle + heavy * (0.8 * page.size))
         ax.plot(*np.array([page(middle), far]).T, color=FAINT, lw=2.0, zorder=2.2)
         ax.add_patch(Circle(tuple(far), 0.115, fc=GREY, ec=INK, lw=0.8, zorder=2.3))
         ax.plot(*page(middle), marker="+", color=GREY, ms=9, mew=1.2, zorder=2.4)

@@ -21,7 +21,8 @@ from .result import Equilibria, Equilibrium
 from .search import Family, Place, Search
 from .words import direction_names
 
-TURNS_OF_UNEVEN = 10  # of a cylinder either way, where the loads differ from place to place
+A_TURN, OPEN, ROUND = math.pi, 20 * math.pi, 200 * math.pi  # rad either way: on a plane, a curve, right round
+MOST_TURNS = 1000
 STEADY = 1e-12  # share by which loads may differ between two times
 MOST_MEMBERS = 40  # of a family that are looked at one by one
 ACROSS = 1e-9  # share of the torque that may push a cylinder out of its line
@@ -38,8 +39,9 @@ def equilibria(system: Any, start: State | None = None, *, turns: Any = None, ti
         Where the search begins, and, for a cylinder, which way it rolls; absent: the scenario's start, or
         ``system.place()``.
     turns : float, optional
-        For a cylinder, how many turns either way are searched; absent: on a plane under constant loads half a turn,
-        since every turn repeats the last; on a support that comes round, half way round; else ten.
+        For a cylinder, how many turns either way are searched, 1000 at most; absent: on a plane under constant loads
+        half a turn, since every turn repeats the last; on a support that comes round, half way round if that takes no
+        more than a hundred; else ten.
     title : str
         For text and figure; absent: the scenario's.
 
@@ -111,9 +113,8 @@ def _check_steady(system: RollingSystem, time: float, place: Place) -> None:
 def _along_line(system: RollingSystem, start: State, place: Place, turns: Any) -> Equilibria:
     axis = place.q.matrix() @ _given(system.body.shape.axis)
     uniform = all(load.constant or load.linear_drag is not None for load in system.all_loads)
-    asked = None if turns is None else 2 * math.pi * checks.positive(turns, "number", "turns")
-    level = asked or (math.pi if uniform else 2 * math.pi * TURNS_OF_UNEVEN)
-    line = lay(system, start.time, place.p, place.q, axis, (level, asked or 1e4 * math.pi))
+    asked = None if turns is None else 2 * math.pi * _checked(turns)
+    line = _laid(system, start.time, place, axis, A_TURN if uniform else OPEN, asked)
     _check_straight(line)
     friction = _friction(system)
     potential = rest.has_energy(system, start.time, place.p, place.q)
@@ -142,6 +143,24 @@ def _along_line(system: RollingSystem, start: State, place: Place, turns: Any) -
     )
 
 
+def _checked(turns: Any) -> float:
+    number = float(checks.positive(turns, "number", "turns"))
+    if number > MOST_TURNS:
+        raise InvalidValueError("turns", f"must be at most {MOST_TURNS}", turns, "Begin nearer to what you look for.")
+    return number
+
+
+def _laid(
+    system: RollingSystem, time: float, place: Place, axis: Vector, on_plane: float, asked: float | None = None
+) -> Line:
+    """Roll along a line as far as it was asked for; else half way round a support, or some way where it is open."""
+    first = asked or on_plane
+    line = lay(system, time, place.p, place.q, axis, (first, first))
+    if asked is not None or line.straight:
+        return line
+    return lay(system, time, place.p, place.q, axis, (OPEN, ROUND))
+
+
 def _check_straight(line: Line) -> None:
     """Refuse loads that would turn a cylinder out of its line somewhere on the way."""
     for angle in line.angles[:: max(1, line.angles.size // 64)]:
@@ -155,10 +174,7 @@ def _check_straight(line: Line) -> None:
 
 def _straight_support(line: Line) -> bool:
     """Whether the support is straight along the line, and a whole turn fits on it."""
-    p, q = line.place(0.0)
-    S = rest.touch(line.system, line.time, p, q).shape_operator
-    whole = line.high - line.low >= 2 * math.pi * (1 - 1e-12)
-    return whole and all(row.norm() == 0 for row in S.rows)
+    return line.straight and line.high - line.low >= 2 * math.pi * (1 - 1e-12)
 
 
 def _turns(line: Line) -> str:
@@ -264,7 +280,7 @@ def _section(
     if not axis.norm() > 1e-9 * torque.norm():
         return None, ()
     axis = axis / axis.norm()
-    line = lay(system, time, place.p, place.q, axis, (math.pi, 1e4 * math.pi))
+    line = _laid(system, time, place, axis, A_TURN)
     places = [
         (angle, Place(*_numbers(line.place(angle)))) for angle in ([0.0] if line.flat and lowest else line.roots())
     ]

@@ -5,6 +5,7 @@ It is the whole of what a cylinder can do, and a section through what a ball can
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -18,6 +19,7 @@ from ..errors import SolverError
 from ..mechanics.algebra import ZERO, Quaternion, Vector
 from ..mechanics.contact import Contact, roll, touch
 from ..mechanics.system import RollingSystem
+from ..solve.roots import root
 from . import rest
 
 Array = NDArray[np.float64]
@@ -25,6 +27,7 @@ Array = NDArray[np.float64]
 TOLERANCE = 1e-13  # of the integration along the line
 PER_TURN = 360  # places at which roots are bracketed
 ROOT = 1e-12  # share of the scale below which the work is nothing
+LOOKS, LOOKS_A_RADIAN = 6000, 250  # that it may take: more take a body that all but fits a hollow no further
 NEAR = 1e-6  # rad: roots nearer than this are one
 
 
@@ -90,6 +93,13 @@ class Line:
         places = [self.place(angle) for angle in self.angles[:: max(1, self.angles.size // 8)]]
         return max(rest.torque_scale(self.system, self.time, p, q) for p, q in places)
 
+    @cached_property
+    def straight(self) -> bool:
+        """Whether the support is a plane all along the line."""
+        p, q = self.place(self.angles)
+        S = touch(self.system, self.time, p, q).shape_operator
+        return all(not np.any(row.norm()) for row in S.rows)
+
     @property
     def flat(self) -> bool:
         """Whether no work is done anywhere."""
@@ -97,14 +107,12 @@ class Line:
 
     def roots(self) -> list[float]:
         """Return the angles at which the virtual work changes sign, rad; none where it vanishes everywhere."""
-        from scipy.optimize import brentq
-
         if self.flat:
             return []
         works, angles = self.works, self.angles
         found = [float(angle) for angle, work in zip(angles, works, strict=True) if abs(work) <= 1e-3 * self._small]
         found += [
-            brentq(lambda x: float(self.work(x)), angles[i], angles[i + 1], xtol=1e-15, rtol=1e-15)
+            root(lambda x: float(self.work(x)), angles[i], angles[i + 1], 1e-15)
             for i in np.flatnonzero(works[:-1] * works[1:] < 0)
         ]
         return [root for root in _apart(sorted(found)) if all(abs(root - ledge) > NEAR for ledge in self.ledges)]
@@ -159,8 +167,8 @@ def lay(system: RollingSystem, time: float, p: Vector, q: Quaternion, axis: Vect
     axis : Vector
         Along the support: positive angles move the body along axis × n.
     most : (float, float)
-        How far it turns either way on a support that does not come round, rad, and on one that does: there it ends
-        half way round the support, or three quarters where it starts under it.
+        How far it turns either way on a support that does not come round, rad, and at most on one that does: there it
+        ends half way round the support, or three quarters where it starts under it.
 
     Returns
     -------
@@ -192,47 +200,73 @@ def _half(
     """Integrate (p, distance, turn of the normal, work against the loads) over the angle."""
     from scipy.integrate import solve_ivp
 
+    looks = itertools.count()
+
     def rates(angle: float, y: Array) -> list[float]:
+        if next(looks) > LOOKS + LOOKS_A_RADIAN * abs(angle):
+            return [math.nan] * y.size
         now = _turned(axis, angle, q)
-        contact = touch(system, time, Vector(*y[:3]), now)
-        moves, leans = _onward(contact, axis)
-        onward = axis.cross(contact.normal)
-        against = -rest.virtual_work(system, time, contact, now, axis)
+        try:
+            contact = touch(system, time, Vector(*y[:3]), now)
+            moves, leans = _onward(contact, axis)
+            onward = axis.cross(contact.normal)
+            against = -rest.virtual_work(system, time, contact, now, axis)
+        except (ArithmeticError, ValueError):  # a trial beyond the end of a formula: a shorter step stays before it
+            return [math.nan] * y.size
         return [*moves, moves.dot(onward), leans.dot(onward), against]
 
-    begin = roll(system, time, p, q, ZERO)
-    # From under a support, where nothing stays, look past its other side from either hand.
-    furthest = math.pi if begin.reaction.dot(begin.contact.normal) >= 0 else 1.5 * math.pi
-
-    def far_round(_: float, y: Array) -> float:
-        return furthest - abs(y[4])
-
-    def rim(_: float, y: Array) -> float:
-        edge = system.support.surface.rim
-        return 1.0 if edge is None else float(edge) - math.hypot(*y[:3])
-
-    events: list[Any] = [far_round, rim]
-    for event in events:
+    ends: list[Any] = _ends(system, time, p, q, axis, sign, most, rates)
+    for event in ends:
         event.terminal = True
-    curved = _onward(touch(system, time, p, q), axis)[1].norm() > 0
     size = touch(system, time, p, q).offset.norm() + p.norm()
     energy = rest.torque_scale(system, time, p, q)
     scales = np.array([size, size, size, size, 1.0, max(energy, 1e-300)])
-    end = sign * most[1 if curved else 0]
     done = solve_ivp(
         rates,
-        (0.0, end),
+        (0.0, sign * most[1]),
         [*p, 0.0, 0.0, 0.0],
         "DOP853",
         rtol=TOLERANCE,
         atol=TOLERANCE * scales,
         max_step=math.pi / 6,
         dense_output=True,
-        events=events,
+        events=ends,
     )
-    if not done.success:
-        raise SolverError(f"rolling along the support broke down after {done.t[-1]:g} rad: {done.message}")
-    return done
+    if not done.success and done.t.size < 2:
+        raise SolverError(f"the body cannot be rolled along the support from where it starts: {done.message}")
+    return done  # it also ends where no step is short enough: at a crease, or the end of a formula
+
+
+def _ends(
+    system: RollingSystem,
+    time: float,
+    p: Vector,
+    q: Quaternion,
+    axis: Vector,
+    sign: float,
+    most: tuple[float, float],
+    rates: Callable[[float, Array], list[float]],
+) -> list[Callable[[float, Array], float]]:
+    """Return what falls through zero where a half of the line ends."""
+    begin = roll(system, time, p, q, ZERO)
+    # From under a support, where nothing stays, look past its other side from either hand.
+    furthest = math.pi if begin.reaction.dot(begin.contact.normal) >= 0 else 1.5 * math.pi
+
+    def comes_round(_: float, y: Array) -> float:
+        return furthest - abs(y[4])
+
+    def does_not_come_round(angle: float, y: Array) -> float:
+        pace = sign * math.copysign(1.0, y[4]) * rates(angle, y)[4]  # rad of the normal for one of the body
+        return max(most[0] - abs(angle), pace * (most[1] - abs(angle)) - (furthest - abs(y[4])))
+
+    def has_room(angle: float, y: Array) -> float:
+        now = _turned(axis, angle, q)
+        try:
+            return float(rest.room(system, touch(system, time, Vector(*y[:3]), now), now))
+        except (ArithmeticError, ValueError):
+            return -1.0
+
+    return [comes_round, does_not_come_round, has_room]
 
 
 def _onward(contact: Contact, axis: Vector) -> tuple[Vector, Vector]:

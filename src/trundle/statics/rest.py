@@ -7,7 +7,7 @@ digits however small it is.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from ..mechanics.contact import Contact, roll, touch
 from ..mechanics.loads import BodyMotion
 from ..mechanics.scalars import Scalar
 from ..mechanics.system import RollingSystem
+from ..solve.laws import RollingLaw
 
 Array = NDArray[np.float64]
 
@@ -60,14 +61,19 @@ def virtual_work(system: RollingSystem, time: float, contact: Contact, q: Quater
     >>> round(virtual_work(slope, 0.0, touch(slope, 0.0, ZERO, q), q, E_Y) / 0.479425538604203, 12)
     2.0
     """
-    force, torque = system.loads_on(still(system, time, contact, q))
-    return force.dot(contact.rolling_velocity(turn)) + torque.dot(turn)
+    return work_of(contact, *system.loads_on(still(system, time, contact, q)))(turn)
+
+
+def work_of(contact: Contact, force: Vector, torque: Vector) -> Callable[[Vector], Scalar]:
+    """Return the virtual work of a force and a torque as a function of the turn."""
+    return lambda turn: force.dot(contact.rolling_velocity(turn)) + torque.dot(turn)
 
 
 def torque_about_contact(system: RollingSystem, time: float, p: Vector, q: Quaternion) -> Vector:
     """Return the virtual work for turns about the three axes, which is the loads' torque about the contact, N m."""
     contact = touch(system, time, p, q)
-    return Vector(*(virtual_work(system, time, contact, q, axis) for axis in (E_X, E_Y, E_Z)))
+    works = work_of(contact, *system.loads_on(still(system, time, contact, q)))
+    return Vector(*(works(axis) for axis in (E_X, E_Y, E_Z)))
 
 
 def torque_scale(system: RollingSystem, time: float, p: Vector, q: Quaternion) -> float:
@@ -92,6 +98,29 @@ def has_energy(system: RollingSystem, time: float, p: Vector, q: Quaternion) -> 
         return load.potential(motion) is not None or load.linear_drag is not None
 
     return all(counts(load) for load in system.all_loads)
+
+
+def room(system: RollingSystem, contact: Contact, q: Quaternion) -> Scalar:
+    """Return what falls through zero where the support ends, the body's shape, or what fits: the rolling law's bounds.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Its support at rest.
+    contact : Contact
+        Where it touches; of one body or many.
+    q : Quaternion
+        Body frame to support frame.
+
+    Returns
+    -------
+    Scalar
+        The least of them, of no particular unit; infinite where there is none.
+    """
+    least: Any = np.inf
+    for bound in RollingLaw()._bounds(system, contact, q, 0.0).values():
+        least = np.minimum(least, bound)
+    return least
 
 
 def stacked(vectors: Sequence[Vector]) -> Vector:

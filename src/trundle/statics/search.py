@@ -86,9 +86,9 @@ class Search:
         rows = self._settled(self._starts())
         sizes = np.linalg.norm(self._torque(rows), axis=1)
         scales = np.array([max(rest.torque_scale(self.system, self.time, *_place(row)), 1e-300) for row in rows])
-        share = sizes / scales
-        least = int(np.argmin(share))
-        good = rows[(share <= FOUND) & self._inside(rows)]
+        share, inside = sizes / scales, self._inside(rows)
+        least = int(np.argmin(np.where(inside, share, np.inf)))
+        good = rows[(share <= FOUND) & inside]
         if len(good):
             good = good[np.argsort(np.linalg.norm(self._ways(good, self.start.numbers), axis=1), kind="stable")]
         families: list[Family] = []
@@ -139,9 +139,11 @@ class Search:
         return 0.5 * float(rim) if rim is not None else 10 * self.size
 
     def _inside(self, rows: Array) -> NDArray[np.bool_]:
-        rim = self.system.support.surface.rim
-        inside = np.ones(len(rows), dtype=bool)
-        return inside if rim is None else np.linalg.norm(rows[:, :3], axis=1) < float(rim)
+        """Return at which places the body is on the support, and touches it with what its shape covers."""
+        p, q = _columns(rows)
+        with np.errstate(all="ignore"):  # a place beyond the end of a formula is not inside
+            room = rest.room(self.system, rest.touch(self.system, self.time, p, q), q)
+        return np.broadcast_to(room > 0, (len(rows),))
 
     # --- Newton's method, least steps, all starts at once -------------------------------------------------
 
@@ -150,12 +152,20 @@ class Search:
 
     def _slopes(self, rows: Array) -> Array:
         """Return the (n, 3, k) derivatives of the torque, N m per radius or rad."""
+        return self._torque_and_slopes(rows)[1]
+
+    def _torque_and_slopes(self, rows: Array) -> tuple[Array, Array]:
+        """Return the torque (n, 3) and its derivatives, all by one step along the imaginary axis in each direction."""
         p, q = _columns(rows)
-        slopes = []
-        for dp, dq in self._directions(p, q):
-            torque = rest.torque_about_contact(self.system, self.time, *rest.moved(p, q, dp, dq, 1j * rest.STEP))
-            slopes.append(np.stack([np.broadcast_to(np.imag(part), len(rows)) for part in torque], axis=1) / rest.STEP)
-        return np.stack(slopes, axis=2)
+        ways = [rest.moved(p, q, dp, dq, 1j * rest.STEP) for dp, dq in self._directions(p, q)]
+        count = (len(ways), len(rows))
+        stacked = [
+            np.stack([np.broadcast_to(part, len(rows)) for part in parts]).ravel()
+            for parts in zip(*((*place, *turn) for place, turn in ways), strict=True)
+        ]
+        torque = rest.torque_about_contact(self.system, self.time, Vector(*stacked[:3]), Quaternion(*stacked[3:]))
+        parts = np.stack([np.broadcast_to(part, count[0] * count[1]).reshape(count) for part in torque])  # (3, k, n)
+        return np.real(parts[:, 0]).T, np.imag(parts).transpose(2, 0, 1) / rest.STEP
 
     def _directions(self, p: Vector, q: Quaternion) -> list[tuple[Vector, Quaternion]]:
         """Return the directions in which the unknowns may change."""
@@ -177,7 +187,7 @@ class Search:
 
     def _settled(self, rows: Array) -> Array:
         for _ in range(_ROUNDS):
-            torque, slopes = self._torque(rows), self._slopes(rows)
+            torque, slopes = self._torque_and_slopes(rows)
             steps = -np.einsum("nki,ni->nk", np.linalg.pinv(slopes, rcond=FREE), torque)
             length = np.linalg.norm(steps, axis=1)
             if length.max() < 1e-13:
@@ -228,9 +238,9 @@ class Search:
         going = np.arange(len(here))
         for _ in range(_ROUNDS):
             ways = self._ways(here, there)
-            slopes = self._slopes(here)
+            torque, slopes = self._torque_and_slopes(here)
             inverse = np.linalg.pinv(slopes, rcond=FREE)
-            back = -np.einsum("nki,ni->nk", inverse, self._torque(here))  # what the last step left of equilibrium
+            back = -np.einsum("nki,ni->nk", inverse, torque)  # what the last step left of equilibrium
             along = ways - np.einsum("nki,nij,nj->nk", inverse, slopes, ways)
             length = np.linalg.norm(along, axis=1)
             off = np.linalg.norm(back, axis=1)

@@ -15,6 +15,7 @@ export type Kind =
   | 'damping'
   | 'quadratic damping'
   | 'rotational damping'
+  | 'density'
   | 'number'
 
 /** Of each kind: the units offered, the SI unit first, and how many SI units each is. */
@@ -32,6 +33,7 @@ export const UNITS: Record<Kind, Record<string, number>> = {
   damping: { 'kg/s': 1, 'g/s': 1e-3 },
   'quadratic damping': { 'kg/m': 1, 'g/m': 1e-3 },
   'rotational damping': { 'N*m*s': 1, 'mN*m*s': 1e-3 },
+  density: { 'kg/m^3': 1, 'g/cm^3': 1000 },
   number: { '': 1 },
 }
 
@@ -44,6 +46,8 @@ const SPELLINGS: Record<string, string> = {
   inch: 'in',
   inches: 'in',
   'm/s²': 'm/s^2',
+  'kg/m³': 'kg/m^3',
+  'g/cm³': 'g/cm^3',
   '1/s': 'rad/s',
   'N m': 'N*m',
   'mN m': 'mN*m',
@@ -70,11 +74,17 @@ export function parse(value: Json | undefined): Written {
   return { number: Number(digits.replaceAll('_', '')), digits, unit: SPELLINGS[written] ?? written }
 }
 
-/** How many SI units the text says, or null where this table does not know: the server may know more. */
+/** The SI unit of a kind, which a bare number has. */
+export function siUnit(kind: Kind): string {
+  return Object.keys(UNITS[kind])[0] ?? ''
+}
+
+/** How many SI units it is: of a bare number itself. Null where the server refuses it, or may know more than this table. */
 export function toSI(value: Json | undefined, kind: Kind): number | null {
   const { number, unit } = parse(value)
   if (number === null || !Number.isFinite(number)) return null
-  const factor = unit === '' ? 1 : UNITS[kind][unit]
+  if (typeof value === 'number') return number
+  const factor = UNITS[kind][unit] // of text without a unit only where none is missing: "45" may be rad/s or rpm
   return factor === undefined ? null : number * factor
 }
 

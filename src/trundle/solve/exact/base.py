@@ -74,6 +74,10 @@ class ClosedForm:
         """Return the fastest rate in the motion over a time, 1/s: what a look at it must resolve."""
         raise NotImplementedError
 
+    def paces(self, duration: float) -> list[tuple[float, float]]:
+        """Return up to when, s, which rate is the fastest, 1/s: one for all of the time, unless the form knows more."""
+        return [(duration, self.pace(duration))]
+
     @property
     def ends_at(self) -> dict[str, float]:
         """When the phase ends, s since the start, by those of its law's stops that the form knows; or never, inf."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ..roots import root
+
 
 @dataclass(frozen=True)
 class OffADome:
@@ -71,11 +73,10 @@ class OffADome:
     @property
     def lifts_at(self) -> float:
         """θ at which the normal force has gone, cos θ = u(θ), rad from the top."""
-        from scipy.optimize import brentq
 
         def left(angle: float) -> float:
             return math.cos(angle) - self.slipping(angle)
 
         begin = self.slips_at
         end = min(0.5 * math.pi, begin + 300 / self.friction)  # no exponential overflows on the way
-        return float(brentq(left, begin, end, xtol=1e-300, rtol=4 * 2.0**-52))
+        return root(left, begin, end)

@@ -16,6 +16,7 @@ from ...errors import OutOfDomainError, SolverError
 from ...mechanics.algebra import Quaternion, Vector
 from ...mechanics.invariants.legendre import Rim, covers, rim_of, transfer, upright_rates
 from ...mechanics.system import RollingSystem, State
+from ..roots import root
 
 _NODES = 4096  # of the quadrature, at most
 _DOMAIN = (
@@ -116,8 +117,6 @@ class Nodding:
 
     def _end(self, grid: Any, square: Any, here: int, step: int) -> float:
         """Return where ẋ² falls to 0, going from a place of the grid to one side."""
-        from scipy.optimize import brentq
-
         i, scale = here, float(np.abs(square[np.abs(grid) < 0.99]).max())
         if square[here] <= 1e-12 * scale and not square[here + step] > 0:
             return float(grid[here])  # it starts at this turning point
@@ -127,7 +126,7 @@ class Nodding:
         if not 0 <= i + step < grid.size:
             raise SolverError("The disc falls flat: its lean has no turning point before.")
         ends = sorted((float(grid[i]), float(grid[i + step])))
-        return float(brentq(lambda u: float(self.square(u)), ends[0], ends[1], xtol=1e-16, rtol=1e-15))
+        return root(lambda u: float(self.square(u)), ends[0], ends[1], 1e-16)
 
     def period(self, x: float) -> float:
         """Return the time in which the lean goes down and up again, s.

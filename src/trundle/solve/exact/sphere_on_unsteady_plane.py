@@ -203,11 +203,14 @@ class SphereOnUnsteadyPlane(ClosedForm):
 
     def pace(self, duration: float) -> float:
         """Return the fastest rate of the plane, of drag, and of what the pieces of the quadrature resolve, 1/s."""
+        return max((pace for _, pace in self.paces(duration)), default=0.0)
+
+    def paces(self, duration: float) -> list[tuple[float, float]]:
+        """Return the same for each piece: near a pole of a rate or load the last are far shorter than the first."""
         self._course.reach(duration)
-        pieces = self._course.edges
-        resolved = max((1 / (b - a) for a, b in pairwise(pieces)), default=0.0)
-        rate = self.motion.fastest_rate_within(self.start_time, self.start_time + duration)
-        return rate + self.gamma + resolved
+        phase = 1 + 1 / float(self.share)  # rad by which the plane turns on a piece, at most, and what changes besides
+        ends = [(b, phase / (b - a) + float(self.gamma)) for a, b in pairwise(self._course.edges) if a < duration]
+        return [(min(b, duration), pace) for b, pace in ends]
 
     # The motion
 

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 
-from ...errors import SolverError
+from ...errors import OutOfDomainError, SolverError
+from ..patience import Patience
 from .quadrature import rule, series_at
 
 _LONGEST = 0.5  # s, of a piece: what a rate or a load does within a fiftieth of it would not be seen
 _MOST_PHASE = 1.0  # rad of κ and e-folds of drag on a piece
 _SHARE, _SHORTEST = 4e-15, 1e-13  # left by the last coefficients; of a piece where the rate or a load has a kink
-_MOST_PIECES, _AHEAD = 2_000_000, 8
+_NOTHING = 1e-300  # in SI: smaller floats have fewer digits
+# Ten seconds and one; then Taylor's method is quicker.
+_PATIENCE: dict[str, Any] = {"steps": 2e4, "spare": 3e3, "name": "The quadrature of T9", "error": OutOfDomainError}
+_AHEAD = 8
 _MOST_KNOWN, _MOST_KINKS = 1000, 200
 
 
@@ -69,16 +74,14 @@ class Course:
 
     def _extend(self, end: float) -> None:
         self.stacked = None
+        start = self.form.start_time
+        patience = Patience(start + self.edges[-1], start + end, **_PATIENCE)
         while self.edges[-1] <= end:
             begin = self.edges[-1]
             self.length = min(_LONGEST, 2 * self.length)
             while not self._piece(begin, end):
                 self.length /= 2
-            if len(self.series) > _MOST_PIECES:
-                raise SolverError(
-                    f"The plane's turning and the loads change too fast to be followed over {end:g} s: "
-                    f"{_MOST_PIECES} pieces end at t = {begin:g} s. Ask for a shorter run."
-                )
+            patience.after(1, start + self.edges[-1])
 
     def _given(self, begin: float, end: float) -> Any:
         """Return the points of a piece, and there ω, φ and K_z; ω is at its end, too.
@@ -104,6 +107,8 @@ class Course:
         half = 0.5 * self.length
         times, all_omega, push, couple = self._given(begin, end)
         omega, rate = all_omega[:-1], float(all_omega[-1])
+        if begin + self.length > end and not (math.isfinite(rate) and _finite(times, end, omega, push, couple)):
+            return False  # a pole just behind the run is none in it
         _check_finite(form.start_time + times, omega, push, couple)
         swept = half * (form.gamma + form.share * np.abs(omega).max())
         kinked = self.length <= _SHORTEST * max(1.0, begin)
@@ -120,8 +125,9 @@ class Course:
         size[0] = max(size[0], 1 / (form.share * half + 1e-300))
         size[3] += size[2] / half
         slope = np.abs(np.diff(values, axis=1) / np.diff(times)).max(axis=1)
-        noise = 2e-15 * (form.start_time + begin + self.length) * slope  # from the rounding of the time itself
-        if (tail > _SHARE * size + noise).any():
+        noise = 2e-15 * (abs(form.start_time) + begin + self.length) * slope  # from the rounding of the time itself
+        noise[2] += 1e-15 * form.share * np.abs(omega).max() * abs(self.zeta[-1])  # from what is carried, a difference
+        if (tail > _SHARE * size + noise + _NOTHING).any():
             if not kinked:
                 return False
             self.kinks += 1
@@ -211,7 +217,14 @@ class PreciseCourse:
 
 
 def _start_length(form: Any) -> float:
-    return 1.0 / max(float(form.motion.fastest_rate) + float(form.gamma), 2.0)
+    rate = form.motion.fastest_rate_within(form.start_time, form.start_time + _LONGEST)
+    return 1.0 / max(float(rate) + float(form.gamma), 2.0)
+
+
+def _finite(times: Any, end: float, *values: Any) -> bool:
+    """Tell whether values are finite at all times of a piece, or not even before the end of the run."""
+    wrong = ~np.logical_and.reduce([np.isfinite(value) for value in values])
+    return not wrong.any() or bool(times[wrong].min() <= end)
 
 
 def _check_finite(times: Any, *values: Any) -> None:

@@ -29,7 +29,7 @@ const BODY: Record<string, Entry> = {
     hint: 'k = I / (m a²): 2/5 solid, 2/3 a thin shell',
   },
   rim_radius: size('Radius of the rim', 0.05),
-  density: { label: 'Density', kind: 'number', min: 100, max: 20000, decades: true },
+  density: { label: 'Density', kind: 'density', min: 100, max: 20000, decades: true },
   thickness: size('Thickness', 0.05),
   length: size('Length', 0.5),
   moment_of_inertia: { label: 'Moment of inertia', kind: 'inertia', min: 1e-8, max: 1, decades: true },

@@ -45,6 +45,25 @@ it('sends what is typed, with the unit that is shown', () => {
   expect(change).toHaveBeenLastCalledWith('45 rpm', expect.any(String))
 })
 
+it('shows a bare number, which is SI, in the unit that it shows', () => {
+  const { field, chosen, input, unit, slider } = setUp(45)
+  expect([input.value, unit.value]).toEqual(['429.718', 'rpm'])
+  expect(slider.getAttribute('aria-valuetext')).toBe('429.718 rpm')
+  chosen.unit = 'rad/s'
+  field.update(46)
+  expect([input.value, unit.value]).toEqual(['46', 'rad/s'])
+})
+
+it('shows text without a unit as it stands, since the package refuses it, and gives it the unit shown', () => {
+  const { field, change, input, slider, type, leave } = setUp('45')
+  expect([input.value, slider.disabled]).toEqual(['45', true])
+  field.complain('`support.motion.rate` must be an angular velocity with its unit')
+  expect(input.value).toBe('45')
+  type('45')
+  leave()
+  expect(change).toHaveBeenLastCalledWith('45 rpm', expect.any(String))
+})
+
 it('takes a unit that is typed, and keeps it', () => {
   const { change, type, leave, chosen, input, unit } = setUp('33.3 rpm')
   type('2 rad/s')

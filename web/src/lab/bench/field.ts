@@ -1,7 +1,7 @@
 /** One number of the scenario: typed with its unit, dragged by a slider, stepped by the arrow keys. */
 import { hide, put, say } from '../../viewer/elements'
 import { h, uniqueId } from '../dom'
-import { parse, rounded, stepped, toSI, UNITS, write } from '../quantity'
+import { parse, rounded, siUnit, stepped, toSI, UNITS, write } from '../quantity'
 import type { Json, Path } from '../scenario'
 import type { Entry } from './catalogue'
 
@@ -73,7 +73,7 @@ export function createField(options: FieldOptions): Field {
     message,
   )
 
-  /** Was the value refused, in a unit that is none for this place, or as no number at all? */
+  /** Was the value refused, in a unit that is none for this place, without one, or as no number at all? */
   function misfit(): boolean {
     return refused && toSI(value, entry.kind) === null
   }
@@ -90,7 +90,7 @@ export function createField(options: FieldOptions): Field {
     const all = units.includes(now) ? units : [...units, now]
     if (unit.options.length !== all.length || [...unit.options].some((o, i) => o.value !== all[i]))
       unit.replaceChildren(
-        ...all.map((name) => h('option', { value: name }, name.replaceAll('*', '·').replace('^2', '²'))),
+        ...all.map((name) => h('option', { value: name }, name.replaceAll('*', '·').replace('^2', '²').replace('^3', '³'))),
       )
     unit.value = now
   }
@@ -101,9 +101,10 @@ export function createField(options: FieldOptions): Field {
     if (misfit()) return typeof value === 'string' ? value : found.digits
     if (found.number === null || typeof value === 'object') return found.digits
     if (typeof value === 'number' && !hasUnits) return String(rounded(value, 6))
+    if (typeof value === 'string' && hasUnits && !found.unit) return found.digits // which the package refuses
     const factor = UNITS[entry.kind]
     const shown = shownUnit()
-    const written = found.unit || (units[0] ?? '')
+    const written = found.unit || siUnit(entry.kind)
     if (shown === written) return found.digits
     const from = factor[written]
     const to = factor[shown]

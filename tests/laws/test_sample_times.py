@@ -1,0 +1,110 @@
+"""Samples at awkward instants: on events, a rounding beside them and each other, on a clock far from 0."""
+
+import numpy as np
+import pytest
+
+import trundle as tr
+from trundle.solve.methods import METHODS, Method
+
+BALL = tr.Body.solid_sphere(radius="28.6 mm", mass="170 g")
+NUMERICAL = ("taylor", "runge-kutta")
+
+
+def falling(time=0.0, support=None):
+    """Dropped on a turning table: it lands, bounces, slips, grips and settles within a second."""
+    table = support or tr.Support(tr.Plane(), motion=tr.Spin(3.0), friction=0.15, restitution=0.5)
+    system = tr.RollingSystem(BALL, table)
+    return system, system.place((0.2, 0.0), height=0.1, time=time)
+
+
+def beside(instants, most=3):
+    """Return the instants with their neighbours among the floats on either side, ascending."""
+    near = [instants]
+    for way in (-np.inf, np.inf):
+        step = instants
+        for _ in range(most):
+            step = np.nextafter(step, way)
+            near.append(step)
+    return np.unique(np.concatenate(near))
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_instants_on_events_and_a_rounding_beside_them_are_all_sampled(method):
+    system, start = falling()
+    chosen = Method.of(method)
+    events = [event.time for event in chosen.solve(system, start, np.linspace(0.0, 1.0, 101)).events]
+    assert len(events) > 8
+    times = np.append(beside(np.array(events)), 1.0)
+    at = chosen.solve(system, start, times)
+    assert np.array_equal(at.time, times)
+    assert [event.time for event in at.events] == pytest.approx(events, abs=1e-12)
+    groups = np.searchsorted(events, times[:-1] - 1e-9)
+    for group in np.unique(groups):  # the centre goes no way in a rounding of time, whatever happens to its velocity
+        assert np.ptp(at.position[:-1][groups == group], axis=0).max() < 1e-13
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("seed", range(4))
+def test_instants_that_only_rounding_tells_apart_are_all_sampled(method, seed):
+    random = np.random.default_rng(seed)
+    begin = random.uniform(0.0, 0.1)
+    system, start = falling(begin)
+    middle = begin + np.sort(random.uniform(0.0, 1.0, 200))  # several of the parts in which a run is followed
+    times = np.concatenate([[begin], beside(middle, most=1 + seed)])
+    at = Method.of(method).solve(system, start, times)
+    assert np.array_equal(at.time, times)
+    assert np.isfinite(at.position).all()
+    plain = Method.of(method).solve(system, start, middle)
+    where = np.searchsorted(times, middle)
+    assert np.abs(at.position[where] - plain.position).max() < 1e-11
+
+
+@pytest.mark.parametrize("method", NUMERICAL)
+@pytest.mark.parametrize("time", [-1e6, 1e3, 1e6])
+def test_a_clock_far_from_zero_shows_the_same_motion(method, time):
+    bowl = tr.Support(tr.Bowl(1.0), friction=0.3, restitution=0.5)
+    shell = tr.Body.ellipsoid(semi_axes=(0.1, 0.08, 0.06), mass=1.0)
+    system = tr.RollingSystem(shell, bowl)
+    runs = [
+        tr.simulate(system, system.place((0.2, 0.1), height=0.05, time=begin), 0.4, 0.01, method)
+        for begin in (0.0, time)
+    ]
+    early, late = runs
+    assert np.array_equal(late.data.time, time + early.data.time)
+    assert [event.kind for event in late.events] == [event.kind for event in early.events]
+    rounding = 100 * np.spacing(abs(time))  # of an instant; the body moves at 2 m/s at most
+    for name in ("position", "orientation"):
+        assert np.abs(late.data[name].values - early.data[name].values).max() < 10 * rounding + 1e-9
+
+
+@pytest.mark.parametrize("method", NUMERICAL)
+def test_a_support_that_goes_by_the_clock_is_where_the_clock_says(method):
+    # Over 2π·10⁵/3 s, to the last digit that such a float has, the table has turned 10⁵ times and is where it was.
+    turns = 2 * np.pi * 1e5 / 3
+    table = tr.Support(tr.Plane(), motion=tr.SpinBy("3 + sin(3*t)"), friction=0.15, restitution=0.5)
+    runs = []
+    for begin in (0.0, turns):
+        system, start = falling(begin, table)
+        runs.append(tr.simulate(system, start, 1.0, 0.01, method).data)
+    assert np.abs(runs[1].position.values - runs[0].position.values).max() < 1e-8
+
+
+def test_a_clock_too_far_from_zero_to_tell_the_samples_apart_is_refused():
+    system, start = falling(1e9)
+    with pytest.raises(tr.InvalidValueError, match=r"`start.time` must .* got 1000000000.0.*nearer to 0"):
+        tr.simulate(system, start, 1.0, 0.01)
+    with pytest.raises(tr.InvalidValueError, match=r"`start\.time`"):
+        tr.simulate_many([system], [start], 1.0, 0.01)
+
+
+@pytest.mark.parametrize("time", [0.0, 3.0])
+@pytest.mark.parametrize("length", [1e-3, 1e-9, 1e-14])
+@pytest.mark.parametrize("method", METHODS)
+def test_short_runs_are_sampled(method, length, time):
+    if time and length < 1e-9:
+        return  # the clock is too coarse: see above
+    system = tr.RollingSystem(BALL, tr.Support(tr.Plane(), motion=tr.Spin(3.0)))
+    run = tr.simulate(system, system.place((0.2, 0.0), (0.0, 0.3), time=time), length, length / 7, method)
+    way = np.linalg.norm(run.data.position.values[-1] - run.data.position.values[0])
+    assert run.data.time.size == 8
+    assert way == pytest.approx(0.3 * length, rel=1e-5, abs=1e-16)

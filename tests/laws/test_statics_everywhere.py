@@ -1,0 +1,94 @@
+"""Equilibria on every surface, above all on those without an end: found within seconds, where the support is level."""
+
+import math
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import trundle as tr
+
+G = 9.80665
+BALL = tr.Body.solid_sphere(radius=0.02, mass=0.1)
+EGG = tr.Body.ellipsoid(semi_axes=(0.03, 0.02, 0.02), mass=0.1)
+HEAVY_SIDE = tr.Body.weighted_cylinder(0.02, 0.1, 0.05, 0.015)
+HEIGHTS = {
+    "a bowl": "x**4 + y**2",
+    "waves": "0.02*sin(5*x)*cos(3*y)",
+    "a saddle": "x**2 - y**2",
+    "a dent": "-0.1*exp(-x**2 - y**2)",
+    "a hat without an inside": "-0.2*sqrt(1 - x**2 - y**2)",
+    "a slope that ends": "0.1*log(1.5 + x) + y**2",
+    "a trough": "x**2",
+    "a crease": "0.1*abs(x)**3 + y**2",
+    "a point": "0.3*hypot(x, y + 0.001)",
+    "a hyperboloid": "0.3*hypot(hypot(x, y), 0.1)",
+    "a high power": "x**12 + y**2",
+}
+SURFACES = {
+    **{name: tr.HeightField(height) for name, height in HEIGHTS.items()},
+    "a dish": tr.Paraboloid(1.0),
+    "a narrow dish": tr.Paraboloid(0.1),
+    "a hill": tr.Paraboloid(-1.0),
+    "a quartic": tr.Revolution("r**4"),
+    "a horn": tr.Revolution("-0.05/(0.1 + r**2)"),
+    "a cone": tr.Cone("20 deg"),
+    "a sphere": tr.Dome(1.0),
+    "a hollow one": tr.Bowl(1.0),
+}
+SECONDS = 6.0  # of the processor, of which the slowest takes half; they were hours
+
+
+def found_in_time(system: tr.RollingSystem, start: tr.State) -> tr.Equilibria:
+    begun = time.process_time()
+    found = tr.equilibria(system, start)
+    assert time.process_time() - begun < SECONDS
+    return found
+
+
+# The egg takes a few seconds each, and sees another half of the surfaces on either slope.
+PARTS = [(BALL, 0.0, SURFACES), (BALL, 0.05, SURFACES), (EGG, 0.0, [*SURFACES][::4]), (EGG, 0.05, [*SURFACES][2::4])]
+CASES = [(body, tilt, name) for body, tilt, names in PARTS for name in names]
+
+
+@pytest.mark.parametrize(("body", "tilt", "name"), CASES)
+def test_a_body_stays_where_its_centre_of_mass_is_over_the_contact(body: tr.Body, tilt: float, name: str) -> None:
+    system = tr.RollingSystem(body, tr.Support(SURFACES[name], tilt=tilt))
+    up = np.array([-math.sin(tilt), 0.0, math.cos(tilt)])
+    for place in ((0.05, 0.03), (0.2, 0.0))[body is EGG :]:
+        found = found_in_time(system, system.place(place))
+        for one in (*found, *found.pulled):
+            arm = np.array(one.state.position) - np.array(one.contact)
+            assert np.linalg.norm(np.cross(arm, up)) < 1e-9 * np.linalg.norm(arm)
+
+
+@pytest.mark.parametrize("tilt", [0.0, 0.05, -0.1])
+@pytest.mark.parametrize("profile", ["x**2", "0.02*sin(5*x)", "0.3*hypot(x, 0.2)", "0.1*exp(x)", "0.1*abs(x)**3"])
+def test_a_cylinder_in_a_trough_without_end(profile: str, tilt: float) -> None:
+    system = tr.RollingSystem(HEAVY_SIDE, tr.Support(tr.HeightField(profile), tilt=tilt))
+    found = found_in_time(system, system.place((0.1, 0.0), roll=0.3))
+    up = np.array([-math.sin(tilt), 0.0, math.cos(tilt)])
+    for one in (*found, *found.pulled):
+        arm = np.array(one.state.position) - np.array(one.contact)
+        assert np.linalg.norm(np.cross(arm, up)) < 1e-9 * np.linalg.norm(arm)
+
+
+@pytest.mark.parametrize("radius", [0.1, 1.0, 30.0])
+def test_the_line_of_the_figure_is_no_longer_than_what_it_shows(radius: float, tmp_path: Path) -> None:
+    system = tr.RollingSystem(EGG, tr.Support(tr.Paraboloid(radius)))
+    found = found_in_time(system, system.place((0.5 * radius, 0.0)))
+    assert found.line is not None
+    way = found.line.high - found.line.low
+    assert way < 2 * 100 * math.pi  # rad; 31 416, before
+    found.plot().savefig(tmp_path / "it.png")
+
+
+@pytest.mark.parametrize("surface", [tr.Bowl, tr.Dome])
+@pytest.mark.parametrize("ratio", [30.0, 60.0, 150.0])
+def test_a_support_that_comes_round_is_still_rolled_half_round(surface: type, ratio: float) -> None:
+    system = tr.RollingSystem(BALL, tr.Support(surface(0.02 * ratio)))
+    line = found_in_time(system, system.place((0.005, 0.0))).line
+    assert line is not None
+    # At a place where it stays the body has turned by R/r ∓ 1 for each radian that the support has.
+    assert line.high == pytest.approx(math.pi * (ratio + (1 if surface is tr.Dome else -1)), rel=1e-6)
