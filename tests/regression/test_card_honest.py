@@ -171,3 +171,30 @@ def test_a_hemisphere_that_tips_over_its_edge() -> None:
     loads = [{"kind": "pivot-friction", "offset": 5.275e-06}]
     run = passes(body=body, support=support, start=start, loads=loads, run={"duration": 2, "every": 0.02})
     assert run.events[-1].kind == "edge"
+
+
+FLAT = {
+    "a ring": (
+        {"kind": "ring", "radius": 0.0801, "mass": 0.2086},
+        {
+            "kind": "paraboloid",
+            "radius": -0.8199,
+            "motion": {"kind": "precessing-tilt", "angle": "3 deg", "rate": 11.88},
+        },
+        {"position": [0.03848, 0.1808], "velocity": "co-rotating", "orientation": [1, 0, 0, 0]},
+        [{"kind": "force", "value": [-0.007932, 0.033, -0.04224]}],
+    ),
+    "a disc that starts to slip from rest": (
+        {"kind": "disc", "radius": 0.006101, "mass": 0.2091, "thickness": 0},
+        {"kind": "paraboloid", "radius": -0.464, "friction": 0.01602},
+        {"position": [0.1868, 0.1304], "spin": 1.597},
+        [{"kind": "rolling-couple", "coefficient": 9.516e-05}, {"kind": "drag", "coefficient": 0.00389}],
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", FLAT)
+def test_a_body_that_comes_to_lie_flat(kind: str) -> None:
+    body, support, start, loads = FLAT[kind]
+    run = passes(body=body, support=support, start=start, loads=loads, run={"duration": 2, "every": 0.02})
+    assert run.events[-1].kind == "edge"

@@ -20,7 +20,7 @@ from ..errors import SolverError
 from ..mechanics.algebra import Quaternion
 from ..mechanics.system import RollingSystem, State
 from ..solve.methods import Method
-from ..solve.samples import Event, Samples
+from ..solve.samples import FLIGHT, Event, Samples
 from .bounds import A_STEP, SOLVER, Array, largest
 from .nudging import nudged
 
@@ -174,7 +174,7 @@ def growth(system: RollingSystem, start: State, at: Samples, method: Method, siz
             for (one, other), (its_last, other_last) in zip(pairs, lasts, strict=True)
         ]
         times, told = np.append(times, end), np.append(told, True)
-    state, shown = _responses(pairs, sizes)
+    state, shown = _responses(system, pairs, sizes)
     nonlinear = times[told & (np.linalg.norm(shown, axis=2).max(axis=(1, 2)) > MOST)]
     until = min(until, float(nonlinear[0])) if nonlinear.size else until
     lags = np.array([[other.events[i].time - first.events[i].time for other in others] for i in range(count)]) / span
@@ -202,7 +202,9 @@ def _lasts(
     ]
 
 
-def _responses(pairs: list[tuple[Samples, Samples]], sizes: dict[str, float]) -> tuple[Array, Array]:
+def _responses(
+    system: RollingSystem, pairs: list[tuple[Samples, Samples]], sizes: dict[str, float]
+) -> tuple[Array, Array]:
     """Return how changed runs differ, as shares.
 
     First in what a method follows (n, rows, runs), then in each quantity that is compared (n, fields, 3, runs).
@@ -214,8 +216,15 @@ def _responses(pairs: list[tuple[Samples, Samples]], sizes: dict[str, float]) ->
     turns = np.stack([_turned(*pair) for pair in pairs], axis=-1)
     fields = {field: apart(field) / max(size, 1e-300) for field, size in sizes.items()}
     own = apart("own") / np.maximum(np.abs(pairs[0][0].own).max(axis=0, initial=0.0), 1e-300)[:, None]
-    followed = [fields[name] for name in ("position", "velocity", "angular_velocity")]
+    moving = np.stack([_followed(system, other) - _followed(system, one) for one, other in pairs], axis=-1)
+    followed = [fields["position"], moving / max(sizes["velocity"], 1e-300), fields["angular_velocity"]]
     return np.concatenate([*followed, turns, own], axis=1), np.stack([*fields.values(), turns], axis=1)
+
+
+def _followed(system: RollingSystem, at: Samples) -> Array:
+    """Return V in flight, else the slip: of what touches, V follows from Ω, and may be less sharp."""
+    V, turning, u = (np.broadcast_to(v.array(), at.position.shape) for v in at.speeds(system))
+    return np.where((at.phase == FLIGHT)[:, None], V, V + turning - u)
 
 
 def _turned(ours: Samples, theirs: Samples) -> Array:
