@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import tomli_w
 
 import trundle as tr
 from trundle.solve.methods import Method
@@ -21,8 +22,6 @@ PLANE, STEEP = {"kind": "plane"}, {"kind": "height-field", "formula": "0.1*exp(3
 
 def passes(**tables: Any) -> tr.Trajectory:
     """Run a scenario, and ask for a card without a failure."""
-    import tomli_w
-
     run = tr.Scenario.loads(tomli_w.dumps(tables)).run()
     card = run.card()
     assert card.passed, str(card)
@@ -198,3 +197,27 @@ def test_a_body_that_comes_to_lie_flat(kind: str) -> None:
     body, support, start, loads = FLAT[kind]
     run = passes(body=body, support=support, start=start, loads=loads, run={"duration": 2, "every": 0.02})
     assert run.events[-1].kind == "edge"
+
+
+# --- nothing beside nothing ---------------------------------------------------------------------------------
+
+
+def test_a_disc_that_falls_over_from_rest_has_no_rates_to_drift() -> None:
+    # Both constants of the Legendre pair vanish: what is left of them is a rounding of Ω.
+    disc = {"kind": "disc", "radius": 0.037, "mass": 0.057, "thickness": 0}
+    start = {"position": [0.2, -0.1], "velocity": [0, 0], "attitude": ["94 deg", "40 deg", "-163 deg"]}
+    support = {"kind": "plane", "friction": 1.3}
+    run = passes(body=disc, support=support, start=start, run={"duration": 0.05, "every": 0.01})
+    assert run.card()["drift of the rates when upright (Legendre pair)"].passed
+
+
+@pytest.mark.parametrize("radius", [1e6, 5e8])
+def test_a_cylinder_in_a_drum_as_large_as_the_earth(radius: float) -> None:
+    support = {"kind": "cylinder", "radius": radius, "tilt": "90 deg", "friction": 0.6}
+    start = {"position": ["6 deg", "0 m"], "velocity": ["0 m/s", "0 m/s"]}
+    body = {"kind": "cylinder", "radius": 0.025, "mass": 0.2}
+    run = tr.Scenario.loads(tomli_w.dumps({"body": body, "support": support, "start": start, "run": RUN})).run()
+    assert run.card()["samples fit together"].passed, str(run.card())
+
+
+RUN = {"duration": 1, "every": 0.1}
