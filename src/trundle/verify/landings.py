@@ -117,7 +117,7 @@ class Landing:
         V, Omega = _speeds(self.before)
         carried = _cross(Omega, self.rho)
         u = V + carried - self.comes
-        return float(max(np.linalg.norm(v) for v in (V, carried, u)))
+        return max(*(float(np.linalg.norm(v)) for v in (V, carried, u)), 1e-300)
 
     @cached_property
     def course(self) -> Course:
