@@ -17,6 +17,7 @@ from .card import CardFigure, checked
 _NODES = 16  # of Gauss and Legendre in each panel
 _PARTS = 4  # into which a panel is cut where its power is rough
 _MOST_PASSES = 8
+_MOST_ROUGH = 5000  # panels: so many at once are rough from rounding, which no cut makes less
 
 
 def energy(system: RollingSystem, at: Samples) -> Array:
@@ -107,6 +108,7 @@ def _integrals(system: RollingSystem, panels: Array, follow: Callable[[Array], S
         parts, sizes = (np.array(values) @ w) * half[:, 0], (largest @ w) * half[:, 0]
         tails = np.abs(np.array(values) @ tops).max(axis=(0, 2)) * half[:, 0]
         rough = (tails > 1e-15 * max(size + float(sizes.sum()), 1e-300)) & (not last)
+        rough &= rough.sum() <= _MOST_ROUGH
         total, size = total + parts[:, ~rough].sum(axis=1), size + float(sizes[~rough].sum())
         if not rough.any():
             break
