@@ -9,6 +9,7 @@ from collections.abc import Callable
 import pytest
 
 import trundle as tr
+from trundle.mechanics.surfaces.base import Surface
 
 SECONDS = 6.0
 TABLE = {
@@ -89,3 +90,17 @@ def test_a_table_that_hardly_turns_is_one_that_does_not(rate: float, method: str
         assert run.data.position.values[:, 0] == pytest.approx(0.2 + 0.1 * t + downhill * t**2 / 2, rel=1e-11)
         assert run.data.position.values[:, 1] == pytest.approx(0.05 * t, rel=1e-9, abs=1e-12)
         assert run.card().passed
+
+
+@pytest.mark.parametrize("surface", [tr.Dome(0.3), tr.Bowl(0.3), tr.Paraboloid(0.3), tr.Revolution("r**2")])
+@pytest.mark.parametrize("place", [(1e-308, 0.0), (-1e-320, 1e-200), (1e-155, -1e-155), (1e-100, 0.0), (0.0, 1e-30)])
+def test_a_ball_that_hardly_is_off_the_axis_is_followed(surface: Surface, place: tuple[float, float]) -> None:
+    ball = tr.Body.solid_sphere(radius=0.1, mass=0.0327)
+    for rate in (0.0, 37.7):
+        system = tr.RollingSystem(ball, tr.Support(surface, motion=tr.Spin(rate)))
+        begun = time.process_time()
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            run = tr.simulate(system, system.place(place, "co-rotating"), 0.5, 0.1)
+            assert run.card().passed
+        assert time.process_time() - begun < SECONDS
