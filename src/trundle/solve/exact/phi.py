@@ -115,7 +115,9 @@ def exponentials(x: Scalar, y: Scalar, turned: Scalar | None = None) -> tuple[Co
     phi1_far = less_one.over(away)
     phi2_far = Complex(phi1_far.re - 1.0, phi1_far.im).over(away)
 
-    z = Complex(_choose(xp, small, x, 0.0), _choose(xp, small, y, 0.0))  # keeps powers of what is large out of it, too
+    z = Complex(
+        *(0.0 if is_zero(part) else xp.where(small, part, 0.5) for part in (x, y))
+    )  # no powers of what is large
     phi2_near = _series(z)
     phi1_near = Complex(1.0, 0.0) + z * phi2_near
     phi1 = Complex(*(_choose(xp, small, a, b) for a, b in _parts(phi1_near, phi1_far)))
