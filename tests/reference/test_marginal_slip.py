@@ -15,6 +15,7 @@ from scipy.integrate import solve_ivp
 from tests.tolerances import SOLVER
 
 import trundle as tr
+from trundle.solve import runge_kutta
 
 G, A, B, K = 9.81, 0.02, 0.3, 0.4  # gravity, radii of ball and trough, inertia ratio
 ARM = B - A
@@ -83,9 +84,10 @@ def test_a_ball_whose_friction_hardly_falls_short_slips_and_grips_when_it_must(s
     run = tr.simulate(system, system.place((0.0, 0.0), (sense * FAST, 0.0)), duration, 0.02, method)
     assert [event.kind for event in run.events] == ["slip", "grip"]
     # Friction falls short like a parabola: close to its top a rounding of it moves the two times far.
+    own = SOLVER(10, runge_kutta.TOLERANCE) if method == "runge-kutta" else 0.0
     blurred = max(1e-15, 3e-18 / math.sqrt(share - 4.9e-10))
     for event, time in zip(run.events, (slips, grips), strict=True):
-        assert abs(event.time - time) <= SOLVER(1000, blurred)
+        assert abs(event.time - time) <= SOLVER(1000, blurred) + own
     x, y, _ = run.data.position.values[-1]
     assert abs(math.atan2(y, x) - sense * angle) <= SOLVER(100, 1e-15)
     if method == "taylor" or share < 1e-3:  # the other takes thousands of steps there, and its card three times those

@@ -9,7 +9,7 @@ import signal
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
-from ..errors import InvalidValueError, TrundleError
+from ..errors import InvalidValueError, SolverError, TrundleError
 from ..files import staging
 
 
@@ -92,6 +92,8 @@ def write_together(folder: Path, files: Mapping[str, Callable[[Path], object]]) 
         if isinstance(error, RuntimeError) and "HDF5" not in str(error) and "H5" not in str(error):
             raise
         raise _failure(folder, error) from None
+    except SolverError:  # what should be written cannot be worked out: of that the folder knows nothing
+        raise
     except TrundleError as error:  # a writer that explains itself
         raise _failure(folder, error) from None
     return [folder / name for name in files]

@@ -180,13 +180,14 @@ def _guiding_centre(motion: ClosedForm | None, start: State, at: Samples, method
     """Check centre and radius of the circle from positions and velocities: integrals on a turning plane."""
     if not isinstance(motion, SphereOnPlane) or not motion.has_guiding_centre:
         return
-    t = at.time - start.time
+    t, bound = at.time - start.time, bound_of(method, turned_in(at))
+    if abs(motion.kappa) * float(t[-1]) <= bound:
+        return  # of a circle so large these hold whatever the motion
     kappa, drift = motion.kappa, complex(*motion.drift_velocity)
     zeta, rate = (a[:, 0] + 1j * a[:, 1] for a in (at.position, at.velocity))
     arm = -1j * (rate - drift) / kappa
     centre = zeta - arm - drift * t
     size = max(np.abs(zeta).max(), np.abs(arm).max(), np.abs(drift * t).max())
-    bound = bound_of(method, turned_in(at))
     yield checked(
         "drift of the circle's centre", _drift(centre, size), bound, "ζ + i(ζ̇ − v_d)/κ − v_d t stays the same"
     )
@@ -199,17 +200,21 @@ def _circle(
     """Measure rate, centre and drift from the positions alone, beside the formula's."""
     if not isinstance(motion, SphereOnPlane) or not motion.has_guiding_centre:
         return
+    yield CardFigure("circle rate by the formula", motion.kappa, "rad/s", note="κ = ω k/(1 + k)")
+    turns = abs(motion.kappa) * float(samples.time[-1] - start.time) / (2 * math.pi)
+    too_little = CardFigure("circle not measured", turns, "turns", note="the run shows too little of the circle")
+    if turns <= bound_of(method):
+        yield too_little
+        return
     t, path = _even_path(system, start, samples, method, abs(float(motion.kappa)))
     found = measure(t, path) if motion.circle_radius > 0 else None
-    turns = abs(motion.kappa) * float(t[-1]) / (2 * math.pi)
-    yield CardFigure("circle rate by the formula", motion.kappa, "rad/s", note="κ = ω k/(1 + k)")
     if motion.circle_radius == 0:
         moved = float(np.abs(path - path[0] - complex(*motion.drift_velocity) * t).max())
         size = max(float(np.abs(path).max()), 1e-300)
         yield checked("stays where it was put", moved / size, bound_of(method), "largest departure over the distance")
         return
     if found is None or turns < 0.25 or found.rate_error > 1e-6 * abs(motion.kappa):
-        yield CardFigure("circle not measured", turns, "turns", note="the run shows too little of the circle")
+        yield too_little
         return
     slack = max(10.0, SOLVER * method.tolerance / 2.2e-16)
     centre, drift = complex(*motion.guiding_centre(0.0)), complex(*motion.drift_velocity)

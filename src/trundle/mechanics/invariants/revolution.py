@@ -23,6 +23,7 @@ from ..system import RollingSystem
 from .base import ROLLING, Invariant, Record
 
 _NEAREST = 1e-4  # that the centre may come to the axis, as a share of its largest distance from it
+_ON_AXIS = 1e-100  # of the radius: nearer, the squares of what is worked out vanish
 _TOLERANCE = 1e-13
 _STEPS = 48  # of the meridian's stretch at least: its dense output is then as good as its steps
 _WIDER = 8  # times that the stretch is widened, each time to twice what it was
@@ -146,7 +147,7 @@ def _pair(system: RollingSystem, at: Record) -> list[Any]:
     contact = [np.broadcast_to(np.asarray(x, dtype=float), shape).reshape(-1) for x in at.contact]
     distance = np.hypot(contact[0], contact[1])
     centre = np.hypot(*(np.broadcast_to(np.asarray(x, dtype=float), shape).reshape(-1) for x in (r.x, r.y)))
-    if centre.min() <= _NEAREST * centre.max():
+    if centre.min() <= max(_NEAREST * centre.max(), _ON_AXIS * a):
         return []
     rows = _Meridian(system, distance, contact[2], float(centre.min())).at(distance, contact[2])
     A, B, C, D = rows[2:6]

@@ -102,7 +102,6 @@ def exponentials(x: Scalar, y: Scalar, turned: Scalar | None = None) -> tuple[Co
     xp = namespace(x, y)
     if getattr(xp, "exact", False):
         return _by_definition(xp, x, y)
-    z = Complex(x, y)
     size = _plus(_times(x, x), _times(y, y))
     small = less(size, 1.0)
     away = Complex(_choose(xp, small, 1.0, x), _choose(xp, small, 1.0, y))  # keeps 0/0 out of the unused branch
@@ -116,6 +115,9 @@ def exponentials(x: Scalar, y: Scalar, turned: Scalar | None = None) -> tuple[Co
     phi1_far = less_one.over(away)
     phi2_far = Complex(phi1_far.re - 1.0, phi1_far.im).over(away)
 
+    z = Complex(
+        *(0.0 if is_zero(part) else xp.where(small, part, 0.5) for part in (x, y))
+    )  # no powers of what is large
     phi2_near = _series(z)
     phi1_near = Complex(1.0, 0.0) + z * phi2_near
     phi1 = Complex(*(_choose(xp, small, a, b) for a, b in _parts(phi1_near, phi1_far)))

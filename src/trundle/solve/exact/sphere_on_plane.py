@@ -212,9 +212,9 @@ class SphereOnPlane(ManySamples, ClosedForm):
     def circle_radius(self) -> Scalar:
         """|ζ̇₀ − drift|/|κ|, the radius of the circle about the guiding centre, m."""
         self._need_guiding_centre()
-        xp = namespace(self.kappa, self.velocity)
         (vx, vy), (ux, uy) = self.velocity, self.drift_velocity
-        return xp.sqrt(((vx - ux) ** 2 + (vy - uy) ** 2) / (self.kappa * self.kappa))
+        xp = namespace(self.kappa, vx, ux)
+        return xp.hypot(vx - ux, vy - uy) / xp.abs(self.kappa)
 
     def guiding_centre(self, t: Any) -> tuple[Scalar, Scalar]:
         """Return the point about which the ball circles, which drifts steadily.
