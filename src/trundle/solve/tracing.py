@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from collections.abc import Callable, Sequence
+from copy import copy
+from functools import cache
+from typing import Any
 
-from ..mechanics.parameters import numbers, with_numbers
+from ..mechanics.parameters import numbers, structure_of, with_numbers
 from ..mechanics.scalars import Scalar
 from ..mechanics.system import RollingSystem, State
 from .laws import Law, RollingLaw
 from .tape import Tape
+
+_MOST_TRACED = 64  # kept
 
 # (time, state) -> rates, and the values of the law's stops in their order
 Traced = Callable[[float, Sequence[float]], list[float]]
@@ -93,18 +99,49 @@ def python_law(system: RollingSystem, law: Law, extras: Sequence[float] = ()) ->
     >>> law(0.0, [0, 0, 0, 1, 0, 0, 0, 0.0, 2.0, 0.0])[0], stops
     (2.0, ['lift'])
     """
-    size = len(law.names(system))
     if not system.support.surface.analytic:
         return _untraced(system, law, extras)
-    values = [*numbers(system), *extras]
+    own = {name: value for name, value in vars(law).items() if isinstance(value, float)}
+    values = [*numbers(system), *own.values(), *extras]
+    function, stops = _known(system, law, tuple(own))
+    return lambda t, y: function([t, *y, *values]), stops
+
+
+_Flat = tuple[Callable[[Sequence[float]], list[float]], list[str]]
+
+
+@cache
+def _memory() -> OrderedDict[Any, _Flat]:
+    """Return the laws traced in this process: a run of many stretches comes back to each."""
+    return OrderedDict()
+
+
+def _known(system: RollingSystem, law: Law, own: tuple[str, ...]) -> _Flat:
+    """Return a law traced, once for each structure of a system."""
+    memory, kept = _memory(), tuple((name, value) for name, value in vars(law).items() if name not in own)
+    structure = (structure_of(system), type(law), kept)
+    try:
+        hash(structure)
+    except TypeError:  # a part of one's own that cannot be hashed, and so may change
+        return _traced(system, law, own)
+    if structure not in memory:
+        memory[structure] = _traced(system, law, own)
+        if len(memory) > _MOST_TRACED:
+            memory.popitem(last=False)
+    return memory[structure]
+
+
+def _traced(system: RollingSystem, law: Law, own: tuple[str, ...]) -> _Flat:
+    """Trace a law with all numbers of the system, and those of the law, as inputs."""
+    size, count = len(law.names(system)), len(numbers(system))
     tape = Tape()
-    time, *rest = tape.inputs(1 + size + len(values))
+    time, *rest = tape.inputs(1 + size + count + len(own) + law.extras)
     state, parameters = rest[:size], rest[size:]
-    symbolic = with_numbers(system, parameters[: len(values) - len(extras)])
-    rates = law.rates(symbolic, time, state)
-    stops = law.stops(symbolic, time, state, parameters[len(values) - len(extras) :])
-    function = tape.function([*rates, *stops.values()])
-    return lambda t, y: function([t, *y, *values]), list(stops)
+    symbolic, free = with_numbers(system, parameters[:count]), copy(law)
+    vars(free).update(zip(own, parameters[count:], strict=False))
+    rates = free.rates(symbolic, time, state)
+    stops = free.stops(symbolic, time, state, parameters[count + len(own) :])
+    return tape.function([*rates, *stops.values()]), list(stops)
 
 
 def _untraced(system: RollingSystem, law: Law, extras: Sequence[float]) -> tuple[Traced, list[str]]:

@@ -30,6 +30,7 @@ from .plane import reactions, straightness
 
 _MOST_SAMPLES = 20_000  # looked at for integrals
 _EVENTS_TOLD = 4
+_LOOKS = 400  # at stretches, to balance the energy
 _ROUNDING = 3e-16  # of a speed
 _SINGULAR, _SHORT_OF_THE_END = ("curved", "edge"), 1e-3  # of its last stretch
 _MEANWHILE = {"rolling": "while it rolls", "slipping": "while it slips", "flight": "in flight"}
@@ -128,7 +129,8 @@ def _balance(again: Again, landings: list[Landing], bound: float) -> Iterator[Ca
     ends = Samples.joined([_before(again.start, ends.part(slice(0, 1))), ends.part(slice(1, 2))])
     panels = np.vstack([stretch.panels() for stretch in [*others, last]])
     struck = [(landing.gained, landing.work) for landing in landings]
-    yield balance(system, ends, panels, again.follow, struck, bound)
+    passes = int(np.clip(_LOOKS // len(again.stretches), 2, 8))
+    yield balance(system, ends, panels, again.follow, struck, bound, passes)
 
 
 def _before(start: State, at: Samples) -> Samples:
