@@ -9,6 +9,7 @@ import numpy as np
 
 from ..mechanics.system import RollingSystem
 from ..solve.samples import SLIPPING, Samples
+from ..solve.touch import moment
 from .bounds import Array, pace_of
 from .law import WINDOWS, window_times
 
@@ -18,6 +19,7 @@ _PHASE_A_PANEL = 1.5  # rad of the fastest rotation
 _WIDE = 16  # how many of these a panel holds at first
 _MOST_PANELS = 8000
 _QUARTERINGS = 11
+_FIRST = 2e-6  # of the time in which a motion changes: twice what the first moment of slip takes
 _ASIDE = 1e-6  # of a stretch, at its ends, over which the energy is not balanced
 
 
@@ -33,12 +35,15 @@ class Stretch:
         The fastest rate in it, 1/s.
     slips : bool
         Whether the body slips in it.
+    settling : float
+        How long its first moment lasts, in which slip may begin, s.
     """
 
     begin: float
     end: float
     pace: float
     slips: bool = False
+    settling: float = 0.0
 
     @property
     def length(self) -> float:
@@ -59,7 +64,8 @@ class Stretch:
         """
         count = int(np.clip(np.ceil(self.length * self.pace / (_WIDE * _PHASE_A_PANEL)), 1, _MOST_PANELS))
         # In a run followed anew an event may lie a little sooner or later.
-        begin, end = self.begin + _ASIDE * self.length, self.end - _ASIDE * self.length
+        aside = min(max(_ASIDE * self.length, self.settling), 0.25 * self.length)
+        begin, end = self.begin + aside, self.end - _ASIDE * self.length
         edges = np.linspace(begin, end, count + 1)
         if self.slips:  # closer and closer towards both ends, where the slip turns fast
             nearer = (end - begin) * 0.25 ** np.arange(1, _QUARTERINGS)
@@ -97,6 +103,7 @@ def stretches(system: RollingSystem, begin: float, samples: Samples) -> list[Str
     [True]
     """
     end = float(samples.time[-1])
+    settling = {event.time: _FIRST * moment(system, event.after) for event in samples.events if event.after is not None}
     edges = [begin, *(event.time for event in samples.events if begin < event.time < end), end]
     found = []
     for first, last in itertools.pairwise(edges):
@@ -106,5 +113,6 @@ def stretches(system: RollingSystem, begin: float, samples: Samples) -> list[Str
         part = samples.part(inside) if inside.size > 2 else samples
         pace = pace_of(system, part) + 1 / (last - first)
         slips = bool((part.phase == SLIPPING).any())
-        found.append(Stretch(first, last, pace + (_TURNS / (last - first) if slips else 0.0), slips))
+        pace += _TURNS / (last - first) if slips else 0.0
+        found.append(Stretch(first, last, pace, slips, settling.get(first, 0.0)))
     return found
