@@ -62,6 +62,7 @@ class Next:
     numbers: list[float]
     extras: tuple[float, ...] = ()
     events: tuple[Event, ...] = ()
+    across: Next | None = None  # by which the body moves until this begins, where something happened before
 
     @staticmethod
     def of(law: Law, at: Touch, extras: tuple[float, ...] = (), events: tuple[Event, ...] = ()) -> Next:
@@ -357,7 +358,8 @@ def _rolling(system: RollingSystem, at: Touch, *, slips: bool = False) -> Next:
             raise jammed(state.time)
         if isinstance(begun, Touch):
             return _rolling(system, begun)
-        return _slipping(system, begun.at, begun.law, begun.direction, begun.ending)
+        follows = _slipping(system, begun.at, begun.law, begun.direction, begun.ending)
+        return replace(follows, across=Next.of(RollingLaw(), at))
     law = RollingWithResistance if any(load.stops for load in system.loads) else RollingLaw
     ending: tuple[float, ...] = ()
     if law.ending:

@@ -10,7 +10,7 @@ from ..errors import SolverError
 from ..mechanics.algebra import E_X, E_Y, E_Z, ZERO, Matrix, Vector
 from ..mechanics.creep import SlipRates, slip_rates
 from ..mechanics.onset import onset
-from ..mechanics.slipping import response
+from ..mechanics.slipping import Response, response
 from ..mechanics.system import RollingSystem
 from .creeping import SETTLES_FAST, CreepingLaw, against
 from .laws import RollingLaw, SlippingLaw
@@ -147,14 +147,19 @@ def _holds(system: RollingSystem, at: Touch) -> bool:
 
 
 def _pushed(system: RollingSystem, at: Touch, slip: Vector) -> Touch:
-    """Return the body after the impulse at the contact that makes it slip so."""
-    J = system.body.inertia_in_space(at.orientation.matrix())
-    P = Matrix(*(response(system, at.contact, J, e).slip for e in (E_X, E_Y, E_Z))).transpose.solve(slip)
-    own = at.state.support
-    if system.support.motion.free:
-        own = (
-            *own[:-1],
-            own[-1] - float(at.contact.support.lever(at.contact.point).dot(P) / system.support.motion.inertia),
-        )
-    moved = at.moving(system, at.V + P / system.body.mass, at.Omega + J.solve(at.contact.offset.cross(P)), own)
+    """Return the body after the impulse at the contact that makes it slip so, with the couple that comes with N."""
+    J, state, contact = system.body.inertia_in_space(at.orientation.matrix()), at.state, at.contact
+    moving = contact.body_motion(system.body.mass, state.time, at.V, at.orientation, at.Omega)
+    acting = system.acting_on(moving)
+    couple = acting.couple if acting.has_couple else ZERO
+
+    def answer(push: Vector) -> Response:
+        return response(system, contact, J, push, couple * push.dot(contact.normal))
+
+    P = Matrix(*(answer(e).slip for e in (E_X, E_Y, E_Z))).transpose.solve(slip)
+    own, motion, support = state.support, system.support.motion, contact.support
+    if motion.free:
+        moment = support.lever(contact.point).dot(P) + support.axle.dot(couple) * P.dot(contact.normal)
+        own = (*own[:-1], own[-1] - float(moment / motion.inertia))
+    moved = at.moving(system, at.V + P / system.body.mass, at.Omega + answer(P).angular_velocity, own)
     return replace(moved, slip=slip)  # smaller than a rounding of V and Ω

@@ -186,6 +186,9 @@ class _Record:
 
 def _across(system: RollingSystem, law: Law, stop: Stop, follows: Next, left: Array, record: _Record) -> Array:
     """Add the samples in the short step across an event, and return the times after it."""
+    if follows.across is not None:  # something struck, or slip ended, before slip begins
+        left = _across(system, law, stop, follows.across, left, record)
+        law, stop = follows.across.law, Stop(follows.across.time, "", np.array(follows.across.numbers))
     early, left = cut(left, follows.time)
     if early.size:
         steps = [law.advanced(system, stop.time, stop.numbers.tolist(), t - stop.time) for t in early.tolist()]
@@ -264,8 +267,6 @@ def cut(times: Array, end: float) -> tuple[Array, Array]:
 
     Parameters
     ----------
-    stop : Stop
-        Where it ended.
     times : array (n,)
         Ascending, s.
     end : float

@@ -30,6 +30,7 @@ from .plane import reactions, straightness
 
 _MOST_SAMPLES = 20_000  # looked at for integrals
 _EVENTS_TOLD = 4
+_SINGULAR, _SHORT_OF_THE_END = ("curved", "edge"), 1e-3  # of its last stretch
 _MEANWHILE = {"rolling": "while it rolls", "slipping": "while it slips", "flight": "in flight"}
 _FITTED, _CIRCLES_FITTED = 2000, 20  # points and, where they are taken anew, circles
 
@@ -119,10 +120,14 @@ def _balance(again: Again, landings: list[Landing], bound: float) -> Iterator[Ca
     plain = kept and not any(not event.final for event in at.events)
     if plain or not again.can_be_followed:
         return
-    ends = again.places(np.array([again.start.time, at.time[-1]]))
+    *others, last = again.stretches
+    if at.events and at.events[-1].kind in _SINGULAR:  # there a rounding of the place is no longer one of the energy
+        last = replace(last, end=last.end - _SHORT_OF_THE_END * last.length)
+    ends = again.follow(np.array([again.start.time, last.end]))
     ends = Samples.joined([_before(again.start, ends.part(slice(0, 1))), ends.part(slice(1, 2))])
-    panels = np.vstack([stretch.panels() for stretch in again.stretches])
-    yield balance(system, ends, panels, again.follow, sum(landing.work for landing in landings), bound)
+    panels = np.vstack([stretch.panels() for stretch in [*others, last]])
+    struck = [(landing.gained, landing.work) for landing in landings]
+    yield balance(system, ends, panels, again.follow, struck, bound)
 
 
 def _before(start: State, at: Samples) -> Samples:

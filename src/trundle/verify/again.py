@@ -15,11 +15,13 @@ from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
 from .bounds import EXACT, SOLVER, Array
 from .card import CardFigure, checked
 from .events import instants_of
-from .law import Residuals, residuals
+from .law import Residuals, narrowed, residuals, roughness
 from .stretches import Stretch, stretches
 
 _RUN_AGAIN = 2000  # samples
 _MOST_STRETCHES = 200  # looked at
+_NARROWINGS = 6  # of windows in which the motion changes faster than its samples show
+_SMOOTH = 0.1  # of the bound: of what a polynomial may leave of a slope
 _SHORTEST = 1e-9  # of what the clock shows: in less, instants have too few digits
 
 
@@ -60,21 +62,46 @@ class Again:
     @cached_property
     def windows(self) -> Array:
         """Instants of short windows, spread over the stretches that are long enough to have slopes."""
+        return self._followed[0]
+
+    @cached_property
+    def _first_windows(self) -> Array:
         total = sum(stretch.length for stretch in self.stretches)
         least = _SHORTEST * max(abs(self.start.time), abs(float(self.at.time[-1])))
         long = [stretch for stretch in self.stretches if stretch.length > least] or self.stretches
         return np.vstack([stretch.windows(stretch.length / total) for stretch in long[:_MOST_STRETCHES]])
 
     @cached_property
+    def _followed(self) -> tuple[Array, Samples]:
+        """The windows, each so narrow that a polynomial follows the motion through it, and the second run."""
+        windows = best = self._first_windows
+        found = self._solve(windows)
+        least = rest = roughness(_at(found, windows.ravel()), windows)
+        for _ in range(_NARROWINGS):
+            rough = rest > _SMOOTH * self.bound
+            if not rough.any():
+                break
+            windows = np.where(rough[:, None], narrowed(windows), windows)
+            found = self._solve(windows)
+            rest = np.where(rough, roughness(_at(found, windows.ravel()), windows), rest)
+            best = np.where((rest < least)[:, None], windows, best)  # elsewhere it is rounding that is rough
+            least = np.minimum(rest, least)
+        return best, found if (best == windows).all() else self._solve(best)
+
+    @cached_property
     def sampled(self) -> Samples:
         """The samples that are compared with the second run."""
         return self.at.part(slice(None, None, max(1, self.at.time.size // _RUN_AGAIN)))
 
-    @cached_property
+    @property
     def samples(self) -> Samples:
         """The second run: at the windows, the samples, both ends and the events."""
+        return self._followed[1]
+
+    def _solve(self, windows: Array) -> Samples:
+        """Run the method at these windows, the samples, both ends and the events."""
         ends = np.array([self.start.time, self.at.time[-1]])
-        times = np.concatenate([self.windows.ravel(), self.sampled.time, ends])
+        times = np.concatenate([windows.ravel(), self.sampled.time, ends])
         events = self.at.events
         for _ in range(2):  # elsewhere than where the run was made an event may lie a rounding aside
             now = np.unique(np.concatenate([times, instants_of(events, self.start.time)]))
@@ -86,8 +113,7 @@ class Again:
 
     def places(self, wanted: Array) -> Samples:
         """Return the second run at some of its instants; the last one for what a run's end left out."""
-        times = self.samples.time
-        return self.samples.part(np.minimum(np.searchsorted(times, wanted), times.size - 1))
+        return _at(self.samples, wanted)
 
     def follow(self, times: Array) -> Samples:
         """Follow the run to other instants, ascending, s."""
@@ -130,3 +156,8 @@ class Again:
     def can_be_followed(self) -> bool:
         """Whether its stretches are few and slow enough for a quadrature over all of it."""
         return len(self.stretches) <= _MOST_STRETCHES and all(stretch.resolved for stretch in self.stretches)
+
+
+def _at(samples: Samples, wanted: Array) -> Samples:
+    """Return some of the instants of a run; the last one for what its end left out."""
+    return samples.part(np.minimum(np.searchsorted(samples.time, wanted), samples.time.size - 1))

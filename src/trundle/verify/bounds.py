@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 # The two tolerances of a card, as shares: what rounding may do, and how many times the tolerance asked a method may
 # be off (more after a thousand radians of turning, for what adds up over a run).
 EXACT, SOLVER = 1e-12, 1e3
+A_STEP = 10.0  # times its tolerance that a method may err in a step
 
 
 def bound_of(method: Method, turned: float = 1.0) -> float:

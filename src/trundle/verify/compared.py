@@ -162,9 +162,7 @@ class Compared:
     @cached_property
     def growth(self) -> Growth:
         """What the motion does to a small difference; worked out only where the plain bound does not hold."""
-        return growth(
-            self.system, self.start, self.ours, self.method, lambda one, two: _difference(one, two, self.sizes)
-        )
+        return growth(self.system, self.start, self.ours, self.method, self.sizes)
 
     @cached_property
     def _shifts(self) -> Array:

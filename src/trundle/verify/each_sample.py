@@ -20,6 +20,7 @@ from .bounds import EXACT, Array, largest, speed_of
 from .card import CardFigure, checked
 
 _WORTH_TELLING = 1e-3  # of its bound
+_ROUNDING = 1e-15  # of a place: a few roundings
 _STEP = 1e-6  # of a length, for the slope of the level function
 
 
@@ -175,9 +176,12 @@ class EachSample:
         speed, force = max(speed_of(self.system, at), 1e-300), max(largest(at.contact_force), 1e-300)
         yield Shares("|q| = 1", np.abs(np.linalg.norm(at.orientation, axis=1) - 1), EXACT)
         held = (phase == ROLLING) | (phase == RESTING)
-        yield Shares("no slip", np.linalg.norm(s, axis=1) * held / speed, self.bound)
+        # ρ is the small difference of two places, which may be far out.
+        turning = np.linalg.norm(at.angular_velocity, axis=1)
+        sharp = self.bound + _ROUNDING * (largest(at.contact) + largest(at.position)) * turning / speed
+        yield Shares("no slip", np.linalg.norm(s, axis=1) * held / speed, sharp)
         off = np.abs((s * self.normals).sum(axis=1)) * (phase == SLIPPING)
-        yield Shares("slips along the support", off / speed, self.bound)
+        yield Shares("slips along the support", off / speed, sharp)
         yield Shares("no force in flight", np.linalg.norm(at.contact_force, axis=1) * self.flies / force, EXACT)
         turning = at.angular_velocity - np.broadcast_to(
             at.support(self.system).angular_velocity.array(), at.position.shape

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,13 +12,15 @@ from ..mechanics.algebra import Vector
 from ..mechanics.loads import BodyMotion, Load
 from ..mechanics.system import RollingSystem
 from ..solve.samples import FLIGHT, Samples
-from .bounds import Array
+from .bounds import Array, speed_of
 from .card import CardFigure, checked
 
 _NODES = 16  # of Gauss and Legendre in each panel
 _PARTS = 4  # into which a panel is cut where its power is rough
 _MOST_PASSES = 8
-_MOST_ROUGH = 5000  # panels: so many at once are rough from rounding, which no cut makes less
+_TAIL = 1e-2  # share of what may be left over that the quadrature may leave
+_ROUNDING = 1e-14  # of a power, that no cutting makes smaller
+_STIRRED = 1e-9  # share of the speeds at the contact, of which a body's own may be the small difference
 
 
 def energy(system: RollingSystem, at: Samples) -> Array:
@@ -96,25 +99,32 @@ def _powers(system: RollingSystem, at: Samples) -> Array:
     return np.stack([np.broadcast_to(np.asarray(power, dtype=float), at.time.shape) for power in both])
 
 
-def _integrals(system: RollingSystem, panels: Array, follow: Callable[[Array], Samples]) -> tuple[Array, float]:
-    """Return the work of each kind (3,) and its size, J; panels are cut until a polynomial follows the powers."""
-    x, w = np.polynomial.legendre.leggauss(_NODES)
-    tops = np.polynomial.legendre.legvander(x, _NODES - 1)[:, -2:] * w[:, None] * (_NODES - 1)
-    total, size = np.zeros(3), 0.0
-    for last in [False] * _MOST_PASSES + [True]:
+@dataclass(frozen=True)
+class _Account:
+    """What came of panels, each of them followed once: gains of energy, works of three kinds, and how large they were.
+
+    A second look follows another run, which after many bounces is another motion: nothing is compared across looks.
+    """
+
+    gained: Array  # (panels,) J
+    works: Array  # (3, panels)
+    tails: Array  # (panels,) J, that a polynomial does not follow
+    sizes: Array  # (panels,) J
+    most: float  # of the energy, J
+
+    @staticmethod
+    def of(system: RollingSystem, panels: Array, follow: Callable[[Array], Samples]) -> _Account:
+        x, w = np.polynomial.legendre.leggauss(_NODES)
+        tops = np.polynomial.legendre.legvander(x, _NODES - 1)[:, -2:] * w[:, None] * (_NODES - 1)
         half = 0.5 * np.diff(panels)
-        times = panels[:, :1] + half * (1 + x)
-        *values, largest = powers(system, follow(times.ravel())).reshape(4, *times.shape)
-        parts, sizes = (np.array(values) @ w) * half[:, 0], (largest @ w) * half[:, 0]
+        times = np.hstack([panels[:, :1], panels[:, :1] + half * (1 + x), panels[:, 1:]])
+        order = np.argsort(times, axis=None, kind="stable")
+        there = follow(times.ravel()[order]).part(np.argsort(order))
+        E = energy(system, there).reshape(times.shape)
+        *values, size = powers(system, there).reshape(4, *times.shape)[:, :, 1:-1]
         tails = np.abs(np.array(values) @ tops).max(axis=(0, 2)) * half[:, 0]
-        rough = (tails > 1e-15 * max(size + float(sizes.sum()), 1e-300)) & (not last)
-        rough &= rough.sum() <= _MOST_ROUGH
-        total, size = total + parts[:, ~rough].sum(axis=1), size + float(sizes[~rough].sum())
-        if not rough.any():
-            break
-        edges = panels[rough, :1] + np.diff(panels[rough]) * np.linspace(0.0, 1.0, _PARTS + 1)
-        panels = np.stack([edges[:, :-1].ravel(), edges[:, 1:].ravel()], axis=1)
-    return total, size
+        works = (np.array(values) @ w) * half[:, 0]
+        return _Account(E[:, -1] - E[:, 0], works, tails, (size @ w) * half[:, 0], float(np.abs(E).max()))
 
 
 def balance(
@@ -122,7 +132,7 @@ def balance(
     ends: Samples,
     panels: Array,
     follow: Callable[[Array], Samples],
-    struck: float,
+    landings: Sequence[tuple[float, float]],
     bound: float,
 ) -> CardFigure:
     """Compare what the energy gained over a run with the work done.
@@ -137,8 +147,8 @@ def balance(
         Beginning and end of the panels of a quadrature, none of them across an event, s.
     follow : callable
         Takes ascending instants, returns the run's samples there.
-    struck : float
-        The work of the impulses at its landings, J.
+    landings : sequence of pairs
+        What the energy gained at each landing, and the work of its impulse, J.
     bound : float
         The share that may be left over.
 
@@ -148,10 +158,25 @@ def balance(
         With the parts in its note.
     """
     first, last = energy(system, ends)[[0, -1]]
-    (friction, support, loads), size = _integrals(system, panels, follow)
-    size = max(abs(first), abs(last), abs(struck), size, 1e-300)
+    struck = float(sum(work for _, work in landings))
+    left, total, size = float(sum(gained - work for gained, work in landings)), np.zeros(3), 0.0
+    most = max(abs(first), abs(last), abs(struck), (_STIRRED * speed_of(system, ends)) ** 2 * float(system.body.mass))
+    allowed = np.full(len(panels), 1.0 / len(panels))  # each panel's share of what may be left over
+    for passes_left in reversed(range(_MOST_PASSES)):
+        found = _Account.of(system, panels, follow)
+        most = max(most, found.most)
+        limit = _TAIL * bound * max(most, size + float(found.sizes.sum()), 1e-300)
+        rough = (found.tails > np.maximum(allowed * limit, _ROUNDING * found.sizes)) & (passes_left > 0)
+        left += float((found.gained - found.works.sum(axis=0))[~rough].sum())
+        total, size = total + found.works[:, ~rough].sum(axis=1), size + float(found.sizes[~rough].sum())
+        if not rough.any():
+            break
+        edges = panels[rough, :1] + np.diff(panels[rough]) * np.linspace(0.0, 1.0, _PARTS + 1)
+        panels = np.stack([edges[:, :-1].ravel(), edges[:, 1:].ravel()], axis=1)
+        allowed = np.repeat(allowed[rough] / _PARTS, _PARTS)
+    size = max(most, size, 1e-300)
+    friction, support, loads = total
     parts = {"friction": friction, "the support": support, "loads": loads, "landings": struck}
     said = ", ".join(f"{name} {value:+.6g} J" for name, value in parts.items() if abs(value) > 1e-15 * size)
     note = f"energy {first:.6g} to {last:.6g} J; work of {said}" if said else f"energy stays at {first:.6g} J"
-    left = float(last - first) - float(friction + support + loads + struck)
     return checked("energy balance", abs(left) / size, bound, note)

@@ -17,6 +17,7 @@ from .each_sample import Shares, worst_of
 _SLACK = 1e-8  # by which rolling may pass the cone before it gives way: what `CONE_SLACK` leaves, and rounding
 _LOOKS, _FINER, _MOST_DIPS, _CLOSE = 3, 14, 100, 1e-9  # how often, how finely and at how many dips it looks closer
 _PULLS = 2e-12  # share of the forces at hand by which the support seems to pull: what docs/phases.md leaves to rounding
+_SLOWEST = 1e-9  # of the fastest: a slip that has all but not begun has no direction of its own
 _FIRST = 1e-3  # how far the normal may turn in the first moment of slip
 _TOLD = 1e-2  # sharpness of a direction beyond which nothing is said of it
 
@@ -224,7 +225,7 @@ def friction_law(system: RollingSystem, slipping: Samples, bound: float) -> Card
     s = V + turning - u
     speed, size = np.linalg.norm(s, axis=1), max(largest(slipping.contact_force), 1e-300)
     at_contact = np.linalg.norm([V, turning, u], axis=2).sum(axis=0)
-    sharp = np.where(speed > 0, bound * (1 + at_contact / np.maximum(speed, 1e-300)), np.inf)
+    sharp = np.where(speed > _SLOWEST * at_contact.max(), bound * (1 + at_contact / np.maximum(speed, 1e-300)), np.inf)
     off = np.linalg.norm(f + mu * (N / np.maximum(speed, 1e-300))[:, None] * s, axis=1) / size
     conditions = [
         Shares(

@@ -1,34 +1,34 @@
 """What a motion does to a small difference: runs from starts changed by a known little, each in the phase of the start.
 
 A numerical method errs a little at each step, about one a radian; these errors add up as a random walk, and the motion
-magnifies them. How much, the change of a run from a changed start shows, divided by that change: its linear response.
-Where that response is no longer small, two honest runs may be anywhere, and no comparison says anything.
+magnifies them. How much, the runs from starts changed in every way show, divided by the change: their linear response.
+As they are all that can change, they say of an error made at any later instant, too, what becomes of it: it is at that
+instant a sum of theirs, and so it is ever after. Where the response is no longer small, two honest runs may be
+anywhere, and no comparison says anything.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import SolverError
-from ..mechanics.algebra import E_X, E_Z, Quaternion, Vector
-from ..mechanics.contact import Contact, settle
-from ..mechanics.placing import SLIP_TOLERANCE
+from ..mechanics.algebra import Quaternion
 from ..mechanics.system import RollingSystem, State
 from ..solve.methods import Method
-from ..solve.samples import Event, Samples
-from .bounds import SOLVER, Array, largest
+from ..solve.samples import FLIGHT, Event, Samples
+from .bounds import A_STEP, SOLVER, Array, largest
+from .nudging import nudged
 
 MOST = 1e-2  # of the size of a quantity: beyond it nothing is told
 _NUDGE = 1e-10  # of the largest Ω: small beside a motion that magnifies it a millionfold, large beside rounding
 _OVER_TOLERANCE = 100.0  # and so many times the method's tolerance
 _MOST_NUDGE = 1e-4
-_A_STEP = 10.0  # times its tolerance that a method may err in a step
-_FLOOR = 1e-4  # of the change: of less, rounding is part
+_FLOOR = 1e-4  # of the largest change: of less, rounding is part
 _INSTANTS = 200
 
 
@@ -56,7 +56,7 @@ class Growth:
 
     def widened(self, bound: float, turned: float, magnified: Array) -> Array:
         """Return a bound by what the motion makes of a method's errors in so many radians."""
-        return np.minimum(MOST, bound * np.maximum(1.0, _A_STEP * magnified * np.sqrt(max(turned, 1.0)) / SOLVER))
+        return np.minimum(MOST, bound * np.maximum(1.0, A_STEP * magnified * np.sqrt(max(turned, 1.0)) / SOLVER))
 
     def at(self, times: Array) -> Array:
         """Return how many times larger a change shows by then."""
@@ -129,10 +129,8 @@ def same_events(ours: tuple[Event, ...], theirs: tuple[Event, ...]) -> int:
     return count
 
 
-def growth(
-    system: RollingSystem, start: State, at: Samples, method: Method, difference: Callable[[Samples, Samples], Array]
-) -> Growth:
-    """Return what a motion does to a small change of its start.
+def growth(system: RollingSystem, start: State, at: Samples, method: Method, sizes: dict[str, float]) -> Growth:
+    """Return what a motion does to a small change of its state, at its start or at any instant since.
 
     Parameters
     ----------
@@ -144,37 +142,105 @@ def growth(
         Of the run: its times and how fast it turns.
     method : Method
         Follows the changed starts.
-    difference : callable
-        Takes two runs at the same times, returns their difference as a share of the sizes, (n,).
+    sizes : dict
+        Against what a difference of each quantity is small or not.
 
     Returns
     -------
     Growth
-        The most that any of the changes shows.
+        The most that any change shows.
     """
     method = numerical(method)
     times = np.union1d(at.time[:: max(1, at.time.size // _INSTANTS)], at.time[-1:])
     span = max(float(times[-1] - start.time), 1e-300)
     share = min(max(_NUDGE, _OVER_TOLERANCE * method.tolerance), _MOST_NUDGE)
     change = share * max(largest(at.angular_velocity), 1 / span)
-    first, others = method.solve(system, start, times), []
-    for begin in nudged(system, start, change):
+    first, starts, others = method.solve(system, start, times), [], []
+    for begin in nudged(system, start, change, share, share * sizes["position"]):
         with suppress(SolverError):  # a changed start may come to where no law goes on
             others.append(method.solve(system, begin, times))
-    until, found, shifted = float(times[-1]), np.zeros(times.size), np.zeros(len(first.events))
-    for other in others:
-        one, changed = at_the_same_times(first, other)
-        where = np.minimum(np.searchsorted(times, one.time), times.size - 1)
-        # Of a change in a direction between those tried, no more shows than their squares add up to.
-        found[where] = np.hypot(found[where], np.where(alike(one, changed), difference(one, changed), 0.0))
-        for i in range(same_events(first.events, other.events)):
-            shifted[i] = np.hypot(shifted[i], (first.events[i].time - other.events[i].time) / span)
-        until = min(until, parted(first, other))
-    nonlinear = times[found > MOST]
+            starts.append(begin)
+    until = min([float(times[-1]), *(parted(first, other) for other in others)])
+    count = min([len(first.events), *(same_events(first.events, other.events) for other in others)])
+    end, times = times[-1], reduce(np.intersect1d, (other.time for other in others), times)
+    if not others or not times.size:
+        return Growth(times, np.zeros(times.size), np.zeros(0), until)
+    pairs = [at_the_same_times(first.part(np.isin(first.time, times)), other) for other in others]
+    told = np.all([alike(*pair) for pair in pairs], axis=0)
+    if times[-1] < end <= until:  # where some of them have ended already
+        lasts = _lasts(system, method, end, [(start, first), *zip(starts, others, strict=True)])
+        pairs = [
+            (Samples.joined([one, its_last]), Samples.joined([other, other_last]))
+            for (one, other), (its_last, other_last) in zip(pairs, lasts, strict=True)
+        ]
+        times, told = np.append(times, end), np.append(told, True)
+    state, shown = _responses(system, pairs, sizes)
+    nonlinear = times[told & (np.linalg.norm(shown, axis=2).max(axis=(1, 2)) > MOST)]
     until = min(until, float(nonlinear[0])) if nonlinear.size else until
-    # An error is made at any instant: what counts is the growth since the response was least.
-    least = np.minimum.accumulate(np.clip(found / share, _FLOOR, 1.0))
-    return Growth(times, np.maximum.accumulate(found / share / least), shifted / share, until)
+    lags = np.array([[other.events[i].time - first.events[i].time for other in others] for i in range(count)]) / span
+    at_events = np.array([event.time for event in first.events[:count]])
+    magnified, shifted = np.zeros(times.size), np.zeros(count)
+    for i in np.flatnonzero(told & (times <= until)):  # of an error made then, what shows at each instant since
+        back = _back(state[i])
+        later = np.linalg.norm(shown[i:] @ back, axis=(2, 3)).max(axis=1)
+        magnified[i:] = np.maximum(magnified[i:], later * told[i:])
+        if count:
+            shifted = np.maximum(shifted, np.linalg.norm(lags @ back, axis=1) * (at_events >= times[i]))
+    return Growth(times, np.maximum.accumulate(magnified), shifted, until)
+
+
+def _lasts(
+    system: RollingSystem, method: Method, end: float, runs: list[tuple[State, Samples]]
+) -> list[tuple[Samples, Samples]]:
+    """Return the first run and each of the others at the last instant that both have."""
+    ends = [min([end, *(event.time for event in run.events if event.final)]) for _, run in runs]
+    times = np.minimum(ends[0], ends[1:])
+    firsts = method.solve(system, runs[0][0], np.unique(times))
+    return [
+        (firsts.part(np.searchsorted(firsts.time, [time])), method.solve(system, start, np.array([time])))
+        for time, (start, _) in zip(times, runs[1:], strict=True)
+    ]
+
+
+def _responses(
+    system: RollingSystem, pairs: list[tuple[Samples, Samples]], sizes: dict[str, float]
+) -> tuple[Array, Array]:
+    """Return how changed runs differ, as shares.
+
+    First in what a method follows (n, rows, runs), then in each quantity that is compared (n, fields, 3, runs).
+    """
+
+    def apart(field: str) -> Array:
+        return np.stack([getattr(other, field) - getattr(one, field) for one, other in pairs], axis=-1)
+
+    turns = np.stack([_turned(*pair) for pair in pairs], axis=-1)
+    fields = {field: apart(field) / max(size, 1e-300) for field, size in sizes.items()}
+    own = apart("own") / np.maximum(np.abs(pairs[0][0].own).max(axis=0, initial=0.0), 1e-300)[:, None]
+    moving = np.stack([_followed(system, other) - _followed(system, one) for one, other in pairs], axis=-1)
+    followed = [fields["position"], moving / max(sizes["velocity"], 1e-300), fields["angular_velocity"]]
+    return np.concatenate([*followed, turns, own], axis=1), np.stack([*fields.values(), turns], axis=1)
+
+
+def _followed(system: RollingSystem, at: Samples) -> Array:
+    """Return V in flight, else the slip: of what touches, V follows from Ω, and may be less sharp."""
+    V, turning, u = (np.broadcast_to(v.array(), at.position.shape) for v in at.speeds(system))
+    return np.where((at.phase == FLIGHT)[:, None], V, V + turning - u)
+
+
+def _turned(ours: Samples, theirs: Samples) -> Array:
+    """Return by what small rotation the orientations of two runs differ, rad."""
+    apart = Quaternion.of(theirs.orientation) * Quaternion.of(ours.orientation).conjugate
+    w, *vector = apart.array().T
+    return 2 * np.sign(w)[:, None] * np.stack(vector, axis=1)
+
+
+def _back(state: Array) -> Array:
+    """Return which combination of the changed starts shows at an instant as a given change of the state (runs, rows).
+
+    What the motion has made too small beside the largest, of which rounding is part, is not divided by less.
+    """
+    U, S, V = np.linalg.svd(state, full_matrices=False)
+    return np.asarray((V.T / np.maximum(S, _FLOOR * S[0] + 1e-300)) @ U.T)
 
 
 def numerical(method: Method) -> Method:
@@ -213,71 +279,3 @@ def parted(ours: Samples, theirs: Samples) -> float:
     end = float(max(ours.time[-1], theirs.time[-1]))
     near = 1e-6 * (end - float(min(ours.time[0], theirs.time[0])))
     return min((time for time in rest if time < end - near), default=float("inf"))
-
-
-def nudged(system: RollingSystem, start: State, change: float) -> list[State]:
-    """Return starts that move a little differently, in the phase in which the start finds itself.
-
-    A body that rolls, rolls differently; one that slips, turns and slips differently along the support; one that flies,
-    or is about to strike, turns and moves differently. A cylinder changes only what keeps it straight.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        What moves.
-    start : State
-        Touching the support or over it.
-    change : float
-        Of Ω, rad/s; of V as much times |ρ|.
-
-    Returns
-    -------
-    list of State
-        One for each way in which a body can turn.
-
-    Examples
-    --------
-    What slips backwards goes on slipping so:
-
-    >>> import trundle as tr
-    >>> cloth = tr.Support(tr.Plane(), friction=0.2)
-    >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.0286, 0.17), cloth)
-    >>> start = system.place(velocity=(2.0, 0.3), angular_velocity=(5.0, -60.0, 20.0))
-    >>> max(abs(state.velocity[0] - 2.0) for state in nudged(system, start, 1e-8)) < 1e-9
-    True
-    """
-    q, V, Omega = Quaternion(*start.orientation), Vector(*start.velocity), Vector(*start.angular_velocity)
-    contact = settle(system, start.time, Vector(*start.position), q, start.support)
-    n, axis = contact.normal, system.body.shape.axis
-    first = n.cross(E_X if abs(n.x) < 0.9 else E_Z)
-    first = first / first.norm()
-    along = first if axis is None else n.cross(q.matrix() @ axis)
-    turns = (first, n.cross(first), n) if axis is None else (q.matrix() @ axis,)
-    found = []
-    for i, way in enumerate(turns):
-        aside = (along, n.cross(along), along + n.cross(along))[i] if axis is None else along
-        moved = _speed(system, start, contact, V, Omega, Omega + way * change, aside * (change * contact.offset.norm()))
-        found.append(replace(start, velocity=_floats(moved), angular_velocity=_floats(Omega + way * change)))
-    return found
-
-
-def _speed(
-    system: RollingSystem, start: State, contact: Contact, V: Vector, was: Vector, now: Vector, aside: Vector
-) -> Vector:
-    """Return V for a changed Ω in the phase of a start."""
-    slip, gap = contact.slip_velocity(V, was), Vector(*start.position) + contact.offset - contact.point
-    off, over = float(slip.dot(contact.normal)), float(gap.dot(contact.normal))
-    speed = max(float(part.norm()) for part in (V, was.cross(contact.offset), V - slip))
-    flies = over > SLIP_TOLERANCE * contact.offset.norm() or abs(off) > SLIP_TOLERANCE * speed
-    if flies:  # its height may change at another rate, too
-        return V + aside + contact.normal * aside.norm()
-    slides = float((slip - contact.normal * off).norm()) > SLIP_TOLERANCE * speed
-    keeps = slip + aside if slides and system.support.friction is not None else None
-    return contact.rolling_velocity(now) + (
-        keeps - contact.normal * off if keeps is not None else Vector(0.0, 0.0, 0.0)
-    )
-
-
-def _floats(v: Vector) -> tuple[float, float, float]:
-    x, y, z = map(float, v)
-    return x, y, z

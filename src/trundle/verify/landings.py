@@ -117,7 +117,7 @@ class Landing:
         V, Omega = _speeds(self.before)
         carried = _cross(Omega, self.rho)
         u = V + carried - self.comes
-        return float(max(np.linalg.norm(v) for v in (V, carried, u)))
+        return max(*(float(np.linalg.norm(v)) for v in (V, carried, u)), 1e-300)
 
     @cached_property
     def course(self) -> Course:
@@ -205,6 +205,13 @@ class Landing:
         mean = 0.5 * (self.point_velocity(*before) + self.point_velocity(*struck))
         cut = 0.5 * float(self.system.body.mass) * float((after[0] - struck[0]) @ (after[0] + struck[0]))
         return float(self.wanted @ mean) + cut
+
+    @property
+    def gained(self) -> float:
+        """What the body's energy gained, J."""
+        (V, Omega), (V_after, Omega_after) = _speeds(self.before), _speeds(self.after)
+        moved = float(self.system.body.mass) * float((V_after + V) @ (V_after - V))
+        return 0.5 * (moved + float((Omega_after + Omega) @ self.J @ (Omega_after - Omega)))
 
     def one_impulse(self) -> Iterator[tuple[str, float, float]]:
         """Yield what must hold of any impulse at the contact: name, share, and how much it may be."""

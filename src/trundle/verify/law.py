@@ -65,6 +65,58 @@ def window_times(begin: float, end: float, fastest: float) -> Array:
     return np.clip(middles[:, None] + nodes * (width / 2), begin, end)
 
 
+def narrowed(times: Array) -> Array:
+    """Return windows a quarter as wide about the same middles.
+
+    Parameters
+    ----------
+    times : array (windows, nodes)
+        As `window_times` returns them.
+
+    Returns
+    -------
+    array (windows, nodes)
+        s.
+
+    Examples
+    --------
+    >>> narrowed(window_times(0.0, 10.0, 1.0)).shape
+    (24, 13)
+    """
+    middles = times[:, _HALF_NODES, None]
+    return np.clip(middles + 0.25 * (times - middles), times[:, :1], times[:, -1:])
+
+
+def roughness(windows: Samples, times: Array) -> Array:
+    """Return what the last Chebyshev coefficients of V and Ω in each window are to their slopes, as shares.
+
+    Parameters
+    ----------
+    windows : Samples
+        The trajectory at `times.ravel()`.
+    times : array (windows, nodes)
+        As `window_times` returns them.
+
+    Returns
+    -------
+    array (windows,)
+        About what a polynomial leaves of a slope; nothing where the clock resolves no narrower window.
+    """
+    nodes = times.shape[1]
+    weights = np.ones(nodes)
+    weights[[0, -1]] = 0.5
+    last = np.cos(np.pi * np.outer([nodes - 2, nodes - 1], np.arange(nodes)) / (nodes - 1)) * weights / (nodes - 1)
+    half, turning = (times[:, -1] - times[:, 0]) / 2, largest(windows.angular_velocity)
+    found = np.zeros(len(times))
+    for values in (windows.velocity, windows.angular_velocity):
+        of_each = values.reshape(*times.shape, 3)
+        tails = np.abs(np.einsum("kn,wnc->wkc", last, of_each)).max(axis=(1, 2))
+        slope = largest(_slope_at_middle(times, of_each)) + turning * largest(values)
+        found = np.maximum(found, tails * nodes / half / max(slope, 1e-300))
+    wide = times[:, -1] - times[:, 0] > 4 * _NARROWEST * np.abs(times).max()
+    return np.where(wide, found, 0.0)
+
+
 def _slope_at_middle(times: Array, values: Array) -> Array:
     """Return dy/dt at the middle of each window, for the polynomial through its nodes; values (windows, nodes, ...).
 
@@ -107,9 +159,10 @@ def residuals(system: RollingSystem, windows: Samples, times: Array, bound: floa
     """
     nodes = times.shape[1]
     phases = windows.phase[_HALF_NODES::nodes]
+    widths = np.round(np.log2(times[:, -1] - times[:, 0]))  # a slope is as sharp as its own window is wide
     found = []
-    for phase in np.unique(phases):
-        which = np.flatnonzero(phases == phase)
+    for phase, width in np.unique(np.stack([phases, widths], axis=1), axis=0):
+        which = np.flatnonzero((phases == phase) & (widths == width))
         index = (which[:, None] * nodes + np.arange(nodes)).ravel()
         found.append(_Windows(system, windows.part(index), times[which], int(phase), bound).residuals())
     return Residuals(*(max(getattr(part, field.name) for part in found) for field in fields(Residuals)))

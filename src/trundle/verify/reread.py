@@ -92,8 +92,9 @@ def _check_begin(system: RollingSystem, start: State, at: Samples) -> None:
     """Refuse samples that do not begin with the start, unless something struck at once."""
     if at.time[0] != start.time or any(event.time <= start.time for event in at.events):
         return
-    sizes = sizes_of(system, at)
-    for name, size in {**sizes, "orientation": 1.0}.items():
+    sizes = {**sizes_of(system, at), "orientation": 1.0}
+    for name in ("position", "velocity", "angular_velocity", "orientation"):
+        size = sizes[name]
         wanted = np.asarray(getattr(start, name), dtype=float)
         off = float(np.abs(getattr(at, name)[0] - wanted).max())
         if not off <= EXACT * max(size, float(np.abs(wanted).max()), 1e-300):

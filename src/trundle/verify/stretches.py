@@ -17,7 +17,8 @@ _TURNS = 20.0  # by so many radians, at most, slip turns over what is left of a 
 _PHASE_A_PANEL = 1.5  # rad of the fastest rotation
 _WIDE = 16  # how many of these a panel holds at first
 _MOST_PANELS = 8000
-_HALVINGS = 40
+_QUARTERINGS = 11
+_ASIDE = 1e-6  # of a stretch, at its ends, over which the energy is not balanced
 
 
 @dataclass(frozen=True)
@@ -57,10 +58,12 @@ class Stretch:
         Of a ball's own turning its power mostly knows nothing, so they are wide; what is rough in them is cut.
         """
         count = int(np.clip(np.ceil(self.length * self.pace / (_WIDE * _PHASE_A_PANEL)), 1, _MOST_PANELS))
-        edges = np.linspace(self.begin, self.end, count + 1)
+        # In a run followed anew an event may lie a little sooner or later.
+        begin, end = self.begin + _ASIDE * self.length, self.end - _ASIDE * self.length
+        edges = np.linspace(begin, end, count + 1)
         if self.slips:  # closer and closer towards both ends, where the slip turns fast
-            nearer = self.length * 0.5 ** np.arange(1, _HALVINGS)
-            edges = np.unique(np.concatenate([edges, self.begin + nearer, self.end - nearer]))
+            nearer = (end - begin) * 0.25 ** np.arange(1, _QUARTERINGS)
+            edges = np.unique(np.concatenate([edges, begin + nearer, end - nearer]))
         return np.stack([edges[:-1], edges[1:]], axis=1)
 
     @property

@@ -229,10 +229,21 @@ def _pair(system: RollingSystem, at: Record) -> list[Any]:
     return [np.stack(np.broadcast_arrays(*both), axis=-1) for both in zip(spin, turning, strict=True)]
 
 
+def _size(system: RollingSystem, at: Record) -> Any:
+    """Return how large both would be if Ω, of whose components rounding is a share, were along e or n."""
+    import numpy as np
+
+    rim, Omega = rim_of(system.body), at.motion.angular_velocity
+    e = at.motion.orientation.matrix() @ rim.axis  # type: ignore[union-attr]
+    a, b, c, d = (np.abs(entry) for entry in transfer(e.z, rim))  # type: ignore[arg-type]
+    return np.stack([d + b, c + a], axis=-1) * np.asarray(Omega.norm())[..., None]
+
+
 LEGENDRE_PAIR = Invariant(
     "rates when upright (Legendre pair)",
     "Ω·e and Ω·n at e·n = 0, by T10",
     "rad/s",
     lambda system: (ROLLING,) if covers(system) else (),
     _pair,
+    size=_size,
 )
