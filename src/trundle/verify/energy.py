@@ -21,6 +21,7 @@ _MOST_PASSES = 8
 _TAIL = 1e-2  # share of what may be left over that the quadrature may leave
 _ROUNDING = 1e-14  # of a power, that no cutting makes smaller
 _STIRRED = 1e-9  # share of the speeds at the contact, of which a body's own may be the small difference
+_MOST_ROUGH = 5000  # panels: so many at once are rough from rounding, which no cut makes less
 
 
 def energy(system: RollingSystem, at: Samples) -> Array:
@@ -167,6 +168,7 @@ def balance(
         most = max(most, found.most)
         limit = _TAIL * bound * max(most, size + float(found.sizes.sum()), 1e-300)
         rough = (found.tails > np.maximum(allowed * limit, _ROUNDING * found.sizes)) & (passes_left > 0)
+        rough &= rough.sum() <= _MOST_ROUGH
         left += float((found.gained - found.works.sum(axis=0))[~rough].sum())
         total, size = total + found.works[:, ~rough].sum(axis=1), size + float(found.sizes[~rough].sum())
         if not rough.any():
