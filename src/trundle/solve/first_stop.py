@@ -39,7 +39,7 @@ def first_stop(values: Callable[[Any], Any], looks: Sequence[tuple[float, float]
     Examples
     --------
     >>> found = first_stop(lambda t: np.array([np.cos(t), 1.0 + 0.0 * t]), [(1.0, 0.1), (10.0, 0.05)])
-    >>> round(found[0] / (math.pi / 2), 15), found[1]
+    >>> round(found[0] / (np.pi / 2), 15), found[1]
     (1.0, 0)
     """
     edges, steps = np.array([0.0, *(upto for upto, _ in looks)]), np.array([step for _, step in looks])

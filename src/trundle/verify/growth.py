@@ -175,7 +175,9 @@ def growth(system: RollingSystem, start: State, at: Samples, method: Method, siz
         ]
         times, told = np.append(times, end), np.append(told, True)
     state, shown = _responses(system, pairs, sizes)
-    nonlinear = times[told & (np.linalg.norm(shown, axis=2).max(axis=(1, 2)) > MOST)]
+    with np.errstate(over="ignore"):  # beside a motion of 1e-30 m
+        large = np.linalg.norm(shown, axis=2).max(axis=(1, 2)) > MOST
+    nonlinear = times[told & large]
     until = min(until, float(nonlinear[0])) if nonlinear.size else until
     lags = np.array([[other.events[i].time - first.events[i].time for other in others] for i in range(count)]) / span
     at_events = np.array([event.time for event in first.events[:count]])
