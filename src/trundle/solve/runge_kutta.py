@@ -26,6 +26,7 @@ _BLUR = 0.05  # share of a step within which a polynomial through these finds wh
 _SINGULAR = ("curved", "edge", "end", "jam")  # stops at which a law is singular
 _ALL_BUT = 1e-3  # share of what was left of such a stop at first
 _PATIENCE: dict[str, Any] = {"steps": 1e5, "spare": 5e3, "name": "The Runge-Kutta method"}  # minutes, and seconds
+_BRIEF = 3e3  # steps of a law that holds for an instant only
 _FIRST_STEP = 1e-12  # s
 
 
@@ -115,7 +116,7 @@ def _integrated(
             return np.full(len(names), np.nan)
 
     told = None if progress is None else lambda since: progress(begin + since)
-    patience = Patience(begin, begin + end, **_PATIENCE)
+    patience = Patience(begin, begin + end, **_PATIENCE | ({"steps": _BRIEF, "spare": _BRIEF} if law.brief else {}))
     steps = partial(_steps, stops=stops, names=names, begin=begin, patience=patience, progress=told)
     try:
         given: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * _scale(y0)}
