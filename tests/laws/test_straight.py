@@ -135,7 +135,7 @@ def test_what_would_turn_it_aside_later_is_refused_before_it_runs(support: Any, 
         (lambda rate: tr.Support(tr.Plane(), motion=tr.Spin(rate), tilt=0.1), ()),
         (lambda rate: tr.Support(tr.Plane(), motion=tr.Wobble(rate, 0.01)), ()),
         (lambda rate: tr.Support(tr.Cylinder(0.5), motion=tr.Spin(rate), tilt=1.2), ()),
-        (lambda _: tr.Support(tr.Plane()), (tr.Drag(0.1, air_rate=1.0),)),
+        (lambda _: tr.Support(tr.Plane()), (tr.Drag(0.1, air=1.0),)),
     ],
 )
 def test_what_pushes_it_aside_a_little_further_on_is_refused_where_it_is_put_down(
