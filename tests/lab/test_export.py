@@ -137,9 +137,9 @@ def test_a_run_does_not_overwrite_itself(say: Say) -> None:
 
 
 def test_a_missing_or_foreign_file_is_named(say: Say) -> None:
-    assert "does not exist" in say("gone.nc", "scene.glb")[2]
+    assert "must exist" in say("gone.nc", "scene.glb")[2]
     Path("text.nc").write_text("not a run")
-    assert "cannot be read as a NetCDF4 file" in say("text.nc", "scene.glb")[2]
+    assert "must be NetCDF4" in say("text.nc", "scene.glb")[2]
     assert not Path("scene.glb").exists()
 
 

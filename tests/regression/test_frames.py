@@ -169,7 +169,7 @@ def test_a_steady_turn_written_in_other_words_is_seen_the_same() -> None:
     data = Given(tr.Spin(3.0), time).data()
     spin = Given(tr.Spin(3.0), time).seen(data)
     turning = data.assign(support_angle=(("time",), 3.0 * time), support_rate=(("time",), np.full(41, 3.0)))
-    for motion in (tr.SpinBy("3"), tr.FreeAxle(0.1, rate=3.0), tr.Wobble(3.0, 0.0), tr.UnevenSpin(3.0, 0.0, 1.0)):
+    for motion in (tr.SpinBy("3 + 0*t"), tr.FreeAxle(0.1, rate=3.0), tr.Wobble(3.0, 0.0), tr.UnevenSpin(3.0, 0.0, 1.0)):
         seen = Given(motion, time).seen(turning)
         for name in ("position", "velocity", "angular_velocity", "orientation", "contact_force"):
             assert np.allclose(vectors(seen, name), vectors(spin, name), rtol=0, atol=1e-12), (motion, name)

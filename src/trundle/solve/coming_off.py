@@ -8,6 +8,7 @@ from ..mechanics.system import RollingSystem
 from .laws import Law
 
 _AT_HAND = 1e-3  # of the time in which the motion changes
+_CLOSER = 12  # times ten
 _UNASKED = 1e-7  # share of what friction can give when the body is pressed on as usual
 
 
@@ -58,8 +59,10 @@ def lift_at_hand(
 
     at = law.meant(system, time, numbers)
     moment = at.arm / at.scale(system)
-    limit = _AT_HAND * moment
-    now, later = look(0.0)[0], look(limit)[0]
+    now = look(0.0)[0]
+    # From close by outwards: where all forces vanish with N, the motion changes in no time of its own.
+    limits = (_AT_HAND * moment * 0.1**k for k in range(_CLOSER, -1, -1))
+    limit, later = next(((to, N) for to in limits if (N := look(to)[0]) < 0), (0.0, 0.0))
     if not later < 0 or later > now:
         return None
     wait = 0.0 if now <= 0 else float(brentq(lambda wait: look(wait)[0], 0.0, limit, xtol=1e-15 * limit, rtol=1e-15))

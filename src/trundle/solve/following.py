@@ -191,7 +191,7 @@ _NAMES = {
 def _goes_on(system: RollingSystem, at: Touch, numbers: Any, stop: str) -> bool:
     """Tell whether slip or turning was only at its slowest, and did not end."""
     left = np.linalg.norm(numbers[10:13]) if stop == "grip" else state_turning(at.contact, at.Omega).norm() * at.arm
-    return bool(left > 1e2 * at.still(system))
+    return bool(left > 4 * at.still(system))
 
 
 def _extras(system: RollingSystem, at: Touch, slip: Vector | None = None) -> tuple[float, ...]:

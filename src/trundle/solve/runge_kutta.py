@@ -25,7 +25,7 @@ _LOOKS = 8  # at the stops in each step
 _BLUR = 0.05  # share of a step within which a polynomial through these finds where a stop is lowest
 _SINGULAR = ("curved", "edge", "end", "jam")  # stops at which a law is singular
 _ALL_BUT = 1e-3  # share of what was left of such a stop at first
-_PATIENCE: dict[str, Any] = {"steps": 1e5, "spare": 5e3, "name": "The Runge-Kutta method"}  # minutes, and seconds
+_PATIENCE: dict[str, Any] = {"steps": 1e7, "spare": 5e3, "name": "The Runge-Kutta method"}  # an hour, and seconds
 _BRIEF = 3e3  # steps of a law that holds for an instant only
 _FIRST_STEP = 1e-12  # s
 

@@ -113,6 +113,12 @@ class AtEvents:
         return {**sizes, "position": sizes["position"] + self._arm, "orientation": 1.0}
 
     @cached_property
+    def _speed(self) -> float:
+        """The fastest speed, or what the forces make of one within the body's size, m/s."""
+        pull = self._sizes["contact_force"] / float(self.system.body.mass)
+        return float(max(self._sizes["velocity"], np.sqrt(pull * self._arm)))
+
+    @cached_property
     def _arm(self) -> float:
         return largest(self.again.contact - self.again.position)
 
@@ -197,7 +203,7 @@ class AtEvents:
             yield event, "N = 0", self._pulled(phase, float(N), f) / force, _GOES_ON * self.bound
         elif phase == SLIPPING:
             s = each.slip[0]
-            yield event, "s = 0", float(np.linalg.norm(s)) / self._sizes["velocity"], _GOES_ON * self.bound
+            yield event, "s = 0", float(np.linalg.norm(s)) / self._speed, _GOES_ON * self.bound
         elif phase == RESTING and event.kind != "slip":
             couple, N_there = holding(self.system, at)
             most = sum(float(load.offset) for load in self.system.loads if load.stops) * float(N_there[0])

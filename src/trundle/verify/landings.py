@@ -129,8 +129,10 @@ class Landing:
         support, axes = self.system.support, self._axes
         coefficient = support.friction if support.kinetic_friction is None else support.kinetic_friction
         mu = None if coefficient is None else float(coefficient)
-        shares = float(support.restitution), float(getattr(support, "tangential_restitution", 0.0))
-        return Course(axes @ M @ axes.T, mu, shares[0], axes @ self.comes, shares[1])
+        back = float(support.tangential_restitution)
+        if mu is None and float(self.goes @ self.n) <= EXACT * self.speed:  # nothing slips that stays on it
+            back = 0.0
+        return Course(axes @ M @ axes.T, mu, float(support.restitution), axes @ self.comes, back)
 
     @cached_property
     def _axes(self) -> Array:

@@ -103,7 +103,10 @@ def stretches(system: RollingSystem, begin: float, samples: Samples) -> list[Str
     [True]
     """
     end = float(samples.time[-1])
-    settling = {event.time: _FIRST * moment(system, event.after) for event in samples.events if event.after is not None}
+    going_on = [event for event in samples.events if not event.final]
+    settling = {event.time: _FIRST * moment(system, event.after) for event in going_on if event.after is not None}
+    if samples.phase[0] == SLIPPING:
+        settling.setdefault(begin, _FIRST * moment(system, samples.state(0)))
     edges = [begin, *(event.time for event in samples.events if begin < event.time < end), end]
     found = []
     for first, last in itertools.pairwise(edges):
