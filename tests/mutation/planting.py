@@ -15,6 +15,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from trundle.solve import tracing
+
 
 @dataclass(frozen=True)
 class Mutant:
@@ -74,6 +76,7 @@ def planted(mutant: Mutant) -> Iterator[None]:
     assert numbers or any(code != now for (_, code), now in zip(swapped, same, strict=True)), (
         f"{mutant.name}: no change"
     )
+    tracing._memory().clear()  # of laws traced without it
     try:
         for (function, _), code in zip(swapped, same, strict=True):
             function.__code__ = code
@@ -81,6 +84,7 @@ def planted(mutant: Mutant) -> Iterator[None]:
             setattr(live, key, changed.__dict__[key])
         yield
     finally:
+        tracing._memory().clear()
         for function, code in swapped:
             function.__code__ = code
         for key, value in numbers.items():
