@@ -90,7 +90,9 @@ export function createField(options: FieldOptions): Field {
     const all = units.includes(now) ? units : [...units, now]
     if (unit.options.length !== all.length || [...unit.options].some((o, i) => o.value !== all[i]))
       unit.replaceChildren(
-        ...all.map((name) => h('option', { value: name }, name.replaceAll('*', '·').replace('^2', '²').replace('^3', '³'))),
+        ...all.map((name) =>
+          h('option', { value: name }, name.replaceAll('*', '·').replace('^2', '²').replace('^3', '³')),
+        ),
       )
     unit.value = now
   }
