@@ -139,6 +139,40 @@ def test_any_instants_can_be_asked_for() -> None:
 
 
 @pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
+@pytest.mark.parametrize("friction", [0.05, 0.4, 2.0])
+def test_before_it_lands_it_flies_and_after_it_what_came_of_it_goes_on(friction: float, method: str) -> None:
+    egg = tr.Body.ellipsoid((0.05, 0.04, 0.03), 1.0)
+    system = tr.RollingSystem(egg, tr.Support(tr.Plane(), friction=friction))
+    start = system.place((0.0, 0.0), (1.0, 0.5), angular_velocity=(3.0, -7.0, 20.0), height=0.1)
+    landing = tr.simulate(system, start, 0.2, 0.01, method).events[0]
+    assert landing.kind == "land"
+    before, after = landing.before, landing.after
+    assert before is not None
+    assert after is not None
+    for _ in range(2):  # elsewhere than where the run was made an event may lie a rounding aside
+        near = [
+            np.nextafter(landing.time, 0.0),
+            *(landing.time + np.logspace(-16 if method == "taylor" else -12, -9, 15)),
+        ]
+        seen = tr.Trajectory.at(tr.simulate(system, start, 0.2, 0.01, method), [*near[:1], *np.unique(near[1:])])
+        landing = next(event for event in seen.events if event.kind == "land")
+    flies = seen.data.time.values < landing.time
+    assert (seen.data.phase.values[flies] == 2).all()
+    assert (seen.data.phase.values[~flies] != 2).all()
+    wanted = np.where(flies[:, None], before.velocity, after.velocity)
+    assert np.abs(seen.data.velocity.values - wanted).max() <= 1e-6
+
+
+def test_a_body_without_weight_goes_on_against_resistance() -> None:
+    ring = tr.Body.ring(0.05, 0.1)
+    loads = (tr.RollingResistance(6e-4), tr.Motor(("0.003*abs(t - 3)", -6e-4, "0.002*abs(t - 0.8)")))
+    support = tr.Support(tr.Plane(), friction=0.4)
+    system = tr.RollingSystem(ring, support, loads, gravity=0.0)
+    run = tr.simulate(system, system.place((0.0, 0.0), attitude=("90 deg", "-90 deg", 0.03)), 1.0, 0.05, "taylor")
+    assert np.isfinite(run.data.position.values).all()
+
+
+@pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
 @pytest.mark.parametrize("friction", [None, 0.0, 0.3])
 def test_nothing_presses_it_on_until_something_does(friction: Any, method: str) -> None:
     def pushed(force: str) -> tr.RollingSystem:

@@ -126,7 +126,8 @@ def after(system: RollingSystem, law: Law, stop: Stop) -> Next:
             return _lifted(system, law.meant(system, lift, advanced))
     if name in ("grip", "stop") and _goes_on(system, at, stop.numbers, name):
         slip = Vector(*map(float, stop.numbers[10:13])) if name == "grip" else None
-        return Next(law, at.state, list(stop.numbers), _extras(system, at, slip))
+        floor = (_FLOOR * at.forces(system),) * law.weightless
+        return Next(law, at.state, list(stop.numbers), (*floor, *_extras(system, at, slip)))
     if name == "land":
         return _struck(system, at)
     if name == "settled":

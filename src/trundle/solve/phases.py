@@ -19,7 +19,7 @@ from ..mechanics.system import RollingSystem, State
 from . import following
 from .following import Next, Stop
 from .laws import Law, RollingLaw
-from .samples import AT_ONCE, SLIPPING, Array, Event, Progress, Recording, Samples
+from .samples import AT_ONCE, RESTING, ROLLING, SLIPPING, Array, Event, Progress, Recording, Samples
 
 _MOST_EVENTS = 10_000
 _AT_ONE_INSTANT = 20  # events: more means that no phase goes on
@@ -193,7 +193,8 @@ def _across(system: RollingSystem, law: Law, stop: Stop, follows: Next, left: Ar
     if early.size:
         steps = [law.advanced(system, stop.time, stop.numbers.tolist(), t - stop.time) for t in early.tolist()]
         samples = law.record(system, early, np.array(steps))
-        record.put(_giving_way(system, samples, follows) if follows.law.code == SLIPPING else samples)
+        gives_way = follows.law.code == SLIPPING and law.code in (ROLLING, RESTING)
+        record.put(_giving_way(system, samples, follows) if gives_way else samples)
     return left
 
 
