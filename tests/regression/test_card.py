@@ -227,26 +227,6 @@ def test_the_text_says_what_failed() -> None:
     assert "every check held" in str(Card("a run", "Taylor", card.figures[1:]))
 
 
-# --- motions that magnify a small difference ----------------------------------------------------------------
-
-
-def released(above: float, side: str) -> Any:
-    """A hoop let go on a log or in a pipe, a little off its highest line; on top of a log every rounding grows."""
-    support = tr.Support(tr.Cylinder(0.5, side=side), tilt="90 deg")
-    system = tr.RollingSystem(tr.Body.hoop(0.1, 1.0), support)
-    return system, system.place((math.pi - above, 0.0))
-
-
-@pytest.mark.parametrize(("above", "duration"), [(0.0, 4.0), (1e-9, 4.0), (1e-4, 3.0)])
-@pytest.mark.parametrize("method", ["exact", "taylor"])
-def test_an_unstable_motion_is_allowed_what_it_magnifies(above: float, duration: float, method: str) -> None:
-    pytest.importorskip("heyoka")
-    system, start = released(above, "outside")
-    run = tr.simulate(system, start, duration, 0.02, method=method)
-    assert not run.events
-    assert run.card().passed, str(run.card())
-
-
 @pytest.mark.parametrize("heading", [0.0, 37.0, -90.0])
 def test_an_integral_that_is_nothing_for_every_heading_drifts_by_nothing(heading: float) -> None:
     # A hemisphere that rocks has JΩ·ρ = 0, by terms that cancel at one heading and are all rounding at another.
