@@ -9,7 +9,7 @@ import itertools
 import math
 import pickle
 import platform
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -31,6 +31,11 @@ TOLERANCE = 1e-15
 _CHUNKS = 100  # of a run at most, between which progress is told and Ctrl-C is heard
 _LEAST_CHUNK = 60  # instants
 _AT_ONCE = 10_000  # steps, between which Ctrl-C is heard too
+# The first steps of each stretch are made by code that is compiled in haste: it takes two or three times as long for a
+# step, and a tenth of a second to compile where what is made with care takes seconds. Most stretches need no other.
+# They are counted for each stretch, so that a run has the same digits whatever is compiled already.
+_HASTY_STEPS = 1000
+_IN_HASTE, _WITH_CARE = 0, 3  # LLVM's levels
 _PATIENCE: dict[str, Any] = {"steps": 3e6, "spare": 5e4, "name": "Taylor's method"}  # a minute, and some seconds
 _LONGEST = 100.0  # s without a new reference of time, at most
 
@@ -125,13 +130,17 @@ def integrate(
         yield from runge_kutta.integrate(system, now, times, runge_kutta.FINEST, progress)
         return
     lowered, key = _ready(system, now.law, tolerance)
-    with _borrowed(lowered, key, tolerance) as integrator:
-        run = _Run(integrator, lowered, [*numbers(system), *now.extras], now.time, now.numbers)
+    with contextlib.ExitStack() as lent:
+
+        def borrow(level: int) -> Any:
+            return lent.enter_context(_borrowed(lowered, key, tolerance, level))
+
+        run = _Run(borrow, lowered, [*numbers(system), *now.extras], now.time, now.numbers)
         for chunk, states, reached in _propagate(run, times, progress):
             if reached is None:
                 yield Stretch(chunk, states, None)
                 continue
-            stop = Stop(run.time, lowered.stops[reached], integrator.state.copy())
+            stop = Stop(run.time, lowered.stops[reached], run.integrator.state.copy())
             kept, _ = cut(chunk, stop.time)
             yield Stretch(kept, states[: kept.size], stop)
 
@@ -160,21 +169,21 @@ def compiled(system: RollingSystem, law: Law, tolerance: float = TOLERANCE) -> t
     See `benchmarks/trajectory.py`.
     """
     lowered, key = _ready(system, law, tolerance)
-    return _copied(lowered, key, tolerance), lowered
+    return _copied(lowered, key, tolerance, _WITH_CARE), lowered
 
 
-def _copied(lowered: Lowered, key: str, tolerance: float) -> Any:
+def _copied(lowered: Lowered, key: str, tolerance: float, level: int) -> Any:
     def compile_() -> Any:
-        return _compile(*lowered.heyoka(), tolerance, lowered.parameters)
+        return _compile(*lowered.heyoka(), tolerance, lowered.parameters, level)
 
-    return copy.copy(_compiled(key, compile_))
+    return copy.copy(_compiled(f"{key}-{level}", compile_))
 
 
 @contextlib.contextmanager
-def _borrowed(lowered: Lowered, key: str, tolerance: float) -> Iterator[Any]:
+def _borrowed(lowered: Lowered, key: str, tolerance: float, level: int) -> Iterator[Any]:
     """Lend a copy that nobody else uses, and keep it for the next stretch: to make one takes a millisecond."""
-    idle = _memory().idle.setdefault(key, [])
-    integrator = idle.pop() if idle else _copied(lowered, key, tolerance)
+    idle = _memory().idle.setdefault((key, level), [])
+    integrator = idle.pop() if idle else _copied(lowered, key, tolerance, level)
     if lowered.stops:
         integrator.reset_cooldowns()  # a stop just passed is not looked for again at once
     yield integrator
@@ -201,11 +210,12 @@ class _Run:
     """An integrator on its way; its own time counts from a reference that moves along."""
 
     def __init__(
-        self, integrator: Any, lowered: Lowered, given: Sequence[float], begin: float, state: Sequence[float]
+        self, borrow: Callable[..., Any], lowered: Lowered, given: Sequence[float], begin: float, state: Sequence[float]
     ) -> None:
-        self.integrator, self.lowered, self.given = integrator, lowered, given
+        self.borrow, self.lowered, self.given = borrow, lowered, given
+        self.integrator, self.hasty_steps = borrow(_IN_HASTE), _HASTY_STEPS
         self.patience: Patience
-        integrator.state[:] = state
+        self.integrator.state[:] = state
         self._refer_to(begin)
 
     @property
@@ -221,7 +231,8 @@ class _Run:
     def go_to(self, until: float) -> int | None:
         """Propagate to a time since the reference; return which terminal event came first if one did."""
         while True:
-            outcome, _, _, steps, *_ = self.integrator.propagate_until(until, max_steps=_AT_ONCE)
+            most = self._at_once()
+            outcome, _, _, steps, *_ = self.integrator.propagate_until(until, max_steps=most)
             if not self._is_cut(outcome, steps):
                 return _event(self, outcome)
 
@@ -231,17 +242,33 @@ class _Run:
         done = 0
         while True:
             ahead = np.concatenate([[self.integrator.time], since[done:]]) if done else since
-            outcome, _, _, steps, *_, found = self.integrator.propagate_grid(ahead, max_steps=_AT_ONCE)
+            most = self._at_once()
+            outcome, _, _, steps, *_, found = self.integrator.propagate_grid(ahead, max_steps=most)
             found = found.reshape(-1, self.integrator.state.size)[bool(done) :]
             parts.append(found)
             done += len(found)
             if not self._is_cut(outcome, steps):
                 return np.vstack(parts), _event(self, outcome)
 
+    def _at_once(self) -> int:
+        """Return how many steps to make before anything else is looked at; after the first, take what is made for more.
+
+        A stop has ended the stretch, so that nothing is known of one that the other would have to know.
+        """
+        if self.hasty_steps > 0:
+            return self.hasty_steps
+        if self.hasty_steps == 0:
+            hasty, self.integrator, self.hasty_steps = self.integrator, self.borrow(_WITH_CARE), -1
+            self.integrator.state[:], self.integrator.pars[:] = hasty.state, hasty.pars
+            self.integrator.dtime = hasty.dtime
+        return _AT_ONCE
+
     def _is_cut(self, outcome: Any, steps: int) -> bool:
         """Tell whether there is more to do, after so many steps that somebody may have lost patience meanwhile."""
         import heyoka
 
+        if self.hasty_steps > 0:
+            self.hasty_steps = max(0, self.hasty_steps - steps)
         if outcome != heyoka.taylor_outcome.step_limit:
             return False
         self.patience.after(steps, self.time)
@@ -311,7 +338,7 @@ class _Memory:
 
     def __init__(self) -> None:
         self.known: dict[str, Any] = {}
-        self.idle: dict[str, list[Any]] = {}  # copies between two uses
+        self.idle: dict[tuple[str, int], list[Any]] = {}  # copies between two uses
         self.ready: dict[Any, tuple[Lowered, str]] = {}
 
 
@@ -343,7 +370,7 @@ def _quiet() -> None:
     heyoka.set_logger_level_error()
 
 
-def _compile(equations: list[Any], stops: list[Any], tolerance: float, parameters: int) -> Any:
+def _compile(equations: list[Any], stops: list[Any], tolerance: float, parameters: int, level: int) -> Any:
     import heyoka
 
     return heyoka.taylor_adaptive(
@@ -352,6 +379,7 @@ def _compile(equations: list[Any], stops: list[Any], tolerance: float, parameter
         pars=[0.0] * parameters,
         tol=tolerance,
         compact_mode=True,
+        opt_level=level,
         t_events=[heyoka.t_event(stop, direction=heyoka.event_direction.negative) for stop in stops],
     )
 

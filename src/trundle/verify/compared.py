@@ -47,9 +47,10 @@ def same_again(
     ours, theirs = at_the_same_times(ours, again)
     turned, sizes = turned_in(ours), sizes_of(system, ours)
     sizes |= {"contact": sizes["position"]}
+    coarser = method
     if method.name == "taylor" and any(event.kind == "slip" for event in ours.events):
-        method = replace(method, tolerance=max(method.tolerance, FINEST))  # so the first moments of slip are followed
-    both = Compared(system, start, ours, theirs, method, sizes, turned)
+        coarser = replace(method, tolerance=max(method.tolerance, FINEST))  # so the first moments of slip are followed
+    both = Compared(system, start, ours, theirs, coarser, method, sizes, turned)
     turned_apart = both.turns * both.bound / both.angle_bound
     said = f"gives the same motion, force, orientation and events at {ours.time.size} instants"
     yield both.figure("the method run again", np.maximum(both.share, turned_apart), both.bound, said)
@@ -91,7 +92,7 @@ def cross_check(
         ours, theirs = (one.solve(system, start, times) for one in (method, other))
     ours, theirs = at_the_same_times(ours, theirs)
     turned = speed * float(ours.time[-1] - start.time)
-    both = Compared(system, start, ours, theirs, finer, sizes_of(system, ours), turned)
+    both = Compared(system, start, ours, theirs, finer, finer, sizes_of(system, ours), turned)
     name = f"closed form against {'Taylor' if finer.name == 'taylor' else 'Runge-Kutta'}"
     over = f"over {ours.time[-1] - start.time:g} s, {ours.time.size} instants"
     yield both.figure(name, both.share, both.bound, f"position, velocity, Ω, force, events; {over}")
@@ -113,6 +114,8 @@ class Compared:
         At the same times.
     method : Method
         The coarser of the two.
+    follower : Method
+        Follows changed starts.
     sizes : dict
         Against what a difference of each quantity is small or not.
     turned : float
@@ -124,6 +127,7 @@ class Compared:
     ours: Samples
     theirs: Samples
     method: Method
+    follower: Method
     sizes: dict[str, float]
     turned: float
 
@@ -165,7 +169,7 @@ class Compared:
     @cached_property
     def growth(self) -> Growth:
         """What the motion does to a small difference; worked out only where the plain bound does not hold."""
-        return growth(self.system, self.start, self.ours, self.method, self.sizes)
+        return growth(self.system, self.start, self.ours, self.follower, self.sizes)
 
     @cached_property
     def _shifts(self) -> Array:
