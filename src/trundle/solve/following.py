@@ -18,6 +18,7 @@ from ..mechanics.system import RollingSystem, State
 from .coming_off import lift_at_hand
 from .creeping import CreepingLaw
 from .laws import (
+    AN_INSTANT,
     JAMS,
     FlightLaw,
     Law,
@@ -124,7 +125,7 @@ def after(system: RollingSystem, law: Law, stop: Stop) -> Next:
         if lift is not None:
             advanced = law.advanced(system, stop.time, stop.numbers.tolist(), lift - stop.time)
             return _lifted(system, law.meant(system, lift, advanced))
-    if name in ("grip", "stop") and _goes_on(system, at, stop.numbers, name):
+    if name in ("grip", "stop") and _goes_on(system, law, at, stop.numbers, name):
         slip = Vector(*map(float, stop.numbers[10:13])) if name == "grip" else None
         floor = (_FLOOR * at.forces(system),) * law.weightless
         return Next(law, at.state, list(stop.numbers), (*floor, *_extras(system, at, slip)))
@@ -189,10 +190,24 @@ _NAMES = {
 }
 
 
-def _goes_on(system: RollingSystem, at: Touch, numbers: Any, stop: str) -> bool:
+def _goes_on(system: RollingSystem, law: Law, at: Touch, numbers: Any, stop: str) -> bool:
     """Tell whether slip or turning was only at its slowest, and did not end."""
-    left = np.linalg.norm(numbers[10:13]) if stop == "grip" else state_turning(at.contact, at.Omega).norm() * at.arm
-    return bool(left > 4 * at.still(system))
+    v, still = _shrinking(system, at, numbers, stop)
+    rate = _their_rates(system, law, at.state.time, numbers, stop)
+    return float(np.linalg.norm(v)) > 4 * max(still, AN_INSTANT * float(np.linalg.norm(rate)))
+
+
+def _shrinking(system: RollingSystem, at: Touch, numbers: Any, stop: str) -> tuple[Array, float]:
+    """Return the slip, m/s, or how the body turns over the support, rad/s; and below which it has all but ended."""
+    if stop == "grip":
+        return np.asarray(numbers[10:13], dtype=float), at.still(system)
+    return state_turning(at.contact, at.Omega).array(), at.still(system) / at.arm
+
+
+def _their_rates(system: RollingSystem, law: Law, time: float, numbers: Any, stop: str) -> Array:
+    """Return how fast the same change."""
+    rates = law.rates(system, time, list(map(float, numbers)))
+    return np.array([float(rate) for rate in (rates[10:13] if stop == "grip" else rates[7:10])])
 
 
 def _extras(system: RollingSystem, at: Touch, slip: Vector | None = None) -> tuple[float, ...]:
@@ -220,7 +235,7 @@ def spins_on(system: RollingSystem, law: Law, stop: Stop) -> bool:
         False also where its turning over the support was only at its slowest.
     """
     at = stop.at(system, law)
-    if _goes_on(system, at, stop.numbers, "stop"):
+    if _goes_on(system, law, at, stop.numbers, "stop"):
         return False
     relative = at.Omega - at.contact.support.angular_velocity
     return bool(abs(relative.dot(at.contact.normal)) * at.arm > 1e-9 * at.scale(system))
@@ -296,11 +311,11 @@ def _set_down(system: RollingSystem, at: Touch) -> Touch:
 def _come_to_it(system: RollingSystem, law: Law, at: Touch, numbers: Any, stop: str) -> Touch:
     """Go on straight from where slip or turning has all but ended to where it has ended."""
     y, time = np.asarray(numbers, dtype=float), at.state.time
-    s = y[10:13] if stop == "grip" else state_turning(at.contact, at.Omega).array()
-    length, still = float(np.linalg.norm(s)), at.still(system)
-    if length > 1e-3 * (still if stop == "grip" else still / at.arm):
+    v, still = _shrinking(system, at, numbers, stop)
+    length = float(np.linalg.norm(v))
+    if length > 1e-3 * still:
         rates = np.array([float(rate) for rate in law.rates(system, time, y.tolist())])
-        closing = float(-(s @ (rates[10:13] if stop == "grip" else rates[7:10])) / length)
+        closing = float(-(v @ (rates[10:13] if stop == "grip" else rates[7:10])) / length)
         wait = length / closing if closing > 0 else 0.0
         at = law.meant(system, time + wait, y + wait * rates)
     Omega = at.Omega if stop == "grip" else at.Omega - state_turning(at.contact, at.Omega)

@@ -172,7 +172,7 @@ class RollingLaw(Law):
         found = cone(system, now.contact, now.reaction, floor)
         if ending:
             turning = state_turning(now.contact, Vector(*state[7:10]))
-            found |= _ending("stop", turning, ending)
+            found |= _ending("stop", turning, now.angular_acceleration, ending)
         return {**found, **self._bounds(system, now.contact, Quaternion(*state[3:7]), 0.0)}
 
     def numbers(self, at: Touch) -> list[float]:
@@ -215,7 +215,7 @@ class SlippingLaw(Law):
         now, ending = self._now(system, time, state), self._floor(extras)[1]
         found = self._pressing(system, now, extras)
         if ending:
-            found |= _ending("grip", Vector(*state[10:13]), ending)
+            found |= _ending("grip", Vector(*state[10:13]), now.slip_rate, ending)
         return {**found, **self._bounds(system, now.contact, Quaternion(*state[3:7]), 0.0)}
 
     def _pressing(self, system: RollingSystem, now: Slipping, extras: Numbers) -> dict[str, Scalar]:
@@ -385,6 +385,7 @@ _SHORT_OF_IT = 1e-6
 CONE_SLACK = 1e-9
 # Friction all but jams a body where a newton of N opens the contact by so small a share of 1/m.
 JAMS = 1e-3
+AN_INSTANT = 3e-15  # s: what ends in less has ended, for the terms of its series are greater than any float
 _SLOW_SLIP = 1e-8  # m/s for each rad/s of Ω
 
 
@@ -416,14 +417,14 @@ def cone(system: RollingSystem, contact: Contact, reaction: Vector, floor: Scala
     return found
 
 
-def _ending(name: str, v: Vector, extras: Numbers) -> dict[str, Scalar]:
+def _ending(name: str, v: Vector, rate: Vector, extras: Numbers) -> dict[str, Scalar]:
     """Return two stops for a vector that shrinks to nothing.
 
     Where its direction stays, its part along the direction it had passes through zero with it. Where it turns, the law
     grows singular there, and the run stops just before; a quarter turn alone is no end.
     """
     near, *before = extras
-    return {name: v.dot(Vector(*before)), f"near {name}": v.dot(v) - near}
+    return {name: v.dot(Vector(*before)), f"near {name}": v.dot(v) - near - rate.dot(rate) * AN_INSTANT**2}
 
 
 def state_turning(contact: Contact, angular_velocity: Vector) -> Vector:

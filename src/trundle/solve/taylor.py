@@ -271,6 +271,8 @@ class _Run:
             self.hasty_steps = max(0, self.hasty_steps - steps)
         if outcome != heyoka.taylor_outcome.step_limit:
             return False
+        if self.integrator.last_h == 0:  # the terms of the series are greater than any float
+            steps = int(_PATIENCE["steps"])
         self.patience.after(steps, self.time)
         return True
 
