@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from importlib import import_module
 from typing import Any
 
@@ -49,6 +49,15 @@ class Method:
     def solve(self, system: RollingSystem, start: State, times: Array, progress: Progress | None = None) -> Samples:
         """Return the samples of a run at ascending times, s, none before the start."""
         return solver(self.name)(system, start, times, self.tolerance, progress)
+
+    def dense(self, system: RollingSystem, start: State, end: float) -> Callable[[Array], Samples]:
+        """Return what gives samples of one and the same run at any ascending instants up to its end, s."""
+        if self.name == "exact":
+            return partial(self.solve, system, start)
+        from .dense import Dense
+
+        module = import_module(f".{METHODS[self.name]}", __package__)
+        return Dense(module.dense, module.integrate, system, start, end, self.tolerance)
 
 
 def choose(method: str, system: RollingSystem, start: State) -> str:

@@ -65,6 +65,7 @@ def solve(
     progress: Progress | None = None,
     *,
     creeps: bool = True,
+    after: Callable[[RollingSystem, Law, Stop], Next] | None = None,
 ) -> Samples:
     """Follow a body through its phases and return its samples with all events.
 
@@ -84,6 +85,8 @@ def solve(
         Told the fraction done.
     creeps : bool
         Whether slip whose direction settles at once is a phase of its own to the method; to a closed form it is slip.
+    after : callable, optional
+        What follows a stop, if it is known already; absent: `following_stop`.
 
     Returns
     -------
@@ -116,7 +119,7 @@ def solve(
             record.put(samples)
             events.append(event)
             break
-        now = begin(system, _following(system, law, stop))
+        now = begin(system, (after or following_stop)(system, law, stop))
         events += now.events
         _check_count(system, events)
         left = _across(system, law, stop, now, left[taken:], record)
@@ -227,8 +230,28 @@ def _ended(system: RollingSystem, law: Law, stop: Stop) -> tuple[Samples, Event]
     return samples, Event(state.time, name, f"{said} at t = {state.time:.9g} s", state, state, contact)
 
 
-def _following(system: RollingSystem, law: Law, stop: Stop) -> Next:
-    """Return what follows a stop, or say that nothing can be worked out there."""
+def following_stop(system: RollingSystem, law: Law, stop: Stop) -> Next:
+    """Return what follows a stop, or say that nothing can be worked out there.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        What moves.
+    law : Law
+        That ended.
+    stop : Stop
+        Where, and why.
+
+    Returns
+    -------
+    Next
+        The next law, where it begins, and the events.
+
+    Raises
+    ------
+    SolverError
+        If the contact is singular there.
+    """
     try:
         return following.after(system, law, stop)
     except (ArithmeticError, ValueError) as error:

@@ -12,6 +12,7 @@ import numpy as np
 from ..errors import SolverError
 from ..mechanics.system import RollingSystem, State
 from . import phases
+from .dense import Leg
 from .following import Next, Stop
 from .patience import Patience
 from .phases import Stretch, cut
@@ -28,6 +29,8 @@ _ALL_BUT = 1e-3  # share of what was left of such a stop at first
 _PATIENCE: dict[str, Any] = {"steps": 1e7, "spare": 5e3, "name": "The Runge-Kutta method"}  # an hour, and seconds
 _BRIEF = 3e3  # steps of a law that holds for an instant only
 _FIRST_STEP = 1e-12  # s
+
+Path = Callable[[Array], Array]  # of a step: its state at some times, (variables, n)
 
 
 def solve(
@@ -82,7 +85,8 @@ def integrate(
         If the integration breaks down.
     """
     # It counts from where the law begins to hold: far from 0 no step would be short enough.
-    for piece in _integrated(system, now, times - now.time, tolerance, progress):
+    end = float(times[-1]) - now.time if times.size else 0.0
+    for piece in _integrated(system, now, _Rows(times - now.time, len(now.numbers)), end, tolerance, progress):
         here, times = times[: piece.times.size], times[piece.times.size :]
         if piece.stop is None:
             yield replace(piece, times=here)
@@ -92,8 +96,35 @@ def integrate(
         yield Stretch(before, piece.states[: before.size], stop)
 
 
+def dense(system: RollingSystem, now: Next, end: float, tolerance: float, most: int) -> Leg | None:
+    """Follow one law to its first stop, and keep the polynomial of each step.
+
+    Parameters
+    ----------
+    system, now, end, tolerance, most
+        As for `trundle.solve.taylor.dense`.
+
+    Returns
+    -------
+    Leg or None
+        None where it takes more steps.
+
+    Raises
+    ------
+    SolverError
+        If the integration breaks down.
+    """
+    paths = _Paths(np.asarray(now.numbers, dtype=float), most)
+    try:
+        *_, last = _integrated(system, now, paths, end - now.time, tolerance, None)
+    except _TooManyError:
+        return None
+    stop = None if last.stop is None else replace(last.stop, time=now.time + last.stop.time)
+    return Leg(lambda times: paths.at(times - now.time), stop, len(paths.paths))
+
+
 def _integrated(
-    system: RollingSystem, now: Next, times: Array, tolerance: float, progress: Progress | None
+    system: RollingSystem, now: Next, rows: _Rows | _Paths, end: float, tolerance: float, progress: Progress | None
 ) -> Iterator[Stretch]:
     """Follow one law to its first stop; all times count from its beginning."""
     from scipy.integrate import DOP853, Radau
@@ -101,7 +132,7 @@ def _integrated(
     law, begin = now.law, now.time
     function, names = python_law(system, law, now.extras)
     size, y0 = len(now.numbers), np.asarray(now.numbers, dtype=float)
-    end = max(float(times[-1]) if times.size else 0.0, float(np.spacing(begin)))  # some way to go
+    end = max(end, float(np.spacing(begin)))  # some way to go
 
     def rates(since: float, y: Array) -> Array:
         try:
@@ -117,21 +148,21 @@ def _integrated(
 
     told = None if progress is None else lambda since: progress(begin + since)
     patience = Patience(begin, begin + end, **_PATIENCE | ({"steps": _BRIEF, "spare": _BRIEF} if law.brief else {}))
-    steps = partial(_steps, stops=stops, names=names, begin=begin, patience=patience, progress=told)
+    steps = partial(_steps, rows=rows, stops=stops, names=names, begin=begin, patience=patience, progress=told)
     try:
         given: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * _scale(y0)}
         if not law.stiff(y0):
-            yield from steps(DOP853(rates, 0.0, y0, end, **given), times=times)
+            yield from steps(DOP853(rates, 0.0, y0, end, **given))
             return
         # Its first steps must be as short as the law is stiff: across a jump of direction there are other solutions.
         first = Radau(rates, 0.0, y0, end, first_step=min(_FIRST_STEP, end), **given)
-        for piece in steps(first, times=times, until=lambda y: not law.stiff(y)):
-            times, stop = times[piece.times.size :], piece.stop
+        for piece in steps(first, until=lambda y: not law.stiff(y)):
+            stop = piece.stop
             if stop is None or stop.name:
                 yield piece
                 continue
             yield Stretch(piece.times, piece.states, None)
-            yield from steps(DOP853(rates, stop.time, stop.numbers, end, **given), times=times)
+            yield from steps(DOP853(rates, stop.time, stop.numbers, end, **given))
     except (ZeroDivisionError, ValueError, OverflowError) as error:
         raise SolverError(f"The Runge-Kutta method broke down on the way to t = {begin + end:g} s: {error}.") from None
 
@@ -149,20 +180,20 @@ def _size(part: Array) -> float:
 def _steps(
     stepper: Any,
     *,
+    rows: _Rows | _Paths,
     stops: Any,
     names: list[str],
     begin: float,
     patience: Patience,
-    times: Array,
     progress: Progress | None,
     until: Callable[[Array], bool] = lambda _: False,
 ) -> Iterator[Stretch]:
-    """Take steps to the end or the first stop; the states at the times are read off each step's own polynomial.
+    """Take steps to the end or the first stop; states are read off each step's own polynomial.
 
     Where `until` says so of a state, they end after the step, at a stop without a name.
     """
-    rows, y = _Rows(times, stepper.n), stepper.y
-    yield from rows.fill(int(np.searchsorted(times, stepper.t, side="right")), lambda t: np.tile(y[:, None], t.size))
+    y = stepper.y
+    yield from rows.take(stepper.t, lambda t: np.tile(y[:, None], t.size))
     first = values = stops(stepper.t, stepper.y)
     while stepper.status == "running":
         message = stepper.step()
@@ -176,12 +207,11 @@ def _steps(
         path = stepper.dense_output()
         found = _first_stop(path, stops, values)
         reach = stepper.t if found is None else found[0]
-        upto = int(np.searchsorted(times, reach, side="right" if found is None else "left"))
-        yield from rows.fill(upto, path)
+        yield from rows.take(reach, path, before=found is not None)
         if found is not None:
             yield rows.rest(Stop(found[0], names[found[1]], path(found[0])))
             return
-        if until(stepper.y) and rows.done < times.size:
+        if until(stepper.y) and stepper.status == "running":
             yield rows.rest(Stop(float(stepper.t), "", stepper.y.copy()))
             return
         values = stops(stepper.t, stepper.y)
@@ -197,12 +227,12 @@ class _Rows:
         self.times, self.begun, self.done = times, 0, 0
         self.states = np.empty((min(times.size, AT_ONCE), size))
 
-    def fill(self, upto: int, path: Callable[[Array], Array]) -> Iterator[Stretch]:
-        """Fill in the states up to a row, and yield each block that is full."""
+    def take(self, reach: float, path: Path, *, before: bool = False) -> Iterator[Stretch]:
+        """Fill in the states up to where a step ends, or before a stop in it, and yield each block that is full."""
+        upto = int(np.searchsorted(self.times, reach, side="left" if before else "right"))
         while self.done < upto:
             if self.done - self.begun == len(self.states):
                 yield self.rest(None)
-                self.begun, self.states = self.done, np.empty_like(self.states)
             some = min(upto, self.begun + len(self.states))
             self.states[self.done - self.begun : some - self.begun] = path(self.times[self.done : some]).T
             self.done = some
@@ -210,7 +240,41 @@ class _Rows:
     def rest(self, stop: Stop | None, before: float = np.inf) -> Stretch:
         """Return what has not been given on: the last row is always in it."""
         times, _ = cut(self.times[self.begun : self.done], before)
-        return Stretch(times, self.states[: times.size], stop)
+        states, self.begun, self.states = self.states[: times.size], self.done, np.empty_like(self.states)
+        return Stretch(times, states, stop)
+
+
+class _TooManyError(Exception):
+    """More steps than are kept."""
+
+
+class _Paths:
+    """The polynomials of all steps, in place of states at some times."""
+
+    def __init__(self, y0: Array, most: int) -> None:
+        self.y0, self.most = y0, most
+        self.begins: list[float] = []
+        self.paths: list[Path] = []
+
+    def take(self, reach: float, path: Path, *, before: bool = False) -> Iterator[Stretch]:  # noqa: ARG002
+        """Keep one more."""
+        if len(self.paths) == self.most:
+            raise _TooManyError
+        self.begins.append(getattr(path, "t_old", reach))
+        self.paths.append(path)
+        yield from ()
+
+    def rest(self, stop: Stop | None, before: float = np.inf) -> Stretch:  # noqa: ARG002
+        """Return the stop alone."""
+        return Stretch(np.empty(0), np.empty((0, self.y0.size)), stop)
+
+    def at(self, times: Array) -> Array:
+        """Return the states at some times."""
+        which = np.maximum(np.searchsorted(self.begins, times, side="right") - 1, 0)
+        states = np.empty((times.size, self.y0.size))
+        for i in np.unique(which):
+            states[which == i] = self.paths[i](times[which == i]).T
+        return states
 
 
 def _singular(names: list[str], values: Array, first: Array) -> str | None:

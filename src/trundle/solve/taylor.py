@@ -20,6 +20,7 @@ from ..errors import SolverError
 from ..mechanics.parameters import numbers, structure_of
 from ..mechanics.system import RollingSystem, State
 from . import integrator_cache, phases, runge_kutta
+from .dense import Leg
 from .following import Next, Stop
 from .laws import Law
 from .lowering import Lowered, lower
@@ -38,6 +39,7 @@ _HASTY_STEPS = 1000
 _IN_HASTE, _WITH_CARE = 0, 3  # LLVM's levels
 _PATIENCE: dict[str, Any] = {"steps": 3e6, "spare": 5e4, "name": "Taylor's method"}  # a minute, and some seconds
 _LONGEST = 100.0  # s without a new reference of time, at most
+_PARTS = 10  # of a stretch that is kept, between which rounding's share is taken out
 
 
 def available() -> bool:
@@ -129,20 +131,70 @@ def integrate(
     if now.law.brief:
         yield from runge_kutta.integrate(system, now, times, runge_kutta.FINEST, progress)
         return
+    with _begun(system, now, tolerance) as run:
+        for chunk, states, reached in _propagate(run, times, progress):
+            if reached is None:
+                yield Stretch(chunk, states, None)
+                continue
+            stop = run.stop(reached)
+            kept, _ = cut(chunk, stop.time)
+            yield Stretch(kept, states[: kept.size], stop)
+
+
+def dense(system: RollingSystem, now: Next, end: float, tolerance: float, most: int) -> Leg | None:
+    """Follow one law to its first stop, and keep the polynomial of each step.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Any system.
+    now : Next
+        The law, and where it begins.
+    end : float
+        Of the run, s.
+    tolerance : float
+        Of each step, relative.
+    most : int
+        How many steps may be kept.
+
+    Returns
+    -------
+    Leg or None
+        None where it takes more steps.
+
+    Raises
+    ------
+    SolverError
+        If the integration breaks down.
+    """
+    if now.law.brief:
+        return runge_kutta.dense(system, now, end, runge_kutta.FINEST, most)
+    with _begun(system, now, tolerance) as run:
+        run.kept, stop = _Kept(now), None
+        run.patience = Patience(run.time, end, **_PATIENCE)
+        part = min(_LONGEST, (end - now.time) / _PARTS)
+        while stop is None and run.reference < end:
+            until = min(end, run.reference + part)
+            reached = run.go_to(until - run.reference)
+            if run.kept.steps > most:
+                return None
+            if reached is None:
+                run.tidy(until)
+            else:
+                stop = run.stop(reached)
+        return Leg(run.kept.at, stop, run.kept.steps)
+
+
+@contextlib.contextmanager
+def _begun(system: RollingSystem, now: Next, tolerance: float) -> Iterator[_Run]:
+    """Lend what integrates a law, at its beginning."""
     lowered, key = _ready(system, now.law, tolerance)
     with contextlib.ExitStack() as lent:
 
         def borrow(level: int) -> Any:
             return lent.enter_context(_borrowed(lowered, key, tolerance, level))
 
-        run = _Run(borrow, lowered, [*numbers(system), *now.extras], now.time, now.numbers)
-        for chunk, states, reached in _propagate(run, times, progress):
-            if reached is None:
-                yield Stretch(chunk, states, None)
-                continue
-            stop = Stop(run.time, lowered.stops[reached], run.integrator.state.copy())
-            kept, _ = cut(chunk, stop.time)
-            yield Stretch(kept, states[: kept.size], stop)
+        yield _Run(borrow, lowered, [*numbers(system), *now.extras], now.time, now.numbers)
 
 
 def compiled(system: RollingSystem, law: Law, tolerance: float = TOLERANCE) -> tuple[Any, Lowered]:
@@ -215,6 +267,7 @@ class _Run:
         self.borrow, self.lowered, self.given = borrow, lowered, given
         self.integrator, self.hasty_steps = borrow(_IN_HASTE), _HASTY_STEPS
         self.patience: Patience
+        self.kept: _Kept | None = None  # where the polynomials of its steps are kept
         self.integrator.state[:] = state
         self._refer_to(begin)
 
@@ -222,6 +275,10 @@ class _Run:
     def time(self) -> float:
         """The time reached, s."""
         return self.reference + float(self.integrator.time)
+
+    def stop(self, reached: int) -> Stop:
+        """Return the stop that it has come to."""
+        return Stop(self.time, self.lowered.stops[reached], self.integrator.state.copy())
 
     def tidy(self, time: float) -> None:
         """Count from here on, and take rounding's share out of φ(p) = 0 and |q| = 1."""
@@ -232,7 +289,10 @@ class _Run:
         """Propagate to a time since the reference; return which terminal event came first if one did."""
         while True:
             most = self._at_once()
-            outcome, _, _, steps, *_ = self.integrator.propagate_until(until, max_steps=most)
+            keeps = self.kept is not None
+            outcome, _, _, steps, path, _ = self.integrator.propagate_until(until, max_steps=most, c_output=keeps)
+            if self.kept is not None and steps:
+                self.kept.take(self.reference, path, steps)
             if not self._is_cut(outcome, steps):
                 return _event(self, outcome)
 
@@ -280,6 +340,32 @@ class _Run:
         self.reference, self.integrator.time = time, 0.0
         self.values = self.lowered.values(self.given, time)
         self.integrator.pars[:] = self.values[: self.lowered.parameters]
+
+
+class _Kept:
+    """The polynomials of the steps of a stretch, in pieces that each count from a reference of their own."""
+
+    def __init__(self, now: Next) -> None:
+        self.numbers, self.steps = np.asarray(now.numbers, dtype=float), 0
+        self.begins: list[float] = []
+        self.pieces: list[tuple[float, Any]] = []
+
+    def take(self, reference: float, path: Any, steps: int) -> None:
+        """Keep one more piece."""
+        self.begins.append(reference + path.bounds[0])
+        self.pieces.append((reference, path))
+        self.steps += steps
+
+    def at(self, times: Array) -> Array:
+        """Return the states at some times."""
+        if not self.pieces:
+            return np.tile(self.numbers, (times.size, 1))
+        which = np.maximum(np.searchsorted(self.begins, times, side="right") - 1, 0)
+        states = np.empty((times.size, self.numbers.size))
+        for i in np.unique(which):
+            reference, path = self.pieces[i]
+            states[which == i] = path(times[which == i] - reference)
+        return states
 
 
 def _propagate(run: _Run, times: Array, progress: Progress | None) -> Iterator[tuple[Array, Array, int | None]]:

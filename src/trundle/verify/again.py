@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -55,6 +55,11 @@ class Again:
     method: Method
 
     @cached_property
+    def _run(self) -> Callable[[Array], Samples]:
+        """The second run, gone through once: all looks are at the same motion."""
+        return self.method.dense(self.system, self.start, float(self.at.time[-1]))
+
+    @cached_property
     def stretches(self) -> list[Stretch]:
         """What lies between the events."""
         return stretches(self.system, self.start.time, self.at)
@@ -105,7 +110,7 @@ class Again:
         events = self.at.events
         for _ in range(2):  # elsewhere than where the run was made an event may lie a rounding aside
             now = np.unique(np.concatenate([times, instants_of(events, self.start.time)]))
-            found = self.method.solve(self.system, self.start, now[now <= ends[1]])
+            found = self._run(now[now <= ends[1]])
             if [event.time for event in found.events] == [event.time for event in events]:
                 break
             events = found.events
@@ -117,7 +122,7 @@ class Again:
 
     def follow(self, times: Array) -> Samples:
         """Follow the run to other instants, ascending, s."""
-        there = self.method.solve(self.system, self.start, np.unique(times))
+        there = self._run(np.unique(times))
         return there.part(np.minimum(np.searchsorted(there.time, times), there.time.size - 1))
 
     @property
