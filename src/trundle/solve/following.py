@@ -193,8 +193,12 @@ _NAMES = {
 def _goes_on(system: RollingSystem, law: Law, at: Touch, numbers: Any, stop: str) -> bool:
     """Tell whether slip or turning was only at its slowest, and did not end."""
     v, still = _shrinking(system, at, numbers, stop)
-    rate = _their_rates(system, law, at.state.time, numbers, stop)
-    return float(np.linalg.norm(v)) > 4 * max(still, AN_INSTANT * float(np.linalg.norm(rate)))
+    left = float(np.linalg.norm(v))
+    if left <= 4 * still:
+        return False
+    rates = law.rates(system, at.state.time, list(map(float, numbers)))
+    rate = np.array([float(rate) for rate in (rates[10:13] if stop == "grip" else rates[7:10])])
+    return left > 4 * AN_INSTANT * float(np.linalg.norm(rate))
 
 
 def _shrinking(system: RollingSystem, at: Touch, numbers: Any, stop: str) -> tuple[Array, float]:
@@ -202,12 +206,6 @@ def _shrinking(system: RollingSystem, at: Touch, numbers: Any, stop: str) -> tup
     if stop == "grip":
         return np.asarray(numbers[10:13], dtype=float), at.still(system)
     return state_turning(at.contact, at.Omega).array(), at.still(system) / at.arm
-
-
-def _their_rates(system: RollingSystem, law: Law, time: float, numbers: Any, stop: str) -> Array:
-    """Return how fast the same change."""
-    rates = law.rates(system, time, list(map(float, numbers)))
-    return np.array([float(rate) for rate in (rates[10:13] if stop == "grip" else rates[7:10])])
 
 
 def _extras(system: RollingSystem, at: Touch, slip: Vector | None = None) -> tuple[float, ...]:
