@@ -35,7 +35,8 @@ from .touch import WEIGHTLESS, Touch, floats, moment
 
 _FLOOR = 1e-12  # share of the forces at hand by which the support seems to pull a weightless body: rounding
 _PULLED_BACK = 1e-8  # share of the accelerations at hand at which a body that lifts off would come straight down
-_TAKE_OFF = 1e-15  # gap, as a share of |ρ|, with which a flight begins: it must not end where it begins
+_LOOKS = (1e-6, 1e-5, 1e-4, 1e-3)  # shares of the time in which the motion changes: what comes at once
+_TAKE_OFF = 1e-15  # gap, as a share of the least length at hand, with which a flight begins: it must not end there
 SETTLED = 1e-6  # height, as a share of |ρ|, below which a bounce is cut
 
 
@@ -226,9 +227,10 @@ def spins_on(system: RollingSystem, law: Law, stop: Stop) -> bool:
     return bool(abs(relative.dot(at.contact.normal)) * at.arm > 1e-9 * at.scale(system))
 
 
-def _fly(at: Touch, least_gap: float = 0.0, events: tuple[Event, ...] = ()) -> Next:
+def _fly(at: Touch, gap: float | None = None, events: tuple[Event, ...] = ()) -> Next:
     now = Next.of(FlightLaw(), at, (), events)
-    now.numbers[13] = max(now.numbers[13], least_gap)
+    if gap is not None:
+        now.numbers[13] = gap
     return now
 
 
@@ -258,6 +260,23 @@ def _pull(system: RollingSystem, at: Touch) -> float:
     return -float(unpushed(system, at.state.time, at.contact, at.orientation, at.Omega, at.sliding, own).opening)
 
 
+def _opens(system: RollingSystem, at: Touch) -> bool:
+    """Tell whether a body on which nothing presses comes off at once: left alone, the gap opens faster and faster.
+
+    What only seems to press or to pull on a weightless body, rounding, stays as small as it is.
+    """
+    alone, floor = _fly(at), _FLOOR * at.forces(system) / float(system.body.mass)
+    wait = at.arm / at.scale(system)
+    opening = 0.0
+    for share in _LOOKS:
+        time = alone.time + share * wait
+        numbers = alone.law.advanced(system, alone.time, alone.numbers, share * wait)
+        opening = -_pull(system, alone.law.meant(system, time, numbers))
+        if opening < -floor:
+            return False
+    return opening > floor
+
+
 def _struck(system: RollingSystem, at: Touch) -> Next:
     """Let the body strike the support, and bounce or stay."""
     n, own = at.contact.normal, at.state.support
@@ -278,7 +297,10 @@ def _struck(system: RollingSystem, at: Touch) -> Next:
     said = f"landed at {-at.approach:.4g} m/s"
     after = at.moving(system, V, Omega, own)
     if bounces:
-        return _fly(after, _TAKE_OFF * at.arm, (_event("land", f"{said} and bounced", at, after),))
+        # Beside the height of the bounce: a little that is added again each time would show in the bounces to come.
+        height = off * off / (2 * pull) if pull > 0 else at.arm
+        gap = _TAKE_OFF * min(at.arm, height)
+        return _fly(after, gap, (_event("land", f"{said} and bounced", at, after),))
     after = _set_down(system, after)
     cut = "; the bounces to come are lower than a millionth of the body and were cut" if off > 0 else ""
     event = _event("settle" if off > 0 else "land", f"{said}{cut}", at, after)
@@ -332,7 +354,7 @@ def _slipping(
     now = slip(system, state.time, at.contact.point, at.orientation, at.Omega, at.sliding, state.support, direction)
     N, forces = float(now.normal_force), at.forces(system)
     if abs(N) <= WEIGHTLESS * forces:
-        return Next.of(law(True), at, (_FLOOR * forces, *ending))
+        return _lifted(system, at) if _opens(system, at) else Next.of(law(True), at, (_FLOOR * forces, *ending))
     share = float(now.opening_per_newton * system.body.mass)
     if share <= JAMS:
         raise jammed(state.time, share, opens=N * share < 0)
@@ -349,6 +371,8 @@ def _rolling(system: RollingSystem, at: Touch, *, slips: bool = False) -> Next:
     weightless = abs(N) <= WEIGHTLESS * forces
     floor = _FLOOR * forces if weightless else 0.0
     pulled = N + floor < 0
+    if weightless and _opens(system, at):
+        return _lifted(system, at)
     if pulled and (system.support.friction is None or _pull(system, at) < 0):
         return _lifted(system, at)
     if slips or pulled or cone(system, at.contact, R, floor).get("slip", 0.0) < 0:
