@@ -67,6 +67,18 @@ def test_where_nothing_presses_and_the_wall_falls_away_it_leaves_at_once(
     assert [(event.kind, event.time) for event in run.events] == [("lift", 0.0)]
 
 
+@pytest.mark.parametrize("method", METHODS)
+def test_thrown_up_from_the_support_it_comes_down_on_it(method: str) -> None:
+    """The flight begins where it touches, with no gap at all, and lasts 2v/g."""
+    floor = tr.RollingSystem(BALL, tr.Support(tr.Plane(), friction=0.3))
+    for speed in (1e-3, 0.08, 3.0):
+        lasts = 2 * speed / G
+        start = floor.place(velocity=(0.03, -0.1, speed), angular_velocity=(0.0, 0.0, 0.0))
+        run = tr.simulate(floor, start, 3 * lasts, lasts / 7, method)
+        assert run.events[0].kind == "land"
+        assert abs(run.events[0].time - lasts) <= SOLVER(100, max(run.tolerance, 1e-15), lasts)
+
+
 def test_where_nothing_presses_but_will_it_stays() -> None:
     """In the wall's equator from inside, and on a plane without weight, what follows presses, or nothing does."""
     bowl = tr.RollingSystem(BALL, tr.Support(tr.Bowl(0.3)))

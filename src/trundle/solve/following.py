@@ -97,7 +97,7 @@ def at_start(system: RollingSystem, start: State) -> Next:
     if at.approach < -SLIP_TOLERANCE * at.speed:
         return _struck(system, at)
     if at.approach > SLIP_TOLERANCE * at.speed:
-        return _fly(at)
+        return _fly(at, max(at.gap, _first_gap(at, at.approach, _pull(system, at))))
     return _touching(system, at)
 
 
@@ -244,6 +244,15 @@ def _lifted(system: RollingSystem, at: Touch) -> Next:
     return _fly(at, _TAKE_OFF * at.arm, (_event("lift", _NAMES[FlightLaw.code][1], at),))
 
 
+def _first_gap(at: Touch, off: float, pull: float) -> float:
+    """Return the gap with which a body begins to fly that comes off so fast, m: none, but for the sign.
+
+    It is small beside the height of the flight: what is added again at each bounce would show in those to come.
+    """
+    height = off * off / (2 * pull) if pull > 0 else at.arm
+    return _TAKE_OFF * min(at.arm, height)
+
+
 def _pulled_back(system: RollingSystem, at: Touch) -> bool:
     """Tell whether friction alone keeps a body from coming straight down again."""
     pull, limit = _pull(system, at), _PULLED_BACK * at.scale(system) ** 2 / at.arm
@@ -297,10 +306,7 @@ def _struck(system: RollingSystem, at: Touch) -> Next:
     said = f"landed at {-at.approach:.4g} m/s"
     after = at.moving(system, V, Omega, own)
     if bounces:
-        # Beside the height of the bounce: a little that is added again each time would show in the bounces to come.
-        height = off * off / (2 * pull) if pull > 0 else at.arm
-        gap = _TAKE_OFF * min(at.arm, height)
-        return _fly(after, gap, (_event("land", f"{said} and bounced", at, after),))
+        return _fly(after, _first_gap(at, off, pull), (_event("land", f"{said} and bounced", at, after),))
     after = _set_down(system, after)
     cut = "; the bounces to come are lower than a millionth of the body and were cut" if off > 0 else ""
     event = _event("settle" if off > 0 else "land", f"{said}{cut}", at, after)
