@@ -12,7 +12,7 @@ from ..errors import SolverError
 from ..mechanics.algebra import ZERO, Vector
 from ..mechanics.contact import roll
 from ..mechanics.impact import land
-from ..mechanics.placing import SLIP_TOLERANCE
+from ..mechanics.placing import SLIP_TOLERANCE, no_gap
 from ..mechanics.slipping import response, slip, unpushed
 from ..mechanics.system import RollingSystem, State
 from .coming_off import lift_at_hand
@@ -92,7 +92,7 @@ def at_start(system: RollingSystem, start: State) -> Next:
         Its law; an event where it strikes the support at once.
     """
     at = Touch.of(system, start)
-    if at.gap > SLIP_TOLERANCE * at.arm:
+    if at.gap > no_gap(at.contact, start.position):
         return _fly(at)
     if at.approach < -SLIP_TOLERANCE * at.speed:
         return _struck(system, at)
