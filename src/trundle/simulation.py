@@ -12,7 +12,7 @@ from .mechanics import straight
 from .mechanics.algebra import Quaternion, Vector
 from .mechanics.contact import Contact, settle
 from .mechanics.finiteness import check_finite
-from .mechanics.placing import SLIP_TOLERANCE, slips
+from .mechanics.placing import no_gap, slips
 from .mechanics.system import RollingSystem, State
 from .memory import check_room
 from .scenario import ScenarioFile
@@ -118,13 +118,13 @@ def _check_start(system: RollingSystem, start: State, until: float) -> None:
     contact = settle(system, start.time, centre, q, start.support)
     point = centre + contact.offset
     gap = (point - contact.point).dot(contact.normal)
-    if not gap >= -SLIP_TOLERANCE * contact.offset.norm():
+    if not gap >= -no_gap(contact, start.position):
         raise InvalidValueError(
             "start.position", "must put the body on the support or over it", start.position, f"Gap: {gap:g} m."
         )
     system.check_rim(contact, start.position)
     _check_loads(system, start, contact)
-    if gap <= SLIP_TOLERANCE * contact.offset.norm():
+    if gap <= no_gap(contact, start.position):
         _check_slip(system, start, contact)
     straight.check_start(system, start, until)
 

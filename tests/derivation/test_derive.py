@@ -197,7 +197,7 @@ def test_a_wrong_elliptic_function_is_caught(monkeypatch: pytest.MonkeyPatch) ->
         return s, c, c
 
     with monkeypatch.context() as patch:
-        patch.setitem(pendulum.SymbolicForm._halves.__globals__, "elliptic", wrong)
+        patch.setitem(pendulum.SymbolicForm._jacobi.__globals__, "elliptic", wrong)
         with pytest.raises(DerivationError):
             tr.derive("cylinder-in-cylinder")
 

@@ -10,6 +10,7 @@ import pytest
 
 import trundle as tr
 from trundle.mechanics.surfaces.base import Surface
+from trundle.solve.samples import ROLLING
 
 SECONDS = 60.0  # of the processor: far more than it takes on any machine, and far less than for ever
 TABLE = {
@@ -104,3 +105,31 @@ def test_a_ball_that_hardly_is_off_the_axis_is_followed(surface: Surface, place:
             run = tr.simulate(system, system.place(place, "co-rotating"), 0.5, 0.1)
             assert run.card().passed
         assert time.process_time() - begun < SECONDS
+
+
+@pytest.mark.parametrize("method", ["auto", "taylor", "runge-kutta"])
+@pytest.mark.parametrize("size", [1e-2, 1e-9, 2.5e-11])
+def test_a_body_put_down_touches_however_small_it_is_beside_its_place(size: float, method: str) -> None:
+    """The place of a ball of 2.5e-11 m on a wall of 12.5 cm is rounded by more than a share of the ball."""
+    wall = tr.RollingSystem(tr.Body.solid_sphere(size, 0.51), tr.Support(tr.Cylinder(0.125), tilt="90 deg"))
+    for degrees in (1e-4, 0.3, 12.0, -47.0):
+        run = tr.simulate(wall, wall.place((math.radians(degrees), 0.0)), 1e-6, 1e-7, method)
+        assert run.events == ()
+        assert (run.samples.phase == ROLLING).all()
+
+
+def test_on_a_wall_of_a_million_kilometres_the_law_is_checked_as_sharply_as_places_are() -> None:
+    drum = tr.RollingSystem(tr.Body.cylinder(0.025, 0.2), tr.Support(tr.Cylinder(5e8), tilt="90 deg", friction=0.6))
+    card = tr.simulate(drum, drum.place(("60 deg", 0.0)), 10.0, 0.1).card()
+    assert card.passed
+    assert all(figure.value <= 1e-12 for figure in card.figures if figure.name == "law of motion")
+
+
+def test_of_what_turns_too_fast_for_the_clock_nothing_is_claimed() -> None:
+    pushed = tr.RollingSystem(
+        tr.Body.solid_sphere(0.025, 5.1e-18), tr.Support(tr.Plane()), loads=(tr.Force((0.1, 0.0, 0.0)),)
+    )
+    card = tr.simulate(pushed, pushed.place(), 3.0, 0.1).card()
+    assert card.passed
+    blind = {figure.name for figure in card.figures if "no verdict" in figure.note}
+    assert blind == {"no slip", "Ω is the slope of the orientation"}

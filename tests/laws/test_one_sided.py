@@ -55,6 +55,39 @@ def test_too_fast_over_a_dome_it_flies_however_it_slips(friction: float, way: fl
 
 
 @pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("friction", [None, 0.0, 0.3])
+@pytest.mark.parametrize("surface", [tr.Dome(0.3), tr.Cylinder(0.3, "outside")])
+def test_where_nothing_presses_and_the_wall_falls_away_it_leaves_at_once(
+    surface: Any, friction: Any, method: str
+) -> None:
+    """At the equator the weight is along the wall: N is 0 up to rounding, and a pull would be needed from then on."""
+    tilt, place = ("0 deg", (0.3, 0.0)) if isinstance(surface, tr.Dome) else ("90 deg", ("90 deg", 0.0))
+    wall = tr.RollingSystem(BALL, tr.Support(surface, friction=friction, tilt=tilt))
+    run = run_of(wall, wall.place(place), 0.05, method)
+    assert [(event.kind, event.time) for event in run.events] == [("lift", 0.0)]
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_thrown_up_from_the_support_it_comes_down_on_it(method: str) -> None:
+    """The flight begins where it touches, with no gap at all, and lasts 2v/g."""
+    floor = tr.RollingSystem(BALL, tr.Support(tr.Plane(), friction=0.3))
+    for speed in (1e-3, 0.08, 3.0):
+        lasts = 2 * speed / G
+        start = floor.place(velocity=(0.03, -0.1, speed), angular_velocity=(0.0, 0.0, 0.0))
+        run = tr.simulate(floor, start, 3 * lasts, lasts / 7, method)
+        assert run.events[0].kind == "land"
+        assert abs(run.events[0].time - lasts) <= SOLVER(100, max(run.tolerance, 1e-15), lasts)
+
+
+def test_where_nothing_presses_but_will_it_stays() -> None:
+    """In the wall's equator from inside, and on a plane without weight, what follows presses, or nothing does."""
+    bowl = tr.RollingSystem(BALL, tr.Support(tr.Bowl(0.3)))
+    assert not run_of(bowl, bowl.place((0.3, 0.0)), 0.05, "taylor").events
+    nowhere = tr.RollingSystem(BALL, tr.Support(tr.Plane()), gravity=0.0)
+    assert not run_of(nowhere, nowhere.place(velocity=(1.0, 0.0)), 0.05, "taylor").events
+
+
+@pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.9, 1 - 1e-6])
 def test_without_friction_it_leaves_a_dome_where_a_particle_does(share: float, method: str) -> None:
     dome = tr.RollingSystem(BALL, tr.Support(tr.Dome(0.3), friction=0.0))

@@ -152,6 +152,18 @@ class TestFlight:
             assert abs(event.time - wanted) <= EXACT(64, wanted)
         assert run.events[-1].kind == "settle"
 
+    @pytest.mark.parametrize("method", ["exact", "taylor"])
+    def test_thirty_bounces_on_nothing_has_been_added(self, method: str) -> None:
+        ball = tr.Body.solid_sphere(radius=0.025, mass=0.51)
+        system = tr.RollingSystem(ball, tr.Support(tr.Plane(), friction=0.5, restitution=0.8))
+        run = tr.simulate(system, system.place(height=0.02), 0.6, 0.1, method=method)
+        fall, e = mpmath.sqrt(2 * mpf(0.02) / mpf(G)), mpf(0.8)
+        assert len(run.events) == 31
+        for n, event in enumerate(run.events):
+            down, wanted = -mpf(event.before.velocity[2]), mpf(G) * fall * e**n
+            assert abs(down - wanted) <= EXACT(64, mpf(G) * fall)
+            assert abs(event.time - fall * (1 + 2 * e * (1 - e**n) / (1 - e))) <= EXACT(64, 0.6)
+
     @pytest.mark.parametrize("every", [0.01, 1e-4])  # few in a flight, and more than a thousand
     def test_between_its_bounces_it_is_where_the_parabolas_say(self, every: float) -> None:
         # Without friction nothing but the fall changes: it goes on, and turns on about one axis.

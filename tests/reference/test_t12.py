@@ -71,6 +71,72 @@ class TestSphereOnSphere(ClosedFormContract):
         return arm * (-sign * mpf(system.body.radius) / arm.norm())
 
 
+def near_a_pole(system: tr.RollingSystem, start: tr.State, t: float) -> tuple[Any, Any, Any, Any]:
+    """Return x and z of a ball in the plane of x and z, ẋ and the angle gone, from the energy and Jacobi's functions.
+
+    In so many digits that the start, counted from the pull or from the top, keeps enough of its own.
+    """
+    number, surface = mpmath.mpf, system.support.surface
+    dome = isinstance(surface, tr.Dome)
+    ell = number(surface.radius) + (1 if dome else -1) * number(system.body.radius)
+    square = number(system.gravity) / ((1 + number(system.body.inertia_ratio)) * ell)
+    from_pole = mpmath.asin(number(start.position[0]) / ell)
+    rate = number(start.velocity[0]) / (ell * mpmath.cos(from_pole))
+    top = mpmath.sign(from_pole) * mpmath.pi if dome else 0
+    half, v = (top - from_pole if dome else from_pole) / 2, (-rate if dome else rate) / 2
+    energy = v**2 + square * mpmath.sin(half) ** 2
+    if energy < square:  # it swings
+        m = energy / square
+        u = mpmath.ellipf(mpmath.asin(mpmath.sin(half) / mpmath.sqrt(m)), m)
+        u = (u if v >= 0 else 2 * mpmath.ellipk(m) - u) + mpmath.sqrt(square) * number(t)
+        angle = 2 * mpmath.asin(mpmath.sqrt(m) * mpmath.ellipfun("sn", u, m=m))
+        speed = 2 * mpmath.sqrt(energy) * mpmath.ellipfun("cn", u, m=m)
+    else:  # over the top, less than once round
+        m = square / energy
+        u = mpmath.ellipf(mpmath.sign(v) * half, m) + mpmath.sqrt(energy) * number(t)
+        behind = abs(u) > mpmath.ellipk(m)
+        angle = 2 * mpmath.asin(mpmath.ellipfun("sn", u, m=m))
+        angle = mpmath.sign(v) * (2 * mpmath.pi - angle if behind else angle)
+        speed = 2 * mpmath.sign(v) * mpmath.sqrt(energy) * mpmath.ellipfun("dn", u, m=m)
+    now, speed = (top - angle, -speed) if dome else (angle, speed)
+    gone = now - from_pole
+    rise = 2 * ell * mpmath.sin((now + from_pole) / 2) * mpmath.sin(gone / 2) * (-1 if dome else 1)
+    return ell * mpmath.sin(now), number(start.position[2]) + rise, ell * speed * mpmath.cos(now), gone
+
+
+class TestFromAnyStart:
+    """Near the top, near the separatrix and in swings however small, on spheres however large: to the last digits."""
+
+    @pytest.mark.parametrize("surface", [tr.Dome, tr.Bowl])
+    @pytest.mark.parametrize("radius", [0.9, 30.0, 1e5, 1e9])
+    @pytest.mark.parametrize(("share", "speed"), [(-1e-24, 0.0), (1e-9, 0.0), (1e-4, -1.0), (-0.3, 0.4), (0.5, 1e-6)])
+    def test_as_the_pendulum_of_many_digits_says(self, surface: Any, radius: float, share: float, speed: float) -> None:
+        """Starts at a share of the radius from the pole, towards it or away at a share of what gets it across."""
+        body = tr.Body.solid_sphere(radius=0.1, mass=1.0)
+        pace = math.sqrt(G / (1.4 * radius))
+        at, v = share * radius, speed * share * radius * pace
+        system, start = on_sphere(body, surface(radius), position=(at, 0.0), velocity=(v, 0.0))
+        form = SphereOnSphere.of(system, start)
+        for t in (1e-9 / pace, 0.7 / pace, 2.0 / pace):
+            with mpmath.workdps(120):
+                x, z, along, gone = near_a_pole(system, start, t)
+            r, V, _, _ = form.motion_at(t)
+            assert abs(r.x - x) <= EXACT(16, max(abs(x), abs(start.position[0]))), (t, "x")
+            assert abs(r.z - z) <= EXACT(16, max(abs(x), abs(z), abs(start.position[0]))), (t, "z")
+            assert abs(V.x - along) <= EXACT(16, pace * max(abs(x), abs(start.position[0]))), (t, "speed")
+            way = max(abs(gone), abs(v) * t / radius)
+            assert abs(abs(form.pendulum.turned_at(t)) - abs(gone)) <= EXACT(16, way), (t, "angle gone")
+
+    def test_a_start_that_balances_is_the_one_with_nothing_aside(self) -> None:
+        for aside in (0.0, 1e-12, 1e-30):
+            system, start = on_sphere(surface=tr.Dome(1e9), position=(aside, 0.0))
+            assert bool(SphereOnSphere.outside(system, start)) == (aside == 0.0)
+
+    def test_beside_the_top_of_a_large_dome_a_way_aside_is_not_small(self) -> None:
+        system, start = on_sphere(surface=tr.Dome(1e12), position=(0.002, 0.0), velocity=(0.0, 1e-6))
+        assert "out of the plane" in SphereOnSphere.outside(system, start)[0]
+
+
 def angle_from_the_top(event: Any, radius: float) -> float:
     x, y, z = event.before.position
     return math.atan2(math.hypot(x, y), z + radius)

@@ -12,7 +12,7 @@ from tests.precise import precisely
 from tests.tolerances import EXACT, SOLVER
 
 import trundle as tr
-from trundle.solve.exact import CylinderOnCylinder
+from trundle.solve.exact import CylinderOnCylinder, closed_form
 from trundle.solve.exact.jacobi import elliptic
 
 G = 9.80665
@@ -130,6 +130,30 @@ class TestMotion:
         motion = rolling(math.pi, 0.0)
         assert abs(motion.angle_at(1.0) - math.pi) < 1e-13
         assert abs(motion.angle_at(9.5)) < 1.5
+
+    @pytest.mark.parametrize("aside", [1e-9, -1e-11, 1e-13])
+    @pytest.mark.parametrize("along", [0.0, 0.3])
+    @pytest.mark.parametrize("radius", [0.5, 1e8])
+    def test_beside_the_top_no_digit_of_the_way_is_lost(self, aside: float, along: float, radius: float) -> None:
+        # φ̈ = λ²φ from the top, up to φ²/6: it goes φ₀ (cosh λt − 1) further. No float near π has so many digits.
+        log = tr.RollingSystem(
+            tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Cylinder(radius, "outside"), tilt="90 deg")
+        )
+        start = log.place((math.pi - aside, 0.0), (0.0, along))
+        form = closed_form(log, start)
+        across = form if isinstance(form, CylinderOnCylinder) else form.pendulum
+        pace = math.sqrt(G / (1.4 * (radius + 0.1)))
+        from_top = -start.position[1] / start.position[0]
+        for t in (1e-6 / pace, 1.0 / pace):
+            wanted = 2 * from_top * math.sinh(pace * t / 2) ** 2
+            assert abs(-across.turned_at(t) - wanted) <= EXACT(16, abs(wanted))
+
+    def test_a_small_way_on_a_large_cylinder_turns_the_body_by_as_much_as_it_goes(self) -> None:
+        # 5e8 m wide, the wall is a slope of 60° for the first seconds: g sin 60°/(1 + k) t²/2, over a.
+        drum = tr.RollingSystem(tr.Body.cylinder(0.025, 0.2), tr.Support(tr.Cylinder(5e8), tilt="90 deg"))
+        form = CylinderOnCylinder.of(drum, drum.place(("60 deg", 0.0)))
+        turned = form.straight_turn(0.1)[1]
+        assert abs(turned - G * math.sin(math.pi / 3) / 1.5 * 0.005 / 0.025) <= 1e-9 * abs(turned)
 
     @precisely
     def test_a_small_swing_is_harmonic(self) -> None:

@@ -116,7 +116,7 @@ class SymbolicForm(numerical.CylinderOnCylinder):
     'CylinderOnCylinder'
     """
 
-    _halves = FunctionType(numerical.CylinderOnCylinder._halves.__code__, {**vars(numerical), "elliptic": _elliptic})
+    _jacobi = FunctionType(numerical.CylinderOnCylinder._jacobi.__code__, {**vars(numerical), "elliptic": _elliptic})
 
     @classmethod
     def of_case(cls, setting: Setting, case: Case, *, from_below: bool = False) -> SymbolicForm:
@@ -201,7 +201,7 @@ def _integral(s: Setting, proof: Proof) -> Step:
 
 def _from_below(s: Setting, case: Case) -> Step:
     form = SymbolicForm.of_case(s, case, from_below=True)
-    sine, cosine, rate, _ = form._halves(TIME)
+    sine, cosine, rate = form._halves(TIME)
     values = {sp.sin(theta / 2): sine, sp.cos(theta / 2): cosine, thetadot: 2 * rate}
     values = {name: sp.sympify(value) for name, value in values.items()}
     proof = Proof(values)

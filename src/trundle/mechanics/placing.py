@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from .system import RollingSystem, State
 
 _IN_PROPORTION = 100.0  # times what is asked of a start: more must not follow from it
+_ROUNDING = 4 * 2.0**-52
 SLIP_TOLERANCE = 1e-9  # of the largest speed at the contact: beyond it a start slips
 
 
@@ -234,6 +235,25 @@ def slips(contact: Contact, V: Vector, Omega: Vector) -> float | None:
     u = contact.support.material_velocity(contact.point)
     scale = max(V.norm(), Omega.norm() * contact.offset.norm(), u.norm())
     return float(along) if along > SLIP_TOLERANCE * scale else None
+
+
+def no_gap(contact: Contact, centre: Any) -> float:
+    """Return the gap that a body may have which touches, m: what is asked of a start, or what rounding leaves of it.
+
+    Parameters
+    ----------
+    contact : Contact
+        Of the body.
+    centre : triple of float
+        r, m.
+
+    Returns
+    -------
+    float
+        Of a body small beside its distance from the origin, no smaller gap can be told.
+    """
+    places = Vector(*centre).norm() + contact.point.norm()
+    return max(SLIP_TOLERANCE * float(contact.offset.norm()), _ROUNDING * float(places))
 
 
 def _length(value: Any) -> int:

@@ -10,7 +10,7 @@ from ..errors import InvalidValueError, ScenarioError
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.attitude import attitude, attitude_of
 from ..mechanics.contact import Contact, settle
-from ..mechanics.placing import SLIP_TOLERANCE
+from ..mechanics.placing import no_gap
 from ..mechanics.system import RollingSystem, State, Support
 from .words import LOADS, MOTIONS, SURFACES, Words, body_words, number_of, numbers_of, one_of
 
@@ -142,7 +142,7 @@ class _Seen:
         at = self.system.support.surface.put_down_at(there, turn.transpose @ contact.offset)
         words: Words = {"position": _rounded(numbers_of(at, "start.position"), digits)}
         gap = float((Vector(*self.start.position) + contact.offset - contact.point).dot(contact.normal))
-        if gap > SLIP_TOLERANCE * contact.offset.norm():
+        if gap > no_gap(contact, self.start.position):
             words["height"] = _rounded([gap], digits)[0]
         return {**words, **self._when}
 

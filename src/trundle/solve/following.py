@@ -12,7 +12,7 @@ from ..errors import SolverError
 from ..mechanics.algebra import ZERO, Vector
 from ..mechanics.contact import roll
 from ..mechanics.impact import land
-from ..mechanics.placing import SLIP_TOLERANCE
+from ..mechanics.placing import SLIP_TOLERANCE, no_gap
 from ..mechanics.slipping import response, slip, unpushed
 from ..mechanics.system import RollingSystem, State
 from .coming_off import lift_at_hand
@@ -36,7 +36,8 @@ from .touch import WEIGHTLESS, Touch, floats, moment
 
 _FLOOR = 1e-12  # share of the forces at hand by which the support seems to pull a weightless body: rounding
 _PULLED_BACK = 1e-8  # share of the accelerations at hand at which a body that lifts off would come straight down
-_TAKE_OFF = 1e-15  # gap, as a share of |ρ|, with which a flight begins: it must not end where it begins
+_LOOKS = (1e-6, 1e-5, 1e-4, 1e-3)  # shares of the time in which the motion changes: what comes at once
+_TAKE_OFF = 1e-15  # gap, as a share of the least length at hand, with which a flight begins: it must not end there
 SETTLED = 1e-6  # height, as a share of |ρ|, below which a bounce is cut
 
 
@@ -92,12 +93,12 @@ def at_start(system: RollingSystem, start: State) -> Next:
         Its law; an event where it strikes the support at once.
     """
     at = Touch.of(system, start)
-    if at.gap > SLIP_TOLERANCE * at.arm:
+    if at.gap > no_gap(at.contact, start.position):
         return _fly(at)
     if at.approach < -SLIP_TOLERANCE * at.speed:
         return _struck(system, at)
     if at.approach > SLIP_TOLERANCE * at.speed:
-        return _fly(at)
+        return _fly(at, max(at.gap, _first_gap(at, at.approach, _pull(system, at))))
     return _touching(system, at)
 
 
@@ -239,9 +240,10 @@ def spins_on(system: RollingSystem, law: Law, stop: Stop) -> bool:
     return bool(abs(relative.dot(at.contact.normal)) * at.arm > 1e-9 * at.scale(system))
 
 
-def _fly(at: Touch, least_gap: float = 0.0, events: tuple[Event, ...] = ()) -> Next:
+def _fly(at: Touch, gap: float | None = None, events: tuple[Event, ...] = ()) -> Next:
     now = Next.of(FlightLaw(), at, (), events)
-    now.numbers[13] = max(now.numbers[13], least_gap)
+    if gap is not None:
+        now.numbers[13] = gap
     return now
 
 
@@ -253,6 +255,15 @@ def _lifted(system: RollingSystem, at: Touch) -> Next:
             "does. Give the support a `friction`, so that the body slips before that."
         )
     return _fly(at, _TAKE_OFF * at.arm, (_event("lift", _NAMES[FlightLaw.code][1], at),))
+
+
+def _first_gap(at: Touch, off: float, pull: float) -> float:
+    """Return the gap with which a body begins to fly that comes off so fast, m: none, but for the sign.
+
+    It is small beside the height of the flight: what is added again at each bounce would show in those to come.
+    """
+    height = off * off / (2 * pull) if pull > 0 else at.arm
+    return _TAKE_OFF * min(at.arm, height)
 
 
 def _pulled_back(system: RollingSystem, at: Touch) -> bool:
@@ -269,6 +280,23 @@ def _pull(system: RollingSystem, at: Touch) -> float:
     """Return how fast the body would come down on the support if it did not push, m/s²."""
     own = at.state.support
     return -float(unpushed(system, at.state.time, at.contact, at.orientation, at.Omega, at.sliding, own).opening)
+
+
+def _opens(system: RollingSystem, at: Touch) -> bool:
+    """Tell whether a body on which nothing presses comes off at once: left alone, the gap opens faster and faster.
+
+    What only seems to press or to pull on a weightless body, rounding, stays as small as it is.
+    """
+    alone, floor = _fly(at), _FLOOR * at.forces(system) / float(system.body.mass)
+    wait = at.arm / at.scale(system)
+    opening = 0.0
+    for share in _LOOKS:
+        time = alone.time + share * wait
+        numbers = alone.law.advanced(system, alone.time, alone.numbers, share * wait)
+        opening = -_pull(system, alone.law.meant(system, time, numbers))
+        if opening < -floor:
+            return False
+    return opening > floor
 
 
 def _struck(system: RollingSystem, at: Touch) -> Next:
@@ -291,7 +319,7 @@ def _struck(system: RollingSystem, at: Touch) -> Next:
     said = f"landed at {-at.approach:.4g} m/s"
     after = at.moving(system, V, Omega, own)
     if bounces:
-        return _fly(after, _TAKE_OFF * at.arm, (_event("land", f"{said} and bounced", at, after),))
+        return _fly(after, _first_gap(at, off, pull), (_event("land", f"{said} and bounced", at, after),))
     after = _set_down(system, after)
     cut = "; the bounces to come are lower than a millionth of the body and were cut" if off > 0 else ""
     event = _event("settle" if off > 0 else "land", f"{said}{cut}", at, after)
@@ -345,7 +373,7 @@ def _slipping(
     now = slip(system, state.time, at.contact.point, at.orientation, at.Omega, at.sliding, state.support, direction)
     N, forces = float(now.normal_force), at.forces(system)
     if abs(N) <= WEIGHTLESS * forces:
-        return Next.of(law(True), at, (_FLOOR * forces, *ending))
+        return _lifted(system, at) if _opens(system, at) else Next.of(law(True), at, (_FLOOR * forces, *ending))
     share = float(now.opening_per_newton * system.body.mass)
     if share <= JAMS:
         raise jammed(state.time, share, opens=N * share < 0)
@@ -362,6 +390,8 @@ def _rolling(system: RollingSystem, at: Touch, *, slips: bool = False) -> Next:
     weightless = abs(N) <= WEIGHTLESS * forces
     floor = _FLOOR * forces if weightless else 0.0
     pulled = N + floor < 0
+    if weightless and _opens(system, at):
+        return _lifted(system, at)
     if pulled and (system.support.friction is None or _pull(system, at) < 0):
         return _lifted(system, at)
     if slips or pulled or cone(system, at.contact, R, floor).get("slip", 0.0) < 0:

@@ -22,6 +22,7 @@ _RUN_AGAIN = 2000  # samples
 _MOST_STRETCHES = 200  # looked at
 _NARROWINGS = 6  # of windows in which the motion changes faster than its samples show
 _SMOOTH = 0.1  # of the bound: of what a polynomial may leave of a slope
+_SEEN = 3.0  # rad in a window: a polynomial follows no more
 _SHORTEST = 1e-9  # of what the clock shows: in less, instants have too few digits
 
 
@@ -135,6 +136,19 @@ class Again:
         looked_at = self.places(self.windows.ravel())
         return residuals(self.system, looked_at, self.windows, self.bound), set(looked_at.phase.tolist())
 
+    @cached_property
+    def _turns_too_fast(self) -> bool:
+        """Whether the clock has too few digits to show how the body turns, in any window: nothing narrower is told."""
+        Omega = self.places(self.windows.ravel()).angular_velocity.reshape(*self.windows.shape, 3)
+        turned = np.linalg.norm(Omega, axis=2).max(axis=1) * np.ptp(self.windows, axis=1)
+        return bool((turned > _SEEN).all())
+
+    def _of_orientation(self, name: str, value: float, note: str) -> CardFigure:
+        """Return a figure of the slopes of the orientation; without a verdict where they cannot be seen."""
+        if self._turns_too_fast:
+            return CardFigure(name, value, note=f"{note}; between two instants it turns too far to tell: no verdict")
+        return checked(name, value, self.bound, note)
+
     def figures(self) -> Iterator[CardFigure]:
         """Yield what the slopes in the windows say: how it moves, and by which law."""
         (found, phases), bound, count = self._looked_at, self.bound, len(self.windows)
@@ -142,11 +156,11 @@ class Again:
             held, slips = bool(phases & {ROLLING, RESTING}), SLIPPING in phases
             said = " and ".join(["move alike"] * held + ["apart as s while it slips"] * slips)
             note = f"the two points that touch {said}; slopes of position, orientation and support"
-            yield checked("no slip" if held else "slip", found.slip, bound, note)
+            yield self._of_orientation("no slip" if held else "slip", found.slip, note)
         yield checked(
             "velocity is the slope of the path", found.path, bound, f"at {count} instants, share of the speed"
         )
-        yield checked("Ω is the slope of the orientation", found.turning, bound, "2 q̇ q* against Ω, share of Ω")
+        yield self._of_orientation("Ω is the slope of the orientation", found.turning, "2 q̇ q* against Ω, share of Ω")
         yield checked(
             "law of motion",
             found.law,

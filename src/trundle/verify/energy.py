@@ -46,14 +46,17 @@ def energy(system: RollingSystem, at: Samples) -> Array:
     >>> energy(system, run.samples).round(12).tolist()
     [1.4, 1.4]
     """
+    return np.asarray(_energies(system, at).sum(axis=0))
+
+
+def _energies(system: RollingSystem, at: Samples) -> Array:
+    """Return the kinetic energy and each potential energy (kinds, n): their sum may be the small difference of two."""
     motion = at.motion(system)
     V, Omega = motion.velocity, motion.angular_velocity
     J = system.body.inertia_in_space(motion.orientation.matrix())
-    total = 0.5 * system.body.mass * V.dot(V) + 0.5 * Omega.dot(J @ Omega)
-    for load in system.all_loads:
-        if _keeps(load, motion):
-            total = total + load.potential(motion)
-    return np.broadcast_to(np.asarray(total, dtype=float), at.time.shape)
+    kinetic = 0.5 * system.body.mass * V.dot(V) + 0.5 * Omega.dot(J @ Omega)
+    kept = [load.potential(motion) for load in system.all_loads if _keeps(load, motion)]
+    return np.stack([np.broadcast_to(np.asarray(part, dtype=float), at.time.shape) for part in (kinetic, *kept)])
 
 
 def _keeps(load: Load, motion: BodyMotion) -> bool:
@@ -110,7 +113,7 @@ class _Account:
     works: Array  # (3, panels)
     tails: Array  # (panels,) J, that a polynomial does not follow
     sizes: Array  # (panels,) J
-    most: float  # of the energy, J
+    most: float  # of a part of the energy, J
 
     @staticmethod
     def of(system: RollingSystem, panels: Array, follow: Callable[[Array], Samples]) -> _Account:
@@ -120,11 +123,12 @@ class _Account:
         times = np.hstack([panels[:, :1], panels[:, :1] + half * (1 + x), panels[:, 1:]])
         order = np.argsort(times, axis=None, kind="stable")
         there = follow(times.ravel()[order]).part(np.argsort(order))
-        E = energy(system, there).reshape(times.shape)
+        parts = _energies(system, there)
+        E = parts.sum(axis=0).reshape(times.shape)
         *values, size = powers(system, there).reshape(4, *times.shape)[:, :, 1:-1]
         tails = np.abs(np.array(values) @ tops).max(axis=(0, 2)) * half[:, 0]
         works = (np.array(values) @ w) * half[:, 0]
-        return _Account(E[:, -1] - E[:, 0], works, tails, (size @ w) * half[:, 0], float(np.abs(E).max()))
+        return _Account(E[:, -1] - E[:, 0], works, tails, (size @ w) * half[:, 0], float(np.abs(parts).max()))
 
 
 def balance(

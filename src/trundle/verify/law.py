@@ -22,6 +22,7 @@ WINDOWS = 24
 _HALF_NODES = 6  # a polynomial of degree 12
 # Of a place, over half a window: a slope takes 20 times an error of its 13 places, each of ten roundings or so.
 _ROUNDING = 4e-14
+_A_ROUNDING = 2.0**-52
 _NARROWEST = 1e-10  # of what the clock shows: in less, 13 instants have too few digits
 _PHASE_A_WINDOW = 0.3  # rad of the fastest rotation: what a polynomial leaves of a body that is no sphere is rounding
 
@@ -289,7 +290,15 @@ class _Windows:
         V, fastest = np.abs(self.middle.velocity).max(), sum(map(largest, self._speeds))
         sharp = _ROUNDING * fastest / self.half / self.bound
         acting = np.abs(F).max() / float(self.system.body.mass)
-        return float(max(acting, np.abs(V_rate).max(), V * self.rate, sharp, 1e-300))
+        size = max(acting, np.abs(V_rate).max())
+        return float(max(size, V * self.rate, sharp, size * self._blurred, 1e-300))
+
+    @cached_property
+    def _blurred(self) -> float:
+        """The share by which rounding of places may turn ρ, their small difference, over the bound."""
+        at = self.middle
+        place = largest(at.position) + largest(at.contact)
+        return _A_ROUNDING * place / largest(at.contact - at.position) / self.bound
 
     @property
     def _sharp_turn(self) -> float:

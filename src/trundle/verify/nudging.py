@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from ..mechanics.algebra import E_X, E_Z, Quaternion, Vector
 from ..mechanics.contact import Contact, settle
-from ..mechanics.placing import SLIP_TOLERANCE
+from ..mechanics.placing import SLIP_TOLERANCE, no_gap
 from ..mechanics.system import RollingSystem, State
 
 
@@ -89,7 +89,7 @@ class _Start:
         over = float((Vector(*state.position) + contact.offset - contact.point).dot(n))
         off = float(slip.dot(n))
         speed = SLIP_TOLERANCE * max(float(part.norm()) for part in (V, Omega.cross(contact.offset), V - slip))
-        over = over if over > SLIP_TOLERANCE * contact.offset.norm() else 0.0
+        over = over if over > no_gap(contact, state.position) else 0.0
         slides = system.support.friction is not None and float((slip - n * off).norm()) > speed
         return cls(system, state, contact, slip, over, over > 0 or abs(off) > speed, slides)
 

@@ -13,7 +13,7 @@ from ...mechanics.algebra import E_Z, Vector
 from ...mechanics.scalars import Scalar, namespace
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
-from .cylinder_on_cylinder import CylinderOnCylinder
+from .cylinder_on_cylinder import CylinderOnCylinder, angles
 from .phi import phase, two_product
 from .quadrature import PreciseRunning, Running, is_one, one_by_one
 from .round_cylinder import frequency_ratio, numbers_of, reasons_outside
@@ -50,6 +50,8 @@ class BallInLeaningCylinder(ClosedForm):
         Ω·n at t = 0, rad/s.
     force : triple of float or array
         Constant force, weight included, N.
+    from_top : float or array
+        As for `CylinderOnCylinder`.
 
     Examples
     --------
@@ -72,6 +74,7 @@ class BallInLeaningCylinder(ClosedForm):
     climb: Scalar = 0.0
     spin: Scalar = 0.0
     force: tuple[Scalar, Scalar, Scalar] = (0.0, 0.0, 0.0)
+    from_top: Scalar = math.nan
 
     name = "ball round and along a leaning cylinder"
     equation = "T8"
@@ -112,7 +115,9 @@ class BallInLeaningCylinder(ClosedForm):
         0.4
         """
         cls.check_domain(system, start)
-        return cls(**numbers_of(system, start))
+        numbers = numbers_of(system, start)
+        (fx, fy, _), (x, y, _) = numbers["force"], start.position
+        return cls(**numbers, from_top=angles(fx * x + fy * y, fx * y - fy * x)[1])
 
     @classmethod
     def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
@@ -168,6 +173,7 @@ class BallInLeaningCylinder(ClosedForm):
             angular_rate=self.angular_rate,
             height=self.height,
             force=(fx, fy),
+            from_top=self.from_top,
         )
 
     @property
@@ -224,11 +230,11 @@ class BallInLeaningCylinder(ClosedForm):
     def _since(self, t: Any) -> Any:
         """Return Δ = θ − θ₀, counted on over whole rounds."""
         if not _is_mpmath(t):
-            return self._pendulum.angle_at(t) - self._pendulum.angle
+            return self._pendulum.turned_at(t)
         import mpmath
 
-        sine, cosine, _, _ = self._pendulum._halves(t)
-        half = mpmath.atan2(sine, cosine) - mpmath.mpf(self._pendulum.angle) / 2
+        sine, cosine, _ = self._pendulum.gone_at(t)
+        half = mpmath.atan2(sine, cosine)
         rounds = round((self._since(float(t)) / 2 - float(half)) / (2 * math.pi))  # a float tells these
         return 2 * (half + rounds * 2 * mpmath.pi)
 

@@ -43,6 +43,9 @@ class CylinderOnCylinder(ClosedForm):
         Of the centre along the axis, m.
     force : pair of float or array
         The pull across the axis, weight included, N; its size is G.
+    from_top : float or array
+        θ − π or θ + π at t = 0, the angle from the top, where the start is nearer to that: it keeps the digits that θ
+        loses there. Elsewhere NaN: θ says it.
 
     Examples
     --------
@@ -63,6 +66,7 @@ class CylinderOnCylinder(ClosedForm):
     angular_rate: Scalar
     height: Scalar = 0.0
     force: tuple[Scalar, Scalar] = (0.0, 0.0)
+    from_top: Scalar = math.nan
 
     name = "cylinder or ball on a cylinder"
     equation = "T6"
@@ -110,6 +114,7 @@ class CylinderOnCylinder(ClosedForm):
         r, V = Vector(*start.position), Vector(*start.velocity)
         length = surface.radius + surface.sign * system.body.radius
         pull = (fx, fy) if (fx, fy) != (0, 0) else (1.0, 0.0)
+        angle, from_top = angles(pull[0] * r.x + pull[1] * r.y, pull[0] * r.y - pull[1] * r.x)
         return cls(
             radius=system.body.radius,
             mass=system.body.mass,
@@ -117,10 +122,11 @@ class CylinderOnCylinder(ClosedForm):
             track_radius=surface.radius,
             side=surface.sign,
             rate=system.support.motion.steady_rate,
-            angle=math.atan2(pull[0] * r.y - pull[1] * r.x, pull[0] * r.x + pull[1] * r.y),
+            angle=angle,
             angular_rate=(r.x * V.y - r.y * V.x) / (math.hypot(r.x, r.y) * length),
             height=r.z,
             force=(fx, fy),
+            from_top=from_top,
         )
 
     @classmethod
@@ -178,7 +184,7 @@ class CylinderOnCylinder(ClosedForm):
     def _constants(self) -> _Constants:
         """Worked out with many digits; for arrays of members, one by one."""
         sizes = (self.track_radius, self.side, self.radius)
-        given = (self.mass, self.inertia_ratio, *sizes, self.angle, self.angular_rate, *self.force)
+        given = (self.mass, self.inertia_ratio, *sizes, self.angle, self.angular_rate, *self.force, self.from_top)
         if all(is_number(value) for value in given):
             return _Constants(*map(float, _constants(*given)))
         if any(type(value).__module__.partition(".")[0] == "mpmath" for value in given):
@@ -211,8 +217,8 @@ class CylinderOnCylinder(ClosedForm):
 
     # The motion
 
-    def _halves(self, t: Any) -> tuple[Scalar, Scalar, Scalar, Scalar]:
-        """Return sin(θ/2), cos(θ/2), θ̇/2 and how far the half angle has gone since t = 0, rad.
+    def _jacobi(self, t: Any) -> tuple[tuple[Scalar, Scalar, Scalar], tuple[Scalar, Scalar, Scalar], Scalar]:
+        """Return sn, cn and dn of λt, those of the start, and how far the half angle has gone round, rad.
 
         The functions of λt and of the start are put together by the addition theorems, with denominators that are
         sums of squares; so the start enters by its own sine and cosine and nothing has to be inverted.
@@ -220,22 +226,63 @@ class CylinderOnCylinder(ClosedForm):
         c = self._constants
         y, turned = phase((c.phase_rate, c.phase_rate_rest), t)
         xp = namespace(turned, c.rotates)
-        aperiodic = c.period == math.inf
-        u = xp.where(aperiodic, c.scale * t, turned * c.argument)
-        s1, c1, d1 = elliptic(u, c.complement)
-        sign, round_ = c.sense, c.rotates > 0
-        s2, k2, d2 = sign * c.sine, c.sn_rate, c.cosine  # swinging: κ sn, κ cn, dn of the start
+        u = xp.where(c.period == math.inf, c.scale * t, turned * c.argument)
+        rounds = (y - turned) * xp.where(c.rotates > 0, c.sense, 0 * c.sense)
+        # The start's, swinging: κ sn, κ cn and dn; going round: sn, dn and cn.
+        return elliptic(u, c.complement), (c.sense * c.sine, c.sn_rate, c.cosine), rounds
+
+    def _halves(self, t: Any) -> tuple[Scalar, Scalar, Scalar]:
+        """Return sin(θ/2), cos(θ/2) and θ̇/2."""
+        c = self._constants
+        (s1, c1, d1), (s2, k2, d2), _ = self._jacobi(t)
+        xp, sign, round_ = namespace(s1, c.rotates), c.sense, c.rotates > 0
         swing_den = c1 * c1 + s1 * s1 * d2 * d2
         swing_sine = (s1 * k2 * d2 + s2 * c1 * d1) / swing_den
         swing_cosine = (d1 * d2 - s1 * c1 * s2 * k2) / swing_den
         swing_rate = c.scale * (c1 * k2 - s1 * s2 * d1 * d2) / swing_den
-        den = c1 * c1 + s1 * s1 * k2 * k2  # going round: sn, cn and dn = k2 of the start
+        den = c1 * c1 + s1 * s1 * k2 * k2
         sine = (s1 * d2 * k2 + s2 * c1 * d1) / den
         cosine = (c1 * d2 - s1 * s2 * d1 * k2) / den
         rate = c.scale * (d1 * k2 - c.parameter * s1 * s2 * c1 * d2) / den
         sine, cosine = xp.where(round_, sine, swing_sine), xp.where(round_, cosine, swing_cosine)
-        rate = xp.where(round_, rate, swing_rate)
-        return sign * sine, cosine, sign * rate, (y - turned) * xp.where(round_, sign, 0 * sign)
+        return sign * sine, cosine, sign * xp.where(round_, rate, swing_rate)
+
+    def gone_at(self, t: Any) -> tuple[Scalar, Scalar, Scalar]:
+        """Return the sine and cosine of half the angle gone since the start, and twice the whole rounds besides.
+
+        The same addition theorems, less the start's angle by those of the circle: every term has a factor that
+        vanishes with the time, so that a small way keeps all its digits beside a large angle.
+
+        Parameters
+        ----------
+        t : float or array
+            Time since the start, s.
+
+        Returns
+        -------
+        sine, cosine : float or array
+            Of (θ − θ₀)/2.
+        rounds : float or array
+            By how much the angle is further on, rad.
+
+        Examples
+        --------
+        >>> sine, cosine, rounds = CylinderOnCylinder(0.1, 1.0, 0.5, 0.5, -1.0, 0.0, 0.0, 2.0).gone_at(10.0)
+        >>> round(2 * math.atan2(sine, cosine) + rounds, 12)  # no pull
+        20.0
+        """
+        c = self._constants
+        (s1, c1, d1), (s2, k2, d2), rounds = self._jacobi(t)
+        xp, round_ = namespace(s1, c.rotates), c.rotates > 0
+        less_cosine = xp.where(c1 > 0, s1 * s1 / (1 + xp.where(c1 > 0, c1, 0 * c1)), 1 - c1)  # 1 − cn
+        less_delta = c.parameter * s1 * s1 / (1 + d1)  # 1 − dn
+        short = xp.where(round_, less_delta, less_cosine)
+        kept, driven = xp.where(round_, c1, d1), xp.where(round_, c1 * less_delta, d1 * less_cosine)
+        straight = d2 * d2 + s2 * s2 * xp.where(round_, d1, c1)
+        den = c1 * c1 + s1 * s1 * xp.where(round_, k2 * k2, d2 * d2)
+        sine = (s1 * k2 * straight - s2 * d2 * driven) / den
+        cosine = (kept * straight + s1 * k2 * s2 * d2 * short) / den
+        return c.sense * sine, cosine, 2 * rounds
 
     def motion_at(self, t: Any) -> tuple[Vector, Vector, Vector, Vector]:
         """Return position, velocity, angular velocity and contact force together.
@@ -256,7 +303,7 @@ class CylinderOnCylinder(ClosedForm):
         >>> rest.motion_at(3.0)[3].x
         -9.80665
         """
-        half_sine, half_cosine, half_rate, _ = self._halves(t)
+        half_sine, half_cosine, half_rate = self._halves(t)
         sine, cosine = 2 * half_sine * half_cosine, 1 - 2 * half_sine * half_sine
         c, length = self._constants, self.length
         out = Vector(c.pull_x * cosine - c.pull_y * sine, c.pull_y * cosine + c.pull_x * sine, 0.0)
@@ -296,21 +343,40 @@ class CylinderOnCylinder(ClosedForm):
         >>> CylinderOnCylinder(0.1, 1.0, 0.5, 0.5, -1.0, 0.0, 0.0, 2.0).angle_at(10.0)  # no pull
         20.0
         """
-        half_sine, half_cosine, _, gone = self._halves(t)
-        xp, tau = namespace(half_sine), 2 * math.pi
-        since = xp.atan2(half_sine, half_cosine) - self.angle / 2
-        since = since - tau * xp.round(since / tau)
-        # Half a period from where `gone` counts, the half angle is half a turn on: on the side of its own motion.
-        c = self._constants
+        return self.angle + self.turned_at(t)
+
+    def turned_at(self, t: Any) -> Any:
+        """Return θ − θ₀ at a time since the start, rad, counted on over whole rounds; no digit of it is lost beside θ₀.
+
+        Parameters
+        ----------
+        t : float or array
+            Time since the start, s.
+
+        Returns
+        -------
+        float or array
+            As good as its own last digit.
+
+        Examples
+        --------
+        >>> fall = CylinderOnCylinder(0.1, 1.0, 0.5, 0.5, -1.0, 0.0, 1.0, 0.0, force=(9.8, 0.0))
+        >>> round(fall.turned_at(1e-9) / (-9.8 * math.sin(1.0) / (1.5 * 0.4) * 0.5e-18), 12)  # θ̈ t²/2
+        1.0
+        """
+        sine, cosine, rounds = self.gone_at(t)
+        xp, tau, c = namespace(sine), 2 * math.pi, self._constants
+        since = xp.atan2(sine, cosine)
+        # Half a period from where the rounds count, the half angle is half a turn on: on the side of its own motion.
         _, turned = phase((c.phase_rate, c.phase_rate_rest), t)
         ahead = turned * c.sense
         flip = (c.rotates > 0) & (abs(since) > 3.0) & (since * ahead < 0)
         since = since + xp.where(flip, xp.where(less(ahead, 0), -tau, tau), 0.0)
-        return self.angle + 2 * (since + gone)
+        return 2 * since + rounds
 
     def straight_turn(self, t: Any) -> tuple[Vector, Any]:
         """Return the axis and the angle by which the body has turned: from its place alone, as x = aφ on a plane."""
-        gone = self.length * (self.angle_at(t) - self.angle) - self.track_radius * self.rate * t
+        gone = self.length * self.turned_at(t) - self.track_radius * self.rate * t
         return E_Z, gone * self.side / self.radius
 
 
@@ -340,15 +406,17 @@ def _constants(*given: Any) -> tuple[Any, ...]:
     import mpmath
 
     with mpmath.workdps(max(_DIGITS, mpmath.mp.dps)):
-        m, k, track, side, radius, angle, angular_rate, fx, fy = map(mpmath.mpf, given)
+        m, k, track, side, radius, angle, angular_rate, fx, fy, from_top = map(mpmath.mpf, given)
         length = track + side * radius
         G, sine, cosine, v = mpmath.hypot(fx, fy), mpmath.sin(angle / 2), mpmath.cos(angle / 2), angular_rate / 2
+        if not mpmath.isnan(from_top):  # from −π to π round the pull, cos(θ/2) is positive
+            sine, cosine = mpmath.cos(from_top / 2) * (-1 if from_top > 0 else 1), abs(mpmath.sin(from_top / 2))
         pull = (fx / G, fy / G) if G else (mpmath.mpf(1), mpmath.mpf(0))
         pendulum = G / (m * (1 + k) * length)
         energy, short = v * v + pendulum * sine**2, pendulum * cosine**2 - v * v  # of the height at the top
         rotates = short < 0
         square = energy if rotates else pendulum
-        scale = mpmath.sqrt(square)
+        scale = mpmath.sqrt(square) if v or cosine else mpmath.mpf(0)  # at rest on the top it stays
         complement = (abs(short) / square) if square else mpmath.mpf(1)
         sense = mpmath.mpf(-1 if rotates and v < 0 else 1)
         sn_rate = v * sense / scale if scale else mpmath.mpf(1)
@@ -361,3 +429,24 @@ def _constants(*given: Any) -> tuple[Any, ...]:
             mpmath.mpf(int(rotates)), sense, complement, 1 - complement, scale, 2 * quarter / mpmath.pi,
             high, phase_rate - high, period, sine, cosine, sn_rate, pendulum, *pull,
         )  # fmt: skip
+
+
+def angles(along: float, across: float) -> tuple[float, float]:
+    """Return the angle from the pull, rad, and that from the top, opposite to it, where it is nearer to that; else NaN.
+
+    Parameters
+    ----------
+    along, across : float
+        How far the centre is along the pull and across it, to any one scale.
+
+    Returns
+    -------
+    angle, from_top : float
+        As `CylinderOnCylinder` takes them.
+
+    Examples
+    --------
+    >>> angles(-1.0, 1e-20)
+    (3.141592653589793, -1e-20)
+    """
+    return math.atan2(across, along), math.atan2(-across, -along) if along < 0 else math.nan

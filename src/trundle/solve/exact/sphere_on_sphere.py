@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -13,9 +14,10 @@ from ...mechanics.scalars import Scalar, is_zero, namespace
 from ...mechanics.surfaces import Bowl, Dome
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
-from .cylinder_on_cylinder import CylinderOnCylinder
+from .cylinder_on_cylinder import CylinderOnCylinder, angles
 
 _ASIDE = 1e-12  # share of the motion that may lead out of the plane by rounding
+_ROUNDING = 16 * sys.float_info.epsilon
 
 
 @dataclass(frozen=True)
@@ -34,15 +36,19 @@ class SphereOnSphere(ClosedForm):
         θ and θ̇ of the centre at t = 0, rad and rad/s, from `first` towards `second`.
     pull : float or array
         G, weight included, N.
+    position : triple of float or array
+        Of the centre at t = 0, m: what it goes from there is added, so that a small way on a large sphere is exact.
     first, second : triple of float or array
         Unit vectors in the plane of the circle, the first along G.
+    from_top : float or array
+        As for `CylinderOnCylinder`.
 
     Examples
     --------
     A ball that leaves the top of a dome at rest is let go where cos = 2/(3 + k), for a solid one 10/17:
 
-    >>> down, along = (0.0, 0.0, -1.0), (1.0, 0.0, 0.0)
-    >>> ball = SphereOnSphere(0.1, 1.0, 0.4, 0.9, 1.0, math.pi, 0.0, 9.80665, down, along)
+    >>> top, down, along = (0.0, 0.0, 0.1), (0.0, 0.0, -1.0), (1.0, 0.0, 0.0)
+    >>> ball = SphereOnSphere(0.1, 1.0, 0.4, 0.9, 1.0, math.pi, 0.0, 9.80665, top, down, along)
     >>> round(ball.lift_cosine * 17, 12)
     10.0
     """
@@ -55,8 +61,10 @@ class SphereOnSphere(ClosedForm):
     angle: Scalar
     angular_rate: Scalar
     pull: Scalar
+    position: tuple[Scalar, Scalar, Scalar]
     first: tuple[Scalar, Scalar, Scalar]
     second: tuple[Scalar, Scalar, Scalar]
+    from_top: Scalar = math.nan
 
     name = "ball in a great circle of a bowl or dome"
     equation = "T12"
@@ -104,17 +112,20 @@ class SphereOnSphere(ClosedForm):
         first = force / G if G else arm / arm.norm()
         across = _plane(arm, V, first)
         second = across.cross(first)
+        angle, from_top = angles(arm.dot(first), arm.dot(second))
         return cls(
             radius=a,
             mass=system.body.mass,
             inertia_ratio=system.body.inertia_ratio,
             track_radius=b,
             side=side,
-            angle=math.atan2(arm.dot(second), arm.dot(first)),
+            angle=angle,
             angular_rate=arm.cross(V).dot(across) / (arm.norm() * length),
             pull=G,
+            position=start.position,
             first=tuple(first),
             second=tuple(second),
+            from_top=from_top,
         )
 
     @classmethod
@@ -155,12 +166,15 @@ class SphereOnSphere(ClosedForm):
             V, Omega = Vector(*start.velocity), Vector(*start.angular_velocity)
             force, _, _ = constant_part(system.all_loads, system.body.mass)
             n, a = arm / arm.norm(), system.body.radius
-            moment, speed = arm.cross(V), max(V.norm(), a * Omega.norm())
-            if abs(moment.dot(force)) > _ASIDE * arm.norm() * speed * force.norm():
+            lever, speed = arm.cross(force), max(V.norm(), a * Omega.norm())
+            # Near the top and the bottom the way aside is small or not beside the swing, not beside the sphere.
+            heavy = (1 + system.body.inertia_ratio) * system.body.mass * arm.norm()
+            swing = max(lever.norm(), speed * math.sqrt(force.norm() * heavy))
+            if abs(lever.dot(V)) > _ASIDE * speed * swing + _rounding(arm, force) * speed:
                 reasons.append("the start moves out of the plane of the pull")
             elif a * abs(Omega.dot(n)) > _ASIDE * speed:
                 reasons.append("the start spins about the normal")
-            elif speed == 0 and arm.cross(force).norm() <= _ASIDE * arm.norm() * force.norm() and arm.dot(force) < 0:
+            elif speed == 0 and lever.norm() <= _rounding(arm, force) and arm.dot(force) < 0:
                 reasons.append("the start balances on the top, where a rounding would decide which way it falls")
         return reasons
 
@@ -176,7 +190,7 @@ class SphereOnSphere(ClosedForm):
         """The same motion in its plane."""
         return CylinderOnCylinder(
             self.radius, self.mass, self.inertia_ratio, self.track_radius, self.side, 0.0 * self.side,
-            self.angle, self.angular_rate, 0.0 * self.side, (self.pull, 0.0 * self.pull),
+            self.angle, self.angular_rate, 0.0 * self.side, (self.pull, 0.0 * self.pull), self.from_top,
         )  # fmt: skip
 
     @property
@@ -212,20 +226,29 @@ class SphereOnSphere(ClosedForm):
 
         Examples
         --------
-        >>> bowl = SphereOnSphere(0.1, 1.0, 0.4, 0.6, -1.0, 0.0, 0.0, 9.8, (0.0, 0.0, -1.0), (1.0, 0.0, 0.0))
+        >>> low, down, along = (0.0, 0.0, 0.1), (0.0, 0.0, -1.0), (1.0, 0.0, 0.0)
+        >>> bowl = SphereOnSphere(0.1, 1.0, 0.4, 0.6, -1.0, 0.0, 0.0, 9.8, low, down, along)
         >>> [part + 0.0 for part in bowl.motion_at(2.0)[3]]
         [0.0, 0.0, 9.8]
         """
         first, second = Vector(*self.first), Vector(*self.second)
         across = first.cross(second)
-        r, V, Omega, R = self.pendulum.motion_at(t)
-        middle = E_Z * -(self.side * self.track_radius)
+        _, V, Omega, R = self.pendulum.motion_at(t)
         return (
-            middle + first * r.x + second * r.y,
+            Vector(*self.position) + self._way(t),
             first * V.x + second * V.y,
             across * Omega.z,
             first * R.x + second * R.y,
         )
+
+    def _way(self, t: Any) -> Vector:
+        """Return how far the centre has gone since the start: its first arm, turned, less itself."""
+        first, second, c = Vector(*self.first), Vector(*self.second), self.pendulum._constants
+        sine, cosine = c.sense * c.sine, c.cosine
+        straight, across = (cosine - sine) * (cosine + sine), 2 * sine * cosine
+        out, around = first * straight + second * across, second * straight - first * across
+        sine, cosine, _ = self.pendulum.gone_at(t)
+        return (around * cosine - out * sine) * (2 * self.length * sine)
 
     def straight_turn(self, t: Any) -> tuple[Vector, Any]:
         """Return the axis and the angle by which the ball has turned: from its place alone."""
@@ -240,6 +263,12 @@ def _plane(arm: Vector, V: Vector, first: Vector) -> Vector:
     else:
         least = min((E_X, E_Y, E_Z), key=lambda e: abs(e.dot(first)))
         normal = first.cross(out)
-        normal = normal if normal.norm() > _ASIDE else first.cross(least)
+        normal = normal if normal.norm() > _rounding(first, out) else first.cross(least)
     straight = normal - first * normal.dot(first)
     return straight / straight.norm()
+
+
+def _rounding(a: Vector, b: Vector) -> float:
+    """Return how large a cross product may be that is nothing but rounding: by the size of what it subtracts."""
+    (ax, ay, az), (bx, by, bz) = map(abs, a), map(abs, b)
+    return _ROUNDING * float(Vector(ay * bz + az * by, az * bx + ax * bz, ax * by + ay * bx).norm())
