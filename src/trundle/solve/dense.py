@@ -34,6 +34,9 @@ class Leg:
     steps: int
 
 
+Keep = Callable[[RollingSystem, Next, float, float, int], Leg | None]
+
+
 class Dense:
     """A run gone through once: each stretch, and what follows it, is worked out when it is first asked for.
 
@@ -56,7 +59,7 @@ class Dense:
 
     def __init__(
         self,
-        keep: Callable[[RollingSystem, Next, float, float, int], Leg | None],
+        keep: Keep,
         integrate: Integrate,
         system: RollingSystem,
         start: State,

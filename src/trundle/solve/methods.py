@@ -57,7 +57,7 @@ class Method:
         from .dense import Dense
 
         module = import_module(f".{METHODS[self.name]}", __package__)
-        return Dense(module.dense, module.integrate, system, start, end, self.tolerance)
+        return Dense(module.keeping(), module.integrate, system, start, end, self.tolerance)
 
 
 def choose(method: str, system: RollingSystem, start: State) -> str:

@@ -12,7 +12,7 @@ import numpy as np
 from ..errors import SolverError
 from ..mechanics.system import RollingSystem, State
 from . import phases
-from .dense import Leg
+from .dense import Keep, Leg
 from .following import Next, Stop
 from .patience import Patience
 from .phases import Stretch, cut
@@ -94,6 +94,17 @@ def integrate(
         stop = replace(piece.stop, time=now.time + piece.stop.time)
         before, _ = cut(here, stop.time)
         yield Stretch(before, piece.states[: before.size], stop)
+
+
+def keeping() -> Keep:
+    """Return the way through all stretches of one run that keeps the polynomials of their steps.
+
+    Returns
+    -------
+    callable
+        As `dense`.
+    """
+    return dense
 
 
 def dense(system: RollingSystem, now: Next, end: float, tolerance: float, most: int) -> Leg | None:

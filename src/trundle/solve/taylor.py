@@ -10,7 +10,7 @@ import math
 import pickle
 import platform
 from collections.abc import Callable, Iterator, Sequence
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +20,7 @@ from ..errors import SolverError
 from ..mechanics.parameters import numbers, structure_of
 from ..mechanics.system import RollingSystem, State
 from . import integrator_cache, phases, runge_kutta
-from .dense import Leg
+from .dense import Keep, Leg
 from .following import Next, Stop
 from .laws import Law
 from .lowering import Lowered, lower
@@ -32,12 +32,12 @@ TOLERANCE = 1e-15
 _CHUNKS = 100  # of a run at most, between which progress is told and Ctrl-C is heard
 _LEAST_CHUNK = 60  # instants
 _AT_ONCE = 10_000  # steps, between which Ctrl-C is heard too
-# The first steps of each stretch are made by code that is compiled in haste: it takes two or three times as long for a
-# step, and a tenth of a second to compile where what is made with care takes seconds. Most stretches need no other.
-# They are counted for each stretch, so that a run has the same digits whatever is compiled already.
-_HASTY_STEPS = 1000
-_IN_HASTE, _WITH_CARE = 0, 3  # LLVM's levels
-_PATIENCE: dict[str, Any] = {"steps": 3e6, "spare": 5e4, "name": "Taylor's method"}  # a minute, and some seconds
+# A law's first steps in a run are made by code that is compiled in haste: it takes two or three times as long for a
+# step, and a tenth of a second to compile where what is made with care takes seconds. Most runs need no other. The
+# steps are counted anew in each run, so that it has the same digits whatever is compiled already.
+_HASTY_STEPS, _CARES = 1000, -1
+_IN_HASTE, _WITH_CARE = 0, 1  # levels of LLVM: at its highest it compiles for half as long again, and runs no faster
+_PATIENCE: dict[str, Any] = {"steps": 3e6, "spare": 2e4, "name": "Taylor's method"}  # a minute, and some seconds
 _LONGEST = 100.0  # s without a new reference of time, at most
 _PARTS = 10  # of a stretch that is kept, between which rounding's share is taken out
 
@@ -97,11 +97,16 @@ def solve(
     >>> print(round(x / (9.80665 * np.sin(0.1) / 2), 12))  # (5/7) g sin α
     0.714285714286
     """
-    return phases.solve(integrate, system, start, times, tolerance, progress)
+    return phases.solve(partial(integrate, hasty={}), system, start, times, tolerance, progress)
 
 
 def integrate(
-    system: RollingSystem, now: Next, times: Array, tolerance: float, progress: Progress | None = None
+    system: RollingSystem,
+    now: Next,
+    times: Array,
+    tolerance: float,
+    progress: Progress | None = None,
+    hasty: dict[str, int] | None = None,
 ) -> Iterator[Stretch]:
     """Follow one law to its first stop.
 
@@ -117,6 +122,8 @@ def integrate(
         Of each step, relative.
     progress : callable, optional
         Told the time reached.
+    hasty : dict, optional
+        How many steps each law has made in haste so far in a run of many stretches.
 
     Yields
     ------
@@ -131,7 +138,7 @@ def integrate(
     if now.law.brief:
         yield from runge_kutta.integrate(system, now, times, runge_kutta.FINEST, progress)
         return
-    with _begun(system, now, tolerance) as run:
+    with _begun(system, now, tolerance, hasty) as run:
         for chunk, states, reached in _propagate(run, times, progress):
             if reached is None:
                 yield Stretch(chunk, states, None)
@@ -141,7 +148,25 @@ def integrate(
             yield Stretch(kept, states[: kept.size], stop)
 
 
-def dense(system: RollingSystem, now: Next, end: float, tolerance: float, most: int) -> Leg | None:
+def keeping() -> Keep:
+    """Return the way through all stretches of one run that keeps the polynomials of their steps.
+
+    Returns
+    -------
+    callable
+        As `dense`.
+    """
+    return partial(dense, hasty={})
+
+
+def dense(
+    system: RollingSystem,
+    now: Next,
+    end: float,
+    tolerance: float,
+    most: int,
+    hasty: dict[str, int] | None = None,
+) -> Leg | None:
     """Follow one law to its first stop, and keep the polynomial of each step.
 
     Parameters
@@ -156,6 +181,8 @@ def dense(system: RollingSystem, now: Next, end: float, tolerance: float, most: 
         Of each step, relative.
     most : int
         How many steps may be kept.
+    hasty : dict, optional
+        As for `integrate`.
 
     Returns
     -------
@@ -169,7 +196,7 @@ def dense(system: RollingSystem, now: Next, end: float, tolerance: float, most: 
     """
     if now.law.brief:
         return runge_kutta.dense(system, now, end, runge_kutta.FINEST, most)
-    with _begun(system, now, tolerance) as run:
+    with _begun(system, now, tolerance, hasty) as run:
         run.kept, stop = _Kept(now), None
         run.patience = Patience(run.time, end, **_PATIENCE)
         part = min(_LONGEST, (end - now.time) / _PARTS)
@@ -186,15 +213,19 @@ def dense(system: RollingSystem, now: Next, end: float, tolerance: float, most: 
 
 
 @contextlib.contextmanager
-def _begun(system: RollingSystem, now: Next, tolerance: float) -> Iterator[_Run]:
+def _begun(system: RollingSystem, now: Next, tolerance: float, hasty: dict[str, int] | None) -> Iterator[_Run]:
     """Lend what integrates a law, at its beginning."""
+    hasty = {} if hasty is None else hasty
     lowered, key = _ready(system, now.law, tolerance)
     with contextlib.ExitStack() as lent:
 
         def borrow(level: int) -> Any:
             return lent.enter_context(_borrowed(lowered, key, tolerance, level))
 
-        yield _Run(borrow, lowered, [*numbers(system), *now.extras], now.time, now.numbers)
+        left = max(0, _HASTY_STEPS - hasty.get(key, 0))
+        run = _Run(borrow, left, lowered, [*numbers(system), *now.extras], now.time, now.numbers)
+        yield run
+        hasty[key] = _HASTY_STEPS - max(0, run.hasty_steps)
 
 
 def compiled(system: RollingSystem, law: Law, tolerance: float = TOLERANCE) -> tuple[Any, Lowered]:
@@ -262,10 +293,17 @@ class _Run:
     """An integrator on its way; its own time counts from a reference that moves along."""
 
     def __init__(
-        self, borrow: Callable[..., Any], lowered: Lowered, given: Sequence[float], begin: float, state: Sequence[float]
+        self,
+        borrow: Callable[[int], Any],
+        hasty_steps: int,
+        lowered: Lowered,
+        given: Sequence[float],
+        begin: float,
+        state: Sequence[float],
     ) -> None:
         self.borrow, self.lowered, self.given = borrow, lowered, given
-        self.integrator, self.hasty_steps = borrow(_IN_HASTE), _HASTY_STEPS
+        self.hasty_steps = hasty_steps or _CARES  # left
+        self.integrator = borrow(_WITH_CARE if self.hasty_steps == _CARES else _IN_HASTE)
         self.patience: Patience
         self.kept: _Kept | None = None  # where the polynomials of its steps are kept
         self.integrator.state[:] = state
@@ -318,7 +356,7 @@ class _Run:
         if self.hasty_steps > 0:
             return self.hasty_steps
         if self.hasty_steps == 0:
-            hasty, self.integrator, self.hasty_steps = self.integrator, self.borrow(_WITH_CARE), -1
+            hasty, self.integrator, self.hasty_steps = self.integrator, self.borrow(_WITH_CARE), _CARES
             self.integrator.state[:], self.integrator.pars[:] = hasty.state, hasty.pars
             self.integrator.dtime = hasty.dtime
         return _AT_ONCE
