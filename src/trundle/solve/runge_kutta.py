@@ -141,25 +141,25 @@ def _integrated(
     from scipy.integrate import DOP853, Radau
 
     law, begin = now.law, now.time
-    function, names = python_law(system, law, now.extras)
+    traced = python_law(system, law, now.extras)
     size, y0 = len(now.numbers), np.asarray(now.numbers, dtype=float)
     end = max(end, float(np.spacing(begin)))  # some way to go
 
     def rates(since: float, y: Array) -> Array:
         try:
-            return np.array(function(begin + since, y.tolist())[:size])
+            return np.array(traced.rates(begin + since, y.tolist()))
         except (ArithmeticError, ValueError):  # a trial beyond the end of a formula: a shorter step stays before it
             return np.full(size, np.nan)
 
     def stops(since: float, y: Array) -> Array:
         try:
-            return np.array(function(begin + since, y.tolist())[size:])
+            return np.array(traced.stops(begin + since, y.tolist()))
         except (ArithmeticError, ValueError):
-            return np.full(len(names), np.nan)
+            return np.full(len(traced.names), np.nan)
 
     told = None if progress is None else lambda since: progress(begin + since)
     patience = Patience(begin, begin + end, **_PATIENCE | ({"steps": _BRIEF, "spare": _BRIEF} if law.brief else {}))
-    steps = partial(_steps, rows=rows, stops=stops, names=names, begin=begin, patience=patience, progress=told)
+    steps = partial(_steps, rows=rows, stops=stops, names=traced.names, begin=begin, patience=patience, progress=told)
     try:
         given: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * _scale(y0)}
         if not law.stiff(y0):
@@ -193,7 +193,7 @@ def _steps(
     *,
     rows: _Rows | _Paths,
     stops: Any,
-    names: list[str],
+    names: tuple[str, ...],
     begin: float,
     patience: Patience,
     progress: Progress | None,
@@ -288,7 +288,7 @@ class _Paths:
         return states
 
 
-def _singular(names: list[str], values: Array, first: Array) -> str | None:
+def _singular(names: tuple[str, ...], values: Array, first: Array) -> str | None:
     """Return the end at which the law is singular that it has all but come to: no step leads nearer."""
     shares = {
         name: value / begin
