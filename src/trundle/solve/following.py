@@ -36,6 +36,7 @@ from .touch import WEIGHTLESS, Touch, floats, moment
 _FLOOR = 1e-12  # share of the forces at hand by which the support seems to pull a weightless body: rounding
 _PULLED_BACK = 1e-8  # share of the accelerations at hand at which a body that lifts off would come straight down
 _TAKE_OFF = 1e-15  # gap, as a share of |ρ|, with which a flight begins: it must not end where it begins
+_NOT_ZERO = 1e-30  # the same of a body that comes off: where it is 0, heyoka finds no landing within the same step
 SETTLED = 1e-6  # height, as a share of |ρ|, below which a bounce is cut
 
 
@@ -226,9 +227,9 @@ def spins_on(system: RollingSystem, law: Law, stop: Stop) -> bool:
     return bool(abs(relative.dot(at.contact.normal)) * at.arm > 1e-9 * at.scale(system))
 
 
-def _fly(at: Touch, least_gap: float = 0.0, events: tuple[Event, ...] = ()) -> Next:
-    now = Next.of(FlightLaw(), at, (), events)
-    now.numbers[13] = max(now.numbers[13], least_gap)
+def _fly(at: Touch, *events: Event) -> Next:
+    now, comes_off = Next.of(FlightLaw(), at, (), events), at.approach > SLIP_TOLERANCE * at.speed
+    now.numbers[13] = max(now.numbers[13], (_NOT_ZERO if comes_off else _TAKE_OFF) * at.arm)
     return now
 
 
@@ -239,7 +240,7 @@ def _lifted(system: RollingSystem, at: Touch) -> Next:
             f"At t = {state.time:.9g} s friction without limit would have to hold the body down, which no support "
             "does. Give the support a `friction`, so that the body slips before that."
         )
-    return _fly(at, _TAKE_OFF * at.arm, (_event("lift", _NAMES[FlightLaw.code][1], at),))
+    return _fly(at, _event("lift", _NAMES[FlightLaw.code][1], at))
 
 
 def _pulled_back(system: RollingSystem, at: Touch) -> bool:
@@ -278,7 +279,7 @@ def _struck(system: RollingSystem, at: Touch) -> Next:
     said = f"landed at {-at.approach:.4g} m/s"
     after = at.moving(system, V, Omega, own)
     if bounces:
-        return _fly(after, _TAKE_OFF * at.arm, (_event("land", f"{said} and bounced", at, after),))
+        return _fly(after, _event("land", f"{said} and bounced", at, after))
     after = _set_down(system, after)
     cut = "; the bounces to come are lower than a millionth of the body and were cut" if off > 0 else ""
     event = _event("settle" if off > 0 else "land", f"{said}{cut}", at, after)
