@@ -99,7 +99,7 @@ def _integrated(
     from scipy.integrate import DOP853, Radau
 
     law, begin = now.law, now.time
-    function, names = python_law(system, law, now.extras)
+    function, names = python_law(system, law, now.extras, begin, now.numbers)
     size, y0 = len(now.numbers), np.asarray(now.numbers, dtype=float)
     end = max(float(times[-1]) if times.size else 0.0, float(np.spacing(begin)))  # some way to go
 
