@@ -442,5 +442,6 @@ def test_a_run_asked_for_other_instants_may_end_a_rounding_sooner() -> None:
             return Method.of("runge-kutta").solve(system, start, np.append(times[:-1], times[-1] * (1 - 1e-15)))
 
     run = Sooner.solve(SYSTEM, START, np.array([0.1, 0.2]))
-    ((first, other),) = _lasts(SYSTEM, Sooner(), 0.2, [(START, run)] * 2)
+    sooner: Any = Sooner()
+    ((first, other),) = _lasts(SYSTEM, sooner, 0.2, [(START, run)] * 2)
     assert first.time.tolist() == other.time.tolist()
