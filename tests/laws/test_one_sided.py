@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -98,6 +99,16 @@ def test_without_friction_it_leaves_a_dome_where_a_particle_does(share: float, m
     leaves = (2 + speed * speed / (G * 0.35)) / 3
     assert off.kind == "lift"
     assert abs((off.before.position[2] + 0.3) / 0.35 - leaves) <= SOLVER(1000, 1e-13)
+
+
+@pytest.mark.parametrize("method", ["exact", "taylor", "runge-kutta"])
+@pytest.mark.parametrize("up", [1e-3, 0.1, 2.0])
+def test_thrown_up_from_the_floor_it_comes_down_again(up: float, method: str) -> None:
+    floor = tr.RollingSystem(BALL, tr.Support(tr.Plane(), friction=0.1))
+    start = replace(floor.place((0.2, 0.1)), velocity=(0.3, 0.0, up))  # the gap is 0 at first
+    landed = run_of(floor, start, 2.5 * up / G, method).events[0]
+    assert landed.kind == "land"
+    assert abs(landed.time / (2 * up / G) - 1) <= SOLVER(10, 1e-13)
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from tests.tolerances import EXACT
+from tests.tolerances import EXACT, SOLVER
 
 import trundle as tr
 from trundle.mechanics.algebra import Vector
@@ -26,6 +26,8 @@ TABLES = {
     "fixed": tr.Support(tr.Plane(rim=1.0)),
     "spinning": tr.Support(tr.Plane(rim=1.0), motion=tr.Spin(RATE), tilt=0.1),
 }
+SIDE = [-0.2, -0.1, 0.0, 0.1, 0.2]
+TRAY = tr.RollingSystem(BODIES["ball"], tr.Support(tr.HeightField.through(SIDE, SIDE, [[0.0] * 5] * 5), friction=0.1))
 TURNED = (0.8, 0.3, -0.4, 0.2)
 
 
@@ -101,3 +103,15 @@ def test_a_contradiction_is_refused_by_name(arguments: dict[str, Any], key: str)
     system = tr.RollingSystem(BODIES["ball"], TABLES["spinning"])
     with pytest.raises(tr.InvalidValueError, match=key):
         system.place(**arguments)
+
+
+def test_a_body_beyond_the_end_of_a_table_of_numbers_is_over_nothing() -> None:
+    assert TRAY.place((0.19, 0.0)).position[0] == 0.19
+    with pytest.raises(tr.SolverError, match="no point of the surface is nearest"):
+        tr.simulate(TRAY, tr.State((0.21, 0.0, 0.3), (0.0,) * 3, (0.0,) * 3), 0.1, 0.05)
+
+
+def test_a_body_slips_on_a_table_of_numbers_as_on_the_plane() -> None:
+    start = TRAY.place((0.0, 0.0), (0.3, 0.0), angular_velocity=(0.0, 0.0, 0.0))
+    run = tr.simulate(TRAY, start, 0.05, 0.05)
+    assert abs(run.samples.velocity[-1, 0] - (0.3 - 0.1 * TRAY.gravity * 0.05)) <= SOLVER(10, 1e-12)

@@ -16,9 +16,10 @@ import pytest
 from tests.tolerances import EXACT, SOLVER
 
 import trundle as tr
-from trundle.mechanics.algebra import Quaternion, Vector
+from trundle.mechanics.algebra import Matrix, Quaternion, Vector
 from trundle.mechanics.contact import touch
-from trundle.mechanics.impact import Impact, land
+from trundle.mechanics.impact import Impact, _Course, land
+from trundle.verify.course import Course
 
 Array = Any
 STILL = Quaternion(1.0, 0.0, 0.0, 0.0)
@@ -268,6 +269,23 @@ def test_a_landing_changes_little_where_the_body_or_its_slip_changes_little(mu: 
     for lean, slip in ((0.0, (1.0, 0.4)), (0.3, (0.0, 0.0)), (0.3, (0.0, 0.5)), (0.0, (0.0, 0.0))):
         near = [answer(lean + sign * tiny, (slip[0] + turn * tiny, slip[1])) for sign in (-1, 0, 1) for turn in (-1, 1)]
         assert np.ptp(near, axis=0).max() <= SOLVER(1e3, 1e-9)
+
+
+@pytest.mark.parametrize("mu", [None, 0.12, 0.5, 2.0])
+def test_what_comes_all_but_straight_down_gets_no_more_slip_back_than_it_had(mu: float | None) -> None:
+    rng = np.random.default_rng(seed=1)
+    for count in range(20):
+        A, (e, e_t) = rng.normal(size=(3, 3)), rng.uniform(size=2)
+        M = A @ A.T + 0.3 * np.eye(3)
+        if count % 2:  # a body symmetric about a plane
+            M[1, 0] = M[0, 1] = M[1, 2] = M[2, 1] = 0.0
+        rows, answers = Matrix(*(Vector(*row) for row in M.tolist())), []
+        for size in (0.0, 1e-300, 1e-17, 1e-10):
+            slip = np.array([0.6 * size, -0.8 * size, -2.0])
+            P = _Course(rows, math.inf if mu is None else mu, e, e_t, Vector(*slip.tolist())).impulse().array()
+            assert np.abs(P - Course(M, mu, e, slip, e_t).impulse()).max() <= SOLVER(10, 1e-12, np.abs(P).max())
+            answers.append(P)
+            assert np.abs(P - answers[0]).max() <= SOLVER(10, 1e-13 + size, np.abs(P).max())
 
 
 def test_a_tangential_restitution_is_a_share() -> None:

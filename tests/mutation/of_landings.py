@@ -118,16 +118,16 @@ LANDINGS = (
     Mutant(
         "landing: slip that has ended begins again",
         IMPACT,
-        "if math.hypot(direction.x, direction.y) > self.mu:",
-        "if math.hypot(direction.x, direction.y) > 0.0 * self.mu:",
+        "math.hypot(self._holding.x, self._holding.y) <= self.mu",
+        "math.hypot(self._holding.x, self._holding.y) <= 0.0 * self.mu",
         "egg_grips_as_it_lands",
         refused="jams",
     ),
     Mutant(
         "landing: slip that has ended stays so",
         IMPACT,
-        "if math.hypot(direction.x, direction.y) > self.mu:",
-        "if False:",
+        "math.hypot(self._holding.x, self._holding.y) <= self.mu",
+        "True",
         "egg_slips_as_it_lands",
     ),
     Mutant(

@@ -30,6 +30,7 @@ from trundle.solve.samples import FLIGHT, Samples
 from trundle.trajectory import Trajectory
 from trundle.verify import Card
 from trundle.verify.course import Course
+from trundle.verify.growth import _lasts
 from trundle.verify.nudging import nudged
 
 PAGE = Path(__file__).parents[2] / "docs" / "what-the-card-can-show.md"
@@ -432,3 +433,15 @@ def test_slip_that_turns_keeps_keller_s_equations(seed: int) -> None:
     ended = fine + (fine - coarse) / 3
     assert abs(ended[2]) < 1e-9
     assert np.abs(np.linalg.solve(M, ended - s) - P).max() < 1e-9 * np.linalg.norm(P)
+
+
+def test_a_run_asked_for_other_instants_may_end_a_rounding_sooner() -> None:
+    class Sooner:
+        @staticmethod
+        def solve(system: RollingSystem, start: State, times: Any) -> Samples:
+            return Method.of("runge-kutta").solve(system, start, np.append(times[:-1], times[-1] * (1 - 1e-15)))
+
+    run = Sooner.solve(SYSTEM, START, np.array([0.1, 0.2]))
+    sooner: Any = Sooner()
+    ((first, other),) = _lasts(SYSTEM, sooner, 0.2, [(START, run)] * 2)
+    assert first.time.tolist() == other.time.tolist()

@@ -226,17 +226,24 @@ def settle(
     >>> settle(system, 0.0, Vector(0.4, 0.0, 0.0), Quaternion(1.0, 0.0, 0.0, 0.0)).point
     Vector(x=0.5, y=0.0, z=0.0)
     """
+    surface = system.support.surface
     # The normal at the centre is already that at the contact for a sphere over a surface of constant curvature.
     found = _newton(system, time, centre, centre, orientation, own)
-    if found is None:
+    if found is None or _is_beyond(surface, _own(found.support, found.point)):
         guess = _guess(system, time, centre, orientation, own)
         found = None if guess is None else _newton(system, time, centre, guess, orientation, own)
-    if found is None:
+    if found is None or _is_beyond(surface, _own(found.support, found.point)):
         raise SolverError(
             f"At t = {float(time):.9g} s no point of the surface is nearest to the body, whose centre is at "
             f"({', '.join(f'{float(part):.4g}' for part in centre)}) m. Does the surface reach there, and smoothly?"
         )
     return found
+
+
+def _is_beyond(surface: Surface, there: Vector) -> bool:
+    """Tell whether a point is beyond the surface's end: a table's spline goes on there, the surface does not."""
+    inside = surface.inside(there)
+    return inside is not None and bool(inside < 0)
 
 
 def _newton(
@@ -283,6 +290,8 @@ def _guess(
         n = support.rotation @ Vector(across * math.cos(angle), across * math.sin(angle), z)
         try:
             point = centre + system.body.shape.contact(orientation.matrix(), n)[0]
+            if _is_beyond(system.support.surface, _own(support, point)):
+                continue
             off = (support.rotation @ system.support.surface.normal(_own(support, point)) - n).norm()
         except (ArithmeticError, ValueError):
             continue

@@ -131,28 +131,39 @@ class _Course:
     def impulse(self) -> Vector:
         """Return the whole impulse, N s."""
         ending = self._ending()
-        total = self._to_the_end(ending)
+        total = self._to_the_end()
         return total + self._given_back(ending) if self.unused * self.tangential_restitution > 0 else total
 
     def _ending(self) -> Vector:
-        """Return the impulse along the support that would end the slip by itself, N s."""
+        """Return the impulse along the support that ends the slip by itself, N s."""
         (xx, xy, _), (yx, yy, _), _ = self.M.rows
         x, y, _ = self.slip
         return Vector(xy * y - yy * x, yx * x - xx * y, 0.0) / (xx * yy - xy * yx)
 
-    def _to_the_end(self, ending: Vector) -> Vector:
+    def _end_at_once(self) -> Vector:
+        """End the slip by an impulse along the support alone, and return it, N s."""
+        ending = self._ending()
+        self.taken -= 0.5 * self.slip.dot(ending)
+        self.slip = Vector(0.0, 0.0, self.slip.z + self.M.c.dot(ending))
+        return ending
+
+    def _to_the_end(self) -> Vector:
         """Return the impulse of Keller's course, up to where the share e² of compression is given back, N s."""
         total, size = ZERO, self.slip.norm()
         if math.isinf(self.mu):  # friction without limit: slip ends at once
-            total, self.taken = ending, -0.5 * self.slip.dot(ending)
-            self.slip = Vector(0.0, 0.0, self.slip.z + self.M.c.dot(total))
+            total = self._end_at_once()
         for _ in range(_MOST_PIECES):
             if self.aim is None and self.slip.z >= 0:
                 self.aim = (1 - self.restitution**2) * self.work
             if self.aim is not None and self.work >= self.aim:
                 return total
-            sliding = self.mu and math.hypot(self.slip.x, self.slip.y) > 2 * _SLOW * size
-            total = total + (self._slide(size) if sliding else self._straight(self._held))
+            sigma = math.hypot(self.slip.x, self.slip.y)
+            if self.mu and sigma > 2 * _SLOW * size:
+                total = total + self._slide(size)
+                continue
+            if self._holds and sigma:  # how it ends makes a difference of the order of σ² only
+                total = total + self._end_at_once()
+            total = total + self._straight(self._held)
         raise SolverError("A landing does not end: friction and the body's shape jam it. Use less friction.")
 
     def _given_back(self, direction: Vector) -> Vector:
@@ -177,16 +188,25 @@ class _Course:
             direction, free = direction + E_Z * (pressing / self.M.c.z), math.inf
 
     @cached_property
+    def _holding(self) -> Vector:
+        """The impulse for each unit of P that M takes to the normal."""
+        answer = self.M.solve(E_Z)
+        return answer / answer.z
+
+    @cached_property
+    def _holds(self) -> bool:
+        """Whether friction can keep a contact from slipping."""
+        return self.mu > 0 and math.hypot(self._holding.x, self._holding.y) <= self.mu
+
+    @cached_property
     def _held(self) -> Vector:
         """The impulse for each unit of P of a contact that does not slip, or that begins to."""
+        if self._holds:
+            return self._holding
         if self.mu == 0:
             return E_Z
-        answer = self.M.solve(E_Z)
-        direction = answer / answer.z  # M takes it to the normal
-        if math.hypot(direction.x, direction.y) > self.mu:
-            c, s = self._beginning()
-            direction = Vector(-self.mu * c, -self.mu * s, 1.0)
-        return direction
+        c, s = self._beginning()
+        return Vector(-self.mu * c, -self.mu * s, 1.0)
 
     def _beginning(self) -> tuple[float, float]:
         """Return the direction in which slipping begins: the one that its own friction leads along."""
@@ -219,10 +239,11 @@ class _Course:
             upto = (-s.z + math.sqrt(s.z * s.z + 2 * change.z * (self.aim - self.work))) / change.z
         amount = min(upto, still)
         self.work += s.z * amount + 0.5 * change.z * amount**2
-        half = s + change * (0.5 * amount)
-        self.taken -= amount * (direction.x * half.x + direction.y * half.y)
-        self.unused += (self.mu - math.hypot(direction.x, direction.y)) * amount if amount else 0.0
         x, y, z = s + change * amount
+        if direction is self._holding:  # nothing slips: of what rounding says of it e_t would give back the root
+            x = y = 0.0
+            self.unused += (self.mu - math.hypot(direction.x, direction.y)) * amount if amount else 0.0
+        self.taken -= 0.5 * amount * (direction.x * (s.x + x) + direction.y * (s.y + y))
         if still <= upto:
             x = y = 0.0
         elif self.aim is None:
@@ -251,6 +272,7 @@ class _Course:
         from scipy.integrate import solve_ivp
 
         M = np.array([tuple(row) for row in self.M.rows])
+        sigma, least = math.hypot(self.slip.x, self.slip.y), _SLOW * size
 
         def rates(_: float, y: Any) -> Any:
             hat = np.array([math.cos(y[1]), math.sin(y[1])])
@@ -259,19 +281,19 @@ class _Course:
             along, aside = hat[0] * first + hat[1] * second, hat[0] * second - hat[1] * first
             return np.array([along, aside / y[0], up, y[2], *direction, self.mu * y[0]])
 
-        ends = [lambda _, y: y[0] - _SLOW * size]
+        ends = [lambda _, y: y[0] - least]
         ends.append((lambda _, y: y[2]) if self.aim is None else (lambda _, y: y[3] - self.aim))
         for end, direction in zip(ends, (-1, 1), strict=True):
             end.terminal, end.direction = True, direction  # type: ignore[attr-defined]
         far = 100 * size / float(np.linalg.eigvalsh(M)[0])
         first, second, up = self.slip
-        y0 = np.array([math.hypot(first, second), math.atan2(second, first), up, self.work, 0.0, 0.0, 0.0, self.taken])
-        scale = np.array([size, 1.0, size, size * far, far, far, far, size * far])
+        y0 = np.array([sigma, math.atan2(second, first), up, self.work, 0.0, 0.0, 0.0, self.taken])
+        scale = np.array([size, 1.0, size, size * far, far, far, far, (sigma / size) ** 2 * size * far])
         found = solve_ivp(rates, (0.0, far), y0, method="DOP853", rtol=1e-12, atol=1e-14 * scale, events=ends)
         if found.status != 1:
             raise SolverError("A landing does not end: friction and the body's shape jam it. Use less friction.")
         y = found.y[:, -1]
-        stopped = abs(y[0] - _SLOW * size) < 1e-3 * _SLOW * size
+        stopped = abs(y[0] - least) < 1e-3 * least
         if stopped:
             y = y - y[0] / rates(0.0, y)[0] * rates(0.0, y)  # straight on to σ = 0
         sigma, beta, up, work = y[:4].tolist()

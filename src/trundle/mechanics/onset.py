@@ -32,6 +32,8 @@ def onset(growth: Callable[[Any, Any], tuple[Any, Any]]) -> list[tuple[float, tu
 
     >>> onset(lambda c, s: (3.0 - 2.0 * c, -2.0 * s))
     [(1.0, (1.0, 0.0))]
+    >>> onset(lambda c, s: (-3.0 - 2.0 * c, -2.0 * s))[0][1][0]
+    -1.0
     >>> onset(lambda c, s: (3.0 - 4.0 * c, -4.0 * s))
     []
     """
@@ -46,6 +48,7 @@ def onset(growth: Callable[[Any, Any], tuple[Any, Any]]) -> list[tuple[float, tu
     c, s = np.cos(angles), np.sin(angles)
     along_first, along_second = growth(c, s)
     left = np.signbit(c * along_second - s * along_first)
+    left[-1] = left[0]  # one direction: rounding leaves ŝ = (−1, 0) between the two
     found = []
     for i in np.flatnonzero(left[1:] != left[:-1]):
         ends = sorted((float(angles[i]), float(angles[i + 1])), key=lambda angle: abs(across(angle)))

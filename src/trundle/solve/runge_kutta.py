@@ -141,7 +141,7 @@ def _integrated(
     from scipy.integrate import DOP853, Radau
 
     law, begin = now.law, now.time
-    traced = python_law(system, law, now.extras)
+    traced = python_law(system, law, now.extras, begin, now.numbers)
     size, y0 = len(now.numbers), np.asarray(now.numbers, dtype=float)
     end = max(end, float(np.spacing(begin)))  # some way to go
 

@@ -89,7 +89,9 @@ def contact_state(system: RollingSystem, start: State) -> list[float]:
     return RollingLaw().pack(system, start)
 
 
-def python_law(system: RollingSystem, law: Law, extras: Sequence[float] = ()) -> PythonLaw:
+def python_law(
+    system: RollingSystem, law: Law, extras: Sequence[float] = (), time: float = 0.0, state: Sequence[float] = ()
+) -> PythonLaw:
     """Trace a law on a tape and return it as flat Python functions, some 20 times faster than the vectors.
 
     Parameters
@@ -100,6 +102,10 @@ def python_law(system: RollingSystem, law: Law, extras: Sequence[float] = ()) ->
         Of the phase.
     extras : sequence of float
         What its stops take besides.
+    time : float
+        When the law begins to hold, s.
+    state : sequence of float
+        The numbers with which it begins; only a support given as a table needs these two.
 
     Returns
     -------
@@ -115,7 +121,7 @@ def python_law(system: RollingSystem, law: Law, extras: Sequence[float] = ()) ->
     (2.0, ('lift',))
     """
     if not system.support.surface.analytic:
-        return _untraced(system, law, extras)
+        return _untraced(system, law, extras, time, state)
     own = {name: value for name, value in vars(law).items() if isinstance(value, float)}
     values = [*numbers(system), *own.values(), *extras]
     rates, stops, names = _known(system, law, tuple(own))
@@ -160,13 +166,14 @@ def _traced(system: RollingSystem, law: Law, own: tuple[str, ...]) -> _Flat:
     return tape.function(rates), tape.function(list(stops.values())), tuple(stops)
 
 
-def _untraced(system: RollingSystem, law: Law, extras: Sequence[float]) -> PythonLaw:
+def _untraced(
+    system: RollingSystem, law: Law, extras: Sequence[float], time: float, state: Sequence[float]
+) -> PythonLaw:
     def rates(t: float, y: Sequence[float]) -> list[float]:
         return [float(rate) for rate in law.rates(system, t, y)]
 
     def stops(t: float, y: Sequence[float]) -> list[float]:
         return [float(value) for value in law.stops(system, t, y, extras).values()]
 
-    start = [0.0] * len(law.names(system))
-    start[3] = 1.0
-    return PythonLaw(rates, stops, tuple(law.stops(system, 0.0, start, extras)))
+    # Which stops there are is read off a state in which the law holds: of any other it may know nothing.
+    return PythonLaw(rates, stops, tuple(law.stops(system, time, state, extras)))

@@ -58,15 +58,14 @@ class Course:
     turned: bool = False  # whether the slip changed its direction on the way
     work: float = 0.0  # of the normal impulse, J
     aim: float | None = None  # the work at which it ends, known once compression is over
+    taken: float = 0.0  # by friction, J: a difference of other works would lose it where it is small
     unused: float = 0.0  # what friction could have given besides while the contact held, N s
 
     def impulse(self) -> Array:
         """Return P along two tangents and n, N s; not a number where no impulse ends the landing."""
         begin, size = self.slip.copy(), float(np.linalg.norm(self.slip))
         if self.mu is None:  # no slip outlasts the first of the impulse
-            ending = np.append(np.linalg.solve(self.M[:2, :2], -self.slip[:2]), 0.0)
-            self.slip = self.slip + self.M @ ending
-            self.slip[:2] = 0.0
+            self._end_at_once()
         for _ in range(_MOST_PIECES):
             if self.aim is None and self.slip[2] >= 0:
                 self.aim = (1 - self.restitution**2) * self.work
@@ -80,22 +79,22 @@ class Course:
     def _give_back(self, begin: Array) -> None:
         """Add the impulse along that which ends the slip, by which a contact that holds gives back a share of its work.
 
-        The work of all of P is ½P·(s₀ + s), whatever its course; what is not that of its normal part, friction took.
+        A body that comes straight down has no such impulse.
         """
-        P = np.linalg.solve(self.M, self.slip - begin)
-        left = self.tangential**2 * (self.work - 0.5 * float(P @ (begin + self.slip)))
-        if not (left > 0 and self.tangential > 0 and self.unused > 0):
+        left, ending = self.tangential**2 * self.taken, np.linalg.solve(self.M[:2, :2], -begin[:2])
+        along = float(np.hypot(*ending))
+        if not (left > 0 and self.unused > 0 and along > 0):
             return
-        way = np.append(np.linalg.solve(self.M[:2, :2], -begin[:2]), 0.0)
-        along, presses = float(np.hypot(*way[:2])), -float((self.M @ way)[2])
+        way = np.append(ending / along, 0.0)
+        presses = -float((self.M @ way)[2])
         free = max(0.0, float(self.slip[2])) / presses if presses > 0 else np.inf
-        done, left = self._push(way, left, min(free, self.unused / along))
+        done, left = self._push(way, left, min(free, self.unused))
         if done < free:
             return
         # From s_n = 0 on the support holds against what presses the body onto it, which makes the cone wider.
         held = np.append(way[:2], presses / self.M[2, 2])
-        wide = -np.inf if self.mu is None else along - held[2] * self.mu
-        self._push(held, left, (self.unused - along * done) / wide if wide > 0 else np.inf)
+        wide = -np.inf if self.mu is None else 1.0 - held[2] * self.mu
+        self._push(held, left, (self.unused - done) / wide if wide > 0 else np.inf)
 
     def _push(self, way: Array, work: float, most: float) -> tuple[float, float]:
         """Add an impulse along a direction until it has done some work; return it, and the work still left."""
@@ -104,6 +103,13 @@ class Course:
         amount = min(most, 2 * work / (first + np.sqrt(first * first + 2 * gain * work)) if work > 0 else 0.0)
         self.slip = self.slip + amount * rate
         return float(amount), work - amount * (first + 0.5 * gain * amount)
+
+    def _end_at_once(self) -> None:
+        """End the slip by an impulse along the support alone."""
+        ending = np.append(np.linalg.solve(self.M[:2, :2], -self.slip[:2]), 0.0)
+        self.taken -= 0.5 * float(self.slip @ ending)
+        self.slip = self.slip + self.M @ ending
+        self.slip[:2] = 0.0
 
     def _go_on(self, size: float) -> bool:
         """Go on by one piece: slip along a line, slip that turns, or no slip; tell whether there is a way on."""
@@ -126,17 +132,17 @@ class Course:
         stays = np.linalg.solve(self.M, [0.0, 0.0, 1.0])
         stays = stays / stays[2]
         if self.mu is None or np.hypot(*stays[:2]) <= self.mu:
+            self._end_at_once()  # what is left of it, if anything
             before = self.slip
-            goes_on = self._line(stays)
+            goes_on = self._line(stays, holds=True)
             amount = float(np.linalg.solve(self.M, self.slip - before)[2])
             spare = np.inf if self.mu is None else self.mu - float(np.hypot(*stays[:2]))
             self.unused += spare * amount if amount > 0 else 0.0
-            self.slip[:2] = 0.0
             return goes_on
         begins = _begins(self.M, self.mu)
         return begins is not None and self._line(begins)
 
-    def _line(self, way: Array, ends: float = np.inf) -> bool:
+    def _line(self, way: Array, ends: float = np.inf, *, holds: bool = False) -> bool:
         """Go on along one direction of the impulse to the first of: slip ends, compression ends, the landing ends."""
         rate, up, left = self.M @ way, float(self.slip[2]), 0.0 if self.aim is None else self.aim - self.work
         if self.aim is None:
@@ -148,9 +154,12 @@ class Course:
         if not np.isfinite(amount):
             return False
         self.work += up * amount + 0.5 * float(rate[2]) * amount**2
-        self.slip = self.slip + amount * rate
-        if ends <= upto:
+        before, self.slip = self.slip, self.slip + amount * rate
+        if holds or ends <= upto:
             self.slip[:2] = 0.0
+        self.taken -= 0.5 * amount * float(way[:2] @ (before + self.slip)[:2])
+        if ends <= upto:
+            pass
         elif self.aim is None:
             self.slip[2] = 0.0
         else:
@@ -172,6 +181,7 @@ class Course:
             ended = series.length <= least
             if stops or ended:
                 self.slip, self.work = np.array(series.slip) * speed, series.work * speed**2
+                self.taken += float(self.mu or 0.0) * series.taken * speed**2
                 if stops and aim is None:
                     self.slip[2] = 0.0
                 elif stops:
@@ -190,12 +200,16 @@ class Course:
 
 @dataclass(frozen=True)
 class _Series:
-    """Taylor series of s, for a speed of 1, and of the work of P_n at one instant of τ; floats are quicker here."""
+    """Taylor series of s, for a speed of 1, of the work of P_n, and of ∫|s_t|² dτ, the μth part of friction's.
+
+    At one instant of τ; floats are quicker here.
+    """
 
     push: list[float]  # M n
     drag: list[list[float]]  # μ M, its first two columns
     slip: tuple[float, float, float]
     work: float
+    taken: float = 0.0
 
     @staticmethod
     def of(M: Array, mu: float, slip: Array, work: float) -> _Series:
@@ -209,9 +223,10 @@ class _Series:
 
     @cached_property
     def terms(self) -> list[list[float]]:
-        """The coefficients of s and of the work."""
+        """The coefficients of s and of the two works."""
         (a, b, c), ((d, e), (f, g), (h, i)) = self.push, self.drag
         (x, y, z), length, w = ([part] for part in self.slip), [self.length], [self.work]
+        f_work = [self.taken]
         twice = 2 * length[0]
         for k in range(_TERMS - 1):
             if k:  # of |s_t|² = x² + y²
@@ -219,10 +234,11 @@ class _Series:
                 length.append(square / twice)
             x_k, y_k, l_k, n = x[k], y[k], length[k], k + 1
             w.append(_product(z, length) / n)
+            f_work.append(_product(length, length) / n)
             x.append((l_k * a - d * x_k - e * y_k) / n)
             y.append((l_k * b - f * x_k - g * y_k) / n)
             z.append((l_k * c - h * x_k - i * y_k) / n)
-        return [x, y, z, w]
+        return [x, y, z, w, f_work]
 
     def step(self) -> float:
         """Return how far the series holds to the last digit."""
@@ -231,7 +247,7 @@ class _Series:
         return min((_PRECISION / max(last[0], least)) ** (1 / (n - 1)), (_PRECISION / max(last[1], least)) ** (1 / n))
 
     def at(self, t: float) -> list[float]:
-        """Return s and the work at a τ."""
+        """Return s and the works at a τ."""
         powers = [1.0]
         for _ in range(_TERMS - 1):
             powers.append(powers[-1] * t)
@@ -248,8 +264,8 @@ class _Series:
 
     def after(self, t: float) -> _Series:
         """Return the series about a τ."""
-        x, y, z, w = self.at(t)
-        return _Series(self.push, self.drag, (x, y, z), w)
+        x, y, z, *works = self.at(t)
+        return _Series(self.push, self.drag, (x, y, z), *works)
 
 
 def _product(one: list[float], other: list[float]) -> float:

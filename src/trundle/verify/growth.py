@@ -198,9 +198,11 @@ def _lasts(
     ends = [min([end, *(event.time for event in run.events if event.final)]) for _, run in runs]
     times = np.minimum(ends[0], ends[1:])
     firsts = method.solve(system, runs[0][0], np.unique(times))
+    # Asked for other instants, it may end a rounding sooner.
+    rows = np.minimum(np.searchsorted(firsts.time, times), firsts.time.size - 1)
     return [
-        (firsts.part(np.searchsorted(firsts.time, [time])), method.solve(system, start, np.array([time])))
-        for time, (start, _) in zip(times, runs[1:], strict=True)
+        (firsts.part([row]), method.solve(system, start, np.array([time])))
+        for row, time, (start, _) in zip(rows, times, runs[1:], strict=True)
     ]
 
 
