@@ -1,4 +1,4 @@
-"""The stretches of a run between its events, and the instants at which each is looked at."""
+"""The stretches of a run between events and kinks of its formulas, and the instants at which each is looked at."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..mechanics.kinks import kinks
 from ..mechanics.system import RollingSystem
 from ..solve.samples import SLIPPING, Samples
 from ..solve.touch import moment
@@ -25,7 +26,7 @@ _ASIDE = 1e-6  # of a stretch, at its ends, over which the energy is not balance
 
 @dataclass(frozen=True)
 class Stretch:
-    """A part of a run in which one law holds.
+    """A part of a run in which one law holds, smooth in the time.
 
     Parameters
     ----------
@@ -79,7 +80,7 @@ class Stretch:
 
 
 def stretches(system: RollingSystem, begin: float, samples: Samples) -> list[Stretch]:
-    """Cut a run at its events.
+    """Cut a run at its events, and where a formula in the time has a kink.
 
     Parameters
     ----------
@@ -107,7 +108,8 @@ def stretches(system: RollingSystem, begin: float, samples: Samples) -> list[Str
     settling = {event.time: _FIRST * moment(system, event.after) for event in going_on if event.after is not None}
     if samples.phase[0] == SLIPPING:
         settling.setdefault(begin, _FIRST * moment(system, samples.state(0)))
-    edges = [begin, *(event.time for event in samples.events if begin < event.time < end), end]
+    happenings = (event.time for event in samples.events if begin < event.time < end)
+    edges = sorted([begin, *happenings, *kinks(system, begin, end), end])
     found = []
     for first, last in itertools.pairwise(edges):
         if last - first <= 1e-12 * (end - begin):
