@@ -106,6 +106,20 @@ def test_slip_that_begins_at_once_loses_no_energy_to_what_resists(offset: float,
     assert (run.data.phase.values == 1).all()
 
 
+def test_slip_that_creeps_on_keeps_its_energy() -> None:
+    # A wobbling disc slips so slowly for 3 ms that its direction settles at once. Where that is followed 16 times more
+    # closely, it grips at this instant: to the first power of the lag alone it did 7e-9 s later.
+    run = passes(
+        body={"kind": "disc", "radius": 0.0375, "mass": 0.4},
+        support={**PLANE, "friction": 0.2},
+        start={"position": [0, 0], "spin": 4.258621530466869, "attitude": ["0 deg", "15 deg", "0 deg"]},
+        loads=[{"kind": "rolling-couple", "coefficient": 4e-5}],
+        run={"duration": 1.97, "every": 0.005},
+    )
+    assert [event.kind for event in run.events] == ["slip", "grip"]
+    assert abs(run.events[1].time - 1.96743309569239) <= 2e-11
+
+
 # --- where the law is singular ------------------------------------------------------------------------------
 
 CURVED = {
