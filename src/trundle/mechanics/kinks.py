@@ -53,6 +53,16 @@ def kinks(thing: Any, begin: float, end: float) -> list[float]:
 def has_kinks(thing: Any) -> bool:
     """Tell whether a system has a formula in the time that may have a kink.
 
+    Parameters
+    ----------
+    thing : RollingSystem or any part of it
+        With numbers, or without.
+
+    Returns
+    -------
+    bool
+        Whether the time stands between bars somewhere in it.
+
     Examples
     --------
     >>> from trundle.mechanics.motions import SpinBy
