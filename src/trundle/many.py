@@ -13,6 +13,7 @@ import numpy as np
 from . import labels
 from .errors import InvalidValueError, TrundleError
 from .mechanics.finiteness import check_finite, varies
+from .mechanics.kinks import has_kinks
 from .mechanics.parameters import structure_of
 from .mechanics.system import RollingSystem, State
 from .memory import check_room
@@ -147,10 +148,12 @@ def _check(systems: list[RollingSystem], starts: list[State], instants: int, eve
 def _batched(system: RollingSystem) -> bool:
     """Tell whether heyoka can take members of such a system eight at a time.
 
-    Resistances that bring a body to rest make nearly every run an event; a straight roller is checked one by one.
+    Resistances that bring a body to rest make nearly every run an event; a straight roller is checked one by one; each
+    member comes to a kink of its own formulas at an instant of its own.
     """
     resisted = any(load.stops for load in system.loads)
-    return taylor.available() and system.support.surface.analytic and not resisted and system.body.shape.axis is None
+    alone = resisted or has_kinks(system) or system.body.shape.axis is not None
+    return taylor.available() and system.support.surface.analytic and not alone
 
 
 def _rolled(

@@ -1,4 +1,4 @@
-"""Formulas in the time: their slopes, and whether they are finite throughout a run."""
+"""Formulas in the time: their slopes, their kinks, and whether they are finite throughout a run."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ import trundle as tr
 from trundle.errors import InvalidValueError
 from trundle.mechanics.expressions import Expression
 from trundle.mechanics.finiteness import check_finite, first_singular
+from trundle.mechanics.kinks import has_kinks, kinks
 
 SMOOTH = [
     "3.5*(1 - exp(-t/2))",
@@ -89,6 +90,39 @@ def test_what_is_not_finite_is_named_with_its_instant(support: tr.Fixed, loads: 
 
 def test_a_potential_is_left_to_the_run() -> None:
     check_finite(tr.Potential("1/hypot(x, y)"), 0.0, 1.0)
+
+
+KINKED = {
+    "2*abs(t - 1.5) + abs(cos(t))": [1.5, math.pi / 2, 3 * math.pi / 2],
+    "abs(abs(t - 3) - 0.5)*tan(t/10)": [2.5, 3.0, 3.5],
+    "abs(t**3 - 4*t)": [0.0, 2.0],
+    "abs(t*t - 2*t + 2)": [],
+    "abs(sqrt(t + 1) - 2)/hypot(t, 1)": [3.0],
+    "abs(log(t + 2) - 1)*exp(-t)": [math.e - 2],
+    "abs((t + 2)**-1 - 0.25)": [2.0],
+    "abs(7) + sin(abs(-2))*t": [],
+}
+
+
+@pytest.mark.parametrize("text", KINKED)
+def test_each_kink_is_known_and_lies_just_before_its_instant(text: str) -> None:
+    found, wanted = kinks(formula(text), -1.0, 5.0), sorted(KINKED[text])
+    assert len(found) == len(wanted)
+    for instant, kink in zip(found, wanted, strict=True):
+        assert 0 < instant - kink <= EXACT(64, 5.0)
+
+
+def test_kinks_are_told_apart_where_there_are_many_of_them() -> None:
+    found = kinks(formula("abs(sin(50*t) - 0.3)"), 0.0, 100.0)
+    each = [(turn * math.pi + (-1) ** turn * math.asin(0.3)) / 50 for turn in range(1593)]
+    assert len(found) == len([instant for instant in each if instant < 100.0])
+    assert all(abs(one - other) <= EXACT(64, 100.0) for one, other in zip(found, each, strict=False))
+
+
+def test_only_the_time_has_kinks_at_instants() -> None:
+    assert kinks(tr.Potential("abs(x)*abs(t - 1)"), 0.0, 3.0) == pytest.approx([1.0], abs=1e-14)
+    assert not has_kinks(tr.Potential("abs(x)*t"))
+    assert kinks(formula("abs(t - t)"), 0.0, 3.0) == []  # between the bars nothing passes through zero
 
 
 @precisely

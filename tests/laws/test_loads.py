@@ -128,6 +128,21 @@ def test_a_motor_about_the_axis_it_rolls_by_drives_the_ball_straight() -> None:
     assert np.abs(data.velocity.values[:, 1]).max() <= SOLVER(1000, 1e-15)
 
 
+@pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
+def test_no_step_leads_across_a_kink_of_a_formula(method: str) -> None:
+    # (1 + k) m V̇ = c|t − t₁|: V and x are the integrals of a function that goes down to 0 and up again.
+    if method == "taylor":
+        pytest.importorskip("heyoka")
+    system = tr.RollingSystem(BALL, tr.Support(tr.Plane()), (tr.Force(("0.3*abs(t - 0.77)", 0.0, 0.0)),))
+    run = tr.simulate(system, system.place(), 2.0, 0.05, method)
+    late = run.data.time.values - 0.77
+    gained = 0.3 / (MASS * (1 + K)) * (0.77**2 + late * np.abs(late)) / 2
+    gone = 0.3 / (MASS * (1 + K)) * (0.77**2 * run.data.time.values / 2 + (np.abs(late) ** 3 - 0.77**3) / 6)
+    assert np.abs(run.data.velocity.values[:, 0] - gained).max() <= SOLVER(100, max(run.tolerance, 1e-15))
+    assert np.abs(run.data.position.values[:, 0] - gone).max() <= SOLVER(100, max(run.tolerance, 1e-15))
+    assert run.card().passed
+
+
 def test_a_motor_turns_its_torque_with_the_ball() -> None:
     # A quarter turn about the normal later the same torque in the body drives along the other axis.
     system = tr.RollingSystem(BALL, tr.Support(tr.Plane()), (tr.Motor((0.0, 0.002, 0.0)),))

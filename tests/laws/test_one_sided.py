@@ -207,6 +207,31 @@ def test_before_it_lands_it_flies_and_after_it_what_came_of_it_goes_on(friction:
     assert np.abs(seen.data.velocity.values - wanted).max() <= 1e-6
 
 
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("off", [0.003, 0.03, 0.3])
+def test_thrown_off_the_ground_of_a_bowl_it_comes_down_where_its_parabola_does(off: float, method: str) -> None:
+    # The centre stays within R − a of the middle of the bowl: a cubic in t, once t = 0 is divided out.
+    system = tr.RollingSystem(BALL, tr.Support(tr.Bowl(0.4), friction=0.3))
+    start = system.place(velocity=(1.5, 0.0, off))
+    run = run_of(system, start, 0.2, method)
+    x, z = np.polynomial.Polynomial([0.0, 1.5]), np.polynomial.Polynomial([-0.35, off, -G / 2])
+    roots = np.asarray(np.polynomial.Polynomial((x * x + z * z - 0.35**2).coef[1:]).roots())
+    lands = float(roots.real[(roots.imag == 0) & (roots.real > 0)].min())
+    assert run.events[0].kind == "land"
+    assert abs(run.events[0].time - lands) <= SOLVER(10, max(run.tolerance, 1e-13))
+
+
+def test_a_bounce_is_cut_by_how_it_comes_off_what_it_struck() -> None:
+    # What strikes the side of a light bowl on an axle sets that in motion: by as much less it comes off.
+    bowl = tr.EllipsoidalBowl((0.24, 0.43, 0.18))
+    support = tr.Support(bowl, motion=tr.FreeAxle(5e-4), restitution=0.1166)
+    system = tr.RollingSystem(tr.Body.solid_sphere(0.1136, 0.5), support)
+    for height in (0.01, 0.03, 0.05):
+        start = system.place((0.01, -0.13), (0.44, 0.03, -0.16), height=height)
+        card = tr.simulate(system, start, 0.2, 0.01).card()
+        assert card["landings: one impulse at the contact"].passed
+
+
 def test_a_body_without_weight_goes_on_against_resistance() -> None:
     ring = tr.Body.ring(0.05, 0.1)
     loads = (tr.RollingResistance(6e-4), tr.Motor(("0.003*abs(t - 3)", -6e-4, "0.002*abs(t - 0.8)")))

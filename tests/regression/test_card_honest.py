@@ -12,6 +12,7 @@ import tomli_w
 
 import trundle as tr
 from trundle.solve.methods import Method
+from trundle.verify.again import Again
 from trundle.verify.bounds import sizes_of
 from trundle.verify.growth import growth
 
@@ -103,6 +104,20 @@ def test_slip_that_begins_at_once_loses_no_energy_to_what_resists(offset: float,
     )
     assert [event.kind for event in run.events] in ([], ["slip"])
     assert (run.data.phase.values == 1).all()
+
+
+def test_slip_that_creeps_on_keeps_its_energy() -> None:
+    # A wobbling disc slips so slowly for 3 ms that its direction settles at once. Where that is followed 16 times more
+    # closely, it grips at this instant: to the first power of the lag alone it did 7e-9 s later.
+    run = passes(
+        body={"kind": "disc", "radius": 0.0375, "mass": 0.4},
+        support={**PLANE, "friction": 0.2},
+        start={"position": [0, 0], "spin": 4.258621530466869, "attitude": ["0 deg", "15 deg", "0 deg"]},
+        loads=[{"kind": "rolling-couple", "coefficient": 4e-5}],
+        run={"duration": 1.97, "every": 0.005},
+    )
+    assert [event.kind for event in run.events] == ["slip", "grip"]
+    assert abs(run.events[1].time - 1.96743309569239) <= 2e-11
 
 
 # --- where the law is singular ------------------------------------------------------------------------------
@@ -221,3 +236,58 @@ def test_a_cylinder_in_a_drum_as_large_as_the_earth(radius: float) -> None:
 
 
 RUN = {"duration": 1, "every": 0.1}
+
+
+# --- a support that only rounding moves, and the end of a run where the law is singular ----------------------
+
+
+def on_a_still_axle(body: dict[str, Any], support: dict[str, Any], start: dict[str, Any]) -> dict[str, Any]:
+    """What stands over the axle of a support that is free to turn: nothing turns it."""
+    axle = {"kind": "free-axle", "inertia": 0.001, "bearing_drag": 1.5e-4, "bearing_torque": 0.0016}
+    return {
+        "body": body,
+        "support": {**support, "motion": axle},
+        "start": start,
+        "run": {"duration": 1, "every": 0.02},
+    }
+
+
+TRACK = {"kind": "torus-track", "ring_radius": 0.572749, "tube_radius": 0.26177}
+STILL_AXLES = {
+    "it rolls up and down in a plane through the axle": on_a_still_axle(
+        {"kind": "solid-sphere", "radius": 0.0163, "mass": 1.6}, TRACK, {"position": [-0.419634, -0.00623]}
+    ),
+    "it lies still where it came down": on_a_still_axle(
+        {"kind": "half-cylinder", "radius": 0.034, "mass": 0.24},
+        {"kind": "plane"},
+        {"position": [0.037, 0.063], "height": 0.0112575, "support": [2.47037, 0.0]},
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", STILL_AXLES)
+def test_an_axle_that_only_rounding_turns_passes(kind: str) -> None:
+    run = passes(**STILL_AXLES[kind])
+    assert np.abs(run.samples.own[:, -1]).max() <= 1e-14
+
+
+def test_the_last_instant_before_a_singular_end_leaves_the_windows_wide() -> None:
+    # Where the support is as hollow as the body is round the force is a million times that of all other instants.
+    axle = {"kind": "free-axle", "inertia": 0.134335, "bearing_drag": 4.3e-5, "bearing_torque": 0.00215}
+    support = {"kind": "ellipsoidal-bowl", "semi_axes": [0.884581, 0.234888, 1.26341], "motion": axle}
+    body = {"kind": "sphere-with-moment", "radius": 0.05694, "mass": 0.109359, "moment_of_inertia": 0.000121253}
+    start = {"position": [0.0, 0.11782], "velocity": [-0.358536, -0.210173]}
+    run = passes(body=body, support=support, start=start, run={"duration": 0.4, "every": 0.004})
+    assert run.events[-1].kind == "curved"
+    again = Again(run.system, run.start, run.samples, Method.of("taylor"))
+    assert np.median(np.ptp(again.windows, axis=1)) >= 1e-4
+
+
+def test_slopes_of_what_spins_and_hardly_rolls_are_as_sharp_as_its_spin() -> None:
+    # An upright disc on a resisting ground that only spins stops turning over it after some 1e-12 s.
+    body = {"kind": "disc", "radius": 0.0261228, "density": 2553.64, "thickness": 0.0913427}
+    support = {"kind": "height-field", "formula": "0.046*x**2 - 0.0177*cos(0.794*y)**2", "friction": 0.06}
+    start = {"position": [0.182744, -0.0361311], "spin": -10.1605, "attitude": [-0.008078, "-90 deg", -0.161969]}
+    load = {"kind": "rolling-resistance", "offset": 0.00165337}
+    run = passes(loads=[load], body=body, support=support, start=start, run={"duration": 1.0, "every": 0.08})
+    assert run.events[-1].kind == "spot"

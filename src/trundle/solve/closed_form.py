@@ -61,7 +61,7 @@ def solve(
     >>> solve(system, system.place((0.1, 0.0)), np.array([0.0, 9.0])).position.tolist()
     [[0.1, 0.0, 0.025], [0.1, 0.0, 0.025]]
     """
-    return phases.solve(integrate, system, start, times, tolerance, progress, creeps=False)
+    return phases.solve(integrate, system, start, times, tolerance, progress, in_steps=False)
 
 
 def integrate(

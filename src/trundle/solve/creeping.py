@@ -58,14 +58,24 @@ class CreepingLaw(SlippingLaw):
 
         How fast it turns is seen over a step so short that its length does not matter.
         """
-        hat, across, settling = self._settled(system, time, state)
-        step = self.step
-        rates = self._rates(system, time, state, hat)
-        after = [number + rate * step for number, rate in zip(state, rates, strict=True)]
-        turning = (self._settled(system, time + step, after)[0] - hat).dot(across) / step
-        lag = state[10] * turning / settling
-        hat = hat - across * lag
+        first, settling = self._lagging(system, time, state)
+        now = self._now(system, time, state, first)
+        across = now.contact.normal.cross(first)
+        turning = (self._lagging(system, *self._after(system, time, state, first))[0] - first).dot(across) / self.step
+        hat = first + across * ((now.slip_rate.dot(across) - state[10] * turning) / settling)
         return hat / hat.norm(), settling
+
+    def _lagging(self, system: RollingSystem, time: Scalar, state: Numbers) -> tuple[Vector, Scalar]:
+        """Return the same but for the square of how far ŝ lags behind."""
+        hat, across, settling = self._settled(system, time, state)
+        turning = (self._settled(system, *self._after(system, time, state, hat))[0] - hat).dot(across) / self.step
+        hat = hat - across * (state[10] * turning / settling)
+        return hat / hat.norm(), settling
+
+    def _after(self, system: RollingSystem, time: Scalar, state: Numbers, hat: Vector) -> tuple[Scalar, list[Scalar]]:
+        """Return the time and the state a step later."""
+        rates = self._rates(system, time, state, hat)
+        return time + self.step, [number + rate * self.step for number, rate in zip(state, rates, strict=True)]
 
     def _now(self, system: RollingSystem, time: Scalar, state: Numbers, direction: Vector | None = None) -> Slipping:
         p, q, Omega, (speed, *_), own = self.split(state)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Any
 
+from ..mechanics.kinks import kinks
 from ..mechanics.system import RollingSystem, State
 from . import phases
 from .following import Next, Stop
@@ -68,21 +70,24 @@ class Dense:
     ) -> None:
         self.keep, self.integrate = keep, integrate
         self.system, self.start, self.end, self.tolerance = system, start, end, tolerance
+        self.bends = kinks(system, start.time, end)
         self.legs: list[Leg | None] = []
-        self.follows: list[Next] = []
+        self.follows: dict[int, Next] = {}
         self.left = _MOST_STEPS
 
     def __call__(self, times: Array) -> Samples:
         """Return the samples at ascending instants, s, none before the start."""
         self.passed = 0
-        return phases.solve(self._through, self.system, self.start, times, self.tolerance, after=self._after)
+        known: Any = {"after": self._after, "bends": self.bends}
+        return phases.solve(self._through, self.system, self.start, times, self.tolerance, **known)
 
     def _through(
         self, system: RollingSystem, now: Next, times: Array, tolerance: float, progress: Progress | None
     ) -> Iterator[Stretch]:
         """Read a stretch off what is kept of it."""
         if self.passed == len(self.legs):
-            leg = self.keep(system, now, self.end, tolerance, self.left)
+            end = next((bend for bend in self.bends if bend > now.time), self.end)
+            leg = self.keep(system, now, end, tolerance, self.left)
             self.legs.append(leg)
             self.left -= self.left if leg is None else leg.steps
         leg, self.passed = self.legs[self.passed], self.passed + 1
@@ -95,6 +100,6 @@ class Dense:
 
     def _after(self, system: RollingSystem, law: Law, stop: Stop) -> Next:
         """Return what follows the stretch just passed."""
-        if self.passed > len(self.follows):
-            self.follows.append(phases.following_stop(system, law, stop))
-        return self.follows[self.passed - 1]
+        if self.passed not in self.follows:
+            self.follows[self.passed] = phases.following_stop(system, law, stop)
+        return self.follows[self.passed]

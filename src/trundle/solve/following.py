@@ -301,23 +301,22 @@ def _opens(system: RollingSystem, at: Touch) -> bool:
 
 def _struck(system: RollingSystem, at: Touch) -> Next:
     """Let the body strike the support, and bounce or stay."""
-    n, own = at.contact.normal, at.state.support
-    V, Omega, off = at.V, at.Omega, 0.0
+    V, Omega, own, off, after = at.V, at.Omega, at.state.support, 0.0, at
     if at.approach < 0:
         struck = land(system, at.contact, at.orientation, at.slip)
         V, Omega = V + struck.velocity_change, Omega + struck.angular_velocity_change
         if system.support.motion.free:
             own = (*own[:-1], own[-1] + float(struck.axle_rate_change))
-        off = float(at.contact.slip_velocity(V, Omega).dot(n))
+        after = at.moving(system, V, Omega, own)
+        off = after.approach  # a free axle that was struck carries the contact along
         if system.support.restitution == 0 and off <= SLIP_TOLERANCE * at.speed:
             off = 0.0  # slip that is given back may throw a body off, rounding does not
-    pull = _pull(system, at)
+    pull = _pull(system, after)  # by the motion that it has now: what it came down with is gone
     bounces = off > 0 and not (pull > 0 and off * off < 2 * pull * SETTLED * at.arm)
     if not bounces and system.support.friction is None and system.support.tangential_restitution > 0:
         holding = replace(system.support, tangential_restitution=0.0)  # nothing slips that stays on it
         return _struck(replace(system, support=holding), at)
     said = f"landed at {-at.approach:.4g} m/s"
-    after = at.moving(system, V, Omega, own)
     if bounces:
         return _fly(after, _first_gap(at, off, pull), (_event("land", f"{said} and bounced", at, after),))
     after = _set_down(system, after)

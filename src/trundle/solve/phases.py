@@ -14,6 +14,7 @@ import numpy as np
 
 from ..errors import SolverError
 from ..mechanics.algebra import ZERO, Quaternion, Vector
+from ..mechanics.kinks import kinks
 from ..mechanics.slipping import slip
 from ..mechanics.system import RollingSystem, State
 from . import following
@@ -64,8 +65,9 @@ def solve(
     tolerance: float,
     progress: Progress | None = None,
     *,
-    creeps: bool = True,
+    in_steps: bool = True,
     after: Callable[[RollingSystem, Law, Stop], Next] | None = None,
+    bends: list[float] | None = None,
 ) -> Samples:
     """Follow a body through its phases and return its samples with all events.
 
@@ -83,10 +85,13 @@ def solve(
         Of the method.
     progress : callable, optional
         Told the fraction done.
-    creeps : bool
-        Whether slip whose direction settles at once is a phase of its own to the method; to a closed form it is slip.
+    in_steps : bool
+        Whether the method takes steps: none may then lead across a kink of a formula in the time, and slip whose
+        direction settles at once is a phase of its own; to a closed form it is slip.
     after : callable, optional
         What follows a stop, if it is known already; absent: `following_stop`.
+    bends : list of float, optional
+        The kinks of its formulas, s, if they are known already.
 
     Returns
     -------
@@ -100,7 +105,9 @@ def solve(
     """
     events: list[Event] = []
     record = _Record(system, times.size + 1)  # an event that ends a run is sampled, too
-    begin = _same if creeps else following.slipping
+    begin = _same if in_steps else following.slipping
+    if bends is None:
+        bends = kinks(system, start.time, float(times[-1])) if in_steps and times.size else []
     now = begin(system, following.at_start(system, start))
     events += now.events
     left, told = times, _telling(progress, times)
@@ -109,7 +116,7 @@ def solve(
         left = _across(system, held, Stop(start.time, "", np.array(held.pack(system, start))), now, left, record)
     while True:
         law, stop, taken = now.law, None, 0
-        for piece in integrate(system, now, left, tolerance, told):
+        for piece in _between_kinks(integrate, system, now, left, bends, tolerance, told):
             record.take(law, piece)
             stop, taken = piece.stop, taken + piece.times.size
         if stop is None:
@@ -124,6 +131,32 @@ def solve(
         _check_count(system, events)
         left = _across(system, law, stop, now, left[taken:], record)
     return record.samples(tuple(events))
+
+
+def _between_kinks(
+    integrate: Integrate,
+    system: RollingSystem,
+    now: Next,
+    times: Array,
+    bends: list[float],
+    tolerance: float,
+    progress: Progress | None,
+) -> Iterator[Stretch]:
+    """Follow one law to its first stop, and begin anew behind each kink on the way: no step is to lead across it."""
+    for bend in bends:
+        if not now.time < bend < times[-1:].max(initial=-np.inf):
+            continue
+        before, times = cut(times, bend)
+        for piece in integrate(system, now, np.append(before, bend), tolerance, progress):
+            if piece.stop is not None:
+                yield piece
+                return
+            short = piece.times.size - bool(piece.times.size and piece.times[-1] == bend)
+            yield replace(piece, times=piece.times[:short], states=piece.states[:short])
+        there = piece.states[-1]
+        at = now.law.meant(system, bend, there)
+        now = replace(now, start=at.state, numbers=there.tolist(), events=(), across=None)
+    yield from integrate(system, now, times, tolerance, progress)
 
 
 def _same(system: RollingSystem, now: Next) -> Next:  # noqa: ARG001

@@ -27,12 +27,13 @@ from .events import AtEvents
 from .friction import contact_force, friction_law, looked_into
 from .landings import Landing, landing_figures, landings_of
 from .plane import reactions, straightness
+from .stretches import SINGULAR
 
 _MOST_SAMPLES = 20_000  # looked at for integrals
 _EVENTS_TOLD = 4
 _LOOKS = 400  # at stretches, to balance the energy
 _ROUNDING = 3e-16  # of a speed
-_SINGULAR, _SHORT_OF_THE_END = ("curved", "edge"), 1e-3  # of its last stretch
+_SHORT_OF_THE_END = 1e-3  # of the last stretch of a run that ends where its law is singular
 _MEANWHILE = {"rolling": "while it rolls", "slipping": "while it slips", "flight": "in flight"}
 _FITTED, _CIRCLES_FITTED = 2000, 20  # points and, where they are taken anew, circles
 
@@ -123,7 +124,7 @@ def _balance(again: Again, landings: list[Landing], bound: float) -> Iterator[Ca
     if plain or not again.can_be_followed:
         return
     *others, last = again.stretches
-    if at.events and at.events[-1].kind in _SINGULAR:  # there a rounding of the place is no longer one of the energy
+    if at.events and at.events[-1].kind in SINGULAR:  # there a rounding of the place is no longer one of the energy
         last = replace(last, end=last.end - _SHORT_OF_THE_END * last.length)
     ends = again.follow(np.array([again.start.time, last.end]))
     ends = Samples.joined([_before(again.start, ends.part(slice(0, 1))), ends.part(slice(1, 2))])

@@ -62,7 +62,7 @@ class Again:
 
     @cached_property
     def stretches(self) -> list[Stretch]:
-        """What lies between the events."""
+        """What lies between the events, and between kinks of its formulas."""
         return stretches(self.system, self.start.time, self.at)
 
     @cached_property
@@ -173,8 +173,9 @@ class Again:
 
     @property
     def can_be_followed(self) -> bool:
-        """Whether its stretches are few and slow enough for a quadrature over all of it."""
-        return len(self.stretches) <= _MOST_STRETCHES and all(stretch.resolved for stretch in self.stretches)
+        """Whether its events are few, and its stretches slow, enough for a quadrature over all of it."""
+        few = len(self.at.events) < _MOST_STRETCHES
+        return few and all(stretch.resolved for stretch in self.stretches)
 
 
 def _at(samples: Samples, wanted: Array) -> Samples:

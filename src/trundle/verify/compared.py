@@ -20,6 +20,7 @@ from .card import CardFigure, checked
 from .growth import MOST, Growth, alike, at_the_same_times, growth, numerical, parted, same_events
 
 _INSTANTS = 200
+_SLOW = 1e-3  # of a body's turning: what a support's own is held against at least
 _MOST_RADIANS = 50_000.0  # of turning that a cross-check follows
 
 
@@ -155,8 +156,17 @@ class Compared:
     def turns(self) -> Array:
         """The largest of the angle between the orientations, rad, and the shares of the support's angle and rate."""
         own = np.abs(self.ours.own - self.theirs.own)
-        own = own / np.maximum(np.abs(self.ours.own).max(axis=0, initial=0.0), 1e-300)
+        own = own / np.maximum(np.abs(self.ours.own).max(axis=0, initial=0.0), self._own_least)
         return np.maximum(self.angle, np.where(self.alike, own.max(axis=1, initial=0.0), 0.0))
+
+    @property
+    def _own_least(self) -> list[float]:
+        """Against what the support's angle and rate are small or not where only rounding moves it.
+
+        A step's error is a share of the largest numbers of the state: |q| is 1, and Ω beside a rate.
+        """
+        least = {"angle": _SLOW, "angular velocity": max(_SLOW * self.sizes["angular_velocity"], 1e-300)}
+        return [least[kind] for kind in self.system.support.motion.own_kinds]
 
     @cached_property
     def angle(self) -> Array:

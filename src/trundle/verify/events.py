@@ -119,6 +119,11 @@ class AtEvents:
         return float(max(self._sizes["velocity"], np.sqrt(pull * self._arm)))
 
     @cached_property
+    def _own(self) -> float:
+        """The largest of the support's own angle and rate."""
+        return float(np.abs(self.again.own).max(initial=0.0))
+
+    @cached_property
     def _arm(self) -> float:
         return largest(self.again.contact - self.again.position)
 
@@ -152,7 +157,7 @@ class AtEvents:
             yield first, "the phases that it lies between", 0.0 if fits else np.inf, 1.0
 
     def _in_a_moment(self, at: Samples) -> dict[str, float]:
-        """Return by what shares V and Ω change while the clock, or the place at which they are, is not told apart.
+        """Return by what shares V, Ω and an axle's rate change while the clock, or the place, is not told apart.
 
         Where the support becomes as hollow as the body is round they change a million times as fast as the place.
         """
@@ -162,6 +167,10 @@ class AtEvents:
         moment = np.spacing(abs(float(at.time[0]))) + A_STEP * self.bound / SOLVER / max(float(pace), 1e-300)
         turned = np.linalg.solve(J, K - gyroscopic + np.cross(at.contact[0] - at.position[0], R))
         rates = {"velocity": (F + R) / float(self.system.body.mass), "angular_velocity": turned}
+        motion = self.system.support.motion
+        if motion.free:
+            lever = _row(at.support(self.system).lever(Vector.of(at.contact)))
+            rates["support"], sizes = lever @ R / float(motion.inertia), {**sizes, "support": self._own}
         return {name: float(np.linalg.norm(rate)) * moment / max(sizes[name], 1e-300) for name, rate in rates.items()}
 
     def _same(
@@ -183,8 +192,8 @@ class AtEvents:
             yield event, f"{what} of the {field.replace('_', ' ')}", apart / max(size, 1e-300), allowed
         if one.support:
             apart = float(np.abs(np.subtract(one.support, other.support)).max())
-            size = float(np.abs(self.again.own).max())
-            yield event, f"{what} of the support", apart / max(size, 1e-300), _GOES_ON * self.bound
+            allowed = _GOES_ON * self.bound + changing.get("support", 0.0)
+            yield event, f"{what} of the support", apart / max(self._own, 1e-300), allowed
 
     def _met(self, event: Event, at: Samples) -> Iterator[tuple[Event, str, float, float]]:
         """Yield whether the condition of an event was met just before it."""

@@ -28,6 +28,7 @@ _MOST = 1000  # landings looked at
 _TURNED = SOLVER * 1e-12  # the tolerance at which a run follows slip that turns
 _CUT = 1e-6  # of |ρ|: how high a bounce may rise that is cut
 _ROUNDING = 1e-15  # of the speeds at hand
+_SET_DOWN = 4 * _ROUNDING  # of them, by which the contact of a body that stays seems to come off
 
 
 @dataclass(frozen=True)
@@ -173,8 +174,8 @@ class Landing:
 
     @cached_property
     def stays(self) -> bool:
-        """Whether the body was set down: what is left of the speed off the support is gone."""
-        return self.event.kind == "settle" or float(self.goes @ self.n) <= 0 < self.off
+        """Whether the body was set down: what is left of the speed off the support is gone, were it a rounding."""
+        return self.event.kind == "settle" or float(self.goes @ self.n) <= _SET_DOWN * self.speed
 
     @cached_property
     def expected(self) -> tuple[Array, Array]:

@@ -23,6 +23,7 @@ _HALF_NODES = 6  # a polynomial of degree 12
 # Of a place, over half a window: a slope takes 20 times an error of its 13 places, each of ten roundings or so.
 _ROUNDING = 4e-14
 _A_ROUNDING = 2.0**-52
+_PRODUCT = 4e-15  # of a moment: R and its arm are ten roundings off or so, each
 _NARROWEST = 1e-10  # of what the clock shows: in less, 13 instants have too few digits
 _PHASE_A_WINDOW = 0.3  # rad of the fastest rotation: what a polynomial leaves of a body that is no sphere is rounding
 
@@ -287,8 +288,9 @@ class _Windows:
 
     def _acceleration(self, F: Array, V_rate: Array) -> float:
         """Return against what an acceleration is small or not, and over the bound what rounding makes of a slope."""
-        V, fastest = np.abs(self.middle.velocity).max(), sum(map(largest, self._speeds))
-        sharp = _ROUNDING * fastest / self.half / self.bound
+        V, at = np.abs(self.middle.velocity).max(), self.middle
+        fastest = sum(map(largest, self._speeds)) + largest(at.angular_velocity) * largest(at.contact - at.position)
+        sharp = _ROUNDING * fastest / self.half / self.bound  # of Ω×ρ also where Ω is along ρ
         acting = np.abs(F).max() / float(self.system.body.mass)
         size = max(acting, np.abs(V_rate).max())
         return float(max(size, V * self.rate, sharp, size * self._blurred, 1e-300))
@@ -318,9 +320,14 @@ class _Windows:
             from_support = exerted(self.system, at)[2]
             parts += [-(axle * np.cross(arm, R)).sum(axis=1), -(axle * from_support).sum(axis=1)]
         change, rate = self.slope(self.all.own), at.own[:, -1]
-        size = max(*(float(np.abs(part).max()) for part in parts), motion.inertia * np.abs(rate).max() * self.rate)
+        # Of a force that presses on past the axle, and of a slope, no smaller moment is told from none.
+        pressing = _PRODUCT * largest(arm) * largest(R) / self.bound
+        sharp = motion.inertia * _ROUNDING * np.abs(rate).max() / self.half / self.bound
+        steady = motion.inertia * np.abs(rate).max() * self.rate
+        size = max(*(float(np.abs(part).max()) for part in parts), steady, pressing + sharp)
         law = np.abs(motion.inertia * change[:, -1] - sum(parts)).max() / max(size, 1e-300)
-        angle = float(np.abs(at.own[:, -2]).max()) + np.abs(rate).max() * self._clock
+        # A step's error is a share of the largest number of the state, and |q| is 1.
+        angle = 1 + float(np.abs(at.own[:, -2]).max()) + np.abs(rate).max() * self._clock
         turned = np.abs(change[:, -2] - rate).max()
         sharp = _ROUNDING * angle / self.half / self.bound
         return float(max(law, turned / max(np.abs(rate).max(), sharp, 1e-300)))

@@ -1,4 +1,4 @@
-"""The stretches of a run between its events, and the instants at which each is looked at."""
+"""The stretches of a run between events and kinks of its formulas, and the instants at which each is looked at."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..mechanics.kinks import kinks
 from ..mechanics.system import RollingSystem
 from ..solve.samples import SLIPPING, Samples
 from ..solve.touch import moment
@@ -20,12 +21,13 @@ _WIDE = 16  # how many of these a panel holds at first
 _MOST_PANELS = 8000
 _QUARTERINGS = 11
 _FIRST = 2e-6  # of the time in which a motion changes: twice what the first moment of slip takes
+SINGULAR = ("curved", "edge")  # ends of a run at which its law is singular
 _ASIDE = 1e-6  # of a stretch, at its ends, over which the energy is not balanced
 
 
 @dataclass(frozen=True)
 class Stretch:
-    """A part of a run in which one law holds.
+    """A part of a run in which one law holds, smooth in the time.
 
     Parameters
     ----------
@@ -79,7 +81,7 @@ class Stretch:
 
 
 def stretches(system: RollingSystem, begin: float, samples: Samples) -> list[Stretch]:
-    """Cut a run at its events.
+    """Cut a run at its events, and where a formula in the time has a kink.
 
     Parameters
     ----------
@@ -107,15 +109,26 @@ def stretches(system: RollingSystem, begin: float, samples: Samples) -> list[Str
     settling = {event.time: _FIRST * moment(system, event.after) for event in going_on if event.after is not None}
     if samples.phase[0] == SLIPPING:
         settling.setdefault(begin, _FIRST * moment(system, samples.state(0)))
-    edges = [begin, *(event.time for event in samples.events if begin < event.time < end), end]
+    smooth = _before_a_singular_end(samples)
+    happenings = (event.time for event in samples.events if begin < event.time < end)
+    edges = sorted([begin, *happenings, *kinks(system, begin, end), end])
     found = []
     for first, last in itertools.pairwise(edges):
         if last - first <= 1e-12 * (end - begin):
             continue
-        inside = np.flatnonzero((samples.time >= first) & (samples.time <= last))
-        part = samples.part(inside) if inside.size > 2 else samples
+        inside = np.flatnonzero((smooth.time >= first) & (smooth.time <= last))
+        part = smooth.part(inside) if inside.size > 2 else smooth
         pace = pace_of(system, part) + 1 / (last - first)
         slips = bool((part.phase == SLIPPING).any())
         pace += _TURNS / (last - first) if slips else 0.0
         found.append(Stretch(first, last, pace, slips, settling.get(first, 0.0)))
     return found
+
+
+def _before_a_singular_end(samples: Samples) -> Samples:
+    """Return a run without the sample at its very end, where the force may be a million times that of all others.
+
+    By that alone all windows would be so short that a slope says nothing.
+    """
+    ended = samples.events[-1].kind if samples.events else ""
+    return samples.part(slice(0, -1)) if ended in SINGULAR and samples.time.size > 1 else samples
