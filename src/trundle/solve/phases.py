@@ -227,11 +227,19 @@ def _across(system: RollingSystem, law: Law, stop: Stop, follows: Next, left: Ar
         law, stop = follows.across.law, Stop(follows.across.time, "", np.array(follows.across.numbers))
     early, left = cut(left, follows.time)
     if early.size:
-        steps = [law.advanced(system, stop.time, stop.numbers.tolist(), t - stop.time) for t in early.tolist()]
-        samples = law.record(system, early, np.array(steps))
+        samples = law.record(system, early, _short_of_it(system, law, stop, early))
         gives_way = follows.law.code == SLIPPING and law.code in (ROLLING, RESTING)
         record.put(_giving_way(system, samples, follows) if gives_way else samples)
     return left
+
+
+def _short_of_it(system: RollingSystem, law: Law, stop: Stop, times: Array) -> Array:
+    """Return the states between a stop and its event: straight where slip or turning ends, for beyond no law holds."""
+    numbers = stop.numbers.tolist()
+    if stop.name.removeprefix("near ") in ("grip", "stop"):
+        rates = np.array([float(rate) for rate in law.rates(system, stop.time, numbers)])
+        return stop.numbers + (times - stop.time)[:, None] * rates
+    return np.array([law.advanced(system, stop.time, numbers, t - stop.time) for t in times.tolist()])
 
 
 def _giving_way(system: RollingSystem, at: Samples, follows: Next) -> Samples:
