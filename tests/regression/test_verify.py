@@ -328,29 +328,36 @@ def test_what_a_motion_does_not_magnify_still_fails(name: str, above: float, mon
     assert failures(faulty(FAULTS[name][0], monkeypatch, system, start))
 
 
-def tumbling(turn: float) -> Trajectory:
+def tumbling(turn: float, duration: float = 1.5, **method: Any) -> Trajectory:
     """A body that tumbles and bounces high, so that a rounding grows tenfold and more from bounce to bounce."""
     body = tr.Body.ellipsoid((0.02, 0.03, 0.08), 0.2)
     system = tr.RollingSystem(body, tr.Support(tr.Plane(), friction=0.3, restitution=0.95))
     given: dict[str, Any] = {"height": 0.3, "angular_velocity": (20.0, 9.0, 5.0)}
     start = system.place((0.0, 0.0), (0.5, 0.1, 0.0), attitude=(0.3, 0.4, turn), **given)
-    return tr.simulate(system, start, 1.5, 0.02, method="runge-kutta", tolerance=1e-9)
+    return tr.simulate(system, start, duration, 0.02, **method)
 
 
-def test_where_a_rounding_grows_too_large_the_card_says_that_it_cannot_tell() -> None:
-    run, other = tumbling(0.5), tumbling(0.5 + 1e-6)
+def test_what_is_wrong_late_in_a_run_that_magnifies_is_told() -> None:
+    coarse: dict[str, Any] = {"method": "runge-kutta", "tolerance": 1e-9}
+    run, other = tumbling(0.5, **coarse), tumbling(0.5 + 1e-6, **coarse)
     assert run.card().passed, str(run.card())
-    name, late = "the method run again", run.data.time > 1.4
+    late = run.data.time > 1.4
     mixed = replace(run, data=other.data.where(late, run.data).assign_attrs(run.data.attrs), _kept={})
-    assert abs(mixed.data.position - run.data.position).max() > 1e-5  # m, from a change of 1e-6 rad
-    figure = mixed.card()[name]
-    assert figure.passed
-    assert "nothing can be told beyond t = 1." in figure.note
-    assert figure.bound is not None
-    assert figure.bound <= 1e-2
+    assert mixed.card()["the method run again"].passed is False
     sooner = run.data.position.copy(deep=True)
     sooner[10] += 1e-4
-    assert name in failures(replace(run, data=run.data.assign(position=sooner), _kept={}).card())
+    assert "the method run again" in failures(replace(run, data=run.data.assign(position=sooner), _kept={}).card())
+
+
+@pytest.mark.parametrize("duration", [3.0, 4.0])
+def test_where_a_rounding_grows_too_large_the_card_says_that_it_cannot_tell(duration: float) -> None:
+    # What bounces on is another motion each time it is followed, and each of them keeps the balance of its energy.
+    card = tumbling(0.5, duration, method="taylor").card()
+    figure = card["the method run again"]
+    assert card.passed, str(card)
+    assert "nothing can be told beyond t = " in figure.note
+    assert figure.bound is not None
+    assert figure.bound <= 1e-2
 
 
 def starts() -> dict[str, tuple[RollingSystem, State]]:

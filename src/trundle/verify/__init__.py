@@ -25,7 +25,7 @@ from .each_sample import EachSample
 from .energy import balance
 from .events import AtEvents
 from .friction import contact_force, friction_law, looked_into
-from .landings import Landing, landing_figures, landings_of
+from .landings import landing_figures, landings_of
 from .plane import reactions, straightness
 from .stretches import SINGULAR
 
@@ -77,7 +77,7 @@ def card(system: RollingSystem, start: State, samples: Samples, method: Method, 
         *EachSample(system, some, bound).figures(),
         *(straightness(system, some, bound) if rolls else ()),
         *_friction(system, some, bound),
-        *_balance(again, landings, bound),
+        *_balance(again, bound),
         *(reactions(system, some, bound) if rolls else ()),
         *_integrals(system, some, method),
         *(_guiding_centre(motion, start, some, method) if rolls else ()),
@@ -116,9 +116,9 @@ def _friction(system: RollingSystem, at: Samples, bound: float) -> Iterator[Card
         yield friction_law(system, slipping, bound)
 
 
-def _balance(again: Again, landings: list[Landing], bound: float) -> Iterator[CardFigure]:
+def _balance(again: Again, bound: float) -> Iterator[CardFigure]:
     """Balance the energy where no integral says the same, and the run can be followed."""
-    system, at = again.system, again.at
+    system, at = again.system, again.itself
     kept = any(integral.name in ("energy", "moving energy") for integral in invariants_of(system))
     plain = kept and not any(not event.final for event in at.events)
     if plain or not again.can_be_followed:
@@ -129,7 +129,7 @@ def _balance(again: Again, landings: list[Landing], bound: float) -> Iterator[Ca
     ends = again.follow(np.array([again.start.time, last.end]))
     ends = Samples.joined([_before(again.start, ends.part(slice(0, 1))), ends.part(slice(1, 2))])
     panels = np.vstack([stretch.panels() for stretch in [*others, last]])
-    struck = [(landing.gained, landing.work) for landing in landings]
+    struck = [(landing.gained, landing.work) for landing in landings_of(system, at.events)]
     passes = int(np.clip(_LOOKS // len(again.stretches), 2, 8))
     yield balance(system, ends, panels, again.follow, struck, bound, passes)
 

@@ -23,6 +23,7 @@ _MOST_STRETCHES = 200  # looked at
 _NARROWINGS = 6  # of windows in which the motion changes faster than its samples show
 _SMOOTH = 0.1  # of the bound: of what a polynomial may leave of a slope
 _SEEN = 3.0  # rad in a window: a polynomial follows no more
+_LATER = 1e-6  # of the run
 _SHORTEST = 1e-9  # of what the clock shows: in less, instants have too few digits
 
 
@@ -58,12 +59,28 @@ class Again:
     @cached_property
     def _run(self) -> Callable[[Array], Samples]:
         """The second run, gone through once: all looks are at the same motion."""
-        return self.method.dense(self.system, self.start, float(self.at.time[-1]))
+        return self.method.dense(self.system, self.start, self._end)
+
+    @property
+    def _ended(self) -> bool:
+        return any(event.final for event in self.at.events)
+
+    @property
+    def _end(self) -> float:
+        """Up to when it is followed, s: what ended may end a rounding later."""
+        end = float(self.at.time[-1])
+        return end + _LATER * (end - self.start.time) if self._ended else end
+
+    @cached_property
+    def itself(self) -> Samples:
+        """The second run where the first was sampled: where a rounding grows, its events are others in the end."""
+        times = self.at.time[: -1 if self._ended else None]
+        return self._run(np.unique([self.start.time, *times, self._end]))
 
     @cached_property
     def stretches(self) -> list[Stretch]:
-        """What lies between the events, and between kinks of its formulas."""
-        return stretches(self.system, self.start.time, self.at)
+        """What lies between its events, and between kinks of its formulas."""
+        return stretches(self.system, self.start.time, self.itself)
 
     @cached_property
     def windows(self) -> Array:
@@ -108,8 +125,10 @@ class Again:
         """Run the method at these windows, the samples, both ends and the events."""
         ends = np.array([self.start.time, self.at.time[-1]])
         times = np.concatenate([windows.ravel(), self.sampled.time, ends])
-        events = self.at.events
-        for _ in range(2):  # elsewhere than where the run was made an event may lie a rounding aside
+        events = self.itself.events
+        for _ in range(
+            2
+        ):  # a part of too many steps to be kept is gone through again, and an event may lie a rounding aside
             now = np.unique(np.concatenate([times, instants_of(events, self.start.time)]))
             found = self._run(now[now <= ends[1]])
             if [event.time for event in found.events] == [event.time for event in events]:

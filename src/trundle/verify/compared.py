@@ -21,6 +21,7 @@ from .growth import MOST, Growth, alike, at_the_same_times, growth, numerical, p
 
 _INSTANTS = 200
 _SLOW = 1e-3  # of a body's turning: what a support's own is held against at least
+_EVENTS_BEFORE, _EVENTS_AFTER = 3, 5  # the first by which two runs differ, over which a small change is followed
 _MOST_RADIANS = 50_000.0  # of turning that a cross-check follows
 
 
@@ -178,8 +179,33 @@ class Compared:
 
     @cached_property
     def growth(self) -> Growth:
-        """What the motion does to a small difference; worked out only where the plain bound does not hold."""
-        return growth(self.system, self.start, self.ours, self.follower, self.sizes)
+        """What the motion does to a small difference; worked out only where the plain bound does not hold.
+
+        Not over all of a run of many events, but from shortly before it holds no longer to shortly after: up to there
+        a difference is as small as it was seen to be.
+        """
+        events = np.array([event.time for event in self.theirs.events if not event.final])
+        met = int(np.searchsorted(events, self._apart_from))
+        begin, end = met - _EVENTS_BEFORE, met + _EVENTS_AFTER
+        upto = self.ours.time < events[end] if end < events.size else np.ones(self.ours.time.size, dtype=bool)
+        start, carried = self.start, 0.0
+        before = np.flatnonzero(self.ours.time < events[begin]) if begin > 0 else np.empty(0, dtype=int)
+        if before.size:
+            start = self.theirs.state(int(before[-1]))
+            carried = float(np.max(np.maximum(self.share, self.turns * self.bound / self.angle_bound)[before]))
+            upto &= self.ours.time >= start.time
+        grown = growth(self.system, start, self.ours.part(upto), self.follower, self.sizes)
+        return replace(grown, carried=carried, skipped=int(np.searchsorted(events, start.time)) if before.size else 0)
+
+    @cached_property
+    def _apart_from(self) -> float:
+        """When the two are first farther apart than the plain bounds, s."""
+        apart = (self.share > self.bound) | (self.turns > self.angle_bound)
+        count = self._shifts.size
+        shifted = [
+            event.time for event, by in zip(self.ours.events[:count], self._shifts, strict=True) if by > self.bound
+        ]
+        return min([parted(self.ours, self.theirs), *self.ours.time[apart][:1].tolist(), *shifted[:1]])
 
     @cached_property
     def _shifts(self) -> Array:
@@ -227,22 +253,25 @@ class Compared:
         grown = self.growth
         until = grown.told_until(bound, self.turned)
         events = np.array([event.time for event in self.ours.events[: self._shifts.size]])
-        told, known = self.ours.time <= until, events <= until
         allowed = grown.widened(bound, self.turned, grown.at(self.ours.time))
-        later = np.pad(grown.shifted, (0, max(0, events.size - grown.shifted.size)))[: events.size]
-        later = np.maximum(later, grown.at(events))  # of the times and of the states
+        told = (self.ours.time <= until) & ((allowed < MOST) | (allowed <= bound))
+        later = np.pad(grown.shifted, (grown.skipped, max(0, events.size - grown.skipped - grown.shifted.size)))
+        later = np.maximum(later[: events.size], grown.at(events))  # of the times and of the states
+        allowed_then = grown.widened(bound, self.turned, later)
+        known = (events <= until) & ((allowed_then < MOST) | (allowed_then <= bound))
         values = np.concatenate(
             [share[told], self._shifts[known] * bound / self.bound, [np.inf] if parts <= until else []]
         )
-        bounds = np.concatenate(
-            [allowed[told], grown.widened(bound, self.turned, later)[known], [bound] if parts <= until else []]
-        )
+        bounds = np.concatenate([allowed[told], allowed_then[known], [bound] if parts <= until else []])
         worst = int(np.argmax(values / bounds)) if values.size else 0
         said += (
             f"; a change of the start shows {grown.at(np.array([min(until, self.ours.time[-1])]))[0]:.2g} times larger"
         )
         if until < self.ours.time[-1]:
-            said += f"; nothing can be told beyond t = {until:.6g} s, where a rounding has grown too large"
+            why = (
+                "to where a change is followed" if until == grown.times[-1] else "where a rounding has grown too large"
+            )
+            said += f"; nothing can be told beyond t = {until:.6g} s, {why}"
         if told.sum() < 2:
             return CardFigure(name, float(np.max(share)), unit, note=f"{said}: no verdict")
         return checked(name, float(values[worst]), float(bounds[worst]), said, unit)

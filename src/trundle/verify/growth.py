@@ -47,16 +47,23 @@ class Growth:
         The same of the times of the first k events, as shares of the run.
     until : float
         s, up to which the response is small and as large as the change; beyond it nothing can be told.
+    carried : float
+        By how much two runs differ already where this begins, as a share.
+    skipped : int
+        How many events lie before that.
     """
 
     times: Array
     magnified: Array
     shifted: Array
     until: float
+    carried: float = 0.0
+    skipped: int = 0
 
     def widened(self, bound: float, turned: float, magnified: Array) -> Array:
-        """Return a bound by what the motion makes of a method's errors in so many radians."""
-        return np.minimum(MOST, bound * np.maximum(1.0, A_STEP * magnified * np.sqrt(max(turned, 1.0)) / SOLVER))
+        """Return a bound by what the motion makes of a method's errors in so many radians, and of what was before."""
+        grows = A_STEP * np.sqrt(max(turned, 1.0)) / SOLVER + self.carried / bound
+        return np.minimum(MOST, bound * np.maximum(1.0, grows * magnified))
 
     def at(self, times: Array) -> Array:
         """Return how many times larger a change shows by then."""
