@@ -15,7 +15,7 @@ from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
 from .bounds import EXACT, SOLVER, Array
 from .card import CardFigure, checked
 from .events import instants_of
-from .law import Residuals, narrowed, residuals, roughness
+from .law import Residuals, narrowed, residuals, roughness, slope_sizes
 from .stretches import Stretch, stretches
 
 _RUN_AGAIN = 2000  # samples
@@ -97,19 +97,21 @@ class Again:
     @cached_property
     def _followed(self) -> tuple[Array, Samples]:
         """The windows, each so narrow that a polynomial follows the motion through it, and the second run."""
-        windows = best = self._first_windows
-        found = self._solve(windows)
-        least = rest = roughness(_at(found, windows.ravel()), windows)
+        first = best = self._first_windows
+        found = self._solve(first)
+        looked_at = _at(found, first.ravel())
+        sizes = slope_sizes(looked_at, first)
+        windows, least = first.copy(), roughness(looked_at, first, sizes)
+        rest = least.copy()
         for _ in range(_NARROWINGS):
             rough = rest > _SMOOTH * self.bound
             if not rough.any():
                 break
-            windows = np.where(rough[:, None], narrowed(windows), windows)
-            found = self._solve(windows)
-            rest = np.where(rough, roughness(_at(found, windows.ravel()), windows), rest)
+            windows[rough] = narrowed(windows[rough])
+            rest[rough] = roughness(self.follow(windows[rough].ravel()), windows[rough], sizes)
             best = np.where((rest < least)[:, None], windows, best)  # elsewhere it is rounding that is rough
             least = np.minimum(rest, least)
-        return best, found if (best == windows).all() else self._solve(best)
+        return best, found if best is first else self._solve(best)
 
     @cached_property
     def sampled(self) -> Samples:

@@ -89,8 +89,8 @@ def narrowed(times: Array) -> Array:
     return np.clip(middles + 0.25 * (times - middles), times[:, :1], times[:, -1:])
 
 
-def roughness(windows: Samples, times: Array) -> Array:
-    """Return what the last Chebyshev coefficients of V and Ω in each window are to their slopes, as shares.
+def slope_sizes(windows: Samples, times: Array) -> tuple[float, float]:
+    """Return against what a slope of V and one of Ω is small or not, m/s² and rad/s².
 
     Parameters
     ----------
@@ -101,6 +101,31 @@ def roughness(windows: Samples, times: Array) -> Array:
 
     Returns
     -------
+    tuple of float
+        The largest slopes, with what only turns.
+    """
+    turning = largest(windows.angular_velocity)
+    linear, angular = (
+        largest(_slope_at_middle(times, values.reshape(*times.shape, 3))) + turning * largest(values)
+        for values in (windows.velocity, windows.angular_velocity)
+    )
+    return linear, angular
+
+
+def roughness(windows: Samples, times: Array, sizes: tuple[float, float]) -> Array:
+    """Return what the last Chebyshev coefficients of V and Ω in each window are to their slopes, as shares.
+
+    Parameters
+    ----------
+    windows : Samples
+        The trajectory at `times.ravel()`.
+    times : array (windows, nodes)
+        As `window_times` returns them.
+    sizes : tuple of float
+        As `slope_sizes` returns them, of all windows.
+
+    Returns
+    -------
     array (windows,)
         About what a polynomial leaves of a slope; nothing where the clock resolves no narrower window.
     """
@@ -108,12 +133,10 @@ def roughness(windows: Samples, times: Array) -> Array:
     weights = np.ones(nodes)
     weights[[0, -1]] = 0.5
     last = np.cos(np.pi * np.outer([nodes - 2, nodes - 1], np.arange(nodes)) / (nodes - 1)) * weights / (nodes - 1)
-    half, turning = (times[:, -1] - times[:, 0]) / 2, largest(windows.angular_velocity)
+    half = (times[:, -1] - times[:, 0]) / 2
     found = np.zeros(len(times))
-    for values in (windows.velocity, windows.angular_velocity):
-        of_each = values.reshape(*times.shape, 3)
-        tails = np.abs(np.einsum("kn,wnc->wkc", last, of_each)).max(axis=(1, 2))
-        slope = largest(_slope_at_middle(times, of_each)) + turning * largest(values)
+    for values, slope in zip((windows.velocity, windows.angular_velocity), sizes, strict=True):
+        tails = np.abs(np.einsum("kn,wnc->wkc", last, values.reshape(*times.shape, 3))).max(axis=(1, 2))
         found = np.maximum(found, tails * nodes / half / max(slope, 1e-300))
     wide = times[:, -1] - times[:, 0] > 4 * _NARROWEST * np.abs(times).max()
     return np.where(wide, found, 0.0)
