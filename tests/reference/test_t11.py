@@ -262,7 +262,7 @@ CHAINS: dict[str, Any] = {
 
 
 def off_and_on_again() -> Any:
-    """A ball that rolls on a cylinder, comes off, lands, and comes off once more: what rolls has no angle from the top."""
+    """A ball that rolls on a cylinder, comes off, lands, and comes off once more; its angle from the top is NaN."""
     ball = tr.Body.solid_sphere(radius=0.01, mass=0.0327)
     system = tr.RollingSystem(ball, tr.Support(tr.Cylinder(0.2), tilt="90 deg"))
     return system, system.place((0.0, 0.0), (2.5, 0.0))
