@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -51,6 +52,27 @@ def test_on_a_slope_of_its_angle_a_ball_with_rolling_resistance_rolls_steadily()
         system = tr.RollingSystem(body, tr.Support(tr.Plane(), tilt=alpha), (tr.RollingResistance(2e-4),))
         now = roll(system, 0.0, ZERO, UPRIGHT, Vector(0.0, 0.3 / RADIUS, 0.0))
         assert now.angular_acceleration.norm() <= EXACT(16, G / RADIUS)
+
+
+@pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
+@pytest.mark.parametrize("friction", [None, 0.5])
+def test_up_a_steeper_slope_it_stops_for_an_instant_and_rolls_back(friction: float | None, method: str) -> None:
+    # V̇ = g(sin α ± (δ/a) cos α)/(1 + k): down the slope the resistance is against the pull.
+    if method == "taylor":
+        pytest.importorskip("heyoka")
+    slope = tr.Support(tr.Plane(), tilt=0.1, friction=friction)
+    system = tr.RollingSystem(BALL, slope, (tr.RollingResistance(1e-3),))
+    run = tr.simulate(system, system.place(velocity=(-0.3, 0.0)), duration=2.0, every=0.05, method=method)
+    up, down = (G * (math.sin(0.1) + way * 1e-3 / RADIUS * math.cos(0.1)) / (1 + K) for way in (1, -1))
+    assert [event.kind for event in run.events] == ["stop", "start"]
+    for event in run.events:
+        assert abs(event.time - 0.3 / up) <= SOLVER(100, run.tolerance)
+    first = 4e-12 * math.sqrt(G * RADIUS)  # m/s, the way it is driven, with which it begins to roll from rest
+    assert abs(run.data.velocity.values[-1, 0] - down * (2.0 - 0.3 / up)) <= first + SOLVER(100, run.tolerance)
+    card = run.card()
+    assert card.passed, str(card)
+    named = tuple(replace(event, kind="slip") for event in run.events)  # it never slips
+    assert not replace(run, events=named, _kept={}).card().passed
 
 
 def test_rolling_resistance_on_a_turning_table_is_against_the_turning_over_it() -> None:

@@ -223,6 +223,25 @@ class TestFlight:
             assert abs(math.hypot(p, q) - 0.5) <= EXACT(8, 0.5)
             assert abs(x * q - y * p) <= EXACT(64, 0.25)
 
+    @pytest.mark.parametrize("method", ["exact", "taylor", "runge-kutta"])
+    def test_it_leaves_a_dome_where_the_point_straight_under_it_does(self, method: str) -> None:
+        if method == "taylor":
+            pytest.importorskip("heyoka")
+        b, rim = mpf(0.29), mpf(0.2)
+        system = tr.RollingSystem(BALL, tr.Support(tr.Dome(float(b), rim=float(rim))))
+        start = system.place((0.01, 0.0), (2.0, 0.0, 0.5), height=0.05)
+        (x, _, z), (v, _, w) = (tuple(map(mpf, part)) for part in (start.position, start.velocity))
+
+        def left(t: Any) -> Any:  # how far the point on the dome is above the rim, but for a millionth of the radius
+            up, out = z + b + w * t - mpf(G) * t * t / 2, x + v * t
+            return b * up / mpmath.hypot(up, out) - mpmath.sqrt(b * b - rim * rim) - mpf(BALL.radius) / 10**6
+
+        run = exactly(system, start, until=1.0, every=0.01, method=method)
+        wanted = mpmath.findroot(left, 0.1)
+        assert [event.kind for event in run.events] == ["end"]
+        assert abs(run.events[0].time - wanted) <= EXACT(64, 1.0) + SOLVER(20, tolerance_of(method), 1.0)
+        assert run.card().passed, str(run.card())
+
     def test_the_start_in_the_air_is_covered(self) -> None:
         system = tr.RollingSystem(BALL, tr.Support(tr.Dome(0.5)))
         assert isinstance(closed_form(system, system.place(height=0.2)), SphereInFlight)
@@ -240,6 +259,22 @@ CHAINS: dict[str, Any] = {
     "starts rolling on a slope": on_cloth(tilt=0.3, friction=0.5, velocity=(1.0, 0.5), angular_velocity=None),
     "falls, slips, rolls": on_cloth(height=0.05),
 }
+
+
+def off_and_on_again() -> Any:
+    """A ball that rolls on a cylinder, comes off, lands, and comes off once more; its angle from the top is NaN."""
+    ball = tr.Body.solid_sphere(radius=0.01, mass=0.0327)
+    system = tr.RollingSystem(ball, tr.Support(tr.Cylinder(0.2), tilt="90 deg"))
+    return system, system.place((0.0, 0.0), (2.5, 0.0))
+
+
+@pytest.mark.parametrize("name", [*CHAINS, "off and on again"])
+def test_a_phase_between_two_samples_is_passed(name: str) -> None:
+    system, start = CHAINS[name] if name in CHAINS else off_and_on_again()
+    many, few = (exactly(system, start, until=1.0, every=every) for every in (0.01, 1.0))
+    assert [event.kind for event in few.events] == [event.kind for event in many.events]
+    for field in ("position", "velocity", "angular_velocity", "contact_force", "orientation"):
+        assert (few.data[field].values[-1] == many.data[field].values[-1]).all(), field
 
 
 @pytest.mark.parametrize("name", CHAINS)

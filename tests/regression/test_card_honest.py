@@ -15,6 +15,7 @@ from trundle.solve.methods import Method
 from trundle.verify.again import Again
 from trundle.verify.bounds import sizes_of
 from trundle.verify.growth import growth
+from trundle.verify.law import residuals
 
 pytest.importorskip("heyoka")
 
@@ -236,6 +237,45 @@ def test_a_cylinder_in_a_drum_as_large_as_the_earth(radius: float) -> None:
 
 
 RUN = {"duration": 1, "every": 0.1}
+
+
+STILL_CENTRES = {
+    # A disc that wobbles steadily about a point: Ω lies along ρ, and the contact alone goes round.
+    "a disc that wobbles": {
+        "body": {"kind": "disc", "radius": 0.0375, "mass": 0.4},
+        "support": PLANE,
+        "start": {"position": [0, 0], "spin": 4.258621530466869, "attitude": ["0 deg", "15 deg", "0 deg"]},
+        "run": {"duration": 0.4, "every": 0.0011},
+    },
+    "a disc that hovers over what sways": {
+        "body": {"kind": "disc", "radius": 0.05, "mass": 0.17, "moments": [1.27e-4, 1.34e-4, 1.43e-4]},
+        "support": {
+            "kind": "dome",
+            "radius": 0.72,
+            "restitution": 0.2,
+            "motion": {"kind": "wobble", "rate": 12.5, "angle": 0.28},
+        },
+        "start": {"position": [0.012, -0.023], "height": 0.0136},
+        "gravity": 0.0,
+        "run": {"duration": 0.09, "every": 0.002},
+    },
+}
+
+
+@pytest.mark.parametrize("kind", STILL_CENTRES)
+@pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
+def test_a_centre_that_stands_still_while_its_contact_moves(kind: str, method: str) -> None:
+    tables = STILL_CENTRES[kind]
+    run = passes(**{**tables, "run": {**tables["run"], "method": method}})
+    assert not run.events
+    assert np.abs(run.data.velocity.values).max() <= 1e-11
+    # A velocity of a millionth of the contact's is told from none.
+    again = Again(run.system, run.start, run.samples, Method.of(method))
+    at = again.places(again.windows.ravel())
+    passing = np.abs(np.gradient(run.samples.contact, run.samples.time, axis=0)).max()
+    for velocity, told in ((at.velocity, False), (at.velocity + 1e-6 * passing, True)):
+        found = residuals(run.system, replace(at, velocity=velocity), again.windows, again.bound)
+        assert (found.path > again.bound) == told
 
 
 # --- a support that only rounding moves, and the end of a run where the law is singular ----------------------

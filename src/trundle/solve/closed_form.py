@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import OutOfDomainError, SolverError
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import touch
+from ..mechanics.contact import Contact, touch
 from ..mechanics.scalars import is_number
 from ..mechanics.system import RollingSystem, State
 from . import phases
@@ -160,7 +160,7 @@ def _values(system: RollingSystem, now: Next, form: ClosedForm, asked: list[str]
         q = at_start if only_bounds else form.stance(t) or at_start
         own = tuple(of_start + gone for of_start, gone in zip(start.support, grown, strict=True))
         contact = touch(system, start.time + t, r, q, own)
-        contact = replace(contact, point=r + contact.offset)
+        contact = replace(contact, point=_point(system, law, contact, r))
         if only_bounds:
             found = law._bounds(system, contact, q, 0.0)
         else:
@@ -197,6 +197,7 @@ class Along:
 
     def record(self, system: RollingSystem, stretches: Sequence[Stretch]) -> Samples:
         """Return the samples of this stretch, and of those that go on from it."""
+        stretches = [stretch for stretch in stretches if stretch.times.size] or stretches[:1]  # no array of nothing
         sizes = [stretch.times.size for stretch in stretches]
         each: list[Any] = [stretch.known for stretch in stretches]
         form, since, own = (
@@ -229,16 +230,25 @@ def _spread(each: Sequence[Any], sizes: list[int]) -> Any:
         return replace(first, **{name: _spread(values, sizes) for name, values in numbers.items()})  # type: ignore[type-var]
     if isinstance(first, tuple):
         return tuple(_spread(parts, sizes) for parts in zip(*each, strict=True))
-    return first if all(one == first for one in each) else np.repeat(each, sizes)
+    return first if all(_alike(one, first) for one in each) else np.repeat(each, sizes)
+
+
+def _alike(one: Any, other: Any) -> bool:
+    """Tell whether two values are the same; not a number, by which a form says that it has none, is like itself."""
+    return bool(one == other or (one != one and other != other))
 
 
 def _contact(system: RollingSystem, law: Law, time: Any, centre: Vector, q: Quaternion, own: tuple[Any, ...]) -> Vector:
     """Return the contact; in flight the point of the support nearest to the body."""
+    return _point(system, law, touch(system, time, centre, q, own), centre)
+
+
+def _point(system: RollingSystem, law: Law, contact: Contact, centre: Vector) -> Vector:
+    """Return p of a body whose normal at the contact is known; in flight straight under the centre, on the support."""
     if law.code != FLIGHT:
-        return centre + touch(system, time, centre, q, own).offset
-    surface, support = system.support.surface, system.support.motion.at(time, *own)
-    there = support.rotation.transpose @ (centre - support.origin)
-    return centre - support.rotation @ surface.normal(there) * surface.level(there)
+        return centre + contact.offset
+    there = contact.support.rotation.transpose @ (centre - contact.support.origin)
+    return centre - contact.normal * system.support.surface.level(there)
 
 
 def orientations(motion: ClosedForm, start: State, times: Array) -> Array:

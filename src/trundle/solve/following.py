@@ -146,10 +146,18 @@ def after(system: RollingSystem, law: Law, stop: Stop) -> Next:
     follows = _touching(system, at, gave_way=name)
     if name == "slip" and follows.law.code == law.code:  # friction holds again at once
         return replace(follows, events=())
-    kind, said = _NAMES[follows.law.code] if follows.law.code != law.code else ("slip", _TURNED)
-    if name == "start" and follows.law.code == RollingLaw.code:
-        kind, said = "start", "began to roll"
-    return replace(follows, events=(_event(kind, said, at), *follows.events))
+    said = _said(name, law.code, follows.law.code)
+    return replace(follows, events=(*(_event(kind, text, at) for kind, text in said), *follows.events))
+
+
+def _said(stop: str, before: int, after: int) -> tuple[tuple[str, str], ...]:
+    """Return the kinds of the events between two phases that a stop has parted, and what is said of them."""
+    if stop == "start" and after == RollingLaw.code:
+        return (_BEGAN_TO_ROLL,)
+    if before != after:
+        return (_NAMES[after],)
+    # Only turning that ends lets rolling follow rolling: what drives the body overcomes the resistance at once.
+    return (_NAMES[RestingLaw.code], _BEGAN_TO_ROLL) if after == RollingLaw.code else (("slip", _TURNED),)
 
 
 def slipping(system: RollingSystem, now: Next) -> Next:
@@ -183,6 +191,7 @@ def _event(kind: str, said: str, before: Touch, after: Touch | None = None) -> E
 
 
 _TURNED = "stopped slipping and slipped on the other way"
+_BEGAN_TO_ROLL = ("start", "began to roll")
 _NAMES = {
     RollingLaw.code: ("grip", "gripped and rolled"),
     SlippingLaw.code: ("slip", "began to slip"),

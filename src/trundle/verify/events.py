@@ -151,8 +151,8 @@ class AtEvents:
             return
         if after is not None:
             yield from self._same(last, last.after, after.state(0), "no jump after")
-        if before is not None and after is not None and len(group) == 1:
-            may, then = _BETWEEN.get(first.kind, (_ANY, _ANY))
+        if before is not None and after is not None:
+            may, then = _BETWEEN.get(first.kind, (_ANY, _ANY))[0], _BETWEEN.get(last.kind, (_ANY, _ANY))[1]
             fits = int(before.phase[0]) in may and int(after.phase[0]) in then
             yield first, "the phases that it lies between", 0.0 if fits else np.inf, 1.0
 

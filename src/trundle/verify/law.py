@@ -246,6 +246,14 @@ class _Windows:
         return max(_ROUNDING * place / self.half / self.bound, 1e-300)
 
     @cached_property
+    def _passing(self) -> float:
+        """How fast the contact moves, m/s: a place worked out from it is off by a share of its way, and so is a slope.
+
+        The centre of a disc that wobbles, or of a body that hovers over a support that sways, stands still meanwhile.
+        """
+        return largest(self.slope(self.all.contact))
+
+    @cached_property
     def _bend(self) -> float:
         """The support's radius, m: of what is worked out from its centre, the place is only as sharp as that."""
         at = self.middle
@@ -257,7 +265,7 @@ class _Windows:
     def _kinematics(self) -> tuple[float, float, float]:
         """Compare what is said of V, Ω and slip with the slopes of position, orientation and support."""
         at, V, Omega = self.middle, self.middle.velocity, self.middle.angular_velocity
-        path = largest(self.slope(self.all.position) - V) / max(float(np.abs(V).max()), self._sharp)
+        path = largest(self.slope(self.all.position) - V) / max(float(np.abs(V).max()), self._passing, self._sharp)
         # 2 q̇ q*, of which the first part is the rate of |q|
         turned = Quaternion.of(self.slope(self.all.orientation)) * Quaternion.of(at.orientation).conjugate
         off = float(np.linalg.norm(2 * turned.array() - np.pad(Omega, ((0, 0), (1, 0))), axis=1).max())
@@ -269,7 +277,7 @@ class _Windows:
         V, carried, u = self._speeds
         if self.phase == SLIPPING:
             apart = apart - (V + carried - u)
-        return path, turning, largest(apart) / max(*map(largest, self._speeds), self._sharp)
+        return path, turning, largest(apart) / max(*map(largest, self._speeds), self._passing, self._sharp)
 
     def _body_points(self) -> Array:
         """Return where the body's point that touches at the middle of a window is at each of its instants."""
