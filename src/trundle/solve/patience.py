@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from ..errors import SolverError, TrundleError
 
+_NOWHERE, _DEARER = 1e-10, 3  # steps of so small a share of the run lead nowhere, and count so many times
+
 
 class Patience:
     """What refuses a run that would take longer than anyone waits.
@@ -44,14 +46,16 @@ class Patience:
         name: str,
         error: type[TrundleError] = SolverError,
     ) -> None:
-        self.time, self.pace, self.spare = begin, steps / max(end - begin, 1e-300), spare
+        span = max(end - begin, 1e-300)
+        self.time, self.pace, self.spare, self.nowhere = begin, steps / span, spare, _NOWHERE * span
         self.name, self.error = name, error
         self.owed = 0.0  # steps taken beyond the even ones
 
     def after(self, steps: int, time: float) -> None:
         """Take account of steps up to a time; refuse to go on where they are too many."""
         gone, self.time = time - self.time, time
-        self.owed = max(0.0, self.owed + steps - gone * self.pace)
+        counted = steps * (_DEARER if gone < steps * self.nowhere else 1)
+        self.owed = max(0.0, self.owed + counted - gone * self.pace)
         if self.owed > self.spare:
             raise self.error(
                 f"{self.name} hardly gets on at t = {time:.9g} s: a step is {gone / max(steps, 1):.1g} s there. Ask "

@@ -37,7 +37,7 @@ _AT_ONCE = 10_000  # steps, between which Ctrl-C is heard too
 # steps are counted anew in each run, so that it has the same digits whatever is compiled already.
 _HASTY_STEPS, _CARES = 1000, -1
 _IN_HASTE, _WITH_CARE = 0, 1  # levels of LLVM: at its highest it compiles for half as long again, and runs no faster
-_PATIENCE: dict[str, Any] = {"steps": 3e6, "spare": 2e4, "name": "Taylor's method"}  # a minute, and some seconds
+_PATIENCE: dict[str, Any] = {"steps": 3e6, "spare": 5e4, "name": "Taylor's method"}  # a minute, and some seconds
 _LONGEST = 100.0  # s without a new reference of time, at most
 _PARTS = 10  # of a stretch that is kept, between which rounding's share is taken out
 
