@@ -172,3 +172,16 @@ def test_a_motor_turns_its_torque_with_the_ball() -> None:
     quarter = roll(system, 0.0, ZERO, Quaternion(half, 0.0, 0.0, half), ZERO)
     gain = 0.002 / (MASS * RADIUS**2 * (1 + K))
     assert (quarter.angular_acceleration - Vector(-gain, 0.0, 0.0)).norm() <= EXACT(16, gain)
+
+
+@pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
+def test_a_ball_let_go_rolls_against_any_small_resistance(method: str) -> None:
+    # From rest the first step must be no longer than it has rolled: beyond that the series is rounding.
+    a, k, alpha = 0.05, 0.4, 0.1
+    for offset in np.geomspace(1e-6, 4e-3, 40).tolist():
+        load = tr.RollingResistance(offset)
+        system = tr.RollingSystem(tr.Body.solid_sphere(a, 0.2), tr.Support(tr.Plane(), tilt=alpha), (load,))
+        run = tr.simulate(system, system.place(), 1.0, 1.0, method=method)
+        g = system.gravity
+        wanted = 0.5 * g * (np.sin(alpha) - offset / a * np.cos(alpha)) / (1 + k)
+        assert abs(run.data.position.values[-1, 0] - wanted) <= 1e-11

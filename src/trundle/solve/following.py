@@ -202,26 +202,23 @@ _NAMES = {
 
 def _goes_on(system: RollingSystem, law: Law, at: Touch, numbers: Any, stop: str) -> bool:
     """Tell whether slip or turning was only at its slowest, and did not end."""
-    v, still = _shrinking(system, at, numbers, stop)
-    left = float(np.linalg.norm(v))
-    if left <= 4 * still:
+    left = float(np.linalg.norm(law.shrinking(system, at.state.time, numbers)))
+    if left <= 4 * _least(system, at, stop):
         return False
     rates = law.rates(system, at.state.time, list(map(float, numbers)))
-    rate = np.array([float(rate) for rate in (rates[10:13] if stop == "grip" else rates[7:10])])
+    rate = np.array([float(rate) for rate in rates[law.shrinks]])
     return left > 4 * AN_INSTANT * float(np.linalg.norm(rate))
 
 
-def _shrinking(system: RollingSystem, at: Touch, numbers: Any, stop: str) -> tuple[Array, float]:
-    """Return the slip, m/s, or how the body turns over the support, rad/s; and below which it has all but ended."""
-    if stop == "grip":
-        return np.asarray(numbers[10:13], dtype=float), at.still(system)
-    return state_turning(at.contact, at.Omega).array(), at.still(system) / at.arm
+def _least(system: RollingSystem, at: Touch, stop: str) -> float:
+    """Return the slip, m/s, or how the body turns, rad/s, below which it has all but ended."""
+    return at.still(system) / (1.0 if stop == "grip" else at.arm)
 
 
 def _extras(system: RollingSystem, at: Touch, slip: Vector | None = None) -> tuple[float, ...]:
     """Return what the stops of slipping take: when slip is all but nothing, and its direction; or those of turning."""
     v = state_turning(at.contact, at.Omega) if slip is None else slip
-    still = at.still(system) / (at.arm if slip is None else 1.0)
+    still = _least(system, at, "stop" if slip is None else "grip")
     return still**2, *floats(v / v.norm())
 
 
@@ -345,11 +342,11 @@ def _set_down(system: RollingSystem, at: Touch) -> Touch:
 def _come_to_it(system: RollingSystem, law: Law, at: Touch, numbers: Any, stop: str) -> Touch:
     """Go on straight from where slip or turning has all but ended to where it has ended."""
     y, time = np.asarray(numbers, dtype=float), at.state.time
-    v, still = _shrinking(system, at, numbers, stop)
+    v = law.shrinking(system, time, numbers)
     length = float(np.linalg.norm(v))
-    if length > 1e-3 * still:
+    if length > 1e-3 * _least(system, at, stop):
         rates = np.array([float(rate) for rate in law.rates(system, time, y.tolist())])
-        closing = float(-(v @ (rates[10:13] if stop == "grip" else rates[7:10])) / length)
+        closing = float(-(v @ rates[law.shrinks]) / length)
         wait = length / closing if closing > 0 else 0.0
         at = law.meant(system, time + wait, y + wait * rates)
     Omega = at.Omega if stop == "grip" else at.Omega - state_turning(at.contact, at.Omega)

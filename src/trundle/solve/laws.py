@@ -39,6 +39,8 @@ class Law:
         How many numbers the stops take that end slip or turning, besides the system's.
     brief : bool
         Whether it holds for so short a time that to compile it would take longer than to follow it.
+    shrinks : slice
+        The numbers whose change is that of what `shrinking` returns.
 
     Parameters
     ----------
@@ -51,6 +53,7 @@ class Law:
     variables: tuple[str, ...] = CONTACT
     ending: int = 0
     brief: bool = False
+    shrinks: slice = slice(0)
 
     def __init__(self, weightless: bool = False) -> None:
         self.weightless = weightless
@@ -121,6 +124,10 @@ class Law:
         """Tell whether a part of the state settles far faster than all else changes."""
         return False
 
+    def shrinking(self, system: RollingSystem, time: float, numbers: Numbers) -> Array:  # noqa: ARG002
+        """Return what ends this law as it shrinks to nothing; nothing of most laws."""
+        return np.zeros(0)
+
     def advanced(self, system: RollingSystem, time: float, state: Sequence[float], step: float) -> list[float]:
         """Return the state after a step so short that one of the classical Runge-Kutta method is exact."""
         y = np.asarray(state, dtype=float)
@@ -155,6 +162,12 @@ class RollingLaw(Law):
     """No slip: the state is (p, q, Ω)."""
 
     code = ROLLING
+    shrinks = slice(7, 10)
+
+    def shrinking(self, system: RollingSystem, time: float, numbers: Numbers) -> Array:
+        """Return how the body turns over the support, rad/s."""
+        now = self._now(system, time, numbers)
+        return state_turning(now.contact, Vector(*map(float, numbers[7:10]))).array()
 
     def _now(self, system: RollingSystem, time: Scalar, state: Numbers) -> Rolling:
         p, q, Omega, _, own = self.split(state)
@@ -197,6 +210,7 @@ class SlippingLaw(Law):
     """Slipping with friction −μ N ŝ: the state is (p, q, Ω, s)."""
 
     code = SLIPPING
+    shrinks = slice(10, 13)
     variables: tuple[str, ...] = (*CONTACT, "s_x", "s_y", "s_z")
     ending = 4  # as for `RollingWithResistance`
 
@@ -224,6 +238,10 @@ class SlippingLaw(Law):
         if not is_zero(system.support.friction):
             found["jam"] = now.opening_per_newton * system.body.mass - JAMS
         return found
+
+    def shrinking(self, system: RollingSystem, time: float, numbers: Numbers) -> Array:  # noqa: ARG002
+        """Return the slip, m/s."""
+        return np.array([float(part) for part in numbers[10:13]])
 
     def numbers(self, at: Touch) -> list[float]:
         """Return p, q, Ω and the part of s along the support."""

@@ -38,6 +38,7 @@ _AT_ONCE = 10_000  # steps, between which Ctrl-C is heard too
 _HASTY_STEPS, _CARES = 1000, -1
 _IN_HASTE, _WITH_CARE = 0, 1  # levels of LLVM: at its highest it compiles for half as long again, and runs no faster
 _PATIENCE: dict[str, Any] = {"steps": 3e6, "spare": 5e4, "name": "Taylor's method"}  # a minute, and some seconds
+_STRAIGHT, _YOUNG, _GROWN = 1e-9, 8, 1e12  # sine of an angle; steps at a time, of slip until it has grown so much
 _LONGEST = 100.0  # s without a new reference of time, at most
 _PARTS = 10  # of a stretch that is kept, between which rounding's share is taken out
 
@@ -224,8 +225,25 @@ def _begun(system: RollingSystem, now: Next, tolerance: float, hasty: dict[str, 
 
         left = max(0, _HASTY_STEPS - hasty.get(key, 0))
         run = _Run(borrow, left, lowered, [*numbers(system), *now.extras], now.time, now.numbers)
+        run.lasted = _lasted(system, now)
         yield run
         hasty[key] = _HASTY_STEPS - max(0, run.hasty_steps)
+
+
+def _lasted(system: RollingSystem, now: Next) -> float:
+    """Return for how long slip or turning seems to have lasted that grows straight from all but nothing, s; else ∞.
+
+    Where it goes straight its speed has no singularity, and only rounding in the series would say how near it came to
+    nothing. By what of that is left, a step would be far too short, or, between two zeros, far too long.
+    """
+    law, numbers_now = now.law, list(map(float, now.numbers))
+    if law.ending <= 1:
+        return math.inf
+    v = law.shrinking(system, now.time, numbers_now)
+    rate = np.array([float(part) for part in law.rates(system, now.time, numbers_now)[law.shrinks]])
+    length, change = float(np.linalg.norm(v)), float(np.linalg.norm(rate))
+    straight = float(np.linalg.norm(np.cross(v, rate))) <= _STRAIGHT * length * change and v @ rate > 0
+    return length / change if straight else math.inf
 
 
 def compiled(system: RollingSystem, law: Law, tolerance: float = TOLERANCE) -> tuple[Any, Lowered]:
@@ -306,6 +324,7 @@ class _Run:
         self.integrator = borrow(_WITH_CARE if self.hasty_steps == _CARES else _IN_HASTE)
         self.patience: Patience
         self.kept: _Kept | None = None  # where the polynomials of its steps are kept
+        self.lasted, self.begun = math.inf, begin
         self.integrator.state[:] = state
         self._refer_to(begin)
 
@@ -326,9 +345,8 @@ class _Run:
     def go_to(self, until: float) -> int | None:
         """Propagate to a time since the reference; return which terminal event came first if one did."""
         while True:
-            most = self._at_once()
-            keeps = self.kept is not None
-            outcome, _, _, steps, path, _ = self.integrator.propagate_until(until, max_steps=most, c_output=keeps)
+            given, keeps = self._at_once(), self.kept is not None
+            outcome, _, _, steps, path, _ = self.integrator.propagate_until(until, c_output=keeps, **given)
             if self.kept is not None and steps:
                 self.kept.take(self.reference, path, steps)
             if not self._is_cut(outcome, steps):
@@ -340,26 +358,29 @@ class _Run:
         done = 0
         while True:
             ahead = np.concatenate([[self.integrator.time], since[done:]]) if done else since
-            most = self._at_once()
-            outcome, _, _, steps, *_, found = self.integrator.propagate_grid(ahead, max_steps=most)
+            given = self._at_once()
+            outcome, _, _, steps, *_, found = self.integrator.propagate_grid(ahead, **given)
             found = found.reshape(-1, self.integrator.state.size)[bool(done) :]
             parts.append(found)
             done += len(found)
             if not self._is_cut(outcome, steps):
                 return np.vstack(parts), _event(self, outcome)
 
-    def _at_once(self) -> int:
-        """Return how many steps to make before anything else is looked at; after the first, take what is made for more.
+    def _at_once(self) -> dict[str, Any]:
+        """Return how many steps to make before anything else is looked at, and how long they may be.
 
-        A stop has ended the stretch, so that nothing is known of one that the other would have to know.
+        After the first of them, take what is made for more. A stop has ended the stretch, so that nothing is known of
+        one that the other would have to know.
         """
-        if self.hasty_steps > 0:
-            return self.hasty_steps
         if self.hasty_steps == 0:
             hasty, self.integrator, self.hasty_steps = self.integrator, self.borrow(_WITH_CARE), _CARES
             self.integrator.state[:], self.integrator.pars[:] = hasty.state, hasty.pars
             self.integrator.dtime = hasty.dtime
-        return _AT_ONCE
+        most = self.hasty_steps if self.hasty_steps > 0 else _AT_ONCE
+        longest = self.lasted + (self.time - self.begun)
+        if longest > _GROWN * self.lasted:
+            self.lasted = longest = math.inf
+        return {"max_steps": most if longest == math.inf else min(most, _YOUNG), "max_delta_t": longest}
 
     def _is_cut(self, outcome: Any, steps: int) -> bool:
         """Tell whether there is more to do, after so many steps that somebody may have lost patience meanwhile."""
