@@ -10,7 +10,7 @@ import math
 import pickle
 import platform
 from collections.abc import Callable, Iterator, Sequence
-from functools import cache, partial
+from functools import cache, cached_property, partial
 from pathlib import Path
 from typing import Any
 
@@ -345,10 +345,10 @@ class _Run:
     def go_to(self, until: float) -> int | None:
         """Propagate to a time since the reference; return which terminal event came first if one did."""
         while True:
-            given, keeps = self._at_once(), self.kept is not None
-            outcome, _, _, steps, path, _ = self.integrator.propagate_until(until, c_output=keeps, **given)
-            if self.kept is not None and steps:
-                self.kept.take(self.reference, path, steps)
+            given = self._at_once()
+            if self.kept is not None:
+                given |= {"write_tc": True, "callback": self.kept.take}
+            outcome, _, _, steps, *_ = self.integrator.propagate_until(until, **given)
             if not self._is_cut(outcome, steps):
                 return _event(self, outcome)
 
@@ -397,33 +397,54 @@ class _Run:
 
     def _refer_to(self, time: float) -> None:
         self.reference, self.integrator.time = time, 0.0
+        if self.kept is not None:
+            self.kept.refer_to(time)
         self.values = self.lowered.values(self.given, time)
         self.integrator.pars[:] = self.values[: self.lowered.parameters]
 
 
 class _Kept:
-    """The polynomials of the steps of a stretch, in pieces that each count from a reference of their own."""
+    """The polynomials of the steps of a stretch, each about where it begins, counted from a reference of its own."""
 
     def __init__(self, now: Next) -> None:
-        self.numbers, self.steps = np.asarray(now.numbers, dtype=float), 0
+        self.numbers, self.reference, self.reached = np.asarray(now.numbers, dtype=float), now.time, 0.0
+        self.references: list[float] = []
         self.begins: list[float] = []
-        self.pieces: list[tuple[float, Any]] = []
+        self.series: list[Array] = []  # (variables, terms)
 
-    def take(self, reference: float, path: Any, steps: int) -> None:
-        """Keep one more piece."""
-        self.begins.append(reference + path.bounds[0])
-        self.pieces.append((reference, path))
-        self.steps += steps
+    @property
+    def steps(self) -> int:
+        """How many."""
+        return len(self.series)
+
+    def take(self, integrator: Any) -> bool:
+        """Keep the step just made; go on."""
+        if integrator.last_h > 0:
+            self.references.append(self.reference)
+            self.begins.append(self.reached)
+            self.series.append(integrator.tc.copy())
+        self.reached = float(integrator.time)
+        return True
+
+    def refer_to(self, time: float) -> None:
+        """Count from another time on."""
+        self.reference, self.reached = time, 0.0
+
+    @cached_property
+    def _all(self) -> tuple[Array, Array, Array]:
+        """References, beginnings and series of all steps."""
+        return np.array(self.references), np.array(self.begins), np.array(self.series)
 
     def at(self, times: Array) -> Array:
         """Return the states at some times."""
-        if not self.pieces:
+        if not self.series:
             return np.tile(self.numbers, (times.size, 1))
-        which = np.maximum(np.searchsorted(self.begins, times, side="right") - 1, 0)
-        states = np.empty((times.size, self.numbers.size))
-        for i in np.unique(which):
-            reference, path = self.pieces[i]
-            states[which == i] = path(times[which == i] - reference)
+        references, begins, series = self._all
+        which = np.maximum(np.searchsorted(references + begins, times, side="right") - 1, 0)
+        since = (times - references[which] - begins[which])[:, None]
+        states = series[which, :, -1]
+        for term in range(series.shape[2] - 2, -1, -1):
+            states = states * since + series[which, :, term]
         return states
 
 
