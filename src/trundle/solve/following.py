@@ -126,7 +126,7 @@ def after(system: RollingSystem, law: Law, stop: Stop) -> Next:
         if lift is not None:
             advanced = law.advanced(system, stop.time, stop.numbers.tolist(), lift - stop.time)
             return _lifted(system, law.meant(system, lift, advanced))
-    if name in ("grip", "stop") and _goes_on(system, law, at, stop.numbers, name):
+    if name in ("grip", "stop") and _goes_on(system, law, at, stop):
         slip = Vector(*map(float, stop.numbers[10:13])) if name == "grip" else None
         floor = (_FLOOR * at.forces(system),) * law.weightless
         return Next(law, at.state, list(stop.numbers), (*floor, *_extras(system, at, slip)))
@@ -200,12 +200,14 @@ _NAMES = {
 }
 
 
-def _goes_on(system: RollingSystem, law: Law, at: Touch, numbers: Any, stop: str) -> bool:
+def _goes_on(system: RollingSystem, law: Law, at: Touch, stop: Stop) -> bool:
     """Tell whether slip or turning was only at its slowest, and did not end."""
-    left = float(np.linalg.norm(law.shrinking(system, at.state.time, numbers)))
-    if left <= 4 * _least(system, at, stop):
+    left = float(np.linalg.norm(law.shrinking(system, at.state.time, stop.numbers.tolist())))
+    if left <= 4 * _least(system, at, stop.name.removeprefix("near ")):
         return False
-    rates = law.rates(system, at.state.time, list(map(float, numbers)))
+    if not stop.name.startswith("near "):
+        return True
+    rates = law.rates(system, at.state.time, list(map(float, stop.numbers)))
     rate = np.array([float(rate) for rate in rates[law.shrinks]])
     return left > 4 * AN_INSTANT * float(np.linalg.norm(rate))
 
@@ -240,7 +242,7 @@ def spins_on(system: RollingSystem, law: Law, stop: Stop) -> bool:
         False also where its turning over the support was only at its slowest.
     """
     at = stop.at(system, law)
-    if _goes_on(system, law, at, stop.numbers, "stop"):
+    if _goes_on(system, law, at, stop):
         return False
     relative = at.Omega - at.contact.support.angular_velocity
     return bool(abs(relative.dot(at.contact.normal)) * at.arm > 1e-9 * at.scale(system))

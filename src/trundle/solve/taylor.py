@@ -239,7 +239,9 @@ def _lasted(system: RollingSystem, now: Next) -> float:
     law, numbers_now = now.law, list(map(float, now.numbers))
     if law.ending <= 1:
         return math.inf
-    v = law.shrinking(system, now.time, numbers_now)
+    v, near = law.shrinking(system, now.time, numbers_now), now.extras[-law.ending]
+    if v @ v > _GROWN * near:
+        return math.inf
     rate = np.array([float(part) for part in law.rates(system, now.time, numbers_now)[law.shrinks]])
     length, change = float(np.linalg.norm(v)), float(np.linalg.norm(rate))
     straight = float(np.linalg.norm(np.cross(v, rate))) <= _STRAIGHT * length * change and v @ rate > 0
