@@ -126,3 +126,21 @@ def test_short_runs_are_sampled(method, length, time):
     way = np.linalg.norm(run.data.position.values[-1] - run.data.position.values[0])
     assert run.data.time.size == 8
     assert way == pytest.approx(0.3 * length, rel=1e-5, abs=1e-16)
+
+
+@pytest.mark.parametrize("most", [50_000, 40, 0])  # steps that are kept: all, some, none
+@pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
+def test_a_run_that_is_gone_through_once_can_be_asked_for_any_instants(method, most, monkeypatch):
+    # It falls, bounces, slips and grips: each look, in whatever order, is at the same motion.
+    monkeypatch.setattr("trundle.solve.dense._MOST_STEPS", most)
+    run = tr.Scenario.load("turntable-drop").run(method)
+    ends = run.samples.time[[0, -1]]
+    read = Method.of(method).dense(run.system, run.start, float(ends[1]))
+    for times in (ends, np.linspace(*ends, 7), np.linspace(ends[0], 0.3 * ends[1], 50), np.linspace(*ends, 301)):
+        found, wanted = read(times), Method.of(method).solve(run.system, run.start, times)
+        assert [event.kind for event in found.events] == [event.kind for event in wanted.events]
+        assert np.array_equal(found.time, wanted.time)
+        assert np.array_equal(found.phase, wanted.phase)
+        for field in ("position", "velocity", "angular_velocity", "orientation", "contact_force"):
+            apart = np.abs(getattr(found, field) - getattr(wanted, field)).max()
+            assert apart <= 1e-9 * max(1.0, np.abs(getattr(wanted, field)).max())

@@ -81,6 +81,22 @@ def test_a_second_process_does_not_compile(machine: Machine) -> None:
     assert np.array_equal(first.orientation, second.orientation)
 
 
+def test_a_long_run_is_compiled_with_care_and_has_its_digits_whatever_is_known(machine: Machine) -> None:
+    start, times = SYSTEM.place((0.1, 0.0), (0.0, 0.2)), np.linspace(0.0, 60.0, 121)
+
+    def path() -> Any:
+        return taylor.solve(SYSTEM, start, times).position
+
+    first = path()
+    assert machine.compiled == 2  # in haste, and with care
+    machine.restart()
+    assert np.array_equal(path(), first)
+    assert np.array_equal(path(), first)
+    assert machine.compiled == 2
+    wanted = tr.simulate(SYSTEM, start, 60.0, 0.5, method="exact").samples.position
+    assert np.abs(first - wanted).max() <= SOLVER(1000, taylor.TOLERANCE, np.abs(wanted).max())
+
+
 def test_all_numbers_are_parameters(machine: Machine) -> None:
     others = [
         replace(SYSTEM, body=tr.Body.hollow_sphere(0.1, 2.0)),
