@@ -107,3 +107,21 @@ def test_slip_that_turns_on_the_way(friction: float, slip: tuple[float, float, f
     aside = math.atan2(slip[1], slip[0]) - float(mpmath.atan2(ended[1], ended[0]))
     assert abs(aside) > 1e-2  # it does turn
     assert max(abs(a - float(b)) for a, b in zip(found, impulse, strict=True)) <= SOLVER(100 * float(P), 1e-12)
+
+
+@pytest.mark.parametrize("mass", [1e-12, 1e-6, 1e-3, 1.0, 1e6, 1e12])
+@pytest.mark.parametrize("slip", [(0.3, 0.1, -0.6), (0.9, -0.4, -2.0), (-0.002, 0.0006, -0.025), (1.6e-3, 6e-4, -0.5)])
+def test_a_landing_in_which_slip_turns_does_not_depend_on_the_mass(
+    mass: float, slip: tuple[float, float, float]
+) -> None:
+    # By dimensions: velocities change alike, and the impulse is as many times as great as the mass.
+    def struck(times: float) -> Impact:
+        body = tr.Body(MASS * times, tr.Principal(0.04 * times, 0.05 * times, 0.03 * times), tr.Ellipsoid(A, 0.2, B))
+        floor = tr.RollingSystem(body, tr.Support(tr.Plane(), friction=0.4, restitution=0.8))
+        return land(floor, touch(floor, 0.0, Vector(0.0, 0.0, 0.0), Q), Q, Vector(*slip))
+
+    found, one = struck(mass), struck(1.0)
+    speed, turning = one.velocity_change.norm(), one.angular_velocity_change.norm()
+    assert (found.velocity_change - one.velocity_change).norm() <= SOLVER(speed, 1e-12)
+    assert (found.angular_velocity_change - one.angular_velocity_change).norm() <= SOLVER(turning, 1e-12)
+    assert (found.impulse / mass - one.impulse).norm() <= SOLVER(one.impulse.norm(), 1e-12)

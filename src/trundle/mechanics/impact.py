@@ -267,19 +267,21 @@ class _Course:
     def _curved(self, size: float) -> Vector:
         """Do the same where slip turns on the way.
 
-        The slip is σ ŝ with ŝ at an angle β: where σ falls through 0 all is still smooth.
+        The slip is σ ŝ with ŝ at an angle β: where σ falls through 0 all is still smooth. The impulse is counted in
+        units of its own size, since SciPy finds events to an absolute 1e-15.
         """
         from scipy.integrate import solve_ivp
 
         M = np.array([tuple(row) for row in self.M.rows])
         sigma, least = math.hypot(self.slip.x, self.slip.y), _SLOW * size
+        unit = size / float(M[2, 2])
 
         def rates(_: float, y: Any) -> Any:
             hat = np.array([math.cos(y[1]), math.sin(y[1])])
             direction = np.array([*(-self.mu * hat), 1.0])
             first, second, up = M @ direction
             along, aside = hat[0] * first + hat[1] * second, hat[0] * second - hat[1] * first
-            return np.array([along, aside / y[0], up, y[2], *direction, self.mu * y[0]])
+            return unit * np.array([along, aside / y[0], up, y[2], *direction, self.mu * y[0]])
 
         ends = [lambda _, y: y[0] - least]
         ends.append((lambda _, y: y[2]) if self.aim is None else (lambda _, y: y[3] - self.aim))
@@ -289,11 +291,11 @@ class _Course:
         first, second, up = self.slip
         y0 = np.array([sigma, math.atan2(second, first), up, self.work, 0.0, 0.0, 0.0, self.taken])
         scale = np.array([size, 1.0, size, size * far, far, far, far, (sigma / size) ** 2 * size * far])
-        found = solve_ivp(rates, (0.0, far), y0, method="DOP853", rtol=1e-12, atol=1e-14 * scale, events=ends)
+        found = solve_ivp(rates, (0.0, far / unit), y0, method="DOP853", rtol=1e-12, atol=1e-14 * scale, events=ends)
         if found.status != 1:
             raise SolverError("A landing does not end: friction and the body's shape jam it. Use less friction.")
         y = found.y[:, -1]
-        stopped = abs(y[0] - least) < 1e-3 * least
+        stopped = found.t_events[0].size > 0
         if stopped:
             y = y - y[0] / rates(0.0, y)[0] * rates(0.0, y)  # straight on to σ = 0
         sigma, beta, up, work = y[:4].tolist()

@@ -9,6 +9,7 @@ from .laws import Law
 
 _AT_HAND = 1e-3  # of the time in which the motion changes
 _CLOSER = 12  # times ten
+_NEARLY = 1e-3  # share of the usual force above which N is no double root's
 _UNASKED = 1e-7  # share of what friction can give when the body is pressed on as usual
 
 
@@ -60,6 +61,9 @@ def lift_at_hand(
     at = law.meant(system, time, numbers)
     moment = at.arm / at.scale(system)
     now = look(0.0)[0]
+    changes = abs(look(_AT_HAND * moment)[0] - now) / _AT_HAND  # in such a time, N
+    if now > _NEARLY * max(changes, at.forces(system)):
+        return None
     # From close by outwards: where all forces vanish with N, the motion changes in no time of its own.
     limits = (_AT_HAND * moment * 0.1**k for k in range(_CLOSER, -1, -1))
     limit, later = next(((to, N) for to in limits if (N := look(to)[0]) < 0), (0.0, 0.0))

@@ -181,6 +181,8 @@ class _Record:
 
     def take(self, law: Law, piece: Stretch) -> None:
         """Take a piece of a stretch, to be completed now or with those that follow."""
+        if not piece.times.size and piece.known is None and self.recording.most > 1:
+            return  # to complete nothing takes as long as to complete a sample
         if self.waiting and not self._goes_on(law, piece):
             self._complete()
         self.waiting.append((law, piece))
