@@ -331,3 +331,30 @@ def test_slopes_of_what_spins_and_hardly_rolls_are_as_sharp_as_its_spin() -> Non
     load = {"kind": "rolling-resistance", "offset": 0.00165337}
     run = passes(loads=[load], body=body, support=support, start=start, run={"duration": 1.0, "every": 0.08})
     assert run.events[-1].kind == "spot"
+
+
+# --- runs of no length --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
+@pytest.mark.parametrize("speed", [1.0, 1e-3])
+@pytest.mark.parametrize("left", [1e-16, 1e-13, 1e-10, 1e-7])
+def test_a_run_that_ends_as_it_begins(left: float, speed: float, method: str) -> None:
+    # A change of the start that is measured by 1/span alone would set the body spinning at 1e7 rad/s and more.
+    bench = tr.RollingSystem(tr.Body.ellipsoid((0.1, 0.1, 0.08), 1.0), tr.Support(tr.Plane(rim=0.5), friction=0.3))
+    run = tr.simulate(bench, bench.place((0.5 - left, 0.0), velocity=(speed, 0.1)), 1.0, 0.1, method)
+    assert run.events[-1].kind == "rim"
+    assert run.card().passed
+
+
+# --- slip that begins while the body turns fast ---------------------------------------------------------------
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_slip_that_begins_in_a_pipe_while_a_ball_spins_at_900_radians_a_second(side: int) -> None:
+    # Against slip of 1e-12 m/s the rounding of accelerations of 7000 m/s² is not small: no step would be short enough.
+    pipe = {"kind": "cylinder", "radius": "19.8 cm", "tilt": "7.2 deg", "friction": 2.8}
+    start = {"position": [f"{-134 * side} deg", "0 m"], "velocity": ["0 m/s", "0 m/s"]}
+    ball = {"kind": "solid-sphere", "radius": "9.78 mm", "mass": "149 g"}
+    run = passes(body=ball, support=pipe, start=start, run={"duration": 1.4, "every": 0.02})
+    assert {"grip", "slip"} <= {event.kind for event in run.events}

@@ -27,7 +27,7 @@ from .events import AtEvents
 from .friction import contact_force, friction_law, looked_into
 from .landings import landing_figures, landings_of
 from .plane import reactions, straightness
-from .stretches import SINGULAR
+from .stretches import SINGULAR, before_a_singular_end
 
 _MOST_SAMPLES = 20_000  # looked at for integrals
 _EVENTS_TOLD = 4
@@ -143,6 +143,7 @@ def _before(start: State, at: Samples) -> Samples:
 
 def _integrals(system: RollingSystem, at: Samples, method: Method) -> Iterator[CardFigure]:
     """Check each first integral over every stretch of a phase that it survives."""
+    at = before_a_singular_end(at)  # where a rounding of the place is no longer one of the rest
     bound, phases = bound_of(method, turned_in(at)), set()
     worst: dict[str, tuple[float, Any, set[str]]] = {}
     for part, phase in _runs_of_a_phase(at):
@@ -167,9 +168,10 @@ def _integrals(system: RollingSystem, at: Samples, method: Method) -> Iterator[C
 def _stirred(system: RollingSystem, at: Samples, record: Record) -> Record:
     """Return a motion with V and Ω of the size by which rounding of the speeds at the contact shows, over the bound.
 
-    A body that hardly moves on a support that moves fast is the small difference of the two.
+    A body that hardly moves on a support that moves fast is the small difference of the two. Roundings add up as a
+    random walk of about a step a radian.
     """
-    V = _ROUNDING / EXACT * speed_of(system, at)
+    V = _ROUNDING / EXACT * math.sqrt(max(1.0, turned_in(at))) * speed_of(system, at)
     Omega = V / largest(at.contact - at.position)
     motion = record.motion
     moved = replace(

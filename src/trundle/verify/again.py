@@ -128,9 +128,7 @@ class Again:
         ends = np.array([self.start.time, self.at.time[-1]])
         times = np.concatenate([windows.ravel(), self.sampled.time, ends])
         events = self.itself.events
-        for _ in range(
-            2
-        ):  # a part of too many steps to be kept is gone through again, and an event may lie a rounding aside
+        for _ in range(2):  # what was gone through again, not kept, may have its events a rounding aside
             now = np.unique(np.concatenate([times, instants_of(events, self.start.time)]))
             found = self._run(now[now <= ends[1]])
             if [event.time for event in found.events] == [event.time for event in events]:

@@ -269,7 +269,9 @@ class Compared:
         )
         if until < self.ours.time[-1]:
             why = (
-                "to where a change is followed" if until == grown.times[-1] else "where a rounding has grown too large"
+                "up to which a change is followed"
+                if until == grown.times[-1]
+                else "where a rounding has grown too large"
             )
             said += f"; nothing can be told beyond t = {until:.6g} s, {why}"
         if told.sum() < 2:

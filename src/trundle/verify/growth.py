@@ -21,6 +21,7 @@ from ..mechanics.algebra import Quaternion
 from ..mechanics.system import RollingSystem, State
 from ..solve.methods import Method
 from ..solve.samples import FLIGHT, Event, Samples
+from ..solve.touch import moment
 from .bounds import A_STEP, SOLVER, Array, largest
 from .nudging import nudged
 
@@ -30,6 +31,7 @@ _OVER_TOLERANCE = 100.0  # and so many times the method's tolerance
 _MOST_NUDGE = 1e-4
 _FLOOR = 1e-4  # of the largest change: of less, rounding is part
 _INSTANTS = 200
+_INSTANT = 1e-6  # of the time in which the motion changes
 
 
 @dataclass(frozen=True)
@@ -161,7 +163,8 @@ def growth(system: RollingSystem, start: State, at: Samples, method: Method, siz
     times = np.union1d(at.time[:: max(1, at.time.size // _INSTANTS)], at.time[-1:])
     span = max(float(times[-1] - start.time), 1e-300)
     share = min(max(_NUDGE, _OVER_TOLERANCE * method.tolerance), _MOST_NUDGE)
-    change = share * max(largest(at.angular_velocity), 1 / span)
+    slowest = 1 / max(span, _INSTANT * moment(system, start))  # rad/s: of a body at rest, and of a run of no length
+    change = share * max(largest(at.angular_velocity), slowest)
     first, starts, others = method.solve(system, start, times), [], []
     for begin in nudged(system, start, change, share, share * sizes["position"]):
         with suppress(SolverError):  # a changed start may come to where no law goes on

@@ -109,7 +109,7 @@ def stretches(system: RollingSystem, begin: float, samples: Samples) -> list[Str
     settling = {event.time: _FIRST * moment(system, event.after) for event in going_on if event.after is not None}
     if samples.phase[0] == SLIPPING:
         settling.setdefault(begin, _FIRST * moment(system, samples.state(0)))
-    smooth = _before_a_singular_end(samples)
+    smooth = before_a_singular_end(samples)
     happenings = (event.time for event in samples.events if begin < event.time < end)
     edges = sorted([begin, *happenings, *kinks(system, begin, end), end])
     found = []
@@ -125,10 +125,27 @@ def stretches(system: RollingSystem, begin: float, samples: Samples) -> list[Str
     return found
 
 
-def _before_a_singular_end(samples: Samples) -> Samples:
-    """Return a run without the sample at its very end, where the force may be a million times that of all others.
+def before_a_singular_end(samples: Samples) -> Samples:
+    """Return a run without the sample at its very end, where its law is singular, and so are rounding and the force.
 
-    By that alone all windows would be so short that a slope says nothing.
+    By the force alone, a million times that of all others, all windows would be so short that a slope says nothing.
+
+    Parameters
+    ----------
+    samples : Samples
+        Of a run.
+
+    Returns
+    -------
+    Samples
+        Itself, where it does not end so.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> run = tr.Scenario.load("tilted-turntable").run()
+    >>> before_a_singular_end(run.samples) is run.samples
+    True
     """
     ended = samples.events[-1].kind if samples.events else ""
     return samples.part(slice(0, -1)) if ended in SINGULAR and samples.time.size > 1 else samples
