@@ -27,19 +27,28 @@ class CreepingLaw(SlippingLaw):
 
     Parameters
     ----------
-    weightless : bool
-        As of `Law`.
+    weightless, turning
+        As of `SlippingLaw`.
     step : float
         A time in which the body hardly moves, s, over which the turning of the direction is seen.
     """
 
     variables = (*CONTACT, "speed")
-    ending = 1  # when it began, s
     brief = True
 
-    def __init__(self, weightless: bool = False, step: float = 0.0) -> None:
-        super().__init__(weightless)
+    def __init__(self, weightless: bool = False, turning: str = "free", step: float = 0.0) -> None:
+        super().__init__(weightless, turning)
         self.step = step
+
+    @property
+    def ends(self) -> tuple[str, ...]:
+        """Nothing: its speed is followed through zero."""
+        return ()
+
+    @property
+    def ending(self) -> int:
+        """When it began, s."""
+        return 1
 
     def stiff(self, numbers: Any) -> bool:  # noqa: ARG002
         """Tell that no direction has to settle."""

@@ -260,7 +260,7 @@ def _telling(progress: Progress | None, times: Array) -> Progress | None:
 
 
 def _spinning_on(system: RollingSystem, law: Law, stop: Stop) -> bool:
-    return stop.name.endswith("stop") and following.spins_on(system, law, stop)
+    return law.code == ROLLING and stop.name.endswith("stop") and following.spins_on(system, law, stop)
 
 
 def _ended(system: RollingSystem, law: Law, stop: Stop) -> tuple[Samples, Event]:

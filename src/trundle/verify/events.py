@@ -215,7 +215,7 @@ class AtEvents:
             yield event, "s = 0", float(np.linalg.norm(s)) / self._speed, _GOES_ON * self.bound
         elif phase == RESTING and event.kind != "slip":
             couple, N_there = holding(self.system, at)
-            most = sum(float(load.offset) for load in self.system.loads if load.stops) * float(N_there[0])
+            most = float(self.system.resistance) * float(N_there[0])
             short = most - float(np.linalg.norm(couple[0]))
             yield event, "the resistance is overcome", short / max(most, 1e-300), _SLACK
         elif event.kind == "slip":

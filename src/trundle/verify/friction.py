@@ -160,7 +160,7 @@ def _holding(system: RollingSystem, needed: float, time: float) -> CardFigure:
 
 def _resistance(system: RollingSystem, needed: float, time: float) -> CardFigure:
     """Say whether resistance to rolling sufficed for rest."""
-    most = float(sum(float(load.offset) for load in system.loads if load.stops))
+    most = float(system.resistance)
     note = f"couple over N of a body at rest, at t = {time:.6g} s"
     return CardFigure("resistance needed", needed, "m", most, bool(needed <= most * (1 + _SLACK)), note)
 
