@@ -374,7 +374,7 @@ def _touching(system: RollingSystem, at: Touch, gave_way: str = "") -> Next:
     if support.friction is not None and at.sliding.norm() > limit:
         return _slipping(system, at, SlippingLaw, at.sliding / at.sliding.norm(), starts=gave_way == "start")
     if system.resisted and gave_way != "start":
-        resting = _resting(system, at)
+        resting = _resting(system, at, slips=gave_way == "slip")
         if resting is not None:
             return resting
     return _rolling(system, at, slips=gave_way == "slip")
@@ -442,20 +442,25 @@ def _rolling(system: RollingSystem, at: Touch, *, slips: bool = False) -> Next:
     if pulled and (system.support.friction is None or _pull(system, at) < 0):
         return _lifted(system, at)
     if slips or pulled or cone(system, at.contact, R, floor).get("slip", 0.0) < 0:
-        begun = first_moment(system, at)
-        if begun is None:
-            if _pull(system, at) < 0:
-                return _lifted(system, at)
-            raise jammed(state.time)
-        if isinstance(begun, Touch):
-            return _rolling(system, begun)
-        follows = _slipping(system, begun.at, begun.law, begun.direction, begun.ending)
-        return replace(follows, across=Next.of(RollingLaw(), at))
+        return _giving_way(system, at, RollingLaw())
     law = (RollingWithResistance if system.resisted else RollingLaw)(weightless)
     if law.ends:
         at = _turning_on(system, at)
     ending = _extras(system, law, at)
     return Next.of(law, at, (floor, *ending) if weightless else ending)
+
+
+def _giving_way(system: RollingSystem, at: Touch, law: Law) -> Next:
+    """Return slipping that begins where friction cannot give what rolling, or rest, takes."""
+    begun = first_moment(system, at, law)
+    if begun is None:
+        if _pull(system, at) < 0:
+            return _lifted(system, at)
+        raise jammed(at.state.time)
+    if isinstance(begun, Touch):
+        return _rolling(system, begun) if law.code == RollingLaw.code else _touching(system, begun)
+    follows = _slipping(system, begun.at, begun.law, begun.direction, begun.ending)
+    return replace(follows, across=Next.of(law, at))
 
 
 def _turning_on(system: RollingSystem, at: Touch) -> Touch:
@@ -476,16 +481,19 @@ def _turned_off(system: RollingSystem, at: Touch, holding: Vector, slip: Vector)
     return at.moving(system, at.contact.rolling_velocity(Omega) + slip, Omega)
 
 
-def _resting(system: RollingSystem, at: Touch) -> Next | None:
-    """Return rest where the body does not turn over the support and the resistance can hold it so."""
+def _resting(system: RollingSystem, at: Touch, *, slips: bool) -> Next | None:
+    """Return rest where the body does not turn over the support and the resistance can hold it so; else None.
+
+    Where friction gives way, it begins to slip as it is held.
+    """
     relative = at.Omega - at.contact.support.angular_velocity
     if relative.norm() * at.arm > SLIP_TOLERANCE * at.scale(system):
         return None
     rest = Next.of(RestingLaw(), at)
     stops = rest.law.stops(system, rest.time, rest.numbers, ())
-    if system.support.motion.free or min(stops["lift"], stops["start"], stops.get("slip", 0.0)) < 0:
+    if system.support.motion.free or min(stops["lift"], stops["start"]) < 0:
         return None
-    return rest
+    return _giving_way(system, at, rest.law) if slips or stops.get("slip", 0.0) < 0 else rest
 
 
 __all__ = ["SETTLED", "Next", "Stop", "after", "at_start", "moment", "spins_on"]

@@ -237,6 +237,11 @@ class SlippingLaw(Law):
         self.turning = turning
 
     @property
+    def held(self) -> bool:
+        """Whether resistance keeps the body from turning over the support."""
+        return self.turning == "held"
+
+    @property
     def ends(self) -> tuple[str, ...]:
         """Its slip may end, and turning that is resisted."""
         return ("grip", *self._turning_ends)
@@ -246,11 +251,11 @@ class SlippingLaw(Law):
         return ("stop",) if self.turning == "resisted" else ()
 
     def _turns(self, contact: Contact, Omega: Vector) -> Vector:
-        return unturned(contact, Omega) if self.turning == "held" else Omega
+        return unturned(contact, Omega) if self.held else Omega
 
     def _now(self, system: RollingSystem, time: Scalar, state: Numbers, direction: Vector | None = None) -> Slipping:
         p, q, Omega, s, own = self.split(state)
-        return slip(system, time, p, q, Omega, Vector(*s), own, direction, held=self.turning == "held")
+        return slip(system, time, p, q, Omega, Vector(*s), own, direction, held=self.held)
 
     def rates(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:
         """Return ṗ, q̇, Ω̇, ṡ."""
@@ -272,7 +277,7 @@ class SlippingLaw(Law):
     def _pressing(self, system: RollingSystem, now: Slipping, extras: Numbers) -> dict[str, Scalar]:
         """Return the normal force, and how it opens the contact where friction may turn that round."""
         found = {"lift": now.normal_force + self._floor(extras)[0]}
-        if self.turning == "held":
+        if self.held:
             found["start"] = left_of_resistance(system, found["lift"], now.holding)
         if not is_zero(system.support.friction):
             found["jam"] = now.opening_per_newton * system.body.mass - JAMS
@@ -326,7 +331,7 @@ class SlidingFreely(SlippingLaw):
         direction: Vector | None = ZERO,  # noqa: ARG002
     ) -> Slipping:
         p, q, Omega, s, own = self.split(state)
-        return slip(system, time, p, q, Omega, Vector(*s), own, ZERO, held=self.turning == "held")
+        return slip(system, time, p, q, Omega, Vector(*s), own, ZERO, held=self.held)
 
 
 class FlightLaw(Law):
