@@ -147,3 +147,12 @@ def test_the_balance_counts_what_holds_a_body_at_rest_on_a_support_that_turns() 
     system = tr.RollingSystem(BALL, rocker, (tr.RollingResistance(0.01),))
     run = followed(system, system.place((0.1, 0.0)), "runge-kutta")
     assert [event.kind for event in run.events] == ["stop"]
+
+
+def test_a_body_that_slips_fast_in_a_narrow_bowl_stays_on_it() -> None:
+    """What rounding makes of s along n grew there by e within a thirtieth of a second."""
+    bowl = tr.Support(tr.Revolution("4.4*r**2"), friction=0.0)
+    driven = tr.Torque((0.03, "0.0166*(1 - exp(-t))", 0.0))
+    system = tr.RollingSystem(tr.Body.sphere("4 cm", "0.275 kg", 0.23), bowl, (driven,))
+    start = system.place((0.0122, -0.1955), angular_velocity=(0.0, 0.0, 0.0))
+    followed(system, start, "runge-kutta", duration=1.6, every=0.02)

@@ -157,9 +157,10 @@ def slip(
     contact = touch(system, time, point, orientation, own)
     n, support = contact.normal, contact.support
     Omega = unturned(contact, angular_velocity) if held else angular_velocity
-    free = unpushed(system, time, contact, orientation, Omega, slip_velocity, own, held=held)
+    s = slip_velocity - n * n.dot(slip_velocity)  # rounding's part along n would grow where the support bends
+    free = unpushed(system, time, contact, orientation, Omega, s, own, held=held)
     acting = free.acting
-    hat = slip_direction(slip_velocity) if direction is None else direction
+    hat = slip_direction(s) if direction is None else direction
     d = n if hat is ZERO else n - hat * system.support.sliding_friction
     answer = response(system, contact, free.inertia, d, acting.couple if acting.has_couple else None)
     opening_per_newton = n.dot(answer.slip)

@@ -405,7 +405,7 @@ def _slipping(
     if _opens(system, at) if weightless else N < 0:
         return _lifted(system, at)
     follows = law(weightless, turning=turning)
-    ending = (*ending, *_extras(system, follows, at)[len(ending):]) if ending else _extras(system, follows, at)
+    ending = (*ending, *_extras(system, follows, at)[len(ending) :]) if ending else _extras(system, follows, at)
     return Next.of(follows, at, (_FLOOR * forces, *ending) if weightless else ending)
 
 

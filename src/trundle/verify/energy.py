@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..mechanics.algebra import Vector
+from ..mechanics.algebra import ZERO, Vector
 from ..mechanics.loads import BodyMotion, Load
 from ..mechanics.system import RollingSystem
 from ..solve.samples import FLIGHT, Samples
@@ -110,11 +110,10 @@ def _of_resistance(system: RollingSystem, at: Samples) -> Array:
     if not system.resisted:
         return np.zeros(at.time.size)
     motion, held = at.motion(system), unturning(system, at)
-    lever = Vector(0.0, 0.0, 0.0)
+    N, lever = (at.contact_force * at.normals(system)).sum(axis=1), ZERO
     for load in system.loads:
         lever = lever + load.torque_per_normal_force(motion) if load.stops else lever
-    couple = (lever * Vector.of(at.contact_force).dot(motion.normal)).array()
-    couple = np.broadcast_to(couple, at.position.shape).copy()
+    couple = np.broadcast_to((lever * N).array(), at.position.shape).copy()
     if held.any():
         couple[held] = holding(system, at.part(held))[0]
     return np.asarray((couple * at.angular_velocity).sum(axis=1))
