@@ -151,8 +151,7 @@ def _batched(system: RollingSystem) -> bool:
     Resistances that bring a body to rest make nearly every run an event; a straight roller is checked one by one; each
     member comes to a kink of its own formulas at an instant of its own.
     """
-    resisted = any(load.stops for load in system.loads)
-    alone = resisted or has_kinks(system) or system.body.shape.axis is not None
+    alone = system.resisted or has_kinks(system) or system.body.shape.axis is not None
     return taylor.available() and system.support.surface.analytic and not alone
 
 

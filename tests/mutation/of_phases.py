@@ -14,7 +14,8 @@ LOCATED = "    return min(found) if found else None"
 LATE = "    return (path.t_old + 1.01 * (min(found)[0] - path.t_old), min(found)[1]) if found else None"
 EARLY = "    return (path.t_old + 0.99 * (min(found)[0] - path.t_old), min(found)[1]) if found else None"
 RECORDED = """now = self._recorded(system, time, states)
-        centre, V, R = _arrays(p, now.contact.centre, now.velocity, now.reaction)
+        turning = self._turns(now.contact, Vector.of(Omega))
+        centre, V, R, Omega = _arrays(p, now.contact.centre, now.velocity, now.reaction, turning)
         return Samples(time, centre, p, V, Omega, q, R + 0.0, phase=_phase(time, self.code), own=own)"""
 RECORDED_ROLLING = """phase=_phase(time, self.code), own=own)
 
@@ -123,15 +124,15 @@ PHASES = (
     Mutant(
         "rest left 1 % late",
         LAWS,
-        "arm = sum((load.offset for load in system.loads if load.stops), 0.0) * (n",
-        "arm = 1.01 * sum((load.offset for load in system.loads if load.stops), 0.0) * (n",
+        "most = system.resistance * normal_force",
+        "most = 1.01 * system.resistance * normal_force",
         "ball_comes_to_rest",
     ),
     Mutant(
         "rest left 1 % early",
         LAWS,
-        "arm = sum((load.offset for load in system.loads if load.stops), 0.0) * (n",
-        "arm = 0.99 * sum((load.offset for load in system.loads if load.stops), 0.0) * (n",
+        "most = system.resistance * normal_force",
+        "most = 0.99 * system.resistance * normal_force",
         "ball_comes_to_rest",
         refused="chatters",
     ),

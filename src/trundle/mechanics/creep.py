@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from .algebra import Quaternion, Vector
 from .contact import Contact
 from .scalars import Scalar, namespace
-from .slipping import response, unpushed
+from .slipping import response, unpushed, unturned
 
 if TYPE_CHECKING:
     from .system import RollingSystem
@@ -85,6 +85,8 @@ def slip_rates(
     first: Vector,
     slip_velocity: Vector,
     own: tuple[Scalar, ...] = (),
+    *,
+    held: bool = False,
 ) -> SlipRates:
     """Return how s would change for friction in any direction.
 
@@ -106,6 +108,8 @@ def slip_rates(
         s, along the support, m/s.
     own : tuple of Scalar
         The coordinates of the support's own motion, where it has some.
+    held : bool
+        As of `trundle.mechanics.slipping.slip`.
 
     Returns
     -------
@@ -128,7 +132,8 @@ def slip_rates(
     (0.5, 1.0)
     """
     n = contact.normal
-    free = unpushed(system, time, contact, orientation, angular_velocity, slip_velocity, own)
+    Omega = unturned(contact, angular_velocity) if held else angular_velocity
+    free = unpushed(system, time, contact, orientation, Omega, slip_velocity, own, held=held)
     axes = first, n.cross(first), n
 
     def parts(v: Vector) -> Vector:

@@ -32,6 +32,20 @@ class Slipping:
     opening_per_newton: Scalar  # n·a₁: how fast each newton of N opens the contact, 1/kg
     reaction: Vector  # R, N
     axle_moment: Scalar  # of the body on the support, about the support's axle, N m
+    holding: Vector = ZERO  # the couple that keeps it from turning over the support, N m
+
+
+@dataclass(frozen=True, slots=True)
+class HeldInertia:
+    """The inertia of a body that a couple keeps from turning over the support: it answers about the normal alone."""
+
+    normal: Vector
+    whole: Matrix  # J, kg m²
+
+    def solve(self, torque: Vector) -> Vector:
+        """Return Ω̇, rad/s², given a torque, N m."""
+        n = self.normal
+        return n * (n.dot(torque) / n.dot(self.whole @ n))
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,10 +55,11 @@ class Unpushed:
     velocity: Vector  # V, m/s
     point_rate: Vector  # ṗ, m/s
     acting: Acting  # what acts besides the contact force
-    inertia: Matrix  # J, kg m²
+    inertia: Matrix | HeldInertia  # J, kg m²
     angular_acceleration: Vector  # Ω̇, rad/s²
     slip_rate: Vector  # ṡ, m/s²
     opening: Scalar  # the rate of s·n: how fast it would come off, m/s²
+    holding: Vector = ZERO  # the couple that keeps it from turning over the support, N m
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +113,8 @@ def slip(
     slip_velocity: Vector,
     own: tuple[Scalar, ...] = (),
     direction: Vector | None = None,
+    *,
+    held: bool = False,
 ) -> Slipping:
     """Return the rates of (p, q, Ω, s) and the contact force of a body that slips: T1 and T4.
 
@@ -119,6 +136,8 @@ def slip(
         The coordinates of the support's own motion, where it has some.
     direction : Vector, optional
         ŝ, where s itself does not show it; `ZERO` where there is no friction.
+    held : bool
+        Whether resistance keeps the body from turning over the support, by a couple along it.
 
     Returns
     -------
@@ -137,29 +156,62 @@ def slip(
     """
     contact = touch(system, time, point, orientation, own)
     n, support = contact.normal, contact.support
-    free = unpushed(system, time, contact, orientation, angular_velocity, slip_velocity, own)
+    Omega = unturned(contact, angular_velocity) if held else angular_velocity
+    s = slip_velocity - n * n.dot(slip_velocity)  # rounding's part along n would grow where the support bends
+    free = unpushed(system, time, contact, orientation, Omega, s, own, held=held)
     acting = free.acting
-    hat = slip_direction(slip_velocity) if direction is None else direction
+    hat = slip_direction(s) if direction is None else direction
     d = n if hat is ZERO else n - hat * system.support.sliding_friction
     answer = response(system, contact, free.inertia, d, acting.couple if acting.has_couple else None)
     opening_per_newton = n.dot(answer.slip)
     N = -free.opening / opening_per_newton
+    holding = free.holding
+    if isinstance(free.inertia, HeldInertia):
+        asked = free.inertia.whole @ answer.angular_velocity - contact.offset.cross(d) - acting.couple
+        holding = holding + asked * N
     return Slipping(
         contact,
         free.velocity,
         free.point_rate,
-        orientation.rate(angular_velocity),
+        orientation.rate(Omega),
         free.angular_acceleration + answer.angular_velocity * N,
         free.slip_rate + answer.slip * N,
         N,
         opening_per_newton,
         d * N,
         acting.moment_on_axle(support, N) - support.lever(point).dot(d) * N,
+        holding,
     )
 
 
+def unturned(contact: Contact, angular_velocity: Vector) -> Vector:
+    """Return Ω without its part that turns the body over the support.
+
+    Parameters
+    ----------
+    contact : Contact
+        Of the body.
+    angular_velocity : Vector
+        Ω, rad/s.
+
+    Returns
+    -------
+    Vector
+        ω + Ω_n n, rad/s.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> floor = tr.RollingSystem(tr.Body.solid_sphere(0.1, 2.0), tr.Support(tr.Plane()))
+    >>> unturned(touch(floor, 0.0, ZERO, Quaternion(1.0, 0.0, 0.0, 0.0)), Vector(1.0, 2.0, 3.0)).array().tolist()
+    [0.0, 0.0, 3.0]
+    """
+    n, omega = contact.normal, contact.support.angular_velocity
+    return omega + n * n.dot(angular_velocity - omega)
+
+
 def response(
-    system: RollingSystem, contact: Contact, inertia: Matrix, push: Vector, couple: Vector | None = None
+    system: RollingSystem, contact: Contact, inertia: Matrix | HeldInertia, push: Vector, couple: Vector | None = None
 ) -> Response:
     """Return what a push P at the contact does to Ω and to s: there M P, M = 1/m + [J⁻¹(ρ×·)]×ρ and a free axle's part.
 
@@ -169,7 +221,7 @@ def response(
         Body and support.
     contact : Contact
         Where they touch.
-    inertia : Matrix
+    inertia : Matrix or HeldInertia
         J of the body about its centre of mass, in the inertial support frame, kg m².
     push : Vector
         On the body: a force, N, or an impulse, N s.
@@ -211,13 +263,15 @@ def unpushed(
     angular_velocity: Vector,
     slip_velocity: Vector,
     own: tuple[Scalar, ...] = (),
+    *,
+    held: bool = False,
 ) -> Unpushed:
     """Return how a body at a contact would move on without a contact force: T4 with N = 0.
 
     Parameters
     ----------
-    system, time, orientation, angular_velocity, slip_velocity, own
-        As for `slip`.
+    system, time, orientation, angular_velocity, slip_velocity, own, held
+        As for `slip`; held, Ω is without turning over the support already.
     contact : Contact
         Where it touches.
 
@@ -241,16 +295,23 @@ def unpushed(
     V = contact.rolling_velocity(Omega) + s
     p_rate, rho_rate = contact.rates(s, Omega, V)
     u_rate = support.material_acceleration(point, p_rate)
-    acting = system.acting_on(contact.body_motion(m, time, V, orientation, Omega))
+    acting = system.acting_on(contact.body_motion(m, time, V, orientation, Omega), held=held)
+    n_rate = support.angular_velocity.cross(n) + contact.shape_operator @ (p_rate - support.material_velocity(point))
     Q = orientation.matrix()
-    J = system.body.inertia_in_space(Q)
-    turning = J.solve(acting.torque - system.body.gyroscopic(Q, Omega))
+    whole = system.body.inertia_in_space(Q)
+    torque, holding = acting.torque - system.body.gyroscopic(Q, Omega), ZERO
+    J = HeldInertia(n, whole) if held else whole
+    if held:  # Ω = ω + Ω_n n, and only Ω_n is free
+        along = support.angular_acceleration + n_rate * n.dot(Omega - support.angular_velocity)
+        turning = along + J.solve(torque - whole @ along)
+        holding = whole @ turning - torque
+    else:
+        turning = J.solve(torque)
     s_rate = acting.force / m + turning.cross(contact.offset) + Omega.cross(rho_rate) - u_rate
     if system.support.motion.free:  # I ω̇ = τ − e·(p − X)×R, so that u̇ is affine in N
         driven = system.support.motion.axle_torque(time, own) - support.axle.dot(acting.from_support)
         s_rate = s_rate - support.lever(point) * (driven / system.support.motion.inertia)
-    n_rate = support.angular_velocity.cross(n) + contact.shape_operator @ (p_rate - support.material_velocity(point))
-    return Unpushed(V, p_rate, acting, J, turning, s_rate, n.dot(s_rate) + n_rate.dot(s))
+    return Unpushed(V, p_rate, acting, J, turning, s_rate, n.dot(s_rate) + n_rate.dot(s), holding)
 
 
 def fly(

@@ -195,14 +195,25 @@ class RollingSystem:
         acting = self.acting_on(motion)
         return acting.force, acting.torque
 
-    def acting_on(self, motion: BodyMotion) -> Acting:
-        """Return all that acts on the body besides the contact force."""
+    @property
+    def resisted(self) -> bool:
+        """Whether a resistance acts that stops the body's turning over the support."""
+        return any(load.stops for load in self.loads)
+
+    @property
+    def resistance(self) -> Scalar:
+        """The couple that resistance can hold against for each newton of normal force, m."""
+        return sum((load.offset for load in self.loads if load.stops), 0.0)
+
+    def acting_on(self, motion: BodyMotion, *, held: bool = False) -> Acting:
+        """Return all that acts on the body besides the contact force; held, no resistance, which has no direction."""
         force, torque, from_support, couple = ZERO, ZERO, ZERO, ZERO
         for load in self.all_loads:
             exerted = load.torque(motion)
             force, torque = force + load.force(motion), torque + exerted
             from_support = from_support + exerted if load.at_contact else from_support
-            couple = couple + load.torque_per_normal_force(motion)
+            if not (held and load.stops):
+                couple = couple + load.torque_per_normal_force(motion)
         return Acting(force, torque, from_support, couple)
 
     def place(

@@ -72,6 +72,6 @@ def lift_at_hand(
     wait = 0.0 if now <= 0 else float(brentq(lambda wait: look(wait)[0], 0.0, limit, xtol=1e-15 * limit, rtol=1e-15))
     holds = float(system.support.friction or 0.0)
     if name == "start":
-        holds = sum(float(load.offset) for load in system.loads if load.stops)
+        holds = float(system.resistance)
     usual = (now - later) / limit * moment  # N
     return time + wait if -look(wait)[1] <= (_UNASKED * holds * usual) ** 2 else None

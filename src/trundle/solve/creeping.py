@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import Contact, roll
+from ..mechanics.contact import Contact, Rolling, roll
 from ..mechanics.creep import slip_rates
 from ..mechanics.scalars import Scalar
 from ..mechanics.slipping import Slipping, slip
 from ..mechanics.system import RollingSystem
-from .laws import CONTACT, Numbers, SlippingLaw
+from .laws import CONTACT, Held, Numbers, RestingLaw, SlippingLaw
 from .touch import Touch
 
 # How many times as fast as slip has grown its direction must settle. Slower than that `SlippingLaw` follows it; faster,
@@ -27,19 +27,28 @@ class CreepingLaw(SlippingLaw):
 
     Parameters
     ----------
-    weightless : bool
-        As of `Law`.
+    weightless, turning
+        As of `SlippingLaw`.
     step : float
         A time in which the body hardly moves, s, over which the turning of the direction is seen.
     """
 
     variables = (*CONTACT, "speed")
-    ending = 1  # when it began, s
     brief = True
 
-    def __init__(self, weightless: bool = False, step: float = 0.0) -> None:
-        super().__init__(weightless)
+    def __init__(self, weightless: bool = False, turning: str = "free", step: float = 0.0) -> None:
+        super().__init__(weightless, turning)
         self.step = step
+
+    @property
+    def ends(self) -> tuple[str, ...]:
+        """Nothing: its speed is followed through zero."""
+        return ()
+
+    @property
+    def ending(self) -> int:
+        """When it began, s."""
+        return 1
 
     def stiff(self, numbers: Any) -> bool:  # noqa: ARG002
         """Tell that no direction has to settle."""
@@ -48,8 +57,8 @@ class CreepingLaw(SlippingLaw):
     def _settled(self, system: RollingSystem, time: Scalar, state: Numbers) -> tuple[Vector, Vector, Scalar]:
         """Return the direction that slip keeps, the one across it, and how fast the first settles, times |s|."""
         p, q, Omega, (speed, *_), own = self.split(state)
-        contact, first = against(system, time, p, q, Omega, own)
-        rates = slip_rates(system, time, contact, q, Omega, first, first * speed, own)
+        contact, first = against(system, time, p, q, Omega, own, held=self.held)
+        rates = slip_rates(system, time, contact, q, Omega, first, first * speed, own, held=self.held)
         c, s, settling = rates.settled()
         return rates.direction(c, s), rates.direction(-s, c), settling
 
@@ -80,7 +89,7 @@ class CreepingLaw(SlippingLaw):
     def _now(self, system: RollingSystem, time: Scalar, state: Numbers, direction: Vector | None = None) -> Slipping:
         p, q, Omega, (speed, *_), own = self.split(state)
         hat = self._settled(system, time, state)[0] if direction is None else direction
-        return slip(system, time, p, q, Omega, hat * speed, own, hat)
+        return slip(system, time, p, q, Omega, hat * speed, own, hat, held=self.held)
 
     def _rates(self, system: RollingSystem, time: Scalar, state: Numbers, hat: Vector) -> list[Scalar]:
         now = self._now(system, time, state, hat)
@@ -128,20 +137,26 @@ def against(
     orientation: Quaternion,
     angular_velocity: Vector,
     own: tuple[Scalar, ...] = (),
+    *,
+    held: bool = False,
 ) -> tuple[Contact, Vector]:
     """Return the contact, and the direction against the friction that rolling takes: close to where slip begins.
+
+    Of a body that resistance keeps from turning, the direction against the friction that rest takes.
 
     Parameters
     ----------
     system, time, point, orientation, angular_velocity, own
         As for `trundle.mechanics.contact.roll`.
+    held : bool
+        As of `trundle.mechanics.slipping.slip`.
 
     Returns
     -------
     contact : Contact
         Where they touch.
     direction : Vector
-        −f/|f|, f the friction that rolling takes.
+        −f/|f|.
 
     Examples
     --------
@@ -151,7 +166,11 @@ def against(
     >>> round(against(slope, 0.0, Vector(0.0, 0.0, 0.0), still, Vector(0.0, 0.0, 0.0))[1].x, 15)
     1.0
     """
-    now = roll(system, time, point, orientation, angular_velocity, own)
+    now: Rolling | Held
+    if held:
+        now = RestingLaw().held(system, time, [*point, *orientation, *angular_velocity, *own])
+    else:
+        now = roll(system, time, point, orientation, angular_velocity, own)
     n, R = now.contact.normal, now.reaction
     f = R - n * n.dot(R)
     return now.contact, f / -f.norm()

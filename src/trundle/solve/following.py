@@ -13,13 +13,14 @@ from ..mechanics.algebra import ZERO, Vector
 from ..mechanics.contact import roll
 from ..mechanics.impact import land
 from ..mechanics.placing import SLIP_TOLERANCE, no_gap
-from ..mechanics.slipping import response, slip, unpushed
+from ..mechanics.slipping import response, slip, unpushed, unturned
 from ..mechanics.system import RollingSystem, State
 from .coming_off import lift_at_hand
 from .creeping import CreepingLaw
 from .laws import (
     AN_INSTANT,
     JAMS,
+    SHRINKS,
     FlightLaw,
     Law,
     RestingLaw,
@@ -28,6 +29,7 @@ from .laws import (
     SlidingFreely,
     SlippingLaw,
     cone,
+    left_of_resistance,
     state_turning,
 )
 from .onset_of_slip import first_moment, jammed
@@ -127,9 +129,8 @@ def after(system: RollingSystem, law: Law, stop: Stop) -> Next:
             advanced = law.advanced(system, stop.time, stop.numbers.tolist(), lift - stop.time)
             return _lifted(system, law.meant(system, lift, advanced))
     if name in ("grip", "stop") and _goes_on(system, law, at, stop):
-        slip = Vector(*map(float, stop.numbers[10:13])) if name == "grip" else None
         floor = (_FLOOR * at.forces(system),) * law.weightless
-        return Next(law, at.state, list(stop.numbers), (*floor, *_extras(system, at, slip)))
+        return Next(law, at.state, list(stop.numbers), (*floor, *_extras(system, law, at, stop.numbers)))
     if name == "land":
         return _struck(system, at)
     if name == "settled":
@@ -157,7 +158,7 @@ def _said(stop: str, before: int, after: int) -> tuple[tuple[str, str], ...]:
     if before != after:
         return (_NAMES[after],)
     # Only turning that ends lets rolling follow rolling: what drives the body overcomes the resistance at once.
-    return (_NAMES[RestingLaw.code], _BEGAN_TO_ROLL) if after == RollingLaw.code else (("slip", _TURNED),)
+    return (_NAMES[RestingLaw.code], _BEGAN_TO_ROLL) if after == RollingLaw.code else (("slip", _SLIPS_ON[stop]),)
 
 
 def slipping(system: RollingSystem, now: Next) -> Next:
@@ -178,8 +179,7 @@ def slipping(system: RollingSystem, now: Next) -> Next:
     if not isinstance(now.law, CreepingLaw):
         return now
     at = now.law.meant(system, now.time, now.numbers)
-    ending = _extras(system, at, at.sliding)
-    follows = _slipping(system, at, SlippingLaw, Vector(*ending[1:]), ending)
+    follows = _slipping(system, at, SlippingLaw, at.sliding / at.sliding.norm())
     return replace(follows, events=now.events)
 
 
@@ -190,7 +190,11 @@ def _event(kind: str, said: str, before: Touch, after: Touch | None = None) -> E
     return Event(state.time, kind, f"{said} at t = {state.time:.9g} s", state, now, floats(before.nearest))
 
 
-_TURNED = "stopped slipping and slipped on the other way"
+_SLIPS_ON = {
+    "grip": "stopped slipping and slipped on the other way",
+    "stop": "stopped turning over the support as it slipped",
+    "start": "began to turn over the support as it slipped",
+}
 _BEGAN_TO_ROLL = ("start", "began to roll")
 _NAMES = {
     RollingLaw.code: ("grip", "gripped and rolled"),
@@ -202,13 +206,14 @@ _NAMES = {
 
 def _goes_on(system: RollingSystem, law: Law, at: Touch, stop: Stop) -> bool:
     """Tell whether slip or turning was only at its slowest, and did not end."""
-    left = float(np.linalg.norm(law.shrinking(system, at.state.time, stop.numbers.tolist())))
-    if left <= 4 * _least(system, at, stop.name.removeprefix("near ")):
+    name = stop.name.removeprefix("near ")
+    left = float(law.shrinking(system, at.state.time, stop.numbers, name).norm())
+    if left <= 4 * _least(system, at, name):
         return False
     if not stop.name.startswith("near "):
         return True
     rates = law.rates(system, at.state.time, list(map(float, stop.numbers)))
-    rate = np.array([float(rate) for rate in rates[law.shrinks]])
+    rate = np.array([float(rate) for rate in rates[SHRINKS[name]]])
     return left > 4 * AN_INSTANT * float(np.linalg.norm(rate))
 
 
@@ -217,11 +222,13 @@ def _least(system: RollingSystem, at: Touch, stop: str) -> float:
     return at.still(system) / (1.0 if stop == "grip" else at.arm)
 
 
-def _extras(system: RollingSystem, at: Touch, slip: Vector | None = None) -> tuple[float, ...]:
-    """Return what the stops of slipping take: when slip is all but nothing, and its direction; or those of turning."""
-    v = state_turning(at.contact, at.Omega) if slip is None else slip
-    still = _least(system, at, "stop" if slip is None else "grip")
-    return still**2, *floats(v / v.norm())
+def _extras(system: RollingSystem, law: Law, at: Touch, numbers: Any = None) -> tuple[float, ...]:
+    """Return what the stops take that end slip or turning: when it is all but nothing, and its direction."""
+    found: list[float] = []
+    for name in law.ends:
+        v = law.shrinking(system, at.state.time, law.numbers(at) if numbers is None else numbers, name)
+        found += [_least(system, at, name) ** 2, *floats(v / v.norm())]
+    return tuple(found)
 
 
 def spins_on(system: RollingSystem, law: Law, stop: Stop) -> bool:
@@ -344,15 +351,16 @@ def _set_down(system: RollingSystem, at: Touch) -> Touch:
 def _come_to_it(system: RollingSystem, law: Law, at: Touch, numbers: Any, stop: str) -> Touch:
     """Go on straight from where slip or turning has all but ended to where it has ended."""
     y, time = np.asarray(numbers, dtype=float), at.state.time
-    v = law.shrinking(system, time, numbers)
+    v = law.shrinking(system, time, numbers, stop).array()
     length = float(np.linalg.norm(v))
     if length > 1e-3 * _least(system, at, stop):
         rates = np.array([float(rate) for rate in law.rates(system, time, y.tolist())])
-        closing = float(-(v @ rates[law.shrinks]) / length)
+        closing = float(-(v @ rates[SHRINKS[stop]]) / length)
         wait = length / closing if closing > 0 else 0.0
         at = law.meant(system, time + wait, y + wait * rates)
-    Omega = at.Omega if stop == "grip" else at.Omega - state_turning(at.contact, at.Omega)
-    return at.moving(system, at.contact.rolling_velocity(Omega), Omega)
+    Omega = at.Omega if stop == "grip" else unturned(at.contact, at.Omega)
+    s = at.sliding if stop == "stop" and law.code == SlippingLaw.code else ZERO
+    return at.moving(system, at.contact.rolling_velocity(Omega) + s, Omega)
 
 
 def _touching(system: RollingSystem, at: Touch, gave_way: str = "") -> Next:
@@ -362,29 +370,61 @@ def _touching(system: RollingSystem, at: Touch, gave_way: str = "") -> Next:
     """
     support, limit = system.support, SLIP_TOLERANCE * at.speed
     if support.friction == 0:
-        return _slipping(system, at, SlidingFreely, ZERO)
+        return _slipping(system, at, SlidingFreely, ZERO, starts=gave_way == "start")
     if support.friction is not None and at.sliding.norm() > limit:
-        return _slipping(system, at, SlippingLaw, at.sliding / at.sliding.norm(), _extras(system, at, at.sliding))
-    if any(load.stops for load in system.loads) and gave_way != "start":
-        resting = _resting(system, at)
+        return _slipping(system, at, SlippingLaw, at.sliding / at.sliding.norm(), starts=gave_way == "start")
+    if system.resisted and gave_way != "start":
+        resting = _resting(system, at, slips=gave_way == "slip")
         if resting is not None:
             return resting
     return _rolling(system, at, slips=gave_way == "slip")
 
 
 def _slipping(
-    system: RollingSystem, at: Touch, law: Callable[[bool], Law], direction: Vector, ending: tuple[float, ...] = ()
+    system: RollingSystem,
+    at: Touch,
+    law: Callable[..., SlippingLaw],
+    direction: Vector,
+    ending: tuple[float, ...] | None = None,
+    *,
+    starts: bool = False,
 ) -> Next:
-    """Return slipping where the support pushes, else flight; what no law can follow is named."""
-    state = at.state
-    now = slip(system, state.time, at.contact.point, at.orientation, at.Omega, at.sliding, state.support, direction)
+    """Return slipping where the support pushes, else flight; what no law can follow is named.
+
+    Where more has just been asked of resistance than it has, turning starts.
+    """
+    at, turning = _resisted(system, at, direction, starts=starts) if system.resisted else (at, "free")
+    state, held = at.state, turning == "held"
+    place = at.contact.point, at.orientation, at.Omega, at.sliding, state.support
+    now = slip(system, state.time, *place, direction, held=held)
     N, forces = float(now.normal_force), at.forces(system)
-    if abs(N) <= WEIGHTLESS * forces:
-        return _lifted(system, at) if _opens(system, at) else Next.of(law(True), at, (_FLOOR * forces, *ending))
+    weightless = abs(N) <= WEIGHTLESS * forces
     share = float(now.opening_per_newton * system.body.mass)
-    if share <= JAMS:
+    if share <= JAMS and not weightless:
         raise jammed(state.time, share, opens=N * share < 0)
-    return _lifted(system, at) if N < 0 else Next.of(law(False), at, ending)
+    if _opens(system, at) if weightless else N < 0:
+        return _lifted(system, at)
+    follows = law(weightless, turning=turning)
+    ending = (*ending, *_extras(system, follows, at)[len(ending) :]) if ending else _extras(system, follows, at)
+    return Next.of(follows, at, (_FLOOR * forces, *ending) if weightless else ending)
+
+
+def _resisted(system: RollingSystem, at: Touch, direction: Vector, *, starts: bool) -> tuple[Touch, str]:
+    """Return a body that slips against resistance to rolling, and how it turns: "resisted", "held" or only just."""
+    if state_turning(at.contact, at.Omega).norm() * at.arm > SLIP_TOLERANCE * at.scale(system):
+        return at, "resisted"
+    state = at.state
+    if system.support.motion.free:
+        raise SolverError(
+            f"At t = {state.time:.9g} s the body slips and no longer turns over its support, and resistance to rolling "
+            "would hold it so against an axle that turns freely: that is not covered. Give the support a motion."
+        )
+    place = at.contact.point, at.orientation, at.Omega, at.sliding, state.support
+    now = slip(system, state.time, *place, direction, held=True)
+    N = float(now.normal_force) + _FLOOR * at.forces(system)
+    if not starts and N >= 0 and left_of_resistance(system, N, now.holding) >= 0:
+        return replace(_turned_off(system, at, ZERO, at.sliding), slip=at.slip), "held"
+    return replace(_turned_off(system, at, now.holding, at.sliding), slip=at.slip), "resisted"
 
 
 def _rolling(system: RollingSystem, at: Touch, *, slips: bool = False) -> Next:
@@ -402,47 +442,58 @@ def _rolling(system: RollingSystem, at: Touch, *, slips: bool = False) -> Next:
     if pulled and (system.support.friction is None or _pull(system, at) < 0):
         return _lifted(system, at)
     if slips or pulled or cone(system, at.contact, R, floor).get("slip", 0.0) < 0:
-        begun = first_moment(system, at)
-        if begun is None:
-            if _pull(system, at) < 0:
-                return _lifted(system, at)
-            raise jammed(state.time)
-        if isinstance(begun, Touch):
-            return _rolling(system, begun)
-        follows = _slipping(system, begun.at, begun.law, begun.direction, begun.ending)
-        return replace(follows, across=Next.of(RollingLaw(), at))
-    law = RollingWithResistance if any(load.stops for load in system.loads) else RollingLaw
-    ending: tuple[float, ...] = ()
-    if law.ending:
+        return _giving_way(system, at, RollingLaw())
+    law = (RollingWithResistance if system.resisted else RollingLaw)(weightless)
+    if law.ends:
         at = _turning_on(system, at)
-        ending = _extras(system, at)
-    return Next.of(law(weightless), at, (floor, *ending) if weightless else ending)
+    ending = _extras(system, law, at)
+    return Next.of(law, at, (floor, *ending) if weightless else ending)
+
+
+def _giving_way(system: RollingSystem, at: Touch, law: Law) -> Next:
+    """Return slipping that begins where friction cannot give what rolling, or rest, takes."""
+    begun = first_moment(system, at, law)
+    if begun is None:
+        if _pull(system, at) < 0:
+            return _lifted(system, at)
+        raise jammed(at.state.time)
+    if isinstance(begun, Touch):
+        return _rolling(system, begun) if law.code == RollingLaw.code else _touching(system, begun)
+    follows = _slipping(system, begun.at, begun.law, begun.direction, begun.ending)
+    return replace(follows, across=Next.of(law, at))
 
 
 def _turning_on(system: RollingSystem, at: Touch) -> Touch:
     """Return a body that rolls against a resistance; from rest, with a first little turn the way it is driven."""
+    at_rest = RestingLaw()
+    couple = at_rest.held(system, at.state.time, at_rest.numbers(at)).couple
+    return _turned_off(system, at, couple - at.contact.normal * couple.dot(at.contact.normal), ZERO)
+
+
+def _turned_off(system: RollingSystem, at: Touch, holding: Vector, slip: Vector) -> Touch:
+    """Return a body that turns over the support; from none, with a first little turn against what would hold it."""
     still = at.still(system) / at.arm
     turning = state_turning(at.contact, at.Omega)
     if turning.norm() > 2 * still:
         return at
-    at_rest = RestingLaw()
-    couple = at_rest.held(system, at.state.time, at_rest.numbers(at)).couple
-    driven = couple - at.contact.normal * couple.dot(at.contact.normal)
-    way = driven * (-4 * still / driven.norm()) if driven.norm() > 0 else ZERO
+    way = holding * (-4 * still / holding.norm()) if holding.norm() > 0 else ZERO
     Omega = at.Omega - turning + way
-    return at.moving(system, at.contact.rolling_velocity(Omega), Omega)
+    return at.moving(system, at.contact.rolling_velocity(Omega) + slip, Omega)
 
 
-def _resting(system: RollingSystem, at: Touch) -> Next | None:
-    """Return rest where the body does not turn over the support and the resistance can hold it so."""
+def _resting(system: RollingSystem, at: Touch, *, slips: bool) -> Next | None:
+    """Return rest where the body does not turn over the support and the resistance can hold it so; else None.
+
+    Where friction gives way, it begins to slip as it is held.
+    """
     relative = at.Omega - at.contact.support.angular_velocity
     if relative.norm() * at.arm > SLIP_TOLERANCE * at.scale(system):
         return None
     rest = Next.of(RestingLaw(), at)
     stops = rest.law.stops(system, rest.time, rest.numbers, ())
-    if system.support.motion.free or min(stops["lift"], stops["start"], stops.get("slip", 0.0)) < 0:
+    if system.support.motion.free or min(stops["lift"], stops["start"]) < 0:
         return None
-    return rest
+    return _giving_way(system, at, rest.law) if slips or stops.get("slip", 0.0) < 0 else rest
 
 
 __all__ = ["SETTLED", "Next", "Stop", "after", "at_start", "moment", "spins_on"]

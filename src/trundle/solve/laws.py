@@ -17,7 +17,7 @@ from ..mechanics.algebra import ZERO, Quaternion, Vector
 from ..mechanics.contact import Contact, Rolling, roll, touch
 from ..mechanics.loads import BodyMotion
 from ..mechanics.scalars import Scalar, is_zero
-from ..mechanics.slipping import Flying, Slipping, fly, slip, slip_direction
+from ..mechanics.slipping import Flying, Slipping, fly, slip, slip_direction, unturned
 from ..mechanics.system import RollingSystem, State
 from .samples import FLIGHT, RESTING, ROLLING, SLIPPING, Array, Samples
 from .touch import Touch, floats
@@ -35,12 +35,10 @@ class Law:
         The phase, as in `Samples.phase`.
     variables : tuple of str
         Names of the state's numbers; those of the support's own motion come after them.
-    ending : int
-        How many numbers the stops take that end slip or turning, besides the system's.
+    ends : tuple of str
+        Which of its stops come where something shrinks to nothing: "grip", the slip; "stop", turning over the support.
     brief : bool
         Whether it holds for so short a time that to compile it would take longer than to follow it.
-    shrinks : slice
-        The numbers whose change is that of what `shrinking` returns.
 
     Parameters
     ----------
@@ -51,12 +49,20 @@ class Law:
 
     code: int
     variables: tuple[str, ...] = CONTACT
-    ending: int = 0
     brief: bool = False
-    shrinks: slice = slice(0)
 
     def __init__(self, weightless: bool = False) -> None:
         self.weightless = weightless
+
+    @property
+    def ends(self) -> tuple[str, ...]:
+        """Which of its stops come where something shrinks to nothing."""
+        return ()
+
+    @property
+    def ending(self) -> int:
+        """How many numbers the stops take that end slip or turning: the square of what is all but nothing, and ŝ."""
+        return 4 * len(self.ends)
 
     @property
     def extras(self) -> int:
@@ -101,6 +107,7 @@ class Law:
         p, q, Omega, rest, own = self.split([float(number) for number in numbers])
         q = Quaternion(*(part / math.hypot(*q) for part in q))
         contact = touch(system, time, p, q, own)
+        Omega = self._turns(contact, Omega)
         centre, V = self._moves(contact, Omega, rest)
         s = self._slip(system, time, numbers)
         at = Touch.at(
@@ -111,6 +118,10 @@ class Law:
     def _moves(self, contact: Contact, Omega: Vector, rest: Numbers) -> tuple[Vector, Vector]:  # noqa: ARG002
         """Return the centre of mass and its velocity, slip apart, which rolling gives unless the phase adds to it."""
         return contact.centre, contact.rolling_velocity(Omega)
+
+    def _turns(self, contact: Contact, Omega: Vector) -> Vector:  # noqa: ARG002
+        """Return Ω, of which the state's numbers may hold more than the phase lets it have."""
+        return Omega
 
     def _slip(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array) -> Vector | None:  # noqa: ARG002
         """Return s to its last digit, which V and Ω do not tell, m/s; None in flight."""
@@ -124,9 +135,10 @@ class Law:
         """Tell whether a part of the state settles far faster than all else changes."""
         return False
 
-    def shrinking(self, system: RollingSystem, time: float, numbers: Numbers) -> Array:  # noqa: ARG002
-        """Return what ends this law as it shrinks to nothing; nothing of most laws."""
-        return np.zeros(0)
+    def shrinking(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array, stop: str) -> Vector:
+        """Return what shrinks to nothing at a stop: the slip, m/s, or how the body turns over the support, rad/s."""
+        p, q, Omega, rest, own = self.split([float(number) for number in numbers])
+        return Vector(*rest[:3]) if stop == "grip" else state_turning(touch(system, time, p, q, own), Omega)
 
     def advanced(self, system: RollingSystem, time: float, state: Sequence[float], step: float) -> list[float]:
         """Return the state after a step so short that one of the classical Runge-Kutta method is exact."""
@@ -162,12 +174,6 @@ class RollingLaw(Law):
     """No slip: the state is (p, q, Ω)."""
 
     code = ROLLING
-    shrinks = slice(7, 10)
-
-    def shrinking(self, system: RollingSystem, time: float, numbers: Numbers) -> Array:
-        """Return how the body turns over the support, rad/s."""
-        now = self._now(system, time, numbers)
-        return state_turning(now.contact, Vector(*map(float, numbers[7:10]))).array()
 
     def _now(self, system: RollingSystem, time: Scalar, state: Numbers) -> Rolling:
         p, q, Omega, _, own = self.split(state)
@@ -203,20 +209,53 @@ class RollingLaw(Law):
 class RollingWithResistance(RollingLaw):
     """Rolling that comes to a stop where the body no longer turns over the support."""
 
-    ending = 4  # the square of what is all but nothing, and the direction at the beginning
+    @property
+    def ends(self) -> tuple[str, ...]:
+        """Its turning may end."""
+        return ("stop",)
 
 
 class SlippingLaw(Law):
-    """Slipping with friction −μ N ŝ: the state is (p, q, Ω, s)."""
+    """Slipping with friction −μ N ŝ: the state is (p, q, Ω, s).
+
+    Against resistance to rolling, turning over the support may end while slip goes on. Then a couple, no larger than
+    the resistance, holds the body so until more would be asked of it, "start".
+
+    Parameters
+    ----------
+    weightless : bool
+        As of `Law`.
+    turning : str
+        "free"; "resisted"; or "held", where the body does not turn over the support.
+    """
 
     code = SLIPPING
-    shrinks = slice(10, 13)
     variables: tuple[str, ...] = (*CONTACT, "s_x", "s_y", "s_z")
-    ending = 4  # as for `RollingWithResistance`
+
+    def __init__(self, weightless: bool = False, turning: str = "free") -> None:
+        super().__init__(weightless)
+        self.turning = turning
+
+    @property
+    def held(self) -> bool:
+        """Whether resistance keeps the body from turning over the support."""
+        return self.turning == "held"
+
+    @property
+    def ends(self) -> tuple[str, ...]:
+        """Its slip may end, and turning that is resisted."""
+        return ("grip", *self._turning_ends)
+
+    @property
+    def _turning_ends(self) -> tuple[str, ...]:
+        return ("stop",) if self.turning == "resisted" else ()
+
+    def _turns(self, contact: Contact, Omega: Vector) -> Vector:
+        return unturned(contact, Omega) if self.held else Omega
 
     def _now(self, system: RollingSystem, time: Scalar, state: Numbers, direction: Vector | None = None) -> Slipping:
         p, q, Omega, s, own = self.split(state)
-        return slip(system, time, p, q, Omega, Vector(*s), own, direction)
+        return slip(system, time, p, q, Omega, Vector(*s), own, direction, held=self.held)
 
     def rates(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:
         """Return ṗ, q̇, Ω̇, ṡ."""
@@ -225,23 +264,24 @@ class SlippingLaw(Law):
         return [*now.point_rate, *now.orientation_rate, *now.angular_acceleration, *now.slip_rate, *own]
 
     def stops(self, system: RollingSystem, time: Scalar, state: Numbers, extras: Numbers) -> dict[str, Scalar]:
-        """Return the normal force, its own effect on the gap, what is left of the slip, and the bounds."""
+        """Return the normal force, its own effect on the gap, what is left of slip and turning, and the bounds."""
         now, ending = self._now(system, time, state), self._floor(extras)[1]
         found = self._pressing(system, now, extras)
-        if ending:
-            found |= _ending("grip", Vector(*state[10:13]), now.slip_rate, ending)
+        for i, name in enumerate(self.ends if ending else ()):
+            v, rate = Vector(*state[10:13]), now.slip_rate
+            if name == "stop":
+                v, rate = state_turning(now.contact, Vector(*state[7:10])), now.angular_acceleration
+            found |= _ending(name, v, rate, ending[4 * i : 4 * i + 4])
         return {**found, **self._bounds(system, now.contact, Quaternion(*state[3:7]), 0.0)}
 
     def _pressing(self, system: RollingSystem, now: Slipping, extras: Numbers) -> dict[str, Scalar]:
         """Return the normal force, and how it opens the contact where friction may turn that round."""
         found = {"lift": now.normal_force + self._floor(extras)[0]}
+        if self.held:
+            found["start"] = left_of_resistance(system, found["lift"], now.holding)
         if not is_zero(system.support.friction):
             found["jam"] = now.opening_per_newton * system.body.mass - JAMS
         return found
-
-    def shrinking(self, system: RollingSystem, time: float, numbers: Numbers) -> Array:  # noqa: ARG002
-        """Return the slip, m/s."""
-        return np.array([float(part) for part in numbers[10:13]])
 
     def numbers(self, at: Touch) -> list[float]:
         """Return p, q, Ω and the part of s along the support."""
@@ -251,7 +291,8 @@ class SlippingLaw(Law):
         """Complete p, q, Ω and s by the law of slipping."""
         p, q, Omega, own = _columns(states, len(self.variables))
         now = self._recorded(system, time, states)
-        centre, V, R = _arrays(p, now.contact.centre, now.velocity, now.reaction)
+        turning = self._turns(now.contact, Vector.of(Omega))
+        centre, V, R, Omega = _arrays(p, now.contact.centre, now.velocity, now.reaction, turning)
         return Samples(time, centre, p, V, Omega, q, R + 0.0, phase=_phase(time, self.code), own=own)
 
     def _slip(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array) -> Vector:  # noqa: ARG002
@@ -264,7 +305,7 @@ class SlippingLaw(Law):
     def stiff(self, numbers: Array) -> bool:
         """Tell whether it slips so slowly that the direction of its slip settles far faster than all else changes."""
         s, Omega = (float(np.linalg.norm(part)) for part in (numbers[10:13], numbers[7:10]))
-        return self.ending > 0 and 0 < s < _SLOW_SLIP * Omega
+        return "grip" in self.ends and 0 < s < _SLOW_SLIP * Omega
 
     def _recorded(self, system: RollingSystem, time: Array, states: Array) -> Slipping:
         columns = list(states.T)
@@ -277,7 +318,10 @@ class SlippingLaw(Law):
 class SlidingFreely(SlippingLaw):
     """Contact without any friction: s has no part in the force, and never grips."""
 
-    ending = 0
+    @property
+    def ends(self) -> tuple[str, ...]:
+        """Only turning that is resisted may end."""
+        return self._turning_ends
 
     def _now(
         self,
@@ -287,7 +331,7 @@ class SlidingFreely(SlippingLaw):
         direction: Vector | None = ZERO,  # noqa: ARG002
     ) -> Slipping:
         p, q, Omega, s, own = self.split(state)
-        return slip(system, time, p, q, Omega, Vector(*s), own, ZERO)
+        return slip(system, time, p, q, Omega, Vector(*s), own, ZERO, held=self.held)
 
 
 class FlightLaw(Law):
@@ -365,9 +409,8 @@ class RestingLaw(Law):
         held, (floor, _) = self.held(system, time, state), self._floor(extras)
         n = held.contact.normal
         over = held.couple - n * n.dot(held.couple)
-        arm = sum((load.offset for load in system.loads if load.stops), 0.0) * (n.dot(held.reaction) + floor)
         found = cone(system, held.contact, held.reaction, floor)
-        found["start"] = arm * arm * (1 + CONE_SLACK) - over.dot(over)
+        found["start"] = left_of_resistance(system, n.dot(held.reaction) + floor, over)
         return {**found, **self._bounds(system, held.contact, Quaternion(*state[3:7]), 0.0)}
 
     def numbers(self, at: Touch) -> list[float]:
@@ -405,6 +448,28 @@ CONE_SLACK = 1e-9
 JAMS = 1e-3
 AN_INSTANT = 3e-15  # s: what ends in less has ended, for the terms of its series are greater than any float
 _SLOW_SLIP = 1e-8  # m/s for each rad/s of Ω
+SHRINKS = {"grip": slice(10, 13), "stop": slice(7, 10)}  # the numbers that change as what shrinks to nothing there
+
+
+def left_of_resistance(system: RollingSystem, normal_force: Scalar, holding: Vector) -> Scalar:
+    """Return what is left of resistance to rolling that holds a body: the squares of its most less that of the couple.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Its loads have the resistance.
+    normal_force : Scalar
+        N, N.
+    holding : Vector
+        The couple along the support that holds it, N m.
+
+    Returns
+    -------
+    Scalar
+        (N m)²: it holds while this is not negative.
+    """
+    most = system.resistance * normal_force
+    return most * most * (1 + CONE_SLACK) - holding.dot(holding)
 
 
 def cone(system: RollingSystem, contact: Contact, reaction: Vector, floor: Scalar = 0.0) -> dict[str, Scalar]:

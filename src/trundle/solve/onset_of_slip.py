@@ -10,10 +10,11 @@ from ..errors import SolverError
 from ..mechanics.algebra import E_X, E_Y, E_Z, ZERO, Matrix, Vector
 from ..mechanics.creep import SlipRates, slip_rates
 from ..mechanics.onset import onset
-from ..mechanics.slipping import Response, response
+from ..mechanics.slipping import HeldInertia, Response, response
 from ..mechanics.system import RollingSystem
 from .creeping import SETTLES_FAST, CreepingLaw, against
-from .laws import RollingLaw, SlippingLaw
+from .laws import Law, RollingLaw, SlippingLaw
+from .samples import RESTING
 from .touch import WEIGHTLESS, Touch, floats
 
 _FIRST = 1e-6  # share of |ρ| over its speed that the first moment of slip takes
@@ -24,12 +25,12 @@ class Onset:
     """A body that has slipped for a moment: where it is, the law that it follows, what that law's stops take."""
 
     at: Touch
-    law: Callable[[bool], SlippingLaw]  # whether weightless -> law
+    law: Callable[..., SlippingLaw]  # as `SlippingLaw` is made
     direction: Vector
     ending: tuple[float, ...]
 
 
-def first_moment(system: RollingSystem, at: Touch) -> Onset | Touch | None:
+def first_moment(system: RollingSystem, at: Touch, law: Law | None = None) -> Onset | Touch | None:
     """Return a body that has slipped for a moment, in which it still rolled but for what friction could not give.
 
     What it cannot give grows from nothing, mostly, and so the slip is the integral of a slope. Where friction settles
@@ -41,6 +42,8 @@ def first_moment(system: RollingSystem, at: Touch) -> Onset | Touch | None:
         Body, and a support with friction.
     at : Touch
         Where rolling gives way.
+    law : Law, optional
+        That of rest, where resistance goes on to keep the body from turning over the support; absent: of rolling.
 
     Returns
     -------
@@ -57,20 +60,21 @@ def first_moment(system: RollingSystem, at: Touch) -> Onset | Touch | None:
     >>> begun.at.state.time < 1e-6 and begun.at.V.x > 0
     True
     """
-    time, numbers = at.state.time, RollingLaw().numbers(at)
+    law = RollingLaw() if law is None else law
+    time, numbers = at.state.time, law.numbers(at)
     moment = _FIRST * at.arm / at.scale(system)
 
     def later(wait: float) -> tuple[Touch, _Growth | None]:
-        moved = RollingLaw().advanced(system, time, numbers, wait)
-        then = RollingLaw().meant(system, time + wait, moved)
-        return then, _growth(system, then)
+        moved = law.advanced(system, time, numbers, wait)
+        then = law.meant(system, time + wait, moved)
+        return then, _growth(system, then, law)
 
-    begun, (_, halfway), (then, grown) = _growth(system, at), later(0.5 * moment), later(moment)
+    begun, (_, halfway), (then, grown) = _growth(system, at, law), later(0.5 * moment), later(moment)
     if grown is None or halfway is None:
-        return then if _holds(system, then) else None
+        return then if _holds(system, then, law) else None
     speed = moment * ((0.0 if begun is None else begun.rate) + 4 * halfway.rate + grown.rate) / 6
     hat = grown.direction
-    slipping = _pushed(system, then, hat * speed)
+    slipping = _pushed(system, then, hat * speed, law)
     if grown.settling * moment > SETTLES_FAST * speed:
         return Onset(slipping, partial(CreepingLaw, step=moment), hat, (time,))
     near = min((0.25 * speed) ** 2, at.still(system) ** 2)
@@ -117,14 +121,14 @@ class _Growth:
     settling: float  # of its direction, times |s|, m/s²
 
 
-def _growth(system: RollingSystem, at: Touch) -> _Growth | None:
+def _growth(system: RollingSystem, at: Touch, law: Law) -> _Growth | None:
     """Return how slip grows: where friction only just gives way, against the friction that rolling takes."""
-    state = at.state
+    state, held, q = at.state, law.code == RESTING, at.orientation
     try:
-        contact, first = against(system, state.time, at.contact.point, at.orientation, at.Omega, state.support)
+        contact, first = against(system, state.time, at.contact.point, q, at.Omega, state.support, held=held)
     except ZeroDivisionError:  # nothing asks for friction
         return None
-    rates = slip_rates(system, state.time, contact, at.orientation, at.Omega, first, ZERO, state.support)
+    rates = slip_rates(system, state.time, contact, q, at.Omega, first, ZERO, state.support, held=held)
     least = -WEIGHTLESS * at.forces(system)
     c, s, settling = rates.settled()
     if c > 0 and settling > 0 and _rate(rates, c, s) > 0 and rates.normal_force(c, s) > least:
@@ -140,17 +144,18 @@ def _rate(rates: SlipRates, c: float, s: float) -> float:
     return float(c * first + s * second)
 
 
-def _holds(system: RollingSystem, at: Touch) -> bool:
+def _holds(system: RollingSystem, at: Touch, law: Law) -> bool:
     """Tell whether friction gives what rolling takes."""
-    stops = RollingLaw().stops(system, at.state.time, RollingLaw().numbers(at), ())
+    stops = law.stops(system, at.state.time, law.numbers(at), ())
     return bool(stops["slip"] >= 0 and stops["lift"] >= 0)
 
 
-def _pushed(system: RollingSystem, at: Touch, slip: Vector) -> Touch:
+def _pushed(system: RollingSystem, at: Touch, slip: Vector, law: Law) -> Touch:
     """Return the body after the impulse at the contact that makes it slip so, with the couple that comes with N."""
-    J, state, contact = system.body.inertia_in_space(at.orientation.matrix()), at.state, at.contact
+    whole, state, contact = system.body.inertia_in_space(at.orientation.matrix()), at.state, at.contact
+    J = HeldInertia(contact.normal, whole) if law.code == RESTING else whole
     moving = contact.body_motion(system.body.mass, state.time, at.V, at.orientation, at.Omega)
-    acting = system.acting_on(moving)
+    acting = system.acting_on(moving, held=law.code == RESTING)
     couple = acting.couple if acting.has_couple else ZERO
 
     def answer(push: Vector) -> Response:

@@ -19,7 +19,7 @@ from ..mechanics.slipping import slip
 from ..mechanics.system import RollingSystem, State
 from . import following
 from .following import Next, Stop
-from .laws import Law, RollingLaw
+from .laws import Law, RollingLaw, SlippingLaw
 from .samples import AT_ONCE, RESTING, ROLLING, SLIPPING, Array, Event, Progress, Recording, Samples
 
 _MOST_EVENTS = 10_000
@@ -248,7 +248,8 @@ def _giving_way(system: RollingSystem, at: Samples, follows: Next) -> Samples:
     """Return samples in which slip has begun, all but zero: the contact force is that of slipping."""
     place = Vector.of(at.contact), Quaternion.of(at.orientation), Vector.of(at.angular_velocity)
     direction = follows.law.direction(system, follows.time, follows.numbers)
-    R = slip(system, at.time, *place, ZERO, at.support_own, direction).reaction
+    held = isinstance(follows.law, SlippingLaw) and follows.law.held
+    R = slip(system, at.time, *place, ZERO, at.support_own, direction, held=held).reaction
     force = np.broadcast_to(R.array(), at.position.shape).copy()
     return replace(at, contact_force=force, phase=np.full(at.time.size, SLIPPING, dtype=np.int8))
 
@@ -262,7 +263,7 @@ def _telling(progress: Progress | None, times: Array) -> Progress | None:
 
 
 def _spinning_on(system: RollingSystem, law: Law, stop: Stop) -> bool:
-    return stop.name.endswith("stop") and following.spins_on(system, law, stop)
+    return law.code == ROLLING and stop.name.endswith("stop") and following.spins_on(system, law, stop)
 
 
 def _ended(system: RollingSystem, law: Law, stop: Stop) -> tuple[Samples, Event]:

@@ -37,12 +37,12 @@ class Event(Displayed):
     time : float
         s.
     kind : str
-        ``"slip"``: rolling gave way to slipping. ``"grip"``: slipping ended. ``"lift"``: the support no longer held the
-        body. ``"land"``: a flight ended, the body bouncing or not. ``"settle"``: it landed, and its bounces were cut
-        short. ``"stop"``, ``"start"``: it came to rest on the support, or left it. The run ended at ``"rim"``: the
-        contact reached the rim; ``"end"``: the end of the surface; ``"edge"``: of what the body's shape covers;
-        ``"curved"``: where the support is too hollow for the body; ``"spot"``: rolling stopped while the body still
-        spins.
+        ``"slip"``: rolling gave way to slipping, or it slips on another way. ``"grip"``: slipping ended. ``"lift"``:
+        the support no longer held the body. ``"land"``: a flight ended, the body bouncing or not. ``"settle"``: it
+        landed, and its bounces were cut short. ``"stop"``, ``"start"``: it came to rest on the support, or left it.
+        The run ended at ``"rim"``: the contact reached the rim; ``"end"``: the end of the surface; ``"edge"``: of what
+        the body's shape covers; ``"curved"``: where the support is too hollow for the body; ``"spot"``: rolling stopped
+        while the body still spins.
     text : str
         What happened, for the reader.
     before, after : State, optional

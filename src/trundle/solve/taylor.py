@@ -22,7 +22,7 @@ from ..mechanics.system import RollingSystem, State
 from . import integrator_cache, phases, runge_kutta
 from .dense import Keep, Leg
 from .following import Next, Stop
-from .laws import Law
+from .laws import SHRINKS, Law
 from .lowering import Lowered, lower
 from .patience import Patience
 from .phases import Stretch, cut
@@ -236,13 +236,19 @@ def _lasted(system: RollingSystem, now: Next) -> float:
     Where it goes straight its speed has no singularity, and only rounding in the series would say how near it came to
     nothing. By what of that is left, a step would be far too short, or, between two zeros, far too long.
     """
+    found, first = math.inf, len(now.extras) - now.law.ending
+    for i, stop in enumerate(now.law.ends):
+        found = min(found, _lasted_to(system, now, stop, now.extras[first + 4 * i]))
+    return found
+
+
+def _lasted_to(system: RollingSystem, now: Next, stop: str, near: float) -> float:
+    """Return the same of slip or of turning, given the square of what is all but nothing."""
     law, numbers_now = now.law, list(map(float, now.numbers))
-    if law.ending <= 1:
-        return math.inf
-    v, near = law.shrinking(system, now.time, numbers_now), now.extras[-law.ending]
+    v = law.shrinking(system, now.time, numbers_now, stop).array()
     if v @ v > _GROWN * near:
         return math.inf
-    rate = np.array([float(part) for part in law.rates(system, now.time, numbers_now)[law.shrinks]])
+    rate = np.array([float(part) for part in law.rates(system, now.time, numbers_now)[SHRINKS[stop]]])
     length, change = float(np.linalg.norm(v)), float(np.linalg.norm(rate))
     straight = float(np.linalg.norm(np.cross(v, rate))) <= _STRAIGHT * length * change and v @ rate > 0
     return length / change if straight else math.inf

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ..mechanics.algebra import Matrix, Vector
 from ..mechanics.system import RollingSystem
-from ..solve.samples import Samples
+from ..solve.samples import FLIGHT, RESTING, SLIPPING, Samples
 from .bounds import Array
+
+_ROUNDING = 1e-14  # of Ω and ω, that may be left of their difference along the support
 
 
 def rotated(q: Array, v: Array) -> Array:
@@ -77,6 +81,30 @@ def acting(system: RollingSystem, at: Samples) -> tuple[Array, Array, Array, Arr
     return F + weight, K, J, np.cross(at.angular_velocity, JOmega)
 
 
+def unturning(system: RollingSystem, at: Samples) -> Any:
+    """Tell in which samples resistance to rolling keeps a body that slips or rests from turning over the support.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Its loads.
+    at : Samples
+        Instants of a motion, n of them, all in flight or none.
+
+    Returns
+    -------
+    array (n,) of bool
+        Where it touches, and no more of Ω − ω is along the support than rounding leaves.
+    """
+    if not system.resisted or (at.phase == FLIGHT).all():
+        return np.zeros(at.time.size, dtype=bool)
+    omega = np.broadcast_to(at.support(system).angular_velocity.array(), at.angular_velocity.shape)
+    relative, n = at.angular_velocity - omega, at.normals(system)
+    over = np.linalg.norm(relative - (relative * n).sum(axis=1, keepdims=True) * n, axis=1)
+    size = np.linalg.norm(at.angular_velocity, axis=1) + np.linalg.norm(omega, axis=1)
+    return (at.phase == RESTING) | ((at.phase == SLIPPING) & (over <= _ROUNDING * size))
+
+
 def exerted(system: RollingSystem, at: Samples) -> tuple[Array, Array, Array]:
     """Return force and torque of the loads besides the weight, and the part of the torque that the support exerts.
 
@@ -97,8 +125,10 @@ def exerted(system: RollingSystem, at: Samples) -> tuple[Array, Array, Array]:
         return force, torque, from_support
     motion = at.motion(system)
     N = 0.0 if motion.normal is None else Vector.of(at.contact_force).dot(motion.normal)
+    turns = ~unturning(system, at)[:, None]
     for load in system.loads:
         couple = (load.torque_per_normal_force(motion) * N).array()
+        couple = couple * turns if load.stops else couple  # where nothing turns it has no direction
         turning = load.torque(motion).array()
         force = force + load.force(motion).array()
         torque = torque + turning + couple

@@ -8,12 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from ..mechanics.algebra import Vector
+from ..mechanics.algebra import ZERO, Vector
 from ..mechanics.loads import BodyMotion, Load
 from ..mechanics.system import RollingSystem
 from ..solve.samples import FLIGHT, Samples
+from .acting import unturning
 from .bounds import Array, speed_of
 from .card import CardFigure, checked
+from .friction import holding
 
 _NODES = 16  # of Gauss and Legendre in each panel
 _PARTS = 4  # into which a panel is cut where its power is rough
@@ -96,10 +98,25 @@ def _powers(system: RollingSystem, at: Samples) -> Array:
         if not _keeps(load, motion):
             given = given + load.force(motion).dot(V) + load.torque(motion).dot(Omega)
     if motion.normal is not None:
-        given = given + (system.acting_on(motion).couple * R.dot(motion.normal)).dot(Omega)
+        given = given + (system.acting_on(motion, held=True).couple * R.dot(motion.normal)).dot(Omega)
+        given = given + _of_resistance(system, at)
     largest = R.norm() * (V.norm() + carried.norm() + u.norm())  # what rounding is a share of
     both = (R.dot(V + carried - u), R.dot(u), given, largest)
     return np.stack([np.broadcast_to(np.asarray(power, dtype=float), at.time.shape) for power in both])
+
+
+def _of_resistance(system: RollingSystem, at: Samples) -> Array:
+    """Return the power of resistance to rolling, W: against the turning, or the couple that holds a body from it."""
+    if not system.resisted:
+        return np.zeros(at.time.size)
+    motion, held = at.motion(system), unturning(system, at)
+    N, lever = (at.contact_force * at.normals(system)).sum(axis=1), ZERO
+    for load in system.loads:
+        lever = lever + load.torque_per_normal_force(motion) if load.stops else lever
+    couple = np.broadcast_to((lever * N).array(), at.position.shape).copy()
+    if held.any():
+        couple[held] = holding(system, at.part(held))[0]
+    return np.asarray((couple * at.angular_velocity).sum(axis=1))
 
 
 @dataclass(frozen=True)

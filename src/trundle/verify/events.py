@@ -211,13 +211,9 @@ class AtEvents:
         if event.kind == "lift":
             yield event, "N = 0", self._pulled(phase, float(N), f) / force, _GOES_ON * self.bound
         elif phase == SLIPPING:
-            s = each.slip[0]
-            yield event, "s = 0", float(np.linalg.norm(s)) / self._speed, _GOES_ON * self.bound
+            yield event, *self._slipped(event, at, each)
         elif phase == RESTING and event.kind != "slip":
-            couple, N_there = holding(self.system, at)
-            most = sum(float(load.offset) for load in self.system.loads if load.stops) * float(N_there[0])
-            short = most - float(np.linalg.norm(couple[0]))
-            yield event, "the resistance is overcome", short / max(most, 1e-300), _SLACK
+            yield event, "the resistance is overcome", self._short_of_turning(at), _SLACK
         elif event.kind == "slip":
             yield event, "|f| = μN", self._short_of_slipping(float(N), f) / force, _SLACK + _GOES_ON * self.bound
         elif event.kind == "stop":
@@ -232,6 +228,21 @@ class AtEvents:
         """Return how fast a body turns over the support, rad/s."""
         relative = at.angular_velocity[0] - _row(at.support(self.system).angular_velocity)
         return float(np.linalg.norm(relative - (relative @ each.normals[0]) * each.normals[0]))
+
+    def _slipped(self, event: Event, at: Samples, each: EachSample) -> tuple[str, float, float]:
+        """Return what ended a way of slipping: the slip, or against resistance the turning, or its being held."""
+        if "began to turn" in event.text:
+            return "the resistance is overcome", self._short_of_turning(at), _SLACK
+        if "stopped turning" in event.text:
+            share = self._turning(at, each) / self._sizes["angular_velocity"]
+            return "it no longer turns", share, _GOES_ON * self.bound
+        return "s = 0", float(np.linalg.norm(each.slip[0])) / self._speed, _GOES_ON * self.bound
+
+    def _short_of_turning(self, at: Samples) -> float:
+        """Return the share by which resistance could have held more than it was asked for."""
+        couple, N = holding(self.system, at)
+        most = float(self.system.resistance) * float(N[0])
+        return (most - float(np.linalg.norm(couple[0]))) / max(most, 1e-300)
 
     def _short_of_slipping(self, N: float, f: Array) -> float:
         """Return by how much friction could have given more than it was asked for, N."""

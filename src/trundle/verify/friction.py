@@ -7,8 +7,10 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from ..mechanics.algebra import Quaternion, Vector
+from ..mechanics.contact import touch
 from ..mechanics.system import RollingSystem
-from ..solve.samples import FLIGHT, RESTING, ROLLING, Samples
+from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
 from .acting import acting
 from .bounds import Array, largest, sizes_of
 from .card import CardFigure, checked
@@ -160,7 +162,7 @@ def _holding(system: RollingSystem, needed: float, time: float) -> CardFigure:
 
 def _resistance(system: RollingSystem, needed: float, time: float) -> CardFigure:
     """Say whether resistance to rolling sufficed for rest."""
-    most = float(sum(float(load.offset) for load in system.loads if load.stops))
+    most = float(system.resistance)
     note = f"couple over N of a body at rest, at t = {time:.6g} s"
     return CardFigure("resistance needed", needed, "m", most, bool(needed <= most * (1 + _SLACK)), note)
 
@@ -172,28 +174,42 @@ def _lever(system: RollingSystem, rests: Samples) -> tuple[float, float]:
     return _at(rests, needed, int(np.argmax(needed)))
 
 
-def holding(system: RollingSystem, rests: Samples) -> tuple[Array, Array]:
-    """Return the couple along the support that rest takes, N m, and the normal force.
+def holding(system: RollingSystem, held: Samples) -> tuple[Array, Array]:
+    """Return the couple along the support that keeps a body from turning over it, N m, and the normal force.
 
     Parameters
     ----------
     system : RollingSystem
-        What rests.
-    rests : Samples
-        At rest on the support, which carries the body along.
+        What is held.
+    held : Samples
+        At rest on the support, which carries the body along, or slipping over it without turning.
 
     Returns
     -------
     couple, N : array
         (n, 3) and (n,).
     """
-    _, K, J, gyroscopic = acting(system, rests)
-    support, n = rests.support(system), rests.normals(system)
-    change = np.broadcast_to(support.angular_acceleration.array(), n.shape)
-    arm = rests.contact - rests.position
-    whole = np.einsum("nij,nj->ni", J, change) + gyroscopic - K - np.cross(arm, rests.contact_force)
-    N, _ = normal_and_friction(system, rests)
+    _, K, J, gyroscopic = acting(system, held)
+    n = held.normals(system)
+    torque = K - gyroscopic + np.cross(held.contact - held.position, held.contact_force)
+    whole = np.einsum("nij,nj->ni", J, _carried_along(system, held)) - torque
+    about = np.einsum("nij,nj->ni", J, n)  # about the normal nothing holds a body that slips
+    spins = (held.phase == SLIPPING) * (whole * n).sum(axis=1) / (about * n).sum(axis=1)
+    whole = whole - spins[:, None] * about
+    N, _ = normal_and_friction(system, held)
     return whole - (whole * n).sum(axis=1, keepdims=True) * n, N
+
+
+def _carried_along(system: RollingSystem, held: Samples) -> Array:
+    """Return the rate of Ω along the support of a body that only spins about the normal over it, ω̇ + Ω_n ṅ."""
+    q, Omega = Quaternion.of(held.orientation), Vector.of(held.angular_velocity)
+    contact = touch(system, held.time, Vector.of(held.contact), q, held.support_own)
+    V, turning, u = held.speeds(system)
+    p_rate, _ = contact.rates(V + turning - u, Omega, V)
+    support, n = contact.support, contact.normal
+    n_rate = support.angular_velocity.cross(n) + contact.shape_operator @ (p_rate - u)
+    spin = n.dot(Omega - support.angular_velocity)
+    return np.broadcast_to((support.angular_acceleration + n_rate * spin).array(), held.position.shape)
 
 
 def friction_law(system: RollingSystem, slipping: Samples, bound: float) -> CardFigure:

@@ -15,7 +15,7 @@ from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import touch
 from ..mechanics.system import RollingSystem
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
-from .acting import acting, exerted, rotated
+from .acting import acting, exerted, rotated, unturning
 from .bounds import Array, largest
 
 WINDOWS = 24
@@ -304,6 +304,7 @@ class _Windows:
             rho_rate = self.slope(self.all.contact - self.all.position)
             solved = newton_euler(m, J, rho, F, K - gyroscopic, self.slope(u) - np.cross(Omega, rho_rate))
         else:
+            K = K + self._holding(J @ Omega_rate[:, :, None], K - gyroscopic + np.cross(rho, R))
             turned = Omega_rate if self.phase == RESTING else _euler(J, K - gyroscopic + np.cross(rho, R))
             solved = (F + R) / m, turned, R
         a_size = self._acceleration(F, V_rate)
@@ -316,6 +317,19 @@ class _Windows:
                 np.abs(solved[2] - R).max() / (m * a_size),
             )
         )
+
+    def _holding(self, change: Array, torque: Array) -> Array:
+        """Return the couple along the support that keeps a body that slips from turning over it, N m.
+
+        It is what is missing in Euler's equation, and no larger than the resistance.
+        """
+        at, n = self.middle, self.middle.normals(self.system)
+        missing = change[:, :, 0] - torque
+        along = missing - (missing * n).sum(axis=1, keepdims=True) * n
+        most = float(self.system.resistance) * (at.contact_force * n).sum(axis=1)
+        size = np.linalg.norm(along, axis=1)
+        holds = unturning(self.system, at) & (at.phase == SLIPPING)
+        return along * (holds * np.minimum(1.0, most / np.maximum(size, 1e-300)))[:, None]
 
     def _acceleration(self, F: Array, V_rate: Array) -> float:
         """Return against what an acceleration is small or not, and over the bound what rounding makes of a slope."""
