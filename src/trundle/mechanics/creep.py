@@ -17,7 +17,7 @@ from .slipping import response, unpushed, unturned
 if TYPE_CHECKING:
     from .system import RollingSystem
 
-_STEPS = 4  # of Newton's method, each of which squares the error: friction that just gives way is off by little
+_STEPS = 5  # of Newton's method, each of which squares the error
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,23 +7,25 @@ from typing import Any
 import numpy as np
 
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import Contact, Rolling, roll
+from ..mechanics.contact import touch
 from ..mechanics.creep import slip_rates
 from ..mechanics.scalars import Scalar
 from ..mechanics.slipping import Slipping, slip
 from ..mechanics.system import RollingSystem
-from .laws import CONTACT, Held, Numbers, RestingLaw, SlippingLaw
-from .touch import Touch
+from .laws import CONTACT, Numbers, SlippingLaw
+from .touch import Touch, floats
 
 # How many times as fast as slip has grown its direction must settle. Slower than that `SlippingLaw` follows it; faster,
 # any method would have to take steps as short as the direction takes to settle.
 SETTLES_FAST = 4e3
+_NEAR = 0.98  # cosine of the angle by which the direction may turn until it is looked for near another
 
 
 class CreepingLaw(SlippingLaw):
     """Slipping along the direction that friction keeps: the state is (p, q, Ω, |s|).
 
-    It ends where |s| falls back to nothing, "held", or where slip has grown so fast that its direction lags, "settled".
+    It ends where |s| falls back to nothing, "held", where slip has grown so fast that its direction lags, "settled", or
+    where that has turned away from the one near which it is looked for, "turned": to be followed from there on.
 
     Parameters
     ----------
@@ -31,24 +33,35 @@ class CreepingLaw(SlippingLaw):
         As of `SlippingLaw`.
     step : float
         A time in which the body hardly moves, s, over which the turning of the direction is seen.
+    since : float
+        When slip began, s.
+    near : tuple of float
+        A unit vector: near it is the direction that slip keeps.
     """
 
     variables = (*CONTACT, "speed")
     brief = True
 
-    def __init__(self, weightless: bool = False, turning: str = "free", step: float = 0.0) -> None:
+    def __init__(
+        self,
+        weightless: bool = False,
+        turning: str = "free",
+        step: float = 0.0,
+        since: float = 0.0,
+        near: tuple[float, float, float] = (1.0, 0.0, 0.0),
+    ) -> None:
         super().__init__(weightless, turning)
-        self.step = step
+        self.step, self.since = step, since
+        self.near_x, self.near_y, self.near_z = near
 
     @property
     def ends(self) -> tuple[str, ...]:
         """Nothing: its speed is followed through zero."""
         return ()
 
-    @property
-    def ending(self) -> int:
-        """When it began, s."""
-        return 1
+    def turned(self, direction: Vector) -> CreepingLaw:
+        """Return the same law with another direction near which slip keeps one."""
+        return CreepingLaw(self.weightless, self.turning, self.step, self.since, floats(direction))
 
     def stiff(self, numbers: Any) -> bool:  # noqa: ARG002
         """Tell that no direction has to settle."""
@@ -57,7 +70,10 @@ class CreepingLaw(SlippingLaw):
     def _settled(self, system: RollingSystem, time: Scalar, state: Numbers) -> tuple[Vector, Vector, Scalar]:
         """Return the direction that slip keeps, the one across it, and how fast the first settles, times |s|."""
         p, q, Omega, (speed, *_), own = self.split(state)
-        contact, first = against(system, time, p, q, Omega, own, held=self.held)
+        contact = touch(system, time, p, q, own)
+        n, near = contact.normal, Vector(self.near_x, self.near_y, self.near_z)
+        first = near - n * n.dot(near)
+        first = first / first.norm()
         rates = slip_rates(system, time, contact, q, Omega, first, first * speed, own, held=self.held)
         c, s, settling = rates.settled()
         return rates.direction(c, s), rates.direction(-s, c), settling
@@ -104,12 +120,12 @@ class CreepingLaw(SlippingLaw):
         """Return the normal force, its effect on the gap, the speed of slip, how its direction lags, and the bounds."""
         hat, settling = self._way(system, time, state)
         now = self._now(system, time, state, hat)
-        _, (since,) = self._floor(extras)
         speed = state[10]
         return {
             **self._pressing(system, now, extras),
             "held": speed,
-            "settled": settling * (time - since) - SETTLES_FAST * speed,
+            "settled": settling * (time - self.since) - SETTLES_FAST * speed,
+            "turned": hat.dot(Vector(self.near_x, self.near_y, self.near_z)) - _NEAR,
             **self._bounds(system, now.contact, Quaternion(*state[3:7]), 0.0),
         }
 
@@ -128,49 +144,3 @@ class CreepingLaw(SlippingLaw):
         columns = list(states.T)
         columns[3:7] = (states[:, 3:7] / np.linalg.norm(states[:, 3:7], axis=1, keepdims=True)).T
         return self._now(system, time, columns, self._way(system, time, columns)[0])
-
-
-def against(
-    system: RollingSystem,
-    time: Scalar,
-    point: Vector,
-    orientation: Quaternion,
-    angular_velocity: Vector,
-    own: tuple[Scalar, ...] = (),
-    *,
-    held: bool = False,
-) -> tuple[Contact, Vector]:
-    """Return the contact, and the direction against the friction that rolling takes: close to where slip begins.
-
-    Of a body that resistance keeps from turning, the direction against the friction that rest takes.
-
-    Parameters
-    ----------
-    system, time, point, orientation, angular_velocity, own
-        As for `trundle.mechanics.contact.roll`.
-    held : bool
-        As of `trundle.mechanics.slipping.slip`.
-
-    Returns
-    -------
-    contact : Contact
-        Where they touch.
-    direction : Vector
-        −f/|f|.
-
-    Examples
-    --------
-    >>> import trundle as tr
-    >>> slope = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane(), tilt=0.1))
-    >>> still = Quaternion(1.0, 0.0, 0.0, 0.0)
-    >>> round(against(slope, 0.0, Vector(0.0, 0.0, 0.0), still, Vector(0.0, 0.0, 0.0))[1].x, 15)
-    1.0
-    """
-    now: Rolling | Held
-    if held:
-        now = RestingLaw().held(system, time, [*point, *orientation, *angular_velocity, *own])
-    else:
-        now = roll(system, time, point, orientation, angular_velocity, own)
-    n, R = now.contact.normal, now.reaction
-    f = R - n * n.dot(R)
-    return now.contact, f / -f.norm()

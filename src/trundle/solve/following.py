@@ -135,6 +135,9 @@ def after(system: RollingSystem, law: Law, stop: Stop) -> Next:
         return _struck(system, at)
     if name == "settled":
         return slipping(system, Next.of(law, at))
+    if isinstance(law, CreepingLaw) and name == "turned":
+        turned = law.turned(law.direction(system, stop.time, stop.numbers))
+        return Next(turned, at.state, stop.numbers.tolist(), (_FLOOR * at.forces(system),) * law.weightless)
     if name == "jam":
         raise jammed(at.state.time, JAMS)
     if name == "lift":

@@ -8,12 +8,13 @@ from functools import partial
 
 from ..errors import SolverError
 from ..mechanics.algebra import E_X, E_Y, E_Z, ZERO, Matrix, Vector
+from ..mechanics.contact import Contact, Rolling, roll
 from ..mechanics.creep import SlipRates, slip_rates
 from ..mechanics.onset import onset
 from ..mechanics.slipping import HeldInertia, Response, response
 from ..mechanics.system import RollingSystem
-from .creeping import SETTLES_FAST, CreepingLaw, against
-from .laws import Law, RollingLaw, SlippingLaw
+from .creeping import SETTLES_FAST, CreepingLaw
+from .laws import Held, Law, RestingLaw, RollingLaw, SlippingLaw
 from .samples import RESTING
 from .touch import WEIGHTLESS, Touch, floats
 
@@ -76,7 +77,7 @@ def first_moment(system: RollingSystem, at: Touch, law: Law | None = None) -> On
     hat = grown.direction
     slipping = _pushed(system, then, hat * speed, law)
     if grown.settling * moment > SETTLES_FAST * speed:
-        return Onset(slipping, partial(CreepingLaw, step=moment), hat, (time,))
+        return Onset(slipping, partial(CreepingLaw, step=moment, since=time, near=floats(hat)), hat, ())
     near = min((0.25 * speed) ** 2, at.still(system) ** 2)
     return Onset(slipping, SlippingLaw, hat, (near, *floats(hat)))
 
@@ -125,7 +126,7 @@ def _growth(system: RollingSystem, at: Touch, law: Law) -> _Growth | None:
     """Return how slip grows: where friction only just gives way, against the friction that rolling takes."""
     state, held, q = at.state, law.code == RESTING, at.orientation
     try:
-        contact, first = against(system, state.time, at.contact.point, q, at.Omega, state.support, held=held)
+        contact, first = _against(system, at, held=held)
     except ZeroDivisionError:  # nothing asks for friction
         return None
     rates = slip_rates(system, state.time, contact, q, at.Omega, first, ZERO, state.support, held=held)
@@ -168,3 +169,16 @@ def _pushed(system: RollingSystem, at: Touch, slip: Vector, law: Law) -> Touch:
         own = (*own[:-1], own[-1] - float(moment / motion.inertia))
     moved = at.moving(system, at.V + P / system.body.mass, at.Omega + answer(P).angular_velocity, own)
     return replace(moved, slip=slip)  # smaller than a rounding of V and Ω
+
+
+def _against(system: RollingSystem, at: Touch, *, held: bool) -> tuple[Contact, Vector]:
+    """Return the contact, and −f/|f|, f being the friction that rolling takes, or rest that resistance holds."""
+    state = at.state
+    now: Rolling | Held
+    if held:
+        now = RestingLaw().held(system, state.time, RestingLaw().numbers(at))
+    else:
+        now = roll(system, state.time, at.contact.point, at.orientation, at.Omega, state.support)
+    n, R = now.contact.normal, now.reaction
+    f = R - n * n.dot(R)
+    return now.contact, f / -f.norm()
