@@ -189,6 +189,56 @@ def _own(support: SupportState, point: Vector) -> Vector:
     return support.rotation.transpose @ (point - support.origin)
 
 
+def nearest(
+    system: RollingSystem,
+    time: Scalar,
+    point: Vector,
+    centre: Vector,
+    orientation: Quaternion,
+    own: tuple[Scalar, ...] = (),
+) -> Contact:
+    """Return the geometry at the support's point nearest to a body, from a point next to it, by one of Newton's steps.
+
+    Parameters
+    ----------
+    system, time, orientation, own
+        As for `touch`.
+    point : Vector
+        p in the inertial support frame, m, off by so little that its square is rounding.
+    centre : Vector
+        r, m.
+
+    Returns
+    -------
+    Contact
+        As of `settle`, which wants no point to begin with.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> bowl = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Bowl(0.5)))
+    >>> still, off = Quaternion(1.0, 0.0, 0.0, 0.0), Vector(1e-9, 0.0, 2e-9)
+    >>> bool(nearest(bowl, 0.0, off, Vector(0.0, 0.0, 0.3), still).point.norm() < 1e-16)
+    True
+    """
+    contact = touch(system, time, point, orientation, own)
+    _, aside, down = _beside(system, contact, centre)
+    return touch(system, time, point + aside + down, orientation, own)
+
+
+def _beside(
+    system: RollingSystem, contact: Contact, centre: Vector, *, bent: bool = True
+) -> tuple[Vector, Vector, Vector]:
+    """Return how far the body's point is aside of the support's, and Newton's step along the support and off it."""
+    n, support = contact.normal, contact.support
+    apart = centre + contact.offset - contact.point
+    gap = n.dot(apart)
+    off = apart - n * gap
+    down = n * -_height(system.support.surface, _own(support, contact.point), support.rotation.transpose @ n)
+    # The normal leans by S along the support, and ρ follows it by C.
+    return off, contact.across(gap).solve(off) if bent and not contact.flat else off, down
+
+
 def settle(
     system: RollingSystem, time: float, centre: Vector, orientation: Quaternion, own: tuple[Scalar, ...] = ()
 ) -> Contact:
@@ -255,19 +305,13 @@ def _newton(
     own: tuple[Scalar, ...],
 ) -> Contact | None:
     """Return the contact to which Newton's method leads from a first guess at p; None where it leads nowhere."""
-    surface, last = system.support.surface, math.inf
+    last = math.inf
     try:
         contact = touch(system, time, point, orientation, own)
         for step in range(_MOST_STEPS):
-            support = contact.support
-            apart = centre + contact.offset - point
-            gap = contact.normal.dot(apart)
-            aside = apart - contact.normal * gap
-            down = contact.normal * -_height(surface, _own(support, point), support.rotation.transpose @ contact.normal)
+            off, aside, down = _beside(system, contact, centre, bent=step > 0)
             size = point.norm() + contact.offset.norm()
-            left = max(aside.norm(), down.norm()) / size
-            if step > 0:  # Newton's: the normal leans by S along the support, and ρ follows it by C
-                aside = contact.across(gap).solve(aside)
+            left = max(off.norm(), down.norm()) / size
             point = point + aside + down
             contact = touch(system, time, point, orientation, own)
             # What is left now is less by as much again; or it was rounding.
@@ -300,10 +344,10 @@ def _guess(
     return None if best is None else best[1]
 
 
-def _height(surface: Surface, there: Vector, n: Vector) -> float:
+def _height(surface: Surface, there: Vector, n: Vector) -> Scalar:
     """Return about how far a point is over the surface along n, m: φ over its slope."""
     level, step = surface.level(there), 1e-6 * (there.norm() + 1e-6)
-    return float(2 * step * level / (surface.level(there + n * step) - surface.level(there - n * step)))
+    return 2 * step * level / (surface.level(there + n * step) - surface.level(there - n * step))
 
 
 def roll(
