@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 _MOST_STEPS = 60  # of Newton's method, which needs five
 _CLOSE = 1e-9  # share of the lengths at hand to which it must have found the contact
 _ROUNDING = 1e-15
-_LOOKS = 600  # for a better first guess
+_LOOKS, _GUESSES = 600, 20  # for a better first guess, and how many of them are followed
+_AT_THE_EDGE = 1e-9  # of what a shape covers: a run that came to its edge is there up to rounding
 
 
 @dataclass(frozen=True, slots=True)
@@ -276,18 +277,60 @@ def settle(
     >>> settle(system, 0.0, Vector(0.4, 0.0, 0.0), Quaternion(1.0, 0.0, 0.0, 0.0)).point
     Vector(x=0.5, y=0.0, z=0.0)
     """
-    surface = system.support.surface
     # The normal at the centre is already that at the contact for a sphere over a surface of constant curvature.
     found = _newton(system, time, centre, centre, orientation, own)
-    if found is None or _is_beyond(surface, _own(found.support, found.point)):
-        guess = _guess(system, time, centre, orientation, own)
-        found = None if guess is None else _newton(system, time, centre, guess, orientation, own)
-    if found is None or _is_beyond(surface, _own(found.support, found.point)):
+    if found is None or misplaced(system, found, centre, orientation):
+        found = _searched(system, time, centre, orientation, own) or found
+    if found is None or _is_beyond(system.support.surface, _own(found.support, found.point)):
         raise SolverError(
             f"At t = {float(time):.9g} s no point of the surface is nearest to the body, whose centre is at "
             f"({', '.join(f'{float(part):.4g}' for part in centre)}) m. Does the surface reach there, and smoothly?"
         )
     return found
+
+
+def misplaced(system: RollingSystem, contact: Contact, centre: Vector, orientation: Quaternion) -> str:
+    """Say why a point straight under a body is not where it is nearest to the support; empty where it is.
+
+    Parameters
+    ----------
+    system, centre, orientation
+        As for `settle`.
+    contact : Contact
+        The geometry there.
+
+    Returns
+    -------
+    str
+        A sentence.
+
+    Examples
+    --------
+    A ball high over one side of a bowl is nearer to the other:
+
+    >>> import trundle as tr
+    >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Bowl(0.5)))
+    >>> still = Quaternion(1.0, 0.0, 0.0, 0.0)
+    >>> contact = touch(system, 0.0, Vector(0.0, 0.0, 0.0), still)
+    >>> misplaced(system, contact, Vector(0.0, 0.0, 0.3), still)
+    ''
+    >>> misplaced(system, contact, Vector(0.0, 0.0, 0.6), still)
+    'There the support is so hollow, and the body so high over it, that other points of it are nearer.'
+    """
+    if _is_beyond(system.support.surface, _own(contact.support, contact.point)):
+        return "There the support has ended."
+    covered = system.body.shape.covers(-(orientation.matrix().transpose @ contact.normal))
+    if covered is not None and covered < -_AT_THE_EDGE:
+        return "There the body has a flat side or an edge towards the support, which its shape does not cover."
+    if contact.flat:
+        return ""
+    gap = (centre + contact.offset - contact.point).dot(contact.normal)
+    across = contact.across(gap)
+    # Along n it is 1: the two others have the determinant as their product, and their sum is the trace less 1.
+    around = sum(row[i] for i, row in enumerate(map(tuple, across.rows))) - 1.0
+    if across.determinant > 0 and around > 0:
+        return ""
+    return "There the support is so hollow, and the body so high over it, that other points of it are nearer."
 
 
 def _is_beyond(surface: Surface, there: Vector) -> bool:
@@ -323,11 +366,24 @@ def _newton(
     return contact if left <= _CLOSE else None
 
 
-def _guess(
+def _searched(
     system: RollingSystem, time: float, centre: Vector, orientation: Quaternion, own: tuple[Scalar, ...]
-) -> Vector | None:
-    """Return r + ρ(n) for the n, of many all around, that is nearest to the surface's normal there."""
-    support, best = system.support.motion.at(time, *own), None
+) -> Contact | None:
+    """Return the nearest of the contacts to which Newton's method leads from the likeliest points of the body."""
+    found = []
+    for point in _guesses(system, time, centre, orientation, own):
+        contact = _newton(system, time, centre, point, orientation, own)
+        if contact is not None and not misplaced(system, contact, centre, orientation):
+            gap = (centre + contact.offset - contact.point).dot(contact.normal)
+            found.append((abs(float(gap)), contact))
+    return min(found, key=lambda one: one[0], default=(0.0, None))[1]
+
+
+def _guesses(
+    system: RollingSystem, time: float, centre: Vector, orientation: Quaternion, own: tuple[Scalar, ...]
+) -> list[Vector]:
+    """Return r + ρ(n) for those n, of many all around, that are nearest to the surface's normal there."""
+    support, found = system.support.motion.at(time, *own), []
     for i in range(_LOOKS):
         z, angle = 1.0 - (2 * i + 1) / _LOOKS, math.pi * (1.0 + math.sqrt(5.0)) * (i + 0.5)  # Fibonacci's lattice
         across = math.sqrt(1.0 - z * z)
@@ -339,9 +395,8 @@ def _guess(
             off = (support.rotation @ system.support.surface.normal(_own(support, point)) - n).norm()
         except (ArithmeticError, ValueError):
             continue
-        if best is None or off < best[0]:
-            best = off, point
-    return None if best is None else best[1]
+        found.append((float(off), point))
+    return [point for _, point in sorted(found, key=lambda one: one[0])[:_GUESSES]]
 
 
 def _height(surface: Surface, there: Vector, n: Vector) -> Scalar:

@@ -161,7 +161,7 @@ class EachSample:
     def _aside(self, apart: Array, gap: Array) -> Array:
         """Return how far the two points are beside each other, m; in flight no more than how far p is beside its place.
 
-        Where a shape ends, or by the apex of a cone, the last digit of p moves the body's point by a million of its own.
+        Where a shape ends, or by a cone's apex, the last digit of p moves the body's point by a million of its own.
         While they touch, that moves the body along.
         """
         along = apart - gap[:, None] * self.normals
