@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 _MOST_STEPS = 60  # of Newton's method, which needs five
 _CLOSE = 1e-9  # share of the lengths at hand to which it must have found the contact
 _ROUNDING = 1e-15
+_SINGULAR = 1e-6  # of det(1 + (C + g)S), at which a run ends
 _LOOKS, _GUESSES = 600, 20  # for a better first guess, and how many of them are followed
-_AT_THE_EDGE = 1e-9  # of what a shape covers: a run that came to its edge is there up to rounding
 
 
 @dataclass(frozen=True, slots=True)
@@ -279,8 +279,8 @@ def settle(
     """
     # The normal at the centre is already that at the contact for a sphere over a surface of constant curvature.
     found = _newton(system, time, centre, centre, orientation, own)
-    if found is None or misplaced(system, found, centre, orientation):
-        found = _searched(system, time, centre, orientation, own) or found
+    if found is None or misplaced(system, found, centre, orientation) or _hollow_under(found, centre):
+        found = _searched(system, time, centre, orientation, own, found) or found
     if found is None or _is_beyond(system.support.surface, _own(found.support, found.point)):
         raise SolverError(
             f"At t = {float(time):.9g} s no point of the surface is nearest to the body, whose centre is at "
@@ -315,22 +315,21 @@ def misplaced(system: RollingSystem, contact: Contact, centre: Vector, orientati
     >>> misplaced(system, contact, Vector(0.0, 0.0, 0.3), still)
     ''
     >>> misplaced(system, contact, Vector(0.0, 0.0, 0.6), still)
-    'There the support is so hollow, and the body so high over it, that other points of it are nearer.'
+    'There the support is so hollow, or the body so high over it, that other points of it are as near.'
     """
     if _is_beyond(system.support.surface, _own(contact.support, contact.point)):
         return "There the support has ended."
     covered = system.body.shape.covers(-(orientation.matrix().transpose @ contact.normal))
-    if covered is not None and covered < -_AT_THE_EDGE:
+    if covered is not None and not covered > 0:
         return "There the body has a flat side or an edge towards the support, which its shape does not cover."
     if contact.flat:
         return ""
-    gap = (centre + contact.offset - contact.point).dot(contact.normal)
-    across = contact.across(gap)
+    across = contact.across(_gap(contact, centre))
     # Along n it is 1: the two others have the determinant as their product, and their sum is the trace less 1.
     around = sum(row[i] for i, row in enumerate(map(tuple, across.rows))) - 1.0
-    if across.determinant > 0 and around > 0:
+    if across.determinant > _SINGULAR and around > 0:
         return ""
-    return "There the support is so hollow, and the body so high over it, that other points of it are nearer."
+    return "There the support is so hollow, or the body so high over it, that other points of it are as near."
 
 
 def _is_beyond(surface: Surface, there: Vector) -> bool:
@@ -366,17 +365,31 @@ def _newton(
     return contact if left <= _CLOSE else None
 
 
+def _gap(contact: Contact, centre: Vector) -> float:
+    return float((centre + contact.offset - contact.point).dot(contact.normal))
+
+
+def _hollow_under(contact: Contact, centre: Vector) -> bool:
+    """Tell whether a body is over a support that bends up somehow, of which other points may be nearer."""
+    S = contact.shape_operator
+    (xx, xy, xz), (_, yy, yz), (_, _, zz) = S.rows
+    bends_up = xx + yy + zz < 0 or xx * yy + yy * zz + zz * xx < xy * xy + yz * yz + xz * xz
+    return bends_up and _gap(contact, centre) > _CLOSE * contact.offset.norm()
+
+
 def _searched(
-    system: RollingSystem, time: float, centre: Vector, orientation: Quaternion, own: tuple[Scalar, ...]
+    system: RollingSystem,
+    time: float,
+    centre: Vector,
+    orientation: Quaternion,
+    own: tuple[Scalar, ...],
+    known: Contact | None,
 ) -> Contact | None:
-    """Return the nearest of the contacts to which Newton's method leads from the likeliest points of the body."""
-    found = []
-    for point in _guesses(system, time, centre, orientation, own):
-        contact = _newton(system, time, centre, point, orientation, own)
-        if contact is not None and not misplaced(system, contact, centre, orientation):
-            gap = (centre + contact.offset - contact.point).dot(contact.normal)
-            found.append((abs(float(gap)), contact))
-    return min(found, key=lambda one: one[0], default=(0.0, None))[1]
+    """Return the nearest of the known contact and those to which Newton's method leads from other likely points."""
+    guesses = _guesses(system, time, centre, orientation, own)
+    led_to = (_newton(system, time, centre, point, orientation, own) for point in guesses)
+    found = [one for one in (known, *led_to) if one is not None and not misplaced(system, one, centre, orientation)]
+    return min(found, key=lambda contact: abs(_gap(contact, centre)), default=None)
 
 
 def _guesses(

@@ -11,7 +11,7 @@ from ..errors import InvalidValueError, did_you_mean
 from . import checks, fitting, straight
 from .algebra import Quaternion, Vector
 from .attitude import attitude
-from .contact import Contact, misplaced, touch
+from .contact import Contact, misplaced, settle, touch
 from .finiteness import check_finite
 from .motions import SupportState
 from .scalars import Scalar, is_zero
@@ -206,6 +206,12 @@ class Placing:
     def _check_over(self, contact: Contact, centre: Vector, q: Quaternion) -> None:
         """Refuse a height at which the body is no longer nearest to the place over which it is asked for."""
         elsewhere = misplaced(self.system, contact, centre, q)
+        if not elsewhere:
+            nearest = settle(self.system, self._now, centre, q, self._own)
+            gap, here = ((centre + at.offset - at.point).dot(at.normal) for at in (nearest, contact))
+            if gap < here - SLIP_TOLERANCE * contact.offset.norm():
+                shown = ", ".join(f"{part:.4g}" for part in nearest.point)
+                elsewhere = f"It is nearer to the support at ({shown}) m: {gap:.4g} m."
         if elsewhere:
             rule, remedy = "must leave the body nearest to `position`", "Put it lower, or over another place."
             raise InvalidValueError("height", rule, self.height, f"{elsewhere} {remedy}")
