@@ -24,7 +24,8 @@ _MOST_STEPS = 60  # of Newton's method, which needs five
 _CLOSE = 1e-9  # share of the lengths at hand to which it must have found the contact
 _ROUNDING = 1e-15
 _SINGULAR = 1e-6  # of det(1 + (C + g)S), at which a run ends
-_LOOKS, _GUESSES = 600, 20  # for a better first guess, and how many of them are followed
+_LOOKS, _GUESSES = 600, 6  # for a better first guess, and how many of them are followed
+_ALIKE = 0.9  # cosine of the angle between the normals of two that lead to the same
 
 
 @dataclass(frozen=True, slots=True)
@@ -386,7 +387,10 @@ def _searched(
     known: Contact | None,
 ) -> Contact | None:
     """Return the nearest of the known contact and those to which Newton's method leads from other likely points."""
-    guesses = _guesses(system, time, centre, orientation, own)
+    try:
+        guesses = _guesses(system, time, centre, orientation, own)
+    except (ArithmeticError, ValueError):  # outside a formula
+        guesses = []
     led_to = (_newton(system, time, centre, point, orientation, own) for point in guesses)
     found = [one for one in (known, *led_to) if one is not None and not misplaced(system, one, centre, orientation)]
     return min(found, key=lambda contact: abs(_gap(contact, centre)), default=None)
@@ -396,20 +400,25 @@ def _guesses(
     system: RollingSystem, time: float, centre: Vector, orientation: Quaternion, own: tuple[Scalar, ...]
 ) -> list[Vector]:
     """Return r + ρ(n) for those n, of many all around, that are nearest to the surface's normal there."""
-    support, found = system.support.motion.at(time, *own), []
-    for i in range(_LOOKS):
-        z, angle = 1.0 - (2 * i + 1) / _LOOKS, math.pi * (1.0 + math.sqrt(5.0)) * (i + 0.5)  # Fibonacci's lattice
-        across = math.sqrt(1.0 - z * z)
-        n = support.rotation @ Vector(across * math.cos(angle), across * math.sin(angle), z)
-        try:
-            point = centre + system.body.shape.contact(orientation.matrix(), n)[0]
-            if _is_beyond(system.support.surface, _own(support, point)):
-                continue
-            off = (support.rotation @ system.support.surface.normal(_own(support, point)) - n).norm()
-        except (ArithmeticError, ValueError):
-            continue
-        found.append((float(off), point))
-    return [point for _, point in sorted(found, key=lambda one: one[0])[:_GUESSES]]
+    import numpy as np
+
+    support, surface = system.support.motion.at(time, *own), system.support.surface
+    i = np.arange(_LOOKS)
+    z, angle = 1.0 - (2 * i + 1) / _LOOKS, math.pi * (1.0 + math.sqrt(5.0)) * (i + 0.5)  # Fibonacci's lattice
+    across = np.sqrt(1.0 - z * z)
+    n = support.rotation @ Vector(across * np.cos(angle), across * np.sin(angle), z)
+    with np.errstate(all="ignore"):
+        points = centre + system.body.shape.contact(orientation.matrix(), n)[0]
+        there = _own(support, points)
+        off = np.linalg.norm((support.rotation @ surface.normal(there)).array() - n.array(), axis=-1)
+        inside = surface.inside(there)
+        likely = np.isfinite(off) if inside is None else np.isfinite(off) & (np.asarray(inside) >= 0)
+    normals, places = n.array(), points.array()
+    kept: list[int] = []
+    for which in np.argsort(off).tolist():
+        if likely[which] and len(kept) < _GUESSES and (normals[kept] @ normals[which] < _ALIKE).all():
+            kept.append(which)
+    return [Vector(*places[which].tolist()) for which in kept]
 
 
 def _height(surface: Surface, there: Vector, n: Vector) -> Scalar:
