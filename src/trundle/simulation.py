@@ -10,7 +10,7 @@ from . import labels
 from .errors import InvalidValueError, ScenarioError
 from .mechanics import straight
 from .mechanics.algebra import Quaternion, Vector
-from .mechanics.contact import Contact, settle
+from .mechanics.contact import Contact, misplaced, settle
 from .mechanics.finiteness import check_finite
 from .mechanics.placing import no_gap, slips
 from .mechanics.system import RollingSystem, State
@@ -122,6 +122,11 @@ def _check_start(system: RollingSystem, start: State, until: float) -> None:
         raise InvalidValueError(
             "start.position", "must put the body on the support or over it", start.position, f"Gap: {gap:g} m."
         )
+    elsewhere = misplaced(system, contact, centre, q)
+    if elsewhere:
+        rule = "must have a point of the support that is nearest to the body, on a side that its shape covers"
+        remedy = f"{elsewhere} Let system.place(...) make the start, or turn or move the body."
+        raise InvalidValueError("start.position", rule, start.position, remedy)
     system.check_rim(contact, start.position)
     _check_loads(system, start, contact)
     if gap <= no_gap(contact, start.position):

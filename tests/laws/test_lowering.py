@@ -43,7 +43,7 @@ def numbers_of(law: Law, system: tr.RollingSystem) -> list[float]:
     """Return some state of a law, near the support."""
     contact = system.support.surface.point(0.11, -0.07)
     q = np.array([0.9, 0.2, -0.3, 0.1])
-    more = {"slipping": (0.3, -0.2, 0.1), "flight": (0.3, -0.2, 0.1, 0.02)}
+    more = {"slipping": (0.3, -0.2, 0.1), "flight": (0.3, -0.2, 0.1, 0.02, 0.13, -0.08, 0.21)}
     name = next(name for name, known in LAWS.items() if known is law)
     return [*contact, *(q / np.linalg.norm(q)), 1.3, -0.7, 2.1, *more.get(name, ())]
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,8 +12,10 @@ from scipy.spatial.transform import Rotation
 from tests.tolerances import EXACT, SOLVER
 
 import trundle as tr
-from trundle.mechanics.algebra import Vector
-from trundle.mechanics.shapes import Ellipsoid, Sphere, Torus
+from trundle.mechanics.algebra import Quaternion, Vector
+from trundle.mechanics.contact import settle
+from trundle.mechanics.shapes import Disc, Ellipsoid, Hemisphere, Sphere, Torus
+from trundle.solve.samples import FLIGHT
 
 PRINCIPAL = tr.Principal(0.003, 0.004, 0.005)
 BODIES = {
@@ -115,3 +118,83 @@ def test_a_body_slips_on_a_table_of_numbers_as_on_the_plane() -> None:
     start = TRAY.place((0.0, 0.0), (0.3, 0.0), angular_velocity=(0.0, 0.0, 0.0))
     run = tr.simulate(TRAY, start, 0.05, 0.05)
     assert abs(run.samples.velocity[-1, 0] - (0.3 - 0.1 * TRAY.gravity * 0.05)) <= SOLVER(10, 1e-12)
+
+
+# --- which point of the support is nearest ---------------------------------------------------------------
+
+ASIDE = Vector(0.02, -0.015, 0.01)  # of a shape of 1 cm: its centre of mass is outside it
+FLAT_OR_NOT = {
+    "half a sphere": Hemisphere(0.01, ASIDE),
+    "ball": Sphere(0.01, ASIDE),
+    "disc": Disc(0.01, ASIDE),
+    "torus": Torus(0.007, 0.003, ASIDE),
+}
+HOLLOW = {
+    "needle": (tr.Cone("0.36 deg"), (0.0, -0.0135)),
+    "narrow cone": (tr.Cone("5 deg"), (0.012, 0.006)),
+    "pipe": (tr.Cylinder(0.0135), ("40 deg", 0.0)),
+    "bowl": (tr.Bowl(0.0135), (0.003, 0.002)),
+}
+
+
+@pytest.mark.parametrize("shape", FLAT_OR_NOT)
+@pytest.mark.parametrize("hollow", HOLLOW)
+def test_what_is_put_down_touches_where_it_was_asked_for_or_is_refused(shape: str, hollow: str) -> None:
+    """In a support hardly wider than the body its centre of mass may be nearer to the other side, or beyond it."""
+    surface, place = HOLLOW[hollow]
+    body = tr.Body(0.01, tr.Principal(1e-6, 1.2e-6, 1.4e-6), FLAT_OR_NOT[shape])
+    system = tr.RollingSystem(body, tr.Support(surface, friction=0.2))
+    u, v = (math.radians(40.0), 0.0) if hollow == "pipe" else place
+    asked, begun = surface.point(u, v).array(), 0
+    for seed in range(12):
+        draw = np.random.default_rng(seed)
+        try:
+            start = system.place(place, orientation=tuple(draw.normal(size=4)))
+        except tr.InvalidValueError:
+            continue
+        contact = settle(system, 0.0, Vector(*start.position), Quaternion(*start.orientation))
+        assert np.abs(contact.point.array() - asked).max() <= SOLVER(10, 1e-13)
+        assert abs(np.linalg.norm(contact.centre.array() - start.position)) <= SOLVER(10, 1e-13)
+        begun += 1
+    assert begun > 0
+
+
+def test_half_a_sphere_in_a_needle_rolls_from_where_it_was_put() -> None:
+    body = tr.Body.hemisphere(0.012856, density=620.463, centre=(-0.0259989, -0.0218652, -0.0156239))
+    needle = tr.RollingSystem(body, tr.Support(tr.Cone(0.00625451), friction=0.161795))
+    start = needle.place((0.0, -0.013479), spin=0.0, attitude=(-0.038595, -0.0463211, "-90 deg"))
+    run = tr.simulate(needle, start, 0.2, 0.01)
+    assert run.samples.phase[0] != FLIGHT
+    assert np.abs(run.samples.contact[0] - needle.support.surface.point(0.0, -0.013479).array()).max() <= 1e-13
+    assert run.card().passed, str(run.card())
+
+
+@pytest.mark.parametrize(
+    ("surface", "place", "most"),
+    [
+        (tr.Bowl(0.5), (0.1, 0.0), 0.4),  # up to the middle: R − a
+        (tr.Cylinder(0.5), (0.0, 0.0), 0.4),
+        (tr.Cone("45 deg"), (0.3, 0.0), 0.3 * math.sqrt(2) - 0.1),  # up to the axis
+    ],
+    ids=["bowl", "pipe", "funnel"],
+)
+def test_a_height_at_which_another_side_is_nearer_is_refused(surface: Any, place: Any, most: float) -> None:
+    system = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(surface, friction=0.1))
+    start = system.place(place, height=0.99 * most)
+    at = tr.simulate(system, start, 0.01, 0.001, method="runge-kutta").samples
+    assert at.phase[0] == FLIGHT
+    assert np.abs(at.contact[0] - surface.point(*place).array()).max() <= SOLVER(100, 1e-13)
+    for height in (1.01 * most, 1.5 * most):
+        with pytest.raises(tr.InvalidValueError, match=r"`height` must leave the body nearest.*got .*Put it lower"):
+            system.place(place, height=height)
+
+
+@pytest.mark.parametrize("turn", [math.pi / 2 + 1e-6, 2.0, math.pi])
+def test_a_body_over_its_flat_side_is_refused(turn: float) -> None:
+    floor = tr.RollingSystem(tr.Body.hemisphere(0.1, 1.0), tr.Support(tr.Plane(), friction=0.1))
+    over = floor.place(height=0.3)
+    turned = replace(over, orientation=(math.cos(turn / 2), math.sin(turn / 2), 0.0, 0.0))
+    with pytest.raises(tr.InvalidValueError, match=r"start.position.*got .*flat side.*turn or move the body"):
+        tr.simulate(floor, turned, 0.1, 0.01)
+    with pytest.raises(tr.InvalidValueError, match=r"orientation.*got .*turn it"):
+        floor.place(height=0.3, orientation=turned.orientation)

@@ -97,22 +97,22 @@ LANDINGS = (
     Mutant(
         "landing: slip does not turn",
         IMPACT,
-        "np.array([along, aside / y[0], up, y[2], *direction, self.mu * y[0]])",
-        "np.array([along, 0.0, up, y[2], *direction, self.mu * y[0]])",
+        "np.array([along, aside / y[0], up, y[2], self.mu * y[0]])",
+        "np.array([along, 0.0, up, y[2], self.mu * y[0]])",
         BOUNCES,
     ),
     Mutant(
         "landing: slip turns the other way",
         IMPACT,
-        "np.array([along, aside / y[0], up, y[2], *direction, self.mu * y[0]])",
-        "np.array([along, -aside / y[0], up, y[2], *direction, self.mu * y[0]])",
+        "np.array([along, aside / y[0], up, y[2], self.mu * y[0]])",
+        "np.array([along, -aside / y[0], up, y[2], self.mu * y[0]])",
         BOUNCES,
     ),
     Mutant(
         "landing: Stronge's work 1 % off",
         IMPACT,
-        "np.array([along, aside / y[0], up, y[2], *direction, self.mu * y[0]])",
-        "np.array([along, aside / y[0], up, 1.01 * y[2] + 0.01, *direction, self.mu * y[0]])",
+        "np.array([along, aside / y[0], up, y[2], self.mu * y[0]])",
+        "np.array([along, aside / y[0], up, 1.01 * y[2] + 0.01, self.mu * y[0]])",
         BOUNCES,
     ),
     Mutant(

@@ -167,6 +167,20 @@ PHASES = (
         "ball_on_rocking_table",
     ),
     Mutant(
+        "flight: r moves a millionth too fast",
+        LAWS,
+        "moving = (*now.acceleration, now.gap_rate, *rest[:3])",
+        "moving = (*now.acceleration, now.gap_rate, *(part * (1 + 1e-6) for part in rest[:3]))",
+        AIR,
+    ),
+    Mutant(
+        "landing: put down a nanometre over the support",
+        FOLLOWING,
+        "return _struck(system, at.over(0.0))",
+        "return _struck(system, at.over(1e-9))",
+        "ball_bounces",
+    ),
+    Mutant(
         "flight recorded with a force",
         LAWS,
         "Omega, q, np.zeros_like(p), phase=phase, own=own)",

@@ -23,7 +23,9 @@ if TYPE_CHECKING:
 _MOST_STEPS = 60  # of Newton's method, which needs five
 _CLOSE = 1e-9  # share of the lengths at hand to which it must have found the contact
 _ROUNDING = 1e-15
-_LOOKS = 600  # for a better first guess
+_SINGULAR = 1e-6  # of det(1 + (C + g)S), at which a run ends
+_LOOKS, _GUESSES = 600, 6  # for a better first guess, and how many of them are followed
+_ALIKE = 0.9  # cosine of the angle between the normals of two that lead to the same
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,6 +191,56 @@ def _own(support: SupportState, point: Vector) -> Vector:
     return support.rotation.transpose @ (point - support.origin)
 
 
+def nearest(
+    system: RollingSystem,
+    time: Scalar,
+    point: Vector,
+    centre: Vector,
+    orientation: Quaternion,
+    own: tuple[Scalar, ...] = (),
+) -> Contact:
+    """Return the geometry at the support's point nearest to a body, from a point next to it, by one of Newton's steps.
+
+    Parameters
+    ----------
+    system, time, orientation, own
+        As for `touch`.
+    point : Vector
+        p in the inertial support frame, m, off by so little that its square is rounding.
+    centre : Vector
+        r, m.
+
+    Returns
+    -------
+    Contact
+        As of `settle`, which wants no point to begin with.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> bowl = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Bowl(0.5)))
+    >>> still, off = Quaternion(1.0, 0.0, 0.0, 0.0), Vector(1e-9, 0.0, 2e-9)
+    >>> bool(nearest(bowl, 0.0, off, Vector(0.0, 0.0, 0.3), still).point.norm() < 1e-16)
+    True
+    """
+    contact = touch(system, time, point, orientation, own)
+    _, aside, down = _beside(system, contact, centre)
+    return touch(system, time, point + aside + down, orientation, own)
+
+
+def _beside(
+    system: RollingSystem, contact: Contact, centre: Vector, *, bent: bool = True
+) -> tuple[Vector, Vector, Vector]:
+    """Return how far the body's point is aside of the support's, and Newton's step along the support and off it."""
+    n, support = contact.normal, contact.support
+    apart = centre + contact.offset - contact.point
+    gap = n.dot(apart)
+    off = apart - n * gap
+    down = n * -_height(system.support.surface, _own(support, contact.point), support.rotation.transpose @ n)
+    # The normal leans by S along the support, and ρ follows it by C.
+    return off, contact.across(gap).solve(off) if bent and not contact.flat else off, down
+
+
 def settle(
     system: RollingSystem, time: float, centre: Vector, orientation: Quaternion, own: tuple[Scalar, ...] = ()
 ) -> Contact:
@@ -226,18 +278,59 @@ def settle(
     >>> settle(system, 0.0, Vector(0.4, 0.0, 0.0), Quaternion(1.0, 0.0, 0.0, 0.0)).point
     Vector(x=0.5, y=0.0, z=0.0)
     """
-    surface = system.support.surface
     # The normal at the centre is already that at the contact for a sphere over a surface of constant curvature.
     found = _newton(system, time, centre, centre, orientation, own)
-    if found is None or _is_beyond(surface, _own(found.support, found.point)):
-        guess = _guess(system, time, centre, orientation, own)
-        found = None if guess is None else _newton(system, time, centre, guess, orientation, own)
-    if found is None or _is_beyond(surface, _own(found.support, found.point)):
+    if found is None or misplaced(system, found, centre, orientation) or _hollow_under(found, centre):
+        found = _searched(system, time, centre, orientation, own, found) or found
+    if found is None or _is_beyond(system.support.surface, _own(found.support, found.point)):
         raise SolverError(
             f"At t = {float(time):.9g} s no point of the surface is nearest to the body, whose centre is at "
             f"({', '.join(f'{float(part):.4g}' for part in centre)}) m. Does the surface reach there, and smoothly?"
         )
     return found
+
+
+def misplaced(system: RollingSystem, contact: Contact, centre: Vector, orientation: Quaternion) -> str:
+    """Say why a point straight under a body is not where it is nearest to the support; empty where it is.
+
+    Parameters
+    ----------
+    system, centre, orientation
+        As for `settle`.
+    contact : Contact
+        The geometry there.
+
+    Returns
+    -------
+    str
+        A sentence.
+
+    Examples
+    --------
+    A ball high over one side of a bowl is nearer to the other:
+
+    >>> import trundle as tr
+    >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Bowl(0.5)))
+    >>> still = Quaternion(1.0, 0.0, 0.0, 0.0)
+    >>> contact = touch(system, 0.0, Vector(0.0, 0.0, 0.0), still)
+    >>> misplaced(system, contact, Vector(0.0, 0.0, 0.3), still)
+    ''
+    >>> misplaced(system, contact, Vector(0.0, 0.0, 0.6), still)
+    'There the support is so hollow, or the body so high over it, that other points of it are as near.'
+    """
+    if _is_beyond(system.support.surface, _own(contact.support, contact.point)):
+        return "There the support has ended."
+    covered = system.body.shape.covers(-(orientation.matrix().transpose @ contact.normal))
+    if covered is not None and not covered > 0:
+        return "There the body has a flat side or an edge towards the support, which its shape does not cover."
+    if contact.flat:
+        return ""
+    across = contact.across(_gap(contact, centre))
+    # Along n it is 1: the two others have the determinant as their product, and their sum is the trace less 1.
+    around = sum(row[i] for i, row in enumerate(map(tuple, across.rows))) - 1.0
+    if across.determinant > _SINGULAR and around > 0:
+        return ""
+    return "There the support is so hollow, or the body so high over it, that other points of it are as near."
 
 
 def _is_beyond(surface: Surface, there: Vector) -> bool:
@@ -255,19 +348,13 @@ def _newton(
     own: tuple[Scalar, ...],
 ) -> Contact | None:
     """Return the contact to which Newton's method leads from a first guess at p; None where it leads nowhere."""
-    surface, last = system.support.surface, math.inf
+    last = math.inf
     try:
         contact = touch(system, time, point, orientation, own)
         for step in range(_MOST_STEPS):
-            support = contact.support
-            apart = centre + contact.offset - point
-            gap = contact.normal.dot(apart)
-            aside = apart - contact.normal * gap
-            down = contact.normal * -_height(surface, _own(support, point), support.rotation.transpose @ contact.normal)
+            off, aside, down = _beside(system, contact, centre, bent=step > 0)
             size = point.norm() + contact.offset.norm()
-            left = max(aside.norm(), down.norm()) / size
-            if step > 0:  # Newton's: the normal leans by S along the support, and ρ follows it by C
-                aside = contact.across(gap).solve(aside)
+            left = max(off.norm(), down.norm()) / size
             point = point + aside + down
             contact = touch(system, time, point, orientation, own)
             # What is left now is less by as much again; or it was rounding.
@@ -279,31 +366,65 @@ def _newton(
     return contact if left <= _CLOSE else None
 
 
-def _guess(
+def _gap(contact: Contact, centre: Vector) -> float:
+    return float((centre + contact.offset - contact.point).dot(contact.normal))
+
+
+def _hollow_under(contact: Contact, centre: Vector) -> bool:
+    """Tell whether a body is over a support that bends up somehow, of which other points may be nearer."""
+    S = contact.shape_operator
+    (xx, xy, xz), (_, yy, yz), (_, _, zz) = S.rows
+    bends_up = xx + yy + zz < 0 or xx * yy + yy * zz + zz * xx < xy * xy + yz * yz + xz * xz
+    return bends_up and _gap(contact, centre) > _CLOSE * contact.offset.norm()
+
+
+def _searched(
+    system: RollingSystem,
+    time: float,
+    centre: Vector,
+    orientation: Quaternion,
+    own: tuple[Scalar, ...],
+    known: Contact | None,
+) -> Contact | None:
+    """Return the nearest of the known contact and those to which Newton's method leads from other likely points."""
+    try:
+        guesses = _guesses(system, time, centre, orientation, own)
+    except (ArithmeticError, ValueError):  # outside a formula
+        guesses = []
+    led_to = (_newton(system, time, centre, point, orientation, own) for point in guesses)
+    found = [one for one in (known, *led_to) if one is not None and not misplaced(system, one, centre, orientation)]
+    return min(found, key=lambda contact: abs(_gap(contact, centre)), default=None)
+
+
+def _guesses(
     system: RollingSystem, time: float, centre: Vector, orientation: Quaternion, own: tuple[Scalar, ...]
-) -> Vector | None:
-    """Return r + ρ(n) for the n, of many all around, that is nearest to the surface's normal there."""
-    support, best = system.support.motion.at(time, *own), None
-    for i in range(_LOOKS):
-        z, angle = 1.0 - (2 * i + 1) / _LOOKS, math.pi * (1.0 + math.sqrt(5.0)) * (i + 0.5)  # Fibonacci's lattice
-        across = math.sqrt(1.0 - z * z)
-        n = support.rotation @ Vector(across * math.cos(angle), across * math.sin(angle), z)
-        try:
-            point = centre + system.body.shape.contact(orientation.matrix(), n)[0]
-            if _is_beyond(system.support.surface, _own(support, point)):
-                continue
-            off = (support.rotation @ system.support.surface.normal(_own(support, point)) - n).norm()
-        except (ArithmeticError, ValueError):
-            continue
-        if best is None or off < best[0]:
-            best = off, point
-    return None if best is None else best[1]
+) -> list[Vector]:
+    """Return r + ρ(n) for those n, of many all around, that are nearest to the surface's normal there."""
+    import numpy as np
+
+    support, surface = system.support.motion.at(time, *own), system.support.surface
+    i = np.arange(_LOOKS)
+    z, angle = 1.0 - (2 * i + 1) / _LOOKS, math.pi * (1.0 + math.sqrt(5.0)) * (i + 0.5)  # Fibonacci's lattice
+    across = np.sqrt(1.0 - z * z)
+    n = support.rotation @ Vector(across * np.cos(angle), across * np.sin(angle), z)
+    with np.errstate(all="ignore"):
+        points = centre + system.body.shape.contact(orientation.matrix(), n)[0]
+        there = _own(support, points)
+        off = np.linalg.norm((support.rotation @ surface.normal(there)).array() - n.array(), axis=-1)
+        inside = surface.inside(there)
+        likely = np.isfinite(off) if inside is None else np.isfinite(off) & (np.asarray(inside) >= 0)
+    normals, places = n.array(), points.array()
+    kept: list[int] = []
+    for which in np.argsort(off).tolist():
+        if likely[which] and len(kept) < _GUESSES and (normals[kept] @ normals[which] < _ALIKE).all():
+            kept.append(which)
+    return [Vector(*places[which].tolist()) for which in kept]
 
 
-def _height(surface: Surface, there: Vector, n: Vector) -> float:
+def _height(surface: Surface, there: Vector, n: Vector) -> Scalar:
     """Return about how far a point is over the surface along n, m: φ over its slope."""
     level, step = surface.level(there), 1e-6 * (there.norm() + 1e-6)
-    return float(2 * step * level / (surface.level(there + n * step) - surface.level(there - n * step)))
+    return 2 * step * level / (surface.level(there + n * step) - surface.level(there - n * step))
 
 
 def roll(

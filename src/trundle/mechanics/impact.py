@@ -281,7 +281,7 @@ class _Course:
             direction = np.array([*(-self.mu * hat), 1.0])
             first, second, up = M @ direction
             along, aside = hat[0] * first + hat[1] * second, hat[0] * second - hat[1] * first
-            return unit * np.array([along, aside / y[0], up, y[2], *direction, self.mu * y[0]])
+            return unit * np.array([along, aside / y[0], up, y[2], self.mu * y[0]])
 
         ends = [lambda _, y: y[0] - least]
         ends.append((lambda _, y: y[2]) if self.aim is None else (lambda _, y: y[3] - self.aim))
@@ -289,8 +289,8 @@ class _Course:
             end.terminal, end.direction = True, direction  # type: ignore[attr-defined]
         far = 100 * size / float(np.linalg.eigvalsh(M)[0])
         first, second, up = self.slip
-        y0 = np.array([sigma, math.atan2(second, first), up, self.work, 0.0, 0.0, 0.0, self.taken])
-        scale = np.array([size, 1.0, size, size * far, far, far, far, (sigma / size) ** 2 * size * far])
+        y0 = np.array([sigma, math.atan2(second, first), up, self.work, self.taken])
+        scale = np.array([size, 1.0, size, size * far, (sigma / size) ** 2 * size * far])
         found = solve_ivp(rates, (0.0, far / unit), y0, method="DOP853", rtol=1e-12, atol=1e-14 * scale, events=ends)
         if found.status != 1:
             raise SolverError("A landing does not end: friction and the body's shape jam it. Use less friction.")
@@ -299,11 +299,11 @@ class _Course:
         if stopped:
             y = y - y[0] / rates(0.0, y)[0] * rates(0.0, y)  # straight on to σ = 0
         sigma, beta, up, work = y[:4].tolist()
-        self.taken = float(y[7])
+        before, self.taken = self.slip, float(y[4])
         if stopped:
             self.slip, self.work = Vector(0.0, 0.0, up), work
         elif self.aim is None:
             self.slip, self.work = Vector(sigma * math.cos(beta), sigma * math.sin(beta), 0.0), work
         else:
             self.slip, self.work = Vector(sigma * math.cos(beta), sigma * math.sin(beta), up), self.aim
-        return Vector(*y[4:7].tolist())
+        return self.M.solve(self.slip - before)  # added up it would have fewer digits: ŝ turns fast where slip ends

@@ -11,7 +11,7 @@ from ..errors import InvalidValueError, did_you_mean
 from . import checks, fitting, straight
 from .algebra import Quaternion, Vector
 from .attitude import attitude
-from .contact import Contact, touch
+from .contact import Contact, misplaced, settle, touch
 from .finiteness import check_finite
 from .motions import SupportState
 from .scalars import Scalar, is_zero
@@ -70,6 +70,8 @@ class Placing:
         Omega = self._following_turning(contact, V) if turning is None else turning
         self._check_no_slip(contact, V, Omega, gap)
         centre = contact.centre + contact.normal * gap
+        if gap > 0:
+            self._check_over(contact, centre, q)
         start = State(_triple(centre), _triple(V), _triple(Omega), tuple(q), time, tuple(map(float, own)))
         straight.check_start(system, start)
         return start
@@ -200,6 +202,19 @@ class Placing:
             f"Where {most:.3g} m/s are asked for it would have to move at {float(follows.norm()):.3g} m/s to roll. Let "
             "it stand up more, or give all three components of `velocity`, and `angular_velocity`.",
         )
+
+    def _check_over(self, contact: Contact, centre: Vector, q: Quaternion) -> None:
+        """Refuse a height at which the body is no longer nearest to the place over which it is asked for."""
+        elsewhere = misplaced(self.system, contact, centre, q)
+        if not elsewhere:
+            nearest = settle(self.system, self._now, centre, q, self._own)
+            gap, here = ((centre + at.offset - at.point).dot(at.normal) for at in (nearest, contact))
+            if gap < here - SLIP_TOLERANCE * contact.offset.norm():
+                shown = ", ".join(f"{part:.4g}" for part in nearest.point)
+                elsewhere = f"It is nearer to the support at ({shown}) m: {gap:.4g} m."
+        if elsewhere:
+            rule, remedy = "must leave the body nearest to `position`", "Put it lower, or over another place."
+            raise InvalidValueError("height", rule, self.height, f"{elsewhere} {remedy}")
 
     def _check_no_slip(self, contact: Contact, V: Vector, Omega: Vector, gap: float) -> None:
         """Refuse a start that slips where nothing says how rough the support is."""

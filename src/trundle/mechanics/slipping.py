@@ -1,7 +1,7 @@
 """Slipping and flight, for every body, support and scalar: theory page, equation T4.
 
-Slipping, the state gains the slip velocity s, and friction is f = −μ N ŝ. In flight nothing touches: what is carried
-along then is the support's point nearest to the body, and the gap between them.
+Slipping, the state gains the slip velocity s, and friction is f = −μ N ŝ. In flight nothing touches: the centre of mass
+moves by itself, and the support's point nearest to the body and the gap between them are carried along.
 """
 
 from __future__ import annotations
@@ -75,7 +75,6 @@ class Flying:
     """Rates of the state of a body that touches nothing, in the inertial support frame."""
 
     contact: Contact
-    centre: Vector  # r, m
     point_rate: Vector  # ṗ, m/s
     orientation_rate: Quaternion  # 1/s
     angular_acceleration: Vector  # Ω̇, rad/s²
@@ -319,12 +318,16 @@ def fly(
     time: Scalar,
     point: Vector,
     gap: Scalar,
+    centre: Vector,
     orientation: Quaternion,
     angular_velocity: Vector,
     velocity: Vector,
     own: tuple[Scalar, ...] = (),
 ) -> Flying:
-    """Return the rates of (p, g, q, Ω, V) of a body that touches nothing.
+    """Return the rates of (p, g, q, Ω, V) of a body that touches nothing; that of r is V.
+
+    Neither the point nor the gap has a part in how the body moves: where they lose digits, as at a shape's edge or by
+    a cone's apex, it does not.
 
     Parameters
     ----------
@@ -336,6 +339,8 @@ def fly(
         p, the support's point nearest to the body, in the inertial support frame, m.
     gap : Scalar
         g, from p to the body's nearest point p + g n, m.
+    centre : Vector
+        r, the centre of mass, m.
     orientation : Quaternion
         Body frame to support frame.
     angular_velocity, velocity : Vector
@@ -352,17 +357,17 @@ def fly(
     --------
     >>> import trundle as tr
     >>> floor = tr.RollingSystem(tr.Body.solid_sphere(0.1, 7.0), tr.Support(tr.Plane()), gravity=10.0)
-    >>> now = fly(floor, 0.0, ZERO, 0.5, Quaternion(1.0, 0.0, 0.0, 0.0), ZERO, Vector(1.0, 0.0, -2.0))
-    >>> now.gap_rate, now.acceleration.z, now.centre.z
-    (-2.0, -10.0, 0.6)
+    >>> centre, down = Vector(0.0, 0.0, 0.6), Vector(1.0, 0.0, -2.0)
+    >>> now = fly(floor, 0.0, ZERO, 0.5, centre, Quaternion(1.0, 0.0, 0.0, 0.0), ZERO, down)
+    >>> now.gap_rate, now.acceleration.z
+    (-2.0, -10.0)
     """
     m, Omega, V = system.body.mass, angular_velocity, velocity
     contact = touch(system, time, point, orientation, own)
     n = contact.normal
     s = contact.slip_velocity(V, Omega)
     p_rate, _ = contact.rates(s, Omega, V, gap)
-    centre = contact.centre + n * gap
     acting = system.acting_on(BodyMotion(time, m, centre, V, orientation, Omega))
     Q = orientation.matrix()
     turned = system.body.inertia_in_space(Q).solve(acting.torque - system.body.gyroscopic(Q, Omega))
-    return Flying(contact, centre, p_rate, orientation.rate(Omega), turned, acting.force / m, n.dot(s))
+    return Flying(contact, p_rate, orientation.rate(Omega), turned, acting.force / m, n.dot(s))

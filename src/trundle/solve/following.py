@@ -132,7 +132,8 @@ def after(system: RollingSystem, law: Law, stop: Stop) -> Next:
         floor = (_FLOOR * at.forces(system),) * law.weightless
         return Next(law, at.state, list(stop.numbers), (*floor, *_extras(system, law, at, stop.numbers)))
     if name == "land":
-        return _struck(system, at)
+        # The gap and r may differ by rounding. The gap has said when; r gives way, or each bounce would add its share.
+        return _struck(system, at.over(0.0))
     if name == "settled":
         return slipping(system, Next.of(law, at))
     if isinstance(law, CreepingLaw) and name == "turned":
@@ -259,10 +260,7 @@ def spins_on(system: RollingSystem, law: Law, stop: Stop) -> bool:
 
 
 def _fly(at: Touch, gap: float | None = None, events: tuple[Event, ...] = ()) -> Next:
-    now = Next.of(FlightLaw(), at, (), events)
-    if gap is not None:
-        now.numbers[13] = gap
-    return now
+    return Next.of(FlightLaw(), at if gap is None else at.over(gap), (), events)
 
 
 def _lifted(system: RollingSystem, at: Touch) -> Next:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..mechanics.algebra import ZERO, Quaternion, Vector
-from ..mechanics.contact import Contact, Rolling, roll, touch
+from ..mechanics.contact import Contact, Rolling, nearest, roll, touch
 from ..mechanics.loads import BodyMotion
 from ..mechanics.scalars import Scalar, is_zero
 from ..mechanics.slipping import Flying, Slipping, fly, slip, slip_direction, unturned
@@ -106,7 +106,7 @@ class Law:
         """Return the body that is meant by its numbers."""
         p, q, Omega, rest, own = self.split([float(number) for number in numbers])
         q = Quaternion(*(part / math.hypot(*q) for part in q))
-        contact = touch(system, time, p, q, own)
+        contact = self._contact(system, time, p, q, rest, own)
         Omega = self._turns(contact, Omega)
         centre, V = self._moves(contact, Omega, rest)
         s = self._slip(system, time, numbers)
@@ -114,6 +114,18 @@ class Law:
             State(floats(centre), floats(V if s is None else V + s), floats(Omega), tuple(q), time, own), contact
         )
         return at if s is None else replace(at, slip=s)
+
+    def _contact(
+        self,
+        system: RollingSystem,
+        time: Scalar,
+        p: Vector,
+        q: Quaternion,
+        rest: Numbers,  # noqa: ARG002
+        own: tuple[Scalar, ...],
+    ) -> Contact:
+        """Return the geometry of touch, or where the body is nearest to the support."""
+        return touch(system, time, p, q, own)
 
     def _moves(self, contact: Contact, Omega: Vector, rest: Numbers) -> tuple[Vector, Vector]:  # noqa: ARG002
         """Return the centre of mass and its velocity, slip apart, which rolling gives unless the phase adds to it."""
@@ -335,21 +347,26 @@ class SlidingFreely(SlippingLaw):
 
 
 class FlightLaw(Law):
-    """Nothing touches: the state is (p, q, Ω, V, g), p being the support's point nearest to the body, g the gap."""
+    """Nothing touches: the state is (p, q, Ω, V, g, r), p being the support's point nearest to the body, g the gap.
+
+    The body is where r is. Where its shape ends, or by the apex of a cone, p loses digits of which r − ρ + g n would
+    have as few; p and g only say what is near, and when it lands.
+    """
 
     code = FLIGHT
-    variables = (*CONTACT, "V_x", "V_y", "V_z", "g")
+    variables = (*CONTACT, "V_x", "V_y", "V_z", "g", "r_x", "r_y", "r_z")
 
     def _now(self, system: RollingSystem, time: Scalar, state: Numbers) -> Flying:
         p, q, Omega, rest, own = self.split(state)
-        return fly(system, time, p, rest[3], q, Omega, Vector(*rest[:3]), own)
+        return fly(system, time, p, rest[3], Vector(*rest[4:]), q, Omega, Vector(*rest[:3]), own)
 
     def rates(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:
-        """Return ṗ, q̇, Ω̇, V̇, ġ."""
-        now = self._now(system, time, state)
-        own = system.support.motion.own_rates(time, self.split(state)[4], 0.0)
+        """Return ṗ, q̇, Ω̇, V̇, ġ and ṙ = V."""
+        now, (*_, rest, own) = self._now(system, time, state), self.split(state)
+        own_rates = system.support.motion.own_rates(time, own, 0.0)
         turning = now.angular_acceleration
-        return [*now.point_rate, *now.orientation_rate, *turning, *now.acceleration, now.gap_rate, *own]
+        moving = (*now.acceleration, now.gap_rate, *rest[:3])
+        return [*now.point_rate, *now.orientation_rate, *turning, *moving, *own_rates]
 
     def stops(self, system: RollingSystem, time: Scalar, state: Numbers, extras: Numbers) -> dict[str, Scalar]:  # noqa: ARG002
         """Return the gap and the bounds."""
@@ -358,11 +375,17 @@ class FlightLaw(Law):
         return {"land": rest[3], **self._bounds(system, contact, q, rest[3])}
 
     def numbers(self, at: Touch) -> list[float]:
-        """Return the nearest point, q, Ω, V and the gap."""
-        return [*at.contact.point, *at.orientation, *at.Omega, *at.V, at.gap, *at.state.support]
+        """Return the nearest point, q, Ω, V, the gap and r."""
+        return [*at.contact.point, *at.orientation, *at.Omega, *at.V, at.gap, *at.state.position, *at.state.support]
+
+    def _contact(
+        self, system: RollingSystem, time: Scalar, p: Vector, q: Quaternion, rest: Numbers, own: tuple[Scalar, ...]
+    ) -> Contact:
+        """Return the geometry where the body that is at r is nearest: p is beside that by what it has lost."""
+        return nearest(system, time, p, Vector(*rest[4:]), q, own)
 
     def _moves(self, contact: Contact, Omega: Vector, rest: Numbers) -> tuple[Vector, Vector]:  # noqa: ARG002
-        return contact.centre + contact.normal * rest[3], Vector(*rest[:3])
+        return Vector(*rest[4:]), Vector(*rest[:3])
 
     def _slip(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array) -> None:  # noqa: ARG002
         return None
@@ -370,11 +393,10 @@ class FlightLaw(Law):
     def record(self, system: RollingSystem, time: Array, states: Array) -> Samples:
         """Complete the state of a flight; nothing pushes then."""
         p, q, Omega, own = _columns(states, len(self.variables))
-        columns = list(states.T)
-        columns[3:7] = q.T
-        (centre,) = _arrays(p, self._now(system, time, columns).centre)
-        phase = _phase(time, self.code)
-        return Samples(time, centre, p, states[:, 10:13].copy(), Omega, q, np.zeros_like(p), phase=phase, own=own)
+        rest = states[:, 10 : len(self.variables)].copy()
+        contact = self._contact(system, time, Vector.of(p), Quaternion.of(q), list(rest.T), tuple(own.T))
+        (point,), phase = _arrays(p, contact.point), _phase(time, self.code)
+        return Samples(time, rest[:, 4:], point, rest[:, :3], Omega, q, np.zeros_like(p), phase=phase, own=own)
 
 
 class RestingLaw(Law):

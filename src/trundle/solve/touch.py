@@ -71,6 +71,11 @@ class Touch:
             return Touch.at(state, self.contact)
         return Touch.of(system, state, self.contact.point)
 
+    def over(self, gap: float) -> Touch:
+        """Return the body moved along the normal until it is so far over the support, m."""
+        centre = self.contact.centre + self.contact.normal * gap
+        return replace(self, state=replace(self.state, position=floats(centre)), gap=gap)
+
     def scale(self, system: RollingSystem) -> float:
         """Return a speed of this motion: the fastest at the contact, or what all that acts makes of it, m/s."""
         motion = self.contact.body_motion(system.body.mass, self.state.time, self.V, self.orientation, self.Omega)

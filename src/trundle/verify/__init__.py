@@ -143,7 +143,8 @@ def _before(start: State, at: Samples) -> Samples:
 
 def _integrals(system: RollingSystem, at: Samples, method: Method) -> Iterator[CardFigure]:
     """Check each first integral over every stretch of a phase that it survives."""
-    at = before_a_singular_end(at)  # where a rounding of the place is no longer one of the rest
+    if at.phase[-1] != FLIGHT:  # where it touches, a rounding of the place is no longer one of the rest
+        at = before_a_singular_end(at)
     bound, phases = bound_of(method, turned_in(at)), set()
     worst: dict[str, tuple[float, Any, set[str]]] = {}
     for part, phase in _runs_of_a_phase(at):

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import touch
+from ..mechanics.contact import Contact, touch
 from ..mechanics.system import RollingSystem
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
 from .bounds import EXACT, Array, largest, speed_of
@@ -119,10 +119,15 @@ class EachSample:
         return self.at.normals(self.system)
 
     @cached_property
+    def _touch(self) -> Contact:
+        """The geometry at each p."""
+        at, q = self.at, Quaternion.of(self.at.orientation)
+        return touch(self.system, at.time, Vector.of(at.contact), q, at.support_own)
+
+    @cached_property
     def apart(self) -> tuple[Array, Array]:
         """From p to the point of the body whose normal is −n, m; and how high p is over the surface, m."""
-        at, q = self.at, Quaternion.of(self.at.orientation)
-        contact = touch(self.system, at.time, Vector.of(at.contact), q, at.support_own)
+        at, contact = self.at, self._touch
         offset = np.broadcast_to(contact.offset.array(), at.position.shape)
         support, surface = contact.support, self.system.support.surface
         back = support.rotation.transpose
@@ -142,7 +147,7 @@ class EachSample:
         """Check that the body touches where it is said to, and is over the support where not."""
         apart, height = self.apart
         gap = (apart * self.normals).sum(axis=1)
-        aside = np.linalg.norm(apart - gap[:, None] * self.normals, axis=1)
+        aside = self._aside(apart, gap)
         size = largest(self.at.contact - self.at.position) + largest(self.at.contact)
         conditions = [
             Shares("the contact is on the surface", np.abs(height) / size, self.bound),
@@ -152,6 +157,21 @@ class EachSample:
         ]
         over = f"; in flight the gap is {gap[self.flies].max():.3g} m at most" if self.flies.any() else ""
         return worst_of("touches the support", conditions, self.at.time, f"gap, share of the size{over}")
+
+    def _aside(self, apart: Array, gap: Array) -> Array:
+        """Return how far the two points are beside each other, m; in flight no more than how far p is beside its place.
+
+        Where a shape ends, or by a cone's apex, the last digit of p moves the body's point by a million of its own.
+        While they touch, that moves the body along.
+        """
+        along = apart - gap[:, None] * self.normals
+        aside = np.linalg.norm(along, axis=1)
+        if not self.flies.any() or self._touch.flat:
+            return aside
+        with np.errstate(all="ignore"):
+            moved = self._touch.across(np.where(self.flies, gap, 0.0)).solve(Vector.of(along))
+            off = np.linalg.norm(np.broadcast_to(moved.array(), along.shape), axis=1)
+        return np.where(self.flies, np.fmin(aside, off), aside)
 
     def _ends(self, size: float) -> Iterator[Shares]:
         """Yield how far a body is beyond the rim, the surface's end, or what its shape covers."""
