@@ -68,9 +68,6 @@ def left_open(one: Comparison, weights: Weights, theirs: Theirs, at: Motion, pla
         bias = bias + np.abs(weights.mean((gain * at.estimates[part].bias)[place]))
     if one.which is not None:
         bias = bias + np.abs(weights.mean(reacts.curvature_at(one.which, at.time)[place]))
-    if one.array in theirs.doubts:  # it turns with Ω as the body does
-        most = float(np.linalg.norm(getattr(theirs, one.array), axis=1).max())
-        bias = bias + (theirs.doubts[one.array] * most)[at.index][place].mean(axis=1)
     return Open(spread, by_chance, bias, min(at.estimates[name].freedom for name in noise))
 
 
@@ -113,9 +110,18 @@ def seen(
     f = one.rate(at, rates)[place]
     mismatch, change = weights.mismatch(getattr(theirs, one.array), f)
     bias = open_.bias + np.maximum(change - _BEYOND * np.sqrt(f.shape[-1]) * open_.by_chance, 0.0)
+    if one.array in theirs.doubts:
+        bias = bias + _doubtful(one.array, weights, theirs, at.index[place], f)
     times = 2.0 if one.turning else 1.0
     mean = one.vectors(at, place, weights.mean(f))
     return Seen(one.vectors(at, place, mismatch), mean, times * open_.spread, times * bias, open_.freedom)
+
+
+def _doubtful(name: str, weights: Weights, theirs: Theirs, index: Index, f: Array) -> Array:
+    """Return what is open of the mean rate of Ω where an orientation that was added up turned it."""
+    length = np.linalg.norm(getattr(theirs, name), axis=1)
+    span = theirs.time[index[:, -1]] - theirs.time[index[:, 0]]
+    return theirs.doubts[name].of_rate(index, float(length.max()), length[index], np.linalg.norm(f, axis=-1), span)
 
 
 def share_left(one: Comparison, weights: Weights, at: Motion, place: Index, rates: Rates) -> float:

@@ -17,7 +17,7 @@ from .case import Case
 from .comparisons import TURN
 from .examining import GAP
 from .mistakes import Suspect
-from .motion import added_up, turning_of, with_orientation
+from .motion import added_up, first_orientation, turning_of, with_orientation
 from .reading import from_frame
 from .record import Array, Theirs
 from .series import Series
@@ -125,7 +125,7 @@ def _body_axes(case: Case) -> Iterator[Suspect]:
     if span * float(np.linalg.norm(theirs.angular_velocity, axis=1).max()) > _MOST_RADIANS:
         return
     says = "Ω has its components along the axes of the body, which starts along those of the support frame."
-    undo = partial(_spun_by_itself, start=start, keep="orientation" in theirs.doubts)
+    undo = partial(_spun_by_itself, q0=first_orientation(start), keep="orientation" in theirs.doubts)
     yield Suspect(name, says, _AXES, theirs=undo, textbook=True)
 
 
@@ -135,10 +135,10 @@ def _spun(theirs: Theirs) -> Theirs:
     return replace(theirs, angular_velocity=(Q @ Vector.of(theirs.angular_velocity)).array())
 
 
-def _spun_by_itself(theirs: Theirs, start: State | None, keep: bool) -> Theirs:
-    q, doubt = added_up(theirs, start, body_axes=True)
+def _spun_by_itself(theirs: Theirs, q0: tuple[float, ...], keep: bool) -> Theirs:
+    q, doubt = added_up(theirs, q0, body_axes=True)
     spun = (Quaternion.of(q).matrix() @ Vector.of(theirs.angular_velocity)).array()
-    doubts = {"angular_velocity": doubt * np.linalg.norm(spun, axis=1)}
+    doubts = {"angular_velocity": doubt}
     if not keep:
         return replace(theirs, angular_velocity=spun, doubts=doubts)
     return replace(theirs, angular_velocity=spun, orientation=q, doubts=doubts | {"orientation": doubt})
