@@ -38,10 +38,10 @@ class Doubt:
         """By what the orientation may be off at each sample."""
         return self.turning + self.walking
 
-    @property
-    def anywhere(self) -> Doubt:
-        """The same where all of the run told the start, so that no sample is known better than another."""
-        return replace(self, walking=np.full_like(self.walking, self.walking.max()))
+    def fitted(self, time: Array) -> Doubt:
+        """Return the doubt of an orientation whose start was fitted to all of the run, (n,) s: a walk about its mean."""
+        share = (time - time[0]) / (time[-1] - time[0])
+        return replace(self, walking=self.walking.max() * np.sqrt(1 / 3 - share + share**2))
 
     def of_rate(self, index: Index, fastest: float, length: Array, rate: Array, span: Array) -> Array:
         """Return what it leaves open of the mean rate of a vector that was turned by the orientation.

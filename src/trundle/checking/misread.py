@@ -13,11 +13,12 @@ from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.shapes import concentric_sphere
 from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem, State
+from .aligning import Aligned, aligned
 from .case import Case
 from .comparisons import TURN
 from .examining import GAP
 from .mistakes import Suspect
-from .motion import added_up, first_orientation, turning_of, with_orientation
+from .motion import added_up, turning_of, with_orientation
 from .reading import from_frame
 from .record import Array, Theirs
 from .series import Series
@@ -124,9 +125,16 @@ def _body_axes(case: Case) -> Iterator[Suspect]:
     span = float(theirs.time[-1] - theirs.time[0])
     if span * float(np.linalg.norm(theirs.angular_velocity, axis=1).max()) > _MOST_RADIANS:
         return
-    says = "Ω has its components along the axes of the body, which starts along those of the support frame."
-    undo = partial(_spun_by_itself, q0=first_orientation(start), keep="orientation" in theirs.doubts)
-    yield Suspect(name, says, _AXES, theirs=undo, textbook=True)
+    at = aligned(case)
+    undo = partial(_spun_by_itself, at=at, keep="orientation" in theirs.doubts)
+    q0 = dict(zip(("qw", "qx", "qy", "qz"), map(float, at.start), strict=True))
+    says = "Ω has its components along the axes of the body, which starts "
+    if at.given:
+        says += "along those of the support frame."  # XXX
+        yield Suspect(name, says, _AXES, theirs=undo, textbook=True)
+    else:
+        says += f"at q = ({', '.join(f'{part:.4g}' for part in q0.values())})."
+        yield Suspect(name, says, _AXES, theirs=undo, numbers=q0, named=False)
 
 
 def _spun(theirs: Theirs) -> Theirs:
@@ -135,8 +143,9 @@ def _spun(theirs: Theirs) -> Theirs:
     return replace(theirs, angular_velocity=(Q @ Vector.of(theirs.angular_velocity)).array())
 
 
-def _spun_by_itself(theirs: Theirs, q0: tuple[float, ...], keep: bool) -> Theirs:
-    q, doubt = added_up(theirs, q0, body_axes=True)
+def _spun_by_itself(theirs: Theirs, at: Aligned, keep: bool) -> Theirs:
+    q, doubt = added_up(theirs, tuple(at.start), body_axes=True)
+    doubt = doubt if at.given else doubt.fitted(theirs.time)
     spun = (Quaternion.of(q).matrix() @ Vector.of(theirs.angular_velocity)).array()
     doubts = {"angular_velocity": doubt}
     if not keep:

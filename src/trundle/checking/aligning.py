@@ -1,0 +1,112 @@
+"""From which orientation a ball starts if its Ω is along its own axes: it must then roll as its path says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..mechanics.algebra import Quaternion, Vector
+from ..mechanics.shapes import concentric_sphere
+from .case import Case
+from .examining import SLIP
+from .fitting import least_squares
+from .motion import added_up, first_orientation, motion_of
+from .record import Array
+
+_FAR_BETTER = 0.5  # of the slip that the given start leaves: another must be so much better
+_LITTLE = 1e-4  # of it: nobody tells a start more closely
+_UNIT = (1.0, 0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Aligned:
+    """Where the sum of Ω along the body's axes starts.
+
+    Parameters
+    ----------
+    start : Quaternion
+        Body frame to support frame.
+    given : bool
+        Whether it is the one that a run is taken to start with; else it was fitted.
+    """
+
+    start: Quaternion
+    given: bool
+
+
+def aligned(case: Case) -> Aligned:
+    """Take their Ω for one along the body's axes, and find the orientation from which the ball rolls best.
+
+    Parameters
+    ----------
+    case : Case
+        With Ω, and no orientation of theirs.
+
+    Returns
+    -------
+    Aligned
+        The start that is given where no other makes it roll.
+    """
+    given = Quaternion(*first_orientation(case.start))
+    if not concentric_sphere(case.system.body.shape):  # where another touches, its orientation tells
+        return Aligned(given, given=True)
+    own, doubt = added_up(case.theirs, _UNIT, body_axes=True)
+    rolling = _Rolling(case, own)
+    if rolling.left(given) <= max(_LITTLE, float(doubt.angle.max())):
+        return Aligned(given, given=True)
+    fits = [fit for start in _starts(given) if (fit := rolling.fitted(start)) is not None]
+    best = min(fits, key=rolling.left, default=given)
+    return Aligned(best, given=False) if rolling.left(best) <= _FAR_BETTER * rolling.left(given) else Aligned(given, given=True)
+
+
+def _starts(given: Quaternion) -> Iterator[Quaternion]:
+    """Yield orientations of which one is near each, the given one first: it is turned as a cube is onto itself."""
+    from scipy.spatial.transform import Rotation
+
+    turns = sorted(Rotation.create_group("O"), key=lambda turn: turn.magnitude())
+    yield from (Quaternion(*turn.as_quat(scalar_first=True)) * given for turn in turns)
+
+
+class _Rolling:
+    """The slip of a ball, over its bounds, if Ω was added up along its own axes from one start or another.
+
+    The support may be at another rate than is said, which is the mistake that is most often made beside this one.
+    """
+
+    def __init__(self, case: Case, own: Array) -> None:
+        index, theirs = case.view.instants, case.theirs
+        at = motion_of(case.system, theirs, case.start, index)
+        self._bound = case.series[SLIP].bound[:, None]
+        self._velocity, self._carried = ((v / self._bound).ravel() for v in (at.velocity, at.carried))
+        self._offset = at.offset
+        self._turning = Quaternion.of(own[index]).matrix() @ Vector.of(at.angular_velocity)
+
+    def fitted(self, start: Quaternion) -> Quaternion | None:
+        """Turn a start until least slips."""
+        found = least_squares(lambda angles: self._slip(_turn(angles) * start)[0], [0.0, 0.0, 0.0])
+        return None if found is None else _turn(found[0]) * start
+
+    def left(self, start: Quaternion) -> float:
+        """Return the slip as a share of what rolls."""
+        slip, rolled = self._slip(start)
+        return float(np.linalg.norm(slip) / max(float(np.linalg.norm(rolled)), 1e-300))
+
+    def _slip(self, start: Quaternion) -> tuple[Array, Array]:
+        """Return what slips with the rate of the support that makes it least, and what rolls."""
+        Omega = (start.matrix() @ self._turning).array()
+        rolled = (np.cross(Omega, self._offset) / self._bound).ravel()
+        moved, carried = self._velocity, self._carried
+        slip = moved + rolled
+        share = float(slip @ carried) / max(float(carried @ carried), 1e-300)
+        return slip - share * carried, rolled
+
+
+def _turn(angles: Array) -> Quaternion:
+    """Return the turn about a vector by its length, rad."""
+    half = float(np.linalg.norm(angles)) / 2
+    return Quaternion(float(np.cos(half)), *(0.5 * float(np.sinc(half / np.pi)) * angles))
+
+
+__all__ = ["Aligned", "aligned"]
