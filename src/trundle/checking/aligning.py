@@ -12,11 +12,12 @@ from ..mechanics.shapes import concentric_sphere
 from .case import Case
 from .examining import SLIP
 from .fitting import least_squares
-from .motion import added_up, first_orientation, motion_of
-from .record import Array
+from .motion import first_orientation, motion_of, turned_to_space
+from .record import Array, Theirs
 
 _FAR_BETTER = 0.5  # of the slip that the given start leaves: another must be so much better
 _LITTLE = 1e-4  # of it: nobody tells a start more closely
+_TOGETHER = 10.0
 _UNIT = (1.0, 0.0, 0.0, 0.0)
 
 
@@ -30,10 +31,13 @@ class Aligned:
         Body frame to support frame.
     given : bool
         Whether it is the one that a run is taken to start with; else it was fitted.
+    unsure : float
+        By what a fit may be off, rad.
     """
 
     start: Quaternion
     given: bool
+    unsure: float = 0.0
 
 
 def aligned(case: Case) -> Aligned:
@@ -52,13 +56,13 @@ def aligned(case: Case) -> Aligned:
     given = Quaternion(*first_orientation(case.start))
     if not concentric_sphere(case.system.body.shape):  # where another touches, its orientation tells
         return Aligned(given, given=True)
-    own, doubt = added_up(case.theirs, _UNIT, body_axes=True)
+    own = turned_to_space(case.theirs, _UNIT)
     rolling = _Rolling(case, own)
-    if rolling.left(given) <= max(_LITTLE, float(doubt.angle.max())):
+    if rolling.left(given) <= max(_LITTLE, float(own.doubts["orientation"].angle.max())):
         return Aligned(given, given=True)
     fits = [fit for start in _starts(given) if (fit := rolling.fitted(start)) is not None]
-    best = min(fits, key=rolling.left, default=given)
-    return Aligned(best, given=False) if rolling.left(best) <= _FAR_BETTER * rolling.left(given) else Aligned(given, given=True)
+    best = min(fits, key=lambda fit: rolling.left(fit.start), default=Aligned(given, given=True))
+    return best if rolling.left(best.start) <= _FAR_BETTER * rolling.left(given) else Aligned(given, given=True)
 
 
 def _starts(given: Quaternion) -> Iterator[Quaternion]:
@@ -75,18 +79,21 @@ class _Rolling:
     The support may be at another rate than is said, which is the mistake that is most often made beside this one.
     """
 
-    def __init__(self, case: Case, own: Array) -> None:
-        index, theirs = case.view.instants, case.theirs
-        at = motion_of(case.system, theirs, case.start, index)
+    def __init__(self, case: Case, own: Theirs) -> None:
+        at = motion_of(case.system, own, case.start, case.view.instants)
         self._bound = case.series[SLIP].bound[:, None]
         self._velocity, self._carried = ((v / self._bound).ravel() for v in (at.velocity, at.carried))
         self._offset = at.offset
-        self._turning = Quaternion.of(own[index]).matrix() @ Vector.of(at.angular_velocity)
+        self._turning = Vector.of(at.angular_velocity)
 
-    def fitted(self, start: Quaternion) -> Quaternion | None:
+    def fitted(self, start: Quaternion) -> Aligned | None:
         """Turn a start until least slips."""
         found = least_squares(lambda angles: self._slip(_turn(angles) * start)[0], [0.0, 0.0, 0.0])
-        return None if found is None else _turn(found[0]) * start
+        if found is None:
+            return None
+        angles, doubts = found  # which suppose that all residuals go together: the noise does, over _TOGETHER samples
+        unsure = float(np.linalg.norm(doubts)) * np.sqrt(_TOGETHER / self._velocity.size)
+        return Aligned(_turn(angles) * start, given=False, unsure=unsure)
 
     def left(self, start: Quaternion) -> float:
         """Return the slip as a share of what rolls."""

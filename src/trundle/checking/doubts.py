@@ -6,8 +6,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .slopes import SIGMAS, Array, Estimate, Index
+from .chance import longest
+from .noise import Noise, noise_of
+from .slopes import Array, Index
 
+_WALKS = 4  # values of a random walk that are not much the same, in which Ω is moved across itself
 _SLOPE = np.sqrt(1.2)  # standard deviation of the slope of a line fitted to a random walk, times the root of its span
 
 
@@ -38,10 +41,23 @@ class Doubt:
         """By what the orientation may be off at each sample."""
         return self.turning + self.walking
 
-    def fitted(self, time: Array) -> Doubt:
-        """Return the doubt of an orientation whose start was fitted to all of the run, (n,) s: a walk about its mean."""
+    def fitted(self, time: Array, unsure: float) -> Doubt:
+        """Return the doubt of a walk about its mean, where all of the run told the start.
+
+        Parameters
+        ----------
+        time : array (n,)
+            s.
+        unsure : float
+            By what the start may be off besides, rad.
+
+        Returns
+        -------
+        Doubt
+            Least amid the run.
+        """
         share = (time - time[0]) / (time[-1] - time[0])
-        return replace(self, walking=self.walking.max() * np.sqrt(1 / 3 - share + share**2))
+        return replace(self, walking=unsure + self.walking.max() * np.sqrt(1 / 3 - share + share**2))
 
     def of_rate(self, index: Index, fastest: float, length: Array, rate: Array, span: Array) -> Array:
         """Return what it leaves open of the mean rate of a vector that was turned by the orientation.
@@ -61,21 +77,22 @@ class Doubt:
         -------
         array (k,)
         """
-        swinging = self.turning[index] * fastest * length + self.walking[index] * rate
-        return np.asarray(swinging.mean(axis=1) + self.drift * length.mean(axis=1) / np.sqrt(span))
+        swinging = (self.turning[index] * fastest * length).mean(axis=1)
+        before, within = (self.walking[index] * rate).mean(axis=1), self.drift * length.mean(axis=1) / np.sqrt(span)
+        return np.asarray(swinging + np.hypot(before, within))
 
 
-def doubt_of(time: Array, gain: Array, noise: Estimate) -> Doubt:
+def doubt_of(time: Array, angular_velocity: Array, gain: Array) -> Doubt:
     """Return the doubt of an orientation that was added up.
 
     Parameters
     ----------
     time : array (n,)
         Ascending, s.
+    angular_velocity : array (n, 3)
+        Ω, rad/s, along any axes. The noise of one component is also that of its length, which is smooth along all axes.
     gain : array (n,)
-        Angle by which steps twice as long make it another, rad.
-    noise : Estimate
-        Of Ω at some samples, rad/s.
+        Angle by which steps twice as long make the orientation another, rad.
 
     Returns
     -------
@@ -84,14 +101,22 @@ def doubt_of(time: Array, gain: Array, noise: Estimate) -> Doubt:
 
     Examples
     --------
-    >>> t, none = np.linspace(0.0, 4.0, 5), np.zeros(1)
-    >>> doubt = doubt_of(t, np.full(5, 0.1), Estimate(none, none, none, np.array([0.01 / SIGMAS])))
-    >>> doubt.walking.round(3).tolist(), doubt.turning.round(3).tolist()
-    ([0.0, 0.01, 0.014, 0.017, 0.02], [0.1, 0.09, 0.086, 0.083, 0.08])
+    >>> t = np.linspace(0.0, 4.0, 401)
+    >>> rolling = 5.0 + np.random.default_rng(0).normal(scale=0.02, size=(401, 3))
+    >>> doubt = doubt_of(t, rolling, np.full(401, 0.1))
+    >>> doubt.walking[::100].round(3).tolist(), doubt.turning[::100].round(3).tolist()
+    ([0.0, 0.009, 0.013, 0.016, 0.018], [0.1, 0.091, 0.087, 0.084, 0.082])
     """
-    one = SIGMAS * float(np.median(noise.noise)) * np.sqrt(noise.alike * float(np.median(np.diff(time))))
+    length = np.linalg.norm(angular_velocity, axis=1)[:, None]
+    # Either may take for noise what it cannot follow of the motion.
+    variance = min(_variance(noise_of(time, values, {})) for values in (angular_velocity, length))
+    one = longest(_WALKS, time.size, parts=2) * np.sqrt(variance * float(np.median(np.diff(time))))
     walking = one * np.sqrt(time - time[0])
     return Doubt(np.maximum(gain - walking, 0.0), walking, one * _SLOPE)
+
+
+def _variance(noise: Noise) -> float:
+    return float(np.median(noise.spread)) ** 2 * noise.alike
 
 
 __all__ = ["Doubt", "doubt_of"]

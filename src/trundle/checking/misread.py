@@ -18,7 +18,7 @@ from .case import Case
 from .comparisons import TURN
 from .examining import GAP
 from .mistakes import Suspect
-from .motion import added_up, turning_of, with_orientation
+from .motion import turned_to_space, turning_of, with_orientation
 from .reading import from_frame
 from .record import Array, Theirs
 from .series import Series
@@ -144,13 +144,10 @@ def _spun(theirs: Theirs) -> Theirs:
 
 
 def _spun_by_itself(theirs: Theirs, at: Aligned, keep: bool) -> Theirs:
-    q, doubt = added_up(theirs, tuple(at.start), body_axes=True)
-    doubt = doubt if at.given else doubt.fitted(theirs.time)
-    spun = (Quaternion.of(q).matrix() @ Vector.of(theirs.angular_velocity)).array()
-    doubts = {"angular_velocity": doubt}
-    if not keep:
-        return replace(theirs, angular_velocity=spun, doubts=doubts)
-    return replace(theirs, angular_velocity=spun, orientation=q, doubts=doubts | {"orientation": doubt})
+    spun = turned_to_space(theirs, tuple(at.start))
+    if not at.given:
+        spun = replace(spun, doubts={name: one.fitted(spun.time, at.unsure) for name, one in spun.doubts.items()})
+    return spun if keep else replace(spun, orientation=None)
 
 
 def _without_orientation(theirs: Theirs, system: RollingSystem, start: State | None) -> Theirs:

@@ -304,7 +304,7 @@ def with_orientation(system: RollingSystem, theirs: Theirs, start: State | None)
     return replace(theirs, orientation=q, doubts={**theirs.doubts, "orientation": doubt})
 
 
-def added_up(theirs: Theirs, q0: tuple[float, ...], *, body_axes: bool = False) -> tuple[Array, Doubt]:
+def added_up(theirs: Theirs, q0: tuple[float, ...]) -> tuple[Array, Doubt]:
     """Return the orientation that their Ω adds up to, and the angle by which it may be off.
 
     Parameters
@@ -313,8 +313,6 @@ def added_up(theirs: Theirs, q0: tuple[float, ...], *, body_axes: bool = False) 
         With Ω.
     q0 : tuple of 4 floats
         Orientation at the first sample.
-    body_axes : bool
-        Whether Ω has its components along the body's axes.
 
     Returns
     -------
@@ -324,9 +322,31 @@ def added_up(theirs: Theirs, q0: tuple[float, ...], *, body_axes: bool = False) 
         By what they may be off.
     """
     assert theirs.angular_velocity is not None  # noqa: S101  for the type checker; callers have looked
-    q, gain = orientation_from(theirs.time, theirs.angular_velocity, q0, body_axes=body_axes)
-    few = np.unique(np.linspace(0, theirs.time.size - 1, 24).round().astype(int))
-    return q, doubt_of(theirs.time, gain, theirs.slope("angular_velocity", few, 0))
+    q, gain = orientation_from(theirs.time, theirs.angular_velocity, q0)
+    return q, doubt_of(theirs.time, theirs.angular_velocity, gain)
+
+
+def turned_to_space(theirs: Theirs, q0: tuple[float, ...]) -> Theirs:
+    """Take their Ω for one along the body's axes, add it up to an orientation, and turn it to those of the frame.
+
+    Parameters
+    ----------
+    theirs : Theirs
+        With Ω.
+    q0 : tuple of 4 floats
+        Orientation at the first sample.
+
+    Returns
+    -------
+    Theirs
+        With both, and their doubts.
+    """
+    assert theirs.angular_velocity is not None  # noqa: S101  for the type checker; callers have looked
+    q, gain = orientation_from(theirs.time, theirs.angular_velocity, q0, body_axes=True)
+    turned = (Quaternion.of(q).matrix() @ Vector.of(theirs.angular_velocity)).array()
+    doubt = doubt_of(theirs.time, turned, gain)
+    doubts = {**theirs.doubts, "angular_velocity": doubt, "orientation": doubt}
+    return replace(theirs, angular_velocity=turned, orientation=q, doubts=doubts)
 
 
 def _from_no_slip(contact: Contact, V: Array, spin: Array) -> Array:
