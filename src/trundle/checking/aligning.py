@@ -15,9 +15,9 @@ from .fitting import least_squares
 from .motion import first_orientation, motion_of, turned_to_space
 from .record import Array, Theirs
 
+_LITTLE = 1e-4  # of what rolls, that slips: no start is told more closely
 _FAR_BETTER = 0.5  # of the slip that the given start leaves: another must be so much better
-_LITTLE = 1e-4  # of it: nobody tells a start more closely
-_TOGETHER = 10.0
+_TOGETHER = 10.0  # residuals that noise moves together
 _UNIT = (1.0, 0.0, 0.0, 0.0)
 
 
@@ -91,7 +91,7 @@ class _Rolling:
         found = least_squares(lambda angles: self._slip(_turn(angles) * start)[0], [0.0, 0.0, 0.0])
         if found is None:
             return None
-        angles, doubts = found  # which suppose that all residuals go together: the noise does, over _TOGETHER samples
+        angles, doubts = found  # as if all residuals were moved together
         unsure = float(np.linalg.norm(doubts)) * np.sqrt(_TOGETHER / self._velocity.size)
         return Aligned(_turn(angles) * start, given=False, unsure=unsure)
 

@@ -128,13 +128,13 @@ def _body_axes(case: Case) -> Iterator[Suspect]:
     at = aligned(case)
     undo = partial(_spun_by_itself, at=at, keep="orientation" in theirs.doubts)
     q0 = dict(zip(("qw", "qx", "qy", "qz"), map(float, at.start), strict=True))
-    says = "Ω has its components along the axes of the body, which starts "
+    says = "Ω has its components along the axes of the body; "
     if at.given:
-        says += "along those of the support frame."  # XXX
+        says += "they start along those of the support frame." if start is None else "they start as the scenario says."
         yield Suspect(name, says, _AXES, theirs=undo, textbook=True)
     else:
-        says += f"at q = ({', '.join(f'{part:.4g}' for part in q0.values())})."
-        yield Suspect(name, says, _AXES, theirs=undo, numbers=q0, named=False)
+        says += f"they start turned by q = ({', '.join(f'{part:.4g}' for part in q0.values())}), which was fitted."
+        yield Suspect(name, says, _AXES, theirs=undo, numbers=q0, named=False, textbook=True)
 
 
 def _spun(theirs: Theirs) -> Theirs:
