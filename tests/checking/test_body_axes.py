@@ -1,4 +1,4 @@
-"""Ω along the body's axes is named under noise, too, with no orientation in the file, and not where it is not the mistake."""
+"""Ω along the body's axes is named under noise, with or without an orientation, and only where it is the mistake."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ import pytest
 
 import trundle as tr
 
-from .textbook import MISTAKES, SCHOOL, STANDARD, data, painted, shaken, system
+from .textbook import MISTAKES, SCHOOL, STANDARD, A, data, painted, shaken, system
+from .theirs import integrated, turned, vectors, with_parts
 
 BODY = "body-axes-for-space-axes"
 TILT = 0.03
@@ -60,6 +61,19 @@ def test_it_is_not_named_where_others_were_made(mistake: str | None) -> None:
         checked = tr.check(shaken(data(omega, TILT, *planted, parts=parts), sigma, seed), system(omega, TILT))
         assert (checked.answer == "fails") is bool(mistake), checked.verdict
         assert not any(BODY in told.name for told in (*checked.likely, *checked.nearest)), checked.verdict
+
+
+def test_on_a_circle_about_the_centre_the_rate_that_is_said_comes_first() -> None:
+    t, omega, level = np.arange(0.0, 3.0, 0.01), 3.49, system(3.49, 0.0)
+    z = 0.1 * np.exp(2j / 7 * omega * t)
+    w = 1j * (2j / 7 - 1j) * omega * z / A
+    exact = {"t": t}
+    for stem, plane, normal in (("", z, A), ("v", 2j / 7 * omega * z, 0.0), ("w", w, 0.0)):
+        exact = with_parts(exact, stem, np.column_stack([plane.real, plane.imag, np.full(t.size, normal)]))
+    Q = np.array([turned(q) for q in integrated(exact, body_axes=False)])
+    own = with_parts(exact, "w", np.einsum("nji,nj->ni", Q, vectors(exact, "w")))
+    checked = tr.check(shaken(painted(own, (1.0, 1.0, 0.3), 1.3), 3e-4, 4), level)
+    assert names(checked)[:1] == [{BODY}], checked.verdict
 
 
 def test_straight_ahead_nothing_tells_the_start() -> None:

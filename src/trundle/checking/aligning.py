@@ -9,6 +9,7 @@ import numpy as np
 
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.shapes import concentric_sphere
+from ..mechanics.surfaces import Plane
 from .case import Case
 from .examining import SLIP
 from .fitting import least_squares
@@ -57,12 +58,19 @@ def aligned(case: Case) -> Aligned:
     if not concentric_sphere(case.system.body.shape):  # where another touches, its orientation tells
         return Aligned(given, given=True)
     own = turned_to_space(case.theirs, _UNIT)
-    rolling = _Rolling(case, own)
-    if rolling.left(given) <= max(_LITTLE, float(own.doubts["orientation"].angle.max())):
-        return Aligned(given, given=True)
-    fits = [fit for start in _starts(given) if (fit := rolling.fitted(start)) is not None]
-    best = min(fits, key=lambda fit: rolling.left(fit.start), default=Aligned(given, given=True))
-    return best if rolling.left(best.start) <= _FAR_BETTER * rolling.left(given) else Aligned(given, given=True)
+    little = max(_LITTLE, float(own.doubts["orientation"].angle.max()))
+    best = Aligned(given, given=True)
+    # On a circle about the centre the path cannot tell one rate from another, and the one that is said comes first.
+    for rolling in (_Rolling(case, own, rate_free=False), _Rolling(case, own, rate_free=True)):
+        if rolling.left(given) <= little:
+            return Aligned(given, given=True)
+        fits = [fit for start in _starts(given) if (fit := rolling.fitted(start)) is not None]
+        found = min(fits, key=lambda fit: rolling.left(fit.start), default=best)
+        if rolling.left(found.start) <= _FAR_BETTER * rolling.left(best.start):
+            best = found
+        if rolling.left(best.start) <= little:
+            return best
+    return best
 
 
 def _starts(given: Quaternion) -> Iterator[Quaternion]:
@@ -76,19 +84,22 @@ def _starts(given: Quaternion) -> Iterator[Quaternion]:
 class _Rolling:
     """The slip of a ball, over its bounds, if Ω was added up along its own axes from one start or another.
 
-    The support may be at another rate than is said, which is the mistake that is most often made beside this one.
+    The support may be free to turn at another rate than is said, the mistake that is most often made beside this one.
     """
 
-    def __init__(self, case: Case, own: Theirs) -> None:
+    def __init__(self, case: Case, own: Theirs, *, rate_free: bool) -> None:
+        self._rate_free = rate_free
         at = motion_of(case.system, own, case.start, case.view.instants)
         self._bound = case.series[SLIP].bound[:, None]
         self._velocity, self._carried = ((v / self._bound).ravel() for v in (at.velocity, at.carried))
         self._offset = at.offset
         self._turning = Vector.of(at.angular_velocity)
+        flat = isinstance(case.system.support.surface, Plane) and case.system.body.is_isotropic_sphere
+        self._normal = np.broadcast_to(at.contact.normal.array(), at.position.shape) if flat else 0.0 * at.position
 
     def fitted(self, start: Quaternion) -> Aligned | None:
-        """Turn a start until least slips."""
-        found = least_squares(lambda angles: self._slip(_turn(angles) * start)[0], [0.0, 0.0, 0.0])
+        """Turn a start until least is off."""
+        found = least_squares(lambda angles: self._off(_turn(angles) * start), [0.0, 0.0, 0.0])
         if found is None:
             return None
         angles, doubts = found  # as if all residuals were moved together
@@ -100,14 +111,21 @@ class _Rolling:
         slip, rolled = self._slip(start)
         return float(np.linalg.norm(slip) / max(float(np.linalg.norm(rolled)), 1e-300))
 
+    def _off(self, start: Quaternion) -> Array:
+        """Return what slips, and by how much the spin of a ball on a plane changes, which no contact can change."""
+        spin = (self._space(start) * self._normal).sum(axis=1) * np.linalg.norm(self._offset, axis=1)
+        return np.concatenate([self._slip(start)[0], (spin - spin.mean()) / self._bound[:, 0]])
+
+    def _space(self, start: Quaternion) -> Array:
+        return np.asarray((start.matrix() @ self._turning).array(), dtype=float)
+
     def _slip(self, start: Quaternion) -> tuple[Array, Array]:
-        """Return what slips with the rate of the support that makes it least, and what rolls."""
-        Omega = (start.matrix() @ self._turning).array()
-        rolled = (np.cross(Omega, self._offset) / self._bound).ravel()
-        moved, carried = self._velocity, self._carried
-        slip = moved + rolled
-        share = float(slip @ carried) / max(float(carried @ carried), 1e-300)
-        return slip - share * carried, rolled
+        """Return what slips, and what rolls."""
+        rolled = (np.cross(self._space(start), self._offset) / self._bound).ravel()
+        moved, carried, share = self._velocity + rolled, self._carried, 1.0
+        if self._rate_free:  # the share of it with which least slips
+            share = float(moved @ carried) / max(float(carried @ carried), 1e-300)
+        return moved - share * carried, rolled
 
 
 def _turn(angles: Array) -> Quaternion:
