@@ -82,11 +82,22 @@ def _path(t: Any, z0: complex, v0: complex, kappa: float, pull: float) -> tuple[
     return z0 + drift * t + (v0 - drift) * (turn - 1) / (1j * kappa), (v0 - drift) * turn + drift
 
 
+def painted(found: dict[str, Any], axis: tuple[float, float, float], angle: float) -> dict[str, Any]:
+    """Return Ω along the axes of a body that starts turned."""
+    unit = np.array(axis) / np.linalg.norm(axis)
+    start = turned(np.array([np.cos(angle / 2), *(np.sin(angle / 2) * unit)]))
+    return with_parts(found, "w", vectors(found, "w") @ start)
+
+
 def shaken(found: dict[str, Any], sigma: float, seed: int) -> dict[str, Any]:
     """Return columns with the noise of a camera: σ of each position, 2σ/s of each speed, and as much at the rim."""
     draw = np.random.default_rng(seed)
     sizes = {"x": sigma, "y": sigma, "z": sigma, "v": 2 * sigma, "w": 2 * sigma / A, "q": 0.2 * sigma / A}
-    return {
+    seen = {
         name: array if name == "t" else array + draw.normal(scale=sizes[name[0]], size=array.size)
         for name, array in found.items()
     }
+    if "qw" not in seen:
+        return seen
+    q = vectors(seen, "q")
+    return with_parts(seen, "q", q / np.linalg.norm(q, axis=1, keepdims=True))

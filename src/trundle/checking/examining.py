@@ -66,7 +66,7 @@ class View:
         key = (one.name, id(theirs), id(reacts))
         if key not in self._known:  # with what it was worked out of, so that nothing else takes its place in memory
             weights = weights_of(plan, theirs.time, one.order)
-            self._known[key] = weights, left_open(one, weights, theirs, at, place, reacts), theirs, reacts
+            self._known[key] = weights, left_open(one, weights, at, place, reacts), theirs, reacts
         return self._known[key][:2]
 
     def thinned(self, count: int) -> View:
@@ -112,7 +112,7 @@ def view_of(system: RollingSystem, theirs: Theirs, tolerance: float, start: Stat
         for i, (name, plan) in enumerate(tried.items()):
             weights = weights_of(plan, theirs.time, one.order)
             here = theirs, at, places[name]
-            found = seen(one, weights, *here, rates, left_open(one, weights, *here, reacts))
+            found = seen(one, weights, *here, rates, left_open(one, weights, *here[1:], reacts))
             asked = _times(one.name) * tolerance * _size(one.name, system, at, found.mismatch + found.rate, rates)
             left = max(share_left(one, weights, *here[1:], rates), _DIMMEST)
             bound = float(np.median(SIGMAS * found.spread + found.bias + asked)) / left

@@ -30,7 +30,7 @@ class Open:
     freedom: float
 
 
-def left_open(one: Comparison, weights: Weights, theirs: Theirs, at: Motion, place: Index, reacts: Sensitivity) -> Open:
+def left_open(one: Comparison, weights: Weights, at: Motion, place: Index, reacts: Sensitivity) -> Open:
     """Work out what cannot be told of a comparison.
 
     Parameters
@@ -39,8 +39,6 @@ def left_open(one: Comparison, weights: Weights, theirs: Theirs, at: Motion, pla
         What is compared.
     weights : Weights
         Over which windows.
-    theirs : Theirs
-        Their samples.
     at : Motion
         Their states at all nodes.
     place : int array (k, nodes)
@@ -68,9 +66,6 @@ def left_open(one: Comparison, weights: Weights, theirs: Theirs, at: Motion, pla
         bias = bias + np.abs(weights.mean((gain * at.estimates[part].bias)[place]))
     if one.which is not None:
         bias = bias + np.abs(weights.mean(reacts.curvature_at(one.which, at.time)[place]))
-    if one.array in theirs.doubts:  # it turns with Ω as the body does
-        most = float(np.linalg.norm(getattr(theirs, one.array), axis=1).max())
-        bias = bias + (theirs.doubts[one.array] * most)[at.index][place].mean(axis=1)
     return Open(spread, by_chance, bias, min(at.estimates[name].freedom for name in noise))
 
 
@@ -98,8 +93,10 @@ def seen(
 
     Parameters
     ----------
-    one, weights, theirs, at, place
+    one, weights, at, place
         As of `left_open`.
+    theirs : Theirs
+        Their samples.
     rates : pair of array
         V̇ and Ω̇ of the law at all nodes.
     open_ : Open
@@ -113,9 +110,18 @@ def seen(
     f = one.rate(at, rates)[place]
     mismatch, change = weights.mismatch(getattr(theirs, one.array), f)
     bias = open_.bias + np.maximum(change - _BEYOND * np.sqrt(f.shape[-1]) * open_.by_chance, 0.0)
+    if one.array in theirs.doubts:
+        bias = bias + _doubtful(one.array, theirs, at.index[place], f)
     times = 2.0 if one.turning else 1.0
     mean = one.vectors(at, place, weights.mean(f))
     return Seen(one.vectors(at, place, mismatch), mean, times * open_.spread, times * bias, open_.freedom)
+
+
+def _doubtful(name: str, theirs: Theirs, index: Index, f: Array) -> Array:
+    """Return what is open of the mean rate of Ω where an orientation that was added up turned it."""
+    length = np.linalg.norm(getattr(theirs, name), axis=1)
+    span = theirs.time[index[:, -1]] - theirs.time[index[:, 0]]
+    return theirs.doubts[name].of_rate(index, float(length.max()), length[index], np.linalg.norm(f, axis=-1), span)
 
 
 def share_left(one: Comparison, weights: Weights, at: Motion, place: Index, rates: Rates) -> float:

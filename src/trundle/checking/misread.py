@@ -13,11 +13,12 @@ from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.shapes import concentric_sphere
 from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem, State
+from .aligning import Aligned, aligned
 from .case import Case
 from .comparisons import TURN
 from .examining import GAP
 from .mistakes import Suspect
-from .motion import added_up, turning_of, with_orientation
+from .motion import turned_to_space, turning_of, with_orientation
 from .reading import from_frame
 from .record import Array, Theirs
 from .series import Series
@@ -124,9 +125,16 @@ def _body_axes(case: Case) -> Iterator[Suspect]:
     span = float(theirs.time[-1] - theirs.time[0])
     if span * float(np.linalg.norm(theirs.angular_velocity, axis=1).max()) > _MOST_RADIANS:
         return
-    says = "Ω has its components along the axes of the body, which starts along those of the support frame."
-    undo = partial(_spun_by_itself, start=start, keep="orientation" in theirs.doubts)
-    yield Suspect(name, says, _AXES, theirs=undo, textbook=True)
+    at = aligned(case)
+    undo = partial(_spun_by_itself, at=at, keep="orientation" in theirs.doubts)
+    q0 = dict(zip(("qw", "qx", "qy", "qz"), map(float, at.start), strict=True))
+    says = "Ω has its components along the axes of the body; "
+    if at.given:
+        says += "they start along those of the support frame." if start is None else "they start as the scenario says."
+        yield Suspect(name, says, _AXES, theirs=undo, textbook=True)
+    else:
+        says += f"they start turned by q = ({', '.join(f'{part:.4g}' for part in q0.values())}), which was fitted."
+        yield Suspect(name, says, _AXES, theirs=undo, numbers=q0, named=False, textbook=True)
 
 
 def _spun(theirs: Theirs) -> Theirs:
@@ -135,13 +143,11 @@ def _spun(theirs: Theirs) -> Theirs:
     return replace(theirs, angular_velocity=(Q @ Vector.of(theirs.angular_velocity)).array())
 
 
-def _spun_by_itself(theirs: Theirs, start: State | None, keep: bool) -> Theirs:
-    q, doubt = added_up(theirs, start, body_axes=True)
-    spun = (Quaternion.of(q).matrix() @ Vector.of(theirs.angular_velocity)).array()
-    doubts = {"angular_velocity": doubt * np.linalg.norm(spun, axis=1)}
-    if not keep:
-        return replace(theirs, angular_velocity=spun, doubts=doubts)
-    return replace(theirs, angular_velocity=spun, orientation=q, doubts=doubts | {"orientation": doubt})
+def _spun_by_itself(theirs: Theirs, at: Aligned, keep: bool) -> Theirs:
+    spun = turned_to_space(theirs, tuple(at.start))
+    if not at.given:
+        spun = replace(spun, doubts={name: one.fitted(spun.time, at.unsure) for name, one in spun.doubts.items()})
+    return spun if keep else replace(spun, orientation=None)
 
 
 def _without_orientation(theirs: Theirs, system: RollingSystem, start: State | None) -> Theirs:

@@ -12,8 +12,9 @@ from ..mechanics.contact import Contact
 from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem, State
 from ..solve.samples import Samples
+from .doubts import Doubt, doubt_of
 from .record import Array, Theirs, contact_of, orientation_from
-from .slopes import SIGMAS, Estimate, Index
+from .slopes import Estimate, Index
 
 _SPINNING = 400  # instants at which a spin that nothing tells is followed
 _AVERAGED = 0.3  # share of the noise that is left where windows take their means
@@ -147,8 +148,7 @@ def motion_of(system: RollingSystem, theirs: Theirs, start: State | None, index:
     if "orientation" in parts:
         parts["orientation"] = parts["orientation"] / np.linalg.norm(parts["orientation"], axis=1, keepdims=True)
     else:
-        q0 = start.orientation if start is not None else (1.0, 0.0, 0.0, 0.0)
-        parts["orientation"] = np.tile(q0, (index.size, 1))
+        parts["orientation"] = np.tile(first_orientation(start), (index.size, 1))
     spin = np.zeros(index.size)
     if "angular_velocity" not in parts:
         spin, doubt = spin_of(system, theirs, start, index)
@@ -169,13 +169,20 @@ def motion_of(system: RollingSystem, theirs: Theirs, start: State | None, index:
     )
 
 
+def first_orientation(start: State | None) -> tuple[float, ...]:
+    """Return the orientation that a run is taken to start with where nothing tells it."""
+    return start.orientation if start is not None else (1.0, 0.0, 0.0, 0.0)
+
+
 def _estimates(theirs: Theirs, index: Index) -> tuple[dict[str, Estimate], dict[str, str]]:
     """Return what their arrays tell of the state, and which array tells it."""
 
     def value(name: str, order: int = 0) -> Estimate:
         found = theirs.slope(name, index, order, _AVERAGED)
         doubt = theirs.doubts.get(name)
-        return found if doubt is None or order else replace(found, bias=found.bias + doubt[index])
+        if doubt is None or order:
+            return found
+        return replace(found, bias=found.bias + doubt.angle[index] * np.linalg.norm(found.values, axis=1))
 
     found, sources = {"position": value("position")}, {"position": "position"}
     if theirs.velocity is not None:
@@ -244,7 +251,7 @@ def spin_of(system: RollingSystem, theirs: Theirs, start: State | None, index: I
     flat = isinstance(system.support.surface, Plane)
     at = some[:1] if flat else some
     position, velocity = theirs.slope("position", at, 0).values, _velocity(theirs, at)
-    q = np.tile(start.orientation if start is not None else (1.0, 0.0, 0.0, 0.0), (at.size, 1))
+    q = np.tile(first_orientation(start), (at.size, 1))
     contact = contact_of(system, theirs.time[at], position, q)
     normal = np.broadcast_to(contact.normal.array(), position.shape)
     first = theirs.spin
@@ -293,36 +300,53 @@ def with_orientation(system: RollingSystem, theirs: Theirs, start: State | None)
     """
     if system.body.is_isotropic_sphere or theirs.orientation is not None or theirs.angular_velocity is None:
         return theirs
-    q, doubt = added_up(theirs, start)
+    q, doubt = added_up(theirs, first_orientation(start))
     return replace(theirs, orientation=q, doubts={**theirs.doubts, "orientation": doubt})
 
 
-def added_up(theirs: Theirs, start: State | None, *, body_axes: bool = False) -> tuple[Array, Array]:
+def added_up(theirs: Theirs, q0: tuple[float, ...]) -> tuple[Array, Doubt]:
     """Return the orientation that their Ω adds up to, and the angle by which it may be off.
 
     Parameters
     ----------
     theirs : Theirs
         With Ω.
-    start : State, optional
-        Gives the orientation at the first sample.
-    body_axes : bool
-        Whether Ω has its components along the body's axes.
+    q0 : tuple of 4 floats
+        Orientation at the first sample.
 
     Returns
     -------
     orientation : array (n, 4)
         Unit quaternions.
-    doubt : array (n,)
-        rad: half of the gain in steps twice as long, and what noise adds up to.
+    doubt : Doubt
+        By what they may be off.
     """
     assert theirs.angular_velocity is not None  # noqa: S101  for the type checker; callers have looked
-    q0 = start.orientation if start is not None else (1.0, 0.0, 0.0, 0.0)
-    q, doubt = orientation_from(theirs.time, theirs.angular_velocity, q0, body_axes=body_axes)
-    few = np.unique(np.linspace(0, theirs.time.size - 1, 24).round().astype(int))
-    noise = float(np.median(theirs.slope("angular_velocity", few, 0).noise))
-    span = theirs.time - theirs.time[0]
-    return q, doubt + SIGMAS * noise * np.sqrt(span * float(np.median(np.diff(theirs.time))))
+    q, gain = orientation_from(theirs.time, theirs.angular_velocity, q0)
+    return q, doubt_of(theirs.time, theirs.angular_velocity, gain)
+
+
+def turned_to_space(theirs: Theirs, q0: tuple[float, ...]) -> Theirs:
+    """Take their Ω for one along the body's axes, add it up to an orientation, and turn it to those of the frame.
+
+    Parameters
+    ----------
+    theirs : Theirs
+        With Ω.
+    q0 : tuple of 4 floats
+        Orientation at the first sample.
+
+    Returns
+    -------
+    Theirs
+        With both, and their doubts.
+    """
+    assert theirs.angular_velocity is not None  # noqa: S101  for the type checker; callers have looked
+    q, gain = orientation_from(theirs.time, theirs.angular_velocity, q0, body_axes=True)
+    turned = (Quaternion.of(q).matrix() @ Vector.of(theirs.angular_velocity)).array()
+    doubt = doubt_of(theirs.time, turned, gain)
+    doubts = {**theirs.doubts, "angular_velocity": doubt, "orientation": doubt}
+    return replace(theirs, angular_velocity=turned, orientation=q, doubts=doubts)
 
 
 def _from_no_slip(contact: Contact, V: Array, spin: Array) -> Array:

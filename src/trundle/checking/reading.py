@@ -269,7 +269,12 @@ def _orientation(columns: dict[str, Array], conventions: Conventions) -> Array |
 def _in_space(theirs: Theirs, system: RollingSystem, conventions: Conventions) -> Theirs:
     if conventions.axes == "body" and theirs.angular_velocity is not None:
         if theirs.orientation is None:
-            raise InvalidValueError("axes", "must be space axes where there is no orientation", "body")
+            raise InvalidValueError(
+                "axes",
+                "must be space axes where there is no orientation",
+                "body",
+                "Add qw, qx, qy, qz; or leave it out, and the check finds the axes by how the ball rolls.",
+            )
         Q = Quaternion.of(theirs.orientation).matrix()
         theirs = replace(theirs, angular_velocity=(Q @ Vector.of(theirs.angular_velocity)).array())
     if conventions.frame == "support":

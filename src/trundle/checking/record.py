@@ -15,6 +15,7 @@ from ..mechanics.contact import Contact, settle, touch
 from ..mechanics.shapes import concentric_sphere
 from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem
+from .doubts import Doubt
 from .noise import noise_of
 from .polynomials import Known
 from .slopes import Estimate, Index, best_fit, derivative
@@ -44,8 +45,8 @@ class Theirs:
         Quaternions (w, x, y, z), body frame to support frame.
     height_given : bool
         Whether the third component of the position is theirs, or follows from touching the plane.
-    doubts : mapping from str to array (n,)
-        What may be off besides noise: of an orientation that was added up from Ω, rad; of an Ω turned by one, rad/s.
+    doubts : mapping from str to Doubt
+        Of an orientation that was added up from Ω, or of an Ω that such a one turned.
     spin : float, optional
         Ω·n at the first sample, where nothing that was given tells it, rad/s.
     remarks : tuple of str
@@ -66,7 +67,7 @@ class Theirs:
     angular_velocity: Array | None = None
     orientation: Array | None = None
     height_given: bool = True
-    doubts: Mapping[str, Array] = field(default_factory=dict)
+    doubts: Mapping[str, Doubt] = field(default_factory=dict)
     spin: float | None = None
     remarks: tuple[str, ...] = ()
     source: str = ""
