@@ -15,17 +15,19 @@ from ..mechanics.system import RollingSystem
 from .laws import CONTACT, Numbers, SlippingLaw
 from .touch import Touch, floats
 
-# How many times as fast as slip has grown its direction must settle. Slower than that `SlippingLaw` follows it; faster,
-# any method would have to take steps as short as the direction takes to settle.
-SETTLES_FAST = 4e3
+# How many times as fast as slip has grown, r, its direction must settle: with the first two terms, in 1/r and 1/r², of
+# how far it lags behind. The third is 6/r³ of the angle by which it has turned, and must be this small. Where it is
+# not, `SlippingLaw` follows the direction; a method has to take steps as short as that takes to settle.
+SETTLES_FAST = 30.0
+_LEFT_OUT = 3e-13
 _NEAR = 0.98  # cosine of the angle by which the direction may turn until it is looked for near another
 
 
 class CreepingLaw(SlippingLaw):
     """Slipping along the direction that friction keeps: the state is (p, q, Ω, |s|).
 
-    It ends where |s| falls back to nothing, "held", where slip has grown so fast that its direction lags, "settled", or
-    where that has turned away from the one near which it is looked for, "turned": to be followed from there on.
+    It ends where |s| falls back to nothing, "held", where slip has grown so fast that its direction lags, "settled" and
+    "lags", or where that has turned away from the one near which it is looked for, "turned", to be followed from there.
 
     Parameters
     ----------
@@ -78,8 +80,8 @@ class CreepingLaw(SlippingLaw):
         c, s, settling = rates.settled()
         return rates.direction(c, s), rates.direction(-s, c), settling
 
-    def _way(self, system: RollingSystem, time: Scalar, state: Numbers) -> tuple[Vector, Scalar]:
-        """Return ŝ, which lags behind the direction that slip keeps as that turns, and how fast it settles, times |s|.
+    def _way(self, system: RollingSystem, time: Scalar, state: Numbers) -> tuple[Vector, Scalar, Scalar]:
+        """Return ŝ, lagging behind the direction that slip keeps, how fast that settles, times |s|, and turns.
 
         How fast it turns is seen over a step so short that its length does not matter.
         """
@@ -88,7 +90,7 @@ class CreepingLaw(SlippingLaw):
         across = now.contact.normal.cross(first)
         turning = (self._lagging(system, *self._after(system, time, state, first))[0] - first).dot(across) / self.step
         hat = first + across * ((now.slip_rate.dot(across) - state[10] * turning) / settling)
-        return hat / hat.norm(), settling
+        return hat / hat.norm(), settling, turning
 
     def _lagging(self, system: RollingSystem, time: Scalar, state: Numbers) -> tuple[Vector, Scalar]:
         """Return the same but for the square of how far ŝ lags behind."""
@@ -118,16 +120,23 @@ class CreepingLaw(SlippingLaw):
 
     def stops(self, system: RollingSystem, time: Scalar, state: Numbers, extras: Numbers) -> dict[str, Scalar]:
         """Return the normal force, its effect on the gap, the speed of slip, how its direction lags, and the bounds."""
-        hat, settling = self._way(system, time, state)
+        hat, settling, turning = self._way(system, time, state)
         now = self._now(system, time, state, hat)
-        speed = state[10]
+        speed, since = state[10], time - self.since
+        ratio = speed / (settling * since)  # 1/r
         return {
             **self._pressing(system, now, extras),
             "held": speed,
-            "settled": settling * (time - self.since) - SETTLES_FAST * speed,
+            "settled": settling * since - SETTLES_FAST * speed,
+            "lags": _LEFT_OUT**2 - (6 * turning * since * ratio**3) ** 2,
             "turned": hat.dot(Vector(self.near_x, self.near_y, self.near_z)) - _NEAR,
             **self._bounds(system, now.contact, Quaternion(*state[3:7]), 0.0),
         }
+
+    def settles(self, system: RollingSystem, at: Touch) -> bool:
+        """Tell whether the direction of a body's slip settles so fast that it can be followed by this law."""
+        stops = self.stops(system, at.state.time, self.numbers(at), ())
+        return bool(min(stops["settled"], stops["lags"]) > 0)
 
     def numbers(self, at: Touch) -> list[float]:
         """Return p, q, Ω and |s| of the slip along the support."""

@@ -134,7 +134,7 @@ def after(system: RollingSystem, law: Law, stop: Stop) -> Next:
     if name == "land":
         # The gap and r may differ by rounding. The gap has said when; r gives way, or each bounce would add its share.
         return _struck(system, at.over(0.0))
-    if name == "settled":
+    if name in ("settled", "lags"):
         return slipping(system, Next.of(law, at))
     if isinstance(law, CreepingLaw) and name == "turned":
         turned = law.turned(law.direction(system, stop.time, stop.numbers))

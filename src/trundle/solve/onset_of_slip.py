@@ -76,8 +76,10 @@ def first_moment(system: RollingSystem, at: Touch, law: Law | None = None) -> On
     speed = moment * ((0.0 if begun is None else begun.rate) + 4 * halfway.rate + grown.rate) / 6
     hat = grown.direction
     slipping = _pushed(system, then, hat * speed, law)
-    if grown.settling * moment > SETTLES_FAST * speed:
-        return Onset(slipping, partial(CreepingLaw, step=moment, since=time, near=floats(hat)), hat, ())
+    creeping = partial(CreepingLaw, step=moment, since=time, near=floats(hat))
+    held = "held" if law.code == RESTING else "free"
+    if grown.settling * moment > SETTLES_FAST * speed and creeping(turning=held).settles(system, slipping):
+        return Onset(slipping, creeping, hat, ())
     near = min((0.25 * speed) ** 2, at.still(system) ** 2)
     return Onset(slipping, SlippingLaw, hat, (near, *floats(hat)))
 
