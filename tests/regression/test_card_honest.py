@@ -358,3 +358,18 @@ def test_slip_that_begins_in_a_pipe_while_a_ball_spins_at_900_radians_a_second(s
     ball = {"kind": "solid-sphere", "radius": "9.78 mm", "mass": "149 g"}
     run = passes(body=ball, support=pipe, start=start, run={"duration": 1.4, "every": 0.02})
     assert {"grip", "slip"} <= {event.kind for event in run.events}
+
+
+# --- a second run that does not come through ------------------------------------------------------------------
+
+
+def test_a_second_run_that_breaks_down_fails_the_card_and_raises_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    run = tr.Scenario.load("off-the-rim").run(method="taylor")
+
+    def breaks_down(*_: object) -> None:
+        raise tr.SolverError("Taylor's method hardly gets on at t = 0.1 s.")
+
+    monkeypatch.setattr(Method, "dense", breaks_down)
+    card = run.card()
+    assert [figure.name for figure in card.failures] == ["the method run again"]
+    assert "hardly gets on at t = 0.1 s" in str(card)

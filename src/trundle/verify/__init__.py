@@ -72,21 +72,22 @@ def card(system: RollingSystem, start: State, samples: Samples, method: Method, 
     rolls = bool((samples.phase == ROLLING).all()) and all(event.final for event in samples.events)
     bound = bound_of(method, turned_in(some))
     again, landings = Again(system, start, some, method), landings_of(system, samples.events)
+    followed = not again.broken
     figures = [
         *again.figures(),
         *EachSample(system, some, bound).figures(),
         *(straightness(system, some, bound) if rolls else ()),
         *_friction(system, some, bound),
-        *_balance(again, bound),
+        *(_balance(again, bound) if followed else ()),
         *(reactions(system, some, bound) if rolls else ()),
         *_integrals(system, some, method),
         *(_guiding_centre(motion, start, some, method) if rolls else ()),
-        *same_again(system, start, again.sampled, again.samples, method),
+        *(same_again(system, start, again.sampled, again.samples, method) if followed else ()),
         *cross_check(system, start, some, method, motion),
         *(_circle(system, motion, start, samples, method) if rolls else ()),
-        *contact_force(system, samples, looked_into(system, again.samples, again.follow)),
+        *(contact_force(system, samples, looked_into(system, again.samples, again.follow)) if followed else ()),
         *landing_figures(landings),
-        *AtEvents(system, again.samples, bound).figures(),
+        *(AtEvents(system, again.samples, bound).figures() if followed else ()),
         *_events(samples),
     ]
     return Card(title, _described(method, motion), tuple(figures))

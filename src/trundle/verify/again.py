@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import SolverError
 from ..mechanics.system import RollingSystem, State
 from ..solve.methods import Method
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
@@ -168,8 +170,20 @@ class Again:
             return CardFigure(name, value, note=f"{note}; between two instants it turns too far to tell: no verdict")
         return checked(name, value, self.bound, note)
 
+    @cached_property
+    def broken(self) -> str:
+        """Why the second run comes to no end where the first did; empty where it does."""
+        try:
+            _ = self.samples
+        except SolverError as error:
+            return str(error)
+        return ""
+
     def figures(self) -> Iterator[CardFigure]:
         """Yield what the slopes in the windows say: how it moves, and by which law."""
+        if self.broken:
+            yield checked("the method run again", math.inf, self.bound, f"it does not come through: {self.broken}")
+            return
         (found, phases), bound, count = self._looked_at, self.bound, len(self.windows)
         if phases - {FLIGHT}:
             held, slips = bool(phases & {ROLLING, RESTING}), SLIPPING in phases
