@@ -240,7 +240,10 @@ def friction_law(system: RollingSystem, slipping: Samples, bound: float) -> Card
     V, turning, u = (np.broadcast_to(v.array(), f.shape) for v in slipping.speeds(system))
     s = V + turning - u
     speed, size = np.linalg.norm(s, axis=1), max(largest(slipping.contact_force), 1e-300)
-    at_contact = np.linalg.norm([V, turning, u], axis=2).sum(axis=0)
+    # Ω×ρ is as sharp as |Ω||ρ|, also where Ω is along ρ and all three are rounding.
+    arm = np.linalg.norm(slipping.contact - slipping.position, axis=1)
+    turns = np.linalg.norm(slipping.angular_velocity, axis=1) * arm
+    at_contact = np.linalg.norm(V, axis=1) + turns + np.linalg.norm(u, axis=1)
     sharp = np.where(speed > _SLOWEST * at_contact.max(), bound * (1 + at_contact / np.maximum(speed, 1e-300)), np.inf)
     off = np.linalg.norm(f + mu * (N / np.maximum(speed, 1e-300))[:, None] * s, axis=1) / size
     conditions = [

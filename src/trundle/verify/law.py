@@ -334,18 +334,19 @@ class _Windows:
     def _acceleration(self, F: Array, V_rate: Array) -> float:
         """Return against what an acceleration is small or not, and over the bound what rounding makes of a slope."""
         V, at = np.abs(self.middle.velocity).max(), self.middle
-        fastest = sum(map(largest, self._speeds)) + largest(at.angular_velocity) * largest(at.contact - at.position)
+        turning = largest(at.angular_velocity)
+        fastest = sum(map(largest, self._speeds)) + turning * largest(at.contact - at.position)
         sharp = _ROUNDING * fastest / self.half / self.bound  # of Ω×ρ also where Ω is along ρ
         acting = np.abs(F).max() / float(self.system.body.mass)
         size = max(acting, np.abs(V_rate).max())
-        return float(max(size, V * self.rate, sharp, size * self._blurred, 1e-300))
+        blurred = self._blurred * max(size / largest(at.contact - at.position), turning / self.half)
+        return float(max(size, V * self.rate, sharp, blurred, 1e-300))
 
     @cached_property
     def _blurred(self) -> float:
-        """The share by which rounding of places may turn ρ, their small difference, over the bound."""
+        """By how much rounding of places may move ρ, their small difference, over the bound, m: it turns, and Ω×ρ̇."""
         at = self.middle
-        place = largest(at.position) + largest(at.contact)
-        return _A_ROUNDING * place / largest(at.contact - at.position) / self.bound
+        return _A_ROUNDING * (largest(at.position) + largest(at.contact)) / self.bound
 
     @property
     def _sharp_turn(self) -> float:

@@ -56,7 +56,8 @@ class Stretch:
         """Return short windows for slopes, a share of all of them."""
         count = max(1, round(WINDOWS * share))
         inset = _MARGIN * self.length if share < 1 else 0.0
-        times = window_times(self.begin + inset, self.end - inset, self.pace)
+        first = self.begin + max(inset, min(self.settling, 0.5 * self.length))
+        times = window_times(first, self.end - inset, self.pace)
         return times[:: max(1, WINDOWS // count)][:count]
 
     def panels(self) -> Array:
