@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from .system import RollingSystem
 
 _SLOW = 1e-10  # share of the speed at impact from which on slipping ends along a straight line
+_JAMMED, _FAR = 30.0, 1e9  # ln σ and τ, in units of an impact: what comes so far never ends
 _STRAIGHT = 1e-15  # share of M by which slip that goes on along one line seems to turn
 _MOST_PIECES = 20
 
@@ -267,43 +268,49 @@ class _Course:
     def _curved(self, size: float) -> Vector:
         """Do the same where slip turns on the way.
 
-        The slip is σ ŝ with ŝ at an angle β: where σ falls through 0 all is still smooth. The impulse is counted in
-        units of its own size, since SciPy finds events to an absolute 1e-15.
+        The slip is σ ŝ with ŝ at an angle β, and dP = σ dτ: in τ, ln σ and β change alike fast, however slow the slip
+        is. Speeds are shares of `size`, impulses and work of what that makes of them.
         """
         from scipy.integrate import solve_ivp
 
-        M = np.array([tuple(row) for row in self.M.rows])
-        sigma, least = math.hypot(self.slip.x, self.slip.y), _SLOW * size
-        unit = size / float(M[2, 2])
+        unit = self.M.c.z
+        (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = (row / unit for row in self.M.rows)
+        first, second, up = self.slip / size
+        begin, joule = math.hypot(first, second), size * size / unit
 
-        def rates(_: float, y: Any) -> Any:
-            hat = np.array([math.cos(y[1]), math.sin(y[1])])
-            direction = np.array([*(-self.mu * hat), 1.0])
-            first, second, up = M @ direction
-            along, aside = hat[0] * first + hat[1] * second, hat[0] * second - hat[1] * first
-            return unit * np.array([along, aside / y[0], up, y[2], self.mu * y[0]])
+        def rates(_: float, y: Any) -> list[float]:
+            sigma, c, s = begin * math.exp(y[0]), math.cos(y[1]), math.sin(y[1])
+            f, g = -self.mu * c, -self.mu * s
+            a, b = xx * f + xy * g + xz, yx * f + yy * g + yz
+            rising = (zx * f + zy * g + zz) * sigma
+            return [c * a + s * b, c * b - s * a, rising, y[2] * sigma, self.mu * sigma * sigma]
 
-        ends = [lambda _, y: y[0] - least]
-        ends.append((lambda _, y: y[2]) if self.aim is None else (lambda _, y: y[3] - self.aim))
-        for end, direction in zip(ends, (-1, 1), strict=True):
+        # It ends where slip does, where compression or the impact does, or never.
+        ends = [lambda _, y: y[0] - math.log(_SLOW / begin)]
+        aim = 0.0 if self.aim is None else self.aim / joule
+        ends.append((lambda _, y: y[2]) if self.aim is None else (lambda _, y: y[3] - aim))
+        ends.append(lambda _, y: y[0] - _JAMMED)
+        for end, direction in zip(ends, (-1, 1, 1), strict=True):
             end.terminal, end.direction = True, direction  # type: ignore[attr-defined]
-        far = 100 * size / float(np.linalg.eigvalsh(M)[0])
-        first, second, up = self.slip
-        y0 = np.array([sigma, math.atan2(second, first), up, self.work, self.taken])
-        scale = np.array([size, 1.0, size, size * far, (sigma / size) ** 2 * size * far])
-        found = solve_ivp(rates, (0.0, far / unit), y0, method="DOP853", rtol=1e-12, atol=1e-14 * scale, events=ends)
-        if found.status != 1:
-            raise SolverError("A landing does not end: friction and the body's shape jam it. Use less friction.")
-        y = found.y[:, -1]
+        y0 = [0.0, math.atan2(second, first), up, self.work / joule, self.taken / joule]
+        least = 1e-14 * np.array([1.0, 1.0, 1.0, 1.0, begin**2])
+        found = solve_ivp(rates, (0.0, _FAR), y0, method="DOP853", rtol=1e-12, atol=least, events=ends)
         stopped = found.t_events[0].size > 0
+        if not stopped and not found.t_events[1].size:
+            raise SolverError("A landing does not end: friction and the body's shape jam it. Use less friction.")
+        # What SciPy reads off a step has fewer digits than its end.
+        last = solve_ivp(rates, found.t[-2:], found.y[:, -2], method="DOP853", rtol=1e-12, atol=least)
+        y = last.y[:, -1]
+        rate = np.array(rates(0.0, y))
         if stopped:
-            y = y - y[0] / rates(0.0, y)[0] * rates(0.0, y)  # straight on to σ = 0
-        sigma, beta, up, work = y[:4].tolist()
-        before, self.taken = self.slip, float(y[4])
-        if stopped:
-            self.slip, self.work = Vector(0.0, 0.0, up), work
-        elif self.aim is None:
-            self.slip, self.work = Vector(sigma * math.cos(beta), sigma * math.sin(beta), 0.0), work
+            y = y - rate / rate[0]  # straight on to σ = 0
         else:
-            self.slip, self.work = Vector(sigma * math.cos(beta), sigma * math.sin(beta), up), self.aim
+            y = y - rate * (y[2] / rate[2] if self.aim is None else (y[3] - aim) / rate[3])
+        _, beta, up, work, taken = y.tolist()
+        left = 0.0 if stopped else begin * math.exp(y[0])
+        before, self.taken, self.work = self.slip, taken * joule, work * joule
+        ended = self.aim is None and not stopped
+        self.slip = Vector(left * math.cos(beta), left * math.sin(beta), 0.0 if ended else up) * size
+        if self.aim is not None and not stopped:
+            self.work = self.aim
         return self.M.solve(self.slip - before)  # added up it would have fewer digits: ŝ turns fast where slip ends

@@ -322,7 +322,7 @@ def _check_count(system: RollingSystem, events: list[Event]) -> None:
     if len(many) < _MANY or many[-1].after is None:
         return
     span = many[-1].time - many[0].time
-    if span < _MANY_WITHIN * following.moment(system, many[-1].after):
+    if span < _MANY_WITHIN * following.moment(system, many[-1].after, many[-1].contact):
         kinds = ", ".join(dict.fromkeys(event.kind for event in many))
         raise SolverError(
             f"The contact chatters at t = {many[-1].time:.9g} s: {_MANY} events ({kinds}) within {span:.2g} s. Does a "

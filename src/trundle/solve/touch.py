@@ -94,7 +94,7 @@ class Touch:
         return _STILL * self.scale(system)
 
 
-def moment(system: RollingSystem, state: State) -> float:
+def moment(system: RollingSystem, state: State, contact: tuple[float, float, float] | None = None) -> float:
     """Return a time in which a motion changes: |ρ| over its speed, or over what the forces make of it.
 
     Parameters
@@ -103,6 +103,8 @@ def moment(system: RollingSystem, state: State) -> float:
         Body, support and loads.
     state : State
         At a contact.
+    contact : triple of float, optional
+        Where, m; absent: it is searched for.
 
     Returns
     -------
@@ -116,7 +118,7 @@ def moment(system: RollingSystem, state: State) -> float:
     >>> moment(table, table.place(velocity=(10.0, 0.0)))
     0.01
     """
-    at = Touch.of(system, state)
+    at = Touch.of(system, state, None if contact is None else Vector(*contact))
     return float(at.arm / at.scale(system))
 
 

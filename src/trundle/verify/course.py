@@ -1,8 +1,8 @@
 """The course of slip in a landing, worked out a second time: what `mechanics.impact` found is compared with it.
 
-The law is the same (theory page, T4b, and Stronge's restitution), the way is not. Slip that turns is followed in a
-variable in which nothing is singular: with dτ = dP_n/|s_t| Keller's equations are ds/dτ = |s_t| M n − μ M s_t, slip
-falls off exponentially where friction ends it, and the impulse follows from M P = Δs.
+The law is the same (theory page, T4b, and Stronge's restitution), the way is not. Slip that turns is followed by its
+components and their Taylor series, not by its size and angle: with dτ = dP_n/|s_t| Keller's equations are
+ds/dτ = |s_t| M n − μ M s_t, slip falls off exponentially where friction ends it, and the impulse follows from M P = Δs.
 """
 
 from __future__ import annotations

@@ -107,7 +107,9 @@ def stretches(system: RollingSystem, begin: float, samples: Samples) -> list[Str
     """
     end = float(samples.time[-1])
     going_on = [event for event in samples.events if not event.final]
-    settling = {event.time: _FIRST * moment(system, event.after) for event in going_on if event.after is not None}
+    settling = {
+        event.time: _FIRST * moment(system, event.after, event.contact) for event in going_on if event.after is not None
+    }
     if samples.phase[0] == SLIPPING:
         settling.setdefault(begin, _FIRST * moment(system, samples.state(0)))
     smooth = before_a_singular_end(samples)
