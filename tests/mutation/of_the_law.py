@@ -222,7 +222,7 @@ SLIPPING_LAW = (
         "N = -1.01 * free.opening / opening_per_newton",
         SLIPS,
     ),
-    Mutant("T4: ṅ·s left out", SLIPPING, "n.dot(s_rate) + n_rate.dot(s))", "n.dot(s_rate))", SLIPS),
+    Mutant("T4: ṅ·s left out", SLIPPING, "n.dot(s_rate) + n_rate.dot(s), holding", "n.dot(s_rate), holding", SLIPS),
     Mutant(
         "T4: S w left out of ṅ",
         SLIPPING,
@@ -241,8 +241,8 @@ SLIPPING_LAW = (
     Mutant(
         "T4: Ω×JΩ left out",
         SLIPPING,
-        "turning = J.solve(acting.torque - system.body.gyroscopic(Q, Omega))",
-        "turning = J.solve(acting.torque)",
+        "torque, holding = acting.torque - system.body.gyroscopic(Q, Omega), ZERO",
+        "torque, holding = acting.torque, ZERO",
         SLIPS,
     ),
     Mutant("T4: F 1 % too large", SLIPPING, "s_rate = acting.force / m", "s_rate = acting.force * 1.01 / m", SLIPS),

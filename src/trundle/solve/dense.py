@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
+
+import numpy as np
 
 from ..mechanics.kinks import kinks
 from ..mechanics.system import RollingSystem, State
@@ -15,6 +17,7 @@ from .phases import Integrate, Stretch, cut
 from .samples import Array, Progress, Samples
 
 _MOST_STEPS = 50_000  # kept, of some two or three kilobytes each
+_MARKS = 1000  # states on the way through a stretch of more
 
 
 @dataclass(frozen=True)
@@ -28,7 +31,7 @@ class Leg:
     stop : Stop or None
         Where it ended; None at the end of the run.
     steps : int
-        That are kept for it.
+        That it took.
     """
 
     states: Callable[[Array], Array]
@@ -36,7 +39,23 @@ class Leg:
     steps: int
 
 
-Keep = Callable[[RollingSystem, Next, float, float, int], Leg | None]
+@dataclass(frozen=True)
+class TooMany:
+    """A stretch of more steps than are kept.
+
+    Parameters
+    ----------
+    steps : int
+        That it took so far.
+    time : float
+        How far they led, s.
+    """
+
+    steps: int
+    time: float
+
+
+Keep = Callable[[RollingSystem, Next, float, float, int], Leg | TooMany]
 
 
 class Dense:
@@ -71,9 +90,8 @@ class Dense:
         self.keep, self.integrate = keep, integrate
         self.system, self.start, self.end, self.tolerance = system, start, end, tolerance
         self.bends = kinks(system, start.time, end)
-        self.legs: list[Leg | None] = []
+        self.legs: list[Leg] = []
         self.follows: dict[int, Next] = {}
-        self.left = _MOST_STEPS
 
     def __call__(self, times: Array) -> Samples:
         """Return the samples at ascending instants, s, none before the start."""
@@ -81,25 +99,80 @@ class Dense:
         known: Any = {"after": self._after, "bends": self.bends}
         return phases.solve(self._through, self.system, self.start, times, self.tolerance, **known)
 
+    @property
+    def steps(self) -> int:
+        """About how many steps it took."""
+        return sum(leg.steps for leg in self.legs)
+
     def _through(
         self, system: RollingSystem, now: Next, times: Array, tolerance: float, progress: Progress | None
     ) -> Iterator[Stretch]:
         """Read a stretch off what is kept of it."""
         if self.passed == len(self.legs):
-            end = next((bend for bend in self.bends if bend > now.time), self.end)
-            leg = self.keep(system, now, end, tolerance, self.left)
-            self.legs.append(leg)
-            self.left -= self.left if leg is None else leg.steps
+            self.legs.append(self._leg(system, now, times, tolerance, progress))
         leg, self.passed = self.legs[self.passed], self.passed + 1
-        if leg is None:
-            yield from self.integrate(system, now, times, tolerance, progress)
-            return
         stop = leg.stop if times.size and leg.stop is not None and leg.stop.time <= times[-1] else None
         here = times if stop is None else cut(times, stop.time)[0]
         yield Stretch(here, leg.states(here), stop)
+
+    def _leg(self, system: RollingSystem, now: Next, times: Array, tolerance: float, progress: Progress | None) -> Leg:
+        """Go through a stretch, and keep its steps, or where they are too many, some states on its way."""
+        end = next((bend for bend in self.bends if bend > now.time), self.end)
+        left = _MOST_STEPS - self.steps
+        leg = self.keep(system, now, end, tolerance, left) if left > 0 else TooMany(0, end)
+        if isinstance(leg, Leg):
+            return leg
+        instants = np.union1d(times, np.linspace(now.time, end, 2 + _MARKS // (1 + len(self.legs))))
+        parts = list(self.integrate(system, now, instants, tolerance, progress))
+        stop = parts[-1].stop
+        share = (leg.time - now.time) / ((end if stop is None else stop.time) - now.time)
+        marks = _Marks(self.integrate, system, now, tolerance, parts)
+        return Leg(marks.states, stop, max(leg.steps, int(leg.steps / max(share, 1e-6))))
 
     def _after(self, system: RollingSystem, law: Law, stop: Stop) -> Next:
         """Return what follows the stretch just passed."""
         if self.passed not in self.follows:
             self.follows[self.passed] = phases.following_stop(system, law, stop)
         return self.follows[self.passed]
+
+
+class _Marks:
+    """A stretch of too many steps, of which the states at some instants are kept: from there it is gone on with.
+
+    Parameters
+    ----------
+    integrate : callable
+        The method's way to given instants.
+    system, now, tolerance
+        As it takes them, from the stretch's beginning.
+    parts : list of Stretch
+        What came of all of it.
+    """
+
+    def __init__(
+        self, integrate: Integrate, system: RollingSystem, now: Next, tolerance: float, parts: list[Stretch]
+    ) -> None:
+        self.integrate, self.system, self.tolerance = integrate, system, tolerance
+        self.begin = now
+        self.times = np.concatenate([[now.time], *(part.times for part in parts)])
+        self.known = np.vstack([np.asarray(now.numbers, dtype=float)[None], *(part.states for part in parts)])
+
+    def states(self, times: Array) -> Array:
+        """Return the states at some instants before the stop, ascending, s."""
+        which = np.searchsorted(self.times, times, side="right") - 1
+        found = self.known[which]
+        off = times > self.times[which]
+        for mark in np.unique(which[off]).tolist():
+            rows = np.flatnonzero(off & (which == mark))
+            parts = list(self.integrate(self.system, self._from(mark), times[rows], self.tolerance, None))
+            states = np.vstack([part.states for part in parts])
+            found[rows[: len(states)]] = states
+            if len(states) < rows.size and parts[-1].stop is not None:  # a rounding sooner
+                found[rows[len(states) :]] = parts[-1].stop.numbers
+        return found
+
+    def _from(self, mark: int) -> Next:
+        """Return the law as it goes on from an instant."""
+        now, time, numbers = self.begin, float(self.times[mark]), self.known[mark]
+        at = now.law.meant(self.system, time, numbers)
+        return replace(now, start=at.state, numbers=numbers.tolist(), events=(), across=None)

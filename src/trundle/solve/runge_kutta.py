@@ -12,7 +12,7 @@ import numpy as np
 from ..errors import SolverError
 from ..mechanics.system import RollingSystem, State
 from . import phases
-from .dense import Keep, Leg
+from .dense import Keep, Leg, TooMany
 from .following import Next, Stop
 from .patience import Patience
 from .phases import Stretch, cut
@@ -107,7 +107,7 @@ def keeping() -> Keep:
     return dense
 
 
-def dense(system: RollingSystem, now: Next, end: float, tolerance: float, most: int) -> Leg | None:
+def dense(system: RollingSystem, now: Next, end: float, tolerance: float, most: int) -> Leg | TooMany:
     """Follow one law to its first stop, and keep the polynomial of each step.
 
     Parameters
@@ -117,8 +117,8 @@ def dense(system: RollingSystem, now: Next, end: float, tolerance: float, most: 
 
     Returns
     -------
-    Leg or None
-        None where it takes more steps.
+    Leg or TooMany
+        The second where it takes more steps.
 
     Raises
     ------
@@ -129,7 +129,7 @@ def dense(system: RollingSystem, now: Next, end: float, tolerance: float, most: 
     try:
         *_, last = _integrated(system, now, paths, end - now.time, tolerance, None)
     except _TooManyError:
-        return None
+        return TooMany(len(paths.paths), now.time + paths.begins[-1])
     stop = None if last.stop is None else replace(last.stop, time=now.time + last.stop.time)
     return Leg(lambda times: paths.at(times - now.time), stop, len(paths.paths))
 

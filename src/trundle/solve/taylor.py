@@ -20,7 +20,7 @@ from ..errors import SolverError
 from ..mechanics.parameters import numbers, structure_of
 from ..mechanics.system import RollingSystem, State
 from . import integrator_cache, phases, runge_kutta
-from .dense import Keep, Leg
+from .dense import Keep, Leg, TooMany
 from .following import Next, Stop
 from .laws import SHRINKS, Law
 from .lowering import Lowered, lower
@@ -167,7 +167,7 @@ def dense(
     tolerance: float,
     most: int,
     hasty: dict[str, int] | None = None,
-) -> Leg | None:
+) -> Leg | TooMany:
     """Follow one law to its first stop, and keep the polynomial of each step.
 
     Parameters
@@ -187,8 +187,8 @@ def dense(
 
     Returns
     -------
-    Leg or None
-        None where it takes more steps.
+    Leg or TooMany
+        The second where it takes more steps.
 
     Raises
     ------
@@ -205,7 +205,7 @@ def dense(
             until = min(end, run.reference + part)
             reached = run.go_to(until - run.reference)
             if run.kept.steps > most:
-                return None
+                return TooMany(run.kept.steps, run.time)
             if reached is None:
                 run.tidy(until)
             else:

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..errors import SolverError
 from ..mechanics.system import RollingSystem, State
+from ..solve.dense import Dense
 from ..solve.methods import Method
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
 from .bounds import EXACT, SOLVER, Array
@@ -62,6 +63,11 @@ class Again:
     def _run(self) -> Callable[[Array], Samples]:
         """The second run, gone through once: all looks are at the same motion."""
         return self.method.dense(self.system, self.start, self._end)
+
+    @property
+    def steps(self) -> int:
+        """How many steps it takes, about; none of a closed form."""
+        return self._run.steps if isinstance(self._run, Dense) else 0
 
     @property
     def _ended(self) -> bool:

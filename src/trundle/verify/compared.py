@@ -22,11 +22,12 @@ from .growth import MOST, Growth, alike, at_the_same_times, growth, numerical, p
 _INSTANTS = 200
 _SLOW = 1e-3  # of a body's turning: what a support's own is held against at least
 _EVENTS_BEFORE, _EVENTS_AFTER = 3, 5  # the first by which two runs differ, over which a small change is followed
+_STEPS_FOLLOWED = {"exact": 10_000, "taylor": 10_000, "runge-kutta": 2_000}  # of each of a dozen runs
 _MOST_RADIANS = 50_000.0  # of turning that a cross-check follows
 
 
 def same_again(
-    system: RollingSystem, start: State, ours: Samples, again: Samples, method: Method
+    system: RollingSystem, start: State, ours: Samples, again: Samples, method: Method, steps: int
 ) -> Iterator[CardFigure]:
     """Compare samples with the same method run again: then what is checked of that run holds for them.
 
@@ -40,6 +41,8 @@ def same_again(
         The samples, and the second run at their times and others.
     method : Method
         Of both.
+    steps : int
+        That the second run took.
 
     Yields
     ------
@@ -52,7 +55,7 @@ def same_again(
     coarser = method
     if method.name == "taylor" and any(event.kind == "slip" for event in ours.events):
         coarser = replace(method, tolerance=max(method.tolerance, FINEST))  # so the first moments of slip are followed
-    both = Compared(system, start, ours, theirs, coarser, method, sizes, turned)
+    both = Compared(system, start, ours, theirs, coarser, method, sizes, turned, steps)
     turned_apart = both.turns * both.bound / both.angle_bound
     said = f"gives the same motion, force, orientation and events at {ours.time.size} instants"
     yield both.figure("the method run again", np.maximum(both.share, turned_apart), both.bound, said)
@@ -122,6 +125,8 @@ class Compared:
         Against what a difference of each quantity is small or not.
     turned : float
         By about how many radians the body turned.
+    steps : int
+        That a run takes, about; 0 where they are few.
     """
 
     system: RollingSystem
@@ -132,6 +137,7 @@ class Compared:
     follower: Method
     sizes: dict[str, float]
     turned: float
+    steps: int = 0
 
     @property
     def bound(self) -> float:
@@ -181,21 +187,31 @@ class Compared:
     def growth(self) -> Growth:
         """What the motion does to a small difference; worked out only where the plain bound does not hold.
 
-        Not over all of a run of many events, but from shortly before it holds no longer to shortly after: up to there
-        a difference is as small as it was seen to be.
+        Not over all of a run of many events, or of many steps, but from shortly before it holds no longer to shortly
+        after: up to there a difference is as small as it was seen to be.
         """
         events = np.array([event.time for event in self.theirs.events if not event.final])
+        apart = min(self._apart_from, float(self.ours.time[-1]))
         met = int(np.searchsorted(events, self._apart_from))
         begin, end = met - _EVENTS_BEFORE, met + _EVENTS_AFTER
-        upto = self.ours.time < events[end] if end < events.size else np.ones(self.ours.time.size, dtype=bool)
+        around = 0.5 * self._affordable
+        first = max(events[begin] if begin > 0 else -np.inf, apart - around)
+        last = min(events[end] if end < events.size else np.inf, apart + around)
+        upto = self.ours.time < last
         start, carried = self.start, 0.0
-        before = np.flatnonzero(self.ours.time < events[begin]) if begin > 0 else np.empty(0, dtype=int)
+        before = np.flatnonzero(self.ours.time < first)
         if before.size:
             start = self.theirs.state(int(before[-1]))
             carried = float(np.max(np.maximum(self.share, self.turns * self.bound / self.angle_bound)[before]))
             upto &= self.ours.time >= start.time
         grown = growth(self.system, start, self.ours.part(upto), self.follower, self.sizes)
         return replace(grown, carried=carried, skipped=int(np.searchsorted(events, start.time)) if before.size else 0)
+
+    @property
+    def _affordable(self) -> float:
+        """For how long a small change can be followed in a dozen runs, s."""
+        span = float(self.ours.time[-1] - self.start.time)
+        return span * _STEPS_FOLLOWED[self.follower.name] / self.steps if self.steps else np.inf
 
     @cached_property
     def _apart_from(self) -> float:
