@@ -196,8 +196,9 @@ class Compared:
         begin, end = met - _EVENTS_BEFORE, met + _EVENTS_AFTER
         around = 0.5 * self._affordable
         first = max(events[begin] if begin > 0 else -np.inf, apart - around)
-        last = min(events[end] if end < events.size else np.inf, apart + around)
-        upto = self.ours.time < last
+        upto = self.ours.time <= apart + around
+        if end < events.size:
+            upto &= self.ours.time < events[end]
         start, carried = self.start, 0.0
         before = np.flatnonzero(self.ours.time < first)
         if before.size:
@@ -210,8 +211,8 @@ class Compared:
     @property
     def _affordable(self) -> float:
         """For how long a small change can be followed in a dozen runs, s."""
-        span = float(self.ours.time[-1] - self.start.time)
-        return span * _STEPS_FOLLOWED[self.follower.name] / self.steps if self.steps else np.inf
+        most = _STEPS_FOLLOWED[self.follower.name]
+        return float(self.ours.time[-1] - self.start.time) * most / self.steps if self.steps > most else np.inf
 
     @cached_property
     def _apart_from(self) -> float:
