@@ -373,3 +373,23 @@ def test_a_second_run_that_breaks_down_fails_the_card_and_raises_nothing(monkeyp
     card = run.card()
     assert [figure.name for figure in card.failures] == ["the method run again"]
     assert "hardly gets on at t = 0.1 s" in str(card)
+
+
+# --- rest ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("position", [[0.0577, 0.0], [-0.03, 0.02]])
+@pytest.mark.parametrize("kind", ["ellipsoidal-bowl", "paraboloid"])
+def test_an_ellipsoid_at_rest_in_a_bowl_touches_where_it_was_put(kind: str, position: list[float]) -> None:
+    # Under its centre the bowl has another normal than where it touches.
+    shape = {"semi_axes": [1.25, 0.3, 0.1]} if kind == "ellipsoidal-bowl" else {"radius": 0.9}
+    body = {"kind": "ellipsoid", "semi_axes": [0.01, 0.02, 0.03], "mass": 0.1}
+    support = {"kind": kind, "friction": 0.5} | shape
+    start = {"position": position, "orientation": [0.9, 0.1, 0.3, 0.2]}
+    loads = [{"kind": "rolling-resistance", "offset": 0.02}]
+    tables: dict[str, Any] = {"body": body, "support": support, "start": start, "loads": loads}
+    run = passes(**tables, gravity=0.0, run={"duration": 1, "every": 0.1})
+    assert run.method == "exact"
+    again = tr.Scenario.loads(tomli_w.dumps(tables | {"gravity": 0.0, "run": {"duration": 1, "every": 0.1}}))
+    numerical = again.run(method="runge-kutta")
+    assert np.abs(run.samples.contact - numerical.samples.contact).max() <= 1e-15

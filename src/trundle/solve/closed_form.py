@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from ..errors import OutOfDomainError, SolverError
-from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import Contact, touch
+from ..mechanics.algebra import ZERO, Quaternion, Vector
+from ..mechanics.contact import Contact, settle, touch
 from ..mechanics.scalars import is_number
 from ..mechanics.system import RollingSystem, State
 from . import phases
@@ -22,7 +22,7 @@ from .laws import Law
 from .monodromy import Monodromy
 from .orientation import orientation, periodic_orientation
 from .phases import Stretch, cut
-from .samples import AT_ONCE, FLIGHT, SLIPPING, Array, Progress, Samples
+from .samples import AT_ONCE, FLIGHT, RESTING, SLIPPING, Array, Progress, Samples
 from .touch import Touch, floats
 
 _PHASE_A_STEP = 0.05  # rad of the motion's own phase between two looks at what may end it
@@ -240,6 +240,11 @@ def _alike(one: Any, other: Any) -> bool:
 
 def _contact(system: RollingSystem, law: Law, time: Any, centre: Vector, q: Quaternion, own: tuple[Any, ...]) -> Vector:
     """Return the contact; in flight the point of the support nearest to the body."""
+    if law.code == RESTING:  # any body, with another normal under its centre: once, as nothing moves
+        first = (np.ravel(part)[0] for part in (time, *centre, *q, *own))
+        t, x, y, z, *rest = (float(part) for part in first)
+        place = settle(system, t, Vector(x, y, z), Quaternion(*rest[:4]), tuple(rest[4:])).point
+        return place + ZERO * time
     return _point(system, law, touch(system, time, centre, q, own), centre)
 
 
