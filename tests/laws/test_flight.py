@@ -246,3 +246,14 @@ def test_a_centre_worked_out_from_the_nearest_point_would_be_off(monkeypatch: py
     with pytest.raises(AssertionError):
         flies_freely(run)
     assert not run.card().passed
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_flight_past_the_end_of_a_formula_has_a_nearest_point_up_to_there() -> None:
+    # The height falls without end at x = −0.3: next to it a step of Newton's method would lead outside.
+    pit = tr.Support(tr.HeightField("0.05*log(0.3 + x)"), friction=0.3)
+    system = tr.RollingSystem(tr.Body.solid_sphere(0.02, 0.1), pit)
+    run = tr.simulate(system, system.place((-0.2, 0.0), velocity=(-1.0, 0.0, 0.5), height=0.1), 3.0, 0.02)
+    assert run.events
+    assert np.isfinite(run.samples.contact).all()
+    assert run.card().passed

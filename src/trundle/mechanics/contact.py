@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 _MOST_STEPS = 60  # of Newton's method, which needs five
 _CLOSE = 1e-9  # share of the lengths at hand to which it must have found the contact
+_NEXT_TO = 1e-7  # share of these by which a known point may be off
 _ROUNDING = 1e-15
 _SINGULAR = 1e-6  # of det(1 + (C + g)S), at which a run ends
 _LOOKS, _GUESSES = 600, 6  # for a better first guess, and how many of them are followed
@@ -213,7 +214,7 @@ def nearest(
     Returns
     -------
     Contact
-        As of `settle`, which wants no point to begin with.
+        As of `settle`, which wants no point to begin with; that at the point itself where the step is no small one.
 
     Examples
     --------
@@ -223,9 +224,15 @@ def nearest(
     >>> bool(nearest(bowl, 0.0, off, Vector(0.0, 0.0, 0.3), still).point.norm() < 1e-16)
     True
     """
+    import numpy as np
+
     contact = touch(system, time, point, orientation, own)
-    _, aside, down = _beside(system, contact, centre)
-    return touch(system, time, point + aside + down, orientation, own)
+    with np.errstate(all="ignore"):  # by the end of a formula
+        _, aside, down = _beside(system, contact, centre)
+        step = aside + down
+        small = step.norm() <= _NEXT_TO * (point.norm() + contact.offset.norm())
+    moved = Vector(*(np.where(small, there + by, there)[()] for there, by in zip(point, step, strict=True)))
+    return touch(system, time, moved, orientation, own)
 
 
 def _beside(

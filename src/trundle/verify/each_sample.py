@@ -133,8 +133,11 @@ class EachSample:
         back = support.rotation.transpose
         there, n = back @ (Vector.of(at.contact) - support.origin), back @ contact.normal
         step = _STEP * (largest(offset) + largest(at.contact))
-        slope = (surface.level(there + n * step) - surface.level(there - n * step)) / (2 * step)
-        height = np.broadcast_to(np.asarray(surface.level(there) / slope, dtype=float), at.time.shape)
+        level = np.asarray(surface.level(there), dtype=float)
+        with np.errstate(all="ignore"):
+            slope = (surface.level(there + n * step) - surface.level(there - n * step)) / (2 * step)
+            height = np.where(np.isfinite(slope), level / slope, 0.0)  # none by the very end of a formula
+        height = np.broadcast_to(height, at.time.shape)
         return at.position + offset - at.contact, height
 
     def figures(self) -> Iterator[CardFigure]:
