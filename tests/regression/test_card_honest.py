@@ -393,3 +393,19 @@ def test_an_ellipsoid_at_rest_in_a_bowl_touches_where_it_was_put(kind: str, posi
     again = tr.Scenario.loads(tomli_w.dumps(tables | {"gravity": 0.0, "run": {"duration": 1, "every": 0.1}}))
     numerical = again.run(method="runge-kutta")
     assert np.abs(run.samples.contact - numerical.samples.contact).max() <= 1e-15
+
+
+# --- rolling without weight -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("way", [-1, 1])
+@pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
+def test_a_cylinder_that_lands_without_weight_asks_for_no_friction(method: str, way: int) -> None:
+    # It is set down by an impulse, and rolls on straight: all that is left of a contact force is rounding.
+    body = {"kind": "cylinder", "radius": 0.1, "mass": 0.75}
+    support = {"kind": "plane", "friction": 0.4, "motion": {"kind": "tilt", "angle": -0.0253}}
+    start = {"position": [0, 0.17], "velocity": [-0.72 * way, -0.23 * way, -0.53]}
+    run = passes(
+        body=body, support=support, start=start, gravity=0.0, run={"duration": 2, "every": 0.1, "method": method}
+    )
+    assert [event.kind for event in run.events] == ["land"]

@@ -11,6 +11,7 @@ from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import touch
 from ..mechanics.system import RollingSystem
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
+from ..solve.touch import WEIGHTLESS
 from .acting import acting
 from .bounds import Array, largest, sizes_of
 from .card import CardFigure, checked
@@ -122,7 +123,8 @@ def contact_force(system: RollingSystem, *parts: Samples) -> Iterator[CardFigure
         N, f = normal_and_friction(system, touching)
         least = min(least, _at(touching, N, int(np.argmin(N))))
         rests = touching.phase == RESTING
-        share = np.where((touching.phase == ROLLING) | rests, _share(np.linalg.norm(f, axis=1), N), -1.0)
+        share = _share(np.linalg.norm(f, axis=1), N, WEIGHTLESS * size)
+        share = np.where((touching.phase == ROLLING) | rests, share, -1.0)
         needed = max(needed, _at(touching, share, int(np.argmax(share))), key=lambda found: found[0])
         if rests.any():
             resisted = max(resisted, _lever(system, touching.part(rests)), key=lambda found: found[0])
@@ -138,9 +140,10 @@ def _at(samples: Samples, values: Array, index: int) -> tuple[float, float]:
     return float(values[index]), float(samples.time[index])
 
 
-def _share(f: Array, N: Array) -> Array:
-    """Return |f|/N, which is without bound where nothing presses the body on and something holds it."""
-    return np.where(N > 0, f / np.where(N > 0, N, 1.0), np.where(f > 0, np.inf, 0.0))
+def _share(f: Array, N: Array, rounding: float) -> Array:
+    """Return |f|/N: nothing where both are rounding, without bound where only N is nothing."""
+    share = np.where(N > 0, f / np.where(N > 0, N, 1.0), np.where(f > 0, np.inf, 0.0))
+    return np.where(np.maximum(f, np.abs(N)) > rounding, share, 0.0)
 
 
 def _pushing(least: float, time: float, size: float) -> CardFigure:
