@@ -11,7 +11,7 @@ import numpy as np
 
 import trundle as tr
 from measure import Row, check, seconds, timed
-from trundle.solve import ensemble, integrator_cache, taylor
+from trundle.solve import ensemble, integrator_cache, integrators, taylor
 
 TITLE = "Balls in spinning elliptic bowls of other radius, tilt, rate, mass and gravity: what is compiled"
 
@@ -21,13 +21,13 @@ TIMES = np.linspace(0.0, 1.0, 11)
 def rows() -> Iterator[Row]:
     """Count compilations with an empty cache, then with the cache of another process."""
     compiled: list[str] = []
-    originals = taylor._compile, ensemble._compile, integrator_cache.cache_folder, taylor._memory
+    originals = integrators._compile, ensemble._compile, integrator_cache.cache_folder, integrators._memory
 
     def counted(compile_: Any, name: str) -> Any:
         return lambda *parts: compiled.append(name) or compile_(*parts)
 
     with tempfile.TemporaryDirectory() as folder:
-        taylor._compile, ensemble._compile = counted(originals[0], "one"), counted(originals[1], "many")
+        integrators._compile, ensemble._compile = counted(originals[0], "one"), counted(originals[1], "many")
         integrator_cache.cache_folder = lambda: Path(folder) / "trundle"
         try:
             first = _fresh(lambda: _run(0.0))
@@ -43,7 +43,7 @@ def rows() -> Iterator[Row]:
             tr.simulate_many(systems, [_start(system) for system in systems], 1.0, 0.1)
             yield Row("compilations in a second simulate_many", len(compiled) - before, most=0, kind="count")
         finally:
-            taylor._compile, ensemble._compile, integrator_cache.cache_folder, taylor._memory = originals
+            integrators._compile, ensemble._compile, integrator_cache.cache_folder, integrators._memory = originals
     yield Row("first run, compiled", first, kind="time")
     yield Row("first run in a new process, from the cache", restarted, raw=f"of {seconds(first)}", kind="time")
     yield Row("each further run of 1 s", second, kind="time")
@@ -51,8 +51,8 @@ def rows() -> Iterator[Row]:
 
 def _fresh(run: Any) -> float:
     """Return how long a run takes in a process that has compiled nothing yet, s."""
-    memory = taylor._Memory()
-    taylor._memory = lambda: memory
+    memory = integrators._Memory()
+    integrators._memory = lambda: memory
     return timed(run)[0]
 
 

@@ -17,7 +17,7 @@ from measure import Row, best_times, check, seconds
 from peers import Solver, attempts, fairest, run, scipy_peers
 from rolling_ball import for_jax, for_numba, law
 from trundle.mechanics.parameters import numbers
-from trundle.solve import closed_form, taylor
+from trundle.solve import closed_form, integrators, taylor
 from trundle.solve.laws import RollingLaw
 from trundle.solve.tracing import contact_state
 
@@ -52,7 +52,7 @@ def rows() -> Iterator[Row]:
     check(exact_error < 1e-12, f"closed form and reference must agree; they are {exact_error:.1e} apart")
     our_error = error(ours())
 
-    integrator, lowered = taylor.compiled(system, RollingLaw())  # heyoka alone, for information
+    integrator, lowered = integrators.compiled(system, RollingLaw())  # heyoka alone, for information
     parameters = lowered.values(numbers(system), 0.0)[: lowered.parameters]
 
     def bare() -> list[Array]:

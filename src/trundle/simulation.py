@@ -10,8 +10,9 @@ from . import labels
 from .errors import InvalidValueError, ScenarioError
 from .mechanics import straight
 from .mechanics.algebra import Quaternion, Vector
-from .mechanics.contact import Contact, misplaced, settle
+from .mechanics.contact import Contact
 from .mechanics.finiteness import check_finite
+from .mechanics.nearest import misplaced, settle
 from .mechanics.placing import no_gap, slips
 from .mechanics.system import RollingSystem, State
 from .memory import check_room

@@ -13,7 +13,7 @@ from tests.tolerances import SOLVER
 
 import trundle as tr
 from trundle import many
-from trundle.solve import ensemble, integrator_cache, runge_kutta, taylor
+from trundle.solve import ensemble, integrator_cache, integrators, runge_kutta, taylor
 from trundle.solve.exact import SphereOnPlane
 
 pytest.importorskip("heyoka")
@@ -304,10 +304,10 @@ def test_without_heyoka_members_run_one_by_one(monkeypatch: pytest.MonkeyPatch, 
 
 def test_another_radius_or_rate_compiles_nothing(monkeypatch: pytest.MonkeyPatch, tmp_path: Any) -> None:
     compiled: list[Any] = []
-    compile_, memory = ensemble._compile, taylor._Memory()
+    compile_, memory = ensemble._compile, integrators._Memory()
     monkeypatch.setattr(ensemble, "_compile", lambda *parts: compiled.append(parts) or compile_(*parts))
     monkeypatch.setattr(integrator_cache, "cache_folder", lambda: tmp_path / "cache")
-    monkeypatch.setattr(taylor, "_memory", lambda: memory)
+    monkeypatch.setattr(integrators, "_memory", lambda: memory)
     systems, starts = bowls()
     for some in (slice(0, 3), slice(3, 11)):
         tr.simulate_many(systems[some], starts[some], 0.25, 0.25)

@@ -13,7 +13,7 @@ from tests.tolerances import EXACT, SOLVER
 
 import trundle as tr
 from trundle.mechanics.algebra import Quaternion, Vector
-from trundle.mechanics.contact import settle
+from trundle.mechanics.nearest import settle
 from trundle.mechanics.shapes import Disc, Ellipsoid, Hemisphere, Sphere, Torus
 from trundle.solve.samples import FLIGHT
 

@@ -22,7 +22,7 @@ from trundle.mechanics.algebra import Vector
 from trundle.mechanics.loads import BodyMotion, Load
 from trundle.mechanics.parameters import numbers
 from trundle.mechanics.shapes import Ellipsoid
-from trundle.solve import integrator_cache, taylor
+from trundle.solve import integrator_cache, integrators, taylor
 from trundle.solve.laws import RollingLaw
 from trundle.solve.lowering import lower
 
@@ -38,19 +38,19 @@ class Machine:
 
     def __init__(self, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         self.folder, self.compiled, self.patch = folder, 0, monkeypatch
-        compile_ = taylor._compile
+        compile_ = integrators._compile
 
         def counted(*arguments: Any) -> Any:
             self.compiled += 1
             return compile_(*arguments)
 
-        monkeypatch.setattr(taylor, "_compile", counted)
+        monkeypatch.setattr(integrators, "_compile", counted)
         monkeypatch.setattr(integrator_cache, "cache_folder", lambda: folder)
         self.restart()
 
     def restart(self) -> None:
-        memory = taylor._Memory()
-        self.patch.setattr(taylor, "_memory", lambda: memory)
+        memory = integrators._Memory()
+        self.patch.setattr(integrators, "_memory", lambda: memory)
 
     def run(self, system: tr.RollingSystem = SYSTEM) -> Any:
         return taylor.solve(system, system.place((0.1, 0.0), (0.0, 0.2)), TIMES)
@@ -145,7 +145,7 @@ def test_long_equations_that_differ_at_their_end_are_not_taken_for_one_another()
 
     def key(place: bool) -> str:
         system = tr.RollingSystem(body, support, (Twist(Vector(0.1, 0.2, 0.3), place),))
-        return taylor._key(*lower(system, RollingLaw()).heyoka(), 1e-15, len(numbers(system)))
+        return integrators._key(*lower(system, RollingLaw()).heyoka(), 1e-15, len(numbers(system)))
 
     assert key(True) == key(True)
     assert key(True) != key(False)
@@ -155,11 +155,11 @@ def test_the_key_depends_on_tolerance_heyoka_and_processor(monkeypatch: pytest.M
     import heyoka
 
     traced = lower(SYSTEM, RollingLaw()).heyoka()
-    keys = {taylor._key(*traced, 1e-15, 7), taylor._key(*traced, 1e-9, 7)}
-    monkeypatch.setattr(taylor, "_processor", lambda: "another")
-    keys.add(taylor._key(*traced, 1e-15, 7))
+    keys = {integrators._key(*traced, 1e-15, 7), integrators._key(*traced, 1e-9, 7)}
+    monkeypatch.setattr(integrators, "_processor", lambda: "another")
+    keys.add(integrators._key(*traced, 1e-15, 7))
     monkeypatch.setattr(heyoka, "__version__", "0.0.0")
-    keys.add(taylor._key(*traced, 1e-15, 7))
+    keys.add(integrators._key(*traced, 1e-15, 7))
     assert len(keys) == 4
 
 
@@ -167,19 +167,19 @@ def test_the_key_is_the_same_in_every_process() -> None:
     code = """
 import trundle as tr
 from trundle.mechanics.parameters import numbers
-from trundle.solve import taylor
+from trundle.solve import integrators, taylor
 from trundle.solve.laws import RollingLaw
 from trundle.solve.lowering import lower
 ball = tr.Body.solid_sphere(radius=0.025, mass=0.065)
 system = tr.RollingSystem(ball, tr.Support(tr.Plane(), motion=tr.Spin(3.5), tilt=0.05))
-print(taylor._key(*lower(system, RollingLaw()).heyoka(), 1e-15, len(numbers(system))))
+print(integrators._key(*lower(system, RollingLaw()).heyoka(), 1e-15, len(numbers(system))))
 """
     found = set()
     for seed in ("1", "2"):
         env = dict(os.environ, PYTHONHASHSEED=seed)
         found.add(subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, check=True).stdout)  # noqa: S603
     assert len(found) == 1
-    assert found.pop().decode().strip() == taylor._key(
+    assert found.pop().decode().strip() == integrators._key(
         *lower(SYSTEM, RollingLaw()).heyoka(), 1e-15, len(numbers(SYSTEM))
     )
 
@@ -299,9 +299,9 @@ def test_an_end_at_the_rim_leaves_nothing_behind(machine: Machine) -> None:
 def test_the_cache_is_the_users(tmp_path: Path) -> None:
     code = """
 import trundle as tr
-from trundle.solve import taylor
-compile_, count = taylor._compile, []
-taylor._compile = lambda *arguments: (count.append(1), compile_(*arguments))[1]
+from trundle.solve import integrators, taylor
+compile_, count = integrators._compile, []
+integrators._compile = lambda *arguments: (count.append(1), compile_(*arguments))[1]
 table = tr.RollingSystem(tr.Body.solid_sphere(0.025, 0.065), tr.Support(tr.Plane()))
 tr.simulate(table, table.place(), duration=1.0, every=0.5, method="taylor")
 print(len(count))

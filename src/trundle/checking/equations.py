@@ -102,7 +102,7 @@ def _placed(system: RollingSystem, time: float, rough: Array, q: Array, Omega: A
 def _on_surface(system: RollingSystem, time: float, rough: Vector) -> Vector:
     """Go down to the surface along its normals, from a point near it."""
     surface, now = system.support.surface, system.support.motion.at(time)
-    own = now.rotation.transpose @ (rough - now.origin)
+    own = now.own_of(rough)
     for _ in range(60):
         n, level = surface.normal(own), float(surface.level(own))
         step = 1e-6 * max(abs(level), 1e-3)

@@ -225,7 +225,7 @@ def _axis(system: RollingSystem, at: Motion) -> Array | None:
 def _directions(system: RollingSystem, at: Motion) -> list[Array]:
     """Return the two directions along the surface at the first contact, in space."""
     now = system.support.motion.at(float(at.time[0]))
-    own = now.rotation.transpose @ (_first(at.contact.point) - now.origin)
+    own = now.own_of(_first(at.contact.point))
     return [np.array([*(now.rotation @ d)], dtype=float) for d in system.support.surface.directions(own)]
 
 
@@ -242,7 +242,7 @@ def _state(system: RollingSystem, at: Motion, numbers: Array) -> State:
     first, second = (Vector(*d) for d in _directions(system, at))
     surface, now = system.support.surface, system.support.motion.at(time)
     point = _first(at.contact.point) + first * numbers[0] + second * numbers[1]
-    own = surface.point(*surface.coordinates_of(now.rotation.transpose @ (point - now.origin)))
+    own = surface.point(*surface.coordinates_of(now.own_of(point)))
     contact = touch(system, time, now.origin + now.rotation @ own, q)
     system.check_rim(contact, at.position[0].tolist())
     rho, n = contact.offset, contact.normal

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidValueError
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import Contact, settle, touch
+from ..mechanics.contact import Contact, touch
+from ..mechanics.nearest import settle
 from ..mechanics.shapes import concentric_sphere
 from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem
@@ -261,7 +262,7 @@ def _settled(system: RollingSystem, time: float, centre: Array, orientation: Arr
 
 def gap_of(system: RollingSystem, contact: Contact) -> Array:
     """Return the signed distance of the body's lowest point from the support, to first order, m."""
-    own = contact.support.rotation.transpose @ (contact.point - contact.support.origin)
+    own = contact.support.own_of(contact.point)
     gap = np.asarray(system.support.surface.level(own), dtype=float)
     return np.broadcast_to(gap, np.shape(np.asarray(contact.point.x))).astype(float)
 

@@ -129,7 +129,7 @@ def depth(system: RollingSystem, contact: Contact, orientation: Any) -> tuple[fl
 def _body_point(system: RollingSystem, contact: Contact, orientation: Any, nu: Vector) -> Vector:
     """Return X(ν) in the support's own frame, m."""
     ours = contact.centre + orientation.matrix() @ system.body.shape.support_map(nu)
-    return contact.support.rotation.transpose @ (ours - contact.support.origin)
+    return contact.support.own_of(ours)
 
 
 def _there(surface: Surface, p: Vector) -> Any:

@@ -11,9 +11,10 @@ from ..errors import InvalidValueError, did_you_mean
 from . import checks, fitting, straight
 from .algebra import Quaternion, Vector
 from .attitude import attitude
-from .contact import Contact, misplaced, settle, touch
+from .contact import Contact, touch
 from .finiteness import check_finite
 from .motions import SupportState
+from .nearest import misplaced, settle
 from .scalars import Scalar, is_zero
 
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ class Placing:
         system.check_rim(contact, self.position)
         fitting.check_start(system, contact, q, self.position)
         turning = self._given_turning(contact, gap)
-        V = self._velocity(contact, begin.rotation.transpose @ (contact.point - begin.origin), gap, turning)
+        V = self._velocity(contact, begin.own_of(contact.point), gap, turning)
         Omega = self._following_turning(contact, V) if turning is None else turning
         self._check_no_slip(contact, V, Omega, gap)
         centre = contact.centre + contact.normal * gap
@@ -123,7 +124,7 @@ class Placing:
         surface = self.system.support.surface
         if self.attitude is not None:
             angles = checks.components(self.attitude, "angle", "attitude")
-            there = begin.rotation.transpose @ (point - begin.origin)
+            there = begin.own_of(point)
             first, n = surface.directions(there)[0], surface.normal(there)
             # Not the second direction but n × e₁: the two coordinates need not grow at right angles.
             axes = (begin.rotation @ first, begin.rotation @ n.cross(first), begin.rotation @ n)

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any
 from ..errors import InvalidValueError, SolverError
 from . import checks
 from .algebra import Matrix, Quaternion, Vector
-from .contact import Contact, roll, settle
+from .contact import Contact, roll
 from .motions import SupportState
+from .nearest import settle
 from .surfaces import Surface
 
 if TYPE_CHECKING:
@@ -52,7 +53,7 @@ def facing(contact: Contact, begin: SupportState, surface: Surface, velocity: An
     >>> slope.place().orientation  # its axis is the second of the support frame
     (0.5, -0.5, -0.5, -0.5)
     """
-    own = begin.rotation.transpose @ (contact.point - begin.origin)
+    own = begin.own_of(contact.point)
     first, second = (begin.rotation @ e for e in surface.directions(own))
     along = (1.0, 0.0)
     if velocity is not None and not isinstance(velocity, str):

@@ -151,7 +151,7 @@ def _lean(run: Trajectory, facts: Facts, support: Any) -> list[Series]:
     if shape.axis is not None or not facts.off_centre:
         return []
     state = support_states(run)
-    there = state.rotation.transpose @ (Vector.of(_array(support, "contact")) - state.origin)
+    there = state.own_of(Vector.of(_array(support, "contact")))
     first, second = run.system.support.surface.directions(there)
     n = run.system.support.surface.normal(there)
     turned = (state.rotation @ first, state.rotation @ second, state.rotation @ n)

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from ..errors import InvalidValueError, ScenarioError
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.attitude import attitude, attitude_of
-from ..mechanics.contact import Contact, settle
+from ..mechanics.contact import Contact
+from ..mechanics.nearest import settle
 from ..mechanics.placing import no_gap
 from ..mechanics.system import RollingSystem, State, Support
 from .words import LOADS, MOTIONS, SURFACES, Words, body_words, number_of, numbers_of, one_of

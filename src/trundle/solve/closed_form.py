@@ -11,7 +11,8 @@ import numpy as np
 
 from ..errors import OutOfDomainError, SolverError
 from ..mechanics.algebra import ZERO, Quaternion, Vector
-from ..mechanics.contact import Contact, settle, touch
+from ..mechanics.contact import Contact, touch
+from ..mechanics.nearest import settle
 from ..mechanics.scalars import is_number
 from ..mechanics.system import RollingSystem, State
 from . import phases
@@ -252,7 +253,7 @@ def _point(system: RollingSystem, law: Law, contact: Contact, centre: Vector) ->
     """Return p of a body whose normal at the contact is known; in flight straight under the centre, on the support."""
     if law.code != FLIGHT:
         return centre + contact.offset
-    there = contact.support.rotation.transpose @ (centre - contact.support.origin)
+    there = contact.support.own_of(centre)
     return centre - contact.normal * system.support.surface.level(there)
 
 

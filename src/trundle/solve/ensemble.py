@@ -22,7 +22,7 @@ from ..mechanics.jets import jets
 from ..mechanics.parameters import numbers, with_numbers
 from ..mechanics.placing import SLIP_TOLERANCE
 from ..mechanics.system import RollingSystem, State
-from . import taylor
+from . import integrators, taylor
 from .laws import Law, RollingLaw
 from .lowering import Lowered
 from .samples import AT_ONCE, Array, Samples
@@ -123,7 +123,7 @@ def _norm(v: Vector) -> Any:
 
 
 def _settled(system: RollingSystem, time: float, r: Vector, q: Quaternion, own: tuple[Any, ...]) -> Contact:
-    """Return the contacts nearest to many bodies: `mechanics.contact.settle` on arrays."""
+    """Return the contacts nearest to many bodies: `mechanics.nearest.settle` on arrays."""
     surface, point = system.support.surface, r
     contact = touch(system, time, point, q, own)
     for step in range(_MOST_STEPS):
@@ -131,7 +131,7 @@ def _settled(system: RollingSystem, time: float, r: Vector, q: Quaternion, own: 
         apart = r + contact.offset - point
         gap = n.dot(apart)
         aside = apart - n * gap
-        there = support.rotation.transpose @ (point - support.origin)
+        there = support.own_of(point)
         level = surface.level(Vector(*jets(tuple(there))))
         slope = Vector(*level.gradient)
         down = n * -(level.value / _norm(slope))
@@ -191,8 +191,8 @@ def integrate(
         Members that came to a stop of the law, or broke down.
     """
     law = RollingLaw()
-    lowered, key = taylor._ready(systems[0], law, tolerance)
-    integrator = taylor._compiled(f"{LANES}-{key}", lambda: _compile(lowered, tolerance))
+    lowered, key = integrators.ready(systems[0], law, tolerance)
+    integrator = integrators.kept(f"{LANES}-{key}", lambda: _compile(lowered, tolerance))
     blocks = [list(members[i : i + LANES]) for i in range(0, len(members), LANES)]
     halt = threading.Event()  # somebody pressed Ctrl-C, or another thread failed
 

@@ -14,8 +14,9 @@ from typing import Any
 import numpy as np
 
 from ..mechanics.algebra import ZERO, Quaternion, Vector
-from ..mechanics.contact import Contact, Rolling, nearest, roll, touch
+from ..mechanics.contact import Contact, Rolling, roll, touch
 from ..mechanics.loads import BodyMotion
+from ..mechanics.nearest import nearest
 from ..mechanics.scalars import Scalar, is_zero
 from ..mechanics.slipping import Flying, Slipping, fly, slip, slip_direction, unturned
 from ..mechanics.system import RollingSystem, State
@@ -168,7 +169,7 @@ class Law:
     def _bounds(self, system: RollingSystem, contact: Contact, orientation: Quaternion, gap: Scalar) -> dict[str, Any]:
         """Return the stops of every phase: where the support ends, the body's shape, or what fits."""
         surface, support = system.support.surface, contact.support
-        there, found = support.rotation.transpose @ (contact.point - support.origin), {}
+        there, found = support.own_of(contact.point), {}
         if surface.rim is not None:
             found["rim"] = surface.rim * surface.rim - (there.x * there.x + there.y * there.y)
         ending = surface.inside(there)

@@ -118,7 +118,7 @@ def _tidied(system: RollingSystem, law: Law, time: Scalar, state: Sequence[Scala
     """
     p, q, _, _, own = law.split(state)
     support = system.support.motion.at(time, *own)
-    there = support.rotation.transpose @ (p - support.origin)
+    there = support.own_of(p)
     level = system.support.surface.level(Vector(*jets(tuple(there))))
     slope = Vector(*level.gradient)
     p = p - support.rotation @ (slope * (level.value / slope.dot(slope)))

@@ -3,32 +3,28 @@
 from __future__ import annotations
 
 import contextlib
-import copy
-import hashlib
 import itertools
 import math
-import pickle
-import platform
 from collections.abc import Callable, Iterator, Sequence
-from functools import cache, cached_property, partial
-from pathlib import Path
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ..errors import SolverError
-from ..mechanics.parameters import numbers, structure_of
+from ..mechanics.parameters import numbers
 from ..mechanics.system import RollingSystem, State
-from . import integrator_cache, phases, runge_kutta
+from . import phases, runge_kutta
 from .dense import Keep, Leg, TooMany
 from .following import Next, Stop
-from .laws import SHRINKS, Law
-from .lowering import Lowered, lower
+from .integrators import IN_HASTE, TOLERANCE, WITH_CARE, borrowed, ready
+from .kept_series import KeptSeries
+from .laws import SHRINKS
+from .lowering import Lowered
 from .patience import Patience
 from .phases import Stretch, cut
 from .samples import AT_ONCE, Array, Progress, Samples
 
-TOLERANCE = 1e-15
 _CHUNKS = 100  # of a run at most, between which progress is told and Ctrl-C is heard
 _LEAST_CHUNK = 60  # instants
 _AT_ONCE = 10_000  # steps, between which Ctrl-C is heard too
@@ -36,7 +32,6 @@ _AT_ONCE = 10_000  # steps, between which Ctrl-C is heard too
 # step, and a tenth of a second to compile where what is made with care takes seconds. Most runs need no other. The
 # steps are counted anew in each run, so that it has the same digits whatever is compiled already.
 _HASTY_STEPS, _CARES = 1000, -1
-_IN_HASTE, _WITH_CARE = 0, 1  # levels of LLVM: at its highest it compiles for half as long again, and runs no faster
 _PATIENCE: dict[str, Any] = {"steps": 3e6, "spare": 5e4, "name": "Taylor's method"}  # a minute, and some seconds
 _STRAIGHT, _YOUNG, _GROWN = 1e-9, 8, 1e12  # sine of an angle; steps at a time, of slip until it has grown so much
 _LONGEST = 100.0  # s without a new reference of time, at most
@@ -198,7 +193,7 @@ def dense(
     if now.law.brief:
         return runge_kutta.dense(system, now, end, runge_kutta.FINEST, most)
     with _begun(system, now, tolerance, hasty) as run:
-        run.kept, stop = _Kept(now), None
+        run.kept, stop = KeptSeries(now), None
         run.patience = Patience(run.time, end, **_PATIENCE)
         part = min(_LONGEST, (end - now.time) / _PARTS)
         while stop is None and run.reference < end:
@@ -217,11 +212,11 @@ def dense(
 def _begun(system: RollingSystem, now: Next, tolerance: float, hasty: dict[str, int] | None) -> Iterator[_Run]:
     """Lend what integrates a law, at its beginning."""
     hasty = {} if hasty is None else hasty
-    lowered, key = _ready(system, now.law, tolerance)
+    lowered, key = ready(system, now.law, tolerance)
     with contextlib.ExitStack() as lent:
 
         def borrow(level: int) -> Any:
-            return lent.enter_context(_borrowed(lowered, key, tolerance, level))
+            return lent.enter_context(borrowed(lowered, key, tolerance, level))
 
         left = max(0, _HASTY_STEPS - hasty.get(key, 0))
         run = _Run(borrow, left, lowered, [*numbers(system), *now.extras], now.time, now.numbers)
@@ -254,67 +249,6 @@ def _lasted_to(system: RollingSystem, now: Next, stop: str, near: float) -> floa
     return length / change if straight else math.inf
 
 
-def compiled(system: RollingSystem, law: Law, tolerance: float = TOLERANCE) -> tuple[Any, Lowered]:
-    """Return a fresh copy of a compiled integrator: from this process, the user's cache, or the compiler.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Only its structure matters: state and parameters are the caller's to set.
-    law : Law
-        Of the phase.
-    tolerance : float
-        Of each step, relative.
-
-    Returns
-    -------
-    integrator : heyoka.taylor_adaptive_dbl
-        At time 0.
-    lowered : Lowered
-        What its state, parameters and terminal events are.
-
-    Examples
-    --------
-    See `benchmarks/trajectory.py`.
-    """
-    lowered, key = _ready(system, law, tolerance)
-    return _copied(lowered, key, tolerance, _WITH_CARE), lowered
-
-
-def _copied(lowered: Lowered, key: str, tolerance: float, level: int) -> Any:
-    def compile_() -> Any:
-        return _compile(*lowered.heyoka(), tolerance, lowered.parameters, level)
-
-    return copy.copy(_compiled(f"{key}-{level}", compile_))
-
-
-@contextlib.contextmanager
-def _borrowed(lowered: Lowered, key: str, tolerance: float, level: int) -> Iterator[Any]:
-    """Lend a copy that nobody else uses, and keep it for the next stretch: to make one takes a millisecond."""
-    idle = _memory().idle.setdefault((key, level), [])
-    integrator = idle.pop() if idle else _copied(lowered, key, tolerance, level)
-    if lowered.stops:
-        integrator.reset_cooldowns()  # a stop just passed is not looked for again at once
-    yield integrator
-    idle.append(integrator)  # not where it broke down
-
-
-def _ready(system: RollingSystem, law: Law, tolerance: float) -> tuple[Lowered, str]:
-    """Return a law ready for the compiler, and the name of what comes of it; worked out once for each structure."""
-    ready = _memory().ready
-    structure: Any = (structure_of(system), type(law), tuple(vars(law).items()), tolerance)
-    try:
-        known = ready.get(structure)
-    except TypeError:  # a part of one's own that cannot be hashed, and so may change
-        structure = known = None
-    if known is None:
-        lowered = lower(system, law)
-        known = lowered, _key(*lowered.heyoka(), tolerance, lowered.parameters)
-        if structure is not None:
-            ready[structure] = known
-    return known
-
-
 class _Run:
     """An integrator on its way; its own time counts from a reference that moves along."""
 
@@ -329,9 +263,9 @@ class _Run:
     ) -> None:
         self.borrow, self.lowered, self.given = borrow, lowered, given
         self.hasty_steps = hasty_steps or _CARES  # left
-        self.integrator = borrow(_WITH_CARE if self.hasty_steps == _CARES else _IN_HASTE)
+        self.integrator = borrow(WITH_CARE if self.hasty_steps == _CARES else IN_HASTE)
         self.patience: Patience
-        self.kept: _Kept | None = None  # where the polynomials of its steps are kept
+        self.kept: KeptSeries | None = None  # where the polynomials of its steps are kept
         self.lasted, self.begun = math.inf, begin
         self.integrator.state[:] = state
         self._refer_to(begin)
@@ -381,7 +315,7 @@ class _Run:
         one that the other would have to know.
         """
         if self.hasty_steps == 0:
-            hasty, self.integrator, self.hasty_steps = self.integrator, self.borrow(_WITH_CARE), _CARES
+            hasty, self.integrator, self.hasty_steps = self.integrator, self.borrow(WITH_CARE), _CARES
             self.integrator.state[:], self.integrator.pars[:] = hasty.state, hasty.pars
             self.integrator.dtime = hasty.dtime
         most = self.hasty_steps if self.hasty_steps > 0 else _AT_ONCE
@@ -409,51 +343,6 @@ class _Run:
             self.kept.refer_to(time)
         self.values = self.lowered.values(self.given, time)
         self.integrator.pars[:] = self.values[: self.lowered.parameters]
-
-
-class _Kept:
-    """The polynomials of the steps of a stretch, each about where it begins, counted from a reference of its own."""
-
-    def __init__(self, now: Next) -> None:
-        self.numbers, self.reference, self.reached = np.asarray(now.numbers, dtype=float), now.time, 0.0
-        self.references: list[float] = []
-        self.begins: list[float] = []
-        self.series: list[Array] = []  # (variables, terms)
-
-    @property
-    def steps(self) -> int:
-        """How many."""
-        return len(self.series)
-
-    def take(self, integrator: Any) -> bool:
-        """Keep the step just made; go on."""
-        if integrator.last_h > 0:
-            self.references.append(self.reference)
-            self.begins.append(self.reached)
-            self.series.append(integrator.tc.copy())
-        self.reached = float(integrator.time)
-        return True
-
-    def refer_to(self, time: float) -> None:
-        """Count from another time on."""
-        self.reference, self.reached = time, 0.0
-
-    @cached_property
-    def _all(self) -> tuple[Array, Array, Array]:
-        """References, beginnings and series of all steps."""
-        return np.array(self.references), np.array(self.begins), np.array(self.series)
-
-    def at(self, times: Array) -> Array:
-        """Return the states at some times."""
-        if not self.series:
-            return np.tile(self.numbers, (times.size, 1))
-        references, begins, series = self._all
-        which = np.maximum(np.searchsorted(references + begins, times, side="right") - 1, 0)
-        since = (times - references[which] - begins[which])[:, None]
-        states = series[which, :, -1]
-        for term in range(series.shape[2] - 2, -1, -1):
-            states = states * since + series[which, :, term]
-        return states
 
 
 def _propagate(run: _Run, times: Array, progress: Progress | None) -> Iterator[tuple[Array, Array, int | None]]:
@@ -507,71 +396,3 @@ def _event(run: _Run, outcome: Any) -> int | None:
             "Look for a support or load that jumps, or a surface too curved for the body."
         )
     return -int(outcome) - 1
-
-
-class _Memory:
-    """Compiled integrators of this process, by key, never used themselves, only copied; and the laws they came of."""
-
-    def __init__(self) -> None:
-        self.known: dict[str, Any] = {}
-        self.idle: dict[tuple[str, int], list[Any]] = {}  # copies between two uses
-        self.ready: dict[Any, tuple[Lowered, str]] = {}
-
-
-@cache
-def _memory() -> _Memory:
-    return _Memory()
-
-
-def _compiled(key: str, compile_: Any) -> Any:
-    known = _memory().known
-    if key not in known:
-        _quiet()
-        known[key] = integrator_cache.load(key)
-        if known[key] is None:
-            known[key] = compile_()
-            integrator_cache.store(key, known[key])
-    return known[key]
-
-
-@cache
-def _quiet() -> None:
-    """Keep heyoka's warnings out of the results, among which it prints them.
-
-    They say that a stop's root was not found where it was looked for, and passed over. A lift or slip passed over shows
-    on the card, in the normal force and the friction needed; slip has two stops for its end.
-    """
-    import heyoka
-
-    heyoka.set_logger_level_error()
-
-
-def _compile(equations: list[Any], stops: list[Any], tolerance: float, parameters: int, level: int) -> Any:
-    import heyoka
-
-    return heyoka.taylor_adaptive(
-        equations,
-        [0.0] * len(equations),
-        pars=[0.0] * parameters,
-        tol=tolerance,
-        compact_mode=True,
-        opt_level=level,
-        t_events=[heyoka.t_event(stop, direction=heyoka.event_direction.negative) for stop in stops],
-    )
-
-
-def _key(equations: list[Any], stops: list[Any], tolerance: float, parameters: int) -> str:
-    """Name what a compiled integrator depends on: the equations, the tolerance, heyoka and the processor."""
-    import heyoka
-
-    parts = [repr(tolerance), str(parameters), heyoka.__version__, _processor()]
-    whole = pickle.dumps((equations, stops))  # the repr of a long expression ends in "..."
-    return hashlib.sha256("\n".join(parts).encode() + whole).hexdigest()[:32]
-
-
-@cache
-def _processor() -> str:
-    with contextlib.suppress(OSError):
-        lines = Path("/proc/cpuinfo").read_text(errors="replace").splitlines()
-        return "".join(sorted({line for line in lines if line.startswith(("model name", "flags", "Features"))}))
-    return platform.machine() + platform.processor()

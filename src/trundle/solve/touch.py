@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass, replace
 
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import Contact, settle, touch
+from ..mechanics.contact import Contact, touch
+from ..mechanics.nearest import settle
 from ..mechanics.system import RollingSystem, State
 
 WEIGHTLESS = 1e-13  # share of the forces at hand below which nothing presses the body on

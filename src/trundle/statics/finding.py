@@ -10,7 +10,7 @@ from typing import Any
 from ..errors import InvalidValueError
 from ..mechanics import checks
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import settle
+from ..mechanics.nearest import settle
 from ..mechanics.scalars import is_zero
 from ..mechanics.system import RollingSystem, State
 from ..scenario import ScenarioFile

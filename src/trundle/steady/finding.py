@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import InvalidValueError
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import settle
+from ..mechanics.nearest import settle
 from ..mechanics.system import RollingSystem, State
 from .flow import Array, Flow, bears_complex_numbers, scale_of
 from .quantities import Held

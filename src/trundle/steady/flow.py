@@ -117,7 +117,7 @@ class Flow:
         """Return φ(p), its slope along the normal, and the normal."""
         support = self.system.support
         pose, n = support.motion.at(self.time), normal_at(self.system, self.time, p)
-        own = pose.rotation.transpose @ (p - pose.origin)
+        own = pose.own_of(p)
         up = (pose.rotation.transpose @ n) * (1e-4 * self.length)
         level = support.surface.level
         return float(level(own)), float((level(own + up) - level(own - up)) / (2e-4 * self.length)), n

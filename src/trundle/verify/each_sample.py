@@ -180,7 +180,7 @@ class EachSample:
         """Yield how far a body is beyond the rim, the surface's end, or what its shape covers."""
         system, surface = self.system, self.system.support.surface
         support = self.at.support(system)
-        there = support.rotation.transpose @ (Vector.of(self.at.contact) - support.origin)
+        there = support.own_of(Vector.of(self.at.contact))
         shape = self.at.time.shape
         if surface.rim is not None:
             beyond = np.hypot(there.x, there.y) - float(surface.rim)

@@ -257,7 +257,7 @@ class AtEvents:
     def _ended(self, event: Event, at: Samples, each: EachSample) -> Iterator[tuple[Event, str, float, float]]:
         """Yield whether a run ended where it says."""
         surface, support = self.system.support.surface, at.support(self.system)
-        there = support.rotation.transpose @ (Vector.of(at.contact) - support.origin)
+        there = support.own_of(Vector.of(at.contact))
         q = Quaternion.of(at.orientation)
         if event.kind == "rim":
             off = np.hypot(_number(there.x), _number(there.y)) - _number(surface.rim)

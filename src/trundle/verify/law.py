@@ -288,7 +288,7 @@ class _Windows:
     def _support_points(self) -> Array:
         """Return the same of the support's point."""
         pose, nodes = self.middle.support(self.system), self.times.shape[1]
-        own = (pose.rotation.transpose @ (Vector.of(self.middle.contact) - pose.origin)).array()
+        own = (pose.own_of(Vector.of(self.middle.contact))).array()
         own = np.repeat(np.broadcast_to(own, self.middle.contact.shape), nodes, axis=0)
         carried = self.all.support(self.system).carried(Vector.of(own)).array()
         return np.broadcast_to(carried, own.shape)

@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass, replace
 
 from ..mechanics.algebra import E_X, E_Z, Quaternion, Vector
-from ..mechanics.contact import Contact, settle
+from ..mechanics.contact import Contact
+from ..mechanics.nearest import settle
 from ..mechanics.placing import SLIP_TOLERANCE, no_gap
 from ..mechanics.system import RollingSystem, State
 

@@ -39,6 +39,10 @@ class SupportState:
         """Return where the point of the support with given own coordinates is, m."""
         return self.origin + self.rotation @ own
 
+    def own_of(self, p: Vector) -> Vector:
+        """Return the support's own coordinates of a point, m."""
+        return self.rotation.transpose @ (p - self.origin)
+
     def material_velocity(self, p: Vector) -> Vector:
         """Return u(p) = Ẋ + ω×(p − X), the velocity of the support's material at p, m/s."""
         return self.velocity + self.angular_velocity.cross(p - self.origin)

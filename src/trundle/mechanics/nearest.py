@@ -1,0 +1,265 @@
+"""Where a body is nearest to its support, found from its centre: the geometry of touch for a body that may fly."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from ..errors import SolverError
+from .algebra import Quaternion, Vector
+from .contact import Contact, touch
+from .scalars import Scalar
+
+if TYPE_CHECKING:
+    from .surfaces import Surface
+    from .system import RollingSystem
+
+_MOST_STEPS = 60  # of Newton's method, which needs five
+_CLOSE = 1e-9  # share of the lengths at hand to which it must have found the contact
+_NEXT_TO = 1e-7  # share of these by which a known point may be off
+_ROUNDING = 1e-15
+_SINGULAR = 1e-6  # of det(1 + (C + g)S), at which a run ends
+_LOOKS, _GUESSES = 600, 6  # for a better first guess, and how many of them are followed
+_ALIKE = 0.9  # cosine of the angle between the normals of two that lead to the same
+
+
+def nearest(
+    system: RollingSystem,
+    time: Scalar,
+    point: Vector,
+    centre: Vector,
+    orientation: Quaternion,
+    own: tuple[Scalar, ...] = (),
+) -> Contact:
+    """Return the geometry at the support's point nearest to a body, from a point next to it, by one of Newton's steps.
+
+    Parameters
+    ----------
+    system, time, orientation, own
+        As for `touch`.
+    point : Vector
+        p in the inertial support frame, m, off by so little that its square is rounding.
+    centre : Vector
+        r, m.
+
+    Returns
+    -------
+    Contact
+        As of `settle`, which wants no point to begin with; that at the point itself where the step is no small one.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> bowl = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Bowl(0.5)))
+    >>> still, off = Quaternion(1.0, 0.0, 0.0, 0.0), Vector(1e-9, 0.0, 2e-9)
+    >>> bool(nearest(bowl, 0.0, off, Vector(0.0, 0.0, 0.3), still).point.norm() < 1e-16)
+    True
+    """
+    import numpy as np
+
+    contact = touch(system, time, point, orientation, own)
+    with np.errstate(all="ignore"):  # by the end of a formula
+        _, aside, down = _beside(system, contact, centre)
+        step = aside + down
+        small = step.norm() <= _NEXT_TO * (point.norm() + contact.offset.norm())
+    moved = Vector(*(np.where(small, there + by, there)[()] for there, by in zip(point, step, strict=True)))
+    return touch(system, time, moved, orientation, own)
+
+
+def _beside(
+    system: RollingSystem, contact: Contact, centre: Vector, *, bent: bool = True
+) -> tuple[Vector, Vector, Vector]:
+    """Return how far the body's point is aside of the support's, and Newton's step along the support and off it."""
+    n, support = contact.normal, contact.support
+    apart = centre + contact.offset - contact.point
+    gap = n.dot(apart)
+    off = apart - n * gap
+    down = n * -_height(system.support.surface, support.own_of(contact.point), support.rotation.transpose @ n)
+    # The normal leans by S along the support, and ρ follows it by C.
+    return off, contact.across(gap).solve(off) if bent and not contact.flat else off, down
+
+
+def settle(
+    system: RollingSystem, time: float, centre: Vector, orientation: Quaternion, own: tuple[Scalar, ...] = ()
+) -> Contact:
+    """Return the geometry of touch for a body whose centre of mass is known: the p nearest to the body.
+
+    Where body and support touch, p = r + ρ(n(p)); where they do not, r + ρ is straight over p, by the gap.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Body and support, in numbers.
+    time : float
+        t, s.
+    centre : Vector
+        r in the inertial support frame, m.
+    orientation : Quaternion
+        Body frame to support frame.
+    own : tuple of Scalar
+        As for `touch`.
+
+    Returns
+    -------
+    Contact
+        Where the body touches, or would if it were pushed on along the normal.
+
+    Raises
+    ------
+    SolverError
+        Where no point of the surface is nearest to the body.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Cylinder(0.5), tilt="90 deg"))
+    >>> settle(system, 0.0, Vector(0.4, 0.0, 0.0), Quaternion(1.0, 0.0, 0.0, 0.0)).point
+    Vector(x=0.5, y=0.0, z=0.0)
+    """
+    # The normal at the centre is already that at the contact for a sphere over a surface of constant curvature.
+    found = _newton(system, time, centre, centre, orientation, own)
+    if found is None or misplaced(system, found, centre, orientation) or _hollow_under(found, centre):
+        found = _searched(system, time, centre, orientation, own, found) or found
+    if found is None or _is_beyond(system.support.surface, found.support.own_of(found.point)):
+        raise SolverError(
+            f"At t = {float(time):.9g} s no point of the surface is nearest to the body, whose centre is at "
+            f"({', '.join(f'{float(part):.4g}' for part in centre)}) m. Does the surface reach there, and smoothly?"
+        )
+    return found
+
+
+def misplaced(system: RollingSystem, contact: Contact, centre: Vector, orientation: Quaternion) -> str:
+    """Say why a point straight under a body is not where it is nearest to the support; empty where it is.
+
+    Parameters
+    ----------
+    system, centre, orientation
+        As for `settle`.
+    contact : Contact
+        The geometry there.
+
+    Returns
+    -------
+    str
+        A sentence.
+
+    Examples
+    --------
+    A ball high over one side of a bowl is nearer to the other:
+
+    >>> import trundle as tr
+    >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Bowl(0.5)))
+    >>> still = Quaternion(1.0, 0.0, 0.0, 0.0)
+    >>> contact = touch(system, 0.0, Vector(0.0, 0.0, 0.0), still)
+    >>> misplaced(system, contact, Vector(0.0, 0.0, 0.3), still)
+    ''
+    >>> misplaced(system, contact, Vector(0.0, 0.0, 0.6), still)
+    'There the support is so hollow, or the body so high over it, that other points of it are as near.'
+    """
+    if _is_beyond(system.support.surface, contact.support.own_of(contact.point)):
+        return "There the support has ended."
+    covered = system.body.shape.covers(-(orientation.matrix().transpose @ contact.normal))
+    if covered is not None and not covered > 0:
+        return "There the body has a flat side or an edge towards the support, which its shape does not cover."
+    if contact.flat:
+        return ""
+    across = contact.across(_gap(contact, centre))
+    # Along n it is 1: the two others have the determinant as their product, and their sum is the trace less 1.
+    around = sum(row[i] for i, row in enumerate(map(tuple, across.rows))) - 1.0
+    if across.determinant > _SINGULAR and around > 0:
+        return ""
+    return "There the support is so hollow, or the body so high over it, that other points of it are as near."
+
+
+def _is_beyond(surface: Surface, there: Vector) -> bool:
+    """Tell whether a point is beyond the surface's end: a table's spline goes on there, the surface does not."""
+    inside = surface.inside(there)
+    return inside is not None and bool(inside < 0)
+
+
+def _newton(
+    system: RollingSystem,
+    time: float,
+    centre: Vector,
+    point: Vector,
+    orientation: Quaternion,
+    own: tuple[Scalar, ...],
+) -> Contact | None:
+    """Return the contact to which Newton's method leads from a first guess at p; None where it leads nowhere."""
+    last = math.inf
+    try:
+        contact = touch(system, time, point, orientation, own)
+        for step in range(_MOST_STEPS):
+            off, aside, down = _beside(system, contact, centre, bent=step > 0)
+            size = point.norm() + contact.offset.norm()
+            left = max(off.norm(), down.norm()) / size
+            point = point + aside + down
+            contact = touch(system, time, point, orientation, own)
+            # What is left now is less by as much again; or it was rounding.
+            if step > 0 and (left <= _ROUNDING or (left <= _CLOSE and left * left <= 0.1 * _ROUNDING * last)):
+                break
+            last = left
+    except (ArithmeticError, ValueError):  # outside a formula, or where it has no slope
+        return None
+    return contact if left <= _CLOSE else None
+
+
+def _gap(contact: Contact, centre: Vector) -> float:
+    return float((centre + contact.offset - contact.point).dot(contact.normal))
+
+
+def _hollow_under(contact: Contact, centre: Vector) -> bool:
+    """Tell whether a body is over a support that bends up somehow, of which other points may be nearer."""
+    S = contact.shape_operator
+    (xx, xy, xz), (_, yy, yz), (_, _, zz) = S.rows
+    bends_up = xx + yy + zz < 0 or xx * yy + yy * zz + zz * xx < xy * xy + yz * yz + xz * xz
+    return bends_up and _gap(contact, centre) > _CLOSE * contact.offset.norm()
+
+
+def _searched(
+    system: RollingSystem,
+    time: float,
+    centre: Vector,
+    orientation: Quaternion,
+    own: tuple[Scalar, ...],
+    known: Contact | None,
+) -> Contact | None:
+    """Return the nearest of the known contact and those to which Newton's method leads from other likely points."""
+    try:
+        guesses = _guesses(system, time, centre, orientation, own)
+    except (ArithmeticError, ValueError):  # outside a formula
+        guesses = []
+    led_to = (_newton(system, time, centre, point, orientation, own) for point in guesses)
+    found = [one for one in (known, *led_to) if one is not None and not misplaced(system, one, centre, orientation)]
+    return min(found, key=lambda contact: abs(_gap(contact, centre)), default=None)
+
+
+def _guesses(
+    system: RollingSystem, time: float, centre: Vector, orientation: Quaternion, own: tuple[Scalar, ...]
+) -> list[Vector]:
+    """Return r + ρ(n) for those n, of many all around, that are nearest to the surface's normal there."""
+    import numpy as np
+
+    support, surface = system.support.motion.at(time, *own), system.support.surface
+    i = np.arange(_LOOKS)
+    z, angle = 1.0 - (2 * i + 1) / _LOOKS, math.pi * (1.0 + math.sqrt(5.0)) * (i + 0.5)  # Fibonacci's lattice
+    across = np.sqrt(1.0 - z * z)
+    n = support.rotation @ Vector(across * np.cos(angle), across * np.sin(angle), z)
+    with np.errstate(all="ignore"):
+        points = centre + system.body.shape.contact(orientation.matrix(), n)[0]
+        there = support.own_of(points)
+        off = np.linalg.norm((support.rotation @ surface.normal(there)).array() - n.array(), axis=-1)
+        inside = surface.inside(there)
+        likely = np.isfinite(off) if inside is None else np.isfinite(off) & (np.asarray(inside) >= 0)
+    normals, places = n.array(), points.array()
+    kept: list[int] = []
+    for which in np.argsort(off).tolist():
+        if likely[which] and len(kept) < _GUESSES and (normals[kept] @ normals[which] < _ALIKE).all():
+            kept.append(which)
+    return [Vector(*places[which].tolist()) for which in kept]
+
+
+def _height(surface: Surface, there: Vector, n: Vector) -> Scalar:
+    """Return about how far a point is over the surface along n, m: φ over its slope."""
+    level, step = surface.level(there), 1e-6 * (there.norm() + 1e-6)
+    return 2 * step * level / (surface.level(there + n * step) - surface.level(there - n * step))

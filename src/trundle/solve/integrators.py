@@ -1,0 +1,195 @@
+"""Compiled integrators of laws: one a structure, from this process, the user's cache or heyoka's compiler."""
+
+from __future__ import annotations
+
+import contextlib
+import copy
+import hashlib
+import pickle
+import platform
+from collections.abc import Callable, Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from ..mechanics.parameters import structure_of
+from ..mechanics.system import RollingSystem
+from . import integrator_cache
+from .laws import Law
+from .lowering import Lowered, lower
+
+TOLERANCE = 1e-15
+IN_HASTE, WITH_CARE = 0, 1  # levels of LLVM: at its highest it compiles for half as long again, and runs no faster
+
+
+def compiled(system: RollingSystem, law: Law, tolerance: float = TOLERANCE) -> tuple[Any, Lowered]:
+    """Return a fresh copy of a compiled integrator: from this process, the user's cache, or the compiler.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Only its structure matters: state and parameters are the caller's to set.
+    law : Law
+        Of the phase.
+    tolerance : float
+        Of each step, relative.
+
+    Returns
+    -------
+    integrator : heyoka.taylor_adaptive_dbl
+        At time 0.
+    lowered : Lowered
+        What its state, parameters and terminal events are.
+
+    Examples
+    --------
+    See `benchmarks/trajectory.py`.
+    """
+    lowered, key = ready(system, law, tolerance)
+    return _copied(lowered, key, tolerance, WITH_CARE), lowered
+
+
+def _copied(lowered: Lowered, key: str, tolerance: float, level: int) -> Any:
+    def compile_() -> Any:
+        return _compile(*lowered.heyoka(), tolerance, lowered.parameters, level)
+
+    return copy.copy(kept(f"{key}-{level}", compile_))
+
+
+@contextlib.contextmanager
+def borrowed(lowered: Lowered, key: str, tolerance: float, level: int) -> Iterator[Any]:
+    """Lend a copy that nobody else uses, and keep it for the next stretch: to make one takes a millisecond.
+
+    Parameters
+    ----------
+    lowered : Lowered
+        The law.
+    key : str
+        Its name, as `ready` returns them.
+    tolerance : float
+        Of each step, relative.
+    level : int
+        `IN_HASTE` or `WITH_CARE`.
+
+    Yields
+    ------
+    heyoka.taylor_adaptive_dbl
+        In whatever state it was left.
+    """
+    idle = _memory().idle.setdefault((key, level), [])
+    integrator = idle.pop() if idle else _copied(lowered, key, tolerance, level)
+    if lowered.stops:
+        integrator.reset_cooldowns()  # a stop just passed is not looked for again at once
+    yield integrator
+    idle.append(integrator)  # not where it broke down
+
+
+def ready(system: RollingSystem, law: Law, tolerance: float) -> tuple[Lowered, str]:
+    """Return a law ready for the compiler, and the name of what comes of it; worked out once for each structure.
+
+    Parameters
+    ----------
+    system, law, tolerance
+        As for `compiled`.
+
+    Returns
+    -------
+    lowered : Lowered
+        Its equations and stops.
+    key : str
+        What the compiled integrator depends on.
+    """
+    ready = _memory().ready
+    structure: Any = (structure_of(system), type(law), tuple(vars(law).items()), tolerance)
+    try:
+        known = ready.get(structure)
+    except TypeError:  # a part of one's own that cannot be hashed, and so may change
+        structure = known = None
+    if known is None:
+        lowered = lower(system, law)
+        known = lowered, _key(*lowered.heyoka(), tolerance, lowered.parameters)
+        if structure is not None:
+            ready[structure] = known
+    return known
+
+
+class _Memory:
+    """Compiled integrators of this process, by key, never used themselves, only copied; and the laws they came of."""
+
+    def __init__(self) -> None:
+        self.known: dict[str, Any] = {}
+        self.idle: dict[tuple[str, int], list[Any]] = {}  # copies between two uses
+        self.ready: dict[Any, tuple[Lowered, str]] = {}
+
+
+@cache
+def _memory() -> _Memory:
+    return _Memory()
+
+
+def kept(key: str, compile_: Callable[[], Any]) -> Any:
+    """Return what was compiled under a key, or compile it and keep it in this process and in the user's cache.
+
+    Parameters
+    ----------
+    key : str
+        What it depends on.
+    compile_ : callable
+        Called where nobody has compiled it yet.
+
+    Returns
+    -------
+    heyoka.taylor_adaptive_dbl
+        Never to be used itself, only copied.
+    """
+    known = _memory().known
+    if key not in known:
+        _quiet()
+        known[key] = integrator_cache.load(key)
+        if known[key] is None:
+            known[key] = compile_()
+            integrator_cache.store(key, known[key])
+    return known[key]
+
+
+@cache
+def _quiet() -> None:
+    """Keep heyoka's warnings out of the results, among which it prints them.
+
+    They say that a stop's root was not found where it was looked for, and passed over. A lift or slip passed over shows
+    on the card, in the normal force and the friction needed; slip has two stops for its end.
+    """
+    import heyoka
+
+    heyoka.set_logger_level_error()
+
+
+def _compile(equations: list[Any], stops: list[Any], tolerance: float, parameters: int, level: int) -> Any:
+    import heyoka
+
+    return heyoka.taylor_adaptive(
+        equations,
+        [0.0] * len(equations),
+        pars=[0.0] * parameters,
+        tol=tolerance,
+        compact_mode=True,
+        opt_level=level,
+        t_events=[heyoka.t_event(stop, direction=heyoka.event_direction.negative) for stop in stops],
+    )
+
+
+def _key(equations: list[Any], stops: list[Any], tolerance: float, parameters: int) -> str:
+    """Name what a compiled integrator depends on: the equations, the tolerance, heyoka and the processor."""
+    import heyoka
+
+    parts = [repr(tolerance), str(parameters), heyoka.__version__, _processor()]
+    whole = pickle.dumps((equations, stops))  # the repr of a long expression ends in "..."
+    return hashlib.sha256("\n".join(parts).encode() + whole).hexdigest()[:32]
+
+
+@cache
+def _processor() -> str:
+    with contextlib.suppress(OSError):
+        lines = Path("/proc/cpuinfo").read_text(errors="replace").splitlines()
+        return "".join(sorted({line for line in lines if line.startswith(("model name", "flags", "Features"))}))
+    return platform.machine() + platform.processor()

@@ -1,0 +1,62 @@
+"""The polynomials of the steps of a stretch, as Taylor's method makes them."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from .following import Next
+from .samples import Array
+
+
+class KeptSeries:
+    """The polynomials of the steps of a stretch, each about where it begins, counted from a reference of its own.
+
+    Parameters
+    ----------
+    now : Next
+        Where the stretch begins.
+    """
+
+    def __init__(self, now: Next) -> None:
+        self.numbers, self.reference, self.reached = np.asarray(now.numbers, dtype=float), now.time, 0.0
+        self.references: list[float] = []
+        self.begins: list[float] = []
+        self.series: list[Array] = []  # (variables, terms)
+
+    @property
+    def steps(self) -> int:
+        """How many."""
+        return len(self.series)
+
+    def take(self, integrator: Any) -> bool:
+        """Keep the step just made; go on."""
+        if integrator.last_h > 0:
+            self.references.append(self.reference)
+            self.begins.append(self.reached)
+            self.series.append(integrator.tc.copy())
+        self.reached = float(integrator.time)
+        return True
+
+    def refer_to(self, time: float) -> None:
+        """Count from another time on."""
+        self.reference, self.reached = time, 0.0
+
+    @cached_property
+    def _all(self) -> tuple[Array, Array, Array]:
+        """References, beginnings and series of all steps."""
+        return np.array(self.references), np.array(self.begins), np.array(self.series)
+
+    def at(self, times: Array) -> Array:
+        """Return the states at some times."""
+        if not self.series:
+            return np.tile(self.numbers, (times.size, 1))
+        references, begins, series = self._all
+        which = np.maximum(np.searchsorted(references + begins, times, side="right") - 1, 0)
+        since = (times - references[which] - begins[which])[:, None]
+        states = series[which, :, -1]
+        for term in range(series.shape[2] - 2, -1, -1):
+            states = states * since + series[which, :, term]
+        return states
