@@ -6,6 +6,7 @@ import contextlib
 import itertools
 import math
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
@@ -93,7 +94,7 @@ def solve(
     >>> print(round(x / (9.80665 * np.sin(0.1) / 2), 12))  # (5/7) g sin α
     0.714285714286
     """
-    return phases.solve(partial(integrate, hasty={}), system, start, times, tolerance, progress)
+    return phases.solve(partial(integrate, shared=OfRun()), system, start, times, tolerance, progress)
 
 
 def integrate(
@@ -102,7 +103,7 @@ def integrate(
     times: Array,
     tolerance: float,
     progress: Progress | None = None,
-    hasty: dict[str, int] | None = None,
+    shared: OfRun | None = None,
 ) -> Iterator[Stretch]:
     """Follow one law to its first stop.
 
@@ -118,8 +119,8 @@ def integrate(
         Of each step, relative.
     progress : callable, optional
         Told the time reached.
-    hasty : dict, optional
-        How many steps each law has made in haste so far in a run of many stretches.
+    shared : OfRun, optional
+        What the stretches of one run share.
 
     Yields
     ------
@@ -134,7 +135,9 @@ def integrate(
     if now.law.brief:
         yield from runge_kutta.integrate(system, now, times, runge_kutta.FINEST, progress)
         return
-    with _begun(system, now, tolerance, hasty) as run:
+    shared = OfRun() if shared is None else shared
+    with _begun(system, now, tolerance, shared) as run:
+        run.patience = shared.patience(now.time, float(times[-1]) if times.size else now.time)
         for chunk, states, reached in _propagate(run, times, progress):
             if reached is None:
                 yield Stretch(chunk, states, None)
@@ -142,6 +145,26 @@ def integrate(
             stop = run.stop(reached)
             kept, _ = cut(chunk, stop.time)
             yield Stretch(kept, states[: kept.size], stop)
+
+
+@dataclass
+class OfRun:
+    """What the stretches of one run share.
+
+    Parameters
+    ----------
+    hasty : dict
+        How many steps each law has made in haste so far.
+    """
+
+    hasty: dict[str, int] = field(default_factory=dict)
+    _patience: Patience | None = None
+
+    def patience(self, begin: float, end: float) -> Patience:
+        """Return what refuses to go on for too long, over all of the run."""
+        if self._patience is None:
+            self._patience = Patience(begin, end, **_PATIENCE)
+        return self._patience
 
 
 def keeping() -> Keep:
@@ -152,7 +175,7 @@ def keeping() -> Keep:
     callable
         As `dense`.
     """
-    return partial(dense, hasty={})
+    return partial(dense, shared=OfRun())
 
 
 def dense(
@@ -161,7 +184,7 @@ def dense(
     end: float,
     tolerance: float,
     most: int,
-    hasty: dict[str, int] | None = None,
+    shared: OfRun | None = None,
 ) -> Leg | TooMany:
     """Follow one law to its first stop, and keep the polynomial of each step.
 
@@ -177,7 +200,7 @@ def dense(
         Of each step, relative.
     most : int
         How many steps may be kept.
-    hasty : dict, optional
+    shared : OfRun, optional
         As for `integrate`.
 
     Returns
@@ -192,9 +215,10 @@ def dense(
     """
     if now.law.brief:
         return runge_kutta.dense(system, now, end, runge_kutta.FINEST, most)
-    with _begun(system, now, tolerance, hasty) as run:
+    shared = OfRun() if shared is None else shared
+    with _begun(system, now, tolerance, shared) as run:
         run.kept, stop = KeptSeries(now), None
-        run.patience = Patience(run.time, end, **_PATIENCE)
+        run.patience = shared.patience(now.time, end)
         part = min(_LONGEST, (end - now.time) / _PARTS)
         while stop is None and run.reference < end:
             until = min(end, run.reference + part)
@@ -209,20 +233,19 @@ def dense(
 
 
 @contextlib.contextmanager
-def _begun(system: RollingSystem, now: Next, tolerance: float, hasty: dict[str, int] | None) -> Iterator[_Run]:
+def _begun(system: RollingSystem, now: Next, tolerance: float, shared: OfRun) -> Iterator[_Run]:
     """Lend what integrates a law, at its beginning."""
-    hasty = {} if hasty is None else hasty
     lowered, key = ready(system, now.law, tolerance)
     with contextlib.ExitStack() as lent:
 
         def borrow(level: int) -> Any:
             return lent.enter_context(borrowed(lowered, key, tolerance, level))
 
-        left = max(0, _HASTY_STEPS - hasty.get(key, 0))
+        left = max(0, _HASTY_STEPS - shared.hasty.get(key, 0))
         run = _Run(borrow, left, lowered, [*numbers(system), *now.extras], now.time, now.numbers)
         run.lasted = _lasted(system, now)
         yield run
-        hasty[key] = _HASTY_STEPS - max(0, run.hasty_steps)
+        shared.hasty[key] = _HASTY_STEPS - max(0, run.hasty_steps)
 
 
 def _lasted(system: RollingSystem, now: Next) -> float:
@@ -347,7 +370,6 @@ class _Run:
 
 def _propagate(run: _Run, times: Array, progress: Progress | None) -> Iterator[tuple[Array, Array, int | None]]:
     """Yield the times and the states there, a chunk after the other, and last which terminal event came, if one did."""
-    run.patience = Patience(run.time, float(times[-1]) if times.size else run.time, **_PATIENCE)
     for chunk in _chunks(times):
         while run.reference < chunk[0]:  # also where rounding does not tell the two instants apart: it must begin there
             until = min(float(chunk[0]), run.reference + _LONGEST)
