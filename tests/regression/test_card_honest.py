@@ -72,6 +72,16 @@ def test_what_a_motion_magnifies_in_any_direction_passes(kind: str) -> None:
     passes(**MAGNIFIED[kind])
 
 
+@pytest.mark.parametrize("kind", MAGNIFIED)
+def test_a_change_is_followed_for_so_many_steps_about_where_two_runs_part(
+    kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("trundle.verify.compared._STEPS_FOLLOWED", dict.fromkeys(("taylor", "runge-kutta"), 60))
+    again = passes(**MAGNIFIED[kind]).card()["the method run again"]
+    assert again.passed is not False
+    assert ("nothing can be told beyond t = " in again.note) == ("times larger" in again.note)
+
+
 def test_a_ball_on_top_of_a_dome_magnifies_by_the_rate_at_which_it_falls() -> None:
     # θ̈ = (5/7) g θ/(R + r) near the top, and so e^{λt} for whatever is small there.
     system = tr.RollingSystem(tr.Body.solid_sphere(0.025, 0.065), tr.Support(tr.Dome(1.0)))

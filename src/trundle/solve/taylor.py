@@ -94,7 +94,7 @@ def solve(
     >>> print(round(x / (9.80665 * np.sin(0.1) / 2), 12))  # (5/7) g sin α
     0.714285714286
     """
-    return phases.solve(partial(integrate, shared=OfRun()), system, start, times, tolerance, progress)
+    return phases.solve(partial(integrate, shared=Shared()), system, start, times, tolerance, progress)
 
 
 def integrate(
@@ -103,7 +103,7 @@ def integrate(
     times: Array,
     tolerance: float,
     progress: Progress | None = None,
-    shared: OfRun | None = None,
+    shared: Shared | None = None,
 ) -> Iterator[Stretch]:
     """Follow one law to its first stop.
 
@@ -119,7 +119,7 @@ def integrate(
         Of each step, relative.
     progress : callable, optional
         Told the time reached.
-    shared : OfRun, optional
+    shared : Shared, optional
         What the stretches of one run share.
 
     Yields
@@ -135,7 +135,7 @@ def integrate(
     if now.law.brief:
         yield from runge_kutta.integrate(system, now, times, runge_kutta.FINEST, progress)
         return
-    shared = OfRun() if shared is None else shared
+    shared = Shared() if shared is None else shared
     with _begun(system, now, tolerance, shared) as run:
         run.patience = shared.patience(now.time, float(times[-1]) if times.size else now.time)
         for chunk, states, reached in _propagate(run, times, progress):
@@ -148,7 +148,7 @@ def integrate(
 
 
 @dataclass
-class OfRun:
+class Shared:
     """What the stretches of one run share.
 
     Parameters
@@ -175,7 +175,7 @@ def keeping() -> Keep:
     callable
         As `dense`.
     """
-    return partial(dense, shared=OfRun())
+    return partial(dense, shared=Shared())
 
 
 def dense(
@@ -184,7 +184,7 @@ def dense(
     end: float,
     tolerance: float,
     most: int,
-    shared: OfRun | None = None,
+    shared: Shared | None = None,
 ) -> Leg | TooMany:
     """Follow one law to its first stop, and keep the polynomial of each step.
 
@@ -200,7 +200,7 @@ def dense(
         Of each step, relative.
     most : int
         How many steps may be kept.
-    shared : OfRun, optional
+    shared : Shared, optional
         As for `integrate`.
 
     Returns
@@ -215,7 +215,7 @@ def dense(
     """
     if now.law.brief:
         return runge_kutta.dense(system, now, end, runge_kutta.FINEST, most)
-    shared = OfRun() if shared is None else shared
+    shared = Shared() if shared is None else shared
     with _begun(system, now, tolerance, shared) as run:
         run.kept, stop = KeptSeries(now), None
         run.patience = shared.patience(now.time, end)
@@ -233,7 +233,7 @@ def dense(
 
 
 @contextlib.contextmanager
-def _begun(system: RollingSystem, now: Next, tolerance: float, shared: OfRun) -> Iterator[_Run]:
+def _begun(system: RollingSystem, now: Next, tolerance: float, shared: Shared) -> Iterator[_Run]:
     """Lend what integrates a law, at its beginning."""
     lowered, key = ready(system, now.law, tolerance)
     with contextlib.ExitStack() as lent:
