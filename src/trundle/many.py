@@ -149,9 +149,9 @@ def _batched(system: RollingSystem) -> bool:
     """Tell whether heyoka can take members of such a system eight at a time.
 
     Resistances that bring a body to rest make nearly every run an event; a straight roller is checked one by one; each
-    member comes to a kink of its own formulas at an instant of its own.
+    member comes to a kink of its own formulas, or to a corner of its loads, at an instant of its own.
     """
-    alone = system.resisted or has_kinks(system) or system.body.shape.axis is not None
+    alone = system.resisted or system.body.shape.axis is not None or system.corners or has_kinks(system)
     return taylor.available() and system.support.surface.analytic and not alone
 
 

@@ -304,7 +304,7 @@ class _Reader:
                 wanted = 2 if name in _TWO_ARGUMENTS else 1
                 if len(arguments) != wanted:
                     raise _RefusedError(f"{name} takes {wanted} argument{'s' * (wanted > 1)}.")
-                return (name, *(self.read(argument, depth + 1) for argument in arguments))
+                return _called(name, [self.read(argument, depth + 1) for argument in arguments])
         raise _RefusedError(f"Not allowed: {self._segment(node)}.")
 
     def _number(self, value: float, node: ast.expr) -> float:
@@ -326,6 +326,16 @@ class _Reader:
         if isinstance(inner, ast.Constant) and type(inner.value) is int and inner.value <= _LARGEST_POWER:
             return str(sign * inner.value)
         raise _RefusedError(f"A power must be a whole number up to {_LARGEST_POWER}; use sqrt and exp for others.")
+
+
+def _called(name: str, arguments: list[Any]) -> tuple[Any, ...]:
+    """Return a function of its arguments; √u² is |u|, whose kink is found, and which keeps its digits beside it."""
+    match name, arguments:
+        case ("sqrt", [("**", inner, "2")]):
+            return ("abs", inner)
+        case ("sqrt", [("*", inner, other)]) if inner == other:
+            return ("abs", inner)
+    return (name, *arguments)
 
 
 def _numbers(tree: Any) -> tuple[Any, ...]:

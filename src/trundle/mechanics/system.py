@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -189,6 +189,11 @@ class RollingSystem:
     def all_loads(self) -> tuple[Load, ...]:
         """Gravity and the other loads."""
         return (self.weight, *self.loads)
+
+    @property
+    def corners(self) -> tuple[Callable[[BodyMotion], Vector], ...]:
+        """Vectors on whose lengths the loads depend, so that they have corners in the time where one passes zero."""
+        return tuple(corner for load in self.loads for corner in load.corners)
 
     def loads_on(self, motion: BodyMotion) -> tuple[Vector, Vector]:
         """Return the applied force F, N, and torque K about the centre of mass, N m."""

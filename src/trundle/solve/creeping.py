@@ -146,8 +146,8 @@ class CreepingLaw(SlippingLaw):
         """Return ŝ."""
         return self._way(system, time, list(numbers))[0]
 
-    def _slip(self, system: RollingSystem, time: float, numbers: Any) -> Vector:
-        return self.direction(system, time, numbers) * float(numbers[10])
+    def _slip(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:
+        return self._way(system, time, state)[0] * state[10]
 
     def _recorded(self, system: RollingSystem, time: Any, states: Any) -> Slipping:
         columns = list(states.T)

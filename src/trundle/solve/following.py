@@ -19,6 +19,7 @@ from .coming_off import lift_at_hand
 from .creeping import CreepingLaw
 from .laws import (
     AN_INSTANT,
+    CORNER,
     JAMS,
     SHRINKS,
     FlightLaw,
@@ -123,14 +124,14 @@ def after(system: RollingSystem, law: Law, stop: Stop) -> Next:
     """
     at, name = stop.at(system, law), stop.name.removeprefix("near ")
     if name in ("slip", "start"):
-        extras = (_FLOOR * at.forces(system),) * law.weightless + (0.0,) * law.ending
+        extras = _floor(system, law, at) + (0.0,) * law.ending
         lift = lift_at_hand(system, law, stop.time, stop.numbers.tolist(), name, extras)
         if lift is not None:
             advanced = law.advanced(system, stop.time, stop.numbers.tolist(), lift - stop.time)
             return _lifted(system, law.meant(system, lift, advanced))
-    if name in ("grip", "stop") and _goes_on(system, law, at, stop):
-        floor = (_FLOOR * at.forces(system),) * law.weightless
-        return Next(law, at.state, list(stop.numbers), (*floor, *_extras(system, law, at, stop.numbers)))
+    if name.startswith(CORNER) or (name in ("grip", "stop") and _goes_on(system, law, at, stop)):
+        extras = (*_floor(system, law, at), *_extras(system, law, at, stop.numbers))
+        return Next(law, at.state, list(stop.numbers), extras)
     if name == "land":
         # The gap and r may differ by rounding. The gap has said when; r gives way, or each bounce would add its share.
         return _struck(system, at.over(0.0))
@@ -138,7 +139,7 @@ def after(system: RollingSystem, law: Law, stop: Stop) -> Next:
         return slipping(system, Next.of(law, at))
     if isinstance(law, CreepingLaw) and name == "turned":
         turned = law.turned(law.direction(system, stop.time, stop.numbers))
-        return Next(turned, at.state, stop.numbers.tolist(), (_FLOOR * at.forces(system),) * law.weightless)
+        return Next(turned, at.state, stop.numbers.tolist(), _floor(system, law, at))
     if name == "jam":
         raise jammed(at.state.time, JAMS)
     if name == "lift":
@@ -224,6 +225,11 @@ def _goes_on(system: RollingSystem, law: Law, at: Touch, stop: Stop) -> bool:
 def _least(system: RollingSystem, at: Touch, stop: str) -> float:
     """Return the slip, m/s, or how the body turns, rad/s, below which it has all but ended."""
     return at.still(system) / (1.0 if stop == "grip" else at.arm)
+
+
+def _floor(system: RollingSystem, law: Law, at: Touch) -> tuple[float, ...]:
+    """Return what the stops take where nothing presses the body on: the pull that is rounding."""
+    return (_FLOOR * at.forces(system),) if law.weightless else ()
 
 
 def _extras(system: RollingSystem, law: Law, at: Touch, numbers: Any = None) -> tuple[float, ...]:

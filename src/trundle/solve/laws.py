@@ -105,16 +105,25 @@ class Law:
 
     def meant(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array) -> Touch:
         """Return the body that is meant by its numbers."""
-        p, q, Omega, rest, own = self.split([float(number) for number in numbers])
+        plain = [float(number) for number in numbers]
+        p, q, Omega, rest, own = self.split(plain)
         q = Quaternion(*(part / math.hypot(*q) for part in q))
         contact = self._contact(system, time, p, q, rest, own)
         Omega = self._turns(contact, Omega)
         centre, V = self._moves(contact, Omega, rest)
-        s = self._slip(system, time, numbers)
+        s = self._slip(system, time, plain)
         at = Touch.at(
             State(floats(centre), floats(V if s is None else V + s), floats(Omega), tuple(q), time, own), contact
         )
         return at if s is None else replace(at, slip=s)
+
+    def motion(self, system: RollingSystem, time: Scalar, state: Numbers) -> BodyMotion:
+        """Return what loads may depend on."""
+        p, q, Omega, rest, own = self.split(state)
+        contact = touch(system, time, p, q, own)
+        Omega = self._turns(contact, Omega)
+        V, s = self._moves(contact, Omega, rest)[1], self._slip(system, time, state)
+        return contact.body_motion(system.body.mass, time, V if s is None else V + s, q, Omega)
 
     def _contact(
         self,
@@ -136,7 +145,7 @@ class Law:
         """Return Ω, of which the state's numbers may hold more than the phase lets it have."""
         return Omega
 
-    def _slip(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array) -> Vector | None:  # noqa: ARG002
+    def _slip(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector | None:  # noqa: ARG002
         """Return s to its last digit, which V and Ω do not tell, m/s; None in flight."""
         return ZERO
 
@@ -308,8 +317,8 @@ class SlippingLaw(Law):
         centre, V, R, Omega = _arrays(p, now.contact.centre, now.velocity, now.reaction, turning)
         return Samples(time, centre, p, V, Omega, q, R + 0.0, phase=_phase(time, self.code), own=own)
 
-    def _slip(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array) -> Vector:  # noqa: ARG002
-        return Vector(*map(float, numbers[10:13]))
+    def _slip(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:  # noqa: ARG002
+        return Vector(*state[10:13])
 
     def direction(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array) -> Vector:  # noqa: ARG002
         """Return ŝ, the direction of the slip."""
@@ -388,8 +397,13 @@ class FlightLaw(Law):
     def _moves(self, contact: Contact, Omega: Vector, rest: Numbers) -> tuple[Vector, Vector]:  # noqa: ARG002
         return Vector(*rest[4:]), Vector(*rest[:3])
 
-    def _slip(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array) -> None:  # noqa: ARG002
+    def _slip(self, system: RollingSystem, time: Scalar, state: Numbers) -> None:  # noqa: ARG002
         return None
+
+    def motion(self, system: RollingSystem, time: Scalar, state: Numbers) -> BodyMotion:
+        """Return what loads may depend on: of the support they know nothing."""
+        _, q, Omega, rest, _ = self.split(state)
+        return BodyMotion(time, system.body.mass, Vector(*rest[4:]), Vector(*rest[:3]), q, Omega)
 
     def record(self, system: RollingSystem, time: Array, states: Array) -> Samples:
         """Complete the state of a flight; nothing pushes then."""
@@ -470,6 +484,7 @@ CONE_SLACK = 1e-9
 # Friction all but jams a body where a newton of N opens the contact by so small a share of 1/m.
 JAMS = 1e-3
 AN_INSTANT = 3e-15  # s: what ends in less has ended, for the terms of its series are greater than any float
+CORNER = "corner"  # with which the names of stops begin at which the same law goes on
 _SLOW_SLIP = 1e-8  # m/s for each rad/s of Ω
 SHRINKS = {"grip": slice(10, 13), "stop": slice(7, 10)}  # the numbers that change as what shrinks to nothing there
 

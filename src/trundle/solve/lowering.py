@@ -18,6 +18,7 @@ from ..mechanics.jets import jets
 from ..mechanics.parameters import numbers, with_numbers
 from ..mechanics.scalars import Scalar, less, namespace
 from ..mechanics.system import RollingSystem
+from . import corners
 from .laws import Law
 from .tape import Node, Tape, apply
 
@@ -96,11 +97,11 @@ def lower(system: RollingSystem, law: Law) -> Lowered:
     """
     names, count = law.names(system), len(numbers(system))
     tape = Tape()
-    time, *rest = tape.inputs(1 + len(names) + count + law.extras)
+    time, *rest = tape.inputs(1 + len(names) + count + law.extras + corners.count(system))
     state, given = rest[: len(names)], rest[len(names) :]
     symbolic = with_numbers(system, given[:count])
     rates = law.rates(symbolic, time, state)
-    stops = law.stops(symbolic, time, state, given[count:])
+    stops = corners.all_stops(symbolic, law, time, state, given[count:])
     tidied = _tidied(symbolic, law, time, state)
     lowering = _Lowering(tape, len(names), len(given))
     # A stop that never changes is passed at the start or never.

@@ -17,9 +17,9 @@ from ..mechanics.algebra import ZERO, Quaternion, Vector
 from ..mechanics.kinks import kinks
 from ..mechanics.slipping import slip
 from ..mechanics.system import RollingSystem, State
-from . import following
+from . import corners, following
 from .following import Next, Stop
-from .laws import Law, RollingLaw, SlippingLaw
+from .laws import CORNER, Law, RollingLaw, SlippingLaw
 from .samples import AT_ONCE, RESTING, ROLLING, SLIPPING, Array, Event, Progress, Recording, Samples
 
 _MOST_EVENTS = 10_000
@@ -104,8 +104,9 @@ def solve(
         If the method breaks down, or events follow each other without end.
     """
     events: list[Event] = []
+    passed: list[float] = []  # corners
     record = _Record(system, times.size + 1)  # an event that ends a run is sampled, too
-    begin = _same if in_steps else following.slipping
+    begin = corners.beyond if in_steps else following.slipping
     if bends is None:
         bends = kinks(system, start.time, float(times[-1])) if in_steps and times.size else []
     now = begin(system, following.at_start(system, start))
@@ -129,6 +130,9 @@ def solve(
         now = begin(system, (after or following_stop)(system, law, stop))
         events += now.events
         _check_count(system, events)
+        if stop.name.startswith(CORNER):
+            passed.append(stop.time)
+            corners.check_count(system, passed, now)
         left = _across(system, law, stop, now, left[taken:], record)
     return record.samples(tuple(events))
 
@@ -157,10 +161,6 @@ def _between_kinks(
         at = now.law.meant(system, bend, there)
         now = replace(now, start=at.state, numbers=there.tolist(), events=(), across=None)
     yield from integrate(system, now, times, tolerance, progress)
-
-
-def _same(system: RollingSystem, now: Next) -> Next:  # noqa: ARG001
-    return now
 
 
 class _Record:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
@@ -11,7 +12,7 @@ import numpy as np
 
 from ..errors import SolverError
 from ..mechanics.system import RollingSystem, State
-from . import phases
+from . import corners, phases
 from .dense import Keep, Leg, TooMany
 from .following import Next, Stop
 from .patience import Patience
@@ -22,6 +23,7 @@ from .tracing import python_law
 
 TOLERANCE = 1e-12
 FINEST = 1e-13  # SciPy's own limit is 2e-14
+_ASIDE = 1e-12  # s
 _LOOKS = 8  # at the stops in each step
 _BLUR = 0.05  # share of a step within which a polynomial through these finds where a stop is lowest
 _SINGULAR = ("curved", "edge", "end", "jam")  # stops at which a law is singular
@@ -141,7 +143,7 @@ def _integrated(
     from scipy.integrate import DOP853, Radau
 
     law, begin = now.law, now.time
-    traced = python_law(system, law, now.extras, begin, now.numbers)
+    traced = python_law(system, law, (*now.extras, *corners.directions(system, now)), begin, now.numbers)
     size, y0 = len(now.numbers), np.asarray(now.numbers, dtype=float)
     end = max(end, float(np.spacing(begin)))  # some way to go
 
@@ -326,7 +328,11 @@ def _first_stop(path: Any, stops: Any, begin: Array) -> tuple[float, int] | None
     for which, value in enumerate(values.T):
 
         def at(t: float, which: int = which) -> float:
-            return float(stops(t, path(t))[which])
+            value, aside = float(stops(t, path(t))[which]), 0.0
+            while math.isnan(value) and aside < _ASIDE:  # just on the corner of a load, where it has no direction
+                aside = max(4 * aside, 4 * float(np.spacing(t)))
+                value = float(stops(t + aside, path(t + aside))[which])
+            return value
 
         fall = _fall(at, looks, value)
         if fall is not None:

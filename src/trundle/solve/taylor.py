@@ -15,7 +15,7 @@ import numpy as np
 from ..errors import SolverError
 from ..mechanics.parameters import numbers
 from ..mechanics.system import RollingSystem, State
-from . import phases, runge_kutta
+from . import corners, phases, runge_kutta
 from .dense import Keep, Leg, TooMany
 from .following import Next, Stop
 from .integrators import IN_HASTE, TOLERANCE, WITH_CARE, borrowed, ready
@@ -242,7 +242,8 @@ def _begun(system: RollingSystem, now: Next, tolerance: float, shared: Shared) -
             return lent.enter_context(borrowed(lowered, key, tolerance, level))
 
         left = max(0, _HASTY_STEPS - shared.hasty.get(key, 0))
-        run = _Run(borrow, left, lowered, [*numbers(system), *now.extras], now.time, now.numbers)
+        given = [*numbers(system), *now.extras, *corners.directions(system, now)]
+        run = _Run(borrow, left, lowered, given, now.time, now.numbers)
         run.lasted = _lasted(system, now)
         yield run
         shared.hasty[key] = _HASTY_STEPS - max(0, run.hasty_steps)

@@ -12,6 +12,7 @@ from typing import Any
 from ..mechanics.parameters import numbers, structure_of, with_numbers
 from ..mechanics.scalars import Scalar
 from ..mechanics.system import RollingSystem, State
+from . import corners
 from .laws import Law, RollingLaw
 from .tape import Tape
 
@@ -157,12 +158,12 @@ def _traced(system: RollingSystem, law: Law, own: tuple[str, ...]) -> _Flat:
     """Trace a law with all numbers of the system, and those of the law, as inputs."""
     size, count = len(law.names(system)), len(numbers(system))
     tape = Tape()
-    time, *rest = tape.inputs(1 + size + count + len(own) + law.extras)
+    time, *rest = tape.inputs(1 + size + count + len(own) + law.extras + corners.count(system))
     state, parameters = rest[:size], rest[size:]
     symbolic, free = with_numbers(system, parameters[:count]), copy(law)
     vars(free).update(zip(own, parameters[count:], strict=False))
     rates = free.rates(symbolic, time, state)
-    stops = free.stops(symbolic, time, state, parameters[count + len(own) :])
+    stops = corners.all_stops(symbolic, free, time, state, parameters[count + len(own) :])
     return tape.function(rates), tape.function(list(stops.values())), tuple(stops)
 
 
@@ -173,7 +174,7 @@ def _untraced(
         return [float(rate) for rate in law.rates(system, t, y)]
 
     def stops(t: float, y: Sequence[float]) -> list[float]:
-        return [float(value) for value in law.stops(system, t, y, extras).values()]
+        return [float(value) for value in corners.all_stops(system, law, t, y, extras).values()]
 
     # Which stops there are is read off a state in which the law holds: of any other it may know nothing.
-    return PythonLaw(rates, stops, tuple(law.stops(system, time, state, extras)))
+    return PythonLaw(rates, stops, tuple(corners.all_stops(system, law, time, state, extras)))

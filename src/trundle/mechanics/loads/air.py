@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from .. import checks
@@ -138,6 +140,11 @@ class QuadraticDrag(_ThroughAir):
         value = checks.non_negative(self.coefficient, "quadratic damping", "coefficient")
         object.__setattr__(self, "coefficient", value)
         self._check_air()
+
+    @property
+    def corners(self) -> tuple[Callable[[BodyMotion], Vector], ...]:
+        """v: |v| is rounded off over so little that no step of a method sees it."""
+        return (partial(through_air, air_rate=self.air),)
 
     def force(self, motion: BodyMotion) -> Vector:
         """Return −c|v|v."""

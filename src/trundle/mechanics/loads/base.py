@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from ..algebra import ZERO, Quaternion, Vector
@@ -100,6 +101,11 @@ class Load:
     def torque_per_normal_force(self, motion: BodyMotion) -> Vector:  # noqa: ARG002
         """Return the torque, m, that goes with each newton of normal force: of a couple of friction at the contact."""
         return ZERO
+
+    @property
+    def corners(self) -> tuple[Callable[[BodyMotion], Vector], ...]:
+        """Vectors on whose lengths it depends: where one passes through zero, the load has a corner in the time."""
+        return ()
 
     def potential(self, motion: BodyMotion) -> Scalar | None:  # noqa: ARG002
         """Return the potential energy, J; None for a load that has none."""

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from ...errors import InvalidValueError
 from ..algebra import Vector
 from ..expressions import Expression
 from ..scalars import Scalar, is_number, leaves
+from ..seams import lengths
 from .base import BodyMotion, Load
 
 VARIABLES = ("x", "y", "z", "t")
@@ -55,6 +58,15 @@ class Potential(Load):
         return None if "t" in self.formula.variables else self.formula.at(x=x, y=y, z=z, t=motion.time)
 
     @property
+    def corners(self) -> tuple[Callable[[BodyMotion], Vector], ...]:
+        """What stands between bars, or is squared under a root, but for what the time alone decides."""
+        return tuple(
+            partial(_vector, parts)
+            for parts in lengths(self.formula.tree)
+            if any(Expression(part, "").variables - {"t"} for part in parts)
+        )
+
+    @property
     def symmetric(self) -> bool:
         """Whether U is the same all around the third axis, x ∂U/∂y = y ∂U/∂x wherever one looks."""
         if not {"x", "y"} & self.formula.variables:
@@ -69,6 +81,13 @@ class Potential(Load):
     def leaves_spin(self) -> bool:
         """True: it acts at the centre of mass."""
         return True
+
+
+def _vector(parts: tuple[Any, ...], motion: BodyMotion) -> Vector:
+    """Return the values of up to three parts of a formula."""
+    x, y, z = motion.position
+    values = [Expression(part, "").at(x=x, y=y, z=z, t=motion.time) for part in parts]
+    return Vector(*values, *[0.0] * (3 - len(values)))
 
 
 def _around(formula: Expression, size: float, along: float, up: float) -> tuple[float, float]:

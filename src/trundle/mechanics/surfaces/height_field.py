@@ -10,9 +10,9 @@ from ..algebra import Vector
 from ..expressions import Expression
 from ..jets import jets
 from ..scalars import Scalar
+from ..seams import seams, to_the_next
 from .measured import Grid, HeightTable
 from .over_plane import OverPlane
-from .seams import seams, to_the_next
 
 
 @dataclass(frozen=True)

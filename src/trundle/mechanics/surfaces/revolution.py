@@ -10,10 +10,10 @@ from ..algebra import Vector
 from ..expressions import Expression
 from ..jets import Jet, jets
 from ..scalars import Scalar, namespace
+from ..seams import seams, to_the_next
 from .measured import Profile, RevolutionTable
 from .over_plane import Bends, OverPlane, Slopes, around_axis
 from .parity import in_square, is_even
-from .seams import seams, to_the_next
 
 _VARIABLES = ("r", "r2")
 # Added to r² so that a formula that is smooth at the axis, but not written in r², has its limit there, not 0/0.
