@@ -419,3 +419,73 @@ def test_a_cylinder_that_lands_without_weight_asks_for_no_friction(method: str, 
         body=body, support=support, start=start, gravity=0.0, run={"duration": 2, "every": 0.1, "method": method}
     )
     assert [event.kind for event in run.events] == ["land"]
+
+
+# --- every load on a plane ------------------------------------------------------------------------------------------
+
+LOADS: dict[str, list[dict[str, Any]]] = {
+    "rolling resistance": [{"kind": "rolling-resistance", "offset": 1e-4}],
+    "pivot friction": [{"kind": "pivot-friction", "offset": 1e-4}],
+    "both": [{"kind": "rolling-resistance", "offset": 1e-4}, {"kind": "pivot-friction", "offset": 1e-4}],
+    "couple": [{"kind": "rolling-couple", "coefficient": 1e-5, "pivot_coefficient": 3e-5}],
+    "drag": [{"kind": "drag", "coefficient": 0.03}],
+    "quadratic drag": [{"kind": "quadratic-drag", "coefficient": 0.3}],
+    "turning air": [{"kind": "quadratic-drag", "coefficient": 0.3, "air": 2.0}],
+    "magnus": [{"kind": "magnus", "coefficient": 1e-3}],
+    "motor": [{"kind": "motor", "value": [1e-5, "2e-5*cos(3*t)", 1e-5]}],
+    "potential": [{"kind": "potential", "formula": "0.3*x**2 + 0.02*y + 0.01*abs(y - 0.01)"}],
+    "force and torque": [{"kind": "force", "value": [0.01, "0.02*t", 0]}, {"kind": "torque", "value": [0, 1e-4, 1e-4]}],
+}
+
+
+@pytest.mark.parametrize("method", ["auto", "taylor", "runge-kutta"])
+@pytest.mark.parametrize("start", [{}, {"velocity": [0.3, 0.1], "spin": 4}, {"velocity": [-0.2, 0]}, {"spin": -7}])
+@pytest.mark.parametrize("tilt", [0.0, 0.06, -0.04])
+@pytest.mark.parametrize("load", LOADS)
+def test_a_ball_on_a_plane_under_each_load(load: str, tilt: float, start: dict[str, Any], method: str) -> None:
+    body = {"kind": "solid-sphere", "radius": 0.02, "mass": 0.05}
+    tables: dict[str, Any] = {"body": body, "support": {"kind": "plane", "tilt": tilt}, "loads": LOADS[load]}
+    tables |= {"start": {"position": [0, 0]} | start, "run": {"duration": 0.6, "every": 0.02, "method": method}}
+    if tilt == 0 and start == {"spin": -7} and "resistance" in str(LOADS[load]):
+        with pytest.raises(tr.SolverError, match="only spins about the normal"):
+            passes(**tables)
+    else:
+        passes(**tables)
+
+
+# --- slip that is given back ----------------------------------------------------------------------------------------
+
+
+def test_a_bounce_that_slip_given_back_would_undo() -> None:
+    # With the slip that e_t gives back the point would come down again, so none is given back; then it bounces.
+    moments = [0.00121653, 0.00129278, 0.00124872]
+    body = {"kind": "disc", "radius": 0.143822, "mass": 0.252036, "moments": moments}
+    support = {"kind": "dome", "radius": 0.552497, "restitution": 0.0331066, "tangential_restitution": 0.581215}
+    spin = {"kind": "spin-by", "rate": "4.76321*cos(0.493665*t) + 1.65146"}
+    run = passes(
+        body=body | {"centre": [0.0191152, 0.0396028, 0.0179448]},
+        support=support | {"motion": spin},
+        start={"position": [0.391886, 0.0794833], "height": 0.00695833},
+        run={"duration": 2, "every": 0.0574613},
+    )
+    assert [event.kind for event in run.events] == ["land", "land", "settle", "lift"]
+
+
+# --- a place that hardly moves ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_a_start_beside_the_axis_of_a_rocking_support_is_no_landing(friction: float, method: str) -> None:
+    # All that moves there is rounding, of which a share is no landing and no slip.
+    body = {"kind": "sphere", "radius": 0.0129984, "mass": 0.0275282, "inertia_ratio": 0.0745848}
+    support = {"kind": "height-field", "formula": "0.0894379*x**2 + 0.133397*sin(1.27826*x)", "friction": friction}
+    rock = {"kind": "rock", "amplitude": 0.543352, "rate": -1.87797}
+    start = {"position": [0.0, -0.00973892], "attitude": [0.0279771, -0.0345912, -1.5707963], "time": -1.05763}
+    run = passes(
+        body=body,
+        support=support | {"motion": rock},
+        start=start,
+        run={"duration": 0.5, "every": 0.02, "method": method},
+    )
+    assert "land" not in {event.kind for event in run.events}

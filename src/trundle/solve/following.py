@@ -21,7 +21,6 @@ from .laws import (
     AN_INSTANT,
     CORNER,
     JAMS,
-    SHRINKS,
     FlightLaw,
     Law,
     RestingLaw,
@@ -217,8 +216,7 @@ def _goes_on(system: RollingSystem, law: Law, at: Touch, stop: Stop) -> bool:
         return False
     if not stop.name.startswith("near "):
         return True
-    rates = law.rates(system, at.state.time, list(map(float, stop.numbers)))
-    rate = np.array([float(rate) for rate in rates[SHRINKS[name]]])
+    rate = law.shrinking_rate(system, at.state.time, stop.numbers, name)
     return left > 4 * AN_INSTANT * float(np.linalg.norm(rate))
 
 
@@ -362,7 +360,7 @@ def _come_to_it(system: RollingSystem, law: Law, at: Touch, numbers: Any, stop: 
     length = float(np.linalg.norm(v))
     if length > 1e-3 * _least(system, at, stop):
         rates = np.array([float(rate) for rate in law.rates(system, time, y.tolist())])
-        closing = float(-(v @ rates[SHRINKS[stop]]) / length)
+        closing = float(-(v @ law.shrinking_rate(system, time, y, stop)) / length)
         wait = length / closing if closing > 0 else 0.0
         at = law.meant(system, time + wait, y + wait * rates)
     Omega = at.Omega if stop == "grip" else unturned(at.contact, at.Omega)
@@ -453,6 +451,11 @@ def _rolling(system: RollingSystem, at: Touch, *, slips: bool = False) -> Next:
     law = (RollingWithResistance if system.resisted else RollingLaw)(weightless)
     if law.ends:
         at = _turning_on(system, at)
+        if state_turning(at.contact, at.Omega).norm() == 0:
+            raise SolverError(
+                f"At t = {state.time:.9g} s the body only spins about the normal: rolling resistance has no direction "
+                "there, and what it would hold is not covered. Let it roll a little, or leave the resistance out."
+            )
     ending = _extras(system, law, at)
     return Next.of(law, at, (floor, *ending) if weightless else ending)
 

@@ -162,6 +162,16 @@ class Law:
         p, q, Omega, rest, own = self.split([float(number) for number in numbers])
         return Vector(*rest[:3]) if stop == "grip" else state_turning(touch(system, time, p, q, own), Omega)
 
+    def shrinking_rate(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array, stop: str) -> Array:
+        """Return how fast that changes, m/s² or rad/s²; of Ω̇ only the part along the support."""
+        plain = [float(number) for number in numbers]
+        rate = Vector(*(float(part) for part in self.rates(system, time, plain)[_SHRINKS[stop]]))
+        if stop == "stop":
+            p, q, _, _, own = self.split(plain)
+            n = touch(system, time, p, q, own).normal
+            rate = rate - n * rate.dot(n)
+        return rate.array()
+
     def advanced(self, system: RollingSystem, time: float, state: Sequence[float], step: float) -> list[float]:
         """Return the state after a step so short that one of the classical Runge-Kutta method is exact."""
         y = np.asarray(state, dtype=float)
@@ -486,7 +496,7 @@ JAMS = 1e-3
 AN_INSTANT = 3e-15  # s: what ends in less has ended, for the terms of its series are greater than any float
 CORNER = "corner"  # with which the names of stops begin at which the same law goes on
 _SLOW_SLIP = 1e-8  # m/s for each rad/s of Ω
-SHRINKS = {"grip": slice(10, 13), "stop": slice(7, 10)}  # the numbers that change as what shrinks to nothing there
+_SHRINKS = {"grip": slice(10, 13), "stop": slice(7, 10)}  # the numbers that change as what shrinks to nothing there
 
 
 def left_of_resistance(system: RollingSystem, normal_force: Scalar, holding: Vector) -> Scalar:

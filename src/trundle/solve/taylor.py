@@ -20,7 +20,6 @@ from .dense import Keep, Leg, TooMany
 from .following import Next, Stop
 from .integrators import IN_HASTE, TOLERANCE, WITH_CARE, borrowed, ready
 from .kept_series import KeptSeries
-from .laws import SHRINKS
 from .lowering import Lowered
 from .patience import Patience
 from .phases import Stretch, cut
@@ -267,7 +266,7 @@ def _lasted_to(system: RollingSystem, now: Next, stop: str, near: float) -> floa
     v = law.shrinking(system, now.time, numbers_now, stop).array()
     if v @ v > _GROWN * near:
         return math.inf
-    rate = np.array([float(part) for part in law.rates(system, now.time, numbers_now)[SHRINKS[stop]]])
+    rate = law.shrinking_rate(system, now.time, numbers_now, stop)
     length, change = float(np.linalg.norm(v)), float(np.linalg.norm(rate))
     straight = float(np.linalg.norm(np.cross(v, rate))) <= _STRAIGHT * length * change and v @ rate > 0
     return length / change if straight else math.inf

@@ -43,8 +43,8 @@ class Touch:
         V, Omega = Vector(*state.velocity), Vector(*state.angular_velocity)
         gap = (centre + contact.offset - contact.point).dot(contact.normal)
         arm = contact.offset.norm()
-        u = contact.support.material_velocity(contact.point)
-        speed = max(V.norm(), Omega.norm() * arm, u.norm())
+        u, turning = contact.support.material_velocity(contact.point), contact.support.angular_velocity
+        speed = max(V.norm(), Omega.norm() * arm, u.norm(), turning.norm() * arm)
         return Touch(state, contact, q, V, Omega, contact.slip_velocity(V, Omega), float(gap), arm, float(speed))
 
     @property

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -130,10 +130,15 @@ class Landing:
         support, axes = self.system.support, self._axes
         coefficient = support.friction if support.kinetic_friction is None else support.kinetic_friction
         mu = None if coefficient is None else float(coefficient)
+        landing = partial(Course, axes @ M @ axes.T, mu, float(support.restitution), axes @ self.comes)
         back = float(support.tangential_restitution)
-        if mu is None and float(self.goes @ self.n) <= EXACT * self.speed:  # nothing slips that stays on it
-            back = 0.0
-        return Course(axes @ M @ axes.T, mu, float(support.restitution), axes @ self.comes, back)
+        if mu is None and back > 0:  # nothing slips that stays on it, or that would with the slip it is given back
+            found = landing(back)
+            if self.comes @ self.n < 0:
+                found.impulse()
+            if min(float(self.goes @ self.n), float(found.slip[2])) <= EXACT * self.speed:
+                back = 0.0
+        return landing(back)
 
     @cached_property
     def _axes(self) -> Array:

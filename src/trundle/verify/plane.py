@@ -45,8 +45,9 @@ def reactions(system: RollingSystem, at: Samples, bound: float) -> Iterator[Card
     if not (system.body.is_isotropic_sphere and isinstance(system.support.surface, Plane)) or not _is_fixed(system):
         return
     k, a, m = (float(number) for number in (system.body.inertia_ratio, system.body.radius, system.body.mass))
-    force, torque = system.loads_on(at.motion(system))
-    F, driven = (_in_plane(v, at) for v in (force, torque.cross(E_Z) * (1 / a)))
+    acting = system.acting_on(at.motion(system))
+    K = acting.torque + acting.couple * at.contact_force[:, 2]  # with resistance, which goes with the normal force
+    F, driven = (_in_plane(v, at) for v in (acting.force, K.cross(E_Z) * (1 / a)))
     R = at.contact_force[:, :2]
     size = max(largest(F), largest(driven), 1e-300)
     if max(largest(F), largest(driven)) == 0:  # nothing pushes: nothing to compare with
