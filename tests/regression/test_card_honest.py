@@ -489,3 +489,30 @@ def test_a_start_beside_the_axis_of_a_rocking_support_is_no_landing(friction: fl
         run={"duration": 0.5, "every": 0.02, "method": method},
     )
     assert "land" not in {event.kind for event in run.events}
+
+
+# --- friction that the resistance uses up -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
+@pytest.mark.parametrize("tilt", [0.05, -0.05])
+@pytest.mark.parametrize(("share", "slips"), [(1 - 1e-6, True), (1 + 1e-6, False)])
+def test_from_rest_friction_is_to_give_what_rolling_against_resistance_takes(
+    share: float, slips: bool, tilt: float, method: str
+) -> None:
+    # J Ω' = a f − δ N and m V' = m g sin α − f, V' = a Ω': f = (J m g sin α + m a δ N)/(J + m a²).
+    m, a, J, offset, g = 0.05, 0.02, 1e-5, 1e-4, 9.80665
+    N, down = m * g * math.cos(tilt), m * g * math.sin(abs(tilt))
+    needed = (J * down + m * a * offset * N) / (J + m * a * a)
+    mu = share * needed / N
+    run = passes(
+        body={"kind": "sphere-with-moment", "radius": a, "mass": m, "moment_of_inertia": J},
+        support={"kind": "plane", "tilt": tilt, "friction": mu},
+        loads=[{"kind": "rolling-resistance", "offset": offset}],
+        start={"position": [0, 0]},
+        run={"duration": 0.6, "every": 0.1, "method": method},
+    )
+    f, t = min(mu * N, needed), run.samples.time
+    assert set(run.samples.phase.tolist()) == {int(slips)}
+    assert np.abs(run.samples.angular_velocity[:, 1] * np.sign(tilt) - (a * f - offset * N) / J * t).max() < 1e-9
+    assert np.abs(run.samples.velocity[:, 0] * np.sign(tilt) - (down - f) / m * t).max() < 1e-11

@@ -434,6 +434,7 @@ def _resisted(system: RollingSystem, at: Touch, direction: Vector, *, starts: bo
 
 def _rolling(system: RollingSystem, at: Touch, *, slips: bool = False) -> Next:
     """Return rolling where the support can make it do so, else slipping or flight."""
+    at = _turning_on(system, at) if system.resisted else at  # what friction is to give depends on the resistance
     state = at.state
     now = roll(system, state.time, at.contact.point, at.orientation, at.Omega, state.support)
     n, R = at.contact.normal, now.reaction
@@ -449,13 +450,11 @@ def _rolling(system: RollingSystem, at: Touch, *, slips: bool = False) -> Next:
     if slips or pulled or cone(system, at.contact, R, floor).get("slip", 0.0) < 0:
         return _giving_way(system, at, RollingLaw())
     law = (RollingWithResistance if system.resisted else RollingLaw)(weightless)
-    if law.ends:
-        at = _turning_on(system, at)
-        if state_turning(at.contact, at.Omega).norm() == 0:
-            raise SolverError(
-                f"At t = {state.time:.9g} s the body only spins about the normal: rolling resistance has no direction "
-                "there, and what it would hold is not covered. Let it roll a little, or leave the resistance out."
-            )
+    if law.ends and state_turning(at.contact, at.Omega).norm() == 0:
+        raise SolverError(
+            f"At t = {state.time:.9g} s the body only spins about the normal: rolling resistance has no direction "
+            "there, and what it would hold is not covered. Let it roll a little, or leave the resistance out."
+        )
     ending = _extras(system, law, at)
     return Next.of(law, at, (floor, *ending) if weightless else ending)
 

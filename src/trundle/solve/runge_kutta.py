@@ -163,7 +163,8 @@ def _integrated(
     patience = Patience(begin, begin + end, **_PATIENCE | ({"steps": _BRIEF, "spare": _BRIEF} if law.brief else {}))
     steps = partial(_steps, rows=rows, stops=stops, names=traced.names, begin=begin, patience=patience, progress=told)
     try:
-        scale = _scale(y0, law.meant(system, begin, y0).scale(system))
+        at = law.meant(system, begin, y0)
+        scale = _scale(y0, at.arm, at.scale(system))
         given: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * scale}
         if not law.stiff(y0):
             yield from steps(DOP853(rates, 0.0, y0, end, **given))
@@ -181,18 +182,19 @@ def _integrated(
         raise SolverError(f"The Runge-Kutta method broke down on the way to t = {begin + end:g} s: {error}.") from None
 
 
-def _scale(y0: Array, speed: float) -> Array:
+def _scale(y0: Array, arm: float, speed: float) -> Array:
     """Return against what an error of each number is small or not: its own size, or a share of its vector's.
 
-    Slip that begins is small, not its rate's rounding: that is a share of all accelerations at hand.
+    What begins is small, not its rate's rounding: that is a share of the body's size, and of all accelerations at hand.
     """
+    place, turning = max(_size(y0[:3]), arm), max(_size(y0[7:10]), 0.1 * speed / arm)
     rest = max(1e-3 * _size(y0[10:]), 1e-4 * speed)
-    least = [*[1e-3 * _size(y0[:3])] * 3, *[1.0] * 4, *[1e-3 * _size(y0[7:10])] * 3, *[rest] * 99]
+    least = [*[1e-3 * place] * 3, *[1.0] * 4, *[1e-3 * turning] * 3, *[rest] * 99]
     return np.maximum(np.abs(y0), least[: y0.size])
 
 
 def _size(part: Array) -> float:
-    return max(float(np.abs(part).max(initial=0.0)), 1e-3)
+    return float(np.abs(part).max(initial=0.0))
 
 
 def _steps(
