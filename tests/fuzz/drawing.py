@@ -15,9 +15,7 @@ from trundle.errors import TrundleError
 from trundle.scenario import ScenarioFile
 from trundle.scenario.fields import Coordinate, Measure, Measures, Varying
 from trundle.scenario.tables import Table
-from trundle.scenario.tables.loads import Formula
-from trundle.scenario.tables.supports import Lengths
-from trundle.scenario.tables.values import AIRS, Air
+from trundle.scenario.tables.of_parts import FormulaText, ListOfLengths, Worded
 from trundle.units import UNITS
 
 from .leaves import NUMBER, alternatives, kind_of, notes_of, rounded, tables_of
@@ -90,8 +88,8 @@ class Draw:
 
     def number(self, measure: Measure) -> Any:
         """Return a number, quantity, formula or word that the format takes."""
-        if isinstance(measure, Air) and self.random.random() < 0.5:
-            return self.random.choice(AIRS)
+        if isinstance(measure, Worded) and self.random.random() < 0.5:
+            return self.random.choice(measure.words)
         kind = measure.kind
         if isinstance(measure, Coordinate):
             kind = self.random.choice([measure.kind, measure.otherwise])
@@ -142,7 +140,7 @@ class Draw:
              f"{c}*sqrt({u}**2 + 0.01)", f"{c}*exp({u})", f"{c}*log(0.3 + {u})", f"{c}*{u}**4", f"{c}*{u}"]
         )  # fmt: skip
 
-    def heights(self, lengths: Lengths) -> list[Any]:
+    def heights(self, lengths: ListOfLengths) -> list[Any]:
         """Return distances that ascend, heights, or rows of heights."""
         size, power = self.between(0.1, 1.0), self.random.choice([1, 2])
         begin = self.random.choice([0.0, -size]) if power == 1 else 0.0
@@ -194,10 +192,10 @@ class Draw:
                 return [self.number(note.each) for _ in range(self.random.choice(sizes))]
             if isinstance(note, Measure):
                 return self.number(note)
-            if isinstance(note, Lengths):
+            if isinstance(note, ListOfLengths):
                 return self.heights(note)
-            if isinstance(note, Formula):
-                return self.formula(note.offer.strip('"'), note.variables)
+            if isinstance(note, FormulaText):
+                return self.formula(note.formula.example, note.formula.variables)
         choices = [part for part in alternatives(one.annotation) if get_origin(part) is Literal]
         if choices:
             return self.random.choice(get_args(choices[0]))

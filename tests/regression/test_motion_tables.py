@@ -35,7 +35,7 @@ from trundle.mechanics.motions import (
 )
 from trundle.scenario import ScenarioFile
 from trundle.scenario.tables import KINDS
-from trundle.scenario.words import LOADS, MOTIONS, one_of
+from trundle.scenario.words import words_of
 
 HEAD = """
 [body]
@@ -103,7 +103,7 @@ def test_a_motion_reads_as_its_class_and_is_written_back(name: str) -> None:
     keys, wanted = READ_MOTIONS[name]
     scenario = read(motion=table(name, keys))
     assert scenario.support.build().motion == wanted
-    words = one_of(MOTIONS, wanted, "support.motion")
+    words = words_of(wanted, "support.motion")
     again = ScenarioFile.read(
         {**scenario.model_dump(exclude_unset=True, by_alias=True), "support": {"kind": "plane", "motion": words}}
     )
@@ -117,7 +117,7 @@ def test_a_load_reads_as_its_class_and_is_written_back(name: str) -> None:
     keys, wanted = READ_LOADS[name]
     scenario = read(load=table(name, keys))
     assert scenario.system().loads == (wanted,)
-    words = one_of(LOADS, wanted, "loads[0]")
+    words = words_of(wanted, "loads[0]")
     again = ScenarioFile.read({**scenario.model_dump(exclude_unset=True, by_alias=True), "loads": [words]})
     assert again.system().loads == (wanted,)
     assert ScenarioFile.loads(scenario.to_toml()) == scenario
@@ -126,9 +126,7 @@ def test_a_load_reads_as_its_class_and_is_written_back(name: str) -> None:
 def test_every_kind_has_words_and_is_tested() -> None:
     described = {name.partition(",")[0] for name in READ_MOTIONS} | {"fixed", "spin", "uneven-spin", "wobble"}
     assert described == set(KINDS["support.motion"])
-    assert len(MOTIONS) == len(KINDS["support.motion"])
     assert {name.partition(",")[0] for name in READ_LOADS} | {"force", "torque"} == set(KINDS["loads"])
-    assert len(LOADS) == len(KINDS["loads"])
 
 
 def test_several_parts_may_be_tables_of_their_own() -> None:

@@ -11,7 +11,7 @@ import trundle as tr
 from trundle.errors import ScenarioError
 from trundle.mechanics.algebra import Vector
 from trundle.scenario import ScenarioFile
-from trundle.scenario.words import SURFACES, one_of
+from trundle.scenario.words import words_of
 
 SIDE = [-0.3, -0.1, 0.0, 0.1, 0.2, 0.4]
 SADDLE = [[x * y for y in SIDE] for x in SIDE]
@@ -58,7 +58,7 @@ def test_a_table_is_a_surface(name: str) -> None:
 
 @pytest.mark.parametrize("name", TABLES)
 def test_a_surface_has_words_that_mean_it(name: str) -> None:
-    words = one_of(SURFACES, TABLES[name][1], "support")
+    words = words_of(TABLES[name][1], "support")
     assert words["kind"] == name.split()[-1]
     assert ScenarioFile.read(whole(words)).support.build().surface == TABLES[name][1]
 
@@ -102,7 +102,7 @@ WRONG = {
     "half a table": ({"kind": "revolution", "r": [0, 1, 2, 3]}, r"support.z` must be given"),
     "not a formula": ({"kind": "height-field", "formula": "x + t"}, r"support.formula` must be a formula in x, y"),
     "formula that is code": ({"kind": "revolution", "formula": "open('f')"}, r"Not allowed: open"),
-    "number for a formula": ({"kind": "revolution", "formula": 1.0}, r"support.formula` must be text"),
+    "number for a formula": ({"kind": "revolution", "formula": 1.0}, r"support.formula` must be a formula in r, r2"),
     "three points": ({"kind": "revolution", "r": [0, 1, 2], "z": [0, 1, 2]}, r"support.r` must be 4 values"),
     "descending": ({"kind": "revolution", "r": [0, 2, 1, 3], "z": [0, 1, 2, 3]}, r"support.r` must ascend"),
     "negative": ({"kind": "revolution", "r": [-1, 0, 1, 2], "z": [0, 1, 2, 3]}, r"support.r` must not be negative"),

@@ -13,7 +13,7 @@ from ..mechanics.contact import Contact
 from ..mechanics.nearest import settle
 from ..mechanics.placing import no_gap
 from ..mechanics.system import RollingSystem, State, Support
-from .words import LOADS, MOTIONS, SURFACES, Words, body_words, number_of, numbers_of, one_of
+from .words import Words, body_words, number_of, numbers_of, words_of
 
 _DIGITS = (None, 15, 14, 13)  # as computed; and as someone may have written them
 _ROUNDINGS = [(None, None), (15, 15), (15, None), (None, 15), (14, 14), (14, None), (13, 13)]  # of place, of motion
@@ -55,12 +55,12 @@ def describe(system: RollingSystem, start: State) -> Words:
         "start": _start(system, start),
     }
     if system.loads:
-        words["loads"] = [one_of(LOADS, load, f"loads[{i}]") for i, load in enumerate(system.loads)]
+        words["loads"] = [words_of(load, f"loads[{i}]") for i, load in enumerate(system.loads)]
     return words
 
 
 def _support(support: Support) -> Words:
-    words = one_of(SURFACES, support.surface, "support")
+    words = words_of(support.surface, "support")
     words["tilt"] = number_of(support.tilt, "support.tilt")
     for key in ("friction", "kinetic_friction"):
         if getattr(support, key) is not None:
@@ -68,7 +68,7 @@ def _support(support: Support) -> Words:
     for key in ("restitution", "tangential_restitution"):
         if getattr(support, key) != 0:
             words[key] = number_of(getattr(support, key), f"support.{key}")
-    return {**words, "motion": one_of(MOTIONS, support.motion, "support.motion")}
+    return {**words, "motion": words_of(support.motion, "support.motion")}
 
 
 def _start(system: RollingSystem, start: State) -> Words:

@@ -44,7 +44,7 @@ class ScenarioFile(Document):
     support: Annotated[Supports, Field(discriminator="kind")]
     start: Start
     # Two keys have other names in Python, where `loads` reads a text, as in `json`, and `run` runs it.
-    applied_loads: tuple[Annotated[Loads, Field(discriminator="kind")], ...] = Field(default=(), alias="loads")
+    applied_loads: tuple[Loads, ...] = Field(default=(), alias="loads")
     timing: Run = Field(alias="run")
 
     # --- from Python ---------------------------------------------------------------------------------------

@@ -6,11 +6,13 @@ inherit.
 
 from __future__ import annotations
 
-from .air import Drag, Magnus, QuadraticDrag
+# In the order in which lists name them.
+# isort: skip_file
 from .base import Acting, BodyMotion, Load, at_rest, constant_part
-from .contact import PivotFriction, RollingCouple, RollingResistance
+from .given import Force, Torque, Gravity
+from .air import Drag, QuadraticDrag, Magnus
 from .field import Potential
-from .given import Force, Gravity, Torque
+from .contact import RollingResistance, PivotFriction, RollingCouple
 from .inside import Motor
 
 __all__ = [

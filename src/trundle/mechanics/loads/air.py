@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
-from .. import checks
 from ..algebra import E_Z, Vector
+from ..parts import NOT_NEGATIVE, Number
 from ..scalars import Scalar, is_zero, namespace
 from .base import BodyMotion, Load
 
@@ -16,6 +16,11 @@ if TYPE_CHECKING:
     from ..motions import Motion
 
 STANDING, TURNING = "still", "turning"
+_AIR = Number(
+    "angular velocity",
+    said='"still", "turning" with the support, or a rate of its own.',
+    words={STANDING: 0.0, TURNING: TURNING},
+)
 STILL = 1e-6  # m/s: below it the length of a velocity is rounded off, so that it has slopes also at rest
 
 
@@ -64,11 +69,6 @@ class _ThroughAir(_OfAir):
 
     air: Scalar  # ω_a, rad/s; the word "turning" until it is known with which support
 
-    def _check_air(self) -> None:
-        if not self._turns_along:
-            air = 0.0 if isinstance(self.air, str) and self.air == STANDING else self.air
-            object.__setattr__(self, "air", checks.real(air, "angular velocity", "air"))
-
     @property
     def _turns_along(self) -> bool:
         return isinstance(self.air, str) and self.air == TURNING
@@ -95,13 +95,9 @@ class Drag(_ThroughAir):
     0.01
     """
 
-    coefficient: Scalar
-    air: Any = 0.0
-
-    def __post_init__(self) -> None:
-        value = checks.non_negative(self.coefficient, "damping", "coefficient")
-        object.__setattr__(self, "coefficient", value)
-        self._check_air()
+    coefficient: Annotated[Scalar, Number("damping", NOT_NEGATIVE)]
+    air: Annotated[Any, _AIR] = STANDING
+    kind = "drag"
 
     @property
     def linear_drag(self) -> Scalar | None:
@@ -133,13 +129,11 @@ class QuadraticDrag(_ThroughAir):
     0.001
     """
 
-    coefficient: Scalar
-    air: Any = 0.0
-
-    def __post_init__(self) -> None:
-        value = checks.non_negative(self.coefficient, "quadratic damping", "coefficient")
-        object.__setattr__(self, "coefficient", value)
-        self._check_air()
+    coefficient: Annotated[
+        Scalar, Number("quadratic damping", NOT_NEGATIVE, "0.5 times the air's density, the area and its coefficient.")
+    ]
+    air: Annotated[Any, _AIR] = STANDING
+    kind = "quadratic-drag"
 
     @property
     def corners(self) -> tuple[Callable[[BodyMotion], Vector], ...]:
@@ -169,10 +163,8 @@ class Magnus(_OfAir):
     0.0001
     """
 
-    coefficient: Scalar
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "coefficient", checks.real(self.coefficient, "mass", "coefficient"))
+    coefficient: Annotated[Scalar, Number("mass", said="Positive: topspin pushes down.", example="0.1 g")]
+    kind = "magnus"
 
     def force(self, motion: BodyMotion) -> Vector:
         """Return c Ω×V."""

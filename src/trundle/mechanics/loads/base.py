@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from ..algebra import ZERO, Quaternion, Vector
 from ..motions import Motion, SupportState
+from ..parts import Part
 from ..scalars import Scalar, is_zero
 
 
@@ -73,7 +74,7 @@ def at_rest(mass: Scalar) -> BodyMotion:
     return BodyMotion(0.0, mass, ZERO, ZERO, Quaternion(1.0, 0.0, 0.0, 0.0), ZERO)
 
 
-class Load:
+class Load(Part):
     """A force and a torque on the body; by default neither, and no potential."""
 
     constant: bool = False  # the same force and torque always and everywhere

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
-from .. import checks
 from ..algebra import ZERO, Vector
+from ..parts import NOT_NEGATIVE, POSITIVE, Number
 from ..scalars import Scalar, less, namespace
 from .base import BodyMotion, Load
 
@@ -39,11 +40,11 @@ class RollingResistance(_AtContact):
     5e-05
     """
 
-    offset: Scalar
+    offset: Annotated[
+        Scalar, Number("length", NOT_NEGATIVE, "How far ahead of the contact the normal force acts.", "0.05 mm")
+    ]
+    kind = "rolling-resistance"
     stops = True
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "offset", checks.non_negative(self.offset, "length", "offset"))
 
     def torque_per_normal_force(self, motion: BodyMotion) -> Vector:
         """Return −δ ê, m."""
@@ -75,12 +76,11 @@ class PivotFriction(_AtContact):
     0.01
     """
 
-    offset: Scalar
-    below: Scalar = 0.01
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "offset", checks.non_negative(self.offset, "length", "offset"))
-        object.__setattr__(self, "below", checks.positive(self.below, "angular velocity", "below"))
+    offset: Annotated[
+        Scalar, Number("length", NOT_NEGATIVE, "Friction coefficient times the area's mean radius.", "20 um")
+    ]
+    below: Annotated[Scalar, Number("angular velocity", POSITIVE, "The spin below which it eases off.")] = 0.01
+    kind = "pivot-friction"
 
     def torque_per_normal_force(self, motion: BodyMotion) -> Vector:
         """Return −ε Ω_n/√(Ω_n² + w²) n, m."""
@@ -109,15 +109,11 @@ class RollingCouple(_AtContact):
     2e-06
     """
 
-    coefficient: Scalar
-    pivot_coefficient: Scalar | None = None
-
-    def __post_init__(self) -> None:
-        kind = "rotational damping"
-        object.__setattr__(self, "coefficient", checks.non_negative(self.coefficient, kind, "coefficient"))
-        if self.pivot_coefficient is not None:
-            value = checks.non_negative(self.pivot_coefficient, kind, "pivot_coefficient")
-            object.__setattr__(self, "pivot_coefficient", value)
+    coefficient: Annotated[Scalar, Number("rotational damping", NOT_NEGATIVE)]
+    pivot_coefficient: Annotated[
+        Scalar | None, Number("rotational damping", NOT_NEGATIVE, "About the normal; absent: the same.")
+    ] = None
+    kind = "rolling-couple"
 
     def torque(self, motion: BodyMotion) -> Vector:
         """Return −c(Ω − ω), its part along n by the coefficient of its own."""

@@ -6,11 +6,11 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Annotated, Any
 
-from ...errors import InvalidValueError
 from ..algebra import Vector
 from ..expressions import Expression
+from ..parts import Formula
 from ..scalars import Scalar, is_number, leaves
 from ..seams import lengths
 from .base import BodyMotion, Load
@@ -37,15 +37,8 @@ class Potential(Load):
     Vector(x=-0.2, y=-0.0, z=-0.0)
     """
 
-    formula: Any
-
-    def __post_init__(self) -> None:
-        formula = self.formula
-        if not isinstance(formula, Expression):
-            if isinstance(formula, bool) or not isinstance(formula, (str, int, float)):
-                remedy = "Write for instance '0.5*3*(x**2 + y**2)', in J."
-                raise InvalidValueError("formula", f"must be a formula in {', '.join(VARIABLES)}", formula, remedy)
-            object.__setattr__(self, "formula", Expression.parse(str(formula), VARIABLES, "formula"))
+    formula: Annotated[Any, Formula(VARIABLES, "U in J, in x, y, z of the centre in m and the time t in s.")]
+    kind = "potential"
 
     def force(self, motion: BodyMotion) -> Vector:
         """Return −∇U."""

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 from ..algebra import Vector
-from ..expressions import Expression, now, varying_vector
+from ..expressions import Expression, now
+from ..parts import Number, Numbers
 from ..scalars import Scalar, is_zero
 from .base import BodyMotion, Load
 
@@ -65,11 +66,7 @@ class Given(Load):
     6.0
     """
 
-    value: Any
-    _kind = "number"
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "value", varying_vector(self.value, self._kind, "value"))
+    value: Annotated[Any, Numbers(Number("number", varies=True))]
 
     @property
     def constant(self) -> bool:  # type: ignore[override]
@@ -103,7 +100,10 @@ class Force(Given):
     0.2
     """
 
-    _kind = "force"
+    value: Annotated[
+        Any, Numbers(Number("force", varies=True), "In the support frame, which does not turn with the support.")
+    ]
+    kind = "force"
 
     @property
     def leaves_spin(self) -> bool:
@@ -134,7 +134,10 @@ class Torque(Given):
     0.002
     """
 
-    _kind = "torque"
+    value: Annotated[
+        Any, Numbers(Number("torque", varies=True), "In the support frame, which does not turn with the support.")
+    ]
+    kind = "torque"
 
     @property
     def leaves_spin(self) -> bool:

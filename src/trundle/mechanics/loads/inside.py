@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated, Any
 
 from ..algebra import Vector
+from ..parts import Number, Numbers
 from .base import BodyMotion
 from .given import Given
 
@@ -28,7 +30,8 @@ class Motor(Given):
     0.001
     """
 
-    _kind = "torque"
+    value: Annotated[Any, Numbers(Number("torque", varies=True), "Along the body's axes, which turn with it.")]
+    kind = "motor"
 
     def torque(self, motion: BodyMotion) -> Vector:
         """Return Q τ(t)."""

@@ -5,13 +5,15 @@ A new motion is one class with `at`; `tests/contracts` has the test to inherit.
 
 from __future__ import annotations
 
+# In the order in which lists name them.
+# isort: skip_file
 from .base import Motion, SupportState
-from .free import FreeAxle
-from .given import Move, SpinBy, Tilt
 from .steady import Fixed, Spin
-from .sums import Combined
-from .swinging import PrecessingTilt, Rock, Shake
 from .uneven import UnevenSpin, Wobble
+from .given import SpinBy, Tilt, Move
+from .free import FreeAxle
+from .swinging import Rock, PrecessingTilt, Shake
+from .sums import Combined
 
 __all__ = [
     "Combined",

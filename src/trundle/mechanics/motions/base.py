@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..algebra import Matrix, Vector
+from ..parts import Part
 from ..scalars import Scalar
 
 
@@ -56,7 +57,7 @@ class SupportState:
         )
 
 
-class Motion:
+class Motion(Part):
     """How a support moves: as a function of time, and of coordinates of its own that the run carries along."""
 
     own: tuple[str, ...] = ()  # names of these coordinates: ("angle",) or, of a free axle, ("angle", "rate")

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
-from .. import checks
 from ..algebra import E_Z, ZERO
-from ..expressions import now, varying
+from ..expressions import now
+from ..parts import NOT_NEGATIVE, POSITIVE, Number
 from ..scalars import Scalar, namespace
 from .base import Motion, SupportState
 from .turning import about_third_axis
@@ -42,24 +42,18 @@ class FreeAxle(Motion):
     (2.0, 1.0)
     """
 
-    inertia: Scalar
-    rate: Scalar = 0.0
-    motor_torque: Any = 0.0
-    bearing_drag: Scalar = 0.0
-    bearing_torque: Scalar = 0.0
-    below: Scalar = 0.01
+    inertia: Annotated[Scalar, Number("inertia", POSITIVE, "Of the support about its axle.", "0.01 kg*m^2")]
+    rate: Annotated[Scalar, Number("angular velocity", said="At the start.")] = 0.0
+    motor_torque: Annotated[Any, Number("torque", said="A number or a formula in the time t.", varies=True)] = 0.0
+    bearing_drag: Annotated[Scalar, Number("rotational damping", NOT_NEGATIVE, "Of a viscous bearing.")] = 0.0
+    bearing_torque: Annotated[Scalar, Number("torque", NOT_NEGATIVE, "Of a dry bearing, against the turning.")] = 0.0
+    below: Annotated[Scalar, Number("angular velocity", POSITIVE, "The rate below which a dry bearing eases off.")] = (
+        0.01
+    )
+    kind = "free-axle"
     own = ("angle", "rate")
     keeps_axis = True
     free = True
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "inertia", checks.positive(self.inertia, "inertia", "inertia"))
-        object.__setattr__(self, "rate", checks.real(self.rate, "angular velocity", "rate"))
-        object.__setattr__(self, "motor_torque", varying(self.motor_torque, "torque", "motor_torque"))
-        drag = checks.non_negative(self.bearing_drag, "rotational damping", "bearing_drag")
-        object.__setattr__(self, "bearing_drag", drag)
-        object.__setattr__(self, "bearing_torque", checks.non_negative(self.bearing_torque, "torque", "bearing_torque"))
-        object.__setattr__(self, "below", checks.positive(self.below, "angular velocity", "below"))
 
     @property
     def mean_rate(self) -> Scalar:

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
-from ...errors import InvalidValueError
-from .. import checks
 from ..algebra import E_Z, ZERO, Matrix, Vector
-from ..expressions import course, now, varying, varying_vector
-from ..scalars import Scalar, is_zero
+from ..expressions import course, now
+from ..parts import Number, Numbers
+from ..scalars import Scalar
 from .base import Motion, SupportState
 from .pace import largest
 from .turning import about_third_axis, turned_about
+
+AXIS = Numbers(Number("number", example=1), "In the support frame, of any length.", direction=True)
 
 
 @dataclass(frozen=True)
@@ -33,12 +34,13 @@ class SpinBy(Motion):
     1.75
     """
 
-    rate: Any
+    rate: Annotated[
+        Any,
+        Number("angular velocity", said="A formula in the time t.", example="3.5*(1 - exp(-t/2))", varies=True),
+    ]
+    kind = "spin-by"
     own = ("angle",)
     keeps_axis = True
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "rate", varying(self.rate, "angular velocity", "rate"))
 
     def own_start(self) -> tuple[Scalar, ...]:
         """Return the angle 0: not yet turned."""
@@ -88,12 +90,9 @@ class Tilt(Motion):
     Vector(x=0.0, y=0.1, z=0.0)
     """
 
-    angle: Any
-    axis: Any = (0.0, 1.0, 0.0)
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "angle", varying(self.angle, "angle", "angle"))
-        object.__setattr__(self, "axis", axis_of(self.axis))
+    angle: Annotated[Any, Number("angle", said="A formula in the time t.", example="0.1*sin(2*t)", varies=True)]
+    axis: Annotated[Any, AXIS] = (0.0, 1.0, 0.0)
+    kind = "tilt"
 
     @property
     def fastest_rate(self) -> Scalar:
@@ -125,11 +124,12 @@ class Move(Motion):
     Vector(x=2.0, y=0.0, z=0.0)
     """
 
-    position: Any
+    position: Annotated[
+        Any,
+        Numbers(Number("length", varies=True), "Of the support's origin: numbers or formulas in the time t."),
+    ]
+    kind = "move"
     turns = False
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "position", varying_vector(self.position, "length", "position"))
 
     @property
     def fastest_rate(self) -> Scalar:
@@ -148,42 +148,13 @@ class Move(Motion):
         return SupportState(Matrix.identity(), where, velocity, acceleration, ZERO, ZERO)
 
 
-def axis_of(value: Any) -> Vector:
-    """Return the three components of an axis, which must have a direction.
-
-    Parameters
-    ----------
-    value : sequence of 3 floats
-        Of any length but 0.
-
-    Returns
-    -------
-    Vector
-        As given.
-
-    Raises
-    ------
-    InvalidValueError
-        If it has no direction.
-
-    Examples
-    --------
-    >>> axis_of((0.0, 2.0, 0.0))
-    Vector(x=0.0, y=2.0, z=0.0)
-    """
-    axis = Vector(*checks.components(value, "number", "axis"))
-    if all(map(is_zero, axis)):
-        raise InvalidValueError("axis", "must have a direction", value, "Give for instance (1, 0, 0), the first axis.")
-    return axis
-
-
 def direction_of(axis: Vector) -> Vector:
     """Return the unit vector along an axis.
 
     Parameters
     ----------
     axis : Vector
-        As `axis_of` returns it.
+        Of any length but 0.
 
     Returns
     -------

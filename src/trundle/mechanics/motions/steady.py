@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
-from .. import checks
 from ..algebra import E_Z, ZERO, Matrix
+from ..parts import Number
 from ..scalars import Scalar
 from .base import Motion, SupportState
 from .turning import about_third_axis
@@ -21,6 +22,7 @@ class Fixed(Motion):
     Vector(x=0.0, y=0.0, z=0.0)
     """
 
+    kind = "fixed"
     turns = False
 
     def at(self, time: Scalar) -> SupportState:  # noqa: ARG002  the same always
@@ -48,10 +50,11 @@ class Spin(Motion):
     3.4872
     """
 
-    rate: Scalar
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "rate", checks.real(self.rate, "angular velocity", "rate"))
+    rate: Annotated[
+        Scalar,
+        Number("angular velocity", said="Positive turns the first axis towards the second.", example="33.3 rpm"),
+    ]
+    kind = "spin"
 
     @property
     def steady_rate(self) -> Scalar:

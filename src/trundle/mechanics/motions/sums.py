@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 from ...errors import InvalidValueError
 from .. import checks
+from ..parts import PartsOf
 from ..scalars import Scalar
 from .base import Motion, SupportState
 
@@ -28,7 +29,8 @@ class Combined(Motion):
     3.5
     """
 
-    parts: Any
+    parts: Annotated[Any, PartsOf()]
+    kind = "combined"
 
     def __post_init__(self) -> None:
         parts = tuple(self.parts) if isinstance(self.parts, (list, tuple)) else (self.parts,)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
-from .. import checks
 from ..algebra import E_Z, ZERO, Matrix, Vector
+from ..parts import Number, Numbers
 from ..scalars import Scalar, namespace
 from .base import Motion, SupportState
-from .given import axis_of, direction_of
+from .given import AXIS, direction_of
 from .turning import about, swing, turned_about
 
 
@@ -35,16 +35,11 @@ class Rock(Motion):
     True
     """
 
-    amplitude: Scalar
-    rate: Scalar
-    phase: Scalar = 0.0
-    axis: Any = (0.0, 1.0, 0.0)
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "amplitude", checks.real(self.amplitude, "angle", "amplitude"))
-        object.__setattr__(self, "rate", checks.real(self.rate, "angular velocity", "rate"))
-        object.__setattr__(self, "phase", checks.real(self.phase, "angle", "phase"))
-        object.__setattr__(self, "axis", axis_of(self.axis))
+    amplitude: Annotated[Scalar, Number("angle", example="3 deg")]
+    rate: Annotated[Scalar, Number("angular velocity", example="2 rad/s")]
+    phase: Annotated[Scalar, Number("angle")] = 0.0
+    axis: Annotated[Any, AXIS] = (0.0, 1.0, 0.0)
+    kind = "rock"
 
     @property
     def fastest_rate(self) -> Scalar:
@@ -75,15 +70,11 @@ class Shake(Motion):
     Vector(x=0.02, y=0.0, z=0.0)
     """
 
-    amplitude: Any
-    rate: Scalar
-    phase: Scalar = 0.0
+    amplitude: Annotated[Any, Numbers(Number("length", example="2 mm"), "In the support frame.")]
+    rate: Annotated[Scalar, Number("angular velocity", example="30 rad/s")]
+    phase: Annotated[Scalar, Number("angle")] = 0.0
+    kind = "shake"
     turns = False
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "amplitude", Vector(*checks.components(self.amplitude, "length", "amplitude")))
-        object.__setattr__(self, "rate", checks.real(self.rate, "angular velocity", "rate"))
-        object.__setattr__(self, "phase", checks.real(self.phase, "angle", "phase"))
 
     @property
     def fastest_rate(self) -> Scalar:
@@ -117,12 +108,11 @@ class PrecessingTilt(Motion):
     (0.099833, 0.0)
     """
 
-    angle: Scalar
-    rate: Scalar
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "angle", checks.real(self.angle, "angle", "angle"))
-        object.__setattr__(self, "rate", checks.real(self.rate, "angular velocity", "rate"))
+    angle: Annotated[
+        Scalar, Number("angle", said="Between the support's own axis and the third axis.", example="3 deg")
+    ]
+    rate: Annotated[Scalar, Number("angular velocity", said="At which the lowest side goes round.", example="2 rad/s")]
+    kind = "precessing-tilt"
 
     @property
     def fastest_rate(self) -> Scalar:

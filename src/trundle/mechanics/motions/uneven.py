@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
-from .. import checks
 from ..algebra import E_Z, ZERO, Matrix, Vector
+from ..parts import POSITIVE, Number
 from ..scalars import Scalar, namespace
 from .base import Motion, SupportState
 from .turning import about_third_axis
@@ -30,16 +31,13 @@ class UnevenSpin(Motion):
     3.5
     """
 
-    rate: Scalar
-    variation: Scalar
-    variation_rate: Scalar
+    rate: Annotated[Scalar, Number("angular velocity", said="On the whole.", example="33.3 rpm")]
+    variation: Annotated[Scalar, Number("number", said="As a share of the rate.", example=0.01)]
+    variation_rate: Annotated[
+        Scalar, Number("angular velocity", POSITIVE, "Of the variation; the rate itself: once a turn.")
+    ]
+    kind = "uneven-spin"
     keeps_axis = True
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "rate", checks.real(self.rate, "angular velocity", "rate"))
-        object.__setattr__(self, "variation", checks.real(self.variation, "number", "variation"))
-        rate = checks.positive(self.variation_rate, "angular velocity", "variation_rate")
-        object.__setattr__(self, "variation_rate", rate)
 
     @property
     def fastest_rate(self) -> Scalar:
@@ -82,12 +80,9 @@ class Wobble(Motion):
     Vector(x=0.0, y=0.0, z=3.5)
     """
 
-    rate: Scalar
-    angle: Scalar
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "rate", checks.real(self.rate, "angular velocity", "rate"))
-        object.__setattr__(self, "angle", checks.real(self.angle, "angle", "angle"))
+    rate: Annotated[Scalar, Number("angular velocity", said="About the axle.", example="33.3 rpm")]
+    angle: Annotated[Scalar, Number("angle", said="Between the axle and the support's own axis.", example="0.1 deg")]
+    kind = "wobble"
 
     @property
     def fastest_rate(self) -> Scalar:

@@ -6,18 +6,20 @@ operator follow by differentiation. `tests/contracts` has the test to inherit.
 
 from __future__ import annotations
 
+# In the order in which lists name them.
+# isort: skip_file
 from .base import Surface
-from .cone import Cone
-from .cylinder import Cylinder
-from .ellipsoidal import EllipsoidalBowl
-from .height_field import HeightField
-from .measured import HeightTable, RevolutionTable
 from .over_plane import OverPlane
-from .paraboloid import Paraboloid
 from .plane import Plane
-from .revolution import Revolution
+from .cylinder import Cylinder
 from .spherical import Bowl, Dome
+from .cone import Cone
+from .paraboloid import Paraboloid
+from .ellipsoidal import EllipsoidalBowl
 from .torus import TorusTrack
+from .measured import HeightTable, RevolutionTable
+from .revolution import Revolution
+from .height_field import HeightField
 
 __all__ = [
     "Bowl",

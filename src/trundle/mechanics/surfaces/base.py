@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any, ClassVar
 
 from ...errors import InvalidValueError
 from ..algebra import Matrix, Vector
 from ..jets import jets
-from ..scalars import Scalar, is_number, namespace
+from ..parts import Lengths, Number, Part
+from ..scalars import Scalar, namespace
+
+_UPRIGHT = 90  # degrees
 
 
-class Surface:
+class Surface(Part):
     """A smooth surface φ(p) = 0, with φ positive on the side of the body (theory page, section 2).
 
     A surface of one's own needs `level`, `point` and `axisymmetric`; the rest follows. Where its coordinates are not
@@ -36,6 +41,8 @@ class Surface:
     analytic = True  # a formula: heyoka and SymPy can trace it; a table is evaluated on floats and arrays only
     end = "the end of the surface"  # what the body comes to where `inside` falls to 0
     coordinates: tuple[str, str] = ("length", "length")  # kinds of quantity, as in `trundle.units`
+    tilt: ClassVar[Number] = Number("angle", said="Angle of the axis to the vertical; down the first axis.")
+    points: ClassVar[Mapping[str, Lengths]] = MappingProxyType({})  # what `through` takes, where there is one
 
     @property
     def axisymmetric(self) -> bool:
@@ -115,7 +122,8 @@ class Surface:
     def check_tilt(self, tilt: float, received: Any) -> None:
         """Refuse a tilt at which this surface is not what its name says."""
         if not abs(tilt) <= math.pi:
-            raise InvalidValueError("tilt", "must lie in [−180°, 180°]", received, _degrees(received))
+            remedy = _degrees(received, "90 deg lays the axis level.")
+            raise InvalidValueError("tilt", "must lie in [-180 deg, 180 deg]", received, remedy)
 
 
 def tangential(bend: Matrix, n: Vector) -> Matrix:
@@ -155,18 +163,24 @@ def check_upright(tilt: float, received: Any) -> None:
     Raises
     ------
     InvalidValueError
-        Unless α lies in (−90°, 90°).
+        Unless α lies in (-90 deg, 90 deg).
 
     Examples
     --------
     >>> check_upright(1.6, "1.6 rad")
     Traceback (most recent call last):
     ...
-    trundle.errors.InvalidValueError: `tilt` must lie in (−90°, 90°); got '1.6 rad'.
+    trundle.errors.InvalidValueError: `tilt` must lie in (-90 deg, 90 deg); got '1.6 rad'. Did you mean "1.6 deg"?
     """
     if not abs(tilt) < math.pi / 2:
-        raise InvalidValueError("tilt", "must lie in (−90°, 90°)", received, _degrees(received))
+        remedy = _degrees(received, "At 90 deg it is a wall.")
+        raise InvalidValueError("tilt", "must lie in (-90 deg, 90 deg)", received, remedy)
 
 
-def _degrees(received: Any) -> str:
-    return "Did you mean degrees? Write 'deg' behind the number." if is_number(received) else ""
+def _degrees(received: Any, otherwise: str) -> str:
+    """Return what was meant, where somebody wrote degrees without their unit."""
+    try:
+        bare = float(str(received).removesuffix("rad"))
+    except ValueError:
+        return otherwise
+    return f'Did you mean "{bare:g} deg"?' if abs(bare) < _UPRIGHT else otherwise

@@ -4,13 +4,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated, Any
 
-from ...errors import InvalidValueError, UnknownNameError
-from .. import checks
+from ...errors import InvalidValueError
 from ..algebra import Matrix, Vector
-from ..scalars import Scalar, is_number, namespace
+from ..parts import POSITIVE, Choice, Number
+from ..scalars import Scalar, namespace
 from .base import Surface
 from .cylinder import SIDES, from_axis
+
+
+def _check_half_angle(angle: float, received: Any) -> None:
+    if not 0 < angle < math.pi / 2:
+        remedy = "It is the angle between axis and wall. Write deg behind degrees."
+        raise InvalidValueError("", "must lie between 0 and 90 deg", received, remedy)
 
 
 @dataclass(frozen=True)
@@ -36,22 +43,16 @@ class Cone(Surface):
     0.5
     """
 
-    half_angle: Scalar
-    side: str = "inside"
-    rim: Scalar | None = None
+    half_angle: Annotated[
+        Scalar, Number("angle", said="Between the axis and the wall.", example="30 deg", limit=_check_half_angle)
+    ]
+    side: Annotated[str, Choice(SIDES, "side of a cone")] = "inside"
+    rim: Annotated[
+        Scalar | None, Number("length", POSITIVE, "Distance of the edge from the axis; absent: unbounded.", "0.5 m")
+    ] = None
+    kind = "cone"
     axisymmetric = True
     end = "the apex of the cone"
-
-    def __post_init__(self) -> None:
-        angle = checks.real(self.half_angle, "angle", "half_angle")
-        if is_number(angle) and not 0 < angle < math.pi / 2:
-            remedy = "It is the angle between axis and wall; 90° would be a plane."
-            raise InvalidValueError("half_angle", "must lie in (0°, 90°)", self.half_angle, remedy)
-        object.__setattr__(self, "half_angle", angle)
-        if self.side not in SIDES:
-            raise UnknownNameError("side of a cone", str(self.side), SIDES)
-        if self.rim is not None:
-            object.__setattr__(self, "rim", checks.positive(self.rim, "length", "rim"))
 
     @property
     def sign(self) -> float:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
-from ...errors import UnknownNameError
-from .. import checks
 from ..algebra import E_Z, Matrix, Vector
+from ..parts import POSITIVE, Choice, Number
 from ..scalars import Scalar, namespace
 from .base import Surface
 
@@ -33,15 +33,12 @@ class Cylinder(Surface):
     (Vector(x=0.5, y=0.0, z=2.0), -1.0)
     """
 
-    radius: Scalar
-    side: str = "inside"
+    radius: Annotated[Scalar, Number("length", POSITIVE)]
+    side: Annotated[str, Choice(SIDES, "side of a cylinder")] = "inside"
+    kind = "cylinder"
     axisymmetric = True
     coordinates = ("angle", "length")
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "radius", checks.positive(self.radius, "length", "radius"))
-        if self.side not in SIDES:
-            raise UnknownNameError("side of a cylinder", str(self.side), SIDES)
+    tilt = Number("angle", said="Angle of the axis to the vertical; 90 deg: a trough or a log.")
 
     @property
     def sign(self) -> float:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 from ...errors import InvalidValueError
-from .. import checks
 from ..algebra import Matrix, Vector
+from ..parts import POSITIVE, Number, Numbers
 from ..scalars import Scalar, is_number, leaves, namespace
 from .base import Surface, check_upright, tangential
 
@@ -30,21 +30,21 @@ class EllipsoidalBowl(Surface):
     (0.05, False)
     """
 
-    semi_axes: tuple[Scalar, Scalar, Scalar]
-    depth: Scalar | None = None
+    semi_axes: Annotated[tuple[Scalar, Scalar, Scalar], Numbers(Number("length", POSITIVE), "Along the three axes.")]
+    depth: Annotated[
+        Scalar | None, Number("length", POSITIVE, "Height of the edge over the lowest point; absent: closed.")
+    ] = None
+    kind = "ellipsoidal-bowl"
     end = "the edge of the bowl"
 
     def __post_init__(self) -> None:
-        axes = checks.components(self.semi_axes, "length", "semi_axes")
-        axes = tuple(checks.positive(axis, "length", f"semi_axes[{i}]") for i, axis in enumerate(axes))
-        object.__setattr__(self, "semi_axes", axes)
-        if self.depth is None:
-            return
-        depth = checks.positive(self.depth, "length", "depth")
+        given = self.depth
+        super().__post_init__()
+        object.__setattr__(self, "semi_axes", tuple(self.semi_axes))
+        axes, depth = self.semi_axes, self.depth
         if is_number(depth) and is_number(axes[2]) and depth > axes[2]:
             remedy = f"The third semi-axis is {axes[2]:g} m; a depth of that makes half an ellipsoid."
-            raise InvalidValueError("depth", "must be at most the third semi-axis", self.depth, remedy)
-        object.__setattr__(self, "depth", depth)
+            raise InvalidValueError("depth", "must be at most the third semi-axis", given, remedy)
 
     @property
     def axisymmetric(self) -> bool:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from types import MappingProxyType
+from typing import Annotated, Any
 
-from .. import checks
 from ..algebra import Vector
-from ..expressions import Expression
 from ..jets import jets
+from ..parts import POSITIVE, Formula, Lengths, Number
 from ..scalars import Scalar
 from ..seams import seams, to_the_next
 from .measured import Grid, HeightTable
@@ -35,16 +35,20 @@ class HeightField(OverPlane):
     0.1
     """
 
-    formula: Any
-    rim: Scalar | None = None
+    formula: Annotated[Any, Formula(("x", "y"), "z in x and y.", "0.1*x**2")]
+    rim: Annotated[
+        Scalar | None, Number("length", POSITIVE, "Of a formula: distance of the edge from the axis.", "0.5 m")
+    ] = None
+    kind = "height-field"
+    points = MappingProxyType(
+        {
+            "x": Lengths("Along the first axis, four at least, ascending."),
+            "y": Lengths("Along the second axis, four at least, ascending."),
+            "z": Lengths("A list for each x with a height for each y.", rows=True),
+        }
+    )
     axisymmetric = False
     end = "where the surface's formula ends or has a crease"
-
-    def __post_init__(self) -> None:
-        if not isinstance(self.formula, Expression):
-            object.__setattr__(self, "formula", Expression.parse(str(self.formula), ("x", "y"), "formula"))
-        if self.rim is not None:
-            object.__setattr__(self, "rim", checks.positive(self.rim, "length", "rim"))
 
     @staticmethod
     def through(x: Any, y: Any, z: Any) -> HeightTable:

@@ -85,6 +85,7 @@ class RevolutionTable(OverPlane):
     """
 
     profile: Profile
+    table_of = "revolution"
     analytic = False
     axisymmetric = True
     end = "the end of the table"
@@ -92,6 +93,11 @@ class RevolutionTable(OverPlane):
     def __post_init__(self) -> None:
         example = _THROUGH.format("Revolution.through(r, z)")
         checks.instance(self.profile, Profile, "profile", example)
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """The points, as `Revolution.through` takes them."""
+        return {"r": list(self.profile.r), "z": list(self.profile.values)}
 
     def height(self, x: Scalar, y: Scalar) -> Scalar:
         """Return z, m."""
@@ -127,12 +133,19 @@ class HeightTable(OverPlane):
     """
 
     grid: Grid
+    table_of = "height-field"
     analytic = False
     axisymmetric = False
     end = "the end of the table"
 
     def __post_init__(self) -> None:
         checks.instance(self.grid, Grid, "grid", _THROUGH.format("HeightField.through(x, y, z)"))
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """The heights, as `HeightField.through` takes them."""
+        x, y = self.grid.axes
+        return {"x": list(x), "y": list(y), "z": [list(row) for row in self.grid.values]}
 
     def height(self, x: Scalar, y: Scalar) -> Scalar:
         """Return z, m."""

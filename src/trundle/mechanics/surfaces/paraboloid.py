@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated, Any
 
 from ...errors import InvalidValueError
-from .. import checks
-from ..scalars import Scalar, is_number
+from ..parts import POSITIVE, Number
+from ..scalars import Scalar
 from .over_plane import Bends, OverPlane, Slopes
+
+
+def _check_not_zero(radius: float, received: Any) -> None:
+    if radius == 0:
+        remedy = "It is the radius of curvature at the vertex: positive makes a bowl, negative a mound."
+        raise InvalidValueError("", "must not be zero", received, remedy)
 
 
 @dataclass(frozen=True)
@@ -27,18 +34,15 @@ class Paraboloid(OverPlane):
     (0.25, -0.25)
     """
 
-    radius: Scalar
-    rim: Scalar | None = None
+    radius: Annotated[
+        Scalar,
+        Number("length", said="Radius of curvature at the vertex; negative: a mound.", limit=_check_not_zero),
+    ]
+    rim: Annotated[
+        Scalar | None, Number("length", POSITIVE, "Distance of the edge from the axis; absent: unbounded.", "0.5 m")
+    ] = None
+    kind = "paraboloid"
     axisymmetric = True
-
-    def __post_init__(self) -> None:
-        radius = checks.real(self.radius, "length", "radius")
-        if is_number(radius) and radius == 0:
-            remedy = "It is the radius of curvature at the vertex: positive makes a bowl, negative a mound."
-            raise InvalidValueError("radius", "must not be zero", self.radius, remedy)
-        object.__setattr__(self, "radius", radius)
-        if self.rim is not None:
-            object.__setattr__(self, "rim", checks.positive(self.rim, "length", "rim"))
 
     def height(self, x: Scalar, y: Scalar) -> Scalar:
         """Return r²/(2b), m."""

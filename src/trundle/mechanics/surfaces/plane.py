@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
-from .. import checks
 from ..algebra import E_X, E_Y, E_Z, Matrix, Vector
+from ..parts import POSITIVE, Number
 from ..scalars import Scalar
 from .base import Surface, check_upright
 
@@ -26,12 +26,10 @@ class Plane(Surface):
     Vector(x=0.0, y=0.0, z=1.0)
     """
 
-    rim: Scalar | None = None
+    rim: Annotated[Scalar | None, Number("length", POSITIVE, "Radius of the rim; absent: unbounded.", "0.5 m")] = None
+    kind = "plane"
     axisymmetric = True
-
-    def __post_init__(self) -> None:
-        if self.rim is not None:
-            object.__setattr__(self, "rim", checks.positive(self.rim, "length", "rim"))
+    tilt = Number("angle", said="Angle of the plane's normal to the vertical; down the first axis.")
 
     def level(self, p: Vector) -> Scalar:
         """Return the height over the plane, m."""

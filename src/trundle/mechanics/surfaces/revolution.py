@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from types import MappingProxyType
+from typing import Annotated, Any
 
-from .. import checks
 from ..algebra import Vector
 from ..expressions import Expression
 from ..jets import Jet, jets
+from ..parts import POSITIVE, Formula, Lengths, Number
 from ..scalars import Scalar, namespace
 from ..seams import seams, to_the_next
 from .measured import Profile, RevolutionTable
@@ -41,16 +42,19 @@ class Revolution(OverPlane):
     0.1875
     """
 
-    formula: Any
-    rim: Scalar | None = None
+    formula: Annotated[Any, Formula(_VARIABLES, "z in r or r2 = r².", "2*r**2")]
+    rim: Annotated[
+        Scalar | None, Number("length", POSITIVE, "Of a formula: distance of the edge from the axis.", "0.5 m")
+    ] = None
+    kind = "revolution"
+    points = MappingProxyType(
+        {
+            "r": Lengths("Distances from the axis, four at least, ascending."),
+            "z": Lengths("Heights there; the surface is a smooth spline through them."),
+        }
+    )
     axisymmetric = True
     end = "where the surface's formula ends or has a crease or an apex"
-
-    def __post_init__(self) -> None:
-        if not isinstance(self.formula, Expression):
-            object.__setattr__(self, "formula", Expression.parse(str(self.formula), _VARIABLES, "formula"))
-        if self.rim is not None:
-            object.__setattr__(self, "rim", checks.positive(self.rim, "length", "rim"))
 
     @staticmethod
     def through(r: Any, z: Any) -> RevolutionTable:

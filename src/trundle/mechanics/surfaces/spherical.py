@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from ...errors import InvalidValueError
-from .. import checks
 from ..algebra import Matrix, Vector
+from ..parts import POSITIVE, Number
 from ..scalars import Scalar, is_number, namespace
 from .base import Surface, check_upright
 
@@ -16,21 +16,21 @@ from .base import Surface, check_upright
 class Spherical(Surface):
     """A sphere of radius b that touches the plane of the first two axes at the origin; see `Bowl` and `Dome`."""
 
-    radius: Scalar
-    rim: Scalar | None = None
+    radius: Annotated[Scalar, Number("length", POSITIVE)]
+    rim: Annotated[
+        Scalar | None,
+        Number("length", POSITIVE, "Distance of the edge from the axis; absent: the whole sphere.", "0.5 m"),
+    ] = None
     sign: ClassVar[float] = 0.0  # +1 where the body is outside, −1 where it is inside
     axisymmetric = True
     end = "the rim"
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "radius", checks.positive(self.radius, "length", "radius"))
-        if self.rim is None:
-            return
-        rim = checks.positive(self.rim, "length", "rim")
-        if is_number(rim) and is_number(self.radius) and rim > self.radius:
+        given = self.rim
+        super().__post_init__()
+        if is_number(self.rim) and is_number(self.radius) and self.rim > self.radius:
             remedy = f"The sphere's radius is {self.radius:g} m; a rim of that makes a hemisphere."
-            raise InvalidValueError("rim", "must be at most the radius", self.rim, remedy)
-        object.__setattr__(self, "rim", rim)
+            raise InvalidValueError("rim", "must be at most the radius", given, remedy)
 
     def _arm(self, p: Vector) -> Vector:
         """Return p from the sphere's centre, which lies b over the lowest point or under the top."""
@@ -95,6 +95,7 @@ class Bowl(Spherical):
     Vector(x=0.3, y=0.0, z=0.09999999999999999)
     """
 
+    kind = "bowl"
     sign: ClassVar[float] = -1.0
 
 
@@ -115,4 +116,5 @@ class Dome(Spherical):
     Vector(x=0.3, y=0.0, z=-0.09999999999999999)
     """
 
+    kind = "dome"
     sign: ClassVar[float] = 1.0

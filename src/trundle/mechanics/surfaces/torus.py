@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
-from ...errors import InvalidValueError, UnknownNameError
-from .. import checks
+from ...errors import InvalidValueError
 from ..algebra import E_Z, Matrix, Vector
+from ..parts import POSITIVE, Choice, Number
 from ..scalars import Scalar, is_number, namespace
 from .base import Surface
 from .cylinder import SIDES, from_axis
@@ -36,22 +37,20 @@ class TorusTrack(Surface):
     (Vector(x=0.4, y=0.0, z=-0.1), 1.0)
     """
 
-    ring_radius: Scalar
-    tube_radius: Scalar
-    side: str = "inside"
+    ring_radius: Annotated[Scalar, Number("length", POSITIVE, "Of the circle that the tube follows.")]
+    tube_radius: Annotated[Scalar, Number("length", POSITIVE, "Of the tube.")]
+    side: Annotated[str, Choice(SIDES, "side of a torus track")] = "inside"
+    kind = "torus-track"
     axisymmetric = True
     coordinates = ("angle", "angle")
 
     def __post_init__(self) -> None:
-        ring = checks.positive(self.ring_radius, "length", "ring_radius")
-        tube = checks.positive(self.tube_radius, "length", "tube_radius")
+        given = self.tube_radius
+        super().__post_init__()
+        ring, tube = self.ring_radius, self.tube_radius
         if is_number(ring) and is_number(tube) and not tube < ring:
             remedy = f"The ring's radius is {ring:g} m, and the tube would run into itself."
-            raise InvalidValueError("tube_radius", "must be less than the ring's", self.tube_radius, remedy)
-        object.__setattr__(self, "ring_radius", ring)
-        object.__setattr__(self, "tube_radius", tube)
-        if self.side not in SIDES:
-            raise UnknownNameError("side of a torus track", str(self.side), SIDES)
+            raise InvalidValueError("tube_radius", "must be less than the ring's", given, remedy)
 
     @property
     def sign(self) -> float:

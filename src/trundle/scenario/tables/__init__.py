@@ -1,6 +1,6 @@
 """The tables of a scenario file, one file a family: one class for each table, told apart by `kind`.
 
-A new body, surface, motion or load is one class with `kind` and `build`, in the union and the list of its family.
+Those of surfaces, motions and loads are made from what the parts say about themselves (`of_parts`).
 """
 
 from __future__ import annotations
@@ -22,3 +22,12 @@ KINDS: dict[str, dict[str, type[Table]]] = {
 }
 
 __all__ = ["KINDS", "Bodies", "Loads", "Place2", "Radius", "Run", "Start", "Supports", "Table", "Turn4"]
+
+
+def __getattr__(name: str) -> type[Table]:
+    """Return a class that was made, by its name: pickles ask for it."""
+    for tables in KINDS.values():
+        for table in tables.values():
+            if table.__name__ == name:
+                return table
+    raise AttributeError(name)

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
 from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, model_validator
 from pydantic_core import CoreSchema
 
 from ...errors import InvalidValueError
-from ...mechanics.loads.air import STANDING, TURNING
-from ..fields import Coordinate, Diameter, Measure, Measures, Varying, diameter_of
+from ..fields import Coordinate, Diameter, Measure, Measures, diameter_of
 
 
 class Table(BaseModel):
@@ -46,22 +43,6 @@ class Table(BaseModel):
         return schema
 
 
-def _check_tilt(tilt: float, received: Any) -> None:
-    if abs(tilt) < math.pi / 2:
-        return
-    bare = str(received).removesuffix("rad").strip()
-    try:
-        remedy = f'Did you mean "{bare} deg"?' if abs(float(bare)) < 90 else ""
-    except ValueError:
-        remedy = ""
-    raise InvalidValueError("", "must lie in (-90 deg, 90 deg)", received, remedy or "At 90 deg the plane is a wall.")
-
-
-def _check_any_tilt(tilt: float, received: Any) -> None:
-    if not abs(tilt) <= math.pi:
-        raise InvalidValueError("", "must lie in [-180 deg, 180 deg]", received, "90 deg lays the axis level.")
-
-
 def _check_inertia_ratio(ratio: float, received: Any) -> None:
     # I ≤ (2/3) m a² for any mass inside a sphere: I is a third of the trace, (2/3) Σ m r² with r ≤ a.
     if not 0 < ratio <= 2 / 3 * (1 + 1e-12):
@@ -79,38 +60,17 @@ def _check_restitution(share: float, received: Any) -> None:
         raise InvalidValueError("", "must lie in [0, 1]", received, "1 gives back all that the landing took.")
 
 
-@dataclass(frozen=True)
-class Air(Measure):
-    """How the air turns: a rate, or one of two words."""
-
-    def __call__(self, value: Any, key: str = "") -> Any:
-        """Return the checked rate or word."""
-        return value if value in AIRS else super().__call__(value, key)
-
-    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
-        """Return what an editor may know of it."""
-        described = super().__get_pydantic_json_schema__(schema, handler)
-        return {**described, "anyOf": [{"enum": list(AIRS)}, *described["anyOf"]]}
-
-
-AIRS = (STANDING, TURNING)
-
 Radius = Annotated[float, Measure("length", "positive")]
 Mass = Annotated[float, Measure("mass", "positive")]
 CylinderRatio = Annotated[float, Measure("number", "positive", _check_cylinder_ratio, "0.5")]
 Ratio = Annotated[float, Measure("number", "positive", _check_inertia_ratio, "0.4")]
 Moment = Annotated[float, Measure("inertia", "positive")]
-AnyTilt = Annotated[float, Measure("angle", check=_check_any_tilt)]
-Tilt = Annotated[float, Measure("angle", check=_check_tilt)]
-Rim = Annotated[float, Measure("length", "positive", example='"0.5 m"')]
 Friction = Annotated[float, Measure("number", "not negative", example="0.3")]
 Restitution = Annotated[float, Measure("number", "not negative", _check_restitution, "0.5")]
+Angle = Annotated[float, Measure("angle")]
 Rate = Annotated[float, Measure("angular velocity")]
-Coefficient = Annotated[float, Measure("damping", "not negative")]
 Duration = Annotated[float, Measure("time", "positive")]
 Step = Annotated[float, Measure("time", "positive", example='"10 ms"')]
-Force3 = Annotated[tuple[float | str, float | str, float | str], Measures(Varying("force"), 3)]
-Torque3 = Annotated[tuple[float | str, float | str, float | str], Measures(Varying("torque"), 3)]
 Rate3 = Annotated[tuple[float, float, float], Measures(Measure("angular velocity", example='"2 rad/s"'), 3)]
 Place2 = Annotated[tuple[float, float], Measures(Coordinate("length", example='"10 cm"'), 2)]
 Velocity = Annotated[
@@ -122,8 +82,4 @@ Own = Annotated[
     tuple[float, ...], Measures(Coordinate("angle", example='"30 deg"', otherwise="angular velocity"), 1, most=8)
 ]
 Height = Annotated[float, Measure("length", "not negative", example='"5 cm"')]
-Angle = Annotated[float, Measure("angle")]
-Share = Annotated[float, Measure("number", example="0.01")]
-PositiveRate = Annotated[float, Measure("angular velocity", "positive")]
-AirRate = Annotated[float | str, Air("angular velocity")]
 Turn4 = Annotated[tuple[float, float, float, float], Measures(Measure("number", example="1.0"), 4)]

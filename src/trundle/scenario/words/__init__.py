@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 from .bodies import body_words
-from .loads import LOADS
-from .motions import MOTIONS
-from .parts import Words, number_of, numbers_of, one_of
-from .supports import SURFACES
+from .parts import Words, number_of, numbers_of, words_of
 
-__all__ = ["LOADS", "MOTIONS", "SURFACES", "Words", "body_words", "number_of", "numbers_of", "one_of"]
+__all__ = ["Words", "body_words", "number_of", "numbers_of", "words_of"]

@@ -3,24 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 from ...errors import ScenarioError
 from ...mechanics.expressions import Expression
+from ...mechanics.parts import Part, defaults_of, fields_of
 
 Words = dict[str, Any]
-Describe = dict[type, Callable[[Any, str], Words]]  # what writes a thing of each type, under the name of its key
 
 
-def one_of(words: dict[type, Callable[[Any, str], Words]], thing: Any, key: str) -> Words:
-    """Return the words of a thing, by the entry for its type.
+def words_of(part: Part, key: str) -> Words:
+    """Return the words of a part by its fields; what stands at its default is left out.
 
     Parameters
     ----------
-    words : dict
-        What writes a thing of each type.
-    thing : object
+    part : Part
         A surface, motion or load.
     key : str
         Its place in the file, for messages.
@@ -33,16 +30,35 @@ def one_of(words: dict[type, Callable[[Any, str], Words]], thing: Any, key: str)
     Raises
     ------
     ScenarioError
-        If the format has no words for its type.
+        If it has no kind that files know, or its numbers are none.
 
     Examples
     --------
-    >>> one_of({float: lambda thing, key: {"kind": key}}, 1.0, "load")
-    {'kind': 'load'}
+    >>> from trundle.mechanics.motions import Shake
+    >>> words_of(Shake((0.002, 0.0, 0.0), 30.0), "support.motion")
+    {'kind': 'shake', 'amplitude': [0.002, 0.0, 0.0], 'rate': 30.0}
     """
-    if type(thing) not in words:
-        raise wordless(key, thing)
-    return words[type(thing)](thing, key)
+    if part.table_of:
+        return {"kind": part.table_of, **part.given}
+    if "kind" not in vars(type(part)):
+        raise wordless(key, part)
+    words, defaults = {"kind": part.kind}, defaults_of(type(part))
+    for name, field in fields_of(type(part)).items():
+        value, place = getattr(part, name), f"{key}.{name}"
+        default = defaults.get(name)
+        if value is not None and (default is None or value != field.read(default, name)):
+            words[name] = _word_of(value, place)
+    return words
+
+
+def _word_of(value: Any, place: str) -> Any:
+    if isinstance(value, str):
+        return value
+    if isinstance(value, Expression):
+        return value.text
+    if isinstance(value, tuple) and all(isinstance(part, Part) for part in value):
+        return [words_of(part, f"{place}[{i}]") for i, part in enumerate(value)]
+    return numbers_of(value, place) if hasattr(value, "__iter__") else number_of(value, place)
 
 
 def number_of(value: Any, key: str) -> float:

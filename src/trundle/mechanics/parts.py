@@ -1,0 +1,332 @@
+"""What a part of a system says about itself, once: its kind, and of each of its fields what it is and what it may be.
+
+Scenario files, messages, tables of the docs and the page of the lab are made from this.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import MISSING, dataclass, field, fields
+from functools import cache
+from importlib import import_module
+from types import MappingProxyType
+from typing import Any, ClassVar, TypeVar, get_type_hints
+
+from ..errors import InvalidValueError, UnknownNameError
+from . import checks
+from .algebra import Vector
+from .expressions import Expression, varying, varying_vector
+from .scalars import is_number, is_zero
+
+ANY, POSITIVE, NOT_NEGATIVE = "any", "positive", "not negative"
+_CHECKS = {ANY: checks.real, POSITIVE: checks.positive, NOT_NEGATIVE: checks.non_negative}
+PartType = TypeVar("PartType", bound="Part")
+
+
+@dataclass(frozen=True)
+class Number:
+    """A field that is one number.
+
+    Parameters
+    ----------
+    dimension : str
+        One of `trundle.units.UNITS`.
+    sign : str
+        `ANY`, `POSITIVE` or `NOT_NEGATIVE`.
+    said : str
+        One sentence; its symbol and unit need none.
+    example : str or number, optional
+        As it may stand in a file.
+    varies : bool
+        Whether it may be a formula in the time.
+    words : mapping
+        Texts that may stand instead, and what each means; itself where only the part can tell.
+    limit : callable, optional
+        A further check of (number in SI, as it was given); it raises `InvalidValueError`, its key ``""``.
+
+    Examples
+    --------
+    >>> Number("length", POSITIVE).read("25 mm", "radius")
+    0.025
+    """
+
+    dimension: str
+    sign: str = ANY
+    said: str = ""
+    example: Any = None
+    varies: bool = False
+    words: Mapping[str, Any] = field(default_factory=dict)
+    limit: Callable[[Any, Any], None] | None = None
+
+    def read(self, value: Any, key: str) -> Any:
+        """Return the number in SI, checked; a formula as one, and what a word means."""
+        if self.varies:
+            return varying(value, self.dimension, key)
+        if isinstance(value, str) and value in self.words:
+            return self.words[value]
+        number = _CHECKS[self.sign](value, self.dimension, key)
+        if self.limit is not None and is_number(number):
+            try:
+                self.limit(number, value)
+            except InvalidValueError as error:
+                raise InvalidValueError(key, error.rule, error.received, error.remedy) from None
+        return number
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """A field that is a vector: three numbers in one frame.
+
+    Parameters
+    ----------
+    each : Number
+        What each of them is.
+    said : str
+        One sentence.
+    direction : bool
+        Whether only its direction counts, so that it must have one.
+
+    Examples
+    --------
+    >>> Numbers(Number("length")).read(("1 cm", 0, 0), "place").x
+    0.01
+    """
+
+    each: Number
+    said: str = ""
+    direction: bool = False
+
+    def read(self, value: Any, key: str) -> Vector:
+        """Return the vector in SI, checked."""
+        if self.each.varies:
+            return varying_vector(value, self.each.dimension, key)
+        parts = checks.components(value, self.each.dimension, key)
+        found = Vector(*(self.each.read(part, f"{key}[{i}]") for i, part in enumerate(parts)))
+        if self.direction and all(map(is_zero, found)):
+            raise InvalidValueError(key, "must have a direction", value, "Give for instance (1, 0, 0), the first axis.")
+        return found
+
+
+@dataclass(frozen=True)
+class Formula:
+    """A field that is a formula in named variables, SI.
+
+    Parameters
+    ----------
+    variables : tuple of str
+        What may stand in it.
+    said : str
+        One sentence.
+    example : str
+        As it may stand in a file.
+
+    Examples
+    --------
+    >>> Formula(("x",)).read("2*x", "formula").at(x=3.0)
+    6.0
+    """
+
+    variables: tuple[str, ...]
+    said: str = ""
+    example: str = "0.5*3*(x**2 + y**2)"
+
+    def read(self, value: Any, key: str) -> Expression:
+        """Return the formula, checked."""
+        if isinstance(value, Expression):
+            return value
+        if isinstance(value, bool) or not isinstance(value, (str, int, float)):
+            remedy = f"Write for instance '{self.example}'."
+            raise InvalidValueError(key, f"must be a formula in {', '.join(self.variables)}", value, remedy)
+        return Expression.parse(str(value), self.variables, key)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A field that is one of some words.
+
+    Parameters
+    ----------
+    words : tuple of str
+        Which.
+    of : str
+        What it is a choice of, for messages, such as "side of a cone".
+    said : str
+        One sentence.
+
+    Examples
+    --------
+    >>> Choice(("inside", "outside"), "side").read("inside", "side")
+    'inside'
+    """
+
+    words: tuple[str, ...]
+    of: str
+    said: str = ""
+
+    def read(self, value: Any, key: str) -> Any:  # noqa: ARG002  the message names what it is of
+        """Return the word, checked."""
+        if value not in self.words:
+            raise UnknownNameError(self.of, str(value), self.words)
+        return value
+
+
+@dataclass(frozen=True)
+class PartsOf:
+    """A field that is a list of other parts of the same family.
+
+    Parameters
+    ----------
+    said : str
+        One sentence.
+    """
+
+    said: str = ""
+
+    def read(self, value: Any, key: str) -> Any:  # noqa: ARG002  the part itself knows which go together
+        """Return them as they are."""
+        return value
+
+
+@dataclass(frozen=True)
+class Lengths:
+    """A list of lengths of any size, or of such lists: points that a surface goes through.
+
+    Parameters
+    ----------
+    said : str
+        One sentence.
+    rows : bool
+        Whether it is a list of lists.
+    """
+
+    said: str = ""
+    rows: bool = False
+
+
+Field = Number | Numbers | Formula | Choice | PartsOf
+
+
+class Part:
+    """A part of a system: a dataclass whose fields say, in their annotations, what they are.
+
+    Where a part is made, each field is read by what it says of itself; None where it is the default stays.
+    """
+
+    kind: ClassVar[str] = ""  # its name in files; none: it is not for files
+    table_of: ClassVar[str] = ""  # of a part that is made from points: the kind in whose table they stand
+    given: Any  # and these points, by key
+
+    def __post_init__(self) -> None:
+        defaults = defaults_of(type(self))
+        for name, says in fields_of(type(self)).items():
+            value = getattr(self, name)
+            if value is not None or defaults.get(name, MISSING) is not None:
+                object.__setattr__(self, name, says.read(value, name))
+
+
+def fields_of(part: type[Part]) -> Mapping[str, Field]:
+    """Return what each field of a part says of itself.
+
+    Parameters
+    ----------
+    part : type
+        A class of parts.
+
+    Returns
+    -------
+    mapping
+        By name, in the order of the class.
+
+    Examples
+    --------
+    >>> from trundle.mechanics.motions import Spin
+    >>> fields_of(Spin)["rate"].dimension
+    'angular velocity'
+    """
+    whole: Any = part
+    return _fields(whole)
+
+
+@cache
+def _fields(part: Any) -> Mapping[str, Field]:
+    hints = get_type_hints(part, include_extras=True)
+    noted = {each.name: getattr(hints[each.name], "__metadata__", ()) for each in fields(part)}
+    return MappingProxyType({name: note for name, notes in noted.items() for note in notes if isinstance(note, Field)})
+
+
+def defaults_of(part: type[Part]) -> Mapping[str, Any]:
+    """Return the defaults of those fields of a part that have one, as its class has them.
+
+    Parameters
+    ----------
+    part : type
+        A class of parts.
+
+    Returns
+    -------
+    mapping
+        By name.
+
+    Examples
+    --------
+    >>> from trundle.mechanics.loads import PivotFriction
+    >>> dict(defaults_of(PivotFriction))
+    {'below': 0.01}
+    """
+    whole: Any = part
+    return _defaults(whole)
+
+
+@cache
+def _defaults(part: Any) -> Mapping[str, Any]:
+    return MappingProxyType({f.name: f.default for f in fields(part) if f.default is not MISSING})
+
+
+def kinds_of(family: type[PartType]) -> dict[str, type[PartType]]:
+    """Return the parts of a family that files may name, by kind.
+
+    Parameters
+    ----------
+    family : type
+        The base class of loads, motions or surfaces.
+
+    Returns
+    -------
+    dict
+        In the order in which the family's package names them, then those that are defined elsewhere.
+
+    Examples
+    --------
+    >>> from trundle.mechanics.loads import Load
+    >>> list(kinds_of(Load))[:3]
+    ['force', 'torque', 'drag']
+    """
+    named = vars(import_module(family.__module__.rpartition(".")[0])).values()
+    parts = [part for part in named if isinstance(part, type) and issubclass(part, family)]
+    return {part.kind: part for part in (*parts, *_below(family)) if vars(part).get("kind")}
+
+
+def _below(family: type[PartType]) -> list[type[PartType]]:
+    return [each for part in family.__subclasses__() for each in (part, *_below(part))]
+
+
+def sentence_of(part: type[Part]) -> str:
+    """Return the first sentence of what a part says about itself.
+
+    Parameters
+    ----------
+    part : type
+        A class of parts.
+
+    Returns
+    -------
+    str
+        Of its docstring; nothing where Python runs without docstrings.
+
+    Examples
+    --------
+    >>> from trundle.mechanics.motions import Fixed
+    >>> sentence_of(Fixed)
+    'A support at rest.'
+    """
+    return (part.__doc__ or "").partition("\n\n")[0].replace("\n    ", " ").strip()
