@@ -9,8 +9,10 @@ import numpy as np
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from trundle.wording import short, unit_for, with_unit
+
 from ..plots.marks import Page, Ruler, arrowhead, signpost
-from ..plots.scales import short, thin_path, unit_for, with_unit
+from ..plots.scales import thin_path
 from ..plots.sheet import BLUE, FAINT, GREEN, GREY, INK, VERMILION, Sheet, look
 
 if TYPE_CHECKING:

@@ -6,8 +6,9 @@ import math
 import re
 from typing import TYPE_CHECKING, Any
 
+from trundle.wording import short, with_unit
+
 from ..display import Markup, joined, mathml, pairs, table
-from ..plots.scales import short, with_unit
 
 if TYPE_CHECKING:
     from .correspondence import Twin

@@ -8,7 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from ..plots.scales import Unit, unit_for, with_unit
+from trundle.wording import Unit, unit_for, with_unit
+
 from ..plots.sheet import BLUE, GREY, INK, VERMILION, Sheet, look
 
 if TYPE_CHECKING:

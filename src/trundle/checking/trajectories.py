@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from trundle.wording import with_unit
+
 from ..errors import InvalidValueError
 from ..mechanics.system import RollingSystem, State
-from ..plots.scales import with_unit
 from ..scenario import ScenarioFile
 from ..verify import CardFigure
 from .case import Case

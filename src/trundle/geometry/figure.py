@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from trundle.wording import short, unit_for, with_unit
+
 from ..plots.marks import arrowhead
-from ..plots.scales import short, unit_for, with_unit
 from ..plots.sheet import BLUE, FAINT, GREY, INK, TABLE, Sheet, look
 from .ball import ABOVE, ASIDE, View, place
 from .evidence import direction

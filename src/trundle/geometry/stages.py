@@ -63,7 +63,7 @@ class Stages(Displayed):
         >>> tr.roll_along(tr.Straight(turn="90 deg"), radius="2 cm").stages.told()[0]
         ('start', '(0, 0) cm', 'up')
         """
-        from ..plots.scales import unit_for
+        from ..wording import unit_for
         from .evidence import direction
 
         unit = unit_for(max(float(abs(self.contact).max()), self.radius), "length")

@@ -7,13 +7,14 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from trundle.wording import with_unit
+
 from ..errors import InvalidValueError
 from ..mechanics.algebra import Vector
 from ..mechanics.loads import Drag, Load, RollingResistance
 from ..mechanics.motions import Motion, Spin
 from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem, State
-from ..plots.scales import with_unit
 from .resisted import ResistedCircle
 
 

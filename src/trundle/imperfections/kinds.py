@@ -6,10 +6,11 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
+from trundle.wording import short, with_unit
+
 from ..mechanics.loads import Drag, RollingResistance
 from ..mechanics.motions import UnevenSpin, Wobble
 from ..mechanics.system import RollingSystem
-from ..plots.scales import short, with_unit
 from .circle import Demonstration, Fate
 
 

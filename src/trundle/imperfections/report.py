@@ -6,8 +6,9 @@ import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from trundle.wording import with_unit
+
 from ..display import Displayed, Headline, Markup, paragraph, table
-from ..plots.scales import with_unit
 from .rows import HEADINGS, Row, clock
 
 if TYPE_CHECKING:

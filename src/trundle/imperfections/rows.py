@@ -7,8 +7,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
+from trundle.wording import short, with_unit
+
 from ..display import Displayed, Headline, Markup, pairs
-from ..plots.scales import short, with_unit
 from ..trajectory import Trajectory
 from .measuring import CircleMotion
 

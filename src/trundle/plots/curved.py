@@ -11,6 +11,7 @@ from matplotlib.patches import Circle
 
 from trundle.mechanics.algebra import Vector
 from trundle.mechanics.surfaces import Cylinder, TorusTrack
+from trundle.wording import unit_for, with_unit
 
 from . import marks, solid
 from .facts import Facts
@@ -20,7 +21,7 @@ from .layout import FOOT, GAP, HEADER, KEY_LINE, LEFT, TITLE, Key, Place, Plan
 from .marks import STYLES, Ruler
 from .panels import Panel, at_home
 from .path import Drawing, crosses, fitted
-from .scales import Array, round_step, unit_for, with_unit
+from .scales import Array, round_step
 from .sheet import GREY, Sheet
 
 if TYPE_CHECKING:

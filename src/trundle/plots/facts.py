@@ -15,7 +15,7 @@ from trundle.solve.exact import SphereOnPlane, closed_form
 
 from .happenings import FLIGHT, Happening, Stretch, happenings_of, stretches_of
 from .scales import Array
-from .words import ground_of, key_numbers, noun_of, title_of
+from .words import key_numbers, noun_of, title_of
 
 if TYPE_CHECKING:
     from trundle.mechanics.motions import SupportState
@@ -89,7 +89,7 @@ def facts_of(run: Trajectory) -> Facts:
         friction=None if support.friction is None else float(support.friction),
         noun=noun_of(system.body),
         wall=float(surface.radius) if isinstance(surface, Cylinder) else None,
-        ground=ground_of(surface),
+        ground=surface.ground,
         outline=_outline(surface),
         curved=not isinstance(surface, Plane) and not (wall and _flat(run)),
         off_centre=not straight and not (isinstance(shape, Sphere) and shape.centre is None),

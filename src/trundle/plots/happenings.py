@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .scales import Array, with_unit
+from trundle.wording import with_unit
+
+from .scales import Array
 
 if TYPE_CHECKING:
     from trundle.trajectory import Trajectory

@@ -13,7 +13,9 @@ from matplotlib.markers import MarkerStyle
 from matplotlib.patches import Circle, Ellipse
 from matplotlib.path import Path
 
-from .scales import Array, Unit
+from trundle.wording import Unit
+
+from .scales import Array
 from .sheet import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, TABLE, VERMILION, Sheet
 
 _LEGEND_SIZES = (9.0, 8.5, 8.0, 7.5, 7.0)  # pt

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trundle.wording import with_unit
+
 from .facts import NOTHING, Facts, guiding_centre, turns_in
 from .happenings import FLIGHT, SLIPPING, part_in, with_events
 from .marks import Page
-from .scales import LONG_LINE, Array, refined, with_unit
+from .scales import LONG_LINE, Array, refined
 
 if TYPE_CHECKING:
     from trundle.trajectory import Trajectory

@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.axes import Axes
 
+from trundle.wording import Unit, unit_for, with_unit
+
 from . import marks
 from .facts import NOTHING, Facts, facts_of
 from .happenings import FLIGHT, SLIPPING
 from .layout import Place, Plan, arrange
 from .marks import STYLES, Ruler
 from .panels import MANY_TURNS, Panel, at_home, panels_of, phases_of, until_text
-from .scales import Array, Unit, round_step, thin_path, unit_for, with_unit
+from .scales import Array, round_step, thin_path
 from .sheet import BLUE, GREY, VERMILION, Sheet, look
 
 if TYPE_CHECKING:

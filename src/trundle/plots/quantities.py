@@ -11,10 +11,11 @@ import numpy as np
 from trundle.mechanics.algebra import Quaternion, Vector
 from trundle.mechanics.attitude import attitude_of
 from trundle.mechanics.contact import normal_at
+from trundle.wording import Unit, unit_for
 
 from .facts import NOTHING, Facts, guiding_centre, own_variables, support_states
 from .happenings import FLIGHT, SLIPPING, part_in
-from .scales import Array, Unit, unit_for
+from .scales import Array
 
 if TYPE_CHECKING:
     from trundle.trajectory import Trajectory

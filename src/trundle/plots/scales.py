@@ -1,10 +1,8 @@
-"""Units, round numbers and thinning for figures: labels stay short, and no visible point is lost."""
+"""Round numbers and thinning for figures: no visible point is lost."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,136 +11,6 @@ Array = NDArray[np.float64]
 
 # Lines longer than this are thinned before they are drawn.
 LONG_LINE = 100_000
-
-
-@dataclass(frozen=True)
-class Unit:
-    """A unit that an axis is labelled in: its size in SI and its symbol."""
-
-    scale: float
-    symbol: str
-
-
-# Size in SI, symbol, and the least count of it for which it is taken; from large to small.
-_Units = tuple[tuple[float, str, float], ...]
-_LENGTHS: _Units = (
-    (1e3, "km", 1.5),
-    (1, "m", 2),
-    (1e-2, "cm", 2),
-    (1e-3, "mm", 1),
-    (1e-6, "µm", 1),
-    (1e-9, "nm", 1),
-)
-_TIMES: _Units = (
-    (86400, "d", 3),
-    (3600, "h", 3),
-    (60, "min", 5),
-    (1, "s", 0.1),
-    (1e-3, "ms", 1),
-    (1e-6, "µs", 1),
-)
-_UNITS: dict[str, _Units] = {
-    "length": _LENGTHS,
-    "speed": tuple((scale, f"{symbol}/s", least) for scale, symbol, least in _LENGTHS),
-    "force": ((1e6, "MN", 2), (1e3, "kN", 2), (1, "N", 1), (1e-3, "mN", 1), (1e-6, "µN", 1), (1e-9, "nN", 1)),
-    "time": _TIMES,
-    "angular velocity": ((1, "rad/s", 0.01),),
-    "torque": ((1, "N m", 1), (1e-3, "mN m", 1), (1e-6, "µN m", 1)),
-    "damping": ((1, "kg/s", 0.5), (1e-3, "g/s", 0.5), (1e-6, "mg/s", 0.5)),
-    "number": ((1, "", 5e-3),),
-    "angle": ((math.pi / 180, "°", 1e-2),),
-}
-_SI = {
-    "length": "m",
-    "speed": "m/s",
-    "force": "N",
-    "time": "s",
-    "angular velocity": "rad/s",
-    "torque": "N m",
-    "damping": "kg/s",
-    "number": "",
-    "angle": "rad",
-}
-_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-
-
-def unit_for(size: float, kind: str) -> Unit:
-    """Choose the unit in which a quantity of a given size reads shortest.
-
-    Parameters
-    ----------
-    size : float
-        The largest magnitude on the axis (SI).
-    kind : str
-        "length", "speed", "force", "time", "angular velocity", "torque", "damping", "angle" or "number".
-
-    Returns
-    -------
-    Unit
-        A named unit, or a power of ten of the SI unit where the named ones would need long labels.
-
-    Examples
-    --------
-    >>> unit_for(0.5, "length").symbol, unit_for(3.0, "length").symbol, unit_for(1e-15, "length").symbol
-    ('cm', 'm', '10⁻¹⁵ m')
-    """
-    if not math.isfinite(size) or size <= 0.0:
-        size = 1.0
-    scale, symbol, _ = _UNITS[kind][0]
-    if size < 2e4 * scale:
-        for scale, symbol, least in _UNITS[kind]:
-            if size >= least * scale * (1.0 - 1e-9):
-                return Unit(scale, symbol)
-    power = math.floor(math.log10(size) + 1e-9)
-    return Unit(10.0**power, f"10{str(power).translate(_SUPERSCRIPT)} {_SI[kind]}".strip())
-
-
-def with_unit(value: float, kind: str, digits: int = 3) -> str:
-    """Write a value with the unit that suits it.
-
-    Parameters
-    ----------
-    value : float
-        The value (SI).
-    kind : str
-        As in `unit_for`.
-    digits : int
-        Significant digits.
-
-    Returns
-    -------
-    str
-        Such as ``"36.8 cm/s"``.
-
-    Examples
-    --------
-    >>> with_unit(0.36804, "speed"), with_unit(0.025, "length")
-    ('36.8 cm/s', '2.5 cm')
-    """
-    unit = unit_for(abs(value), kind)
-    return f"{short(value / unit.scale, digits)} {unit.symbol}".strip()
-
-
-def as_ratio(value: float) -> str:
-    """Write a number as a simple fraction where it is one, else with four digits.
-
-    Parameters
-    ----------
-    value : float
-        The number.
-
-    Returns
-    -------
-    str
-        Such as ``"2/5"``.
-
-    Examples
-    --------
-    >>> as_ratio(0.4), as_ratio(2 / 3), as_ratio(0.37)
-    ('2/5', '2/3', '0.37')
-    """
-    near = Fraction(value).limit_denominator(12)
-    return str(near) if abs(float(near) - value) <= 1e-12 * abs(value) else short(value, 4)
 
 
 def round_step(span: float, most: int) -> float:
@@ -288,34 +156,3 @@ def _moves(points: Array, stride: int, sure: bool) -> float:
     across = np.interp(index, kept, points[kept, 0]) - points[index, 0]
     up = np.interp(index, kept, points[kept, 1]) - points[index, 1]
     return float(np.max(np.hypot(across, up)))
-
-
-def short(value: float, digits: int) -> str:
-    """Write a number with so many significant digits, in typographer's signs.
-
-    Parameters
-    ----------
-    value : float
-        The number.
-    digits : int
-        Significant digits.
-
-    Returns
-    -------
-    str
-        Such as ``"−1.5·10⁻⁹"``.
-
-    Examples
-    --------
-    >>> short(-1.5e-9, 3), short(1283.4, 3), short(33.3, 4)
-    ('−1.5·10⁻⁹', '1283', '33.3')
-    """
-    text = f"{value:.{digits}g}"
-    if "e" in text:
-        mantissa, power = text.split("e")
-        if 0 <= int(power) <= 4:
-            text = f"{value:.0f}"
-        else:
-            exponent = f"10{str(int(power)).translate(_SUPERSCRIPT)}"
-            text = exponent if mantissa == "1" else f"{mantissa}·{exponent}"
-    return text.replace("-", "−")

@@ -13,11 +13,13 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from trundle.wording import Unit, unit_for
+
 from .facts import Facts, facts_of, turns_in
 from .happenings import FLIGHT, RESTING, SLIPPING
 from .marks import STYLES
 from .quantities import Series, quantities_of
-from .scales import Array, Unit, thin_series, unit_for
+from .scales import Array, thin_series
 from .sheet import BLUE, GREEN, GREY, INK, SKY, VERMILION, Sheet, look
 
 if TYPE_CHECKING:

@@ -7,8 +7,9 @@ import re
 from collections.abc import Callable
 from typing import Any
 
+from trundle.wording import as_ratio
+
 from ..mechanics.system import RollingSystem
-from ..plots.scales import as_ratio
 from ..solve.exact import (
     BallInLeaningCylinder,
     BallInUprightCylinder,

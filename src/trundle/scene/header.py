@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trundle.wording import as_ratio
+
 from ..mechanics.system import RollingSystem
-from ..plots.scales import as_ratio
-from ..plots.words import moves as way_of
 from ..plots.words import noun_of, title_of
 from ..scenario import files
 from .support_mesh import Ground
@@ -19,8 +19,6 @@ from .wire import FORMAT
 
 if TYPE_CHECKING:
     from ..trajectory import Trajectory
-
-_KINDS = {"EllipsoidalBowl": "ellipsoidal-bowl", "TorusTrack": "torus-track", "HeightField": "height-field"}
 
 
 def header_of(run: Trajectory, ground: Ground, radius: float) -> dict[str, Any]:
@@ -154,9 +152,8 @@ def _body(system: RollingSystem, words: dict[str, Any], radius: float) -> dict[s
 
 def _support(system: RollingSystem, words: dict[str, Any], ground: Ground) -> dict[str, Any]:
     support = system.support
-    surface = type(support.surface).__name__
-    kind = str(words.get("kind", _KINDS.get(surface, surface.lower())))
-    way = way_of(support.motion)
+    surface, way = support.surface, support.motion.way
+    kind = str(words.get("kind", surface.kind or surface.table_of or surface.noun))
     lies = kind == "cylinder" and abs(float(support.tilt)) > 1.5
     leaning = "level" if lies else "tilted" if float(support.tilt) else ""
     name = " ".join([*(part for part in (", ".join(p for p in (way, leaning) if p),) if part), kind.replace("-", " ")])
@@ -165,7 +162,7 @@ def _support(system: RollingSystem, words: dict[str, Any], ground: Ground) -> di
         name.capitalize(),
         ground,
         moves=support.motion.steady_rate != 0.0,
-        rim=None if support.surface.rim is None else float(support.surface.rim),
+        rim=None if surface.rim is None else float(surface.rim),
         friction=None if support.friction is None else float(support.friction),
     )
 

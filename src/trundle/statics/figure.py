@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from trundle.wording import short, unit_for, with_unit
+
 from ..mechanics.algebra import ZERO, Quaternion, Vector
 from ..mechanics.contact import Contact, roll
-from ..plots.scales import short, unit_for, with_unit
 from ..plots.sheet import BLUE, FAINT, GREEN, GREY, INK, TABLE, VERMILION, Sheet, look
 from . import rest
 from .words import motion_words

@@ -92,7 +92,7 @@ class VakonomicComparison(Displayed):
     @property
     def way(self) -> str:
         """What the ball does, in a few words."""
-        from ..plots.scales import with_unit
+        from ..wording import with_unit
 
         if self.stays:
             return "stays where it was put"
@@ -162,7 +162,7 @@ class VakonomicComparison(Displayed):
 
     def _cells(self) -> list[tuple[str, ...]]:
         """Return `rows` as text."""
-        from ..plots.scales import short, unit_for
+        from ..wording import short, unit_for
 
         unit = unit_for(float(self.apart.max()), "length")
         return [
@@ -176,7 +176,7 @@ class VakonomicComparison(Displayed):
 
     def _findings(self) -> list[str]:
         """Return what there is to say, line by line."""
-        from ..plots.scales import with_unit
+        from ..wording import with_unit
 
         lines, lam = [], self.vakonomic.multipliers[0]
         if self.agree:

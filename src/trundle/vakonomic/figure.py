@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.lines import Line2D
 
+from trundle.wording import short, unit_for, with_unit
+
 from ..plots.marks import Page, Ruler, rim, signpost, turning
-from ..plots.scales import short, unit_for, with_unit
 from ..plots.sheet import BLUE, GREY, INK, VERMILION, Sheet, look
 
 if TYPE_CHECKING:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any
 
+from ... import wording
 from ..algebra import E_Z, Vector
 from ..parts import NOT_NEGATIVE, Number
 from ..scalars import Scalar, is_zero, namespace
@@ -70,6 +71,10 @@ class _ThroughAir(_OfAir):
     air: Scalar  # ω_a, rad/s; the word "turning" until it is known with which support
 
     @property
+    def _air_turning(self) -> str:
+        return "" if is_zero(self.air) else ", air turning"
+
+    @property
     def _turns_along(self) -> bool:
         return isinstance(self.air, str) and self.air == TURNING
 
@@ -98,6 +103,10 @@ class Drag(_ThroughAir):
     coefficient: Annotated[Scalar, Number("damping", NOT_NEGATIVE)]
     air: Annotated[Any, _AIR] = STANDING
     kind = "drag"
+
+    def key_numbers(self) -> list[str]:
+        """Return the coefficient."""
+        return [f"drag {wording.with_unit(float(self.coefficient), 'damping')}{self._air_turning}"]
 
     @property
     def linear_drag(self) -> Scalar | None:
@@ -135,6 +144,10 @@ class QuadraticDrag(_ThroughAir):
     air: Annotated[Any, _AIR] = STANDING
     kind = "quadratic-drag"
 
+    def key_numbers(self) -> list[str]:
+        """Return the coefficient."""
+        return [f"quadratic drag {wording.short(float(self.coefficient), 3)} kg/m{self._air_turning}"]
+
     @property
     def corners(self) -> tuple[Callable[[BodyMotion], Vector], ...]:
         """v: |v| is rounded off over so little that no step of a method sees it."""
@@ -165,6 +178,10 @@ class Magnus(_OfAir):
 
     coefficient: Annotated[Scalar, Number("mass", said="Positive: topspin pushes down.", example="0.1 g")]
     kind = "magnus"
+
+    def key_numbers(self) -> list[str]:
+        """Return the coefficient."""
+        return [f"Magnus force, {wording.short(float(self.coefficient), 3)} kg"]
 
     def force(self, motion: BodyMotion) -> Vector:
         """Return c Ω×V."""

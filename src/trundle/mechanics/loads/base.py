@@ -82,6 +82,10 @@ class Load(Part):
     stops: bool = False  # it brings rolling to rest in a finite time, where its direction is lost
     offset: Scalar  # of a load that stops: its couple for each newton of normal force, m
 
+    def key_numbers(self) -> list[str]:
+        """Return what figures say of it."""
+        return []
+
     def over(self, motion: Motion) -> Load:  # noqa: ARG002
         """Return the load as it is over a support that moves so, which for most loads is the same."""
         return self

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
+from ... import wording
 from ..algebra import ZERO, Vector
 from ..parts import NOT_NEGATIVE, POSITIVE, Number
 from ..scalars import Scalar, less, namespace
@@ -46,6 +47,10 @@ class RollingResistance(_AtContact):
     kind = "rolling-resistance"
     stops = True
 
+    def key_numbers(self) -> list[str]:
+        """Return δ."""
+        return [f"rolling resistance δ = {wording.length(self.offset)}"]
+
     def torque_per_normal_force(self, motion: BodyMotion) -> Vector:
         """Return −δ ê, m."""
         if motion.normal is None:
@@ -82,6 +87,10 @@ class PivotFriction(_AtContact):
     below: Annotated[Scalar, Number("angular velocity", POSITIVE, "The spin below which it eases off.")] = 0.01
     kind = "pivot-friction"
 
+    def key_numbers(self) -> list[str]:
+        """Return ε."""
+        return [f"pivot friction ε = {wording.length(self.offset)}"]
+
     def torque_per_normal_force(self, motion: BodyMotion) -> Vector:
         """Return −ε Ω_n/√(Ω_n² + w²) n, m."""
         n = motion.normal
@@ -114,6 +123,10 @@ class RollingCouple(_AtContact):
         Scalar | None, Number("rotational damping", NOT_NEGATIVE, "About the normal; absent: the same.")
     ] = None
     kind = "rolling-couple"
+
+    def key_numbers(self) -> list[str]:
+        """Return the coefficient."""
+        return [f"rolling couple {wording.short(float(self.coefficient), 3)} N m s"]
 
     def torque(self, motion: BodyMotion) -> Vector:
         """Return −c(Ω − ω), its part along n by the coefficient of its own."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Annotated, Any
 
+from ... import wording
 from ..algebra import Vector
 from ..expressions import Expression
 from ..parts import Formula
@@ -39,6 +40,10 @@ class Potential(Load):
 
     formula: Annotated[Any, Formula(VARIABLES, "U in J, in x, y, z of the centre in m and the time t in s.")]
     kind = "potential"
+
+    def key_numbers(self) -> list[str]:
+        """Return its formula."""
+        return [f"potential U = {wording.cut(self.formula.text)}"]
 
     def force(self, motion: BodyMotion) -> Vector:
         """Return −∇U."""

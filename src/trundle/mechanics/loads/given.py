@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Annotated, Any
 
+from ... import wording
 from ..algebra import Vector
 from ..expressions import Expression, now
-from ..parts import Number, Numbers
+from ..parts import Number, Numbers, fields_of
 from ..scalars import Scalar, is_zero
 from .base import BodyMotion, Load
 
@@ -67,6 +69,14 @@ class Given(Load):
     """
 
     value: Annotated[Any, Numbers(Number("number", varies=True))]
+    noun = "vector"
+
+    def key_numbers(self) -> list[str]:
+        """Return its size, or that it varies."""
+        if any(isinstance(part, Expression) for part in self.value):
+            return [f"{self.noun} that varies"]
+        dimension = fields_of(type(self))["value"].each.dimension  # type: ignore[union-attr]
+        return [f"{self.noun} {wording.with_unit(math.hypot(*map(float, self.value)), dimension)}"]
 
     @property
     def constant(self) -> bool:  # type: ignore[override]
@@ -104,6 +114,7 @@ class Force(Given):
         Any, Numbers(Number("force", varies=True), "In the support frame, which does not turn with the support.")
     ]
     kind = "force"
+    noun = "force"
 
     @property
     def leaves_spin(self) -> bool:
@@ -138,6 +149,7 @@ class Torque(Given):
         Any, Numbers(Number("torque", varies=True), "In the support frame, which does not turn with the support.")
     ]
     kind = "torque"
+    noun = "torque"
 
     @property
     def leaves_spin(self) -> bool:

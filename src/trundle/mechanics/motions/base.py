@@ -60,6 +60,7 @@ class SupportState:
 class Motion(Part):
     """How a support moves: as a function of time, and of coordinates of its own that the run carries along."""
 
+    way: str = "moving"  # what figures call a support that moves so
     own: tuple[str, ...] = ()  # names of these coordinates: ("angle",) or, of a free axle, ("angle", "rate")
 
     keeps_axis: bool | None = None  # whether it never leans the support's third axis; None: that is looked at
@@ -87,6 +88,10 @@ class Motion(Part):
     def own_rates(self, time: Scalar, own: tuple[Scalar, ...], moment: Scalar) -> tuple[Scalar, ...]:  # noqa: ARG002
         """Return the rates of these coordinates under a moment about the axle that the body exerts, N m."""
         return ()
+
+    def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:  # noqa: ARG002
+        """Return what figures say of it, given a word for what moves and the coordinates of its own at the start."""
+        return []
 
     @property
     def steady_rate(self) -> Scalar | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Any
 
+from ... import wording
 from ..algebra import E_Z, ZERO
 from ..expressions import now
 from ..parts import NOT_NEGATIVE, POSITIVE, Number
@@ -51,9 +52,15 @@ class FreeAxle(Motion):
         0.01
     )
     kind = "free-axle"
+    way = "freely turning"
     own = ("angle", "rate")
     keeps_axis = True
     free = True
+
+    def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:
+        """Return the inertia, and the rate at the start."""
+        inertia = wording.short(float(self.inertia), 3)
+        return [f"free {ground} of {inertia} kg m², at first {wording.rate(own[-1])}"]
 
     @property
     def mean_rate(self) -> Scalar:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Any
 
+from ... import wording
 from ..algebra import E_Z, ZERO, Matrix, Vector
 from ..expressions import course, now
 from ..parts import Number, Numbers
@@ -39,8 +40,13 @@ class SpinBy(Motion):
         Number("angular velocity", said="A formula in the time t.", example="3.5*(1 - exp(-t/2))", varies=True),
     ]
     kind = "spin-by"
+    way = "unevenly turning"
     own = ("angle",)
     keeps_axis = True
+
+    def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:  # noqa: ARG002
+        """Return the formula."""
+        return [f"{ground} {wording.formula(self.rate, 'ω', 'rad/s')}"]
 
     def own_start(self) -> tuple[Scalar, ...]:
         """Return the angle 0: not yet turned."""
@@ -93,6 +99,11 @@ class Tilt(Motion):
     angle: Annotated[Any, Number("angle", said="A formula in the time t.", example="0.1*sin(2*t)", varies=True)]
     axis: Annotated[Any, AXIS] = (0.0, 1.0, 0.0)
     kind = "tilt"
+    way = "tilting"
+
+    def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:  # noqa: ARG002
+        """Return the formula."""
+        return [f"{ground} tilts by {wording.formula(self.angle, 'θ', 'rad')}"]
 
     @property
     def fastest_rate(self) -> Scalar:

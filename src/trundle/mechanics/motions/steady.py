@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
+from ... import wording
 from ..algebra import E_Z, ZERO, Matrix
 from ..parts import Number
 from ..scalars import Scalar
@@ -23,6 +24,7 @@ class Fixed(Motion):
     """
 
     kind = "fixed"
+    way = "fixed"
     turns = False
 
     def at(self, time: Scalar) -> SupportState:  # noqa: ARG002  the same always
@@ -55,6 +57,15 @@ class Spin(Motion):
         Number("angular velocity", said="Positive turns the first axis towards the second.", example="33.3 rpm"),
     ]
     kind = "spin"
+
+    @property
+    def way(self) -> str:  # type: ignore[override]
+        """Turning, unless its rate is 0."""
+        return "turning" if self.rate else "fixed"
+
+    def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:  # noqa: ARG002
+        """Return its rate, unless that is 0."""
+        return [f"{ground} {wording.rate(self.rate)}"] if self.rate else []
 
     @property
     def steady_rate(self) -> Scalar:

@@ -50,6 +50,19 @@ class Combined(Motion):
                 raise InvalidValueError(f"parts[{i}]", "must not turn a free axle", part, remedy)
 
     @property
+    def way(self) -> str:  # type: ignore[override]
+        """Those of the parts that move."""
+        rate = self.steady_rate
+        if rate is not None:
+            return "turning" if rate else "fixed"
+        return ", ".join(dict.fromkeys(part.way for part in self.parts if part.way != "fixed")) or "fixed"
+
+    def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:
+        """Return those of all parts."""
+        pairs = zip(self.parts, self._shares(own), strict=True)
+        return [text for part, share in pairs for text in part.key_numbers(ground, share)]
+
+    @property
     def own(self) -> tuple[str, ...]:  # type: ignore[override]
         """The coordinates of all parts, numbered where two have one name."""
         names: list[str] = []

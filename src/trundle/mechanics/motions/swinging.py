@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Any
 
+from ... import wording
 from ..algebra import E_Z, ZERO, Matrix, Vector
 from ..parts import Number, Numbers
 from ..scalars import Scalar, namespace
@@ -40,6 +41,11 @@ class Rock(Motion):
     phase: Annotated[Scalar, Number("angle")] = 0.0
     axis: Annotated[Any, AXIS] = (0.0, 1.0, 0.0)
     kind = "rock"
+    way = "rocking"
+
+    def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:  # noqa: ARG002
+        """Return amplitude and rate."""
+        return [f"rocking by {wording.degrees(self.amplitude)} at {wording.short(float(self.rate), 4)} rad/s"]
 
     @property
     def fastest_rate(self) -> Scalar:
@@ -74,7 +80,12 @@ class Shake(Motion):
     rate: Annotated[Scalar, Number("angular velocity", example="30 rad/s")]
     phase: Annotated[Scalar, Number("angle")] = 0.0
     kind = "shake"
+    way = "shaken"
     turns = False
+
+    def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:  # noqa: ARG002
+        """Return amplitude and rate."""
+        return [f"shaken by {wording.length(self.amplitude.norm())} at {wording.short(float(self.rate), 4)} rad/s"]
 
     @property
     def fastest_rate(self) -> Scalar:
@@ -113,6 +124,11 @@ class PrecessingTilt(Motion):
     ]
     rate: Annotated[Scalar, Number("angular velocity", said="At which the lowest side goes round.", example="2 rad/s")]
     kind = "precessing-tilt"
+    way = "swirled"
+
+    def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:  # noqa: ARG002
+        """Return angle and rate."""
+        return [f"swirled: leaning {wording.degrees(self.angle)}, round at {wording.short(float(self.rate), 4)} rad/s"]
 
     @property
     def fastest_rate(self) -> Scalar:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
+from ... import wording
 from ..algebra import E_Z, ZERO, Matrix, Vector
 from ..parts import POSITIVE, Number
 from ..scalars import Scalar, namespace
@@ -37,7 +38,12 @@ class UnevenSpin(Motion):
         Scalar, Number("angular velocity", POSITIVE, "Of the variation; the rate itself: once a turn.")
     ]
     kind = "uneven-spin"
+    way = "unevenly turning"
     keeps_axis = True
+
+    def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:  # noqa: ARG002
+        """Return the rate and its variation."""
+        return [f"{ground} {wording.rate(self.rate)}", f"uneven by {wording.short(100 * float(self.variation), 3)} %"]
 
     @property
     def fastest_rate(self) -> Scalar:
@@ -83,6 +89,11 @@ class Wobble(Motion):
     rate: Annotated[Scalar, Number("angular velocity", said="About the axle.", example="33.3 rpm")]
     angle: Annotated[Scalar, Number("angle", said="Between the axle and the support's own axis.", example="0.1 deg")]
     kind = "wobble"
+    way = "turning"
+
+    def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:  # noqa: ARG002
+        """Return the rate and the angle."""
+        return [f"{ground} {wording.rate(self.rate)}", f"askew by {wording.degrees(self.angle)}"]
 
     @property
     def fastest_rate(self) -> Scalar:

@@ -44,6 +44,14 @@ class Surface(Part):
     tilt: ClassVar[Number] = Number("angle", said="Angle of the axis to the vertical; down the first axis.")
     points: ClassVar[Mapping[str, Lengths]] = MappingProxyType({})  # what `through` takes, where there is one
 
+    where: str = "on"  # the preposition that goes with it
+    noun: str = "surface"  # what figures call it, and, in one word, what is rolled on
+    ground: str = "surface"
+
+    def key_numbers(self) -> list[str]:
+        """Return what figures say of its size."""
+        return []
+
     @property
     def axisymmetric(self) -> bool:
         """Whether a turn about the third axis leaves the surface as it is."""

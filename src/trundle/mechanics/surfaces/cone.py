@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Annotated, Any
 
+from ... import wording
 from ...errors import InvalidValueError
 from ..algebra import Matrix, Vector
 from ..parts import POSITIVE, Choice, Number
@@ -51,8 +52,18 @@ class Cone(Surface):
         Scalar | None, Number("length", POSITIVE, "Distance of the edge from the axis; absent: unbounded.", "0.5 m")
     ] = None
     kind = "cone"
+    noun, ground = "cone", "cone"
     axisymmetric = True
     end = "the apex of the cone"
+
+    @property
+    def where(self) -> str:  # type: ignore[override]
+        """The side."""
+        return self.side
+
+    def key_numbers(self) -> list[str]:
+        """Return its half-angle."""
+        return [f"half-angle {wording.degrees(self.half_angle)}"]
 
     @property
     def sign(self) -> float:

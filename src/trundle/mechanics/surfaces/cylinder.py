@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
+from ... import wording
 from ..algebra import E_Z, Matrix, Vector
 from ..parts import POSITIVE, Choice, Number
 from ..scalars import Scalar, namespace
@@ -36,9 +37,19 @@ class Cylinder(Surface):
     radius: Annotated[Scalar, Number("length", POSITIVE)]
     side: Annotated[str, Choice(SIDES, "side of a cylinder")] = "inside"
     kind = "cylinder"
+    noun, ground = "cylinder", "wall"
     axisymmetric = True
     coordinates = ("angle", "length")
     tilt = Number("angle", said="Angle of the axis to the vertical; 90 deg: a trough or a log.")
+
+    @property
+    def where(self) -> str:  # type: ignore[override]
+        """The side."""
+        return self.side
+
+    def key_numbers(self) -> list[str]:
+        """Return its radius."""
+        return [f"wall of radius {wording.length(self.radius)}"]
 
     @property
     def sign(self) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Any
 
+from ... import wording
 from ...errors import InvalidValueError
 from ..algebra import Matrix, Vector
 from ..parts import POSITIVE, Number, Numbers
@@ -35,6 +36,7 @@ class EllipsoidalBowl(Surface):
         Scalar | None, Number("length", POSITIVE, "Height of the edge over the lowest point; absent: closed.")
     ] = None
     kind = "ellipsoidal-bowl"
+    where, noun, ground = "in", "elliptic bowl", "bowl"
     end = "the edge of the bowl"
 
     def __post_init__(self) -> None:
@@ -45,6 +47,10 @@ class EllipsoidalBowl(Surface):
         if is_number(depth) and is_number(axes[2]) and depth > axes[2]:
             remedy = f"The third semi-axis is {axes[2]:g} m; a depth of that makes half an ellipsoid."
             raise InvalidValueError("depth", "must be at most the third semi-axis", given, remedy)
+
+    def key_numbers(self) -> list[str]:
+        """Return its semi-axes."""
+        return [f"semi-axes {wording.length(*self.semi_axes)}"]
 
     @property
     def axisymmetric(self) -> bool:

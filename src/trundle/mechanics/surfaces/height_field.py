@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Annotated, Any
 
+from ... import wording
 from ..algebra import Vector
 from ..jets import jets
 from ..parts import POSITIVE, Formula, Lengths, Number
@@ -49,6 +50,10 @@ class HeightField(OverPlane):
     )
     axisymmetric = False
     end = "where the surface's formula ends or has a crease"
+
+    def key_numbers(self) -> list[str]:
+        """Return its formula."""
+        return [f"z = {wording.cut(self.formula.text)}"]
 
     @staticmethod
     def through(x: Any, y: Any, z: Any) -> HeightTable:

@@ -86,6 +86,7 @@ class RevolutionTable(OverPlane):
 
     profile: Profile
     table_of = "revolution"
+    noun = "surface of revolution"
     analytic = False
     axisymmetric = True
     end = "the end of the table"

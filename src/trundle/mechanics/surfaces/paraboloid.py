@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Any
 
+from ... import wording
 from ...errors import InvalidValueError
 from ..parts import POSITIVE, Number
 from ..scalars import Scalar
@@ -43,6 +44,25 @@ class Paraboloid(OverPlane):
     ] = None
     kind = "paraboloid"
     axisymmetric = True
+
+    @property
+    def where(self) -> str:  # type: ignore[override]
+        """In a bowl, on a mound."""
+        return "in" if self.radius > 0 else "on"
+
+    @property
+    def noun(self) -> str:  # type: ignore[override]
+        """A mound where it opens downward."""
+        return "paraboloid" if self.radius > 0 else "mound"
+
+    @property
+    def ground(self) -> str:  # type: ignore[override]
+        """As its noun."""
+        return self.noun
+
+    def key_numbers(self) -> list[str]:
+        """Return the radius of curvature at the vertex."""
+        return [f"radius at the vertex {wording.length(abs(self.radius))}"]
 
     def height(self, x: Scalar, y: Scalar) -> Scalar:
         """Return r²/(2b), m."""

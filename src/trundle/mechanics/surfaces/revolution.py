@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Annotated, Any
 
+from ... import wording
 from ..algebra import Vector
 from ..expressions import Expression
 from ..jets import Jet, jets
@@ -47,6 +48,7 @@ class Revolution(OverPlane):
         Scalar | None, Number("length", POSITIVE, "Of a formula: distance of the edge from the axis.", "0.5 m")
     ] = None
     kind = "revolution"
+    noun = "surface of revolution"
     points = MappingProxyType(
         {
             "r": Lengths("Distances from the axis, four at least, ascending."),
@@ -55,6 +57,10 @@ class Revolution(OverPlane):
     )
     axisymmetric = True
     end = "where the surface's formula ends or has a crease or an apex"
+
+    def key_numbers(self) -> list[str]:
+        """Return its formula."""
+        return [f"z = {wording.cut(self.formula.text)}"]
 
     @staticmethod
     def through(r: Any, z: Any) -> RevolutionTable:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
+from ... import wording
 from ...errors import InvalidValueError
 from ..algebra import Matrix, Vector
 from ..parts import POSITIVE, Number
@@ -31,6 +32,10 @@ class Spherical(Surface):
         if is_number(self.rim) and is_number(self.radius) and self.rim > self.radius:
             remedy = f"The sphere's radius is {self.radius:g} m; a rim of that makes a hemisphere."
             raise InvalidValueError("rim", "must be at most the radius", given, remedy)
+
+    def key_numbers(self) -> list[str]:
+        """Return its radius."""
+        return [f"{self.ground} of radius {wording.length(self.radius)}"]
 
     def _arm(self, p: Vector) -> Vector:
         """Return p from the sphere's centre, which lies b over the lowest point or under the top."""
@@ -96,6 +101,7 @@ class Bowl(Spherical):
     """
 
     kind = "bowl"
+    where, noun, ground = "in", "bowl", "bowl"
     sign: ClassVar[float] = -1.0
 
 
@@ -117,4 +123,5 @@ class Dome(Spherical):
     """
 
     kind = "dome"
+    noun, ground = "dome", "dome"
     sign: ClassVar[float] = 1.0

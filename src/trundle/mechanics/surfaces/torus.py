@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
+from ... import wording
 from ...errors import InvalidValueError
 from ..algebra import E_Z, Matrix, Vector
 from ..parts import POSITIVE, Choice, Number
@@ -41,6 +42,7 @@ class TorusTrack(Surface):
     tube_radius: Annotated[Scalar, Number("length", POSITIVE, "Of the tube.")]
     side: Annotated[str, Choice(SIDES, "side of a torus track")] = "inside"
     kind = "torus-track"
+    noun, ground = "torus", "torus"
     axisymmetric = True
     coordinates = ("angle", "angle")
 
@@ -51,6 +53,15 @@ class TorusTrack(Surface):
         if is_number(ring) and is_number(tube) and not tube < ring:
             remedy = f"The ring's radius is {ring:g} m, and the tube would run into itself."
             raise InvalidValueError("tube_radius", "must be less than the ring's", given, remedy)
+
+    @property
+    def where(self) -> str:  # type: ignore[override]
+        """The side."""
+        return self.side
+
+    def key_numbers(self) -> list[str]:
+        """Return both radii."""
+        return [f"ring {wording.length(self.ring_radius)}, tube {wording.length(self.tube_radius)}"]
 
     @property
     def sign(self) -> float:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...mechanics.system import RollingSystem
-from ...plots.scales import as_ratio
+from ...wording import as_ratio
 from ...solve.exact import SlidingSphere, SphereComingToRest, SphereInFlight
 from ...solve.samples import ROLLING, SLIPPING, Samples
 from .finding import Finding

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...mechanics.system import RollingSystem
-from ...plots.scales import as_ratio
+from ...wording import as_ratio
 from ...solve.exact import SphereInMovingAir, SphereOnFreePlane, SphereOnPlane, SphereOnUnsteadyPlane
 from .finding import Finding
 from .fits import Seen, acceleration, circle, exponent, round_time, two_exponents
