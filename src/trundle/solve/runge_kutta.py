@@ -25,6 +25,7 @@ TOLERANCE = 1e-12
 FINEST = 1e-13  # SciPy's own limit is 2e-14
 _ASIDE = 1e-12  # s
 _LOOKS = 8  # at the stops in each step
+_LOW = 0.5  # share of how much its looks differ: where all are higher, a stop is nowhere near zero between them
 _BLUR = 0.05  # share of a step within which a polynomial through these finds where a stop is lowest
 _SINGULAR = ("curved", "edge", "end", "jam")  # stops at which a law is singular
 _ALL_BUT = 1e-3  # share of what was left of such a stop at first
@@ -325,7 +326,8 @@ def _first_stop(path: Any, stops: Any, begin: Array) -> tuple[float, int] | None
     between = path(looks[1:]).T
     values = np.array([begin, *(stops(t, y) for t, y in zip(looks[1:], between, strict=True))])
     found: list[tuple[float, int]] = []
-    for which, value in enumerate(values.T):
+    falls, low = ((values[:-1] >= 0) & (values[1:] < 0)).any(axis=0), np.fmin.reduce(values) < _LOW * np.ptp(values, 0)
+    for which in np.flatnonzero(falls | low).tolist():
 
         def at(t: float, which: int = which) -> float:
             value, aside = float(stops(t, path(t))[which]), 0.0
@@ -334,7 +336,7 @@ def _first_stop(path: Any, stops: Any, begin: Array) -> tuple[float, int] | None
                 value = float(stops(t + aside, path(t + aside))[which])
             return value
 
-        fall = _fall(at, looks, value)
+        fall = _fall(at, looks, values[:, which])
         if fall is not None:
             found.append((fall, which))
     return min(found) if found else None
@@ -345,7 +347,7 @@ def _fall(function: Callable[[float], float], looks: Array, values: Array) -> fl
     falls = np.flatnonzero((values[:-1] >= 0) & (values[1:] < 0))
     inside = values[: falls[0] + 1] if falls.size else values
     # What lies between the looks is hardly lower than the lowest of them, beside how much they differ.
-    if np.nanmin(inside, initial=np.inf) < 0.5 * np.ptp(values) and (inside >= 0).all():
+    if np.nanmin(inside, initial=np.inf) < _LOW * np.ptp(values) and (inside >= 0).all():
         for low in _minima(function, looks, values):
             if (not falls.size or low < looks[falls[0]]) and function(low) < 0:
                 before = looks[: np.searchsorted(looks, low)][-1]
