@@ -16,7 +16,7 @@ from .laws import Law
 from .phases import Integrate, Stretch, cut
 from .samples import Array, Progress, Samples
 
-_MOST_STEPS = 50_000  # kept, of some two or three kilobytes each
+_MOST_STEPS = 100_000  # kept, of some two or three kilobytes each
 _MARKS = 1000  # states on the way through a stretch of more
 
 
