@@ -16,7 +16,7 @@ from . import corners, phases
 from .dense import Keep, Leg, TooMany
 from .following import Next, Stop
 from .patience import Patience
-from .phases import Stretch, cut
+from .phases import Integrate, Stretch, cut
 from .roots import root
 from .samples import AT_ONCE, Array, Progress, Samples
 from .tracing import python_law
@@ -99,15 +99,15 @@ def integrate(
         yield Stretch(before, piece.states[: before.size], stop)
 
 
-def keeping() -> Keep:
-    """Return the way through all stretches of one run that keeps the polynomials of their steps.
+def keeping() -> tuple[Keep, Callable[[], Integrate]]:
+    """Return the way through all stretches of one run that keeps the polynomials of their steps, and one beside it.
 
     Returns
     -------
-    callable
-        As `dense`.
+    keep, beside : callable
+        As of `trundle.solve.taylor.keeping`.
     """
-    return dense
+    return dense, lambda: integrate
 
 
 def dense(system: RollingSystem, now: Next, end: float, tolerance: float, most: int) -> Leg | TooMany:
