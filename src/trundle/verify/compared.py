@@ -23,7 +23,8 @@ from .growth import MOST, Growth, alike, at_the_same_times, growth, numerical, p
 _INSTANTS = 200
 _SLOW = 1e-3  # of a body's turning: what a support's own is held against at least
 _EVENTS_BEFORE, _EVENTS_AFTER = 3, 5  # the first by which two runs differ, over which a small change is followed
-_STEPS_FOLLOWED = {"exact": 10_000, "taylor": 10_000, "runge-kutta": 2_000}  # of each of a dozen runs
+_STEPS_FOLLOWED = {"exact": 20_000, "taylor": 20_000, "runge-kutta": 5_000}  # in all of a dozen runs
+_RUNS = 12  # about: the run itself, and one for each way in which its state can change
 _MOST_RADIANS = 50_000.0  # of turning that a cross-check follows
 
 
@@ -212,7 +213,7 @@ class Compared:
     @property
     def _affordable(self) -> float:
         """For how long a small change can be followed in a dozen runs, s."""
-        most = _STEPS_FOLLOWED[self.follower.name]
+        most = _STEPS_FOLLOWED[self.follower.name] / _RUNS
         steps = self.kept.steps if self.kept is not None else 0
         return float(self.ours.time[-1] - self.start.time) * most / steps if steps > most else np.inf
 
