@@ -443,12 +443,9 @@ def test_slip_that_turns_keeps_keller_s_equations(seed: int) -> None:
 
 
 def test_a_run_asked_for_other_instants_may_end_a_rounding_sooner() -> None:
-    class Sooner:
-        @staticmethod
-        def solve(system: RollingSystem, start: State, times: Any) -> Samples:
-            return Method.of("runge-kutta").solve(system, start, np.append(times[:-1], times[-1] * (1 - 1e-15)))
+    def sooner(start: State, times: Any) -> Samples:
+        return Method.of("runge-kutta").solve(SYSTEM, start, np.append(times[:-1], times[-1] * (1 - 1e-15)))
 
-    run = Sooner.solve(SYSTEM, START, np.array([0.1, 0.2]))
-    sooner: Any = Sooner()
-    ((first, other),) = _lasts(SYSTEM, sooner, 0.2, [(START, run)] * 2)
+    run = sooner(START, np.array([0.1, 0.2]))
+    ((first, other),) = _lasts(sooner, 0.2, [(START, run)] * 2)
     assert first.time.tolist() == other.time.tolist()

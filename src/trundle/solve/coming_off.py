@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..mechanics.system import RollingSystem
+from . import corners
 from .laws import Law
+from .tracing import python_law
 
 _AT_HAND = 1e-3  # of the time in which the motion changes
 _CLOSER = 12  # times ten
@@ -54,9 +56,12 @@ def lift_at_hand(
     """
     from scipy.optimize import brentq
 
+    plain = python_law(system, law, (*extras, *[0.0] * corners.count(system)), time, numbers)
+    which = plain.names.index("lift"), plain.names.index(name)
+
     def look(wait: float) -> tuple[float, float]:
-        found = law.stops(system, time + wait, law.advanced(system, time, numbers, wait), extras)
-        return float(found["lift"]), float(found[name])
+        found = plain.stops(time + wait, law.advanced(system, time, numbers, wait, plain.rates))
+        return found[which[0]], found[which[1]]
 
     at = law.meant(system, time, numbers)
     moment = at.arm / at.scale(system)

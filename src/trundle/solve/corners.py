@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,10 +16,12 @@ from ..errors import SolverError
 from ..mechanics.algebra import Vector
 from ..mechanics.scalars import Scalar
 from ..mechanics.system import RollingSystem
-from .following import Next
 from .laws import CORNER, Law
 from .samples import Array
 from .touch import Touch, floats
+
+if TYPE_CHECKING:
+    from .following import Next
 
 _NUMBERS = 4  # of each corner: the direction that its vector has, and 1/W
 _CLOSE = 1e-2  # W as a share of the vector's length, or of how it changes in the time in which the motion changes

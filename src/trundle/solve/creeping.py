@@ -12,8 +12,10 @@ from ..mechanics.creep import slip_rates
 from ..mechanics.scalars import Scalar
 from ..mechanics.slipping import Slipping, slip
 from ..mechanics.system import RollingSystem
+from . import corners
 from .laws import CONTACT, Numbers, SlippingLaw
 from .touch import Touch, floats
+from .tracing import python_law
 
 # How many times as fast as slip has grown, r, its direction must settle: with the first two terms, in 1/r and 1/r², of
 # how far it lags behind. The third is 6/r³ of the angle by which it has turned, and must be this small. Where it is
@@ -135,7 +137,9 @@ class CreepingLaw(SlippingLaw):
 
     def settles(self, system: RollingSystem, at: Touch) -> bool:
         """Tell whether the direction of a body's slip settles so fast that it can be followed by this law."""
-        stops = self.stops(system, at.state.time, self.numbers(at), ())
+        time, numbers = at.state.time, self.numbers(at)
+        law = python_law(system, self, (0.0,) * (self.extras + corners.count(system)), time, numbers)
+        stops = dict(zip(law.names, law.stops(time, numbers), strict=True))
         return bool(min(stops["settled"], stops["lags"]) > 0)
 
     def numbers(self, at: Touch) -> list[float]:
@@ -144,10 +148,15 @@ class CreepingLaw(SlippingLaw):
 
     def direction(self, system: RollingSystem, time: float, numbers: Any) -> Vector:
         """Return ŝ."""
-        return self._way(system, time, list(numbers))[0]
+        return Vector(*python_law(system, self).found(time, list(map(float, numbers))))
+
+    def found(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:
+        """Return ŝ."""
+        return [*self._way(system, time, state)[0]]
 
     def _slip(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:
-        return self._way(system, time, state)[0] * state[10]
+        plain = isinstance(time, float) and isinstance(state[10], float)
+        return (self.direction(system, time, state) if plain else self._way(system, time, state)[0]) * state[10]
 
     def _recorded(self, system: RollingSystem, time: Any, states: Any) -> Slipping:
         columns = list(states.T)

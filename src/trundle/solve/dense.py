@@ -16,7 +16,7 @@ from .laws import Law
 from .phases import Integrate, Stretch, cut
 from .samples import Array, Progress, Samples
 
-_MOST_STEPS = 50_000  # kept, of some two or three kilobytes each
+_MOST_STEPS = 100_000  # kept, of some two or three kilobytes each
 _MARKS = 1000  # states on the way through a stretch of more
 
 
@@ -66,8 +66,8 @@ class Dense:
     keep : callable
         A method's way through one stretch to its stop or the run's end, of which it keeps all steps if they are not
         too many.
-    integrate : callable
-        The same method's way to given instants, for stretches of too many steps.
+    beside : callable
+        Returns the same method's way to given instants, for stretches of too many steps and for runs beside this one.
     system : RollingSystem
         What moves.
     start : State
@@ -81,13 +81,13 @@ class Dense:
     def __init__(
         self,
         keep: Keep,
-        integrate: Integrate,
+        beside: Callable[[], Integrate],
         system: RollingSystem,
         start: State,
         end: float,
         tolerance: float,
     ) -> None:
-        self.keep, self.integrate = keep, integrate
+        self.keep, self.beside = keep, beside
         self.system, self.start, self.end, self.tolerance = system, start, end, tolerance
         self.bends = kinks(system, start.time, end)
         self.legs: list[Leg] = []
@@ -98,6 +98,10 @@ class Dense:
         self.passed = 0
         known: Any = {"after": self._after, "bends": self.bends}
         return phases.solve(self._through, self.system, self.start, times, self.tolerance, **known)
+
+    def like_it(self, start: State, times: Array) -> Samples:
+        """Return the samples of a run from another start, with what this one has found worth compiling with care."""
+        return phases.solve(self.beside(), self.system, start, times, self.tolerance)
 
     @property
     def steps(self) -> int:
@@ -123,10 +127,10 @@ class Dense:
         if isinstance(leg, Leg):
             return leg
         instants = np.union1d(times, np.linspace(now.time, end, 2 + _MARKS // (1 + len(self.legs))))
-        parts = list(self.integrate(system, now, instants, tolerance, progress))
+        parts = list(self.beside()(system, now, instants, tolerance, progress))
         stop = parts[-1].stop
         share = (leg.time - now.time) / ((end if stop is None else stop.time) - now.time)
-        marks = _Marks(self.integrate, system, now, tolerance, parts)
+        marks = _Marks(self.beside, system, now, tolerance, parts)
         return Leg(marks.states, stop, max(leg.steps, int(leg.steps / max(share, 1e-6))))
 
     def _after(self, system: RollingSystem, law: Law, stop: Stop) -> Next:
@@ -141,8 +145,8 @@ class _Marks:
 
     Parameters
     ----------
-    integrate : callable
-        The method's way to given instants.
+    beside : callable
+        As of `Dense`.
     system, now, tolerance
         As it takes them, from the stretch's beginning.
     parts : list of Stretch
@@ -150,9 +154,14 @@ class _Marks:
     """
 
     def __init__(
-        self, integrate: Integrate, system: RollingSystem, now: Next, tolerance: float, parts: list[Stretch]
+        self,
+        beside: Callable[[], Integrate],
+        system: RollingSystem,
+        now: Next,
+        tolerance: float,
+        parts: list[Stretch],
     ) -> None:
-        self.integrate, self.system, self.tolerance = integrate, system, tolerance
+        self.beside, self.system, self.tolerance = beside, system, tolerance
         self.begin = now
         self.times = np.concatenate([[now.time], *(part.times for part in parts)])
         self.known = np.vstack([np.asarray(now.numbers, dtype=float)[None], *(part.states for part in parts)])
@@ -164,7 +173,7 @@ class _Marks:
         off = times > self.times[which]
         for mark in np.unique(which[off]).tolist():
             rows = np.flatnonzero(off & (which == mark))
-            parts = list(self.integrate(self.system, self._from(mark), times[rows], self.tolerance, None))
+            parts = list(self.beside()(self.system, self._from(mark), times[rows], self.tolerance, None))
             states = np.vstack([part.states for part in parts])
             found[rows[: len(states)]] = states
             if len(states) < rows.size and parts[-1].stop is not None:  # a rounding sooner

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from functools import cached_property
 from typing import Any
 
@@ -24,19 +25,21 @@ class KeptSeries:
         self.numbers, self.reference, self.reached = np.asarray(now.numbers, dtype=float), now.time, 0.0
         self.references: list[float] = []
         self.begins: list[float] = []
-        self.series: list[Array] = []  # (variables, terms)
+        self.series = array("d")  # of all steps, in one piece: to make one of many would take twice the memory
+        self.shape = 0, 0  # of each: variables, terms
 
     @property
     def steps(self) -> int:
         """How many."""
-        return len(self.series)
+        return len(self.begins)
 
     def take(self, integrator: Any) -> bool:
         """Keep the step just made; go on."""
         if integrator.last_h > 0:
             self.references.append(self.reference)
             self.begins.append(self.reached)
-            self.series.append(integrator.tc.copy())
+            self.series.frombytes(integrator.tc.tobytes())
+            self.shape = integrator.tc.shape
         self.reached = float(integrator.time)
         return True
 
@@ -47,11 +50,11 @@ class KeptSeries:
     @cached_property
     def _all(self) -> tuple[Array, Array, Array]:
         """References, beginnings and series of all steps."""
-        return np.array(self.references), np.array(self.begins), np.array(self.series)
+        return np.array(self.references), np.array(self.begins), np.frombuffer(self.series).reshape(-1, *self.shape)
 
     def at(self, times: Array) -> Array:
         """Return the states at some times."""
-        if not self.series:
+        if not self.begins:
             return np.tile(self.numbers, (times.size, 1))
         references, begins, series = self._all
         which = np.maximum(np.searchsorted(references + begins, times, side="right") - 1, 0)

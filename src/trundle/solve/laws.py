@@ -7,7 +7,7 @@ these numbers to a full record; the mechanics itself is in `mechanics.contact` a
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -25,6 +25,7 @@ from .touch import Touch, floats
 
 CONTACT = ("p_x", "p_y", "p_z", "q_w", "q_x", "q_y", "q_z", "Omega_x", "Omega_y", "Omega_z")
 Numbers = Sequence[Scalar]
+Rates = Callable[[float, Sequence[float]], Sequence[float]]  # of time and state
 
 
 class Law:
@@ -90,6 +91,10 @@ class Law:
     def stops(self, system: RollingSystem, time: Scalar, state: Numbers, extras: Numbers) -> dict[str, Scalar]:
         """Return what ends the phase where it falls through zero, by name."""
         raise NotImplementedError
+
+    def found(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:  # noqa: ARG002
+        """Return what else of a state it takes some work to find; nothing, mostly."""
+        return []
 
     def pack(self, system: RollingSystem, state: State) -> list[float]:
         """Return the numbers of a state."""
@@ -172,12 +177,18 @@ class Law:
             rate = rate - n * rate.dot(n)
         return rate.array()
 
-    def advanced(self, system: RollingSystem, time: float, state: Sequence[float], step: float) -> list[float]:
-        """Return the state after a step so short that one of the classical Runge-Kutta method is exact."""
+    def advanced(
+        self, system: RollingSystem, time: float, state: Sequence[float], step: float, known: Rates | None = None
+    ) -> list[float]:
+        """Return the state after a step so short that one of the classical Runge-Kutta method is exact.
+
+        Its rates may be known as a function of time and state.
+        """
         y = np.asarray(state, dtype=float)
 
         def rates(t: float, at: Array) -> Array:
-            return np.array([float(rate) for rate in self.rates(system, t, at.tolist())])
+            found = self.rates(system, t, at.tolist()) if known is None else known(t, at.tolist())
+            return np.array([float(rate) for rate in found])
 
         first = rates(time, y)
         second = rates(time + step / 2, y + step / 2 * first)

@@ -57,7 +57,8 @@ class Method:
         from .dense import Dense
 
         module = import_module(f".{METHODS[self.name]}", __package__)
-        return Dense(module.keeping(), module.integrate, system, start, end, self.tolerance)
+        keep, beside = module.keeping()
+        return Dense(keep, beside, system, start, end, self.tolerance)
 
 
 def choose(method: str, system: RollingSystem, start: State) -> str:

@@ -17,6 +17,7 @@ from .creeping import SETTLES_FAST, CreepingLaw
 from .laws import Held, Law, RestingLaw, RollingLaw, SlippingLaw
 from .samples import RESTING
 from .touch import WEIGHTLESS, Touch, floats
+from .tracing import python_law
 
 _FIRST = 1e-6  # share of |ρ| over its speed that the first moment of slip takes
 
@@ -63,10 +64,10 @@ def first_moment(system: RollingSystem, at: Touch, law: Law | None = None) -> On
     """
     law = RollingLaw() if law is None else law
     time, numbers = at.state.time, law.numbers(at)
-    moment = _FIRST * at.arm / at.scale(system)
+    moment, rates = _FIRST * at.arm / at.scale(system), python_law(system, law).rates
 
     def later(wait: float) -> tuple[Touch, _Growth | None]:
-        moved = law.advanced(system, time, numbers, wait)
+        moved = law.advanced(system, time, numbers, wait, rates)
         then = law.meant(system, time + wait, moved)
         return then, _growth(system, then, law)
 

@@ -16,7 +16,7 @@ from . import corners, phases
 from .dense import Keep, Leg, TooMany
 from .following import Next, Stop
 from .patience import Patience
-from .phases import Stretch, cut
+from .phases import Integrate, Stretch, cut
 from .roots import root
 from .samples import AT_ONCE, Array, Progress, Samples
 from .tracing import python_law
@@ -25,6 +25,7 @@ TOLERANCE = 1e-12
 FINEST = 1e-13  # SciPy's own limit is 2e-14
 _ASIDE = 1e-12  # s
 _LOOKS = 8  # at the stops in each step
+_LOW = 0.5  # share of how much its looks differ: where all are higher, a stop is nowhere near zero between them
 _BLUR = 0.05  # share of a step within which a polynomial through these finds where a stop is lowest
 _SINGULAR = ("curved", "edge", "end", "jam")  # stops at which a law is singular
 _ALL_BUT = 1e-3  # share of what was left of such a stop at first
@@ -98,15 +99,15 @@ def integrate(
         yield Stretch(before, piece.states[: before.size], stop)
 
 
-def keeping() -> Keep:
-    """Return the way through all stretches of one run that keeps the polynomials of their steps.
+def keeping() -> tuple[Keep, Callable[[], Integrate]]:
+    """Return the way through all stretches of one run that keeps the polynomials of their steps, and one beside it.
 
     Returns
     -------
-    callable
-        As `dense`.
+    keep, beside : callable
+        As of `trundle.solve.taylor.keeping`.
     """
-    return dense
+    return dense, lambda: integrate
 
 
 def dense(system: RollingSystem, now: Next, end: float, tolerance: float, most: int) -> Leg | TooMany:
@@ -327,7 +328,8 @@ def _first_stop(path: Any, stops: Any, begin: Array) -> tuple[float, int] | None
     between = path(looks[1:]).T
     values = np.array([begin, *(stops(t, y) for t, y in zip(looks[1:], between, strict=True))])
     found: list[tuple[float, int]] = []
-    for which, value in enumerate(values.T):
+    falls, low = ((values[:-1] >= 0) & (values[1:] < 0)).any(axis=0), np.fmin.reduce(values) < _LOW * np.ptp(values, 0)
+    for which in np.flatnonzero(falls | low).tolist():
 
         def at(t: float, which: int = which) -> float:
             value, aside = float(stops(t, path(t))[which]), 0.0
@@ -336,7 +338,7 @@ def _first_stop(path: Any, stops: Any, begin: Array) -> tuple[float, int] | None
                 value = float(stops(t + aside, path(t + aside))[which])
             return value
 
-        fall = _fall(at, looks, value)
+        fall = _fall(at, looks, values[:, which])
         if fall is not None:
             found.append((fall, which))
     return min(found) if found else None
@@ -347,7 +349,7 @@ def _fall(function: Callable[[float], float], looks: Array, values: Array) -> fl
     falls = np.flatnonzero((values[:-1] >= 0) & (values[1:] < 0))
     inside = values[: falls[0] + 1] if falls.size else values
     # What lies between the looks is hardly lower than the lowest of them, beside how much they differ.
-    if np.nanmin(inside, initial=np.inf) < 0.5 * np.ptp(values) and (inside >= 0).all():
+    if np.nanmin(inside, initial=np.inf) < _LOW * np.ptp(values) and (inside >= 0).all():
         for low in _minima(function, looks, values):
             if (not falls.size or low < looks[falls[0]]) and function(low) < 0:
                 before = looks[: np.searchsorted(looks, low)][-1]

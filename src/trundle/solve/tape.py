@@ -7,8 +7,11 @@ whatever the body and the support.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Sequence
 from typing import Any
+
+_LONGEST = 300  # characters of an expression: Python reads no more than 200 brackets in each other
 
 
 class Tape:
@@ -46,9 +49,16 @@ class Tape:
 
     def function(self, outputs: Sequence[Any]) -> Callable[[Sequence[float]], list[float]]:
         """Return the function of the inputs that gives the outputs."""
-        lines = [f"    v{i} = {_written(self.steps[i])}" for i in self.needed(outputs)]
-        returned = ", ".join(map(_name, outputs))
-        source = "\n".join(["def traced(x):", *lines, f"    return [{returned}]"])
+        needed = self.needed(outputs)
+        uses = [*outputs, *(part for i in needed for part in self.steps[i][1:])]
+        used = Counter(part.index for part in uses if isinstance(part, Node))
+        lines, names = ["def traced(x):"], dict[int, str]()
+        for i in needed:
+            names[i] = _written(self.steps[i], names)
+            if used[i] > 1 or len(names[i]) > _LONGEST:  # what is used once stands where it is used: twice as fast
+                lines.append(f"    v{i} = {names[i]}")
+                names[i] = f"v{i}"
+        source = "\n".join([*lines, f"    return [{', '.join(_name(part, names) for part in outputs)}]"])
         place: dict[str, Any] = dict(_PYTHON)
         exec(source, place)  # noqa: S102  operators, numbers and the names of `_PYTHON`, nothing else
         return place["traced"]
@@ -241,17 +251,17 @@ def _is(value: Any, number: float) -> bool:
     return isinstance(value, (int, float)) and value == number
 
 
-def _name(part: Any) -> str:
-    return f"v{part.index}" if isinstance(part, Node) else repr(float(part))
+def _name(part: Any, names: dict[int, str]) -> str:
+    return names[part.index] if isinstance(part, Node) else repr(float(part))
 
 
-def _written(step: tuple[Any, ...]) -> str:
+def _written(step: tuple[Any, ...], names: dict[int, str]) -> str:
     operation, *operands = step
     if operation == "input":
         return f"x[{operands[0]}]"
     if operation == "neg":
-        return f"-{_name(operands[0])}"
+        return f"(-{_name(operands[0], names)})"
     if operation == "**":
-        return f"{_name(operands[0])} ** {int(operands[1])}"
-    names = [_name(part) for part in operands]
-    return f"{operation}({', '.join(names)})" if operation in _PYTHON else f" {operation} ".join(names)
+        return f"({_name(operands[0], names)} ** {int(operands[1])})"
+    written = [_name(part, names) for part in operands]
+    return f"{operation}({', '.join(written)})" if operation in _PYTHON else f"({f' {operation} '.join(written)})"

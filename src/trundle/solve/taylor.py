@@ -22,7 +22,7 @@ from .integrators import IN_HASTE, TOLERANCE, WITH_CARE, borrowed, ready
 from .kept_series import KeptSeries
 from .lowering import Lowered
 from .patience import Patience
-from .phases import Stretch, cut
+from .phases import Integrate, Stretch, cut
 from .samples import AT_ONCE, Array, Progress, Samples
 
 _CHUNKS = 100  # of a run at most, between which progress is told and Ctrl-C is heard
@@ -165,16 +165,23 @@ class Shared:
             self._patience = Patience(begin, end, **_PATIENCE)
         return self._patience
 
+    def another(self) -> Shared:
+        """Return the same for another run of this system: for it, too, is there what was made with care."""
+        return Shared({key: steps for key, steps in self.hasty.items() if steps >= _HASTY_STEPS})
 
-def keeping() -> Keep:
-    """Return the way through all stretches of one run that keeps the polynomials of their steps.
+
+def keeping() -> tuple[Keep, Callable[[], Integrate]]:
+    """Return the way through all stretches of one run that keeps the polynomials of their steps, and one beside it.
 
     Returns
     -------
-    callable
+    keep : callable
         As `dense`.
+    beside : callable
+        Returns what follows a run like it, or a part of it, as `integrate`.
     """
-    return partial(dense, shared=Shared())
+    shared = Shared()
+    return partial(dense, shared=shared), lambda: partial(integrate, shared=shared.another())
 
 
 def dense(

@@ -31,11 +31,14 @@ class PythonLaw:
         (t, state) -> the values of the law's stops.
     names : tuple of str
         Of the stops.
+    found : callable
+        (t, state) -> what else of the state the law works out at some cost, as `Law.found` has it.
     """
 
     rates: Callable[[float, Sequence[float]], list[float]]
     stops: Callable[[float, Sequence[float]], list[float]]
     names: tuple[str, ...]
+    found: Callable[[float, Sequence[float]], list[float]]
 
 
 def state_rates(system: RollingSystem, time: Scalar, state: Sequence[Scalar]) -> list[Scalar]:
@@ -106,7 +109,7 @@ def python_law(
     time : float
         When the law begins to hold, s.
     state : sequence of float
-        The numbers with which it begins; only a support given as a table needs these two.
+        The numbers with which it begins; only a support given as a table needs these two, to name its stops.
 
     Returns
     -------
@@ -125,12 +128,17 @@ def python_law(
         return _untraced(system, law, extras, time, state)
     own = {name: value for name, value in vars(law).items() if isinstance(value, float)}
     values = [*numbers(system), *own.values(), *extras]
-    rates, stops, names = _known(system, law, tuple(own))
-    return PythonLaw(lambda t, y: rates([t, *y, *values]), lambda t, y: stops([t, *y, *values]), names)
+    rates, stops, names, found = _known(system, law, tuple(own))
+    return PythonLaw(
+        lambda t, y: rates([t, *y, *values]),
+        lambda t, y: stops([t, *y, *values]),
+        names,
+        lambda t, y: found([t, *y, *values]),
+    )
 
 
 _Function = Callable[[Sequence[float]], list[float]]
-_Flat = tuple[_Function, _Function, tuple[str, ...]]
+_Flat = tuple[_Function, _Function, tuple[str, ...], _Function]
 
 
 @cache
@@ -164,7 +172,8 @@ def _traced(system: RollingSystem, law: Law, own: tuple[str, ...]) -> _Flat:
     vars(free).update(zip(own, parameters[count:], strict=False))
     rates = free.rates(symbolic, time, state)
     stops = corners.all_stops(symbolic, free, time, state, parameters[count + len(own) :])
-    return tape.function(rates), tape.function(list(stops.values())), tuple(stops)
+    found = free.found(symbolic, time, state)
+    return tape.function(rates), tape.function(list(stops.values())), tuple(stops), tape.function(found)
 
 
 def _untraced(
@@ -176,5 +185,9 @@ def _untraced(
     def stops(t: float, y: Sequence[float]) -> list[float]:
         return [float(value) for value in corners.all_stops(system, law, t, y, extras).values()]
 
+    def found(t: float, y: Sequence[float]) -> list[float]:
+        return [float(part) for part in law.found(system, t, y)]
+
     # Which stops there are is read off a state in which the law holds: of any other it may know nothing.
-    return PythonLaw(rates, stops, tuple(corners.all_stops(system, law, time, state, extras)))
+    names = tuple(corners.all_stops(system, law, time, state, extras)) if len(state) else ()
+    return PythonLaw(rates, stops, names, found)

@@ -65,9 +65,9 @@ class Again:
         return self.method.dense(self.system, self.start, self._end)
 
     @property
-    def steps(self) -> int:
-        """How many steps it takes, about; none of a closed form."""
-        return self._run.steps if isinstance(self._run, Dense) else 0
+    def kept(self) -> Dense | None:
+        """The same where a numerical method made it."""
+        return self._run if isinstance(self._run, Dense) else None
 
     @property
     def _ended(self) -> bool:

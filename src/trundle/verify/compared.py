@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..errors import OutOfDomainError
 from ..mechanics.system import RollingSystem, State
+from ..solve.dense import Dense
 from ..solve.exact import ClosedForm
 from ..solve.methods import Method
 from ..solve.runge_kutta import FINEST
@@ -22,12 +23,13 @@ from .growth import MOST, Growth, alike, at_the_same_times, growth, numerical, p
 _INSTANTS = 200
 _SLOW = 1e-3  # of a body's turning: what a support's own is held against at least
 _EVENTS_BEFORE, _EVENTS_AFTER = 3, 5  # the first by which two runs differ, over which a small change is followed
-_STEPS_FOLLOWED = {"exact": 10_000, "taylor": 10_000, "runge-kutta": 2_000}  # of each of a dozen runs
+_STEPS_FOLLOWED = {"exact": 60_000, "taylor": 60_000, "runge-kutta": 10_000}  # in all of a dozen runs
+_RUNS = 12  # about: the run itself, and one for each way in which its state can change
 _MOST_RADIANS = 50_000.0  # of turning that a cross-check follows
 
 
 def same_again(
-    system: RollingSystem, start: State, ours: Samples, again: Samples, method: Method, steps: int
+    system: RollingSystem, start: State, ours: Samples, again: Samples, method: Method, kept: Dense | None
 ) -> Iterator[CardFigure]:
     """Compare samples with the same method run again: then what is checked of that run holds for them.
 
@@ -41,8 +43,8 @@ def same_again(
         The samples, and the second run at their times and others.
     method : Method
         Of both.
-    steps : int
-        That the second run took.
+    kept : Dense or None
+        The second run, where a numerical method made it.
 
     Yields
     ------
@@ -55,7 +57,7 @@ def same_again(
     coarser = method
     if method.name == "taylor" and any(event.kind == "slip" for event in ours.events):
         coarser = replace(method, tolerance=max(method.tolerance, FINEST))  # so the first moments of slip are followed
-    both = Compared(system, start, ours, theirs, coarser, method, sizes, turned, steps)
+    both = Compared(system, start, ours, theirs, coarser, method, sizes, turned, kept)
     turned_apart = both.turns * both.bound / both.angle_bound
     said = f"gives the same motion, force, orientation and events at {ours.time.size} instants"
     yield both.figure("the method run again", np.maximum(both.share, turned_apart), both.bound, said)
@@ -125,8 +127,8 @@ class Compared:
         Against what a difference of each quantity is small or not.
     turned : float
         By about how many radians the body turned.
-    steps : int
-        That a run takes, about; 0 where they are few.
+    kept : Dense, optional
+        One of them, where the other is the same method's.
     """
 
     system: RollingSystem
@@ -137,7 +139,7 @@ class Compared:
     follower: Method
     sizes: dict[str, float]
     turned: float
-    steps: int = 0
+    kept: Dense | None = None
 
     @property
     def bound(self) -> float:
@@ -205,14 +207,15 @@ class Compared:
             start = self.theirs.state(int(before[-1]))
             carried = float(np.max(np.maximum(self.share, self.turns * self.bound / self.angle_bound)[before]))
             upto &= self.ours.time >= start.time
-        grown = growth(self.system, start, self.ours.part(upto), self.follower, self.sizes)
+        grown = growth(self.system, start, self.ours.part(upto), self.follower, self.sizes, self.kept)
         return replace(grown, carried=carried, skipped=int(np.searchsorted(events, start.time)) if before.size else 0)
 
     @property
     def _affordable(self) -> float:
         """For how long a small change can be followed in a dozen runs, s."""
-        most = _STEPS_FOLLOWED[self.follower.name]
-        return float(self.ours.time[-1] - self.start.time) * most / self.steps if self.steps > most else np.inf
+        most = _STEPS_FOLLOWED[self.follower.name] / _RUNS
+        steps = self.kept.steps if self.kept is not None else 0
+        return float(self.ours.time[-1] - self.start.time) * most / steps if steps > most else np.inf
 
     @cached_property
     def _apart_from(self) -> float:

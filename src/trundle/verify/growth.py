@@ -9,9 +9,10 @@ anywhere, and no comparison says anything.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import reduce
+from functools import partial, reduce
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,7 @@ from numpy.typing import NDArray
 from ..errors import SolverError
 from ..mechanics.algebra import Quaternion
 from ..mechanics.system import RollingSystem, State
+from ..solve.dense import Dense
 from ..solve.methods import Method
 from ..solve.samples import FLIGHT, Event, Samples
 from ..solve.touch import moment
@@ -138,7 +140,14 @@ def same_events(ours: tuple[Event, ...], theirs: tuple[Event, ...]) -> int:
     return count
 
 
-def growth(system: RollingSystem, start: State, at: Samples, method: Method, sizes: dict[str, float]) -> Growth:
+def growth(
+    system: RollingSystem,
+    start: State,
+    at: Samples,
+    method: Method,
+    sizes: dict[str, float],
+    kept: Dense | None = None,
+) -> Growth:
     """Return what a motion does to a small change of its state, at its start or at any instant since.
 
     Parameters
@@ -153,6 +162,8 @@ def growth(system: RollingSystem, start: State, at: Samples, method: Method, siz
         Follows the changed starts.
     sizes : dict
         Against what a difference of each quantity is small or not.
+    kept : Dense, optional
+        A run of the same system by the same method, gone through before.
 
     Returns
     -------
@@ -160,15 +171,16 @@ def growth(system: RollingSystem, start: State, at: Samples, method: Method, siz
         The most that any change shows.
     """
     method = numerical(method)
+    solve = partial(method.solve, system) if kept is None else kept.like_it
     times = np.union1d(at.time[:: max(1, at.time.size // _INSTANTS)], at.time[-1:])
     span = max(float(times[-1] - start.time), 1e-300)
     share = min(max(_NUDGE, _OVER_TOLERANCE * method.tolerance), _MOST_NUDGE)
     slowest = 1 / max(span, _INSTANT * moment(system, start))  # rad/s: of a body at rest, and of a run of no length
     change = share * max(largest(at.angular_velocity), slowest)
-    first, starts, others = method.solve(system, start, times), [], []
+    first, starts, others = solve(start, times), [], []
     for begin in nudged(system, start, change, share, share * sizes["position"]):
         with suppress(SolverError):  # a changed start may come to where no law goes on
-            others.append(method.solve(system, begin, times))
+            others.append(solve(begin, times))
             starts.append(begin)
     until = min([float(times[-1]), *(parted(first, other) for other in others)])
     count = min([len(first.events), *(same_events(first.events, other.events) for other in others)])
@@ -178,7 +190,7 @@ def growth(system: RollingSystem, start: State, at: Samples, method: Method, siz
     pairs = [at_the_same_times(first.part(np.isin(first.time, times)), other) for other in others]
     told = np.all([alike(*pair) for pair in pairs], axis=0)
     if times[-1] < end <= until:  # where some of them have ended already
-        lasts = _lasts(system, method, end, [(start, first), *zip(starts, others, strict=True)])
+        lasts = _lasts(solve, end, [(start, first), *zip(starts, others, strict=True)])
         pairs = [
             (Samples.joined([one, its_last]), Samples.joined([other, other_last]))
             for (one, other), (its_last, other_last) in zip(pairs, lasts, strict=True)
@@ -202,16 +214,16 @@ def growth(system: RollingSystem, start: State, at: Samples, method: Method, siz
 
 
 def _lasts(
-    system: RollingSystem, method: Method, end: float, runs: list[tuple[State, Samples]]
+    solve: Callable[[State, Array], Samples], end: float, runs: list[tuple[State, Samples]]
 ) -> list[tuple[Samples, Samples]]:
     """Return the first run and each of the others at the last instant that both have."""
     ends = [min([end, *(event.time for event in run.events if event.final)]) for _, run in runs]
     times = np.minimum(ends[0], ends[1:])
-    firsts = method.solve(system, runs[0][0], np.unique(times))
+    firsts = solve(runs[0][0], np.unique(times))
     # Asked for other instants, it may end a rounding sooner.
     rows = np.minimum(np.searchsorted(firsts.time, times), firsts.time.size - 1)
     return [
-        (firsts.part([row]), method.solve(system, start, np.array([time])))
+        (firsts.part([row]), solve(start, np.array([time])))
         for row, time, (start, _) in zip(rows, times, runs[1:], strict=True)
     ]
 

@@ -8,9 +8,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...mechanics.system import RollingSystem
-from ...wording import as_ratio
 from ...solve.exact import SlidingSphere, SphereComingToRest, SphereInFlight
 from ...solve.samples import ROLLING, SLIPPING, Samples
+from ...wording import as_ratio
 from .finding import Finding
 from .fits import Seen, acceleration, zero_ahead
 

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from ...mechanics.system import RollingSystem
-from ...wording import as_ratio
 from ...solve.exact import SphereInMovingAir, SphereOnFreePlane, SphereOnPlane, SphereOnUnsteadyPlane
+from ...wording import as_ratio
 from .finding import Finding
 from .fits import Seen, acceleration, circle, exponent, round_time, two_exponents
 
