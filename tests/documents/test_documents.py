@@ -125,6 +125,11 @@ def test_every_direct_dependency_is_pinned_exactly_and_nothing_says_where_from()
     assert direct <= set(names)
 
 
+def test_no_npm_package_may_or_need_run_a_script_while_it_is_installed() -> None:
+    assert "ignore-scripts=true" in text_of(ROOT / "web" / ".npmrc").splitlines()
+    assert "hasInstallScript" not in text_of(ROOT / "web" / "package-lock.json")
+
+
 def test_the_version_stands_in_one_place() -> None:
     version = tomllib.loads(text_of(ROOT / "pyproject.toml"))["project"]["version"]
     holders = [path for path in [*SOURCES, ROOT / "CITATION.cff", ROOT / "README.md"] if version in text_of(path)]
