@@ -70,7 +70,7 @@ bench: .venv/installed-bench
 # The stamps: an installation is repeated only when what it installs has changed.
 .venv/installed: pyproject.toml constraints.txt hatch_build.py .venv/web
 	@$(PREPARE)
-	@$(INSTALL) -e '.'
+	@$(INSTALL) -e '.[lab]'
 	@$(COMPILE)
 	@$(STAMP) $@
 

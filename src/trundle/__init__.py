@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from .derivation import derive
     from .errors import (
         InvalidValueError,
+        MissingExtraError,
         OutOfDomainError,
         ScenarioError,
         SolverError,
@@ -86,6 +87,7 @@ _HOMES = {
     "errors": (
         "TrundleError",
         "InvalidValueError",
+        "MissingExtraError",
         "ScenarioError",
         "OutOfDomainError",
         "SolverError",
@@ -186,6 +188,7 @@ __all__ = [
     "InvalidValueError",
     "Isotropic",
     "Magnus",
+    "MissingExtraError",
     "Mistake",
     "Motor",
     "Move",

@@ -184,6 +184,33 @@ class UnknownNameError(TrundleError, AttributeError):
         return type(self), (self.kind, self.received, self.known)
 
 
+class MissingExtraError(TrundleError, ImportError):
+    """Something was asked for that only some users need, and the extra that brings it is not installed.
+
+    Parameters
+    ----------
+    asked : str
+        What the reader asked for, as they wrote it: ``"trundle lab"``.
+    extra : str
+        Its name in pyproject.toml.
+    instead : str
+        What does without it, as a sentence.
+
+    Examples
+    --------
+    >>> print(MissingExtraError("trundle lab", "lab"))
+    `trundle lab` needs the extra `lab`, which is not installed here: pip install 'trundle[lab]'.
+    """
+
+    def __init__(self, asked: str, extra: str, instead: str = "") -> None:
+        self.asked, self.extra, self.instead = asked, extra, instead
+        rule = f"`{asked}` needs the extra `{extra}`, which is not installed here"
+        super().__init__(f"{rule}: pip install 'trundle[{extra}]'.{' ' + instead if instead else ''}")
+
+    def __reduce__(self) -> tuple[type, tuple[object, ...]]:
+        return type(self), (self.asked, self.extra, self.instead)
+
+
 def did_you_mean(received: str, known: Iterable[str]) -> str:
     """Suggest the known name closest to a mistyped one.
 

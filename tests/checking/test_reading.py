@@ -77,7 +77,7 @@ def test_parquet_or_a_word_about_it(tmp_path: Path) -> None:
     path = tmp_path / "theirs.parquet"
     if importlib.util.find_spec("pyarrow") is None:
         path.write_bytes(b"PAR1")
-        with pytest.raises(tr.InvalidValueError, match=r"Install trundle\[parquet\]"):
+        with pytest.raises(tr.MissingExtraError, match=r"theirs.parquet` .* pip install 'trundle\[parquet\]'"):
             tr.check(path, SYSTEM)
     else:
         table().to_parquet(path)

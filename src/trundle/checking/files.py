@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import InvalidValueError
+from ..extras import need
 from ..netcdf import read_netcdf
 
 _MISSING = ("", "nan", "na", "n/a", "null", "none", "-", "--")  # what programs write where they have no number
@@ -46,6 +47,8 @@ def open_file(path: Path, columns: Mapping[str, str]) -> Any:
     ------
     InvalidValueError
         If the file does not exist or cannot be read.
+    MissingExtraError
+        If it is Parquet, and the extra `parquet` is not installed.
 
     Examples
     --------
@@ -59,17 +62,12 @@ def open_file(path: Path, columns: Mapping[str, str]) -> Any:
         raise InvalidValueError("file", "must end in .csv, .txt, .tsv, .dat, .parquet or .nc", str(path))
     if not path.is_file():
         raise InvalidValueError("file", "must exist", str(path), "Check the name and the folder.")
+    if ending in _PARQUET:
+        need("parquet", str(path), "CSV and NetCDF need nothing more.")
     try:
         return readers[ending](path, columns)
     except InvalidValueError:
         raise
-    except ImportError:
-        raise InvalidValueError(
-            "file",
-            "must be CSV or NetCDF where pyarrow is not installed",
-            str(path),
-            "Install trundle[parquet], or write CSV.",
-        ) from None
     except Exception as error:  # noqa: BLE001  each library has a dozen kinds; all mean that the file is no such file
         reason = str(error).strip().partition("\n")[0].rstrip(".") or type(error).__name__
         raise InvalidValueError("file", f"must be a readable {ending} file", str(path), f"{reason}.") from None

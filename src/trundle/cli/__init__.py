@@ -89,13 +89,13 @@ def run(arguments: Sequence[str] | None = None) -> int:
 
 def _explain(error: Exception) -> int:
     """Say what went wrong in one message, and return the status that goes with it."""
-    from ..errors import InvalidValueError, TrundleError, UnknownNameError
+    from ..errors import InvalidValueError, MissingExtraError, TrundleError, UnknownNameError
 
     if os.environ.get("TRUNDLE_DEBUG"):
         traceback.print_exception(error)
     if hasattr(error, "format_message") and hasattr(error, "exit_code"):  # typer's: a wrong option or command
         return _explain_usage(error)
-    if isinstance(error, (InvalidValueError, UnknownNameError)):
+    if isinstance(error, (InvalidValueError, UnknownNameError, MissingExtraError)):
         for line in str(error).split("\n"):  # a scenario file may have several mistakes
             _say(line)
         return BAD_INPUT

@@ -52,6 +52,7 @@ def _check(names: list[str], target: Path) -> None:
     if target.is_dir() or not target.parent.is_dir():
         rule = "must not be a folder" if target.is_dir() else "must lie in a folder that exists"
         raise InvalidValueError("FILE", rule, str(target))
+    exports.check_installed(target.suffix, str(target))
     if len(names) > 1 and target.suffix.lower() != _SEVERAL:
         remedy = f"Only {_SEVERAL} can hold several."
         raise InvalidValueError("RUN", "must be one", ", ".join(names), remedy)

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from ..errors import InvalidValueError
+from ..extras import need
 from . import screen
 
 
@@ -30,6 +31,7 @@ def lab(
     With a scenario it opens that. Everything is computed here, by this package; nothing is asked of any other machine.
     Ctrl-C ends it.
     """
+    need("lab", "trundle lab")
     import gc
     from contextlib import suppress
 

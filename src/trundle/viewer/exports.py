@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import TrundleError, UnknownNameError
+from ..extras import need
 
 if TYPE_CHECKING:
     from ..scene import Scene
@@ -32,11 +33,14 @@ class Format:
         As HTTP calls it.
     write : callable
         Takes a motion and what makes a scene of it, returns the file's bytes.
+    extra : str
+        That must be installed for it, if any.
     """
 
     what: str
     media_type: str
     write: Callable[[Motion, MakeScene], bytes]
+    extra: str = ""
 
 
 def export(motion: Motion, suffix: str, make_scene: MakeScene | None = None) -> bytes:
@@ -60,6 +64,8 @@ def export(motion: Motion, suffix: str, make_scene: MakeScene | None = None) -> 
     ------
     UnknownNameError
         If there is no such form.
+    MissingExtraError
+        If the form needs an extra that is not installed.
     TrundleError
         If this motion does not have it.
 
@@ -71,9 +77,34 @@ def export(motion: Motion, suffix: str, make_scene: MakeScene | None = None) -> 
     """
     if suffix.lower() not in FORMATS:
         raise UnknownNameError("form to export", suffix, FORMATS)
+    check_installed(suffix, suffix)
     from ..scene import scene_of
 
     return FORMATS[suffix.lower()].write(motion, make_scene or scene_of)
+
+
+def check_installed(suffix: str, asked: str) -> None:
+    """Refuse a form whose extra is not installed, before anything is computed for it.
+
+    Parameters
+    ----------
+    suffix : str
+        One of the keys of `FORMATS`.
+    asked : str
+        What the reader asked for, as they wrote it.
+
+    Raises
+    ------
+    MissingExtraError
+        If it is not installed.
+
+    Examples
+    --------
+    >>> check_installed(".svg", "path.svg")
+    """
+    extra = FORMATS[suffix.lower()].extra
+    if extra:
+        need(extra, asked)
 
 
 def _html(motion: Motion, make_scene: MakeScene) -> bytes:
@@ -127,7 +158,7 @@ def _figure(kind: str, **options: Any) -> Callable[[Motion, MakeScene], bytes]:
 
 FORMATS: dict[str, Format] = {
     ".html": Format("a page that plays it, by itself", "text/html; charset=utf-8", _html),
-    ".glb": Format("an animated model, for Blender and the like", "model/gltf-binary", _glb),
+    ".glb": Format("an animated model, for Blender and the like", "model/gltf-binary", _glb, extra="lab"),
     ".gif": Format("an animation", "image/gif", _gif),
     ".png": Format("the figure of the path", "image/png", _figure("png")),
     ".svg": Format("the same as a drawing", "image/svg+xml", _figure("svg")),

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from ..display import Displayed, Headline, Markup, fold, joined, mathml, number, pairs, paragraph, section, table
-from ..errors import TrundleError
+from ..extras import need
 from ..files import written_whole
 
 if TYPE_CHECKING:
@@ -16,10 +16,6 @@ if TYPE_CHECKING:
 
 
 _MOST_EVENTS = 12  # listed
-
-
-class NoWidgetsError(TrundleError):
-    """A notebook's widget was asked for, and what it needs is not installed."""
 
 
 class Viewable(Displayed):
@@ -86,8 +82,8 @@ class Viewable(Displayed):
 
         Raises
         ------
-        NoWidgetsError
-            If anywidget is not installed; the extra `notebook` brings it.
+        MissingExtraError
+            If the extra `notebook` is not installed.
 
         Examples
         --------
@@ -97,13 +93,7 @@ class Viewable(Displayed):
         300
         >>> widget.close()
         """
-        try:
-            import anywidget  # noqa: F401
-        except ImportError:
-            raise NoWidgetsError(
-                "`view` needs anywidget, which is not installed here: pip install 'trundle[notebook]'. "
-                "`save_html` needs nothing more, and shows the same in any browser."
-            ) from None
+        need("notebook", "view", "`save_html` needs nothing more, and shows the same in any browser.")
         from .widget import SceneWidget
 
         return SceneWidget((cast("Trajectory", self), *others), **options)
@@ -155,6 +145,8 @@ class Viewable(Displayed):
 
         Raises
         ------
+        MissingExtraError
+            If the extra `lab` is not installed.
         TrundleError
             If it cannot be written.
 

@@ -1,4 +1,4 @@
-"""The notebook's widget. It needs anywidget, which the extra `notebook` brings."""
+"""The notebook's widget. It needs the extra `notebook`, and `Viewable.view` says so where it is missing."""
 
 from __future__ import annotations
 

@@ -1,0 +1,38 @@
+"""The extras of pyproject.toml: what only some users need, and a word about it where it is not installed."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+
+from .errors import MissingExtraError
+
+MODULES = {  # what each brings, as it is imported
+    "lab": ("fastapi", "uvicorn", "pebble", "pygltflib"),
+    "notebook": ("anywidget",),
+    "parquet": ("pyarrow",),
+}
+
+
+def need(extra: str, asked: str, instead: str = "") -> None:
+    """Refuse what an extra is needed for, unless it is installed; imports nothing of it.
+
+    Parameters
+    ----------
+    extra : str
+        One of the keys of `MODULES`.
+    asked : str
+        What the reader asked for, as they wrote it.
+    instead : str
+        What does without the extra, as a sentence.
+
+    Raises
+    ------
+    MissingExtraError
+        If it is not installed.
+
+    Examples
+    --------
+    >>> need("lab", "scene.glb")
+    """
+    if not all(map(find_spec, MODULES[extra])):
+        raise MissingExtraError(asked, extra, instead)
