@@ -1,7 +1,7 @@
 # Everything from a bare machine: Python 3.11 or newer and make are all it needs.
 .POSIX:
 .DELETE_ON_ERROR:
-.PHONY: help demo test fuzz mutation bench check-web lint lint-python format clean always
+.PHONY: help demo test check fuzz mutation dispatch bench check-web lint lint-python format clean always
 
 # make PYTHON=/some/python3.12 demo  chooses the interpreter; otherwise the first of these that is new enough.
 PYTHON =
@@ -17,8 +17,10 @@ PYTEST = $(PLAIN) $(BIN)/python -m pytest -n 2 --dist loadscope --color=no
 help:
 	@echo 'make demo    install into .venv (from PyPI and the npm registry), then run the shipped tilted turntable into demo/'
 	@echo 'make test    install into .venv, then run every check: tests, documents, lint, types, layers, the web part'
+	@echo 'make check   lint, types, and the tests nearest to what changed since the last commit: a minute; SINCE=main'
 	@echo 'make fuzz    run 60 random scenarios of each class, and say which end badly: five minutes; COUNT=2000 for more'
 	@echo 'make mutation  plant faults in the package and print which figure of the card tells'
+	@echo 'make dispatch  count where the package asks which concrete surface, shape, body, motion, load or form it has'
 	@echo 'make bench   install the peers too, then print the ratios of one benchmark run'
 	@echo 'make lint    only ruff, mypy, the order of the layers, and types and lint of the web part'
 	@echo 'make format  let ruff and biome write their format into the sources'
@@ -36,6 +38,11 @@ test: .venv/installed-test
 	@if [ -f .ci/chromium ]; then sh .ci/chromium; fi
 	@$(MAKE) --no-print-directory -j 2 lint-python check-web
 	$(PYTEST)
+
+# What to run while working. SINCE is the commit that the files are compared with.
+SINCE = HEAD
+check: lint-python
+	$(PLAIN) $(BIN)/python -m tests.nearest --since $(SINCE)
 
 # Scenarios that nobody thought of; those that end badly are left in fuzz/, with the table. SEED is the first of the seeds.
 COUNT = 60
@@ -63,6 +70,10 @@ format: .venv/installed-test
 
 mutation: .venv/installed-test
 	$(PLAIN) $(BIN)/python -m tests.mutation
+
+# --each prints every one of the places, too.
+dispatch: .venv/installed-test
+	$(PLAIN) $(BIN)/python -m tests.dispatch
 
 bench: .venv/installed-bench
 	$(PLAIN) $(BIN)/python benchmarks/run.py
