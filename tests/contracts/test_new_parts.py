@@ -1,0 +1,199 @@
+"""A new surface, motion and load, each one file and one line that names its module, are known to every room.
+
+They are written into a copy of the package, and the copy is used as its users would.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import trundle
+
+SURFACE = '''
+from dataclasses import dataclass
+from typing import Annotated
+
+from ... import wording
+from ..parts import POSITIVE, Number
+from ..scalars import Scalar, namespace
+from .over_plane import OverPlane
+
+
+@dataclass(frozen=True)
+class EllipticFunnel(OverPlane):
+    """A funnel z = √(x²/p² + y²/q² + 1) − 1, steeper along one axis than along the other."""
+
+    first: Annotated[Scalar, Number("length", POSITIVE, "Along the first axis.", "30 cm")]
+    second: Annotated[Scalar, Number("length", POSITIVE, "Along the second axis.", "40 cm")]
+    kind = "elliptic-funnel"
+    where, noun, ground = "in", "elliptic funnel", "funnel"
+    axisymmetric = False
+
+    def key_numbers(self):
+        return [f"scales {wording.length(self.first, self.second)}"]
+
+    def height(self, x, y):
+        square = (x / self.first) ** 2 + (y / self.second) ** 2
+        return 0.1 * (namespace(square).sqrt(square + 1.0) - 1.0)
+'''
+MOTION = '''
+from dataclasses import dataclass
+from typing import Annotated
+
+from ... import wording
+from ..algebra import ZERO, Matrix, Vector
+from ..parts import Number
+from ..scalars import Scalar, namespace
+from .base import Motion, SupportState
+
+
+@dataclass(frozen=True)
+class Heave(Motion):
+    """A support that goes up and down, A sin νt."""
+
+    amplitude: Annotated[Scalar, Number("length", said="Up and down.", example="1 mm")]
+    rate: Annotated[Scalar, Number("angular velocity", example="5 rad/s")]
+    kind = "heave"
+    way = "heaving"
+    turns = False
+
+    def key_numbers(self, ground, own):
+        return [f"{ground} heaves by {wording.length(self.amplitude)}"]
+
+    @property
+    def fastest_rate(self):
+        return abs(self.rate)
+
+    def at(self, time):
+        xp = namespace(self.rate * time)
+        s, c = xp.sin(self.rate * time), xp.cos(self.rate * time)
+        up = Vector(0.0, 0.0, 1.0) * self.amplitude
+        return SupportState(
+            Matrix.identity(), up * s, up * (self.rate * c), up * (-(self.rate * self.rate) * s), ZERO, ZERO
+        )
+'''
+LOAD = '''
+from dataclasses import dataclass
+from typing import Annotated
+
+from ... import wording
+from ..parts import NOT_NEGATIVE, Number
+from ..scalars import Scalar
+from .base import Load
+
+
+@dataclass(frozen=True)
+class Tether(Load):
+    """A soft spring that pulls the centre of mass to the origin, −k r."""
+
+    stiffness: Annotated[Scalar, Number("number", NOT_NEGATIVE, "k, N/m.", 0.2)]
+    kind = "tether"
+    symmetric = True
+    leaves_spin = True
+
+    def key_numbers(self):
+        return [f"tether {wording.short(float(self.stiffness), 3)} N/m"]
+
+    def force(self, motion):
+        return motion.position * -self.stiffness
+
+    def potential(self, motion):
+        return motion.position.dot(motion.position) * (0.5 * self.stiffness)
+'''
+FILES = {"surfaces": ("funnel", SURFACE, "EllipticFunnel"), "motions": ("heave", MOTION, "Heave")}
+FILES |= {"loads": ("tether", LOAD, "Tether")}
+SCENARIO = """
+[body]
+kind = "solid-sphere"
+radius = "1 cm"
+mass = "10 g"
+[support]
+kind = "elliptic-funnel"
+first = "30 cm"
+second = 0.4
+motion = {kind = "heave", amplitude = "1 mm", rate = "5 rad/s"}
+[[loads]]
+kind = "tether"
+stiffness = 0.2
+[start]
+position = ["10 cm", "5 cm"]
+velocity = ["0.1 m/s", 0]
+[run]
+duration = "0.5 s"
+every = "10 ms"
+"""
+ASKED = """
+import json, sys
+import trundle as tr
+from trundle.scenario.tables import KINDS
+scenario = tr.Scenario.load(sys.argv[1])
+run = scenario.run()
+again = tr.Scenario.describe(run.system, scenario.start_state(), duration=0.5, every=0.01)
+from trundle.plots.words import key_numbers, title_of
+print(json.dumps({
+    "passed": run.card().passed,
+    "title": title_of(run.system),
+    "numbers": key_numbers(run.system),
+    "same": again.system() == run.system,
+    "schema": str(tr.Scenario.schema()),
+    "kinds": [list(KINDS["support"])[-1], list(KINDS["support.motion"])[-1], list(KINDS["loads"])[-1]],
+    "scene": len(run.save_html(sys.argv[2]).read_bytes()) > 100_000,
+}))
+"""
+
+
+@pytest.fixture(scope="module")
+def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the package in which the parts are written."""
+    folder = tmp_path_factory.mktemp("copy")
+    shutil.copytree(Path(trundle.__file__).parent, folder / "trundle", ignore=shutil.ignore_patterns("__pycache__"))
+    for family, (name, text, made) in FILES.items():
+        home = folder / "trundle" / "mechanics" / family
+        (home / f"{name}.py").write_text(f'"""New."""\n\nfrom __future__ import annotations\n{text}', encoding="utf-8")
+        with (home / "__init__.py").open("a", encoding="utf-8") as listed:
+            listed.write(f"\nfrom .{name} import {made}\n")
+    (folder / "new.toml").write_text(SCENARIO, encoding="utf-8")
+    return folder
+
+
+def run(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    surroundings = os.environ | {"PYTHONPATH": str(folder), "MPLBACKEND": "Agg", "NO_COLOR": "1"}
+    return subprocess.run(  # noqa: S603
+        [sys.executable, *words], cwd=folder, env=surroundings, capture_output=True, text=True, check=False, timeout=300
+    )
+
+
+def test_new_parts_are_known_in_files_figures_and_scenes(copy: Path) -> None:
+    done = run(copy, "-c", ASKED, "new.toml", "new.html")
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    assert found["passed"], found
+    assert found["same"]
+    assert found["scene"]
+    assert found["title"] == "Ball in a heaving elliptic funnel"
+    assert {"table heaves by 1 mm", "funnel heaves by 1 mm"} & set(found["numbers"].split("  ·  "))
+    assert "scales 30 cm × 40 cm" in found["numbers"]
+    assert "tether 0.2 N/m" in found["numbers"]
+    for word in ("elliptic-funnel", "heave", "tether", "Along the first axis.", "Up and down."):
+        assert word in found["schema"]
+
+
+def test_new_parts_run_on_the_command_line(copy: Path) -> None:
+    done = run(copy, "-m", "trundle", "run", "new.toml", "-o", "out")
+    assert done.returncode == 0, done.stderr
+    assert {path.suffix for path in (copy / "out").iterdir()} >= {".png", ".nc"}
+
+
+def test_a_wrong_value_of_a_new_part_is_named(copy: Path) -> None:
+    (copy / "bad.toml").write_text(SCENARIO.replace('first = "30 cm"', "first = -1"), encoding="utf-8")
+    done = run(copy, "-m", "trundle", "run", "bad.toml", "-o", "none")
+    assert done.returncode == 2
+    assert "`support.first` must be positive; got -1" in done.stderr
+    assert not (copy / "none").exists()
