@@ -283,3 +283,29 @@ def length(*values: Any) -> str:
     '50 cm × 40 cm'
     """
     return " × ".join(with_unit(float(value), "length") for value in values)
+
+
+def pair(values: tuple[Any, Any], unit: str) -> str:
+    """Write two components, what is nothing beside the other as 0.
+
+    Parameters
+    ----------
+    values : tuple of two floats
+        In SI.
+    unit : str
+        Of both.
+
+    Returns
+    -------
+    str
+        With six digits.
+
+    Examples
+    --------
+    >>> pair((0.5, 1e-17), "m")
+    '(0.5, 0) m'
+    """
+    first, second = (float(f"{part:.6g}") + 0.0 for part in values)
+    size = max(abs(first), abs(second))
+    first, second = (0.0 if abs(part) < 1e-12 * size else part for part in (first, second))
+    return f"({first:.6g}, {second:.6g}) {unit}"

@@ -114,6 +114,17 @@ def test_what_to_expect(name: str, expected: str) -> None:
     assert any(expected in value for _, value in expectations(ScenarioFile.load(name)))
 
 
+@pytest.mark.parametrize("name", files.names())
+def test_every_scenario_says_what_to_expect(name: str) -> None:
+    from trundle.cli.expectations import expectations
+
+    if files.rolls_along_path(files.parse(files.read(name), name)):
+        return
+    rows = expectations(ScenarioFile.load(name))
+    assert rows[0][0] == "closed form"
+    assert all(key and not {"nan", "inf"} & set(value.replace(",", " ").split()) for key, value in rows)
+
+
 def test_schema(here: Command) -> None:
     assert json.loads(here("schema").out) == ScenarioFile.schema()
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any, ClassVar, Self
 
@@ -9,6 +10,15 @@ from ...errors import OutOfDomainError
 from ...mechanics.algebra import Quaternion, Vector
 from ...mechanics.system import RollingSystem, State
 from ..samples import ROLLING
+
+# What is said of when a phase ends, by the stop that ends it.
+_ENDS = {
+    "grip": "it grips and rolls after",
+    "land": "it lands after",
+    "lift": "it comes off after",
+    "slip": "it begins to slip after",
+    "stop": "it comes to rest after",
+}
 
 
 class ClosedForm:
@@ -82,6 +92,12 @@ class ClosedForm:
     def ends_at(self) -> dict[str, float]:
         """When the phase ends, s since the start, by those of its law's stops that the form knows; or never, inf."""
         return {}
+
+    def expected(self, duration: float) -> list[tuple[str, str]]:  # noqa: ARG002  some ask how long
+        """Return numbers that it promises of a run, each with its name, for a reader before the run."""
+        rows = [(_ENDS[stop], f"{t:.6g} s") for stop, t in self.ends_at.items() if stop in _ENDS and t < math.inf]
+        period = float(self.period)
+        return [*rows, *([("one period, while it stays on", f"{period:.6g} s")] if period < math.inf else [])]
 
     def repeats(self, stop: str) -> float:  # noqa: ARG002
         """Return after how long the course of one of the law's stops repeats, s; infinite where it does not."""

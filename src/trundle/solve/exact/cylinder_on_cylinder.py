@@ -206,6 +206,17 @@ class CylinderOnCylinder(ClosedForm):
         """Of the motion, s; infinite at rest and on the separatrix."""
         return self._constants.period
 
+    def expected(self, duration: float) -> list[tuple[str, str]]:  # noqa: ARG002
+        """Return how it swings, or goes round."""
+        small = math.sqrt(self.length * self.mass * (1 + self.inertia_ratio) / max(math.hypot(*self.force), 1e-300))
+        return [
+            (
+                "it goes round" if self.goes_round else "it swings",
+                "for ever" if math.isinf(self.period) else f"once in {self.period:.6g} s",
+            ),
+            ("a small swing", f"{2 * math.pi * small:.6g} s"),
+        ]
+
     def pace(self, duration: float) -> float:  # noqa: ARG002
         """Return 2λ, of which θ̇ is no faster, 1/s."""
         return 2 * float(self._constants.scale)

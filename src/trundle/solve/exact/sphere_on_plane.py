@@ -12,9 +12,12 @@ from ...mechanics.loads import constant_part
 from ...mechanics.scalars import Scalar, is_number, is_zero, namespace
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
+from ...wording import pair
 from .base import ClosedForm
 from .many_samples import ManySamples
 from .phi import Complex, exponentials, phase, quotient_times
+
+_SLOWEST = 1e-12  # rad/s; a slower circle is a straight line to anyone
 
 
 @dataclass(frozen=True)
@@ -190,6 +193,27 @@ class SphereOnPlane(ManySamples, ClosedForm):
         """Time of one circle 2π/|κ| where the motion repeats (level, no drag, turning); infinite elsewhere, s."""
         repeats = not self.is_drifting and is_zero(self.drag) and not is_zero(self.rate)
         return 2 * math.pi / abs(self.kappa) if repeats else math.inf
+
+    def expected(self, duration: float) -> list[tuple[str, str]]:
+        """Return its circle and where that drifts, or its acceleration."""
+        if self.has_guiding_centre and abs(self.kappa) > _SLOWEST:
+            return self._circle(duration)
+        rows = [("acceleration at rest", pair((self.phi.re, self.phi.im), "m/s²"))]
+        return rows + ([("drag halves the speed in", f"{math.log(2) / self.gamma:.6g} s")] if self.gamma > 0 else [])
+
+    def _circle(self, duration: float) -> list[tuple[str, str]]:
+        rows = [
+            ("one round", f"{2 * math.pi / abs(self.kappa):.6g} s, at {self.kappa:.6g} rad/s"),
+            ("its radius", f"{self.circle_radius:.6g} m"),
+            ("about the point", pair(self.guiding_centre(0.0), "m")),
+        ]
+        drift = self.drift_velocity
+        if math.hypot(*drift) > 0:
+            rows += [
+                ("which drifts at", f"{math.hypot(*drift):.6g} m/s, {pair(drift, 'm/s')}"),
+                ("and ends at", pair(self.guiding_centre(duration), "m")),
+            ]
+        return rows
 
     def pace(self, duration: float) -> float:  # noqa: ARG002
         """Return |λ|, 1/s."""
