@@ -118,7 +118,8 @@ def test_any_number_of_samples() -> None:
     """Against the closed form: the parts of a run have 60 instants, 119 fall into one, 120 into two."""
     made = [tables(sign) for sign in (1.0, -1.0)]
     exact = [[SphereOnPlane.of(*pair) for pair in zip(*members, strict=True)] for members in made]
-    for steps in range(1, 301):
+    # All numbers over the first two edges, then those about the others.
+    for steps in [*range(1, 131), *(n for n in range(131, 301) if (n + 2) % 60 < 5)]:
         (systems, starts), forms = made[steps % 2], exact[steps % 2]
         runs = tr.simulate_many(systems, starts, duration=3.0, every=3.0 / steps)
         assert runs.time.size == steps + 1

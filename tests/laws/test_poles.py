@@ -72,7 +72,7 @@ def test_a_formula_that_ends_within_the_run_or_at_its_end_is_refused_at_once(
 
 
 @pytest.mark.parametrize("method", ["auto", "taylor", "runge-kutta"])
-@pytest.mark.parametrize("before", [1e-2, 1e-3, 1e-4, 3e-5])
+@pytest.mark.parametrize("before", [1e-2, 3e-5])  # s; what is between is no nearer than the last
 @pytest.mark.parametrize("formula", ["tan(t*1.5707963)", "1/(1 - t)", "log(1 - t)", "sqrt(1 - t)"])
 def test_a_run_that_ends_some_way_before_a_pole_is_answered_soon(formula: str, before: float, method: str) -> None:
     for site in (spun, pushed):

@@ -14,7 +14,6 @@ from functools import cache
 from html import unescape
 from typing import Any
 
-import nbformat
 import numpy as np
 import pytest
 import sympy as sp
@@ -148,6 +147,8 @@ def shell() -> Iterator[InteractiveShell]:
 
 def shown(shell: InteractiveShell, result: Any) -> dict[str, str]:
     """What a cell that ends with a result keeps in the notebook."""
+    import nbformat  # here: it takes three seconds, and each worker collects this file
+
     data, metadata = shell.display_formatter.format(result)
     output = nbformat.v4.new_output("execute_result", data, metadata=metadata, execution_count=1)
     cell = nbformat.v4.new_code_cell("result", outputs=[output], execution_count=1)

@@ -180,9 +180,13 @@ def figure(name: str, request: pytest.FixtureRequest) -> Any:
     return sheet_of(name, request.param)
 
 
-@cache
 def sheet_of(name: str, kind: str = "path") -> Any:
     """A figure, drawn once for all tests that look at it."""
+    return _drawn(name, kind)
+
+
+@cache  # of both, for a cache does not know that a path left unsaid is a path
+def _drawn(name: str, kind: str) -> Any:
     figure = {"path": path_figure, "series": series_figure}[kind](CASES[name])
     FigureCanvasAgg(figure).draw()
     return figure

@@ -88,8 +88,12 @@ def run(name: str) -> tr.Trajectory:
     return RUNS[name]()
 
 
-@cache
 def sheet(name: str, kind: str = "path") -> Any:
+    return _drawn(name, kind)
+
+
+@cache  # of both, for a cache does not know that a path left unsaid is a path
+def _drawn(name: str, kind: str) -> Any:
     figure = {"path": path_figure, "series": series_figure}[kind](run(name))
     FigureCanvasAgg(figure).draw()
     return figure

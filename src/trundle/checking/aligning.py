@@ -92,8 +92,8 @@ class _Rolling:
         at = motion_of(case.system, own, case.start, case.view.instants)
         self._bound = case.series[SLIP].bound[:, None]
         self._velocity, self._carried = ((v / self._bound).ravel() for v in (at.velocity, at.carried))
-        self._offset = at.offset
-        self._turning = Vector.of(at.angular_velocity)
+        self._offset, self._arm = _by_columns(at.offset), np.linalg.norm(at.offset, axis=1)
+        self._turning = _by_columns(at.angular_velocity)
         flat = isinstance(case.system.support.surface, Plane) and case.system.body.is_isotropic_sphere
         self._normal = np.broadcast_to(at.contact.normal.array(), at.position.shape) if flat else 0.0 * at.position
 
@@ -108,24 +108,27 @@ class _Rolling:
 
     def left(self, start: Quaternion) -> float:
         """Return the slip as a share of what rolls."""
-        slip, rolled = self._slip(start)
+        slip, rolled = self._slip(start.matrix() @ self._turning)
         return float(np.linalg.norm(slip) / max(float(np.linalg.norm(rolled)), 1e-300))
 
     def _off(self, start: Quaternion) -> Array:
         """Return what slips, and by how much the spin of a ball on a plane changes, which no contact can change."""
-        spin = (self._space(start) * self._normal).sum(axis=1) * np.linalg.norm(self._offset, axis=1)
-        return np.concatenate([self._slip(start)[0], (spin - spin.mean()) / self._bound[:, 0]])
+        turning = start.matrix() @ self._turning
+        spin = (turning.array() * self._normal).sum(axis=1) * self._arm
+        return np.concatenate([self._slip(turning)[0], (spin - spin.mean()) / self._bound[:, 0]])
 
-    def _space(self, start: Quaternion) -> Array:
-        return np.asarray((start.matrix() @ self._turning).array(), dtype=float)
-
-    def _slip(self, start: Quaternion) -> tuple[Array, Array]:
-        """Return what slips, and what rolls."""
-        rolled = (np.cross(self._space(start), self._offset) / self._bound).ravel()
+    def _slip(self, turning: Vector) -> tuple[Array, Array]:
+        """Return what slips, and what rolls, if Ω is this in space."""
+        rolled = (turning.cross(self._offset).array() / self._bound).ravel()
         moved, carried, share = self._velocity + rolled, self._carried, 1.0
         if self._rate_free:  # the share of it with which least slips
             share = float(moved @ carried) / max(float(carried @ carried), 1e-300)
         return moved - share * carried, rolled
+
+
+def _by_columns(rows: Array) -> Vector:
+    """Return vectors whose components lie together each, as they are gone through thousands of times."""
+    return Vector.of(np.asfortranarray(rows))
 
 
 def _turn(angles: Array) -> Quaternion:
