@@ -249,9 +249,18 @@ def fields_of(part: type[Part]) -> Mapping[str, Field]:
 
 @cache
 def _fields(part: Any) -> Mapping[str, Field]:
-    hints = get_type_hints(part, include_extras=True)
-    noted = {each.name: getattr(hints[each.name], "__metadata__", ()) for each in fields(part)}
-    return MappingProxyType({name: note for name, notes in noted.items() for note in notes if isinstance(note, Field)})
+    found = {each.name: note for each in fields(part) for note in _notes(part, each.name) if isinstance(note, Field)}
+    return MappingProxyType(found)
+
+
+def _notes(part: Any, name: str) -> tuple[Any, ...]:
+    """Return what is annotated to a field; of a field without notes nothing is looked up, not even its type."""
+    home = next(base for base in part.__mro__ if name in vars(base).get("__annotations__", ()))
+    annotation = vars(home)["__annotations__"][name]
+    if isinstance(annotation, str) and "Annotated" not in annotation:
+        return ()
+    alone = type(name, (), {"__annotations__": {name: annotation}, "__module__": home.__module__})
+    return tuple(getattr(get_type_hints(alone, include_extras=True)[name], "__metadata__", ()))
 
 
 def defaults_of(part: type[Part]) -> Mapping[str, Any]:
