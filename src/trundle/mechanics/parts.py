@@ -1,6 +1,6 @@
 """What a part of a system says about itself, once: its kind, and of each of its fields what it is and what it may be.
 
-Scenario files, messages, tables of the docs and the page of the lab are made from this.
+The tables of scenario files, their JSON schema, the checks and what is written back are made from this.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import MISSING, dataclass, field, fields
 from functools import cache
 from importlib import import_module
+from inspect import get_annotations
 from types import MappingProxyType
 from typing import Any, ClassVar, TypeVar, get_type_hints
 
@@ -255,8 +256,8 @@ def _fields(part: Any) -> Mapping[str, Field]:
 
 def _notes(part: Any, name: str) -> tuple[Any, ...]:
     """Return what is annotated to a field; of a field without notes nothing is looked up, not even its type."""
-    home = next(base for base in part.__mro__ if name in vars(base).get("__annotations__", ()))
-    annotation = vars(home)["__annotations__"][name]
+    home = next(base for base in part.__mro__ if name in get_annotations(base))
+    annotation = get_annotations(home)[name]
     if isinstance(annotation, str) and "Annotated" not in annotation:
         return ()
     alone = type(name, (), {"__annotations__": {name: annotation}, "__module__": home.__module__})

@@ -64,7 +64,7 @@ def lift_at_hand(
         return found[which[0]], found[which[1]]
 
     at = law.meant(system, time, numbers)
-    moment = at.arm / at.scale(system)
+    moment = at.moment(system)
     now = look(0.0)[0]
     changes = abs(look(_AT_HAND * moment)[0] - now) / _AT_HAND  # in such a time, N
     if now > _NEARLY * max(changes, at.forces(system)):

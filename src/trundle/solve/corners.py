@@ -205,5 +205,4 @@ def _is_on(w: Array, later: Array) -> bool:
 
 def _moment(system: RollingSystem, now: Next) -> float:
     """Return a time in which the motion changes, s."""
-    at = now.law.meant(system, now.time, now.numbers)
-    return float(at.arm / at.scale(system))
+    return now.law.meant(system, now.time, now.numbers).moment(system)

@@ -308,7 +308,7 @@ def _opens(system: RollingSystem, at: Touch) -> bool:
     What only seems to press or to pull on a weightless body, rounding, stays as small as it is.
     """
     alone, floor = _fly(at), _FLOOR * at.forces(system) / float(system.body.mass)
-    wait = at.arm / at.scale(system)
+    wait = at.moment(system)
     opening = 0.0
     for share in _LOOKS:
         time = alone.time + share * wait

@@ -86,6 +86,10 @@ class Touch:
         pull = max(pull, support.material_acceleration(p, support.material_velocity(p)).norm())
         return max(self.speed, math.sqrt(pull * self.arm), 1e-30)
 
+    def moment(self, system: RollingSystem) -> float:
+        """Return a time in which this motion changes, s."""
+        return float(self.arm / self.scale(system))
+
     def forces(self, system: RollingSystem) -> float:
         """Return the size of the forces in this motion, N."""
         return float(system.body.mass) * self.scale(system) ** 2 / self.arm
@@ -119,8 +123,7 @@ def moment(system: RollingSystem, state: State, contact: tuple[float, float, flo
     >>> moment(table, table.place(velocity=(10.0, 0.0)))
     0.01
     """
-    at = Touch.of(system, state, None if contact is None else Vector(*contact))
-    return float(at.arm / at.scale(system))
+    return Touch.of(system, state, None if contact is None else Vector(*contact)).moment(system)
 
 
 def floats(v: Vector) -> tuple[float, float, float]:
