@@ -214,18 +214,6 @@ class MissingExtraError(TrundleError, ImportError):
 def did_you_mean(received: str, known: Iterable[str]) -> str:
     """Suggest the known name closest to a mistyped one.
 
-    Parameters
-    ----------
-    received : str
-        The name that came.
-    known : iterable of str
-        The names that exist.
-
-    Returns
-    -------
-    str
-        ``" Did you mean 'x'?"``, or nothing where no name is close.
-
     Examples
     --------
     >>> did_you_mean("radios", ["radius", "mass"])

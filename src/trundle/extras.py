@@ -16,20 +16,6 @@ MODULES = {  # what each brings, as it is imported
 def need(extra: str, asked: str, instead: str = "") -> None:
     """Refuse what an extra is needed for, unless it is installed; imports nothing of it.
 
-    Parameters
-    ----------
-    extra : str
-        One of the keys of `MODULES`.
-    asked : str
-        What the reader asked for, as they wrote it.
-    instead : str
-        What does without the extra, as a sentence.
-
-    Raises
-    ------
-    MissingExtraError
-        If it is not installed.
-
     Examples
     --------
     >>> need("lab", "scene.glb")

@@ -23,23 +23,6 @@ def staging(above: Path, *others: Path) -> Iterator[Path]:
     Only a process that is killed leaves its folder. It held a lock on it, which went with the process: so whoever
     writes there next sees that nobody needs it any more.
 
-    Parameters
-    ----------
-    above : pathlib.Path
-        Where it is made.
-    *others : pathlib.Path
-        Where those of the killed may be besides.
-
-    Yields
-    ------
-    pathlib.Path
-        The folder, whose name begins with a dot.
-
-    Raises
-    ------
-    OSError
-        If it cannot be made.
-
     Examples
     --------
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -106,21 +89,6 @@ def written_whole(target: Path) -> Iterator[Path]:
 
     Whatever interrupts the writing, the target is as it was before.
 
-    Parameters
-    ----------
-    target : pathlib.Path
-        The file to make; its folder must exist.
-
-    Yields
-    ------
-    pathlib.Path
-        The temporary file, of the same name.
-
-    Raises
-    ------
-    TrundleError
-        If the folder does not exist or cannot be written.
-
     Examples
     --------
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -142,16 +110,6 @@ def written_whole(target: Path) -> Iterator[Path]:
 
 def first_line(error: Exception) -> str:
     r"""Return the first line of what an error says, or its kind where it says nothing.
-
-    Parameters
-    ----------
-    error : Exception
-        Of somebody else's.
-
-    Returns
-    -------
-    str
-        Without the full stop.
 
     Examples
     --------

@@ -34,27 +34,6 @@ _PIECE = 200_000  # steps followed at once
 def change(data: xarray.Dataset, support: Support, old: str, new: str, own: Sequence[str] = ()) -> xarray.Dataset:
     """Return a dataset with its vectors in another frame.
 
-    Parameters
-    ----------
-    data : xarray.Dataset
-        A trajectory's data.
-    support : Support
-        Gives tilt and motion.
-    old, new : str
-        Two of `FRAMES`.
-    own : sequence of str
-        The variables that hold the coordinates of the support's own motion, as `trundle.labels.own_names` has them.
-
-    Returns
-    -------
-    xarray.Dataset
-        A new one.
-
-    Raises
-    ------
-    OutOfDomainError
-        If the support's motion has coordinates of its own that the data lack.
-
     Examples
     --------
     See `trundle.Trajectory.in_frame`.

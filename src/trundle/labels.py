@@ -37,16 +37,6 @@ _VECTORS = {
 def facts(system: RollingSystem) -> dict[str, tuple[tuple[str, ...], dict[str, Any]]]:
     """Return dimensions and attributes of every variable that a trajectory of a system has.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Its support's motion may have coordinates of its own.
-
-    Returns
-    -------
-    dict
-        By name, in the order of the dataset.
-
     Examples
     --------
     >>> import trundle as tr
@@ -72,16 +62,6 @@ def facts(system: RollingSystem) -> dict[str, tuple[tuple[str, ...], dict[str, A
 def size_of(system: RollingSystem) -> int:
     """Return how many bytes a sample takes in a dataset.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        As for `facts`.
-
-    Returns
-    -------
-    int
-        Of all variables and the time.
-
     Examples
     --------
     >>> import trundle as tr
@@ -100,18 +80,6 @@ def _named(long_name: str, unit: str) -> dict[str, Any]:
 def columns(system: RollingSystem, samples: Samples) -> dict[str, Any]:
     """Return the values of every variable of a dataset.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Gives the slip, from velocity and Ω against the support's material.
-    samples : Samples
-        In the inertial support frame.
-
-    Returns
-    -------
-    dict
-        Arrays over time, by the names that `facts` has.
-
     Examples
     --------
     See `Trajectory.data`.
@@ -128,20 +96,6 @@ def columns(system: RollingSystem, samples: Samples) -> dict[str, Any]:
 def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any]) -> xarray.Dataset:
     """Label the samples of a method.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        As for `columns`.
-    samples : Samples
-        In the inertial support frame.
-    attributes : dict
-        Of the dataset; `frame` must be "support".
-
-    Returns
-    -------
-    xarray.Dataset
-        The design's variables over `time`.
-
     Examples
     --------
     See `Trajectory.data`.
@@ -155,16 +109,6 @@ def dataset(system: RollingSystem, samples: Samples, attributes: dict[str, Any])
 
 def coordinates(times: Any) -> dict[str, Any]:
     """Return the coordinates of a dataset: the instants, and the labels of vectors and quaternions.
-
-    Parameters
-    ----------
-    times : array (n,)
-        s.
-
-    Returns
-    -------
-    dict
-        As xarray takes them.
 
     Examples
     --------
@@ -194,16 +138,6 @@ def _slip(system: RollingSystem, samples: Samples) -> Any:
 def own_names(system: RollingSystem) -> list[str]:
     """Return the names of the variables that hold the coordinates of the support's own motion.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Its support.
-
-    Returns
-    -------
-    list of str
-        In the order in which `Motion.at` takes them; mostly none.
-
     Examples
     --------
     >>> import trundle as tr
@@ -216,18 +150,6 @@ def own_names(system: RollingSystem) -> list[str]:
 
 def attributes(title: str, method: Method) -> dict[str, Any]:
     """Return what a dataset says of itself: conventions, title, method, tolerance, frame and versions.
-
-    Parameters
-    ----------
-    title : str
-        Of the scenario.
-    method : Method
-        The method that ran.
-
-    Returns
-    -------
-    dict
-        Of text and numbers.
 
     Examples
     --------

@@ -17,11 +17,6 @@ _HELD = (("memory.max", "memory.current"), ("memory.limit_in_bytes", "memory.usa
 def free() -> float | None:
     """Return how many bytes this process may still take.
 
-    Returns
-    -------
-    float or None
-        The least of what the machine, a container and a limit of the process leave; None where nothing says.
-
     Examples
     --------
     >>> free() is None or free() > 0
@@ -32,24 +27,6 @@ def free() -> float | None:
 
 def check_room(samples: int, each: int, key: str, received: object, less: Callable[[int], str]) -> None:
     """Refuse more samples than find room in memory, before any of them is worked out.
-
-    Parameters
-    ----------
-    samples : int
-        How many are asked for.
-    each : int
-        Bytes that one takes in the result.
-    key : str
-        Name of the value that decides how many there are.
-    received : object
-        That value.
-    less : callable
-        Given how many find room, says what to ask for instead, as the end of a sentence.
-
-    Raises
-    ------
-    InvalidValueError
-        If they take more than is free.
 
     Examples
     --------

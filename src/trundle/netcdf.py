@@ -22,18 +22,6 @@ _READ_BACK = 2**16  # bytes: HDF5 reads its own headers again, never the data
 def write_dataset(data: xarray.Dataset, target: Path) -> None:
     """Write a dataset to a NetCDF4 file, whole or not at all, without a copy of it in memory.
 
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Of any size.
-    target : pathlib.Path
-        The file to make; its folder must exist.
-
-    Raises
-    ------
-    TrundleError
-        If it cannot be written.
-
     Examples
     --------
     See `Trajectory.save`.
@@ -44,21 +32,6 @@ def write_dataset(data: xarray.Dataset, target: Path) -> None:
 
 def read_netcdf(path: Path) -> xarray.Dataset:
     """Read a NetCDF4 file into memory.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file.
-
-    Returns
-    -------
-    xarray.Dataset
-        As it is in the file: times are numbers.
-
-    Raises
-    ------
-    RunFileError
-        If there is no such file, or it is no NetCDF4, or damaged.
 
     Examples
     --------

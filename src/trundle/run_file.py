@@ -91,21 +91,6 @@ class RunFile:
 def digests(data: xarray.Dataset, system: RollingSystem, texts: Mapping[str, str]) -> dict[str, str]:
     """Return the SHA-256 of each part of a run that its card depends on, and of the card.
 
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Its variables, and the attributes `CLAIMS`.
-    system : RollingSystem
-        Says which variables it has.
-    texts : mapping from str to str
-        The attributes `TEXTS`, or some of them.
-
-    Returns
-    -------
-    dict from str to str
-        For each variable and attribute the digest, in hexadecimal digits, of its bytes: numbers little-endian in the
-        order of C, texts in UTF-8.
-
     Examples
     --------
     >>> import trundle as tr
@@ -136,24 +121,6 @@ def _digest(value: Any) -> str:
 def write(target: Path, data: xarray.Dataset, texts: Mapping[str, str], system: RollingSystem) -> None:
     """Write the file of a run, whole or not at all.
 
-    Parameters
-    ----------
-    target : pathlib.Path
-        The file; its folder must exist.
-    data : xarray.Dataset
-        Of the run, in any frame.
-    texts : mapping from str to str
-        The attributes `TEXTS`.
-    system : RollingSystem
-        What moved.
-
-    Raises
-    ------
-    InvalidValueError
-        If the dataset could not be read back as a run.
-    TrundleError
-        If it cannot be written.
-
     Examples
     --------
     See `Trajectory.save`.
@@ -170,23 +137,6 @@ def write(target: Path, data: xarray.Dataset, texts: Mapping[str, str], system: 
 
 def read(path: Any) -> RunFile:
     """Read the file of a run, and check all of it.
-
-    Parameters
-    ----------
-    path : path
-        A file that `write` wrote.
-
-    Returns
-    -------
-    RunFile
-        What it holds.
-
-    Raises
-    ------
-    RunFileError
-        If it is no such file, or damaged.
-    ScenarioError
-        If its scenario is none.
 
     Examples
     --------
@@ -213,21 +163,6 @@ def read(path: Any) -> RunFile:
 def scenario_in(path: Any) -> str:
     """Return the scenario in a NetCDF file, of a run or of a path that was rolled, whatever else it holds.
 
-    Parameters
-    ----------
-    path : path
-        The file.
-
-    Returns
-    -------
-    str
-        TOML text; empty where the file has none.
-
-    Raises
-    ------
-    RunFileError
-        If it cannot be read as NetCDF.
-
     Examples
     --------
     >>> import trundle as tr
@@ -251,25 +186,6 @@ def _text(data: xarray.Dataset, name: str, source: str) -> str:
 
 def json_of(text: str, kind: Any, name: str, source: str) -> Any:
     """Read an attribute that holds JSON.
-
-    Parameters
-    ----------
-    text : str
-        The attribute.
-    kind : type
-        What it describes.
-    name, source : str
-        Of the attribute and the file.
-
-    Returns
-    -------
-    of that type
-        Each number checked to be one.
-
-    Raises
-    ------
-    RunFileError
-        If it is no JSON, or describes something else.
 
     Examples
     --------

@@ -138,18 +138,6 @@ def _check_start(system: RollingSystem, start: State, until: float) -> None:
 def check_state(system: RollingSystem, start: State) -> None:
     """Refuse what is no state of a system.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Says which coordinates its support's own motion has.
-    start : State
-        Made by hand, perhaps.
-
-    Raises
-    ------
-    InvalidValueError
-        If it lacks numbers, or they are not finite.
-
     Examples
     --------
     >>> import trundle as tr

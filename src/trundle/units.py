@@ -47,25 +47,6 @@ def to_si(value: Any, kind: str, key: str) -> Any:
     seconds, newtons, joules, degrees, turns or rpm (with the usual prefixes, products and powers) is
     converted exactly and rounded once: "35 mm" is the float 0.035. Other units are pint's to convert.
 
-    Parameters
-    ----------
-    value : float, str, pint.Quantity, array or symbolic scalar
-        What the user gave.
-    kind : str
-        One of `UNITS`: the dimension that the value must have.
-    key : str
-        The name that an error message uses.
-
-    Returns
-    -------
-    float, array or symbolic scalar
-        The value in the SI unit of its kind, radians for angles.
-
-    Raises
-    ------
-    InvalidValueError
-        If the text is no quantity, has no unit or that of another dimension, or the number is NaN or infinite.
-
     Examples
     --------
     >>> to_si("35 mm", "length", "radius")
@@ -86,20 +67,6 @@ def to_si(value: Any, kind: str, key: str) -> Any:
 
 def finite(number: Any, key: str, received: Any) -> Any:
     """Return the number if it is finite; raise `InvalidValueError` under the name `key` if it is not.
-
-    Parameters
-    ----------
-    number : float or array
-        The value to look at.
-    key : str
-        The name that an error message uses.
-    received : object
-        The value as the user wrote it, for the message.
-
-    Returns
-    -------
-    float or array
-        The same number.
 
     Examples
     --------
@@ -282,11 +249,6 @@ _TIMES = ("second", "minute", "hour", "day")
 @cache
 def unit_registry() -> Any:
     """Return trundle's pint registry, made on first use (pint keeps its definitions in the user's cache).
-
-    Returns
-    -------
-    pint.UnitRegistry
-        The registry whose quantities every builder accepts.
 
     Examples
     --------

@@ -64,18 +64,6 @@ _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 def unit_for(size: float, kind: str) -> Unit:
     """Choose the unit in which a quantity of a given size reads shortest.
 
-    Parameters
-    ----------
-    size : float
-        The largest magnitude on the axis (SI).
-    kind : str
-        "length", "speed", "force", "time", "angular velocity", "torque", "damping", "angle" or "number".
-
-    Returns
-    -------
-    Unit
-        A named unit, or a power of ten of the SI unit where the named ones would need long labels.
-
     Examples
     --------
     >>> unit_for(0.5, "length").symbol, unit_for(3.0, "length").symbol, unit_for(1e-15, "length").symbol
@@ -95,20 +83,6 @@ def unit_for(size: float, kind: str) -> Unit:
 def with_unit(value: float, kind: str, digits: int = 3) -> str:
     """Write a value with the unit that suits it.
 
-    Parameters
-    ----------
-    value : float
-        The value (SI).
-    kind : str
-        As in `unit_for`.
-    digits : int
-        Significant digits.
-
-    Returns
-    -------
-    str
-        Such as ``"36.8 cm/s"``.
-
     Examples
     --------
     >>> with_unit(0.36804, "speed"), with_unit(0.025, "length")
@@ -121,16 +95,6 @@ def with_unit(value: float, kind: str, digits: int = 3) -> str:
 def as_ratio(value: float) -> str:
     """Write a number as a simple fraction where it is one, else with four digits.
 
-    Parameters
-    ----------
-    value : float
-        The number.
-
-    Returns
-    -------
-    str
-        Such as ``"2/5"``.
-
     Examples
     --------
     >>> as_ratio(0.4), as_ratio(2 / 3), as_ratio(0.37)
@@ -142,18 +106,6 @@ def as_ratio(value: float) -> str:
 
 def short(value: float, digits: int) -> str:
     """Write a number with so many significant digits, in typographer's signs.
-
-    Parameters
-    ----------
-    value : float
-        The number.
-    digits : int
-        Significant digits.
-
-    Returns
-    -------
-    str
-        Such as ``"−1.5·10⁻⁹"``.
 
     Examples
     --------
@@ -174,20 +126,6 @@ def short(value: float, digits: int) -> str:
 def formula(value: Any, symbol: str, unit: str) -> str:
     """Write a number with its unit, or a formula in the time, each with its symbol.
 
-    Parameters
-    ----------
-    value : float or Expression
-        What stands there.
-    symbol : str
-        Such as "ω".
-    unit : str
-        Of the number.
-
-    Returns
-    -------
-    str
-        On a line.
-
     Examples
     --------
     >>> formula(2.0, "ω", "rad/s")
@@ -201,16 +139,6 @@ def formula(value: Any, symbol: str, unit: str) -> str:
 def cut(text: str) -> str:
     """Write a formula as a book does, as much of it as a line has room for.
 
-    Parameters
-    ----------
-    text : str
-        As it stands in a file.
-
-    Returns
-    -------
-    str
-        Such as ``"2·r^2"``.
-
     Examples
     --------
     >>> cut("2*r**2 - r")
@@ -222,16 +150,6 @@ def cut(text: str) -> str:
 
 def rate(value: Any) -> str:
     """Write a rate of turning, also by the minute.
-
-    Parameters
-    ----------
-    value : float
-        rad/s.
-
-    Returns
-    -------
-    str
-        Such as ``"3 rad/s (28.65 rpm)"``.
 
     Examples
     --------
@@ -246,16 +164,6 @@ def rate(value: Any) -> str:
 def degrees(angle: Any) -> str:
     """Write an angle in degrees.
 
-    Parameters
-    ----------
-    angle : float
-        rad.
-
-    Returns
-    -------
-    str
-        With four digits.
-
     Examples
     --------
     >>> degrees(0.5)
@@ -267,16 +175,6 @@ def degrees(angle: Any) -> str:
 def length(*values: Any) -> str:
     """Write a length, or several as those of a box.
 
-    Parameters
-    ----------
-    *values : float
-        m.
-
-    Returns
-    -------
-    str
-        Each in the unit that suits it.
-
     Examples
     --------
     >>> length(0.5, 0.4)
@@ -287,18 +185,6 @@ def length(*values: Any) -> str:
 
 def pair(values: tuple[Any, Any], unit: str) -> str:
     """Write two components, what is nothing beside the other as 0.
-
-    Parameters
-    ----------
-    values : tuple of two floats
-        In SI.
-    unit : str
-        Of both.
-
-    Returns
-    -------
-    str
-        With six digits.
 
     Examples
     --------

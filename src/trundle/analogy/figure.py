@@ -30,18 +30,6 @@ _WIDE, _LOW, _TALL = 7.6, 2.6, 5.2
 def draw(pair: Twin, duration: float) -> Sheet:
     """Draw the sheet.
 
-    Parameters
-    ----------
-    pair : Twin
-        Ball and charge.
-    duration : float
-        How long, s of the ball.
-
-    Returns
-    -------
-    Sheet
-        A map, and below it the distance between the two paths.
-
     Examples
     --------
     >>> import trundle as tr

@@ -20,16 +20,6 @@ Row = tuple[str, str, str, str, str]  # what it is, of the ball, its value, of t
 def rows(pair: Twin) -> list[Row]:
     """Return the rows; values of the charge that depend on time are in the time of the ball.
 
-    Parameters
-    ----------
-    pair : Twin
-        Ball and charge.
-
-    Returns
-    -------
-    list of rows
-        Each: what both are, and for the ball and the charge a formula and a value.
-
     Examples
     --------
     >>> import trundle as tr
@@ -80,16 +70,6 @@ def rows(pair: Twin) -> list[Row]:
 def settings(pair: Twin) -> list[tuple[str, str]]:
     """Return what to set on either side.
 
-    Parameters
-    ----------
-    pair : Twin
-        Ball and charge.
-
-    Returns
-    -------
-    list of (name, value)
-        Of the table, then of the fields.
-
     Examples
     --------
     >>> import trundle as tr
@@ -113,18 +93,7 @@ def settings(pair: Twin) -> list[tuple[str, str]]:
 
 
 def report(pair: Twin) -> str:
-    """Write out the correspondence and how far the two paths are apart, as the command prints them.
-
-    Parameters
-    ----------
-    pair : Twin
-        Ball and charge.
-
-    Returns
-    -------
-    str
-        Several lines.
-    """
+    """Write out the correspondence and how far the two paths are apart, as the command prints them."""
     head = [pair.title, ""] if pair.title else []
     return "\n".join([*head, *_columns([HEADS, *rows(pair)]), "", *_columns(settings(pair)), "", agreement(pair)])
 

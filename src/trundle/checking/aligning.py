@@ -42,18 +42,7 @@ class Aligned:
 
 
 def aligned(case: Case) -> Aligned:
-    """Take their Ω for one along the body's axes, and find the orientation from which the ball rolls best.
-
-    Parameters
-    ----------
-    case : Case
-        With Ω, and no orientation of theirs.
-
-    Returns
-    -------
-    Aligned
-        The start that is given where no other makes it roll.
-    """
+    """Take their Ω for one along the body's axes, and find the orientation from which the ball rolls best."""
     given = Quaternion(*first_orientation(case.start))
     if not concentric_sphere(case.system.body.shape):  # where another touches, its orientation tells
         return Aligned(given, given=True)

@@ -11,22 +11,6 @@ LEAST_FREEDOM = 1.0
 def longest(count: int, freedom: float, parts: int = 3, chance: float = CHANCE) -> float:
     """Return how long the longest of many vectors of noise becomes, in standard deviations of one component.
 
-    Parameters
-    ----------
-    count : int
-        How many vectors are looked at; that some of them go together makes the true chance smaller.
-    freedom : float
-        Degrees of freedom of the data from which the standard deviation was estimated.
-    parts : int
-        Components of each vector.
-    chance : float
-        Of exceeding what is returned.
-
-    Returns
-    -------
-    float
-        From the distribution of F with Bonferroni's correction.
-
     Examples
     --------
     >>> round(longest(1, 1e9, parts=1, chance=0.05), 3), round(longest(240, 1e9), 2)

@@ -48,24 +48,7 @@ class Sensitivity:
 def sensitivity_of(
     system: RollingSystem, asked: Callable[[Instants], Sequence[Array]], at: Motion
 ) -> tuple[Sensitivity, tuple[Array, ...]]:
-    """Shift the states to either side, part by part, and see what becomes of what follows from them.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        What is said to move.
-    asked : callable
-        states -> arrays, a row for each.
-    at : Motion
-        At few instants.
-
-    Returns
-    -------
-    sensitivity : Sensitivity
-        At the instants of the motion.
-    values : tuple of array
-        What was asked, there.
-    """
+    """Shift the states to either side, part by part, and see what becomes of what follows from them."""
     steps, spreads = [], []
     for name, scale in _scales(system, at).items():
         spread = at.estimates[name].spread[:, None]
@@ -135,18 +118,7 @@ class Comparison:
 
 
 def comparisons(theirs: Theirs) -> Iterator[Comparison]:
-    """Yield what can be compared of what they gave; where two have one name, the closer one is to be taken.
-
-    Parameters
-    ----------
-    theirs : Theirs
-        Their samples.
-
-    Yields
-    ------
-    Comparison
-        Each with a figure's name.
-    """
+    """Yield what can be compared of what they gave; where two have one name, the closer one is to be taken."""
     given = {name for name in ("velocity", "angular_velocity", "orientation") if getattr(theirs, name) is not None}
     given -= {"orientation"} & set(theirs.doubts)
     if "velocity" in given:
@@ -208,18 +180,6 @@ def _largest(*arrays: Array) -> float:
 
 def nodes_of(index: Mapping[str, Index]) -> tuple[Index, dict[str, Index]]:
     """Return all samples that windows look at, ascending, and where among them each window's nodes are.
-
-    Parameters
-    ----------
-    index : mapping from a name to int array (k, nodes)
-        Samples.
-
-    Returns
-    -------
-    all : int array (m,)
-        Each sample once.
-    places : dict from the name to int array (k, nodes)
-        Among them.
 
     Examples
     --------

@@ -38,18 +38,7 @@ class Power:
 
 
 def power_of(case: Case) -> Power:
-    """Suppose each mistake of the textbook in turn, and see whether the data would condemn it.
-
-    Parameters
-    ----------
-    case : Case
-        What was found.
-
-    Returns
-    -------
-    Power
-        Of these data.
-    """
+    """Suppose each mistake of the textbook in turn, and see whether the data would condemn it."""
     view, shown, blind = case.view.thinned(_WINDOWS), dict[str, str](), dict[str, str]()
     reacts = sensitivity(case.system, case.theirs, case.start, independent_law)
     right, _ = examine(case.system, case.theirs, case.tolerance, case.start, view, independent_law, reacts)

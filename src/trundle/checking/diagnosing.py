@@ -32,18 +32,7 @@ _FITTED = (SLIP, ACCELERATION, TURNING)
 
 
 def diagnose(case: Case) -> tuple[tuple[Mistake, ...], tuple[Mistake, ...]]:
-    """Return the mistakes that explain a failing check, and where none does, those that explain most of it.
-
-    Parameters
-    ----------
-    case : Case
-        What failed.
-
-    Returns
-    -------
-    explain, nearest : tuple of Mistake
-        The likeliest first.
-    """
+    """Return the mistakes that explain a failing check, and where none does, those that explain most of it."""
     with np.errstate(all="ignore"):  # numbers so changed may be no motion at all
         trials = _Trials(case)
         suspects = [

@@ -42,41 +42,12 @@ class Doubt:
         return self.turning + self.walking
 
     def fitted(self, time: Array, unsure: float) -> Doubt:
-        """Return the doubt of a walk about its mean, where all of the run told the start.
-
-        Parameters
-        ----------
-        time : array (n,)
-            s.
-        unsure : float
-            By what the start may be off besides, rad.
-
-        Returns
-        -------
-        Doubt
-            Least amid the run.
-        """
+        """Return the doubt of a walk about its mean, where all of the run told the start."""
         share = (time - time[0]) / (time[-1] - time[0])
         return replace(self, walking=unsure + self.walking.max() * np.sqrt(1 / 3 - share + share**2))
 
     def of_rate(self, index: Index, fastest: float, length: Array, rate: Array, span: Array) -> Array:
-        """Return what it leaves open of the mean rate of a vector that was turned by the orientation.
-
-        Parameters
-        ----------
-        index : int array (k, nodes)
-            Samples of some windows.
-        fastest : float
-            At which the body turns, rad/s.
-        length, rate : array (k, nodes)
-            Of the vector, and of its rate.
-        span : array (k,)
-            Of each window, s.
-
-        Returns
-        -------
-        array (k,)
-        """
+        """Return what it leaves open of the mean rate of a vector that was turned by the orientation."""
         swinging = (self.turning[index] * fastest * length).mean(axis=1)
         before, within = (self.walking[index] * rate).mean(axis=1), self.drift * length.mean(axis=1) / np.sqrt(span)
         return np.asarray(swinging + np.hypot(before, within))
@@ -84,20 +55,6 @@ class Doubt:
 
 def doubt_of(time: Array, angular_velocity: Array, gain: Array) -> Doubt:
     """Return the doubt of an orientation that was added up.
-
-    Parameters
-    ----------
-    time : array (n,)
-        Ascending, s.
-    angular_velocity : array (n, 3)
-        Ω, rad/s, along any axes. The noise of one component is also that of its length, which is smooth along all axes.
-    gain : array (n,)
-        Angle by which steps twice as long make the orientation another, rad.
-
-    Returns
-    -------
-    Doubt
-        What noise adds up to is no matter of the steps.
 
     Examples
     --------

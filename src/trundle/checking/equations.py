@@ -53,20 +53,6 @@ class States:
 def states(system: RollingSystem, count: int, seed: int = 0) -> States:
     """Draw random states that touch and roll.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Body and support.
-    count : int
-        How many.
-    seed : int
-        Of the draw: the same seed gives the same states.
-
-    Returns
-    -------
-    States
-        Places over some ten radii or the rim, Ω of the order of the motion's own rates, orientations anywhere.
-
     Examples
     --------
     >>> import trundle as tr

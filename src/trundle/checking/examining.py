@@ -83,24 +83,7 @@ class View:
 
 
 def view_of(system: RollingSystem, theirs: Theirs, tolerance: float, start: State | None) -> View:
-    """Choose for each comparison the windows in which a wrong rate would show best.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        What is said to move.
-    theirs : Theirs
-        Their samples, checked.
-    tolerance : float
-        As for `examine`.
-    start : State, optional
-        As for `motion_of`.
-
-    Returns
-    -------
-    View
-        Of widths that tell as much as each other, the narrowest.
-    """
+    """Choose for each comparison the windows in which a wrong rate would show best."""
     n = theirs.time.size
     tried = {f"{i}": plan.thinned(_TRIAL) for i, plan in enumerate(plans(n))}
     whole = list(plans(n))
@@ -134,32 +117,7 @@ def examine(
     law: Law = independent_law,
     reacts: Sensitivity | None = None,
 ) -> tuple[dict[str, Series], Motion]:
-    """Compare their motion with contact, constraint and law.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        What is said to move.
-    theirs : Theirs
-        Their samples, checked.
-    tolerance : float
-        To which they are held, as a share; the data's own noise and spacing may ask for more room.
-    start : State, optional
-        As for `motion_of`.
-    view : View
-        How to look.
-    law : callable
-        Gives the accelerations.
-    reacts : Sensitivity, optional
-        Of a law much like it, where the errors of the states need not be followed again.
-
-    Returns
-    -------
-    series : dict from str to Series
-        By name.
-    motion : Motion
-        That they are of, at all instants looked at.
-    """
+    """Compare their motion with contact, constraint and law."""
     view = view.fitting(theirs)
     windows = {one.name: plan.index for one, plan in view.compared}
     index, places = nodes_of(windows | {"": view.instants[None]})
@@ -190,18 +148,7 @@ def _times(name: str) -> float:
 
 
 def sensitivity(system: RollingSystem, theirs: Theirs, start: State | None, law: Law) -> Sensitivity:
-    """Return what errors of their states do to V̇, Ω̇, slip and gap.
-
-    Parameters
-    ----------
-    system, theirs, start, law
-        As of `examine`.
-
-    Returns
-    -------
-    Sensitivity
-        At some instants all along their samples.
-    """
+    """Return what errors of their states do to V̇, Ω̇, slip and gap."""
     n = theirs.time.size
     few = np.unique(np.linspace(0, n - 1, min(n, SHIFTED)).round().astype(int))
 

@@ -31,25 +31,6 @@ class Table:
 def open_file(path: Path, columns: Mapping[str, str]) -> Any:
     r"""Return what a file holds, by its ending.
 
-    Parameters
-    ----------
-    path : Path
-        Ends in .csv, .txt, .tsv or .dat (text); .parquet; or .nc (NetCDF).
-    columns : mapping
-        Named columns; a text file without headings takes them in order from the keys.
-
-    Returns
-    -------
-    Table, pandas.DataFrame or xarray.Dataset
-        Not yet looked at.
-
-    Raises
-    ------
-    InvalidValueError
-        If the file does not exist or cannot be read.
-    MissingExtraError
-        If it is Parquet, and the extra `parquet` is not installed.
-
     Examples
     --------
     >>> _ = Path("theirs.csv").write_text("t,x,y\n0,1,2\n")

@@ -64,20 +64,7 @@ class _LateLaw:
 
 
 def least_squares(residual: Callable[[Array], Array], guess: list[float]) -> tuple[Array, Array] | None:
-    """Fit numbers so that residuals, over their bounds, are least.
-
-    Parameters
-    ----------
-    residual : callable
-        Takes the numbers.
-    guess : list of float
-        To start from; also the scale, where it is not zero.
-
-    Returns
-    -------
-    numbers, doubt : array
-        With what each may be off by; None where no fit is to be had.
-    """
+    """Fit numbers so that residuals, over their bounds, are least."""
     from scipy import optimize
 
     scale = np.where(np.asarray(guess) == 0, 1.0, np.abs(guess))
@@ -100,22 +87,7 @@ def least_squares(residual: Callable[[Array], Array], guess: list[float]) -> tup
 
 
 def fitted(family: Family, system: RollingSystem, residual: Callable[[Suspect], Array]) -> Iterator[Suspect]:
-    """Yield what a fit of one family suspects.
-
-    Parameters
-    ----------
-    family : Family
-        Which numbers.
-    system : RollingSystem
-        The right one.
-    residual : callable
-        What is off if something is supposed, over its bounds, in one row.
-
-    Yields
-    ------
-    Suspect
-        With the numbers that fit.
-    """
+    """Yield what a fit of one family suspects."""
     if not family.applies(system):
         return
     found = least_squares(lambda numbers: residual(family.suspect(numbers)), family.guess(system))

@@ -23,24 +23,7 @@ _INSTANTS = 48  # looked at
 
 
 def integrals(system: RollingSystem, theirs: Theirs, tolerance: float, start: State | None) -> Iterator[Series]:
-    """Compare each integral that the system has with its value at the first instant.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Says which integrals it has.
-    theirs : Theirs
-        Their samples, checked.
-    tolerance : float
-        As for `examine`.
-    start : State, optional
-        As for `motion_of`.
-
-    Yields
-    ------
-    Series
-        The drift, with a bound that holds what noise and errors of the states do to it.
-    """
+    """Compare each integral that the system has with its value at the first instant."""
     n = theirs.time.size
     at = motion_of(system, theirs, start, np.unique(np.linspace(0, n - 1, min(n, _INSTANTS)).round().astype(int)))
     for integral in invariants_of(system):

@@ -24,20 +24,7 @@ Law = Callable[[RollingSystem, Instants], Rates]
 
 
 def independent_law(system: RollingSystem, at: Instants) -> Rates:
-    """Return V̇ and Ω̇ from Newton, Euler and the differentiated constraint as one 9×9 system; T2 is not used.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Body, support and loads.
-    at : Instants
-        The states.
-
-    Returns
-    -------
-    acceleration, angular_acceleration : array (m, 3)
-        m/s² and rad/s².
-    """
+    """Return V̇ and Ω̇ from Newton, Euler and the differentiated constraint as one 9×9 system; T2 is not used."""
     slip = Vector.of(at.slip)
     Omega, V = Vector.of(at.angular_velocity), Vector.of(at.velocity)
     p_rate, rho_rate = (np.broadcast_to(v.array(), at.position.shape) for v in at.contact.rates(slip, Omega, V))
@@ -60,18 +47,7 @@ def independent_law(system: RollingSystem, at: Instants) -> Rates:
 
 
 def eliminated_law(system: RollingSystem, at: Instants) -> Rates:
-    """Return V̇ and Ω̇ from T2 and T3, for systems that leave a term out: the 9×9 route knows all terms.
-
-    Parameters
-    ----------
-    system, at
-        As for `independent_law`.
-
-    Returns
-    -------
-    acceleration, angular_acceleration : array (m, 3)
-        m/s² and rad/s².
-    """
+    """Return V̇ and Ω̇ from T2 and T3, for systems that leave a term out: the 9×9 route knows all terms."""
     q, Omega = Quaternion.of(at.orientation), Vector.of(at.angular_velocity)
     now = roll(system, at.time, at.contact.point, q, Omega)
     state = now.contact.body_motion(system.body.mass, at.time, now.velocity, q, Omega)
@@ -79,18 +55,7 @@ def eliminated_law(system: RollingSystem, at: Instants) -> Rates:
 
 
 def frictionless_law(system: RollingSystem, at: Instants) -> Rates:
-    """Return V̇ and Ω̇ of a body that slides as a puck does: the support pushes, and nothing holds it along.
-
-    Parameters
-    ----------
-    system, at
-        As for `independent_law`.
-
-    Returns
-    -------
-    acceleration, angular_acceleration : array (m, 3)
-        m/s² and rad/s².
-    """
+    """Return V̇ and Ω̇ of a body that slides as a puck does: the support pushes, and nothing holds it along."""
     q, Omega = Quaternion.of(at.orientation), Vector.of(at.angular_velocity)
     slipping = Vector.of(at.slip)
     now = slip(system, at.time, at.contact.point, q, Omega, slipping, direction=ZERO)
@@ -106,18 +71,7 @@ def _rates(system: RollingSystem, at: Instants, force: Vector, turning: Vector) 
 
 
 def constrained(law: Law) -> Law:
-    """Return a law whose V̇ is another's, and whose Ω̇ follows from it by the true constraint, the spin as it should.
-
-    Parameters
-    ----------
-    law : callable
-        A wrong one.
-
-    Returns
-    -------
-    callable
-        As somebody has it who integrates V by a wrong law, and works out Ω from V by no slip.
-    """
+    """Return a law whose V̇ is another's, and whose Ω̇ follows from it by the true constraint, the spin as it should."""
 
     def constrained_law(system: RollingSystem, at: Instants) -> Rates:
         V_rate, _ = law(system, at)
@@ -133,18 +87,7 @@ def constrained(law: Law) -> Law:
 
 
 def circling(factor: float) -> Law:
-    """Return the law of a ball that goes round at a factor of the table's rate, where it should be k/(1 + k).
-
-    Parameters
-    ----------
-    factor : float
-        Of ω, with its sign.
-
-    Returns
-    -------
-    callable
-        The law on a table of such a rate that the ball goes round as it is said to; Ω as no slip on the true one asks.
-    """
+    """Return the law of a ball that goes round at a factor of the table's rate, where it should be k/(1 + k)."""
 
     def law(system: RollingSystem, at: Instants) -> Rates:
         k, omega = float(system.body.inertia_ratio), float(system.support.motion.steady_rate or 0.0)

@@ -31,26 +31,7 @@ class Open:
 
 
 def left_open(one: Comparison, weights: Weights, at: Motion, place: Index, reacts: Sensitivity) -> Open:
-    """Work out what cannot be told of a comparison.
-
-    Parameters
-    ----------
-    one : Comparison
-        What is compared.
-    weights : Weights
-        Over which windows.
-    at : Motion
-        Their states at all nodes.
-    place : int array (k, nodes)
-        Where the windows' nodes are among these.
-    reacts : Sensitivity
-        What errors of the states do to the law.
-
-    Returns
-    -------
-    Open
-        For each window.
-    """
+    """Work out what cannot be told of a comparison."""
     gains = {part: gain for part, gain in one.gains(at, reacts).items() if part in at.estimates}
     noise = {name: _noise(at, name, place) for name in {one.array, *(at.sources[part] for part in gains)}}
 
@@ -89,24 +70,7 @@ class Seen:
 def seen(
     one: Comparison, weights: Weights, theirs: Theirs, at: Motion, place: Index, rates: Rates, open_: Open
 ) -> Seen:
-    """Return the mismatch of a comparison.
-
-    Parameters
-    ----------
-    one, weights, at, place
-        As of `left_open`.
-    theirs : Theirs
-        Their samples.
-    rates : pair of array
-        V̇ and Ω̇ of the law at all nodes.
-    open_ : Open
-        What cannot be told.
-
-    Returns
-    -------
-    Seen
-        As vectors.
-    """
+    """Return the mismatch of a comparison."""
     f = one.rate(at, rates)[place]
     mismatch, change = weights.mismatch(getattr(theirs, one.array), f)
     bias = open_.bias + np.maximum(change - _BEYOND * np.sqrt(f.shape[-1]) * open_.by_chance, 0.0)
@@ -125,18 +89,7 @@ def _doubtful(name: str, theirs: Theirs, index: Index, f: Array) -> Array:
 
 
 def share_left(one: Comparison, weights: Weights, at: Motion, place: Index, rates: Rates) -> float:
-    """Return the share of a mismatch that means over windows leave, if it turns about as the motion itself does.
-
-    Parameters
-    ----------
-    one, weights, at, place, rates
-        As of `seen`.
-
-    Returns
-    -------
-    float
-        1 where nothing turns within a window.
-    """
+    """Return the share of a mismatch that means over windows leave, if it turns about as the motion itself does."""
     probes = [one.rate(at, rates)] + ([at.velocity] if one.which is not None and not one.turning else [])
     return min(_left(weights, probe[place]) for probe in probes)
 

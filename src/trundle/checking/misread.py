@@ -31,18 +31,7 @@ _TIME, _LENGTH, _OMEGA, _PLACE, _FRAME, _TURNED, _AXES = (
 
 
 def misreadings(case: Case) -> Iterator[Suspect]:
-    """Yield what their numbers may mean instead, the commonest first.
-
-    Parameters
-    ----------
-    case : Case
-        What was found of them.
-
-    Yields
-    ------
-    Suspect
-        Each undoes a misreading.
-    """
+    """Yield what their numbers may mean instead, the commonest first."""
     for some in (_units, _body_axes, _places, _quaternions, _holonomic):
         yield from some(case)
 

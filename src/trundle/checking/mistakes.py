@@ -99,18 +99,6 @@ def law_of(suspects: Sequence[Suspect], otherwise: Law = laws.independent_law) -
 def mechanical(system: RollingSystem, *, turning: bool = True) -> Iterator[Suspect]:
     """Yield the mistakes of mechanics that can be made with a system, the commonest first.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        The right one.
-    turning : bool
-        Whether Ω is told, by which another table is told from another rate of the circle.
-
-    Yields
-    ------
-    Suspect
-        Without samples.
-
     Examples
     --------
     >>> import trundle as tr

@@ -101,48 +101,14 @@ def _changed(name: str, part: Array, step: Array) -> Array:
 
 
 def instants(system: RollingSystem, time: Array, parts: Mapping[str, Array], spin: Array | None = None) -> Instants:
-    """Return states with their contact.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Body and support.
-    time : array (m,)
-        s.
-    parts : mapping from str to array
-        position, velocity, orientation, and angular_velocity where `spin` is absent.
-    spin : array (m,), optional
-        Ω·n where Ω follows from no slip, rad/s.
-
-    Returns
-    -------
-    Instants
-        As they were given.
-    """
+    """Return states with their contact."""
     contact = contact_of(system, time, parts["position"], parts["orientation"])
     Omega = parts["angular_velocity"] if spin is None else _from_no_slip(contact, parts["velocity"], spin)
     return Instants(time, parts["position"], parts["velocity"], Omega, parts["orientation"], contact)
 
 
 def motion_of(system: RollingSystem, theirs: Theirs, start: State | None, index: Index) -> Motion:
-    """Work out what they did not give, at some of their samples.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Body and support.
-    theirs : Theirs
-        Their samples.
-    start : State, optional
-        Gives orientation and spin where they do not tell.
-    index : int array (m,)
-        At which samples, ascending.
-
-    Returns
-    -------
-    Motion
-        At those samples.
-    """
+    """Work out what they did not give, at some of their samples."""
     estimates, sources = _estimates(theirs, index)
     time, parts = theirs.time[index], {name: estimate.values for name, estimate in estimates.items()}
     if "orientation" in parts:
@@ -199,20 +165,7 @@ def _estimates(theirs: Theirs, index: Index) -> tuple[dict[str, Estimate], dict[
 
 
 def turning_of(theirs: Theirs, index: Index) -> Estimate:
-    """Return Ω = 2 q̇ q* from their orientations.
-
-    Parameters
-    ----------
-    theirs : Theirs
-        With orientations.
-    index : int array (m,)
-        At which samples.
-
-    Returns
-    -------
-    Estimate
-        Ω in the support frame, rad/s.
-    """
+    """Return Ω = 2 q̇ q* from their orientations."""
     rate, q = (theirs.slope("orientation", index, order, _AVERAGED) for order in (1, 0))
     Omega = 2 * (Quaternion.of(rate.values) * Quaternion.of(q.values).conjugate).array()[:, 1:]
     size = np.linalg.norm(rate.values, axis=1)
@@ -282,22 +235,7 @@ def _velocity(theirs: Theirs, index: Index) -> Array:
 
 
 def with_orientation(system: RollingSystem, theirs: Theirs, start: State | None) -> Theirs:
-    """Add up their Ω to an orientation where the law needs one and they gave none.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        A body that is the same from every side needs none.
-    theirs : Theirs
-        With Ω.
-    start : State, optional
-        Gives the orientation at the first sample.
-
-    Returns
-    -------
-    Theirs
-        With an orientation, if one is needed.
-    """
+    """Add up their Ω to an orientation where the law needs one and they gave none."""
     if system.body.is_isotropic_sphere or theirs.orientation is not None or theirs.angular_velocity is None:
         return theirs
     q, doubt = added_up(theirs, first_orientation(start))
@@ -305,42 +243,14 @@ def with_orientation(system: RollingSystem, theirs: Theirs, start: State | None)
 
 
 def added_up(theirs: Theirs, q0: tuple[float, ...]) -> tuple[Array, Doubt]:
-    """Return the orientation that their Ω adds up to, and the angle by which it may be off.
-
-    Parameters
-    ----------
-    theirs : Theirs
-        With Ω.
-    q0 : tuple of 4 floats
-        Orientation at the first sample.
-
-    Returns
-    -------
-    orientation : array (n, 4)
-        Unit quaternions.
-    doubt : Doubt
-        By what they may be off.
-    """
+    """Return the orientation that their Ω adds up to, and the angle by which it may be off."""
     assert theirs.angular_velocity is not None  # noqa: S101  for the type checker; callers have looked
     q, gain = orientation_from(theirs.time, theirs.angular_velocity, q0)
     return q, doubt_of(theirs.time, theirs.angular_velocity, gain)
 
 
 def turned_to_space(theirs: Theirs, q0: tuple[float, ...]) -> Theirs:
-    """Take their Ω for one along the body's axes, add it up to an orientation, and turn it to those of the frame.
-
-    Parameters
-    ----------
-    theirs : Theirs
-        With Ω.
-    q0 : tuple of 4 floats
-        Orientation at the first sample.
-
-    Returns
-    -------
-    Theirs
-        With both, and their doubts.
-    """
+    """Take their Ω for one along the body's axes, add it up to an orientation, and turn it to those of the frame."""
     assert theirs.angular_velocity is not None  # noqa: S101  for the type checker; callers have looked
     q, gain = orientation_from(theirs.time, theirs.angular_velocity, q0, body_axes=True)
     turned = (Quaternion.of(q).matrix() @ Vector.of(theirs.angular_velocity)).array()
@@ -360,16 +270,6 @@ def _from_no_slip(contact: Contact, V: Array, spin: Array) -> Array:
 
 def rate_of(system: RollingSystem) -> float:
     """Return the size of the support's rate, or the largest of its first instants', rad/s.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        With a support that may turn.
-
-    Returns
-    -------
-    float
-        Never negative, whichever way it turns.
 
     Examples
     --------

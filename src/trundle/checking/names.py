@@ -53,16 +53,6 @@ _SUFFIXES = {
 def kind_of(column: str) -> str | None:
     """Return the kind of quantity that a column of trundle's name holds; None for a plain number.
 
-    Parameters
-    ----------
-    column : str
-        A key of `ALIASES`.
-
-    Returns
-    -------
-    str or None
-        As in `trundle.units.UNITS`.
-
     Examples
     --------
     >>> kind_of("wx"), kind_of("x"), kind_of("qw")
@@ -75,21 +65,6 @@ def kind_of(column: str) -> str | None:
 
 def recognise(headings: Iterable[str]) -> dict[str, tuple[str, str]]:
     """Find trundle's columns among the headings of a file.
-
-    Parameters
-    ----------
-    headings : iterable of str
-        As they stand in the file, perhaps with a unit: "x [mm]", "wx_deg_s".
-
-    Returns
-    -------
-    dict
-        Trundle's name -> (the heading, its unit or an empty text).
-
-    Raises
-    ------
-    InvalidValueError
-        If two headings mean the same column.
 
     Examples
     --------
@@ -116,16 +91,6 @@ def recognise(headings: Iterable[str]) -> dict[str, tuple[str, str]]:
 
 def apart(heading: str) -> tuple[str, str]:
     """Return a heading and the unit in brackets behind it.
-
-    Parameters
-    ----------
-    heading : str
-        Such as "x [mm]".
-
-    Returns
-    -------
-    name, unit : str
-        The unit empty where there is none.
 
     Examples
     --------
@@ -155,23 +120,6 @@ def _split(heading: str, known: Mapping[str, str]) -> tuple[str, str]:
 def mapped(columns: Mapping[str, str], headings: Iterable[str]) -> dict[str, tuple[str, str]]:
     """Check the columns that a user named.
 
-    Parameters
-    ----------
-    columns : mapping
-        Trundle's name -> the heading in the file.
-    headings : iterable of str
-        Of the file.
-
-    Returns
-    -------
-    dict
-        As `recognise`, for these columns.
-
-    Raises
-    ------
-    UnknownNameError
-        If there is no such column, here or there.
-
     Examples
     --------
     >>> mapped({"t": "frame (ms)"}, ["frame (ms)", "u", "v"])
@@ -189,20 +137,6 @@ def mapped(columns: Mapping[str, str], headings: Iterable[str]) -> dict[str, tup
 
 def factor(unit: str, kind: str | None, key: str) -> float:
     """Return what a column must be multiplied with to be in SI.
-
-    Parameters
-    ----------
-    unit : str
-        Such as "mm"; empty for SI.
-    kind : str or None
-        As `kind_of` returns it.
-    key : str
-        The name that an error message uses.
-
-    Returns
-    -------
-    float
-        1.0 for SI.
 
     Examples
     --------

@@ -70,20 +70,6 @@ class Noise:
 def noise_of(time: Array, values: Array, known: Known) -> Noise:
     """Return the noise of samples.
 
-    Parameters
-    ----------
-    time : array (n,)
-        Ascending, s.
-    values : array (n, c)
-        Samples of c quantities.
-    known : dict
-        Keeps what was worked out of the instants.
-
-    Returns
-    -------
-    Noise
-        As the samples show it.
-
     Examples
     --------
     >>> t, draw = np.linspace(0.0, 6.0, 400), np.random.default_rng(0)

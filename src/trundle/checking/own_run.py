@@ -77,26 +77,7 @@ class _Start:
 def own_run(
     system: RollingSystem, theirs: Theirs, tolerance: float, start: State | None
 ) -> tuple[Series | None, OwnRun]:
-    """Run the system from their start, as it is or as near as its noise allows, and follow how far theirs moves away.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        What is said to move.
-    theirs : Theirs
-        Their samples, checked.
-    tolerance : float
-        Of it, as a share of the way travelled.
-    start : State, optional
-        As for `motion_of`.
-
-    Returns
-    -------
-    series : Series or None
-        The distance; its bound is the noise of their samples, where the start is as uncertain as they make it.
-    run : OwnRun
-        Ours.
-    """
+    """Run the system from their start, as it is or as near as its noise allows; follow how far theirs moves away."""
     n = theirs.time.size
     at = motion_of(system, theirs, start, np.unique(np.linspace(0, n - 1, min(n, INSTANTS)).round().astype(int)))
     where = theirs.position[at.index]

@@ -39,26 +39,7 @@ Known = dict[tuple[Any, ...], Polynomials]
 
 
 def polynomials(time: Array, centres: Index, order: int, degree: int, width: int, known: Known) -> Polynomials:
-    """Return the weights of fits about some of the samples; they are worked out once.
-
-    Parameters
-    ----------
-    time : array (n,)
-        Ascending, s.
-    centres : int array (m,)
-        At which samples.
-    order : int
-        Of the derivative.
-    degree, width : int
-        Of each polynomial, and the samples that it is fitted to.
-    known : dict
-        Keeps what was worked out of the instants.
-
-    Returns
-    -------
-    Polynomials
-        Windows are moved inwards at the ends.
-    """
+    """Return the weights of fits about some of the samples; they are worked out once."""
     key = (id(time), centres.tobytes(), order, degree, width)
     if key not in known:
         known[key] = _windows(time, centres, order, degree, width)

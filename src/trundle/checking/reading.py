@@ -95,25 +95,6 @@ class Conventions:
 def read(data: Any, system: RollingSystem, conventions: Conventions) -> Theirs:
     """Read a trajectory from whatever it comes in.
 
-    Parameters
-    ----------
-    data : path, pandas.DataFrame, xarray.Dataset, Trajectory or mapping of arrays
-        A file ending in .csv, .txt, .tsv, .dat, .parquet, .nc; or what is in memory already.
-    system : RollingSystem
-        Gives tilt and rate of the support, where another frame must be left.
-    conventions : Conventions
-        How the numbers are to be read.
-
-    Returns
-    -------
-    Theirs
-        In the inertial support frame, SI; not yet checked.
-
-    Raises
-    ------
-    InvalidValueError
-        If it cannot be read, or lacks time or position.
-
     Examples
     --------
     >>> import trundle as tr
@@ -284,20 +265,6 @@ def _in_space(theirs: Theirs, system: RollingSystem, conventions: Conventions) -
 
 def from_frame(theirs: Theirs, system: RollingSystem, frame: str) -> Theirs:
     """Return the same motion in the support frame.
-
-    Parameters
-    ----------
-    theirs : Theirs
-        In another frame.
-    system : RollingSystem
-        Gives tilt and rate of the support.
-    frame : str
-        One of `trundle.frames.FRAMES`.
-
-    Returns
-    -------
-    Theirs
-        In the inertial support frame.
 
     Examples
     --------

@@ -106,23 +106,6 @@ class Theirs:
 def checked(theirs: Theirs, system: RollingSystem) -> Theirs:
     """Refuse what cannot be checked, and give quaternions unit length and a sign that is continuous in time.
 
-    Parameters
-    ----------
-    theirs : Theirs
-        As it was read.
-    system : RollingSystem
-        Gives the height of the centre over a plane where only two components came.
-
-    Returns
-    -------
-    Theirs
-        Ready to be examined.
-
-    Raises
-    ------
-    InvalidValueError
-        If the samples are too few, out of order or not finite, or the body's orientation is needed and not known.
-
     Examples
     --------
     See `trundle.check`.
@@ -180,16 +163,6 @@ def _same_from_every_side(system: RollingSystem) -> bool:
 def check_covered(system: RollingSystem) -> None:
     """Refuse a support of which data about the body do not tell where it is.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        What is said to move.
-
-    Raises
-    ------
-    InvalidValueError
-        If the support's motion has coordinates of its own, as a free axle has.
-
     Examples
     --------
     >>> import trundle as tr
@@ -211,22 +184,6 @@ def check_covered(system: RollingSystem) -> None:
 
 def contact_of(system: RollingSystem, time: Array, centre: Array, orientation: Array) -> Contact:
     """Return the contact of a body whose centre is known: p = r + ρ(n(p)), found by going back and forth.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Body and support.
-    time : array (n,)
-        s.
-    centre : array (n, 3)
-        Centre of mass in the inertial support frame, m.
-    orientation : array (n, 4)
-        Quaternions, body frame to support frame.
-
-    Returns
-    -------
-    Contact
-        With arrays as components; its point is r + ρ, on the support or not.
 
     Examples
     --------
@@ -271,24 +228,6 @@ def orientation_from(
     time: Array, angular_velocity: Array, start: tuple[float, ...], *, body_axes: bool = False
 ) -> tuple[Array, Array]:
     """Add up Ω to an orientation, and say by how much it may be off.
-
-    Parameters
-    ----------
-    time : array (n,)
-        s.
-    angular_velocity : array (n, 3)
-        Ω, rad/s.
-    start : tuple of 4 floats
-        Quaternion at the first instant.
-    body_axes : bool
-        Whether Ω has its components along the body's axes instead of the support frame's.
-
-    Returns
-    -------
-    orientation : array (n, 4)
-        Unit quaternions.
-    doubt : array (n,)
-        Angle by which they may be off, rad: what changes when every other sample is left out.
 
     Examples
     --------

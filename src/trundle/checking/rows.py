@@ -19,27 +19,6 @@ def whole_rows(
 ) -> tuple[dict[str, Array], tuple[str, ...]]:
     """Return the columns that are needed, without the rows in which one of them has no number.
 
-    Parameters
-    ----------
-    table : mapping from a heading to an array
-        As it was read; NaN where a cell was empty.
-    needed : sequence of str
-        Headings of the columns that will be used.
-    lines : sequence of int, optional
-        The line of the file in which each row stands; absent: rows are counted.
-
-    Returns
-    -------
-    columns : dict from a heading to an array
-        Finite numbers.
-    remarks : tuple of str
-        What was left out.
-
-    Raises
-    ------
-    InvalidValueError
-        If a column holds text or infinity, or has no number in more than half of its rows.
-
     Examples
     --------
     >>> columns = {"t": np.arange(4.0), "x": np.array([0.0, np.nan, 2.0, 3.0])}

@@ -60,22 +60,7 @@ Trial = Callable[[tuple[Suspect, ...]], Tried | None]  # None where they cannot 
 
 
 def explaining(suspects: Iterable[Suspect], tried: Trial, confirmed: Trial) -> tuple[list[Tried], list[Tried]]:
-    """Search for mistakes that explain what was found.
-
-    Parameters
-    ----------
-    suspects : iterable of Suspect
-        The commonest first.
-    tried : callable
-        Tries some quickly.
-    confirmed : callable
-        Tries some with all there is to check.
-
-    Returns
-    -------
-    explain, nearest : list of Tried
-        Those that explain all, as few at a time as will do; where there are none, those that explain most of it.
-    """
+    """Search for mistakes that explain what was found."""
     singles = _all((one,) for one in suspects)(tried)
     found = _confirmed(singles, confirmed)
     telling = [one for one in singles if one.tells]

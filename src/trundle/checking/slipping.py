@@ -29,18 +29,7 @@ _STEADY = 0.02  # of the coefficient of friction while it slips
 
 
 def crude(case: Case) -> Iterator[Suspect]:
-    """Yield what is no mistake of the law: crude steps, and slip.
-
-    Parameters
-    ----------
-    case : Case
-        What was found.
-
-    Yields
-    ------
-    Suspect
-        Only where the data look like it.
-    """
+    """Yield what is no mistake of the law: crude steps, and slip."""
     yield from _steps(case)
     yield from _friction(case)
 

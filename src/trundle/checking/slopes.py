@@ -97,28 +97,6 @@ def derivative(
 ) -> Estimate:
     """Return a derivative of sampled values, with what noise and spacing leave open.
 
-    Parameters
-    ----------
-    time : array (n,)
-        Ascending, at any spacing, s.
-    values : array (n, c)
-        Samples of c quantities.
-    centres : int array (m,)
-        At which samples, ascending.
-    order : int
-        1 or 2; 0 smooths, where that is better than the samples as they are.
-    known : dict, optional
-        Keeps what was worked out of the instants, for other values at the same ones.
-    fit : Fit, optional
-        As `best_fit` returns it, where it was asked already.
-    noise : Noise, optional
-        As `noise_of` returns it, where it was asked already.
-
-    Returns
-    -------
-    Estimate
-        With its spread and bias.
-
     Examples
     --------
     Five digits of a sine, two hundred to a turn: the slope is good to a few parts in ten thousand, and is said to be.
@@ -141,20 +119,7 @@ def derivative(
 
 
 def best_fit(time: Array, values: Array, order: int, known: Known, noise: Noise, kept: float = 1.0) -> Fit:
-    """Return the degree and the width for which noise and truncation together are least.
-
-    Parameters
-    ----------
-    time, values, order, known, noise
-        As of `derivative`.
-    kept : float
-        Share of the noise that counts against the truncation: less than 1 where means are taken of many estimates.
-
-    Returns
-    -------
-    Fit
-        Found at some instants all along the samples.
-    """
+    """Return the degree and the width for which noise and truncation together are least."""
     some = np.unique(np.linspace(0, time.size - 1, min(time.size, _TRIED)).round().astype(int))
     best, chosen = np.inf, Fit(_DEGREES[0], min(time.size, _DEGREES[0] + 3))
     for degree in _DEGREES:

@@ -30,24 +30,7 @@ def acts(system: RollingSystem, theirs: Theirs) -> bool:
 def fitted_spin(
     system: RollingSystem, theirs: Theirs, tolerance: float, start: State | None, view: View | None = None
 ) -> float | None:
-    """Return the spin at the first sample that leaves least of the law.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        A ball, and its support.
-    theirs : Theirs
-        Their path.
-    tolerance, start
-        As for `examine`.
-    view : View, optional
-        How to look; absent: it is worked out.
-
-    Returns
-    -------
-    float or None
-        Ω·n, rad/s; the law is linear in it. None where it does not act on this path.
-    """
+    """Return the spin at the first sample that leaves least of the law."""
     view = (view_of(system, theirs, tolerance, start) if view is None else view).thinned(_WINDOWS)
     at = motion_of(system, theirs, start, view.instants)
     unit = max(float(np.linalg.norm(at.velocity, axis=1).max()) / at.arm, 1e-9)
@@ -61,18 +44,7 @@ def fitted_spin(
 
 
 def another_spin(case: Case) -> Iterator[Suspect]:
-    """Yield another spin than that of the scenario, where the path alone was given.
-
-    Parameters
-    ----------
-    case : Case
-        What was found.
-
-    Yields
-    ------
-    Suspect
-        With the spin that fits.
-    """
+    """Yield another spin than that of the scenario, where the path alone was given."""
     if case.start is None or not acts(case.system, case.theirs):
         return
     spin = fitted_spin(case.system, case.theirs, case.tolerance, case.start, case.view)

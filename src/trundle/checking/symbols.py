@@ -14,23 +14,6 @@ _FLAT = (2, 3, 6)
 def callable_of(equations: Any, values: Mapping[Any, float]) -> Callable[..., Any]:
     """Return equations as a function of t, r, V, q, Ω.
 
-    Parameters
-    ----------
-    equations : callable, or sequence of SymPy expressions
-        A callable is returned as it is. 2 or 3 expressions are those of V̇, 6 those of V̇ and Ω̇.
-    values : mapping
-        Of further symbols, by symbol or name.
-
-    Returns
-    -------
-    callable
-        (t, r, V, q, Ω) -> components.
-
-    Raises
-    ------
-    UnknownNameError
-        If a symbol is neither of the state nor among the values.
-
     Examples
     --------
     >>> import sympy

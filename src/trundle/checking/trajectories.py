@@ -197,22 +197,7 @@ def _apart(ours: OwnRun) -> str:
 
 
 def followed(theirs: Theirs, system: RollingSystem) -> tuple[Theirs, list[CardFigure]]:
-    """Leave the orientation out where the body turns so far between samples that nobody could tell how often.
-
-    Parameters
-    ----------
-    theirs : Theirs
-        Their samples.
-    system : RollingSystem
-        Gives the arm that V turns about, where they gave no Ω.
-
-    Returns
-    -------
-    theirs : Theirs
-        With the orientation, or without.
-    figures : list of CardFigure
-        That say so.
-    """
+    """Leave the orientation out where the body turns so far between samples that nobody could tell how often."""
     if theirs.orientation is None:
         return theirs, []
     if theirs.angular_velocity is not None:

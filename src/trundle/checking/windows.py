@@ -58,16 +58,6 @@ class Plan:
 def plans(samples: int) -> Iterator[Plan]:
     """Yield windows of every width that a run has room for, the narrowest first.
 
-    Parameters
-    ----------
-    samples : int
-        Of the run.
-
-    Yields
-    ------
-    Plan
-        Widths that double.
-
     Examples
     --------
     >>> [(plan.width, plan.start.size) for plan in plans(100)]
@@ -98,20 +88,7 @@ class Weights:
     fewer: Array
 
     def mismatch(self, y: Array, f: Array) -> tuple[Array, Array]:
-        """Return the mean mismatch, and how much of it a polynomial of two degrees less through f would change.
-
-        Parameters
-        ----------
-        y : array (n, c)
-            All samples.
-        f : array (k, nodes, c)
-            The rate at the nodes.
-
-        Returns
-        -------
-        mismatch : array (k, c)
-        change : array (k,)
-        """
+        """Return the mean mismatch, and how much of it a polynomial of two degrees less through f would change."""
         index = self.plan.start[:, None] + np.arange(self.plan.width)
         own = y[index] - y[index[:, self.plan.width // 2]][:, None]
         mismatch = np.einsum("kn,knc->kc", self.row, own) - np.einsum("kp,kpc->kc", self.phi, f)
@@ -122,21 +99,7 @@ class Weights:
         return np.einsum("kp,kp...->k...", self.phi, f)
 
     def gain(self, weights: Array, estimate: Estimate, place: Index) -> Array:
-        """Return the standard deviation of Σ weights × estimate at the nodes, for noise of variance 1, (k,).
-
-        Parameters
-        ----------
-        weights : array (k, nodes)
-            Of the estimates.
-        estimate : Estimate
-            With its rows.
-        place : int array (k, nodes)
-            Where the nodes are among its instants.
-
-        Returns
-        -------
-        array (k,)
-        """
+        """Return the standard deviation of Σ weights × estimate at the nodes, for noise of variance 1, (k,)."""
         found = np.zeros(len(weights))
         for k, (weight, at) in enumerate(zip(weights, place, strict=True)):
             index = estimate.index[at]
@@ -147,20 +110,6 @@ class Weights:
 
 def weights_of(plan: Plan, time: Array, order: int) -> Weights:
     """Return the weights that make the mismatch of each window.
-
-    Parameters
-    ----------
-    plan : Plan
-        The windows.
-    time : array (n,)
-        Ascending, s.
-    order : int
-        1 for ẏ = f, 2 for ÿ = f.
-
-    Returns
-    -------
-    Weights
-        Of samples and rates.
 
     Examples
     --------
@@ -199,17 +148,6 @@ def _integrated(x: Array, degree: int, order: int) -> Array:
 
 def spread_of(parts: Sequence[tuple[str, Array]], noise: dict[str, Array]) -> Array:
     """Return the standard deviation of a mismatch: what comes from one array adds up, arrays go together by squares.
-
-    Parameters
-    ----------
-    parts : sequence of (str, array (k,))
-        An array's name, and a gain of its noise.
-    noise : dict from str to array (k,)
-        Standard deviation of a mean over samples, by the array's name.
-
-    Returns
-    -------
-    array (k,)
 
     Examples
     --------

@@ -22,11 +22,6 @@ OTHER, BAD_INPUT, CARD_FAILED, CANNOT_DECIDE = 1, 2, 3, 4
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command and leave Python with its exit status.
 
-    Parameters
-    ----------
-    arguments : sequence of str, optional
-        The words after `trundle`; those of this process where absent.
-
     Examples
     --------
     >>> import contextlib, io
@@ -51,16 +46,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def run(arguments: Sequence[str] | None = None) -> int:
     """Run the command: every way out ends in one message at most, and a status.
-
-    Parameters
-    ----------
-    arguments : sequence of str, optional
-        As for `main`.
-
-    Returns
-    -------
-    int
-        The exit status.
 
     Examples
     --------

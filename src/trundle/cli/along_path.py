@@ -20,33 +20,6 @@ def run(
 ) -> tuple[Card, list[str], list[Path]]:
     """Roll the ball, and write the files whole or not at all.
 
-    Parameters
-    ----------
-    tables : dict
-        Of the scenario file.
-    source : str
-        Its name.
-    folder : pathlib.Path
-        Where the files go.
-    figure : bool
-        Whether there shall be a figure.
-    **options : str, optional
-        Of the command line, in place of keys of the file's [run] table.
-
-    Returns
-    -------
-    card : Card
-        What was checked, and the facts.
-    lines : list of str
-        The stages, for the screen.
-    written : list of pathlib.Path
-        The files.
-
-    Raises
-    ------
-    TrundleError
-        If the file or an option is not as the format asks, or the files cannot be written.
-
     Examples
     --------
     >>> from trundle.scenario import files
@@ -93,23 +66,6 @@ def _stages(rolled: RolledPath) -> list[tuple[str, str]]:
 
 def expected(text: str, source: str) -> Callable[[], list[tuple[str, str]]]:
     """Check the text of a scenario, and return what tells what to expect of it.
-
-    Parameters
-    ----------
-    text : str
-        The whole file.
-    source : str
-        Its name, for messages.
-
-    Returns
-    -------
-    callable
-        It rolls the ball and returns each fact with its name.
-
-    Raises
-    ------
-    ScenarioError
-        If the text is not as the format asks.
 
     Examples
     --------

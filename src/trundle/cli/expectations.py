@@ -9,16 +9,6 @@ from ..solve.exact import closed_form
 def expectations(scenario: ScenarioFile) -> list[tuple[str, str]]:
     """Return what to expect of a scenario, each number with its name.
 
-    Parameters
-    ----------
-    scenario : ScenarioFile
-        Any scenario.
-
-    Returns
-    -------
-    list of (name, value)
-        For the screen.
-
     Examples
     --------
     >>> for row in expectations(ScenarioFile.load("level-turntable-nudged"))[1:4]:

@@ -33,13 +33,6 @@ def on_terminal() -> bool:
 def show_names(rows: list[tuple[str, str]], heading: str = "scenario") -> None:
     """Print names and titles.
 
-    Parameters
-    ----------
-    rows : list of (name, title)
-        The scenarios, for one.
-    heading : str
-        What they are, for a table on a terminal.
-
     Examples
     --------
     >>> show_names([("a", "First"), ("long", "Second")])

@@ -47,11 +47,6 @@ class Ending:
 def ending() -> Iterator[Ending]:
     """Handle the signals that end a program while the block runs, but those that are ignored, as under nohup.
 
-    Yields
-    ------
-    Ending
-        The handler.
-
     Examples
     --------
     >>> with ending() as handler:

@@ -20,20 +20,6 @@ class CannotWriteError(TrundleError):
 def check_folder(folder: Path, names: tuple[str, ...]) -> None:
     """Find out, before the work is done, whether files can be written to a folder that may not exist yet.
 
-    Parameters
-    ----------
-    folder : Path
-        Where the files will go.
-    names : tuple of str
-        The files.
-
-    Raises
-    ------
-    InvalidValueError
-        If the folder is a file, or stands below one.
-    CannotWriteError
-        If it may not be written to.
-
     Examples
     --------
     >>> check_folder(Path("out"), ("run.nc",))
@@ -57,23 +43,6 @@ def check_folder(folder: Path, names: tuple[str, ...]) -> None:
 
 def write_together(folder: Path, files: Mapping[str, Callable[[Path], object]]) -> list[Path]:
     """Write several files so that none of them is ever there in part.
-
-    Parameters
-    ----------
-    folder : Path
-        Where they go; it is made when all of them have been written.
-    files : mapping from str to callable
-        For each name, what writes the file to a path.
-
-    Returns
-    -------
-    list of Path
-        The files.
-
-    Raises
-    ------
-    CannotWriteError
-        If the disk is full, the folder may not be written to, or the like; then nothing has changed.
 
     Examples
     --------

@@ -122,16 +122,6 @@ class Setting:
 def proof_of(s: Setting) -> Proof:
     """Return the proof by the rolling law, for a body that rolls across the axis at the angle θ with the rate θ̇.
 
-    Parameters
-    ----------
-    s : Setting
-        What is there.
-
-    Returns
-    -------
-    Proof
-        With the values of all symbols of the derivation.
-
     Examples
     --------
     >>> proof_of(Setting()).values[n].T
@@ -153,16 +143,6 @@ def proof_of(s: Setting) -> Proof:
 
 def derive_system(s: Setting) -> Iterator[Step]:
     """Yield the steps for a body on a cylinder.
-
-    Parameters
-    ----------
-    s : Setting
-        What is there.
-
-    Yields
-    ------
-    Step
-        In the order of the lecture.
 
     Examples
     --------
@@ -244,18 +224,6 @@ def _elimination(s: Setting, proof: Proof) -> Iterator[Step]:
 
 def numbers_of(motion: Any, system: RollingSystem) -> Iterator[Number]:
     """Yield the constants of the closed form in numbers.
-
-    Parameters
-    ----------
-    motion : CylinderOnCylinder
-        With the numbers of a system and a start.
-    system : RollingSystem
-        The same system.
-
-    Yields
-    ------
-    Number
-        Those that are finite and not zero.
 
     Examples
     --------

@@ -21,16 +21,6 @@ if TYPE_CHECKING:
 def module_named(name: str) -> ModuleType:
     """Return the module that derives a closed form.
 
-    Parameters
-    ----------
-    name : str
-        Of the closed form's own module.
-
-    Returns
-    -------
-    module
-        With `Setting`, `derive_system` and `numbers_of`.
-
     Examples
     --------
     >>> module_named("sphere_on_plane").Setting().turning
@@ -42,16 +32,6 @@ def module_named(name: str) -> ModuleType:
 def module_of(form: type) -> ModuleType:
     """Return the module that derives a closed form.
 
-    Parameters
-    ----------
-    form : type
-        One of `CLOSED_FORMS`.
-
-    Returns
-    -------
-    module
-        As `module_named` returns.
-
     Examples
     --------
     >>> module_of(CLOSED_FORMS[0]).__name__.rpartition(".")[2]
@@ -62,18 +42,6 @@ def module_of(form: type) -> ModuleType:
 
 def form_of(system: RollingSystem, start: State | None) -> tuple[Any, Any]:
     """Return the closed form that covers a system, and the module that derives it.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        With its numbers.
-    start : State or None
-        Where it starts.
-
-    Returns
-    -------
-    form, module
-        None and None where no closed form with a derivation here covers the system.
 
     Examples
     --------

@@ -113,16 +113,6 @@ class AnyLoad(Load):
 def introduction(system: RollingSystem) -> str:
     """Say what is derived for a system, and why it ends where it does.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        One that no closed form covers.
-
-    Returns
-    -------
-    str
-        For the head of the derivation.
-
     Examples
     --------
     >>> import trundle as tr
@@ -139,16 +129,6 @@ def introduction(system: RollingSystem) -> str:
 @cache
 def proof_of_any(*, curved: bool = False) -> Proof:
     """Return the proof by the rolling law for a body, a support and loads of which nothing is known.
-
-    Parameters
-    ----------
-    curved : bool
-        Whether the support's curvature is there too, which the dynamics does not ask for.
-
-    Returns
-    -------
-    Proof
-        With the values of the vectors.
 
     Examples
     --------
@@ -208,16 +188,6 @@ def _proof_in_time() -> Proof:
 def derive_system(system: RollingSystem) -> Iterator[Step]:
     """Yield the steps for any system, and what is special to this one.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        With its numbers.
-
-    Yields
-    ------
-    Step
-        In the order of the lecture, up to the equations of motion.
-
     Examples
     --------
     >>> import trundle as tr
@@ -232,11 +202,6 @@ def derive_system(system: RollingSystem) -> Iterator[Step]:
 @cache
 def law_steps() -> tuple[Step, ...]:
     """Return the steps that are the same for every system.
-
-    Returns
-    -------
-    tuple of Step
-        From Newton's law to T2 and T3.
 
     Examples
     --------

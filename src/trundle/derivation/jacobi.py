@@ -91,16 +91,6 @@ class dn(sp.Function):  # noqa: N801
 def squares_of(function: Any) -> list[tuple[Any, Any]]:
     """Return the squares that the identities of a function give: sn² = 1 − cn², dn² = 1 − m + m cn².
 
-    Parameters
-    ----------
-    function : sympy.Function
-        Any; the identity cosh² − sinh² = 1 is known here too.
-
-    Returns
-    -------
-    list of (function, its square)
-        Empty for a function that has none.
-
     Examples
     --------
     >>> u, m = sp.symbols("u m")

@@ -23,16 +23,6 @@ UNIT_QUATERNION = {QUATERNION[0]: 1 - QUATERNION[1] ** 2 - QUATERNION[2] ** 2 - 
 def column(v: Vector) -> Any:
     """Return a vector of the mechanics as a column of exact SymPy expressions.
 
-    Parameters
-    ----------
-    v : Vector
-        Of symbols and numbers.
-
-    Returns
-    -------
-    sympy.Matrix
-        3×1.
-
     Examples
     --------
     >>> column(Vector(1.0, 0.0, sp.Symbol("a"))).T
@@ -45,20 +35,6 @@ def at_one_instant(system: RollingSystem, point: Vector, here: Mapping[Any, Any]
     """Return the values of all vectors of a body that rolls, at any instant of any motion.
 
     V̇ is not taken from the law but worked out: the rate of V(t, p, q, Ω) as the law moves t, p, q and Ω.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Of symbols.
-    point : Vector
-        p, of symbols.
-    here : mapping, optional
-        What to put for the symbols of p and Ω, where not every place and every Ω is meant.
-
-    Returns
-    -------
-    dict
-        A column for each vector: n, ρ, ρ̇, p, r, u, u̇, V, V̇, Ω, Ω̇, R, and the applied F and K.
 
     Examples
     --------
@@ -105,16 +81,6 @@ def at_one_instant(system: RollingSystem, point: Vector, here: Mapping[Any, Any]
 def proof_at_one_instant(system: RollingSystem, point: Vector) -> Proof:
     """Return a proof by the rolling law: what it makes of an equation holds at any instant of any motion.
 
-    Parameters
-    ----------
-    system, point
-        As for `at_one_instant`.
-
-    Returns
-    -------
-    Proof
-        With the values of the vectors.
-
     Examples
     --------
     >>> import trundle as tr
@@ -129,16 +95,6 @@ def proof_at_one_instant(system: RollingSystem, point: Vector) -> Proof:
 
 def inertia(system: RollingSystem) -> Any:
     """Return J in space as a matrix of symbols.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Of symbols.
-
-    Returns
-    -------
-    sympy.Matrix
-        3×3.
 
     Examples
     --------

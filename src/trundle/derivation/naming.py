@@ -16,11 +16,6 @@ if TYPE_CHECKING:
 def derivable() -> list[tuple[str, str]]:
     """Return the topics and the shipped scenarios that `derive` knows by name, with their titles.
 
-    Returns
-    -------
-    list of (name, title)
-        Topics first, in the order of the lecture.
-
     Examples
     --------
     >>> derivable()[0]
@@ -94,16 +89,6 @@ def _of_topic(name: str, *, with_numbers: bool) -> Derivation:
 
 def derive_scenario_numbers(name: str) -> tuple[Any, ...]:
     """Return the constants of the closed form with the numbers of a scenario.
-
-    Parameters
-    ----------
-    name : str
-        A scenario that a closed form covers.
-
-    Returns
-    -------
-    tuple of Number
-        Empty where no closed form covers it.
 
     Examples
     --------

@@ -157,18 +157,6 @@ class SymbolicForm(numerical.CylinderOnCylinder):
 def pendulum_steps(s: Setting, proof: Proof) -> Iterator[Step]:
     """Yield the steps from the equation of the pendulum to its motions.
 
-    Parameters
-    ----------
-    s : Setting
-        What is there.
-    proof : Proof
-        By the rolling law.
-
-    Yields
-    ------
-    Step
-        Integral, three motions, three proofs of the closed form.
-
     Examples
     --------
     >>> from trundle.derivation.cylinder_on_cylinder import Setting, proof_of

@@ -34,16 +34,6 @@ def _parts(name: str) -> tuple[str, str | None, str]:
 def unicode_name(name: str) -> str:
     """Return the name of a symbol in Unicode.
 
-    Parameters
-    ----------
-    name : str
-        Such as ``"Omegadot_x"``.
-
-    Returns
-    -------
-    str
-        Accented, Greek, with its index.
-
     Examples
     --------
     >>> unicode_name("Omegadot_x"), unicode_name("zeta_0")
@@ -56,18 +46,6 @@ def unicode_name(name: str) -> str:
 
 def latex_name(name: str, *, arrow: bool = False) -> str:
     r"""Return the name of a symbol in LaTeX, with an arrow if it is a vector.
-
-    Parameters
-    ----------
-    name : str
-        Such as ``"Omegadot_x"``.
-    arrow : bool
-        Whether it is a vector; unit vectors wear a hat instead.
-
-    Returns
-    -------
-    str
-        In the part of LaTeX that KaTeX knows.
 
     Examples
     --------
@@ -105,18 +83,6 @@ def _flat(expression: Any) -> Iterator[Any]:
 
 def split(expression: Any) -> tuple[bool, list[Any], list[Any]]:
     """Take a product apart.
-
-    Parameters
-    ----------
-    expression : sympy.Expr
-        Any; what is no product is one factor.
-
-    Returns
-    -------
-    negative : bool
-        Whether its numerical factor is.
-    above, below : list of sympy.Expr
-        The factors of numerator and denominator, in the order in which they are printed.
 
     Examples
     --------

@@ -17,16 +17,6 @@ NAMES = {
 def named_ratio(ratio: Any) -> tuple[Any, str] | None:
     """Return an inertia ratio as a fraction with the name of the body, if it is one of the common ones.
 
-    Parameters
-    ----------
-    ratio : float
-        k = I/(m a²).
-
-    Returns
-    -------
-    (sympy.Rational, str) or None
-        The fraction and the name.
-
     Examples
     --------
     >>> named_ratio(0.4)

@@ -24,18 +24,6 @@ _PROVED = (
 def text(derivation: Derivation, width: int) -> str:
     """Return a derivation for a terminal.
 
-    Parameters
-    ----------
-    derivation : Derivation
-        What to print.
-    width : int
-        Columns.
-
-    Returns
-    -------
-    str
-        In Unicode.
-
     Examples
     --------
     >>> import trundle as tr
@@ -65,16 +53,6 @@ def text(derivation: Derivation, width: int) -> str:
 
 def markdown(derivation: Derivation) -> str:
     """Return a derivation in Markdown; each formula is a block between lines of ``$$``.
-
-    Parameters
-    ----------
-    derivation : Derivation
-        What to print.
-
-    Returns
-    -------
-    str
-        For GitHub, Jupyter and whatever else knows ``$$``.
 
     Examples
     --------
@@ -109,16 +87,6 @@ def markdown(derivation: Derivation) -> str:
 def latex(derivation: Derivation) -> str:
     r"""Return a derivation as a fragment of LaTeX.
 
-    Parameters
-    ----------
-    derivation : Derivation
-        What to print.
-
-    Returns
-    -------
-    str
-        To ``\input`` into a document in UTF-8 that loads amsmath.
-
     Examples
     --------
     >>> import trundle as tr
@@ -146,16 +114,6 @@ def latex(derivation: Derivation) -> str:
 
 def shown(derivation: Derivation) -> Markup:
     """Return a derivation as a notebook shows it, its formulas as MathML.
-
-    Parameters
-    ----------
-    derivation : Derivation
-        What to show.
-
-    Returns
-    -------
-    Markup
-        It needs no script.
 
     Examples
     --------
@@ -190,17 +148,6 @@ def latex_of(expression: Any) -> str:
 
 def as_dict(derivation: Derivation) -> dict[str, Any]:
     """Return a derivation as nested dictionaries, lists, strings and numbers.
-
-    Parameters
-    ----------
-    derivation : Derivation
-        What to describe.
-
-    Returns
-    -------
-    dict
-        ``name``, ``title``, ``introduction``, ``symbols``, ``steps`` and ``numbers``; a sentence holds its formulas
-        between dollars, an equation its LaTeX, its text and its residual.
 
     Examples
     --------

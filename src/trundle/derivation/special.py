@@ -36,16 +36,6 @@ _MEANT = {
 def with_symbols(system: RollingSystem) -> RollingSystem:
     """Return a system with symbols for its numbers, named as on the theory page; what is zero stays zero.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        With its numbers.
-
-    Returns
-    -------
-    RollingSystem
-        The same structure.
-
     Examples
     --------
     >>> import trundle as tr
@@ -98,16 +88,6 @@ def _named(thing: Any, name: str, inside: str) -> Iterator[str]:
 
 def special_steps(system: RollingSystem) -> Iterator[Step]:
     """Yield the equations of this system by components, where a reader may want to see them.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        With its numbers.
-
-    Yields
-    ------
-    Step
-        None for bodies whose equations fill pages.
 
     Examples
     --------

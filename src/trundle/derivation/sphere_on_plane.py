@@ -52,16 +52,6 @@ from .vectors import Cross, Dot, times, total
 def derive_system(setting: Setting) -> Iterator[Step]:
     """Yield the steps for a sphere on a plane.
 
-    Parameters
-    ----------
-    setting : Setting
-        What is there.
-
-    Yields
-    ------
-    Step
-        In the order of the lecture.
-
     Examples
     --------
     >>> next(derive_system(Setting())).title
@@ -82,18 +72,6 @@ def derive_system(setting: Setting) -> Iterator[Step]:
 
 def numbers_of(motion: Any, system: RollingSystem) -> Iterator[Number]:
     """Yield the constants of the closed form in numbers.
-
-    Parameters
-    ----------
-    motion : SphereOnPlane
-        With the numbers of a system and a start.
-    system : RollingSystem
-        The same system.
-
-    Yields
-    ------
-    Number
-        Those that are not zero.
 
     Examples
     --------

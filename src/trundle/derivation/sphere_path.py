@@ -68,16 +68,6 @@ BY_RATES = {omega: kappa * (1 + k) / k, c: gamma * m * (1 + k)}
 def closed_form_of(setting: Setting) -> SphereOnPlane:
     """Return the closed form itself, with symbols for its numbers; ω and c are given by κ and γ.
 
-    Parameters
-    ----------
-    setting : Setting
-        What is there.
-
-    Returns
-    -------
-    SphereOnPlane
-        As a run would use it.
-
     Examples
     --------
     >>> from trundle.derivation.sphere_setting import Setting
@@ -91,18 +81,6 @@ def closed_form_of(setting: Setting) -> SphereOnPlane:
 
 def proof_of_path(setting: Setting, proof: Proof) -> Proof:
     """Return a proof along the closed form: each vector is what `motion_at` says, each rate its derivative.
-
-    Parameters
-    ----------
-    setting : Setting
-        What is there.
-    proof : Proof
-        By the rolling law, for the constants.
-
-    Returns
-    -------
-    Proof
-        With symbols of the start and the time.
 
     Examples
     --------
@@ -132,18 +110,6 @@ def proof_of_path(setting: Setting, proof: Proof) -> Proof:
 
 def path_steps(setting: Setting, proof: Proof) -> Iterator[Step]:
     """Yield the steps from the equation of the path to the path.
-
-    Parameters
-    ----------
-    setting : Setting
-        What is there.
-    proof : Proof
-        By the rolling law.
-
-    Yields
-    ------
-    Step
-        Integration, path, proof of the closed form, and what may be read off it.
 
     Examples
     --------

@@ -150,16 +150,6 @@ class Setting:
 def proof_of(setting: Setting) -> Proof:
     """Return the proof by the rolling law for a sphere on a plane.
 
-    Parameters
-    ----------
-    setting : Setting
-        What is there.
-
-    Returns
-    -------
-    Proof
-        With the values of all symbols of the derivation.
-
     Examples
     --------
     >>> proof_of(Setting()).values[n].T
@@ -182,16 +172,6 @@ def proof_of(setting: Setting) -> Proof:
 
 def constants_of(setting: Setting) -> dict[Any, Any]:
     """Return κ, γ and φ of T5 by the numbers of a system.
-
-    Parameters
-    ----------
-    setting : Setting
-        What is there.
-
-    Returns
-    -------
-    dict
-        From the symbol to what it stands for.
 
     Examples
     --------

@@ -193,23 +193,6 @@ class Derivation(Displayed):
 def checked(name: str, steps: Iterable[Step]) -> tuple[Step, ...]:
     """Go through the steps of a derivation, up to the first that does not hold.
 
-    Parameters
-    ----------
-    name : str
-        Of the derivation, for the message.
-    steps : iterable of Step
-        In order.
-
-    Returns
-    -------
-    tuple of Step
-        The same.
-
-    Raises
-    ------
-    DerivationError
-        If an equation has a residual other than 0.
-
     Examples
     --------
     >>> checked("nothing", [Step("Newton", "The law of momentum.", ())])[0].title
@@ -266,20 +249,7 @@ class Proof:
         return Equation(sp.Eq(left, right, evaluate=False), proved)
 
     def constant(self, left: Any, right: Any, rates: Mapping[Any, Any]) -> Equation:
-        """Return an equation between two integrals; its residual is the rate at which they part.
-
-        Parameters
-        ----------
-        left, right : sympy.Expr
-            Equal at one instant, by the choice of a constant.
-        rates : mapping
-            How fast each symbol in them changes; those not named are constant.
-
-        Returns
-        -------
-        Equation
-            With the rate of left − right as its residual.
-        """
+        """Return an equation between two integrals; its residual is the rate at which they part."""
         import sympy as sp
 
         from .zero import numerator

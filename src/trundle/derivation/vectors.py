@@ -15,16 +15,6 @@ from sympy.printing.pretty.stringpict import prettyForm
 def vector(name: str) -> Any:
     """Return a vector by its name, in which `dot`, `ddot` and `hat` are accents.
 
-    Parameters
-    ----------
-    name : str
-        Such as ``"Omegadot"``.
-
-    Returns
-    -------
-    sympy.MatrixSymbol
-        With three components.
-
     Examples
     --------
     >>> sp.pretty(vector("Omegadot"), use_unicode=True)
@@ -114,16 +104,6 @@ class Times(Cross):
 def total(*terms: Any) -> Any:
     """Add terms, scalars or vectors, in the order in which they are given; known zeros drop out.
 
-    Parameters
-    ----------
-    *terms : sympy expression
-        All scalars, or all vectors.
-
-    Returns
-    -------
-    sympy expression
-        Their sum; the scalar 0 if nothing is left.
-
     Examples
     --------
     >>> x, y = sp.symbols("x y")
@@ -142,18 +122,6 @@ def total(*terms: Any) -> Any:
 def times(factor: Any, v: Any) -> Any:
     """Return a multiple of a vector as it is written; a multiple of a multiple is one multiple.
 
-    Parameters
-    ----------
-    factor : sympy expression
-        A scalar.
-    v : sympy expression
-        A vector.
-
-    Returns
-    -------
-    sympy.MatMul
-        Or the vector itself for the factor 1.
-
     Examples
     --------
     >>> sp.pretty(times(-1, times(sp.Symbol("m"), vector("V"))), use_unicode=True)
@@ -166,18 +134,6 @@ def times(factor: Any, v: Any) -> Any:
 
 def evaluate(expression: Any, values: Mapping[Any, Any]) -> Any:
     """Put values in the place of vectors and scalars.
-
-    Parameters
-    ----------
-    expression : sympy expression
-        Built from `vector`, `Cross`, `Dot`, sums, multiples and scalars.
-    values : mapping
-        A 3×1 matrix for each vector, an expression for each scalar that is not to stay as it is.
-
-    Returns
-    -------
-    sympy.Matrix or sympy.Expr
-        Three components, or a scalar.
 
     Examples
     --------

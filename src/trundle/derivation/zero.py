@@ -14,16 +14,6 @@ from typing import Any
 def exact(expression: Any) -> Any:
     """Return an expression with its floats, such as the 0.5 and 2.0 of the algebra, as the rationals they are.
 
-    Parameters
-    ----------
-    expression : sympy expression or number
-        Anything the mechanics returns.
-
-    Returns
-    -------
-    sympy.Expr
-        The same without floats.
-
     Examples
     --------
     >>> import sympy
@@ -52,23 +42,6 @@ def _rebuilt(expression: Any, change: Callable[[Any], Any]) -> Any:
 def numerator(expression: Any, squares: Mapping[Any, Any] | None = None) -> Any:
     """Return the numerator of an expression in normal form: 0 if and only if the relations known here make it zero.
 
-    Parameters
-    ----------
-    expression : sympy expression
-        A rational function of symbols, functions and roots.
-    squares : mapping, optional
-        What the square of a symbol is, such as that of the first component of a unit quaternion.
-
-    Returns
-    -------
-    sympy.Expr
-        Expanded.
-
-    Raises
-    ------
-    ZeroDivisionError
-        If a denominator is zero.
-
     Examples
     --------
     >>> import sympy
@@ -92,16 +65,6 @@ def numerator(expression: Any, squares: Mapping[Any, Any] | None = None) -> Any:
 def is_zero(expression: Any, squares: Mapping[Any, Any] | None = None) -> bool:
     """Tell whether an expression is zero.
 
-    Parameters
-    ----------
-    expression, squares
-        As for `numerator`.
-
-    Returns
-    -------
-    bool
-        True is proved; False means that it is not zero, or that a relation is missing here.
-
     Examples
     --------
     >>> import sympy
@@ -114,16 +77,6 @@ def is_zero(expression: Any, squares: Mapping[Any, Any] | None = None) -> bool:
 
 def normal_form(expression: Any, squares: Mapping[Any, Any] | None = None) -> Any:
     """Return an expression as one quotient in lowest terms, with the relations known here put in.
-
-    Parameters
-    ----------
-    expression, squares
-        As for `numerator`.
-
-    Returns
-    -------
-    sympy.Expr
-        The same value.
 
     Examples
     --------
@@ -140,16 +93,6 @@ def normal_form(expression: Any, squares: Mapping[Any, Any] | None = None) -> An
 
 def with_plain_roots(expression: Any) -> Any:
     """Return an expression with each square root of a polynomial taken of its normal form, so that equal roots meet.
-
-    Parameters
-    ----------
-    expression : sympy.Expr
-        Exact.
-
-    Returns
-    -------
-    sympy.Expr
-        The same value.
 
     Examples
     --------

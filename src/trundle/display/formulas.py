@@ -17,19 +17,6 @@ _SPELLED = {"mfrac": ("", "/"), "msup": ("", "^"), "msub": ("", "_"), "msubsup":
 def mathml(latex: str, *, display: bool = False) -> Markup:
     r"""Return a formula as markup; what cannot be converted stands there as it was written.
 
-    Parameters
-    ----------
-    latex : str
-        Without dollar signs.
-    display : bool
-        Whether it stands on a line of its own.
-
-    Returns
-    -------
-    Markup
-        A `math` element, which needs no script. Those who show the notebooks of others take such elements out and leave
-        their text: signs of the class ``trundle-plain``, not seen in the formula, let it read k/(1+k) and not k1+k.
-
     Examples
     --------
     >>> mathml("k < 1").count("<mi>"), mathml(r"\frac"), mathml("")

@@ -30,18 +30,6 @@ def escaped(content: str) -> Markup:
 def joined(pieces: Iterable[str], between: str = "") -> Markup:
     """Return pieces of text and markup behind each other.
 
-    Parameters
-    ----------
-    pieces : iterable of str
-        Text or markup.
-    between : str
-        What stands between two of them, text or markup.
-
-    Returns
-    -------
-    Markup
-        Escaped where it was text.
-
     Examples
     --------
     >>> joined(["a < b", Markup("<br>")], "; ")
@@ -52,20 +40,6 @@ def joined(pieces: Iterable[str], between: str = "") -> Markup:
 
 def number(value: Any, digits: int = 6, unit: str = "") -> Markup:
     """Return a number as it is set in print.
-
-    Parameters
-    ----------
-    value : float, str or None
-        Text stays as it is, none becomes nothing.
-    digits : int
-        At most.
-    unit : str
-        What stands behind it.
-
-    Returns
-    -------
-    Markup
-        With a proper minus, and powers of ten as such.
 
     Examples
     --------
@@ -96,18 +70,6 @@ def numbers(values: Iterable[Any], digits: int = 6, unit: str = "") -> Markup:
 def verdict(good: bool | None, words: str) -> Markup:
     r"""Return a verdict that is seen by word and sign; colour only adds to it.
 
-    Parameters
-    ----------
-    good : bool or None
-        None where it is neither good nor bad.
-    words : str
-        What is said.
-
-    Returns
-    -------
-    Markup
-        With a tick or a cross.
-
     Examples
     --------
     >>> verdict(False, "FAILS")
@@ -119,20 +81,6 @@ def verdict(good: bool | None, words: str) -> Markup:
 
 def table(rows: Iterable[Sequence[str]], heads: Sequence[str] = (), numbers: Iterable[int] = ()) -> Markup:
     """Return a table; what is too wide for the page scrolls by itself.
-
-    Parameters
-    ----------
-    rows : iterable of sequences of str
-        Text or markup.
-    heads : sequence of str
-        Over the columns; an empty one is left out.
-    numbers : iterable of int
-        The columns that are aligned on the right.
-
-    Returns
-    -------
-    Markup
-        Nothing where there are no rows.
 
     Examples
     --------
@@ -166,16 +114,6 @@ def pairs(rows: Iterable[tuple[str, str]]) -> Markup:
 
 def records(items: Sequence[Mapping[str, str]]) -> Markup:
     """Return things that have the same properties: one as named values, several as the numbered rows of a table.
-
-    Parameters
-    ----------
-    items : sequence of mappings from str to str
-        The properties of each, text or markup; one that it lacks is left empty.
-
-    Returns
-    -------
-    Markup
-        With the names in the order in which they come.
 
     Examples
     --------

@@ -44,18 +44,6 @@ class View:
     def of(azimuth: float, elevation: float) -> View:
         """Return the view from a direction.
 
-        Parameters
-        ----------
-        azimuth : float
-            From the first axis towards the second, rad.
-        elevation : float
-            Above the plane, rad; with π/2 the first axis is to the right if the azimuth is −π/2.
-
-        Returns
-        -------
-        View
-            Orthographic.
-
         Examples
         --------
         >>> View.of(-math.pi / 2, math.pi / 2).right.round(12) + 0.0
@@ -75,20 +63,6 @@ ASIDE = View.of(math.radians(38), math.radians(27))  # as in a textbook: x towar
 
 def picture(orientation: Any, view: View, pixels: int = _PIXELS) -> Array:
     """Paint a ball.
-
-    Parameters
-    ----------
-    orientation : sequence of 4 floats
-        Quaternion (w, x, y, z), body frame to support frame.
-    view : View
-        From where it is seen.
-    pixels : int
-        Across the picture, which the ball fills.
-
-    Returns
-    -------
-    array (pixels, pixels, 4)
-        Red, green, blue and opacity, 0 to 1; the first row is the top.
 
     Examples
     --------
@@ -141,21 +115,6 @@ def _band(distance: Array, half: float) -> Array:
 
 def place(ax: Axes, at: Any, radius: float, inches: float, orientation: Any, view: View, zorder: float = 5.0) -> None:
     """Put a ball with its axis into a picture.
-
-    Parameters
-    ----------
-    ax : matplotlib.axes.Axes
-        With equal aspect.
-    at : pair of float
-        Where its centre appears, axis numbers.
-    radius, inches : float
-        Its size in axis numbers, and on the page.
-    orientation : sequence of 4 floats
-        Quaternion (w, x, y, z), body frame to support frame.
-    view : View
-        From where it is seen.
-    zorder : float
-        What it covers.
 
     Examples
     --------

@@ -20,20 +20,6 @@ def displacement(heading: Any, curvature: Any, distance: Any) -> Array:
 
     The chord of an arc that turns by θ = κ s has the length s sin(θ/2)/(θ/2) and points along the mean heading.
 
-    Parameters
-    ----------
-    heading : float or array
-        Direction of travel at the beginning, from the first axis towards the second, rad.
-    curvature : float or array
-        κ, positive where the line turns to the left, 1/m.
-    distance : float or array
-        s, m.
-
-    Returns
-    -------
-    array (..., 2)
-        m.
-
     Examples
     --------
     >>> displacement(0.0, 1.0, np.pi).round(12) + 0.0  # half a circle of radius 1 m, to the left
@@ -51,18 +37,6 @@ def turn(heading: Any, curvature: Any, distance: Any, radius: float) -> Array:
     with the line it does not change, and there the ball turns at n × t/a − κ n:
 
         q(s) = exp(½ κ s n) exp(½ s (n × t/a − κ n)) q(0)
-
-    Parameters
-    ----------
-    heading, curvature, distance : float or array
-        As for `displacement`.
-    radius : float
-        a, of the ball, m.
-
-    Returns
-    -------
-    array (..., 4)
-        Unit quaternion (w, x, y, z) in the support frame.
 
     Examples
     --------
@@ -84,16 +58,6 @@ def turn(heading: Any, curvature: Any, distance: Any, radius: float) -> Array:
 
 def segment_area(curvature: Any, distance: Any) -> Any:
     """Return the area between an arc and its chord, positive where the arc turns to the left.
-
-    Parameters
-    ----------
-    curvature, distance : float or array
-        As for `displacement`.
-
-    Returns
-    -------
-    float or array
-        ½ s² (θ − sin θ)/θ² with θ = κ s, m².
 
     Examples
     --------

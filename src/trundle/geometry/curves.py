@@ -50,18 +50,6 @@ class PlaneCurve:
     def through(points: tuple[tuple[float, float], ...], closed: bool) -> PlaneCurve:
         """Return the cubic spline through points, with the length of the chords as its parameter.
 
-        Parameters
-        ----------
-        points : tuple of pairs of float
-            m; no point repeats the one before it.
-        closed : bool
-            Whether it closes smoothly.
-
-        Returns
-        -------
-        PlaneCurve
-            Which is what was asked for, so its deviation is 0.
-
         Examples
         --------
         >>> PlaneCurve.through(((0.0, 0.0), (1.0, 0.0), (2.0, 0.0)), closed=False).polynomial(0.5).round(12).tolist()
@@ -80,23 +68,6 @@ class PlaneCurve:
     @staticmethod
     def of(function: Callable[[Any], Any], start: float, stop: float) -> PlaneCurve:
         """Return the polynomials that follow a function, their pieces halved until they do.
-
-        Parameters
-        ----------
-        function : callable
-            Takes the parameter, returns x and y in m.
-        start, stop : float
-            Where the parameter begins and ends.
-
-        Returns
-        -------
-        PlaneCurve
-            With the largest distance found between the function and the polynomials, off their nodes, doubled.
-
-        Raises
-        ------
-        InvalidValueError
-            If the function returns no finite places, or is not smooth.
 
         Examples
         --------
@@ -134,16 +105,6 @@ class PlaneCurve:
 
 def first_place(curve: Curve) -> tuple[float, float]:
     """Return where a curve begins.
-
-    Parameters
-    ----------
-    curve : Curve
-        As the user gave it.
-
-    Returns
-    -------
-    tuple of 2 floats
-        m.
 
     Examples
     --------

@@ -18,18 +18,6 @@ if TYPE_CHECKING:
 def dataset(rolled: RolledPath, every: float | None = None) -> xarray.Dataset:
     """Label the samples of a rolled path.
 
-    Parameters
-    ----------
-    rolled : RolledPath
-        Any.
-    every : float, optional
-        Step along the path, m.
-
-    Returns
-    -------
-    xarray.Dataset
-        Over `distance`; `stage_distance` tells the stages.
-
     Examples
     --------
     >>> import trundle as tr
@@ -78,20 +66,6 @@ def dataset(rolled: RolledPath, every: float | None = None) -> xarray.Dataset:
 
 def save(rolled: RolledPath, target: Path, every: float | None = None) -> Path:
     """Write a rolled path to a NetCDF4 file, whole or not at all, with its card and, where it has one, its scenario.
-
-    Parameters
-    ----------
-    rolled : RolledPath
-        Any.
-    target : pathlib.Path
-        The file.
-    every : float, optional
-        Step along the path, m.
-
-    Returns
-    -------
-    pathlib.Path
-        The file.
 
     Examples
     --------

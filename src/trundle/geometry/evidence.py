@@ -34,16 +34,6 @@ _MOST_RADIANS, _MOST_POLYNOMIALS = 500.0, 60  # of a curve that Runge-Kutta foll
 def card(rolled: RolledPath) -> Card:
     """Check a rolled path and say what came of it.
 
-    Parameters
-    ----------
-    rolled : RolledPath
-        Any.
-
-    Returns
-    -------
-    Card
-        Each check with its bound; then the facts.
-
     Examples
     --------
     >>> import trundle as tr
@@ -221,16 +211,6 @@ def facts(rolled: RolledPath) -> Iterator[CardFigure]:
 
 def direction(vector: Any) -> str:
     """Say where a unit vector points.
-
-    Parameters
-    ----------
-    vector : sequence of 3 floats
-        In the support frame.
-
-    Returns
-    -------
-    str
-        ``"along +x"``, ``"up"``, or its components.
 
     Examples
     --------

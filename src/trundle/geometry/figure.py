@@ -47,16 +47,6 @@ class _Shown:
 def draw(paths: tuple[RolledPath, ...]) -> Figure:
     """Draw paths side by side, to the same scale.
 
-    Parameters
-    ----------
-    paths : tuple of RolledPath
-        At least one; three fit a page.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Needs neither a display nor pyplot.
-
     Examples
     --------
     >>> import trundle as tr

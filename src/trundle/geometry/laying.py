@@ -53,25 +53,6 @@ class Laid:
 def lay(pieces: tuple[Piece, ...], start: tuple[float, float], radius: float) -> Laid:
     """Lay pieces end to end.
 
-    Parameters
-    ----------
-    pieces : tuple of Straight, Arc or Curve
-        In order.
-    start : pair of float
-        Where the first begins, m.
-    radius : float
-        Of the ball, m.
-
-    Returns
-    -------
-    Laid
-        The path.
-
-    Raises
-    ------
-    InvalidValueError
-        If a curve begins elsewhere, a straight piece goes nowhere, or the ball would turn by more than 1e9 rad.
-
     Examples
     --------
     >>> lay((Straight(length=2.0), Arc(radius=1.0, angle=np.pi)), (0.0, 0.0), 0.1).places.round(9) + 0.0

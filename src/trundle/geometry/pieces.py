@@ -159,18 +159,6 @@ Piece = Straight | Arc | Curve
 def point(value: Any, key: str) -> tuple[float, float]:
     """Return a point of the plane in m.
 
-    Parameters
-    ----------
-    value : pair of float or quantity
-        What the user gave.
-    key : str
-        The name that an error message uses.
-
-    Returns
-    -------
-    tuple of 2 floats
-        m.
-
     Examples
     --------
     >>> point(["10 cm", 0], "to")

@@ -24,22 +24,6 @@ _SHORTEST, _LONGEST = 2.0, 30.0  # s
 def rolled_scene(rolled: RolledPath, samples: int | None = None, with_card: bool = False) -> Scene:
     """Return a scene of a ball rolled along a path at an even pace.
 
-    Parameters
-    ----------
-    rolled : RolledPath
-        Ball and path.
-    samples : int, optional
-        How many to show; absent: as many as look smooth.
-    with_card : bool
-        Whether to verify it.
-
-    Returns
-    -------
-    Scene
-        Its header says by how much the ball is turned: `turned` (rad) about `turned_axis`, of it
-        `turned_about_normal`; `enclosed_area` (m²) and `small_loop_angle` (rad) where the path is closed; and the
-        `stages`, the ball at the end of each piece.
-
     Examples
     --------
     >>> import trundle as tr

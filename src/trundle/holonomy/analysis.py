@@ -212,21 +212,6 @@ class ConstraintAnalysis(Displayed):
 def analyse(system: PfaffianSystem) -> ConstraintAnalysis:
     """Decide what a Pfaffian system leaves free, and whether it can be integrated.
 
-    Parameters
-    ----------
-    system : PfaffianSystem
-        The constraints.
-
-    Returns
-    -------
-    ConstraintAnalysis
-        The findings.
-
-    Raises
-    ------
-    InvalidValueError
-        If a coefficient cannot be decided exactly, or a named motion breaks a constraint.
-
     Examples
     --------
     >>> analyse(PfaffianSystem.load("skate")).growth
@@ -276,18 +261,6 @@ def _check_motions(tower: Tower, system: PfaffianSystem, vectors: list[Vector], 
 
 def lie_bracket(first: tuple[sp.Expr, ...], second: tuple[sp.Expr, ...], q: tuple[sp.Symbol, ...]) -> tuple[Any, ...]:
     """Return [X, Y] = (∂Y) X − (∂X) Y in SymPy's own functions, written short.
-
-    Parameters
-    ----------
-    first, second : tuple of sympy.Expr
-        X and Y, a component for each coordinate.
-    q : tuple of sympy.Symbol
-        The coordinates.
-
-    Returns
-    -------
-    tuple of sympy.Expr
-        The bracket.
 
     Examples
     --------

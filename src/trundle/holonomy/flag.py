@@ -89,18 +89,6 @@ class Span:
 def bracket(tower: Tower, first: Vector, second: Vector) -> Vector:
     """Return the Lie bracket [X, Y] = (∂Y) X − (∂X) Y.
 
-    Parameters
-    ----------
-    tower : Tower
-        The field of the components.
-    first, second : tuple of elements
-        X and Y.
-
-    Returns
-    -------
-    tuple of elements
-        The bracket.
-
     Examples
     --------
     >>> x, y = sp.symbols("x y")
@@ -125,20 +113,6 @@ def flag(tower: Tower, fields: Sequence[Vector]) -> tuple[list[Step], list[int]]
 
     Each level adds the brackets of the fields with what was new on the level before. A level that adds nothing proves
     that the fields so far are closed under brackets, since they then are so over the field of all coefficients.
-
-    Parameters
-    ----------
-    tower : Tower
-        The field of the components.
-    fields : sequence of vectors
-        Independent fields of possible motion.
-
-    Returns
-    -------
-    steps : list of Step
-        The fields, then the brackets that were new.
-    growth : list of int
-        Ranks, level by level, at a generic point.
 
     Examples
     --------
@@ -170,18 +144,6 @@ def flag(tower: Tower, fields: Sequence[Vector]) -> tuple[list[Step], list[int]]
 def independent_rows(tower: Tower, rows: Sequence[Sequence[sp.Expr]]) -> list[int]:
     """Return which rows to keep so that none follows from the others.
 
-    Parameters
-    ----------
-    tower : Tower
-        The field of the entries.
-    rows : sequence of rows
-        A(q).
-
-    Returns
-    -------
-    list of int
-        As many as the generic rank.
-
     Examples
     --------
     >>> x = sp.Symbol("x")
@@ -197,20 +159,6 @@ def kernel(tower: Tower, rows: sp.Matrix, at: dict[sp.Symbol, Any] | None = None
 
     With pivot columns P and minor d = det A_P each free coordinate j has the field d e_j − adj(A_P) A_j. The pivots
     whose minor is simplest are taken.
-
-    Parameters
-    ----------
-    tower : Tower
-        The field of the entries.
-    rows : sympy.Matrix
-        Independent rows.
-    at : dict, optional
-        Values of coordinates at which the minor must not vanish; absent: at a generic point.
-
-    Returns
-    -------
-    list of list of sympy.Expr
-        One field for each free coordinate; none where all minors vanish.
 
     Examples
     --------
@@ -267,16 +215,6 @@ def _shares(denominator: sp.Expr, factor: sp.Expr) -> bool:
 
 def vanishes(e: sp.Expr) -> bool:
     """Tell exactly whether an expression in any of the known functions is zero.
-
-    Parameters
-    ----------
-    e : sympy.Expr
-        Anything that a tower knows.
-
-    Returns
-    -------
-    bool
-        True only for zero.
 
     Examples
     --------

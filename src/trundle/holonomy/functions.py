@@ -19,21 +19,6 @@ WHAT_MAY_STAND = (
 def prepare(expression: Any) -> sp.Expr:
     """Write an expression in the functions that the field knows: sin, cos, exp, powers.
 
-    Parameters
-    ----------
-    expression : sympy.Expr or number
-        Any coefficient.
-
-    Returns
-    -------
-    sympy.Expr
-        The same function.
-
-    Raises
-    ------
-    InvalidValueError
-        If it holds what is not exact or not known.
-
     Examples
     --------
     >>> prepare(sp.tan(sp.Symbol("x")))
@@ -62,16 +47,6 @@ def prepare(expression: Any) -> sp.Expr:
 
 def on_circles(expression: sp.Expr) -> sp.Expr:
     """Expand, and put 1 − cos² for every sin²: quick, and enough for products of rotations.
-
-    Parameters
-    ----------
-    expression : sympy.Expr
-        A polynomial in sines and cosines.
-
-    Returns
-    -------
-    sympy.Expr
-        The same function.
 
     Examples
     --------

@@ -19,21 +19,6 @@ POINTS = 3  # random places that stand for all, before an answer is proved
 def integrals(tower: Tower, closed: Sequence[Vector], rows: Sequence[Sequence[sp.Expr]]) -> list[sp.Expr]:
     """Find functions that no motion along a closed set of fields changes.
 
-    Parameters
-    ----------
-    tower : Tower
-        The field of all coefficients.
-    closed : sequence of vectors
-        Fields that are closed under brackets, independent, fewer than the coordinates.
-    rows : sequence of rows
-        The constraints, whose terms suggest what to try.
-
-    Returns
-    -------
-    list of sympy.Expr
-        Independent functions, each proved to be constant; at most as many as coordinates less fields. There may be
-        fewer, where none of the forms that are tried fits.
-
     Examples
     --------
     >>> x, y = sp.symbols("x y")

@@ -40,16 +40,6 @@ class _Hand(StrPrinter):
 def text_of(e: sp.Expr) -> str:
     """Write an expression on one line, as it is written by hand.
 
-    Parameters
-    ----------
-    e : sympy.Expr
-        What to write.
-
-    Returns
-    -------
-    str
-        Greek letters as such, small powers raised.
-
     Examples
     --------
     >>> phi, a = sp.symbols("phi a")
@@ -118,16 +108,6 @@ _Findings = Iterator[tuple[str, list[_Finding]]]  # each name with what is said 
 
 def report(found: ConstraintAnalysis) -> str:
     """Write the findings as plain text.
-
-    Parameters
-    ----------
-    found : ConstraintAnalysis
-        The findings.
-
-    Returns
-    -------
-    str
-        Lines of at most 96 characters where the formulas let them.
 
     Examples
     --------
@@ -270,16 +250,6 @@ def _special(found: ConstraintAnalysis) -> list[_Finding]:
 
 def latex(found: ConstraintAnalysis) -> str:
     r"""Write the findings as LaTeX, to be set with amsmath.
-
-    Parameters
-    ----------
-    found : ConstraintAnalysis
-        The findings.
-
-    Returns
-    -------
-    str
-        An ``align*`` environment and a line of text.
 
     Examples
     --------

@@ -32,21 +32,6 @@ ROWS_OF = tuple[tuple[sp.Symbol, ...], list[list[sp.Expr]]]
 def load(name: str) -> PfaffianSystem:
     """Return a shipped system by its name.
 
-    Parameters
-    ----------
-    name : str
-        One of `NAMES`.
-
-    Returns
-    -------
-    PfaffianSystem
-        The system.
-
-    Raises
-    ------
-    UnknownNameError
-        If there is none of that name.
-
     Examples
     --------
     >>> load("cylinder").rows

@@ -26,20 +26,6 @@ def growth_at(found: ConstraintAnalysis, values: dict[Any, Any], levels: int | N
     The coordinates are counted from there, q = value + s, so that s = 0 can be put into everything exactly. All
     brackets are kept: one that is a combination of others elsewhere need not be one here.
 
-    Parameters
-    ----------
-    found : ConstraintAnalysis
-        The findings at a generic place.
-    values : dict
-        Coordinates, or their names, and exact values, which may depend on other coordinates.
-    levels : int, optional
-        How many levels to look at; absent: two more than at a generic place.
-
-    Returns
-    -------
-    tuple of int
-        Ranks, level by level.
-
     Examples
     --------
     Martinet's constraint needs one bracket more on its surface y = 0:
@@ -133,18 +119,6 @@ def special_places(found: ConstraintAnalysis) -> Iterator[tuple[Places, tuple[in
 
     Where a level of the flag drops, the generic basis of its last level fails, too; so the candidates are the factors
     of that basis's determinant and the poles of its fields.
-
-    Parameters
-    ----------
-    found : ConstraintAnalysis
-        The findings at a generic place.
-
-    Yields
-    ------
-    place : dict
-        A coordinate and its value.
-    growth : tuple of int
-        The growth vector there.
 
     Examples
     --------

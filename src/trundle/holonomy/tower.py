@@ -328,16 +328,6 @@ def _at(polynomial: Any, values: list[int]) -> int:
 def tidy(expression: sp.Expr) -> sp.Expr:
     """Write an expression shorter where SymPy can, in functions that the field knows; the same function always.
 
-    Parameters
-    ----------
-    expression : sympy.Expr
-        Anything that a tower knows.
-
-    Returns
-    -------
-    sympy.Expr
-        A form to read.
-
     Examples
     --------
     >>> x = sp.Symbol("x")

@@ -85,25 +85,7 @@ class Demonstration:
 
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> Demonstration:
-        """Take the shortcomings out of a system.
-
-        Parameters
-        ----------
-        system : RollingSystem
-            A ball on a turntable with a rim; drag and resistance to rolling may act.
-        start : State
-            Its start.
-
-        Returns
-        -------
-        Demonstration
-            The same ball and start on a level table that turns steadily and resists nothing, in no air.
-
-        Raises
-        ------
-        InvalidValueError
-            If it is no ball on a turntable with a rim, or another load acts.
-        """
+        """Take the shortcomings out of a system."""
         _check(system)
         support, motion = system.support, system.support.motion
         n = motion.at(start.time).rotation @ support.surface.normal(Vector(0.0, 0.0, 0.0))

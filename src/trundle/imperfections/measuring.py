@@ -41,18 +41,6 @@ class CircleMotion:
 def measure(run: Trajectory, kappa: float, rate: float) -> CircleMotion | None:
     """Measure how the circle of a run moved, from circles fitted to its beginning and to its end.
 
-    Parameters
-    ----------
-    run : Trajectory
-        Sampled evenly; the last sample may be the rim.
-    kappa, rate : float
-        Rates of the circle and of the table, rad/s.
-
-    Returns
-    -------
-    CircleMotion or None
-        None where the ball left within two rounds.
-
     Examples
     --------
     >>> import numpy as np

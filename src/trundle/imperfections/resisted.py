@@ -48,16 +48,6 @@ class ResistedCircle:
     def at(self, time: float) -> tuple[float, float]:
         """Return c and A at a time since the start, m.
 
-        Parameters
-        ----------
-        time : float
-            s, not negative.
-
-        Returns
-        -------
-        tuple of float
-            c and A.
-
         Examples
         --------
         >>> ResistedCircle(3.5, 1.0, 0.0, 0.2, 0.1).at(50.0)

@@ -109,11 +109,6 @@ class Row(Displayed):
     def as_dict(self) -> dict[str, Any]:
         """Return the row in SI units, as JSON takes it.
 
-        Returns
-        -------
-        dict
-            Times in s, rates in m/s; None where there is nothing to say.
-
         Examples
         --------
         See `Sensitivity.as_json`.
@@ -153,18 +148,6 @@ def clock(time: float) -> str:
 
 def per_minute(rate: float, sign: bool = False) -> str:
     """Write a rate in millimetres a minute.
-
-    Parameters
-    ----------
-    rate : float
-        m/s.
-    sign : bool
-        Whether growth has a plus.
-
-    Returns
-    -------
-    str
-        ``"0"`` for less than a hundredth of a millimetre in a minute.
 
     Examples
     --------

@@ -26,16 +26,6 @@ P = ParamSpec("P")
 def answering(function: Callable[P, Answer]) -> Callable[P, Answer | Refusal]:
     """Let a function return what the package says is wrong, instead of raising it.
 
-    Parameters
-    ----------
-    function : callable
-        That returns an answer.
-
-    Returns
-    -------
-    callable
-        That returns an answer or a refusal: nothing that it raises has to travel between processes.
-
     Examples
     --------
     >>> text_of("no-such-scenario").status
@@ -58,21 +48,6 @@ def answering(function: Callable[P, Answer]) -> Callable[P, Answer | Refusal]:
 
 def scenario_from(data: Any) -> Scenario:
     """Return the scenario that a visitor sent, checked by the package's own model.
-
-    Parameters
-    ----------
-    data : object
-        As JSON gave it.
-
-    Returns
-    -------
-    Scenario
-        It is of reasonable size and length.
-
-    Raises
-    ------
-    ScenarioError
-        If it is not as the format asks, or asks for more than the lab gives.
 
     Examples
     --------
@@ -98,24 +73,6 @@ def run_of(
 ) -> tuple[Trajectory, float]:
     """Run a scenario.
 
-    Parameters
-    ----------
-    scenario : Scenario
-        Any.
-    most : int
-        How many samples there may be.
-    wanted : int, optional
-        How many are of use: with fewer than the scenario's own, only those are computed.
-    tolerance : float, optional
-        As for `trundle.simulate`.
-
-    Returns
-    -------
-    run : Trajectory
-        The motion.
-    seconds : float
-        How long it took.
-
     Examples
     --------
     >>> run_of(scenario_from(files.parse(files.read("tilted-turntable"), "")), 5000)[0].method
@@ -133,22 +90,6 @@ def simulate(
     data: dict[str, Any], samples: int | None = None, card: bool = False, tolerance: float | None = None
 ) -> Answer:
     """Run a scenario and pack what a viewer needs.
-
-    Parameters
-    ----------
-    data : dict
-        The scenario; one with [[path]] tables is rolled along its path.
-    samples : int, optional
-        How many to show at most.
-    card : bool
-        Whether to verify it, too.
-    tolerance : float, optional
-        As for `trundle.simulate`; a picture needs no more than 1e-9.
-
-    Returns
-    -------
-    Answer
-        A packed scene.
 
     Examples
     --------
@@ -169,16 +110,6 @@ def simulate(
 def card(data: dict[str, Any]) -> Answer:
     """Verify a run of a scenario.
 
-    Parameters
-    ----------
-    data : dict
-        The scenario.
-
-    Returns
-    -------
-    Answer
-        The card, as JSON.
-
     Examples
     --------
     >>> json.loads(card(files.parse(files.read("level-turntable-nudged"), "")).body)["passed"]
@@ -194,16 +125,6 @@ def card(data: dict[str, Any]) -> Answer:
 def derivation(data: dict[str, Any]) -> Answer:
     """Derive the motion of a scenario, step by step.
 
-    Parameters
-    ----------
-    data : dict
-        The scenario.
-
-    Returns
-    -------
-    Answer
-        Title, introduction, steps with their formulas in LaTeX, and the constants in numbers, as JSON.
-
     Examples
     --------
     >>> json.loads(derivation(files.parse(files.read("tilted-turntable"), "")).body)["steps"][0]["title"]
@@ -217,18 +138,6 @@ def derivation(data: dict[str, Any]) -> Answer:
 @answering
 def twin(data: dict[str, Any], samples: int | None = None) -> Answer:
     """Find the charge in crossed fields that moves as the ball of a scenario does.
-
-    Parameters
-    ----------
-    data : dict
-        The scenario.
-    samples : int, optional
-        How many to show at most.
-
-    Returns
-    -------
-    Answer
-        A packed scene of the charge.
 
     Examples
     --------
@@ -247,22 +156,6 @@ def twin(data: dict[str, Any], samples: int | None = None) -> Answer:
 def roll(radius: Any, curve: Mapping[str, Any], samples: int | None = None, card: bool = False) -> Answer:
     """Roll a ball along a curve on a plane.
 
-    Parameters
-    ----------
-    radius : float or text with a unit
-        Of the ball.
-    curve : mapping
-        One piece of path, or several under `path`; `start` and `title` as in a scenario file.
-    samples : int, optional
-        How many to show at most.
-    card : bool
-        Whether to verify it, too.
-
-    Returns
-    -------
-    Answer
-        A packed scene that says by how much the ball is turned.
-
     Examples
     --------
     >>> roll("25 mm", {"kind": "straight", "turn": "90 deg"}).body[:8]
@@ -278,11 +171,6 @@ def roll(radius: Any, curve: Mapping[str, Any], samples: int | None = None, card
 @answering
 def catalogue() -> Answer:
     """List the scenarios that ship with the package.
-
-    Returns
-    -------
-    Answer
-        As JSON.
 
     Examples
     --------
@@ -318,16 +206,6 @@ def _entry(name: str) -> dict[str, Any]:
 def text_of(name: str) -> Answer:
     """Return a scenario that ships with the package.
 
-    Parameters
-    ----------
-    name : str
-        One of those listed; no file is looked for otherwise.
-
-    Returns
-    -------
-    Answer
-        Its text, and its tables as JSON.
-
     Examples
     --------
     >>> json.loads(text_of("tilted-turntable").body)["scenario"]["body"]["kind"]
@@ -344,11 +222,6 @@ def text_of(name: str) -> Answer:
 def schema() -> Answer:
     """Return the JSON schema of scenario files.
 
-    Returns
-    -------
-    Answer
-        As JSON.
-
     Examples
     --------
     >>> json.loads(schema().body)["title"]
@@ -362,16 +235,6 @@ def schema() -> Answer:
 def told(scenario: Scenario | PathScenario) -> dict[str, Any]:
     """Return a scenario as JSON tables and as TOML.
 
-    Parameters
-    ----------
-    scenario : Scenario or PathScenario
-        Any.
-
-    Returns
-    -------
-    dict
-        `scenario` and `toml`.
-
     Examples
     --------
     >>> told(scenario_from(files.parse(files.read("tilted-turntable"), "")))["scenario"]["body"]["radius"]
@@ -383,11 +246,6 @@ def told(scenario: Scenario | PathScenario) -> dict[str, Any]:
 
 def warm(name: str) -> None:
     """Answer about a shipped scenario once, so that the next answer finds everything loaded.
-
-    Parameters
-    ----------
-    name : str
-        Of the scenario.
 
     Examples
     --------

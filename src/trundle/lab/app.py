@@ -24,16 +24,6 @@ from .settings import Settings
 def create_app(settings: Settings | None = None) -> FastAPI:
     """Make the application that serves the lab.
 
-    Parameters
-    ----------
-    settings : Settings, optional
-        How it is run; absent: on this machine only, with the usual bounds.
-
-    Returns
-    -------
-    FastAPI
-        It keeps nothing between requests but a cache: any number of them may serve one lab.
-
     Examples
     --------
     >>> from starlette.testclient import TestClient

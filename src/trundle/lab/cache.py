@@ -37,16 +37,6 @@ class Answer:
 def key_of(*asked: Any) -> str:
     """Return a short text that stands for what was asked: the same for the same JSON, whatever the order of its keys.
 
-    Parameters
-    ----------
-    *asked : object
-        What JSON can hold; bytes, too.
-
-    Returns
-    -------
-    str
-        A digest, of this version of trundle.
-
     Examples
     --------
     >>> key_of("run", {"a": 1, "b": 2}) == key_of("run", {"b": 2, "a": 1})

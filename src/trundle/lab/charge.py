@@ -22,24 +22,6 @@ _SIZE = 0.6  # of the charge as it is drawn, over the radius of the ball
 def charge_scene(scenario: Scenario, samples: int | None = None) -> Scene:
     """Return the charge that moves as the ball of a scenario, in step with it.
 
-    Parameters
-    ----------
-    scenario : Scenario
-        A sphere on a turntable, as `trundle.twin` takes it.
-    samples : int, optional
-        How many to show at most.
-
-    Returns
-    -------
-    Scene
-        Of kind "charge": its header has the fields `E` (V/m) and `B` (T), `charge` (C), what corresponds to what in
-        `table`, and what to set in `settings`; `electric_force` and `magnetic_force` (N) are columns.
-
-    Raises
-    ------
-    OutOfDomainError
-        If nothing corresponds to a part of the system.
-
     Examples
     --------
     >>> import trundle as tr

@@ -175,16 +175,6 @@ def _written(refusal: Refusal) -> bytes:
 def bounded(settings: Settings) -> type[H11Protocol]:
     """Return the protocol that uvicorn is to speak under some settings.
 
-    Parameters
-    ----------
-    settings : Settings
-        How many connections, and how long.
-
-    Returns
-    -------
-    type
-        For `uvicorn.Config(http=...)`.
-
     Examples
     --------
     >>> bounded(Settings(head_time=2.0)).settings.head_time

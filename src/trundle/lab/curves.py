@@ -12,23 +12,6 @@ from ..scenario.complaints import quoted
 def path_of(radius: Any, curve: Mapping[str, Any]) -> dict[str, Any]:
     """Return a ball and a curve as the tables of a scenario file.
 
-    Parameters
-    ----------
-    radius : float or text with a unit
-        Of the ball.
-    curve : mapping
-        One piece, as a [[path]] table says it; or several in a list, `path`, beside `start`, `title` and `notes`.
-
-    Returns
-    -------
-    dict
-        As `PathScenario.read` takes it.
-
-    Raises
-    ------
-    ScenarioError
-        If there is a key that a curve does not have.
-
     Examples
     --------
     >>> path_of("25 mm", {"kind": "straight", "turn": "90 deg"})["path"]

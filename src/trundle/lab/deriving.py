@@ -15,17 +15,6 @@ _OF_THE_FORM = ("The path", "The closed form is a solution")
 def derivation_of(scenario: Scenario) -> dict[str, Any]:
     """Derive the motion of a scenario.
 
-    Parameters
-    ----------
-    scenario : Scenario
-        Any.
-
-    Returns
-    -------
-    dict
-        `title`, `introduction`, `steps` (each `title`, `text` with formulas between dollars, `latex`, `source`) and
-        `numbers` (each `name`, `symbol` in LaTeX, `value`, `unit`; none where no closed form covers the motion).
-
     Examples
     --------
     >>> import trundle as tr
@@ -56,18 +45,6 @@ def derivation_of(scenario: Scenario) -> dict[str, Any]:
 
 def rows_of(number: Number, symbol: str) -> list[dict[str, Any]]:
     r"""Return one row for a number, two for a complex one: its parts lie along the first and the second axis.
-
-    Parameters
-    ----------
-    number : Number
-        Of a derivation.
-    symbol : str
-        Its symbol in LaTeX.
-
-    Returns
-    -------
-    list of dict
-        Each `name`, `symbol`, `value` and `unit`.
 
     Examples
     --------

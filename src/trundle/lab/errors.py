@@ -58,18 +58,6 @@ def refused(
 ) -> RefusedError:
     """Return a refusal to raise.
 
-    Parameters
-    ----------
-    status, message, key, kind
-        As of `Refusal`.
-    after : int, optional
-        When to ask again, in s from now.
-
-    Returns
-    -------
-    RefusedError
-        To raise.
-
     Examples
     --------
     >>> refused(413, "too big").refusal.status
@@ -81,16 +69,6 @@ def refused(
 
 def refusal_of(error: BaseException) -> Refusal | None:
     """Return what to answer to an error of the package, or None where the error is a mistake of ours.
-
-    Parameters
-    ----------
-    error : BaseException
-        What a computation raised.
-
-    Returns
-    -------
-    Refusal or None
-        With the package's own message.
 
     Examples
     --------
@@ -112,16 +90,6 @@ def refusal_of(error: BaseException) -> Refusal | None:
 
 def of_validation(errors: Any) -> Refusal:
     """Return one refusal for what pydantic found wrong with the request around a scenario.
-
-    Parameters
-    ----------
-    errors : sequence of dict
-        As `RequestValidationError.errors()` gives them.
-
-    Returns
-    -------
-    Refusal
-        It names the first.
 
     Examples
     --------

@@ -22,20 +22,6 @@ from .errors import refused
 def export(data: dict[str, Any], kind: str, folder: str) -> Answer:
     """Make a file of a scenario.
 
-    Parameters
-    ----------
-    data : dict
-        The scenario; one with [[path]] tables is rolled along its path.
-    kind : str
-        A key of `FORMATS`, without its dot.
-    folder : str
-        An empty folder for what must be a file on the way.
-
-    Returns
-    -------
-    Answer
-        The file, named after the scenario's title.
-
     Examples
     --------
     >>> import tempfile
@@ -77,16 +63,6 @@ def _temporary_files_in(folder: str) -> Iterator[None]:
 def slug(title: str) -> str:
     """Return a title as the stem of a file's name: small letters, digits and dashes.
 
-    Parameters
-    ----------
-    title : str
-        Any.
-
-    Returns
-    -------
-    str
-        Never empty.
-
     Examples
     --------
     >>> slug("Steel ball, 25 mm (½ turn)"), slug("../../…")
@@ -98,18 +74,6 @@ def slug(title: str) -> str:
 @answering
 def opened(content: bytes, folder: str) -> Answer:
     """Return the scenario in a file that a visitor dropped on the page.
-
-    Parameters
-    ----------
-    content : bytes
-        A scenario as TOML, or a run.nc; which, its first bytes tell.
-    folder : str
-        An empty folder.
-
-    Returns
-    -------
-    Answer
-        `scenario` and `toml`, as JSON.
 
     Examples
     --------

@@ -75,32 +75,7 @@ class Lanes:
         self._stopped = False
 
     async def run(self, request: Request | None, slow: bool, function: Callable[..., Any], *arguments: Any) -> Any:
-        """Compute something in a process.
-
-        Parameters
-        ----------
-        request : Request or None
-            Who asks: when this client goes away, the computation ends. None: the lab itself.
-        slow : bool
-            Whether it is known to take seconds.
-        function : callable
-            Of a module that the processes can import.
-        *arguments : object
-            That can be pickled.
-
-        Returns
-        -------
-        object
-            What the function returned.
-
-        Raises
-        ------
-        RefusedError
-            With status 429 if this client waits for too much already, 503 if too many wait, or as
-            `Computation.result` does.
-        LeftError
-            If the client has gone.
-        """
+        """Compute something in a process."""
         client = "" if request is None or request.client is None else request.client.host
         self._check(client)
         answer = asyncio.get_running_loop().create_future()

@@ -21,16 +21,6 @@ _BOUNDS = Bounds(MOST_LOADS, MOST_PIECES, MOST_VALUES, deepest=12, remedy=_NO_MO
 def check_size(data: Mapping[str, Any]) -> None:
     """Refuse a scenario of more parts than any page of text has.
 
-    Parameters
-    ----------
-    data : mapping
-        As JSON gave it.
-
-    Raises
-    ------
-    ScenarioError
-        That names what there is too much of.
-
     Examples
     --------
     >>> check_size({"loads": [{"kind": "force"}]})
@@ -44,18 +34,6 @@ def check_size(data: Mapping[str, Any]) -> None:
 
 def check_timing(duration: float, every: float, most: int) -> None:
     """Refuse a run that is too long, or is sampled too often.
-
-    Parameters
-    ----------
-    duration, every : float
-        s.
-    most : int
-        Samples.
-
-    Raises
-    ------
-    ScenarioError
-        That names the key.
 
     Examples
     --------

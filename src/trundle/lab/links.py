@@ -16,21 +16,6 @@ LONGEST = 64_000  # characters; the page takes no longer code (web/src/lab/share
 def page_of(name_or_path: str) -> str:
     """Return what comes behind the lab's address to open a scenario.
 
-    Parameters
-    ----------
-    name_or_path : str
-        The name of a scenario that ships with trundle, or the path of a file.
-
-    Returns
-    -------
-    str
-        Such as ``#/bench?name=tilted-turntable``.
-
-    Raises
-    ------
-    ScenarioError
-        If there is no such file, it is not as the format asks, or it is too long for an address.
-
     Examples
     --------
     >>> page_of("tilted-turntable")
@@ -53,16 +38,6 @@ def page_of(name_or_path: str) -> str:
 
 def encode(tables: object) -> str:
     """Return the code of a scenario for an address: JSON, deflated, in base64url.
-
-    Parameters
-    ----------
-    tables : object
-        As JSON holds them.
-
-    Returns
-    -------
-    str
-        As `encode` of web/src/lab/share.ts.
 
     Examples
     --------

@@ -15,20 +15,6 @@ NICENESS = 5
 def computed(function: Callable[..., Any], arguments: tuple[Any, ...], within: float) -> Any:
     """Return what a function returns; what takes longer goes on with less of the processors.
 
-    Parameters
-    ----------
-    function : callable
-        Anything.
-    arguments : tuple
-        Of the function.
-    within : float
-        How long it has the processors as all others do, s.
-
-    Returns
-    -------
-    object
-        What the function returned.
-
     Examples
     --------
     >>> computed(divmod, (7, 2), 1.0)

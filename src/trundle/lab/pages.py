@@ -57,13 +57,6 @@ def _packed(path: str, changed: int) -> bytes:  # noqa: ARG001  of another file 
 def add_routes(app: FastAPI, settings: Settings) -> None:
     """Serve the front end, or say that it has not been built.
 
-    Parameters
-    ----------
-    app : FastAPI
-        It has its other routes already: this one takes what is left.
-    settings : Settings
-        Where the files are.
-
     Examples
     --------
     See `trundle.lab.app.create_app`.

@@ -66,22 +66,7 @@ class Processes:
             _end(pool, self._context)
 
     def computation(self, function: Callable[..., Any], arguments: tuple[Any, ...], within: float) -> Computation:
-        """Return a computation that begins once its result is awaited.
-
-        Parameters
-        ----------
-        function : callable
-            Of a module that the processes can import.
-        arguments : tuple
-            That can be pickled.
-        within : float
-            From when on it stands back for others where the processors are busy, s.
-
-        Returns
-        -------
-        Computation
-            Of its own process.
-        """
+        """Return a computation that begins once its result is awaited."""
         return Computation(self, function, arguments, within)
 
     async def schedule(self, *work: Any) -> ProcessFuture:
@@ -108,18 +93,7 @@ class Computation:
         return self._future is not None and self._future.running()
 
     async def result(self) -> Any:
-        """Return what the function returned; its process ends where this is cancelled.
-
-        Returns
-        -------
-        object
-            As the function returned it.
-
-        Raises
-        ------
-        RefusedError
-            With status 504 if it takes too long, 500 if the process died, 503 if that happens to one after the other.
-        """
+        """Return what the function returned; its process ends where this is cancelled."""
         try:
             return await self._in_process()
         except ProcessExpired as expired:

@@ -112,22 +112,6 @@ _MEANINGS = {
 def described(summary: str, *more: int, scene: bool = False, content: dict[str, Any] | None = None) -> dict[str, Any]:
     """Return what a route says of itself in the OpenAPI schema.
 
-    Parameters
-    ----------
-    summary : str
-        What it is for.
-    *more : int
-        Statuses besides those that all have.
-    scene : bool
-        Whether it answers with a packed scene.
-    content : dict, optional
-        The types of its answer and their schemas; absent: JSON, or a scene.
-
-    Returns
-    -------
-    dict
-        Arguments of a FastAPI route.
-
     Examples
     --------
     >>> sorted(described("One of them.", 404)["responses"])[:3]

@@ -120,18 +120,6 @@ class Guard:
 def check_host(host: str, settings: Settings) -> None:
     """Refuse a request for another host: a page elsewhere may have had its name point here.
 
-    Parameters
-    ----------
-    host : str
-        The Host header.
-    settings : Settings
-        Where the lab listens.
-
-    Raises
-    ------
-    RefusedError
-        With status 421.
-
     Examples
     --------
     >>> check_host("localhost:8765", Settings(port=8765))
@@ -155,18 +143,6 @@ def check_host(host: str, settings: Settings) -> None:
 def check_origin(headers: dict[str, str], scheme: str) -> None:
     """Refuse what a page of another origin sends.
 
-    Parameters
-    ----------
-    headers : dict
-        Of the request, names in small letters.
-    scheme : str
-        Of the request.
-
-    Raises
-    ------
-    RefusedError
-        With status 403.
-
     Examples
     --------
     >>> check_origin({"host": "localhost:8765", "origin": "http://localhost:8765"}, "http")
@@ -184,18 +160,6 @@ def check_origin(headers: dict[str, str], scheme: str) -> None:
 def check_length(length: str | None, most: int) -> None:
     """Refuse a body that says itself that it is too long.
 
-    Parameters
-    ----------
-    length : str or None
-        The Content-Length header.
-    most : int
-        Bytes.
-
-    Raises
-    ------
-    RefusedError
-        With status 413.
-
     Examples
     --------
     >>> check_length("10", 10)
@@ -206,13 +170,6 @@ def check_length(length: str | None, most: int) -> None:
 
 async def refuse(refusal: Refusal, send: Send) -> None:
     """Send a refusal.
-
-    Parameters
-    ----------
-    refusal : Refusal
-        What is said.
-    send : callable
-        Of ASGI.
 
     Examples
     --------

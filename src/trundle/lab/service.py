@@ -58,26 +58,7 @@ class Lab:
         slow: bool = False,
         unkept: tuple[Any, ...] = (),
     ) -> Response:
-        """Answer from the cache, or from a worker.
-
-        Parameters
-        ----------
-        request : Request
-            Who asks.
-        function : callable
-            One of `answers` or `exports`.
-        *arguments : object
-            What JSON can hold, or bytes.
-        slow : bool
-            Whether it is known to take seconds.
-        unkept : tuple
-            Further arguments, which the answer does not depend on.
-
-        Returns
-        -------
-        Response
-            With an ETag that stands for what was asked.
-        """
+        """Answer from the cache, or from a worker."""
         key = key_of(function.__name__, *arguments)
         tag = _tag(key)
         if tag in (part.strip() for part in request.headers.get("if-none-match", "").split(",")):
@@ -88,18 +69,7 @@ class Lab:
         return await self._response(key, found, request)
 
     async def at_once(self, request: Request, function: Callable[..., Answer | Refusal], *arguments: Any) -> Response:
-        """Answer as `answer` does, in a thread of this process: for what only reads a file of the package's own.
-
-        Parameters
-        ----------
-        request, function, *arguments
-            As for `answer`.
-
-        Returns
-        -------
-        Response
-            As of `answer`; it waits for no worker.
-        """
+        """Answer as `answer` does, in a thread of this process: for what only reads a file of the package's own."""
         found = await asyncio.to_thread(function, *arguments)
         if isinstance(found, Refusal):
             raise RefusedError(found)
@@ -107,31 +77,14 @@ class Lab:
         return await self.answer(request, function, *arguments)
 
     async def shared(self, request: Request, function: Callable[..., Answer | Refusal], *arguments: Any) -> Response:
-        """Answer as `answer` does, by a computation that all who ask meanwhile wait for, and that none of them ends.
-
-        Parameters
-        ----------
-        request, function, *arguments
-            As for `answer`.
-
-        Returns
-        -------
-        Response
-            As of `answer`.
-        """
+        """Answer as `answer` does, by a computation that all who ask meanwhile wait for, and that none of them ends."""
         key = key_of(function.__name__, *arguments)
         if self.cache.get(key) is None:
             await self.prepare(function, *arguments)
         return await self.answer(request, function, *arguments)
 
     async def prepare(self, function: Callable[..., Answer | Refusal], *arguments: Any) -> None:
-        """Compute what will be asked for, once.
-
-        Parameters
-        ----------
-        function, *arguments
-            As for `answer`.
-        """
+        """Compute what will be asked for, once."""
         key = key_of(function.__name__, *arguments)
         if key not in self._coming:
             work = asyncio.create_task(self._computed(key, None, False, function, arguments))
@@ -150,16 +103,6 @@ class Lab:
         """Answer as `answer` does, in the slow lane, by a function whose last argument is an empty folder.
 
         The folder has a name of the server's own and goes with the answer, also where the worker was ended.
-
-        Parameters
-        ----------
-        request, function, *arguments
-            As for `answer`.
-
-        Returns
-        -------
-        Response
-            As of `answer`.
         """
         with TemporaryDirectory(prefix="trundle-lab-", ignore_cleanup_errors=True) as folder:
             return await self.answer(request, function, *arguments, slow=True, unkept=(folder,))

@@ -21,16 +21,6 @@ _BACKLOG = 128  # connections that wait to be taken, and that are taken in one g
 def is_loopback(host: str) -> bool:
     """Tell whether only this machine can reach an address.
 
-    Parameters
-    ----------
-    host : str
-        A name or an address.
-
-    Returns
-    -------
-    bool
-        False where it cannot be told.
-
     Examples
     --------
     >>> is_loopback("127.0.0.1"), is_loopback("localhost"), is_loopback("0.0.0.0")
@@ -46,23 +36,6 @@ def is_loopback(host: str) -> bool:
 
 def listen(host: str, port: int | None) -> socket.socket:
     """Take a port.
-
-    Parameters
-    ----------
-    host : str
-        Where to listen.
-    port : int, optional
-        Which; absent: the usual one, or any other that is free.
-
-    Returns
-    -------
-    socket.socket
-        Bound to it.
-
-    Raises
-    ------
-    InvalidValueError
-        If the port is taken, or there is no such host here.
 
     Examples
     --------
@@ -95,16 +68,6 @@ def listen(host: str, port: int | None) -> socket.socket:
 def address_of(taken: socket.socket) -> str:
     """Return what to type into a browser on this machine.
 
-    Parameters
-    ----------
-    taken : socket.socket
-        That the lab listens on.
-
-    Returns
-    -------
-    str
-        Such as ``http://127.0.0.1:8765/``.
-
     Examples
     --------
     >>> with listen("127.0.0.1", 0) as taken:
@@ -124,26 +87,7 @@ def serve(
     open_browser: bool = True,
     told: Callable[[str, int], None] | None = None,
 ) -> None:
-    """Serve the lab until Ctrl-C.
-
-    Parameters
-    ----------
-    settings : Settings
-        How it is run; its port is filled in.
-    port : int, optional
-        Where to listen; absent: the usual port, or any that is free.
-    page : str
-        What comes behind the address where it is opened, as of `page_of`.
-    open_browser : bool
-        Whether to open it in a browser, once it answers.
-    told : callable, optional
-        Told the address and the port once it answers.
-
-    Raises
-    ------
-    InvalidValueError
-        If the port is taken, or there is no such host here.
-    """
+    """Serve the lab until Ctrl-C."""
     from .pool import preload
 
     with listen(settings.host, port) as taken:

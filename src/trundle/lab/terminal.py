@@ -41,19 +41,7 @@ class Terse(logging.Handler):
             print(line, file=sys.stderr, flush=True)  # noqa: T201
 
     def line(self, record: logging.LogRecord) -> str | None:
-        """Return a record as one line.
-
-        Parameters
-        ----------
-        record : logging.LogRecord
-            With an exception or without.
-
-        Returns
-        -------
-        str or None
-            An exception with the innermost places that it went through, not with a traceback; None for what was told a
-            moment ago.
-        """
+        """Return a record as one line."""
         # The same is what the same place says, not what has the same words: there are only so many places.
         place = (record.pathname, record.lineno, *_origin(record))
         now = time.monotonic()

@@ -220,18 +220,6 @@ def point_inertia(mass: Scalar, offset: Vector) -> Matrix:
 
     Written without ρ² − ρ_i², so that nothing is lost for an offset along an axis.
 
-    Parameters
-    ----------
-    mass : Scalar
-        Mass, kg.
-    offset : Vector
-        From the point to the mass, m.
-
-    Returns
-    -------
-    Matrix
-        kg m².
-
     Examples
     --------
     >>> point_inertia(2.0, Vector(0.0, 0.0, 3.0)).c.z

@@ -68,19 +68,6 @@ def attitude(
 def attitude_of(first: Vector, second: Vector, normal: Vector, orientation: Quaternion) -> Attitude:
     """Return heading, lean and turn of a body from its orientation: the inverse of `attitude`.
 
-    Parameters
-    ----------
-    first, second, normal : Vector
-        e₁, e₂ and n at the contact; numbers or arrays of one shape.
-    orientation : Quaternion
-        Body frame to support frame; numbers or arrays.
-
-    Returns
-    -------
-    Attitude
-        ψ and φ in (−π, π], θ in [0, π]. Of a body whose third axis lies along n only their sum or difference exists:
-        then φ is 0.
-
     Examples
     --------
     >>> from trundle.mechanics.algebra import E_X, E_Y, E_Z

@@ -12,20 +12,6 @@ from .scalars import is_number
 def real(value: Any, kind: str, key: str) -> Any:
     """Return a quantity in SI, any finite value allowed.
 
-    Parameters
-    ----------
-    value : float, str, pint.Quantity, array or symbolic scalar
-        What the user gave.
-    kind : str
-        A kind of `trundle.units.UNITS`.
-    key : str
-        The name that an error message uses.
-
-    Returns
-    -------
-    Scalar
-        The value in SI.
-
     Examples
     --------
     >>> real("3 deg", "angle", "tilt")
@@ -36,21 +22,6 @@ def real(value: Any, kind: str, key: str) -> Any:
 
 def positive(value: Any, kind: str, key: str) -> Any:
     """Return a quantity in SI that must be above zero (each element of an array).
-
-    Parameters
-    ----------
-    value, kind, key
-        As for `real`.
-
-    Returns
-    -------
-    Scalar
-        The value in SI.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is zero or negative.
 
     Examples
     --------
@@ -66,21 +37,6 @@ def positive(value: Any, kind: str, key: str) -> Any:
 def non_negative(value: Any, kind: str, key: str) -> Any:
     """Return a quantity in SI that must not be below zero (each element of an array).
 
-    Parameters
-    ----------
-    value, kind, key
-        As for `real`.
-
-    Returns
-    -------
-    Scalar
-        The value in SI.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is negative.
-
     Examples
     --------
     >>> non_negative(0, "damping", "coefficient")
@@ -95,27 +51,6 @@ def non_negative(value: Any, kind: str, key: str) -> Any:
 def instance(value: Any, kind: type | tuple[type, ...], key: str, remedy: str) -> Any:
     """Return a part of a system if it is of the right kind.
 
-    Parameters
-    ----------
-    value : object
-        What the user gave.
-    kind : type or tuple of type
-        What it must be.
-    key : str
-        The name that an error message uses.
-    remedy : str
-        An example of what to give.
-
-    Returns
-    -------
-    object
-        The same value.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is of another kind.
-
     Examples
     --------
     >>> instance(3.0, float, "rate", "Give for instance 3.5.")
@@ -129,25 +64,6 @@ def instance(value: Any, kind: type | tuple[type, ...], key: str, remedy: str) -
 
 def components(value: Any, kind: str, key: str, count: int = 3) -> tuple[Any, ...]:
     """Return the components of a vector in SI.
-
-    Parameters
-    ----------
-    value : sequence or array
-        `count` quantities.
-    kind, key
-        As for `real`; the components are named ``key[0]``, ``key[1]``, ...
-    count : int
-        How many components there must be.
-
-    Returns
-    -------
-    tuple of Scalar
-        The components in SI.
-
-    Raises
-    ------
-    InvalidValueError
-        If the number of components differs or one of them is refused.
 
     Examples
     --------

@@ -56,22 +56,6 @@ class Contact:
 
         Across a gap g, p is the support's point nearest to the body, p + g n the body's nearest to the support, and
         (1 + (C + g)S) w = s − (s·n)n + C(Ω − ω)×n − g ω×n.
-
-        Parameters
-        ----------
-        slip : Vector
-            s, m/s; zero when rolling.
-        angular_velocity : Vector
-            Ω of the body, rad/s.
-        velocity : Vector
-            V of the centre of mass, m/s.
-        gap : Scalar
-            g, m; 0 where they touch.
-
-        Returns
-        -------
-        point_rate, offset_rate : Vector
-            ṗ, and the rate of ρ, m/s.
         """
         n, omega, flat = self.normal, self.support.angular_velocity, self.flat
         C = self.inverse_curvature if flat else self.inverse_curvature.whole  # its elements are wanted anyway
@@ -118,26 +102,7 @@ class Rolling:
 def touch(
     system: RollingSystem, time: Scalar, point: Vector, orientation: Quaternion, own: tuple[Scalar, ...] = ()
 ) -> Contact:
-    """Return the geometry of touch for a contact at a given point of the support.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Body and support.
-    time : Scalar
-        t, s.
-    point : Vector
-        p in the inertial support frame, m.
-    orientation : Quaternion
-        Body frame to support frame.
-    own : tuple of Scalar
-        The coordinates of the support's own motion, where it has some.
-
-    Returns
-    -------
-    Contact
-        n, ρ, C and S.
-    """
+    """Return the geometry of touch for a contact at a given point of the support."""
     surface, support = system.support.surface, system.support.motion.at(time, *own)
     turn, there = support.rotation, support.own_of(point)
     n = turn @ surface.normal(there)
@@ -148,22 +113,6 @@ def touch(
 
 def normal_at(system: RollingSystem, time: Scalar, point: Vector, own: tuple[Scalar, ...] = ()) -> Vector:
     """Return n at a point of the support, from the support into the body, in the inertial support frame.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Its support.
-    time : Scalar
-        t, s.
-    point : Vector
-        p in the inertial support frame, m.
-    own : tuple of Scalar
-        As for `touch`.
-
-    Returns
-    -------
-    Vector
-        Of length 1.
 
     Examples
     --------
@@ -185,26 +134,6 @@ def roll(
     own: tuple[Scalar, ...] = (),
 ) -> Rolling:
     """Return the rates of (p, q, Ω) and the contact force of a body that rolls: T1, T2 and T3.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Body, support and loads.
-    time : Scalar
-        t, s.
-    point : Vector
-        p in the inertial support frame, m.
-    orientation : Quaternion
-        Body frame to support frame.
-    angular_velocity : Vector
-        Ω in the inertial support frame, rad/s.
-    own : tuple of Scalar
-        The coordinates of the support's own motion, where it has some.
-
-    Returns
-    -------
-    Rolling
-        ṗ, q̇, Ω̇, V and R.
 
     Examples
     --------

@@ -90,32 +90,6 @@ def slip_rates(
 ) -> SlipRates:
     """Return how s would change for friction in any direction.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Body, loads, and a support with friction.
-    time : Scalar
-        t, s.
-    contact : Contact
-        Where they touch.
-    orientation : Quaternion
-        Body frame to support frame.
-    angular_velocity : Vector
-        Ω, rad/s.
-    first : Vector
-        e₁, a unit vector along the support.
-    slip_velocity : Vector
-        s, along the support, m/s.
-    own : tuple of Scalar
-        The coordinates of the support's own motion, where it has some.
-    held : bool
-        As of `trundle.mechanics.slipping.slip`.
-
-    Returns
-    -------
-    SlipRates
-        Linear in the friction, so that no direction is worked out on its own.
-
     Examples
     --------
     On a slope of 45° with μ = 1/7, half of what rolling takes, a ball begins to slip straight down:

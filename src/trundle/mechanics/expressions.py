@@ -50,25 +50,6 @@ class Expression:
     def parse(text: str, variables: tuple[str, ...], key: str) -> Expression:
         """Read a formula.
 
-        Parameters
-        ----------
-        text : str
-            Numbers, the variables, ``pi``, ``+ - * / **`` and the functions of `FUNCTIONS`.
-        variables : tuple of str
-            The names that may stand in it.
-        key : str
-            The name that an error message uses.
-
-        Returns
-        -------
-        Expression
-            The formula.
-
-        Raises
-        ------
-        InvalidValueError
-            If anything else stands in it, or it is no formula.
-
         Examples
         --------
         >>> Expression.parse("2*t + open('f')", ("t",), "rate")
@@ -140,18 +121,6 @@ class Expression:
 def is_formula(text: Any, variables: tuple[str, ...] = ("t",)) -> bool:
     """Tell whether a text is a formula that one of the variables stands in, rather than a number with a unit.
 
-    Parameters
-    ----------
-    text : object
-        What the user wrote.
-    variables : tuple of str
-        The names looked for.
-
-    Returns
-    -------
-    bool
-        False for what is not even a text.
-
     Examples
     --------
     >>> is_formula("0.1*sin(t)"), is_formula("0.1 N"), is_formula("3 t")
@@ -169,20 +138,6 @@ def is_formula(text: Any, variables: tuple[str, ...] = ("t",)) -> bool:
 def varying(value: Any, kind: str, key: str) -> Any:
     """Return a number in SI or a formula in the time, whichever the user gave.
 
-    Parameters
-    ----------
-    value : float, quantity, str or Expression
-        What the user gave.
-    kind : str
-        A kind of `trundle.units.UNITS`.
-    key : str
-        The name that an error message uses.
-
-    Returns
-    -------
-    Scalar or Expression
-        The number, or the formula in t.
-
     Examples
     --------
     >>> varying("30 rpm", "angular velocity", "rate") == math.pi, varying("2*t", "angular velocity", "rate").at(t=3.0)
@@ -195,18 +150,6 @@ def varying(value: Any, kind: str, key: str) -> Any:
 
 def varying_vector(value: Any, kind: str, key: str) -> Vector:
     """Return three components, each a number in SI or a formula in the time.
-
-    Parameters
-    ----------
-    value : sequence of 3
-        What the user gave.
-    kind, key : str
-        As for `varying`; the components are named ``key[0]``, ``key[1]``, ``key[2]``.
-
-    Returns
-    -------
-    Vector of Scalar or Expression
-        The components.
 
     Examples
     --------
@@ -229,18 +172,6 @@ def _varies(part: Any) -> bool:
 def course(value: Any, time: Scalar) -> tuple[Scalar, Scalar, Scalar]:
     """Return a number or formula in the time at a time, with its first and second rate.
 
-    Parameters
-    ----------
-    value : Scalar or Expression
-        As `varying` returns it.
-    time : Scalar
-        t, s.
-
-    Returns
-    -------
-    tuple of 3 Scalar
-        The value and its rates, per s and per s².
-
     Examples
     --------
     >>> course(0.5, 1.0)
@@ -251,18 +182,6 @@ def course(value: Any, time: Scalar) -> tuple[Scalar, Scalar, Scalar]:
 
 def now(value: Any, time: Scalar) -> Scalar:
     """Return a number or formula in the time at a time.
-
-    Parameters
-    ----------
-    value : Scalar or Expression
-        As `varying` returns it.
-    time : Scalar
-        t, s.
-
-    Returns
-    -------
-    Scalar
-        The value.
 
     Examples
     --------

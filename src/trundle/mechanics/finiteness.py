@@ -26,19 +26,6 @@ class _UnclearError(Exception):
 def first_singular(formula: Expression, start: float, end: float) -> float | None:
     """Return the first instant at which a formula in t, or its slope, is not finite.
 
-    Parameters
-    ----------
-    formula : Expression
-        In t alone, its numbers plain.
-    start, end : float
-        The run, s.
-
-    Returns
-    -------
-    float or None
-        The instant, s, to 1e-12 of the run; None where there is none, or where the bounds are too wide to tell within
-        a few thousand intervals.
-
     Examples
     --------
     >>> push = Expression.parse("1/(t - 3)", ("t",), "value[0]")
@@ -64,20 +51,6 @@ def check_finite(thing: Any, start: float, end: float, key: str = "") -> None:
 
     Nor may a formula end so near to the run, at an instant t, that the rounding of t would show in it: nearer than 1e-5
     of t a pole makes an error of 1e-11.
-
-    Parameters
-    ----------
-    thing : RollingSystem or any part of it
-        In numbers.
-    start, end : float
-        The run, s.
-    key : str
-        The name of the thing, to begin the names of its parts with.
-
-    Raises
-    ------
-    InvalidValueError
-        For the first formula that is not.
 
     Examples
     --------
@@ -106,16 +79,6 @@ def check_finite(thing: Any, start: float, end: float, key: str = "") -> None:
 
 def varies(thing: Any) -> bool:
     """Tell whether a system has a formula in the time.
-
-    Parameters
-    ----------
-    thing : RollingSystem or any part of it
-        In numbers.
-
-    Returns
-    -------
-    bool
-        Whether `check_finite` has anything to look at.
 
     Examples
     --------

@@ -26,16 +26,6 @@ _SHARPEST = 1e9  # bends in a body's size beyond which a surface is no longer sm
 def fits(contact: Contact) -> Scalar:
     """Return det(1 + C S): positive where the body fits the curvature of the surface, 0 where the law ends.
 
-    Parameters
-    ----------
-    contact : Contact
-        As `trundle.mechanics.contact.touch` returns it; over any scalars.
-
-    Returns
-    -------
-    Scalar
-        1 on a plane. It is a polynomial in C and S, so that it can serve as the function of an event.
-
     Examples
     --------
     A ball of 0.2 m in a bowl of 0.5 m fits by (1 − 0.2/0.5)²:
@@ -53,18 +43,6 @@ def fits(contact: Contact) -> Scalar:
 
 def room(contact: Contact) -> tuple[float, Vector]:
     """Return the smaller eigenvalue of 1 + C S on the tangent plane, and its direction, in numbers.
-
-    Parameters
-    ----------
-    contact : Contact
-        In floats.
-
-    Returns
-    -------
-    least : float
-        Positive where the body fits; for a ball of radius a in a bowl of radius b it is 1 − a/b.
-    direction : Vector
-        Unit tangent along which the contact would run away.
 
     Examples
     --------
@@ -95,22 +73,6 @@ def room(contact: Contact) -> tuple[float, Vector]:
 def check_place(surface: Surface, u: float, v: float, received: Any, key: str = "position") -> None:
     """Refuse coordinates at which there is no surface, or none that is smooth.
 
-    Parameters
-    ----------
-    surface : Surface
-        In numbers.
-    u, v : float
-        Coordinates, of the kinds in ``surface.coordinates``.
-    received : object
-        The place as the user gave it.
-    key : str
-        The name that an error message uses.
-
-    Raises
-    ------
-    InvalidValueError
-        If the surface ends before, or its point, normal or curvature there is no finite number.
-
     Examples
     --------
     >>> from trundle.mechanics.surfaces import Cone
@@ -136,20 +98,6 @@ def check_place(surface: Surface, u: float, v: float, received: Any, key: str = 
 
 def check_curvature(contact: Contact, received: Any, key: str = "position") -> None:
     """Refuse a contact where the body is too big for the curvature of the surface.
-
-    Parameters
-    ----------
-    contact : Contact
-        Where they touch.
-    received : object
-        The place as the user gave it.
-    key : str
-        The name that an error message uses.
-
-    Raises
-    ------
-    InvalidValueError
-        Unless 1 + C S has positive eigenvalues on the tangent plane, or if one of them is not finite.
 
     Examples
     --------
@@ -182,16 +130,6 @@ def check_curvature(contact: Contact, received: Any, key: str = "position") -> N
 def too_big(contact: Contact) -> str:
     """Say in a sentence why a body does not fit the curvature of the surface; empty where it fits.
 
-    Parameters
-    ----------
-    contact : Contact
-        Where they touch.
-
-    Returns
-    -------
-    str
-        With both radii of curvature.
-
     Examples
     --------
     >>> import trundle as tr
@@ -218,16 +156,6 @@ def check_start(
     system: RollingSystem, contact: Contact, orientation: Any, received: Any, key: str = "position"
 ) -> None:
     """Refuse a start at which the body does not fit the surface: by its curvature, or by another part of it.
-
-    Parameters
-    ----------
-    system, contact, orientation, received, key
-        As for `check_clear`.
-
-    Raises
-    ------
-    InvalidValueError
-        As `check_curvature` and `check_clear` do.
 
     Examples
     --------

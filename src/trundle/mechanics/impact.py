@@ -53,27 +53,6 @@ class Impact:
 def land(system: RollingSystem, contact: Contact, orientation: Quaternion, slip: Vector) -> Impact:
     """Return what the support's impulse does to a body that comes down on it.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Body, and a support with friction or without limit to it, a restitution and a tangential one.
-    contact : Contact
-        Where they touch.
-    orientation : Quaternion
-        Body frame to support frame.
-    slip : Vector
-        s just before, m/s, with s·n < 0.
-
-    Returns
-    -------
-    Impact
-        The impulse and the changes of V and Ω.
-
-    Raises
-    ------
-    SolverError
-        If friction jams the body so that no impulse ends the impact.
-
     Examples
     --------
     A solid ball dropped on a rough floor with sidewards speed 1 keeps 5/7 of it and rolls off:

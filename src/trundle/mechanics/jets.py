@@ -198,16 +198,6 @@ class JetFunctions:
 def jets(values: Sequence[Scalar]) -> tuple[Jet, ...]:
     """Return variables to compute with: each with slope 1 in itself.
 
-    Parameters
-    ----------
-    values : sequence of n Scalar
-        Where the derivatives are wanted.
-
-    Returns
-    -------
-    tuple of n Jet
-        The variables there.
-
     Examples
     --------
     >>> jets((2.0,))[0].gradient
@@ -220,18 +210,6 @@ def jets(values: Sequence[Scalar]) -> tuple[Jet, ...]:
 
 def constant_jet(value: Scalar, n: int) -> Jet:
     """Return a constant among jets in n variables.
-
-    Parameters
-    ----------
-    value : Scalar
-        The constant.
-    n : int
-        How many variables.
-
-    Returns
-    -------
-    Jet
-        With no slope.
 
     Examples
     --------

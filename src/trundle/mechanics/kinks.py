@@ -27,19 +27,6 @@ _WIDEST = 1e-6  # of the span: what is left of an instant that is known at all
 def kinks(thing: Any, begin: float, end: float) -> list[float]:
     """Return the instants just behind the kinks of a system's formulas in the time.
 
-    Parameters
-    ----------
-    thing : RollingSystem or any part of it
-        In numbers.
-    begin, end : float
-        The run, s.
-
-    Returns
-    -------
-    list of float
-        Ascending, all within the run, s: so near behind each kink that a method may go up to there by what holds
-        before it, and far enough behind it that rounding does not decide what holds from there on.
-
     Examples
     --------
     >>> from trundle.mechanics.motions import SpinBy
@@ -52,16 +39,6 @@ def kinks(thing: Any, begin: float, end: float) -> list[float]:
 
 def has_kinks(thing: Any) -> bool:
     """Tell whether a system has a formula in the time that may have a kink.
-
-    Parameters
-    ----------
-    thing : RollingSystem or any part of it
-        With numbers, or without.
-
-    Returns
-    -------
-    bool
-        Whether the time stands between bars somewhere in it.
 
     Examples
     --------

@@ -33,20 +33,6 @@ def nearest(
 ) -> Contact:
     """Return the geometry at the support's point nearest to a body, from a point next to it, by one of Newton's steps.
 
-    Parameters
-    ----------
-    system, time, orientation, own
-        As for `touch`.
-    point : Vector
-        p in the inertial support frame, m, off by so little that its square is rounding.
-    centre : Vector
-        r, m.
-
-    Returns
-    -------
-    Contact
-        As of `settle`, which wants no point to begin with; that at the point itself where the step is no small one.
-
     Examples
     --------
     >>> import trundle as tr
@@ -86,29 +72,6 @@ def settle(
 
     Where body and support touch, p = r + ρ(n(p)); where they do not, r + ρ is straight over p, by the gap.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Body and support, in numbers.
-    time : float
-        t, s.
-    centre : Vector
-        r in the inertial support frame, m.
-    orientation : Quaternion
-        Body frame to support frame.
-    own : tuple of Scalar
-        As for `touch`.
-
-    Returns
-    -------
-    Contact
-        Where the body touches, or would if it were pushed on along the normal.
-
-    Raises
-    ------
-    SolverError
-        Where no point of the surface is nearest to the body.
-
     Examples
     --------
     >>> import trundle as tr
@@ -130,18 +93,6 @@ def settle(
 
 def misplaced(system: RollingSystem, contact: Contact, centre: Vector, orientation: Quaternion) -> str:
     """Say why a point straight under a body is not where it is nearest to the support; empty where it is.
-
-    Parameters
-    ----------
-    system, centre, orientation
-        As for `settle`.
-    contact : Contact
-        The geometry there.
-
-    Returns
-    -------
-    str
-        A sentence.
 
     Examples
     --------

@@ -24,24 +24,6 @@ def check_clear(
 ) -> None:
     """Refuse a body of which another part lies below the surface.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Body and support, in numbers.
-    contact : Contact
-        Where they touch.
-    orientation : Quaternion
-        Body frame to support frame.
-    received : object
-        The place as the user gave it.
-    key : str
-        The name that an error message uses.
-
-    Raises
-    ------
-    InvalidValueError
-        If one of some thousand points of the body is deeper than rounding; it says how deep and where.
-
     Examples
     --------
     A ball fits the curvature of the side of a narrow paraboloid, but there are two sides:
@@ -73,22 +55,6 @@ def check_clear(
 
 def depth(system: RollingSystem, contact: Contact, orientation: Any) -> tuple[float, tuple[float, ...]] | None:
     """Return how far the deepest of a body's sampled points is below the surface, and where.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Body and support, in numbers.
-    contact : Contact
-        Where they touch.
-    orientation : Quaternion
-        Body frame to support frame.
-
-    Returns
-    -------
-    below : float
-        φ/|∇φ| there with the sign turned round, m; about 0 where only the contact touches.
-    where : tuple of 3 float
-        In the support's own frame, m. None instead of both where no point of the body is over the surface.
 
     Examples
     --------

@@ -14,16 +14,6 @@ T = TypeVar("T")
 def numbers(thing: Any) -> list[float]:
     """List the numbers that a system is made of, in a fixed order.
 
-    Parameters
-    ----------
-    thing : RollingSystem or any part of it
-        Dataclasses, tuples and numbers, nested.
-
-    Returns
-    -------
-    list of float
-        Every number; names, None and types belong to the structure.
-
     Examples
     --------
     >>> import trundle as tr
@@ -47,16 +37,6 @@ def _walk(thing: Any) -> Iterator[Any]:
 def structure_of(thing: Any) -> Any:
     """Return what a system is apart from its numbers, in a form that can be compared.
 
-    Parameters
-    ----------
-    thing : RollingSystem or any part of it
-        Dataclasses, tuples, numbers and names, nested.
-
-    Returns
-    -------
-    object
-        Equal for systems that one compiled integrator serves.
-
     Examples
     --------
     >>> import trundle as tr
@@ -73,18 +53,6 @@ def structure_of(thing: Any) -> Any:
 
 def with_numbers(thing: T, values: Sequence[Scalar]) -> T:
     """Return the same structure with other scalars in the places of its numbers.
-
-    Parameters
-    ----------
-    thing : RollingSystem or any part of it
-        The structure.
-    values : sequence of Scalar
-        As many as `numbers(thing)` has: numbers, arrays or symbols.
-
-    Returns
-    -------
-    same type as thing
-        A new one.
 
     Examples
     --------

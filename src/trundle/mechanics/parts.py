@@ -228,16 +228,6 @@ class Part:
 def fields_of(part: type[Part]) -> Mapping[str, Field]:
     """Return what each field of a part says of itself.
 
-    Parameters
-    ----------
-    part : type
-        A class of parts.
-
-    Returns
-    -------
-    mapping
-        By name, in the order of the class.
-
     Examples
     --------
     >>> from trundle.mechanics.motions import Spin
@@ -267,16 +257,6 @@ def _notes(part: Any, name: str) -> tuple[Any, ...]:
 def defaults_of(part: type[Part]) -> Mapping[str, Any]:
     """Return the defaults of those fields of a part that have one, as its class has them.
 
-    Parameters
-    ----------
-    part : type
-        A class of parts.
-
-    Returns
-    -------
-    mapping
-        By name.
-
     Examples
     --------
     >>> from trundle.mechanics.loads import PivotFriction
@@ -295,16 +275,6 @@ def _defaults(part: Any) -> Mapping[str, Any]:
 def kinds_of(family: type[PartType]) -> dict[str, type[PartType]]:
     """Return the parts of a family that files may name, by kind.
 
-    Parameters
-    ----------
-    family : type
-        The base class of loads, motions or surfaces.
-
-    Returns
-    -------
-    dict
-        In the order in which the family's package names them, then those that are defined elsewhere.
-
     Examples
     --------
     >>> from trundle.mechanics.loads import Load
@@ -322,16 +292,6 @@ def _below(family: type[PartType]) -> list[type[PartType]]:
 
 def sentence_of(part: type[Part]) -> str:
     """Return the first sentence of what a part says about itself.
-
-    Parameters
-    ----------
-    part : type
-        A class of parts.
-
-    Returns
-    -------
-    str
-        Of its docstring; nothing where Python runs without docstrings.
 
     Examples
     --------

@@ -232,20 +232,7 @@ class Placing:
 
 
 def slips(contact: Contact, V: Vector, Omega: Vector) -> float | None:
-    """Return how fast the contact slips along the support; None where that is rounding.
-
-    Parameters
-    ----------
-    contact : Contact
-        Of the body.
-    V, Omega : Vector
-        m/s and rad/s.
-
-    Returns
-    -------
-    float or None
-        |s|, without a part along n, m/s.
-    """
+    """Return how fast the contact slips along the support; None where that is rounding."""
     s = contact.slip_velocity(V, Omega)
     along = (s - contact.normal * s.dot(contact.normal)).norm()
     u = contact.support.material_velocity(contact.point)
@@ -254,20 +241,7 @@ def slips(contact: Contact, V: Vector, Omega: Vector) -> float | None:
 
 
 def no_gap(contact: Contact, centre: Any) -> float:
-    """Return the gap that a body may have which touches, m: what is asked of a start, or what rounding leaves of it.
-
-    Parameters
-    ----------
-    contact : Contact
-        Of the body.
-    centre : triple of float
-        r, m.
-
-    Returns
-    -------
-    float
-        Of a body small beside its distance from the origin, no smaller gap can be told.
-    """
+    """Return the gap that a body may have which touches, m: what is asked of a start, or what rounding leaves of it."""
     places = Vector(*centre).norm() + contact.point.norm()
     return max(SLIP_TOLERANCE * float(contact.offset.norm()), _ROUNDING * float(places))
 

@@ -17,16 +17,6 @@ Scalar = Any  # float | numpy.ndarray | Array-API array | mpmath.mpf | heyoka.ex
 def is_number(value: Any) -> bool:
     """Tell whether a scalar is a plain real number, whose value can be looked at, rather than a symbol or an array.
 
-    Parameters
-    ----------
-    value : Scalar
-        Anything the mechanics computes with.
-
-    Returns
-    -------
-    bool
-        True for Python and NumPy real numbers.
-
     Examples
     --------
     >>> import sympy
@@ -38,16 +28,6 @@ def is_number(value: Any) -> bool:
 
 def is_zero(value: Any) -> bool:
     """Tell whether a scalar is known to be zero: a number 0, never a symbol or an array that happens to vanish.
-
-    Parameters
-    ----------
-    value : Scalar
-        Anything the mechanics computes with.
-
-    Returns
-    -------
-    bool
-        True for the numbers 0 and 0.0 only.
 
     Examples
     --------
@@ -62,16 +42,6 @@ def is_zero(value: Any) -> bool:
 
 def leaves(values: tuple[Any, ...]) -> Iterator[Any]:
     """Go through nested tuples and yield what is in them.
-
-    Parameters
-    ----------
-    values : (nested) tuple
-        Of scalars.
-
-    Yields
-    ------
-    Scalar
-        In order.
 
     Examples
     --------
@@ -182,16 +152,6 @@ class _ComplexStep:
 def namespace(*values: Any) -> Any:
     """Return the functions (sqrt, sin, cos, tan, exp, expm1, log, where) that fit the given scalars.
 
-    Parameters
-    ----------
-    *values : Scalar or (nested) tuple of Scalar
-        What will be computed with; plain numbers go along with any other kind.
-
-    Returns
-    -------
-    object
-        A namespace such as NumPy's; for arrays it is the one of the Array-API standard.
-
     Examples
     --------
     >>> namespace(4.0).sqrt(4.0)
@@ -220,16 +180,6 @@ _SYMBOLIC = {"heyoka": _Heyoka, "sympy": _SymPy, "mpmath": _Mpmath}
 
 def less(a: Any, b: Any) -> Any:
     """Compare two scalars, a < b, in the form that `where` of their namespace takes.
-
-    Parameters
-    ----------
-    a, b : Scalar
-        The two sides.
-
-    Returns
-    -------
-    bool, array of bool or expression
-        The condition.
 
     Examples
     --------

@@ -17,16 +17,6 @@ _MOST_SQUARES = 3
 def seams(tree: Any) -> list[Any]:
     """Return parts of a formula that are 0 where it is not smooth, or ends.
 
-    Parameters
-    ----------
-    tree : nested tuple
-        Of an `Expression`.
-
-    Returns
-    -------
-    list of nested tuple
-        What stands under a root, in a logarithm, between the bars of an absolute value, below a fraction bar.
-
     Examples
     --------
     >>> seams(("*", 0.2, ("abs", "x"))), seams(("+", ("sin", "x"), ("/", "y", 2.0)))
@@ -53,16 +43,6 @@ def lengths(tree: Any) -> list[tuple[Any, ...]]:
     """Return the vectors, as tuples of up to three parts of a formula, whose lengths stand in it.
 
     Where one passes through zero the formula has a corner. A constant under the root rounds that off, however little.
-
-    Parameters
-    ----------
-    tree : nested tuple
-        Of an `Expression`.
-
-    Returns
-    -------
-    list of tuple of nested tuple
-        What stands between the bars of an absolute value, or is squared under a root.
 
     Examples
     --------
@@ -103,18 +83,6 @@ def _squared(tree: Any) -> list[Any] | None:
 
 def to_the_next(trees: list[Any], **values: Any) -> Scalar | None:
     """Return about how far the nearest seam is, m, at most 1 m; 0 on it.
-
-    Parameters
-    ----------
-    trees : list of nested tuple
-        The seams.
-    values : Jet or Scalar
-        Of the variables, as jets in lengths along the plane.
-
-    Returns
-    -------
-    Scalar or None
-        None where there are none.
 
     Examples
     --------

@@ -85,16 +85,6 @@ class Flying:
 def slip_direction(slip: Vector) -> Vector:
     """Return ŝ = s/|s|.
 
-    Parameters
-    ----------
-    slip : Vector
-        s, m/s, not zero.
-
-    Returns
-    -------
-    Vector
-        Of length 1.
-
     Examples
     --------
     >>> slip_direction(Vector(0.0, 2.0, 0.0))
@@ -116,32 +106,6 @@ def slip(
     held: bool = False,
 ) -> Slipping:
     """Return the rates of (p, q, Ω, s) and the contact force of a body that slips: T1 and T4.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Body, loads, and a support with friction.
-    time : Scalar
-        t, s.
-    point : Vector
-        p in the inertial support frame, m.
-    orientation : Quaternion
-        Body frame to support frame.
-    angular_velocity : Vector
-        Ω, rad/s.
-    slip_velocity : Vector
-        s, along the support, m/s.
-    own : tuple of Scalar
-        The coordinates of the support's own motion, where it has some.
-    direction : Vector, optional
-        ŝ, where s itself does not show it; `ZERO` where there is no friction.
-    held : bool
-        Whether resistance keeps the body from turning over the support, by a couple along it.
-
-    Returns
-    -------
-    Slipping
-        ṗ, q̇, Ω̇, ṡ, V, N and R.
 
     Examples
     --------
@@ -186,18 +150,6 @@ def slip(
 def unturned(contact: Contact, angular_velocity: Vector) -> Vector:
     """Return Ω without its part that turns the body over the support.
 
-    Parameters
-    ----------
-    contact : Contact
-        Of the body.
-    angular_velocity : Vector
-        Ω, rad/s.
-
-    Returns
-    -------
-    Vector
-        ω + Ω_n n, rad/s.
-
     Examples
     --------
     >>> import trundle as tr
@@ -213,24 +165,6 @@ def response(
     system: RollingSystem, contact: Contact, inertia: Matrix | HeldInertia, push: Vector, couple: Vector | None = None
 ) -> Response:
     """Return what a push P at the contact does to Ω and to s: there M P, M = 1/m + [J⁻¹(ρ×·)]×ρ and a free axle's part.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Body and support.
-    contact : Contact
-        Where they touch.
-    inertia : Matrix or HeldInertia
-        J of the body about its centre of mass, in the inertial support frame, kg m².
-    push : Vector
-        On the body: a force, N, or an impulse, N s.
-    couple : Vector, optional
-        That comes with it, N m or N m s.
-
-    Returns
-    -------
-    Response
-        Of Ω and s: rates for a force, changes for an impulse.
 
     Examples
     --------
@@ -266,18 +200,6 @@ def unpushed(
     held: bool = False,
 ) -> Unpushed:
     """Return how a body at a contact would move on without a contact force: T4 with N = 0.
-
-    Parameters
-    ----------
-    system, time, orientation, angular_velocity, slip_velocity, own, held
-        As for `slip`; held, Ω is without turning over the support already.
-    contact : Contact
-        Where it touches.
-
-    Returns
-    -------
-    Unpushed
-        The rates of s and Ω, and what they are made of.
 
     Examples
     --------
@@ -328,30 +250,6 @@ def fly(
 
     Neither the point nor the gap has a part in how the body moves: where they lose digits, as at a shape's edge or by
     a cone's apex, it does not.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Body, support and loads.
-    time : Scalar
-        t, s.
-    point : Vector
-        p, the support's point nearest to the body, in the inertial support frame, m.
-    gap : Scalar
-        g, from p to the body's nearest point p + g n, m.
-    centre : Vector
-        r, the centre of mass, m.
-    orientation : Quaternion
-        Body frame to support frame.
-    angular_velocity, velocity : Vector
-        Ω, rad/s, and V, m/s.
-    own : tuple of Scalar
-        The coordinates of the support's own motion, where it has some.
-
-    Returns
-    -------
-    Flying
-        ṗ, ġ, q̇, Ω̇ and V̇.
 
     Examples
     --------

@@ -28,24 +28,6 @@ _INSTANTS = (0.0, 0.137, 0.382, 0.618, 0.871, 1.0)  # of the run, at which it is
 def facing(contact: Contact, begin: SupportState, surface: Surface, velocity: Any, turned: float) -> Quaternion:
     """Return the orientation of a cylinder laid across its way.
 
-    Parameters
-    ----------
-    contact : Contact
-        Gives point and normal n.
-    begin : SupportState
-        Of the support.
-    surface : Surface
-        Its first coordinate is the way of a body at rest.
-    velocity : sequence of 2 floats or quantities, "co-rotating" or None
-        Of the centre; its direction d is the way.
-    turned : float
-        How far it has rolled on since its first axis lay along n, rad.
-
-    Returns
-    -------
-    Quaternion
-        The one whose matrix has the columns n, d, n×d where it has not rolled on.
-
     Examples
     --------
     >>> import trundle as tr
@@ -71,20 +53,6 @@ def facing(contact: Contact, begin: SupportState, surface: Surface, velocity: An
 
 def check_start(system: RollingSystem, start: State, until: float | None = None) -> None:
     """Refuse a cylinder that lies askew, spins out of its line, or is pushed out of it now or later.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Bodies that touch at a point pass.
-    start : State
-        A start that touches, or falls.
-    until : float, optional
-        The end of the run, s: what pushes may change until then. Absent: only the start's own time is looked at.
-
-    Raises
-    ------
-    InvalidValueError
-        If the sphere that the cylinder moves as would leave the plane across the cylinder's axis.
 
     Examples
     --------

@@ -28,16 +28,6 @@ _PLACE = Vector(0.0137, -0.0291, 0.0213)  # m, where no formula is special
 def conservative(load: Load) -> bool:
     """Tell whether a load has a potential.
 
-    Parameters
-    ----------
-    load : Load
-        Any.
-
-    Returns
-    -------
-    bool
-        Whether it has one.
-
     Examples
     --------
     >>> from trundle.mechanics.loads import Drag, Gravity
@@ -53,16 +43,6 @@ def conservative(load: Load) -> bool:
 
 def without_torque(load: Load) -> bool:
     """Tell whether a load is a force on the centre of mass and nothing else.
-
-    Parameters
-    ----------
-    load : Load
-        Any.
-
-    Returns
-    -------
-    bool
-        Whether its class has neither a torque nor a couple of friction.
 
     Examples
     --------
@@ -80,18 +60,6 @@ def _without_couple(load: Load) -> bool:
 def constant_moment(system: RollingSystem, offset: Vector) -> Vector | None:
     """Return the moment K − ρ×F of the loads about a contact at a constant ρ.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Body and loads.
-    offset : Vector
-        ρ, m.
-
-    Returns
-    -------
-    Vector or None
-        N m; None where a load is not constant.
-
     Examples
     --------
     >>> import trundle as tr
@@ -108,16 +76,6 @@ def constant_moment(system: RollingSystem, offset: Vector) -> Vector | None:
 
 def fixed(system: RollingSystem) -> bool:
     """Tell whether the support is at rest.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Any.
-
-    Returns
-    -------
-    bool
-        True for a steady turn at the rate 0, too.
 
     Examples
     --------
@@ -170,16 +128,6 @@ def _upright(motion: Motion, time: float) -> bool:
 def frictionless(system: RollingSystem) -> bool:
     """Tell whether a body that slips here feels no friction.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Any.
-
-    Returns
-    -------
-    bool
-        True where the coefficient is given and 0.
-
     Examples
     --------
     >>> import trundle as tr
@@ -208,16 +156,6 @@ class Ball:
 
 def ball_of(body: Body) -> Ball | None:
     """Return what a body is as a sphere that can roll any way.
-
-    Parameters
-    ----------
-    body : Body
-        Any.
-
-    Returns
-    -------
-    Ball or None
-        None for other shapes, and for cylinders, which roll one way only.
 
     Examples
     --------
@@ -270,16 +208,6 @@ def _small(vector: Vector, scale: float) -> bool:
 def on_plane(system: RollingSystem) -> bool:
     """Tell whether the body is on a plane whose normal is the third axis of the support frame for good.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Any.
-
-    Returns
-    -------
-    bool
-        True for planes that turn about their normal, steadily or not, or are shifted.
-
     Examples
     --------
     >>> import trundle as tr
@@ -292,16 +220,6 @@ def on_plane(system: RollingSystem) -> bool:
 def symmetric_potential(system: RollingSystem) -> bool:
     """Tell whether all loads have a potential that a turn about the support's third axis leaves alone.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Any.
-
-    Returns
-    -------
-    bool
-        False on a tilted support, for its weight.
-
     Examples
     --------
     >>> import trundle as tr
@@ -313,16 +231,6 @@ def symmetric_potential(system: RollingSystem) -> bool:
 
 def free_axle(motion: Motion) -> Any:
     """Return the moment of inertia of a table that turns freely on its axle.
-
-    Parameters
-    ----------
-    motion : Motion
-        Any.
-
-    Returns
-    -------
-    float or None
-        I_t, kg m²; None for a motion that is given, an axle with a bearing or motor torque, or one that is shifted.
 
     Examples
     --------

@@ -15,16 +15,6 @@ def value(*, eq: bool = True) -> Callable[[type[T]], type[T]]:
 
     A dataclass that Python itself keeps frozen takes four times as long to make, and the mechanics makes little else.
 
-    Parameters
-    ----------
-    eq : bool
-        Whether equal parts make two of them equal; else each is only equal to itself.
-
-    Returns
-    -------
-    callable
-        The decorator.
-
     Examples
     --------
     >>> @value()

@@ -168,18 +168,6 @@ def guiding_centre(run: Trajectory, times: Array) -> Array | None:
 def turns_in(time: Array, velocity: Array) -> float:
     """Count the turns of the acceleration, which on a turntable are steady even where the ball halts.
 
-    Parameters
-    ----------
-    time : (n,) array
-        s.
-    velocity : (n, 2) array
-        m/s.
-
-    Returns
-    -------
-    float
-        Turns over the whole run, without sign.
-
     Examples
     --------
     >>> t = np.linspace(0.0, 10.0, 501)

@@ -23,16 +23,6 @@ _TURN = 0.25  # rad by which the support may turn from one sample to the next
 def fewer(run: Trajectory) -> Trajectory:
     """Return a run with every n-th sample: of no more than half a million, or of as many as the lines need.
 
-    Parameters
-    ----------
-    run : Trajectory
-        In any frame.
-
-    Returns
-    -------
-    Trajectory
-        The same one where it has no more than half a million samples.
-
     Examples
     --------
     >>> import trundle as tr

@@ -27,22 +27,7 @@ class Window:
 
 
 def window_of(surface: Surface, places: Array, size: float) -> Window:
-    """Choose how much of a surface to show: what the body saw of it, and somewhat more; all up to a rim that is near.
-
-    Parameters
-    ----------
-    surface : Surface
-        What is rolled on.
-    places : (n, 3) array
-        Where the body and its contact were, in the support's own frame, m.
-    size : float
-        Radius of the body, m.
-
-    Returns
-    -------
-    Window
-        A box with a margin.
-    """
+    """Choose how much of a surface to show: what the body saw of it, and a little more, all up to a near rim."""
     low, high = np.min(places, axis=0), np.max(places, axis=0)
     reach = float(np.max(np.hypot(places[:, 0], places[:, 1])))
     extent = max(float(np.max(high - low)), 2 * size)
@@ -83,20 +68,7 @@ def _whole(surface: Surface, reach: float) -> float:
 
 
 def levels_at(surface: Surface, x: Any, y: Any, z: Any) -> Array:
-    """Return the level function at points, NaN where the surface has ended.
-
-    Parameters
-    ----------
-    surface : Surface
-        What is rolled on.
-    x, y, z : array
-        In its own frame, m; of shapes that broadcast.
-
-    Returns
-    -------
-    array
-        φ, m.
-    """
+    """Return the level function at points, NaN where the surface has ended."""
     x, y, z = np.broadcast_arrays(np.asarray(x, dtype=float), y, z)
     p = Vector(x, y, z)
     with np.errstate(all="ignore"):
@@ -110,20 +82,7 @@ def levels_at(surface: Surface, x: Any, y: Any, z: Any) -> Array:
 
 
 def meridians(surface: Surface, window: Window) -> list[Array]:
-    """Return the lines in which the half plane of the first axis cuts a surface of revolution.
-
-    Parameters
-    ----------
-    surface : Surface
-        Of revolution.
-    window : Window
-        What is shown.
-
-    Returns
-    -------
-    list of (n, 2) array
-        Distance from the axis and height, m.
-    """
+    """Return the lines in which the half plane of the first axis cuts a surface of revolution."""
     r = np.linspace(0.0, window.reach, _CELLS)
     z = np.linspace(window.low[2], window.high[2], _CELLS)
     R, Z = np.meshgrid(r, z)
@@ -131,22 +90,7 @@ def meridians(surface: Surface, window: Window) -> list[Array]:
 
 
 def sections(surface: Surface, window: Window, count: int = 7) -> list[Array]:
-    """Return the lines in which planes across the second axis cut a surface.
-
-    Parameters
-    ----------
-    surface : Surface
-        Any.
-    window : Window
-        What is shown.
-    count : int
-        How many planes.
-
-    Returns
-    -------
-    list of (n, 2) array
-        x and z, m.
-    """
+    """Return the lines in which planes across the second axis cut a surface."""
     x = np.linspace(window.low[0], window.high[0], _CELLS // 2)
     z = np.linspace(window.low[2], window.high[2], _CELLS // 2)
     X, Z = np.meshgrid(x, z)
@@ -163,22 +107,7 @@ def _zero_lines(across: Array, up: Array, level: Array) -> list[Array]:
 
 
 def heights(surface: Surface, window: Window, cells: int = 160) -> tuple[Array, Array, Array] | None:
-    """Return the heights of a surface over a grid, NaN where there is none; None of one that is no height field.
-
-    Parameters
-    ----------
-    surface : Surface
-        Any.
-    window : Window
-        What is shown.
-    cells : int
-        Along each side.
-
-    Returns
-    -------
-    x, y, z : (n,), (n,), (n, n) array
-        m; a row of z runs along x.
-    """
+    """Return the heights of a surface over a grid, NaN where there is none; None of one that is no height field."""
     if tuple(surface.coordinates) != ("length", "length"):
         return None
     x = np.linspace(window.low[0], window.high[0], cells)
@@ -191,20 +120,7 @@ def heights(surface: Surface, window: Window, cells: int = 160) -> tuple[Array, 
 
 
 def patches(surface: Surface, window: Window) -> Array:
-    """Return the quadrangles of a light mesh of a surface.
-
-    Parameters
-    ----------
-    surface : Surface
-        Any.
-    window : Window
-        What is shown.
-
-    Returns
-    -------
-    (n, 4, 3) array
-        Corners in the support's own frame, m.
-    """
+    """Return the quadrangles of a light mesh of a surface."""
     if surface.axisymmetric:
         turn = np.linspace(0.0, 2 * np.pi, _AROUND + 1)
         grids = []

@@ -60,16 +60,6 @@ class Happening:
 def kind_of(event: Any) -> str:
     """Return the kind of mark that an event gets.
 
-    Parameters
-    ----------
-    event : Event
-        Of a run.
-
-    Returns
-    -------
-    str
-        One of `KINDS`: a landing that bounces is a kind of its own, all that end a run are "event".
-
     Examples
     --------
     >>> from trundle.solve.samples import Event
@@ -84,18 +74,7 @@ def kind_of(event: Any) -> str:
 
 
 def happenings_of(run: Trajectory) -> list[Happening]:
-    """Group the events of a run by kind.
-
-    Parameters
-    ----------
-    run : Trajectory
-        With its events.
-
-    Returns
-    -------
-    list of Happening
-        In the order of `KINDS`.
-    """
+    """Group the events of a run by kind."""
     first, last = (float(run.data["time"].values[i]) for i in (0, -1))
     events = [event for event in run.events if first <= event.time <= last]
     found = []
@@ -124,18 +103,7 @@ def _grouped(kind: str, times: Array, said: str) -> Happening:
 
 
 def stretches_of(run: Trajectory) -> list[Stretch]:
-    """Return the phases of a run in order: from its samples, and between samples from its events.
-
-    Parameters
-    ----------
-    run : Trajectory
-        Data that say no phase are those of a body that rolls.
-
-    Returns
-    -------
-    list of Stretch
-        They follow each other without a gap; two of one phase that follow each other are one.
-    """
+    """Return the phases of a run in order: from its samples, and between samples from its events."""
     time = np.asarray(run.data["time"].values, dtype=float)
     phase = np.asarray(run.data["phase"].values) if "phase" in run.data else np.zeros(len(time), dtype=int)
     events = [event for event in run.events if time[0] < event.time < time[-1] and kind_of(event) != "event"]
@@ -159,20 +127,6 @@ def stretches_of(run: Trajectory) -> list[Stretch]:
 def part_in(stretches: Sequence[Stretch], phase: int, time: Array) -> np.ndarray[Any, np.dtype[np.bool_]]:
     """Tell which instants lie in stretches of a phase, their ends included.
 
-    Parameters
-    ----------
-    stretches : sequence of Stretch
-        In order.
-    phase : int
-        As `Stretch.phase`.
-    time : (n,) array
-        s.
-
-    Returns
-    -------
-    (n,) array of bool
-        True inside.
-
     Examples
     --------
     >>> part_in([Stretch(0.0, 1.0, 0), Stretch(1.0, 3.0, 2)], 2, np.array([0.5, 1.0, 2.0])).tolist()
@@ -190,16 +144,6 @@ def with_events(run: Trajectory) -> Trajectory:
 
     A line through them has its kinks where they happened. What an event does not know, the forces, is taken from the
     sample before.
-
-    Parameters
-    ----------
-    run : Trajectory
-        In the support frame.
-
-    Returns
-    -------
-    Trajectory
-        The same one where no event brings its states.
     """
     time = np.asarray(run.data["time"].values, dtype=float)
     states = [

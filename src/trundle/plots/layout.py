@@ -42,20 +42,6 @@ class Plan:
 def arrange(maps: list[tuple[str, tuple[float, float]]], under: str | None = None, lines: int = 2) -> Plan:
     """Place the maps: side by side, or, where the path runs across the page, under each other.
 
-    Parameters
-    ----------
-    maps : list of (name, (width, height))
-        The frames in reading order, with the extent that each must show (m).
-    under : str, optional
-        The frame under whose map heights are drawn in a strip.
-    lines : int
-        Of the legend, where it stands at the foot.
-
-    Returns
-    -------
-    Plan
-        Boxes in inches.
-
     Examples
     --------
     >>> plan = arrange([("support", (1.0, 1.0)), ("corotating", (1.0, 1.0))])

@@ -54,21 +54,7 @@ class Series:
 
 
 def quantities_of(run: Trajectory, facts: Facts) -> list[Series]:
-    """Return the panels of a run, from the top.
-
-    Parameters
-    ----------
-    run : Trajectory
-        In any frame; the series are those of the support frame.
-    facts : Facts
-        Of the run.
-
-    Returns
-    -------
-    list of Series
-        Position, speed, angular velocity, contact force and friction; and where they tell something: the slip, the
-        height, the lean of the body, the rate of the support.
-    """
+    """Return the panels of a run, from the top."""
     support = run.in_frame("support").data
     time = np.asarray(support["time"].values, dtype=float)
     r, V = _array(support, "position"), _array(support, "velocity")

@@ -16,18 +16,6 @@ LONG_LINE = 100_000
 def round_step(span: float, most: int) -> float:
     """Return the least of 1, 2, 5 times a power of ten that divides a span into few enough parts.
 
-    Parameters
-    ----------
-    span : float
-        What is divided, positive.
-    most : int
-        The largest number of parts allowed.
-
-    Returns
-    -------
-    float
-        The step, in the span's unit.
-
     Examples
     --------
     >>> round_step(60.0, 12), round_step(1.7, 12)
@@ -40,20 +28,6 @@ def round_step(span: float, most: int) -> float:
 
 def refined(time: Array, points: Array, velocity: Array, parts: int) -> Array:
     """Round off a coarsely sampled path with the cubics that join its samples at their velocities.
-
-    Parameters
-    ----------
-    time : (n,) array
-        s.
-    points, velocity : (n, d) array
-        m and m/s, in one frame.
-    parts : int
-        Pieces for each step; every sample stays a vertex.
-
-    Returns
-    -------
-    ((n - 1) * parts + 1, d) array
-        The vertices (m).
 
     Examples
     --------
@@ -73,20 +47,6 @@ def refined(time: Array, points: Array, velocity: Array, parts: int) -> Array:
 def thin_path(points: Array, tolerance: float, longest: int = LONG_LINE) -> Array:
     """Keep every n-th point of a long path, n the largest power of two that moves the line unnoticeably.
 
-    Parameters
-    ----------
-    points : (n, 2) array
-        The path (m).
-    tolerance : float
-        The largest distance by which the drawn line may differ (m).
-    longest : int
-        Paths up to this length are returned as they are.
-
-    Returns
-    -------
-    (k, 2) array
-        The points to draw; first and last are kept.
-
     Examples
     --------
     >>> turn = np.linspace(0.0, 2 * np.pi, 200_001)
@@ -103,20 +63,6 @@ def thin_path(points: Array, tolerance: float, longest: int = LONG_LINE) -> Arra
 
 def thin_series(time: Array, values: Array, longest: int = LONG_LINE, buckets: int = 8000) -> tuple[Array, Array]:
     """Keep the least and the greatest value in each slice of a long series: more slices than a page has dots.
-
-    Parameters
-    ----------
-    time, values : (n,) array
-        The series.
-    longest : int
-        Series up to this length are returned as they are.
-    buckets : int
-        How many slices.
-
-    Returns
-    -------
-    time, values : (k,) array
-        The samples to draw, in order; first and last are kept.
 
     Examples
     --------

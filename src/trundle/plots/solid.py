@@ -28,23 +28,7 @@ class Track:
 
 
 def draw(ax: Any, surface: Any, window: Window, track: Track, tilt: float, names: tuple[str, str, str]) -> None:
-    """Draw the view.
-
-    Parameters
-    ----------
-    ax : Axes3D
-        Where.
-    surface : Surface
-        What is rolled on.
-    window : Window
-        How much of it is shown.
-    track : Track
-        On it.
-    tilt : float
-        By which the picture is turned so that its vertical is the world's, rad.
-    names : tuple of 3 str
-        Of the axes.
-    """
+    """Draw the view."""
     c, s = np.cos(tilt), np.sin(tilt)
     turn = np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
     quads = patches(surface, window) @ turn.T

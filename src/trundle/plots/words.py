@@ -18,16 +18,6 @@ SEPARATOR = "  ·  "
 def title_of(system: RollingSystem) -> str:
     """Say what rolls on what.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        What moved.
-
-    Returns
-    -------
-    str
-        For instance "Ball in a turning bowl".
-
     Examples
     --------
     >>> import trundle as tr
@@ -49,16 +39,6 @@ def title_of(system: RollingSystem) -> str:
 
 def noun_of(body: Body) -> str:
     """Name a body by its shape.
-
-    Parameters
-    ----------
-    body : Body
-        What rolls.
-
-    Returns
-    -------
-    str
-        Such as "ball".
 
     Examples
     --------
@@ -88,18 +68,6 @@ _NOUNS: tuple[tuple[type, str], ...] = (
 
 def key_numbers(system: RollingSystem, own: tuple[float, ...] | None = None) -> str:
     """Write the line of key numbers: of the support's motion, its surface, the body, friction and the loads.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        What moved.
-    own : tuple of float, optional
-        The coordinates of the support's own motion at the start; absent: as the motion itself starts.
-
-    Returns
-    -------
-    str
-        Parts with dots between.
 
     Examples
     --------

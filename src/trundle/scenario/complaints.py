@@ -37,22 +37,7 @@ class Complaint:
 
 
 def complain(error: ValidationError, model: type[BaseModel], source: str = "") -> ScenarioError:
-    """Turn a pydantic error into the message that a reader gets, a line for each thing that is wrong.
-
-    Parameters
-    ----------
-    error : pydantic.ValidationError
-        What pydantic found.
-    model : type
-        The model of the whole file, a `Document`.
-    source : str
-        The name of the file.
-
-    Returns
-    -------
-    ScenarioError
-        A key that does not exist goes before all others: it may be why another is missing.
-    """
+    """Turn a pydantic error into the message that a reader gets, a line for each thing that is wrong."""
     found = [complaint for detail in error.errors(include_url=False) for complaint in _translate(detail, model)]
     found = _without_echoes(sorted(found, key=lambda complaint: not complaint.unknown))
     return ScenarioError.of((InvalidValueError(one.path, one.rule, one.received, one.remedy) for one in found), source)

@@ -24,23 +24,6 @@ _ROUNDING = 1e-12  # of a state's parts: below it other digits may do where thes
 def describe(system: RollingSystem, start: State) -> Words:
     """Return all tables of a scenario but ``run``.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        One system.
-    start : State
-        Its start.
-
-    Returns
-    -------
-    dict
-        What `ScenarioFile.read` takes.
-
-    Raises
-    ------
-    ScenarioError
-        If the format has no words for a part of the system.
-
     Examples
     --------
     >>> import trundle as tr

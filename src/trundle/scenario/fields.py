@@ -58,16 +58,6 @@ SMALLEST_DIVISOR, LARGEST = 1e-30, 1e30
 def written(value: Any) -> Any:
     """Return what a user wrote for a number, or for each of a list of numbers.
 
-    Parameters
-    ----------
-    value : Quantity, list of Quantity, or anything else
-        A value of a scenario.
-
-    Returns
-    -------
-    object
-        Texts and bare numbers; anything else as it is.
-
     Examples
     --------
     >>> written((Quantity(0.025, "25 mm"), Quantity(0.0)))
@@ -113,18 +103,6 @@ class Diameter:
 
 def diameter_of(table: type[BaseModel], key: str) -> str | None:
     """Return the key that may stand instead of a radius of a table; None where the key is none.
-
-    Parameters
-    ----------
-    table : type
-        A table of the file.
-    key : str
-        One of its fields.
-
-    Returns
-    -------
-    str or None
-        ``"diameter"`` of ``"radius"``, ``"ring_diameter"`` of ``"ring_radius"``.
 
     Examples
     --------

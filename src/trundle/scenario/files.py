@@ -29,11 +29,6 @@ _DEEP_KEY = re.compile(rf"(?<![\w-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{_MOST_P
 def names() -> list[str]:
     """Return the names of the scenarios that ship with the package.
 
-    Returns
-    -------
-    list of str
-        In alphabetical order.
-
     Examples
     --------
     >>> "tilted-turntable" in names()
@@ -45,16 +40,6 @@ def names() -> list[str]:
 def title_of(name: str) -> str:
     """Return the title of a shipped scenario.
 
-    Parameters
-    ----------
-    name : str
-        One of `names()`.
-
-    Returns
-    -------
-    str
-        The title.
-
     Examples
     --------
     >>> title_of("tilted-turntable")
@@ -65,16 +50,6 @@ def title_of(name: str) -> str:
 
 def rolls_along_path(tables: Mapping[str, Any]) -> bool:
     """Whether the tables of a file are those of a path to roll along, not of a motion under forces.
-
-    Parameters
-    ----------
-    tables : mapping
-        As `parse` returns them.
-
-    Returns
-    -------
-    bool
-        Whether there are `path` tables among them.
 
     Examples
     --------
@@ -88,16 +63,6 @@ def rolls_along_path(tables: Mapping[str, Any]) -> bool:
 def is_shipped_path(name: str) -> bool:
     """Whether a shipped scenario rolls a ball along a path, without forces.
 
-    Parameters
-    ----------
-    name : str
-        One of `names()`.
-
-    Returns
-    -------
-    bool
-        As `rolls_along_path`.
-
     Examples
     --------
     >>> is_shipped_path("tilted-turntable")
@@ -108,16 +73,6 @@ def is_shipped_path(name: str) -> bool:
 
 def locate(name_or_path: str | os.PathLike[str]) -> Path:
     """Return the file of a shipped scenario or of a path; a shipped name goes before a file of the same name.
-
-    Parameters
-    ----------
-    name_or_path : str or path
-        One of `names()`, or the path of a file.
-
-    Returns
-    -------
-    Path
-        The file, which may not exist.
 
     Examples
     --------
@@ -131,21 +86,6 @@ def locate(name_or_path: str | os.PathLike[str]) -> Path:
 
 def read(name_or_path: str | os.PathLike[str]) -> str:
     """Return the text of a scenario file.
-
-    Parameters
-    ----------
-    name_or_path : str or path
-        One of `names()`, or the path of a file.
-
-    Returns
-    -------
-    str
-        The text, without a byte order mark.
-
-    Raises
-    ------
-    ScenarioError
-        If there is no such file, or it is not a readable text in UTF-8 of reasonable size.
 
     Examples
     --------
@@ -198,23 +138,6 @@ def _no_such(shown: str) -> ScenarioError:
 
 def parse(text: str, source: str) -> dict[str, Any]:
     """Return the tables of a TOML text.
-
-    Parameters
-    ----------
-    text : str
-        The whole file.
-    source : str
-        Its name, for messages.
-
-    Returns
-    -------
-    dict
-        The tables as `tomllib` reads them.
-
-    Raises
-    ------
-    ScenarioError
-        If the text is no TOML (with line and column), is empty, or is larger or nests deeper than any scenario.
 
     Examples
     --------
@@ -272,20 +195,7 @@ class Bounds:
     remedy: str = "Is this a scenario?"
 
     def check(self, tables: Mapping[str, Any], source: str = "") -> None:
-        """Refuse tables that hold more, before anything looks closely at each of them.
-
-        Parameters
-        ----------
-        tables : mapping
-            As TOML or JSON holds them.
-        source : str
-            Their name, for messages.
-
-        Raises
-        ------
-        ScenarioError
-            That names what there is too much of.
-        """
+        """Refuse tables that hold more, before anything looks closely at each of them."""
         for key, most in (("loads", self.loads), ("path", self.path)):
             parts = tables.get(key)
             if isinstance(parts, list) and len(parts) > most:

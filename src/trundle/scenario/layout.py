@@ -13,18 +13,6 @@ from .fields import written
 def layout(data: Mapping[str, Any], path: str = "") -> str:
     """Write nested dictionaries as TOML.
 
-    Parameters
-    ----------
-    data : mapping
-        Texts, numbers, lists of them, tables and lists of tables.
-    path : str
-        The table that the data stand in.
-
-    Returns
-    -------
-    str
-        The text; every float is written so that it reads back to itself.
-
     Examples
     --------
     >>> print(layout({"title": "A", "run": {"every": 0.01}}), end="")

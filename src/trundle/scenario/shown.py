@@ -23,18 +23,6 @@ Kinds = Mapping[str, tuple[str, ...]]
 def shown(document: Document, kinds: Kinds) -> Markup:
     """Return the keys that a scenario gives, and their values.
 
-    Parameters
-    ----------
-    document : Document
-        Any scenario file.
-    kinds : mapping
-        Of a key whose components are lengths or angles, as the surface has it: what each is.
-
-    Returns
-    -------
-    Markup
-        A table.
-
     Examples
     --------
     >>> from trundle.scenario import ScenarioFile

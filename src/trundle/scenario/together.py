@@ -12,25 +12,6 @@ from ..errors import InvalidValueError, ScenarioError
 def each_checked(check: Callable[[Any, str], Any], values: Sequence[Any], key: str = "") -> tuple[Any, ...]:
     """Check each of a list of values, and tell of all that are wrong.
 
-    Parameters
-    ----------
-    check : callable
-        Takes a value and its key, and returns it as it is meant.
-    values : sequence
-        As a user wrote them.
-    key : str
-        Of the list inside its own field.
-
-    Returns
-    -------
-    tuple
-        The checked values.
-
-    Raises
-    ------
-    InvalidValueError
-        If one of them is refused; a ScenarioError where several are.
-
     Examples
     --------
     >>> each_checked(lambda value, key: float(value), ["1", 2])
@@ -41,21 +22,6 @@ def each_checked(check: Callable[[Any, str], Any], values: Sequence[Any], key: s
 
 def tell_all(*checks: Callable[[], Any]) -> list[Any]:
     """Make some checks that do not depend on each other, and tell of all that fail.
-
-    Parameters
-    ----------
-    checks : callables
-        Each raises `InvalidValueError` where something is wrong.
-
-    Returns
-    -------
-    list
-        What they return.
-
-    Raises
-    ------
-    InvalidValueError
-        If one of them fails; a ScenarioError where several do.
 
     Examples
     --------

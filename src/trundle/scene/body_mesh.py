@@ -30,16 +30,6 @@ _LONG, _SHORT = 0.9, 0.3  # half the length of a roller and of a pipe, over the 
 def body_mesh(body: Body) -> Mesh:
     """Return the mesh of a body in its own frame, the centre of mass at the origin.
 
-    Parameters
-    ----------
-    body : Body
-        In numbers.
-
-    Returns
-    -------
-    Mesh
-        Closed; painted by the outward normal ν.
-
     Examples
     --------
     >>> mesh = body_mesh(Body.solid_sphere(radius=0.5, mass=1.0))
@@ -58,16 +48,6 @@ def body_mesh(body: Body) -> Mesh:
 
 def hollow(body: Body) -> bool:
     """Tell whether a body that rolls on a rim or on its side has its mass out there, as a ring or pipe has.
-
-    Parameters
-    ----------
-    body : Body
-        Of any shape.
-
-    Returns
-    -------
-    bool
-        By its moment of inertia about the third axis.
 
     Examples
     --------

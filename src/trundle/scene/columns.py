@@ -33,18 +33,7 @@ VECTORS = ("position", "contact", "velocity", "angular_velocity", "contact_force
 
 
 def columns_of(at: Samples) -> dict[str, NDArray[Any]]:
-    """Return the body's columns.
-
-    Parameters
-    ----------
-    at : Samples
-        As they are shown.
-
-    Returns
-    -------
-    dict
-        `time` in float64, vectors and orientation in float32, the phase in uint8.
-    """
+    """Return the body's columns."""
     vectors = {name: getattr(at, name).astype(np.float32) for name in VECTORS}
     return {
         "time": np.asarray(at.time, dtype=np.float64),
@@ -60,23 +49,7 @@ def moves(system: RollingSystem) -> bool:
 
 
 def pose_of(system: RollingSystem, at: Samples, state: SupportState) -> dict[str, NDArray[Any]]:
-    """Return the columns of a moving support's pose.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Gives the support's motion.
-    at : Samples
-        As they are shown.
-    state : SupportState
-        At each of them.
-
-    Returns
-    -------
-    dict
-        `support_position` and `support_orientation`, of the support's material; in `support_own` the coordinates of a
-        motion of its own.
-    """
+    """Return the columns of a moving support's pose."""
     n, rate = at.time.size, system.support.motion.steady_rate
     own = {"support_own": np.asarray(at.own, dtype=np.float64)} if at.own.shape[1] else {}
     turned = _quaternions(rotations(state, n)) if rate is None else _about_third_axis(float(rate) * at.time)
@@ -89,22 +62,7 @@ def pose_of(system: RollingSystem, at: Samples, state: SupportState) -> dict[str
 
 
 def guiding_centre(run: Trajectory, form: ClosedForm | None, at: Samples) -> dict[str, NDArray[Any]]:
-    """Return the column of the point on the plane about which a ball circles, where a closed form has one throughout.
-
-    Parameters
-    ----------
-    run : Trajectory
-        Gives the start.
-    form : ClosedForm or None
-        Of the phase in which it starts.
-    at : Samples
-        As they are shown.
-
-    Returns
-    -------
-    dict
-        `guiding_centre` or nothing.
-    """
+    """Return the column of the point about which a ball circles, where a closed form has one throughout."""
     if not isinstance(form, SphereOnPlane) or not form.has_guiding_centre or (at.phase != ROLLING).any():
         return {}
     x, y = form.guiding_centre(at.time - run.start.time)

@@ -39,18 +39,6 @@ _LAW = (
 def formula_of(system: RollingSystem, form: ClosedForm | None) -> dict[str, str]:
     r"""Return the formula of a run's motion.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        What moves.
-    form : ClosedForm or None
-        Of the phase in which the run starts; None: the rolling law itself.
-
-    Returns
-    -------
-    dict
-        `name`, `source` (the equation's number in the theory), `latex` and `numbers_latex`.
-
     Examples
     --------
     >>> import trundle as tr
@@ -73,18 +61,6 @@ def formula_of(system: RollingSystem, form: ClosedForm | None) -> dict[str, str]
 def number(value: Any, digits: int = 4) -> str:
     r"""Write a number in LaTeX.
 
-    Parameters
-    ----------
-    value : float
-        The number.
-    digits : int
-        That are shown.
-
-    Returns
-    -------
-    str
-        A simple fraction as one.
-
     Examples
     --------
     >>> number(0.4), number(-1.5e-7), number(12.3456)
@@ -100,18 +76,6 @@ def number(value: Any, digits: int = 4) -> str:
 def decimal(value: Any, digits: int = 4) -> str:
     r"""Write a number in LaTeX, never as a fraction.
 
-    Parameters
-    ----------
-    value : float
-        The number.
-    digits : int
-        That are shown.
-
-    Returns
-    -------
-    str
-        Its power of ten written out.
-
     Examples
     --------
     >>> decimal(0.4), decimal(-1.5e-7)
@@ -124,18 +88,6 @@ def decimal(value: Any, digits: int = 4) -> str:
 
 def quantity(value: Any, unit: str) -> str:
     r"""Write a number with its unit in LaTeX.
-
-    Parameters
-    ----------
-    value : float
-        In that unit.
-    unit : str
-        Such as ``"m/s^2"``; ``"deg"`` for degrees.
-
-    Returns
-    -------
-    str
-        LaTeX.
 
     Examples
     --------

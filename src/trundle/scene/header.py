@@ -22,22 +22,7 @@ if TYPE_CHECKING:
 
 
 def header_of(run: Trajectory, ground: Ground, radius: float) -> dict[str, Any]:
-    """Return the part of a header that the system and the scenario give.
-
-    Parameters
-    ----------
-    run : Trajectory
-        What is shown.
-    ground : Ground
-        The part of its support that is shown.
-    radius : float
-        Of the sphere about the centre of mass that holds the body, m.
-
-    Returns
-    -------
-    dict
-        Plain values.
-    """
+    """Return the part of a header that the system and the scenario give."""
     system, scenario = run.system, tables(run.scenario)
     tilt, times = float(system.support.tilt), run.data["time"].values
     return header_with(
@@ -60,22 +45,6 @@ def header_with(
     title: str, duration: float, body: dict[str, Any], support: dict[str, Any], **told: Any
 ) -> dict[str, Any]:
     """Return a header with every key that scenes have.
-
-    Parameters
-    ----------
-    title : str
-        Of the scene.
-    duration : float
-        s.
-    body, support : dict
-        As `body_table` and `support_table` make them.
-    **told
-        Other keys. Those absent are as for what is exact, has no weight, is not tilted, and of which nothing is found.
-
-    Returns
-    -------
-    dict
-        Plain values.
 
     Examples
     --------

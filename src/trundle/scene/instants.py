@@ -22,20 +22,7 @@ _MOST_EVENTS = 100  # that are given samples of their own
 
 
 def shown(run: Trajectory, most: int) -> Samples:
-    """Return a run's samples as they are to be shown: at most so many, close enough, and with its events.
-
-    Parameters
-    ----------
-    run : Trajectory
-        Any.
-    most : int
-        How many samples at most; of the run's own, some are left out where they are more.
-
-    Returns
-    -------
-    Samples
-        In the inertial support frame.
-    """
+    """Return a run's samples as they are to be shown: at most so many, close enough, and with its events."""
     own = run.samples
     wanted = wanted_times(run, own, most)
     if wanted is not None:
@@ -46,22 +33,7 @@ def shown(run: Trajectory, most: int) -> Samples:
 
 
 def wanted_times(run: Trajectory, own: Samples, most: int) -> Array | None:
-    """Return new instants where a run's own are too far apart to be played, ascending; None where they are not.
-
-    Parameters
-    ----------
-    run : Trajectory
-        Gives the support's motion.
-    own : Samples
-        Of the run.
-    most : int
-        How many instants at most.
-
-    Returns
-    -------
-    array (n,) or None
-        Even in time where nothing turns fast, and in the angle turned where it does.
-    """
+    """Return new instants where a run's own are too far apart to be played, ascending; None where they are not."""
     if own.time.size < 2:
         return None
     step = np.diff(own.time)
@@ -84,20 +56,7 @@ def wanted_times(run: Trajectory, own: Samples, most: int) -> Array | None:
 
 
 def with_events(run: Trajectory, at: Samples) -> Samples:
-    """Return samples with those of the events among them whose state is known, so that a path has its kinks.
-
-    Parameters
-    ----------
-    run : Trajectory
-        With its events.
-    at : Samples
-        Of it.
-
-    Returns
-    -------
-    Samples
-        Forces and phases of an event are those of the sample behind it.
-    """
+    """Return samples with those of the events among them whose state is known, so that a path has its kinks."""
     known = [
         (event.after, event.contact)
         for event in run.events

@@ -27,27 +27,6 @@ def scene_of(
 ) -> Scene:
     """Return what a viewer needs to draw a run.
 
-    Parameters
-    ----------
-    run : Trajectory
-        Any, in any frame.
-    samples : int, optional
-        How many to show at most; absent: the run's own, or 10 000 where it has more.
-    with_card : bool
-        Whether to make the verification card, which may take seconds.
-    seconds : float, optional
-        How long it took to compute the run, for the header.
-
-    Returns
-    -------
-    Scene
-        Vectors in the inertial support frame, meshes in the frames of body and support.
-
-    Raises
-    ------
-    InvalidValueError
-        If `samples` is no whole number from 2 on.
-
     Examples
     --------
     >>> import trundle as tr

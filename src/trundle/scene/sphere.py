@@ -21,20 +21,6 @@ Array = NDArray[np.float64]
 def sphere_scene(radius: float, columns: dict[str, Array], header: dict[str, Any]) -> Scene:
     """Return a scene of a sphere over a plane.
 
-    Parameters
-    ----------
-    radius : float
-        Of the sphere as it is drawn, m.
-    columns : dict
-        `time` and `position`; whatever else of a scene's columns there is. The others are 0, or not turned.
-    header : dict
-        `title`, and what is to be said besides or instead.
-
-    Returns
-    -------
-    Scene
-        As `trundle.scene.scene_of` makes them.
-
     Examples
     --------
     >>> still = {"time": np.array([0.0, 1.0]), "position": np.array([[0.0, 0.0, 0.1]] * 2)}

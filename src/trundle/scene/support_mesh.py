@@ -44,24 +44,7 @@ class Ground:
 
 
 def ground_of(surface: Surface, turns: bool, places: Array, radius: float) -> Ground:
-    """Return the part of a surface that a run needs, as a mesh.
-
-    Parameters
-    ----------
-    surface : Surface
-        What is rolled on.
-    turns : bool
-        Whether the support turns: then a plane is shown as a disc about its axis.
-    places : (n, 3) array
-        Where the body touched, in the support's own frame, m.
-    radius : float
-        Of the body, m.
-
-    Returns
-    -------
-    Ground
-        Kept from one call to the next where the numbers are about the same.
-    """
+    """Return the part of a surface that a run needs, as a mesh."""
     if isinstance(surface, Plane) and not turns and surface.rim is None:
         low, high = np.min(places[:, :2], axis=0), np.max(places[:, :2], axis=0)
         pad = max(0.25 * float(np.max(high - low)), 4 * radius)

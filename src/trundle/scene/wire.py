@@ -53,16 +53,6 @@ class Scene:
 def pack(scene: Scene) -> bytes:
     """Return a scene as bytes.
 
-    Parameters
-    ----------
-    scene : Scene
-        Numbers in its header that are not finite become null.
-
-    Returns
-    -------
-    bytes
-        As this module's heading describes them.
-
     Examples
     --------
     >>> blob = pack(Scene({"title": "Still"}, {"phase": np.zeros(3, dtype=np.uint8)}))
@@ -91,21 +81,6 @@ def pack(scene: Scene) -> bytes:
 
 def unpack(blob: bytes) -> Scene:
     """Return the scene that `pack` wrote.
-
-    Parameters
-    ----------
-    blob : bytes
-        All of them.
-
-    Returns
-    -------
-    Scene
-        Its columns look into the bytes and cannot be written to.
-
-    Raises
-    ------
-    TrundleError
-        If these are no packed scene, or not the whole of one.
 
     Examples
     --------
@@ -136,16 +111,6 @@ def _column(blob: bytes, begin: int, facts: Mapping[str, Any]) -> NDArray[Any]:
 
 def plain(value: Any) -> Any:
     """Return a value as JSON has it: NumPy's numbers as Python's, and null for what is not finite.
-
-    Parameters
-    ----------
-    value : object
-        Nested dictionaries, lists and tuples of texts and numbers.
-
-    Returns
-    -------
-    object
-        The same in plain kinds.
 
     Examples
     --------

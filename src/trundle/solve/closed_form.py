@@ -37,23 +37,6 @@ def solve(
 ) -> Samples:
     """Follow a body through its phases by their closed forms; every event is located to the last digit.
 
-    Parameters
-    ----------
-    system, start, times, progress
-        As for `trundle.solve.taylor.solve`.
-    tolerance : float
-        Not used: a closed form is as exact as its numbers.
-
-    Returns
-    -------
-    Samples
-        At `times`, cut where the run ends early, with its events.
-
-    Raises
-    ------
-    OutOfDomainError
-        If no closed form covers a phase that the run comes to.
-
     Examples
     --------
     >>> import trundle as tr
@@ -72,26 +55,7 @@ def integrate(
     tolerance: float = 0.0,  # noqa: ARG001
     progress: Progress | None = None,
 ) -> Iterator[Stretch]:
-    """Follow one law to its first stop by the closed form of its phase.
-
-    Parameters
-    ----------
-    system, now, times, progress
-        As for `trundle.solve.taylor.integrate`.
-    tolerance : float
-        Not used.
-
-    Yields
-    ------
-    Stretch
-        The orientations at the times before the stop, a block after the other, and what completes them; the last comes
-        with the stop.
-
-    Raises
-    ------
-    OutOfDomainError
-        If no closed form covers the phase.
-    """
+    """Follow one law to its first stop by the closed form of its phase."""
     law, start = now.law, now.start
     form = form_of_phase(law.code, system, start, now.numbers)
     if form is None:
@@ -259,20 +223,6 @@ def _point(system: RollingSystem, law: Law, contact: Contact, centre: Vector) ->
 
 def orientations(motion: ClosedForm, start: State, times: Array) -> Array:
     """Return the orientation at given times; where the motion repeats, any time costs what one circle costs.
-
-    Parameters
-    ----------
-    motion : ClosedForm
-        The motion.
-    start : State
-        Where it starts.
-    times : array (n,)
-        Ascending, s.
-
-    Returns
-    -------
-    array (n, 4)
-        Unit quaternions (w, x, y, z), body frame to support frame.
 
     Examples
     --------

@@ -23,26 +23,6 @@ def lift_at_hand(
     What is left of friction, μ²N² − f², has a double root where N has a single one and nothing asks for friction. Of a
     double root only half the digits are found: so the stop may come too soon, and is no slip.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Body and support.
-    law : Law
-        Of rolling, or of rest.
-    time : float
-        Of the stop, s.
-    numbers : sequence of float
-        The state's.
-    name : str
-        Of the stop.
-    extras : sequence of float
-        What the law's stops take besides the system's numbers.
-
-    Returns
-    -------
-    float or None
-        s; None where the body is not about to come off, or friction does give way first.
-
     Examples
     --------
     >>> import trundle as tr

@@ -36,16 +36,6 @@ _MOST = 10_000
 def count(system: RollingSystem) -> int:
     """Return how many numbers the stops at a system's corners take.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Only its structure matters.
-
-    Returns
-    -------
-    int
-        0 where no load has a corner.
-
     Examples
     --------
     >>> import trundle as tr
@@ -62,18 +52,6 @@ def all_stops(
 
     A vector w that had the direction ŵ passes close by zero where w·ŵ + w²/W falls through it, W being a small length:
     one that only turns about has no such instant.
-
-    Parameters
-    ----------
-    system, law, time, state
-        As `Law.stops` takes them.
-    given : sequence of Scalar
-        What the law's stops take besides, and the numbers of `directions`.
-
-    Returns
-    -------
-    dict
-        By name.
     """
     split = len(given) - count(system)
     found, corners = law.stops(system, time, state, given[:split]), system.corners
@@ -88,20 +66,7 @@ def all_stops(
 
 
 def directions(system: RollingSystem, now: Next) -> tuple[float, ...]:
-    """Return the numbers of the stops at corners, for a stretch that begins.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        What moves.
-    now : Next
-        The beginning.
-
-    Returns
-    -------
-    tuple of float
-        For each corner ŵ and 1/W; of a vector of no length, as it will be a moment later.
-    """
+    """Return the numbers of the stops at corners, for a stretch that begins."""
     if not system.corners:
         return ()
     found: list[float] = []
@@ -114,20 +79,7 @@ def directions(system: RollingSystem, now: Next) -> tuple[float, ...]:
 
 
 def beyond(system: RollingSystem, now: Next) -> Next:
-    """Return what begins on a corner as it is just behind it, where no rounding decides on which side it is.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        What moves.
-    now : Next
-        The beginning of a stretch.
-
-    Returns
-    -------
-    Next
-        The same where it begins on no corner.
-    """
+    """Return what begins on a corner as it is just behind it, where no rounding decides on which side it is."""
     if not system.corners:
         return now
     try:
@@ -155,22 +107,7 @@ def _advanced(system: RollingSystem, now: Next, wait: float) -> Next:
 
 
 def check_count(system: RollingSystem, times: Sequence[float], now: Next) -> None:
-    """Refuse a motion that would pass through corners for ever.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        What moves.
-    times : sequence of float
-        When it passed through corners so far, s.
-    now : Next
-        What begins behind the last.
-
-    Raises
-    ------
-    SolverError
-        If they are too many, or too close.
-    """
+    """Refuse a motion that would pass through corners for ever."""
     many = times[-_MANY:]
     trapped = len(many) == _MANY and many[-1] - many[0] < _MANY_WITHIN * _moment(system, now)
     if not trapped and len(times) <= _MOST:

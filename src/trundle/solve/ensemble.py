@@ -58,18 +58,6 @@ class Block:
 def together(systems: Sequence[RollingSystem], repeat: int = 1) -> RollingSystem:
     """Return one system whose numbers are arrays over members, or plain numbers where all agree.
 
-    Parameters
-    ----------
-    systems : sequence of RollingSystem
-        Of one structure.
-    repeat : int
-        How often the members follow one another.
-
-    Returns
-    -------
-    RollingSystem
-        The mechanics takes it as it takes any other.
-
     Examples
     --------
     >>> import trundle as tr
@@ -223,11 +211,6 @@ def integrate(
 
 def cores() -> int:
     """Return how many threads can run at once.
-
-    Returns
-    -------
-    int
-        Processors that this process may use.
 
     Examples
     --------

@@ -80,20 +80,7 @@ class Next:
 
 
 def at_start(system: RollingSystem, start: State) -> Next:
-    """Return the phase in which a start finds itself.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Body and support.
-    start : State
-        Touching the support or over it.
-
-    Returns
-    -------
-    Next
-        Its law; an event where it strikes the support at once.
-    """
+    """Return the phase in which a start finds itself."""
     at = Touch.of(system, start)
     if at.gap > no_gap(at.contact, start.position):
         return _fly(at)
@@ -105,22 +92,7 @@ def at_start(system: RollingSystem, start: State) -> Next:
 
 
 def after(system: RollingSystem, law: Law, stop: Stop) -> Next:
-    """Return what follows one of a law's stops.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Body and support.
-    law : Law
-        That ended.
-    stop : Stop
-        Which of its stops it came to, and where.
-
-    Returns
-    -------
-    Next
-        The next law, and the event.
-    """
+    """Return what follows one of a law's stops."""
     at, name = stop.at(system, law), stop.name.removeprefix("near ")
     if name in ("slip", "start"):
         extras = _floor(system, law, at) + (0.0,) * law.ending
@@ -166,20 +138,7 @@ def _said(stop: str, before: int, after: int) -> tuple[tuple[str, str], ...]:
 
 
 def slipping(system: RollingSystem, now: Next) -> Next:
-    """Return the same phase by the law of slipping where it is slip whose direction settles at once.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Body and support.
-    now : Next
-        The beginning of a phase.
-
-    Returns
-    -------
-    Next
-        As a closed form takes it.
-    """
+    """Return the same phase by the law of slipping where it is slip whose direction settles at once."""
     if not isinstance(now.law, CreepingLaw):
         return now
     at = now.law.meant(system, now.time, now.numbers)
@@ -240,22 +199,7 @@ def _extras(system: RollingSystem, law: Law, at: Touch, numbers: Any = None) -> 
 
 
 def spins_on(system: RollingSystem, law: Law, stop: Stop) -> bool:
-    """Tell whether a body has stopped rolling, and still spins about the normal.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Body and support.
-    law : Law
-        Of rolling.
-    stop : Stop
-        Its "stop".
-
-    Returns
-    -------
-    bool
-        False also where its turning over the support was only at its slowest.
-    """
+    """Tell whether a body has stopped rolling, and still spins about the normal."""
     at = stop.at(system, law)
     if _goes_on(system, law, at, stop):
         return False

@@ -21,11 +21,6 @@ _ROOM = 0.8  # share of the most that is left, so that not each new one asks for
 def cache_folder() -> Path:
     """Return the folder of the user's cache in which compiled integrators are kept.
 
-    Returns
-    -------
-    pathlib.Path
-        It may not exist yet.
-
     Examples
     --------
     >>> cache_folder().name
@@ -40,16 +35,6 @@ def load(key: str) -> Any:
     """Read a compiled integrator; anything wrong with it means to compile again.
 
     A pickle can run code, so it must belong to this user and be writable by nobody else.
-
-    Parameters
-    ----------
-    key : str
-        Of what it was compiled from.
-
-    Returns
-    -------
-    heyoka.taylor_adaptive_dbl or None
-        None where there is none that can be trusted.
 
     Examples
     --------
@@ -75,13 +60,6 @@ def load(key: str) -> Any:
 def store(key: str, integrator: Any) -> None:
     """Write a compiled integrator, whole or not at all; a cache that cannot be written is done without.
 
-    Parameters
-    ----------
-    key : str
-        Of what it was compiled from.
-    integrator : heyoka.taylor_adaptive_dbl
-        That can be pickled.
-
     Examples
     --------
     See `trundle.solve.taylor`.
@@ -100,11 +78,6 @@ def prune(folder: Path) -> None:
     """Remove what was not used for long, and the least recently used of what is too much.
 
     Several processes may do so at once: a file that is gone is compiled again by whoever asks for it.
-
-    Parameters
-    ----------
-    folder : pathlib.Path
-        Of the cache; only compiled integrators in it are touched.
 
     Examples
     --------

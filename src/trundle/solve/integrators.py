@@ -25,22 +25,6 @@ IN_HASTE, WITH_CARE = 0, 1  # levels of LLVM: at its highest it compiles for hal
 def compiled(system: RollingSystem, law: Law, tolerance: float = TOLERANCE) -> tuple[Any, Lowered]:
     """Return a fresh copy of a compiled integrator: from this process, the user's cache, or the compiler.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Only its structure matters: state and parameters are the caller's to set.
-    law : Law
-        Of the phase.
-    tolerance : float
-        Of each step, relative.
-
-    Returns
-    -------
-    integrator : heyoka.taylor_adaptive_dbl
-        At time 0.
-    lowered : Lowered
-        What its state, parameters and terminal events are.
-
     Examples
     --------
     See `benchmarks/trajectory.py`.
@@ -58,24 +42,7 @@ def _copied(lowered: Lowered, key: str, tolerance: float, level: int) -> Any:
 
 @contextlib.contextmanager
 def borrowed(lowered: Lowered, key: str, tolerance: float, level: int) -> Iterator[Any]:
-    """Lend a copy that nobody else uses, and keep it for the next stretch: to make one takes a millisecond.
-
-    Parameters
-    ----------
-    lowered : Lowered
-        The law.
-    key : str
-        Its name, as `ready` returns them.
-    tolerance : float
-        Of each step, relative.
-    level : int
-        `IN_HASTE` or `WITH_CARE`.
-
-    Yields
-    ------
-    heyoka.taylor_adaptive_dbl
-        In whatever state it was left.
-    """
+    """Lend a copy that nobody else uses, and keep it for the next stretch: to make one takes a millisecond."""
     idle = _memory().idle.setdefault((key, level), [])
     integrator = idle.pop() if idle else _copied(lowered, key, tolerance, level)
     if lowered.stops:
@@ -85,20 +52,7 @@ def borrowed(lowered: Lowered, key: str, tolerance: float, level: int) -> Iterat
 
 
 def ready(system: RollingSystem, law: Law, tolerance: float) -> tuple[Lowered, str]:
-    """Return a law ready for the compiler, and the name of what comes of it; worked out once for each structure.
-
-    Parameters
-    ----------
-    system, law, tolerance
-        As for `compiled`.
-
-    Returns
-    -------
-    lowered : Lowered
-        Its equations and stops.
-    key : str
-        What the compiled integrator depends on.
-    """
+    """Return a law ready for the compiler, and the name of what comes of it; worked out once for each structure."""
     ready = _memory().ready
     structure: Any = (structure_of(system), type(law), tuple(vars(law).items()), tolerance)
     try:
@@ -128,20 +82,7 @@ def _memory() -> _Memory:
 
 
 def kept(key: str, compile_: Callable[[], Any]) -> Any:
-    """Return what was compiled under a key, or compile it and keep it in this process and in the user's cache.
-
-    Parameters
-    ----------
-    key : str
-        What it depends on.
-    compile_ : callable
-        Called where nobody has compiled it yet.
-
-    Returns
-    -------
-    heyoka.taylor_adaptive_dbl
-        Never to be used itself, only copied.
-    """
+    """Return what was compiled under a key, or compile it and keep it in this process and in the user's cache."""
     known = _memory().known
     if key not in known:
         _quiet()

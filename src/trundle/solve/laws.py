@@ -511,45 +511,13 @@ _SHRINKS = {"grip": slice(10, 13), "stop": slice(7, 10)}  # the numbers that cha
 
 
 def left_of_resistance(system: RollingSystem, normal_force: Scalar, holding: Vector) -> Scalar:
-    """Return what is left of resistance to rolling that holds a body: the squares of its most less that of the couple.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Its loads have the resistance.
-    normal_force : Scalar
-        N, N.
-    holding : Vector
-        The couple along the support that holds it, N m.
-
-    Returns
-    -------
-    Scalar
-        (N m)²: it holds while this is not negative.
-    """
+    """Return what is left of resistance to rolling that holds a body: its most squared less the couple squared."""
     most = system.resistance * normal_force
     return most * most * (1 + CONE_SLACK) - holding.dot(holding)
 
 
 def cone(system: RollingSystem, contact: Contact, reaction: Vector, floor: Scalar = 0.0) -> dict[str, Scalar]:
-    """Return the normal force, and what is left of the friction cone where friction has a limit.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Its support has the friction.
-    contact : Contact
-        Where they touch.
-    reaction : Vector
-        R, N.
-    floor : Scalar
-        The pull that lifts nothing off, N.
-
-    Returns
-    -------
-    dict
-        "lift", N, and "slip", N²: the body stays and rolls while neither is negative.
-    """
+    """Return the normal force, and what is left of the friction cone where friction has a limit."""
     n = contact.normal
     N = n.dot(reaction)
     found = {"lift": N + floor}
@@ -570,20 +538,7 @@ def _ending(name: str, v: Vector, rate: Vector, extras: Numbers) -> dict[str, Sc
 
 
 def state_turning(contact: Contact, angular_velocity: Vector) -> Vector:
-    """Return the part of Ω − ω along the support: how the body turns over it, rad/s.
-
-    Parameters
-    ----------
-    contact : Contact
-        Of the body.
-    angular_velocity : Vector
-        Ω, rad/s.
-
-    Returns
-    -------
-    Vector
-        rad/s.
-    """
+    """Return the part of Ω − ω along the support: how the body turns over it, rad/s."""
     relative = angular_velocity - contact.support.angular_velocity
     return relative - contact.normal * relative.dot(contact.normal)
 

@@ -73,18 +73,6 @@ class Lowered:
 def lower(system: RollingSystem, law: Law) -> Lowered:
     """Trace a law and make it ready for the compiler.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Only its structure matters.
-    law : Law
-        Of the phase.
-
-    Returns
-    -------
-    Lowered
-        Its equations, and what its parameters are.
-
     Examples
     --------
     >>> import trundle as tr

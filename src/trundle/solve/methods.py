@@ -64,27 +64,6 @@ class Method:
 def choose(method: str, system: RollingSystem, start: State) -> str:
     """Return the method that a run begins with: `auto` takes the closed form where there is one, else Taylor's method.
 
-    Parameters
-    ----------
-    method : str
-        One of `CHOICES`.
-    system : RollingSystem
-        What will be solved.
-    start : State
-        Any start.
-
-    Returns
-    -------
-    str
-        One of `METHODS`.
-
-    Raises
-    ------
-    UnknownNameError
-        If there is no such method.
-    OutOfDomainError
-        If Taylor's method is asked for on a surface that is a table, which has no derivatives to take.
-
     Examples
     --------
     >>> import trundle as tr
@@ -114,35 +93,6 @@ def run(
 ) -> tuple[Method, Samples]:
     """Run a method; `auto` leaves the closed forms where the run comes to a phase that none covers.
 
-    Parameters
-    ----------
-    method : str
-        One of `CHOICES`.
-    system : RollingSystem
-        What will be solved.
-    start : State
-        Any start.
-    times : array (n,)
-        Ascending, s, none before the start.
-    progress : callable, optional
-        Told the fraction done.
-    tolerance : float, optional
-        Of a numerical method, relative, for each step; absent: the finest that it keeps.
-
-    Returns
-    -------
-    method : Method
-        The one that ran.
-    samples : Samples
-        What it found.
-
-    Raises
-    ------
-    InvalidValueError
-        If the tolerance is none.
-    UnknownNameError, OutOfDomainError, SolverError
-        As `choose` and the method.
-
     Examples
     --------
     A ball slips on a turning table before it rolls, which only the rolling has a closed form for:
@@ -166,19 +116,6 @@ def run(
 
 def check_tolerance(tolerance: Any, name: str = "tolerance") -> None:
     """Refuse what is no tolerance; None is one.
-
-    Parameters
-    ----------
-    tolerance : float or None
-        Relative, of each step.
-    name : str
-        What the asker calls it.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is no number, or so fine that a step is all rounding, or so coarse that no card could tell right from
-        wrong.
 
     Examples
     --------
@@ -217,16 +154,6 @@ def _instead_of_taylor() -> str:
 def solver(method: str) -> Callable[..., Any]:
     """Return the `solve` function of a method.
 
-    Parameters
-    ----------
-    method : str
-        One of `METHODS`.
-
-    Returns
-    -------
-    callable
-        (system, start, times, tolerance, progress) -> Samples.
-
     Examples
     --------
     >>> solver("exact").__module__
@@ -237,16 +164,6 @@ def solver(method: str) -> Callable[..., Any]:
 
 def tolerance_of(method: str) -> float:
     """Return the tolerance at which a method runs unless another is asked for; 0 for a closed form.
-
-    Parameters
-    ----------
-    method : str
-        One of `METHODS`.
-
-    Returns
-    -------
-    float
-        Relative, of each step.
 
     Examples
     --------

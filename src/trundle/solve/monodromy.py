@@ -62,20 +62,6 @@ class Monodromy:
         With a = w + iz and c = x − iy the quaternion obeys ȧ = ½(iΩ_z a − W c), ċ = ½(W̄ a − iΩ_z c), W = C + D e^{iκt};
         its power series is summed in multiple precision.
 
-        Parameters
-        ----------
-        constant, turning : complex or mpmath.mpc
-            C and D, rad/s.
-        along : float or mpmath.mpf
-            Ω_z, rad/s.
-        rate : float or mpmath.mpf
-            κ, rad/s, not zero.
-
-        Returns
-        -------
-        Monodromy
-            Over the period 2π/|κ|.
-
         Examples
         --------
         >>> Monodromy.of_turning_vector(2.0, 0.0, 0.0, 1.0).axis
@@ -136,16 +122,6 @@ def _step(W: list[tuple[int, int]], spin: int, a: tuple[int, int], c: tuple[int,
 
 def sumprod(p: list[int], q: list[int]) -> int:
     """Return the sum of p_i q_i over the shorter of the two lists (math.sumprod needs Python 3.12 and equal lengths).
-
-    Parameters
-    ----------
-    p, q : list of int
-        The factors.
-
-    Returns
-    -------
-    int
-        Exact.
 
     Examples
     --------

@@ -38,21 +38,6 @@ def first_moment(system: RollingSystem, at: Touch, law: Law | None = None) -> On
     What it cannot give grows from nothing, mostly, and so the slip is the integral of a slope. Where friction settles
     the direction of so small a slip at once, its speed alone is followed until it has grown.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Body, and a support with friction.
-    at : Touch
-        Where rolling gives way.
-    law : Law, optional
-        That of rest, where resistance goes on to keep the body from turning over the support; absent: of rolling.
-
-    Returns
-    -------
-    Onset, Touch or None
-        The slipping body; or the body as it rolls on, where friction holds again before the moment has passed. None
-        where it can slip no way, since the support would have to pull, or since friction jams it.
-
     Examples
     --------
     >>> import trundle as tr
@@ -87,20 +72,6 @@ def first_moment(system: RollingSystem, at: Touch, law: Law | None = None) -> On
 
 def jammed(time: float, share: float = -1.0, opens: bool = False) -> SolverError:
     """Name Painlevé's paradox: rigid contact with so much friction has no motion, or more than one.
-
-    Parameters
-    ----------
-    time : float
-        When, s.
-    share : float
-        How much the normal force opens the contact, m n·a₁; where it is negative, it closes it.
-    opens : bool
-        Whether the contact would open without it.
-
-    Returns
-    -------
-    SolverError
-        To be raised.
 
     Examples
     --------

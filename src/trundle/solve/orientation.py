@@ -46,29 +46,6 @@ def orientation(
 ) -> Array:
     """Return the orientation at given times from a known angular velocity.
 
-    Parameters
-    ----------
-    angular_velocity : callable
-        Takes times (n,) in s, returns Ω (3, n) in the support frame, rad/s.
-    times : array (n,)
-        Ascending, s.
-    start : sequence of 4 floats
-        Quaternion (w, x, y, z) at `start_time`.
-    start_time : float
-        s, at most the first of `times`.
-    kinks : sequence of floats
-        Instants at which Ω(t) is not smooth, ascending, s; it must be so everywhere else.
-
-    Returns
-    -------
-    array (n, 4)
-        Unit quaternions, body frame to support frame; exact up to the rounding of Ω·t.
-
-    Raises
-    ------
-    SolverError
-        If Ω is not smooth enough to be followed, or the body turns too often.
-
     Examples
     --------
     Half a turn about the third axis:
@@ -348,24 +325,6 @@ def periodic_orientation(
     angular_velocity: AngularVelocity, monodromy: Monodromy, times: Array, start: Any, start_time: float = 0.0
 ) -> Array:
     """Return the orientation at given times where Ω(t) repeats: any time costs what one period costs.
-
-    Parameters
-    ----------
-    angular_velocity : callable
-        As for `orientation`, with time counted from `start_time`.
-    monodromy : Monodromy
-        The rotation of one period.
-    times : array (n,)
-        s, at least `start_time`; any order.
-    start : sequence of 4 floats
-        Quaternion (w, x, y, z) at `start_time`.
-    start_time : float
-        s.
-
-    Returns
-    -------
-    array (n, 4)
-        Unit quaternions, body frame to support frame.
 
     Examples
     --------

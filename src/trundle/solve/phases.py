@@ -275,27 +275,7 @@ def _ended(system: RollingSystem, law: Law, stop: Stop) -> tuple[Samples, Event]
 
 
 def following_stop(system: RollingSystem, law: Law, stop: Stop) -> Next:
-    """Return what follows a stop, or say that nothing can be worked out there.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        What moves.
-    law : Law
-        That ended.
-    stop : Stop
-        Where, and why.
-
-    Returns
-    -------
-    Next
-        The next law, where it begins, and the events.
-
-    Raises
-    ------
-    SolverError
-        If the contact is singular there.
-    """
+    """Return what follows a stop, or say that nothing can be worked out there."""
     try:
         return following.after(system, law, stop)
     except (ArithmeticError, ValueError) as error:
@@ -332,18 +312,6 @@ def _check_count(system: RollingSystem, events: list[Event]) -> None:
 
 def cut(times: Array, end: float) -> tuple[Array, Array]:
     """Part ascending instants where something ends.
-
-    Parameters
-    ----------
-    times : array (n,)
-        Ascending, s.
-    end : float
-        s.
-
-    Returns
-    -------
-    before, after : array
-        Those before the end, and the others: views.
 
     Examples
     --------

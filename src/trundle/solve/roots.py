@@ -11,20 +11,6 @@ _EPSILON = 2.0**-52
 def root(function: Callable[[float], float], begin: float, end: float, nearest: float = 1e-300) -> float:
     """Return where a function changes sign between two places.
 
-    Parameters
-    ----------
-    function : callable
-        Of one number; of opposite signs at the two places, or 0 at one.
-    begin, end : float
-        The places.
-    nearest : float
-        How near to it is near enough, beside its last digit.
-
-    Returns
-    -------
-    float
-        To the last digit, as far as the function's own rounding lets it.
-
     Examples
     --------
     >>> root(lambda x: (x - 0.5) ** 3, 0.0, 2.0)

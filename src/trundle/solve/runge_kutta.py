@@ -41,21 +41,6 @@ def solve(
 ) -> Samples:
     """Integrate the laws of contact and return the states at the given times; every event is located as it happens.
 
-    Parameters
-    ----------
-    system, start, times, tolerance, progress
-        As for `trundle.solve.taylor.solve`.
-
-    Returns
-    -------
-    Samples
-        At `times`, cut where the run ends early, with its events.
-
-    Raises
-    ------
-    SolverError
-        If the integration breaks down.
-
     Examples
     --------
     >>> import trundle as tr
@@ -70,23 +55,7 @@ def solve(
 def integrate(
     system: RollingSystem, now: Next, times: Array, tolerance: float, progress: Progress | None = None
 ) -> Iterator[Stretch]:
-    """Follow one law to its first stop.
-
-    Parameters
-    ----------
-    system, now, times, tolerance, progress
-        As for `trundle.solve.taylor.integrate`.
-
-    Yields
-    ------
-    Stretch
-        The states at the times before the stop, a block after the other; the last comes with the stop.
-
-    Raises
-    ------
-    SolverError
-        If the integration breaks down.
-    """
+    """Follow one law to its first stop."""
     # It counts from where the law begins to hold: far from 0 no step would be short enough.
     end = float(times[-1]) - now.time if times.size else 0.0
     for piece in _integrated(system, now, _Rows(times - now.time, len(now.numbers)), end, tolerance, progress):
@@ -100,34 +69,12 @@ def integrate(
 
 
 def keeping() -> tuple[Keep, Callable[[], Integrate]]:
-    """Return the way through all stretches of one run that keeps the polynomials of their steps, and one beside it.
-
-    Returns
-    -------
-    keep, beside : callable
-        As of `trundle.solve.taylor.keeping`.
-    """
+    """Return the way through all stretches of one run that keeps the polynomials of their steps, and one beside it."""
     return dense, lambda: integrate
 
 
 def dense(system: RollingSystem, now: Next, end: float, tolerance: float, most: int) -> Leg | TooMany:
-    """Follow one law to its first stop, and keep the polynomial of each step.
-
-    Parameters
-    ----------
-    system, now, end, tolerance, most
-        As for `trundle.solve.taylor.dense`.
-
-    Returns
-    -------
-    Leg or TooMany
-        The second where it takes more steps.
-
-    Raises
-    ------
-    SolverError
-        If the integration breaks down.
-    """
+    """Follow one law to its first stop, and keep the polynomial of each step."""
     paths = _Paths(np.asarray(now.numbers, dtype=float), most)
     try:
         *_, last = _integrated(system, now, paths, end - now.time, tolerance, None)

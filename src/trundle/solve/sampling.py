@@ -21,23 +21,6 @@ _COARSEST_OF_STEP, _COARSEST_OF_MOMENT = 1e-3, 1e-7
 def check_sampling(duration: Any, every: Any, prefix: str = "") -> tuple[float, float]:
     """Return duration and step in s, or say what is wrong with them.
 
-    Parameters
-    ----------
-    duration, every : float or quantity
-        Length of the run and step between samples, s.
-    prefix : str
-        Put before the two names in messages, such as ``"run."``.
-
-    Returns
-    -------
-    duration, every : float
-        s.
-
-    Raises
-    ------
-    InvalidValueError
-        If one is not positive, the step is longer than the run, or there would be too many samples.
-
     Examples
     --------
     >>> check_sampling("60 s", "10 ms")
@@ -63,16 +46,6 @@ def check_sampling(duration: Any, every: Any, prefix: str = "") -> tuple[float, 
 def sample_times(duration: Any, every: Any, prefix: str = "") -> NDArray[np.float64]:
     """Return the instants 0, h, 2h, ... of a run and its end.
 
-    Parameters
-    ----------
-    duration, every, prefix
-        As for `check_sampling`.
-
-    Returns
-    -------
-    array
-        Ascending, s; the last is the duration, also where the step does not divide it.
-
     Examples
     --------
     >>> sample_times(1.0, 0.4).tolist()
@@ -90,20 +63,6 @@ def sample_times(duration: Any, every: Any, prefix: str = "") -> NDArray[np.floa
 def check_clock(system: RollingSystem, start: State, step: float) -> None:
     """Refuse a start so far from 0 on the clock that rounding of the time would show in the motion.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        What moves.
-    start : State
-        With its time.
-    step : float
-        Between samples, s.
-
-    Raises
-    ------
-    InvalidValueError
-        If the floats there are too far apart.
-
     Examples
     --------
     >>> import trundle as tr
@@ -119,18 +78,6 @@ def check_clock(system: RollingSystem, start: State, step: float) -> None:
 
 def longer_step(times: NDArray[np.float64], most: int) -> str:
     """Say which step leaves a run fewer samples.
-
-    Parameters
-    ----------
-    times : array (n,)
-        Of the run, s.
-    most : int
-        How many samples it may have.
-
-    Returns
-    -------
-    str
-        As the end of a sentence.
 
     Examples
     --------

@@ -214,20 +214,6 @@ _Functions = type("_Functions", (), {name: _function(name) for name in _PYTHON})
 def apply(tape: Tape, operation: str, *operands: Any) -> Any:
     """Return the result of an operation given by its name, as `Tape.steps` keeps it.
 
-    Parameters
-    ----------
-    tape : Tape
-        Of the operands.
-    operation : str
-        Of arithmetic, or the name of a function.
-    *operands : Node or float
-        One of them on the tape.
-
-    Returns
-    -------
-    Node or float
-        On the tape.
-
     Examples
     --------
     >>> tape = Tape()

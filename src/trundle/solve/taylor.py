@@ -41,11 +41,6 @@ _PARTS = 10  # of a stretch that is kept, between which rounding's share is take
 def available() -> bool:
     """Tell whether heyoka can be imported here.
 
-    Returns
-    -------
-    bool
-        False where PyPI has no wheel of it.
-
     Examples
     --------
     >>> available() in (True, False)
@@ -60,29 +55,6 @@ def solve(
     system: RollingSystem, start: State, times: Array, tolerance: float = TOLERANCE, progress: Progress | None = None
 ) -> Samples:
     """Integrate the laws of contact and return the states at the given times; every event is located as it happens.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Any system.
-    start : State
-        A start on the support or over it.
-    times : array (n,)
-        Ascending, s, none before the start.
-    tolerance : float
-        Of each step, relative.
-    progress : callable, optional
-        Told the fraction done.
-
-    Returns
-    -------
-    Samples
-        At `times`, cut where the run ends early, with its events.
-
-    Raises
-    ------
-    SolverError
-        If the integration breaks down.
 
     Examples
     --------
@@ -104,33 +76,7 @@ def integrate(
     progress: Progress | None = None,
     shared: Shared | None = None,
 ) -> Iterator[Stretch]:
-    """Follow one law to its first stop.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Any system.
-    now : Next
-        The law, and where it begins.
-    times : array (n,)
-        Ascending, s, none before the beginning.
-    tolerance : float
-        Of each step, relative.
-    progress : callable, optional
-        Told the time reached.
-    shared : Shared, optional
-        What the stretches of one run share.
-
-    Yields
-    ------
-    Stretch
-        The states at the times before the stop, a chunk after the other; the last comes with the stop.
-
-    Raises
-    ------
-    SolverError
-        If the integration breaks down.
-    """
+    """Follow one law to its first stop."""
     if now.law.brief:
         yield from runge_kutta.integrate(system, now, times, runge_kutta.FINEST, progress)
         return
@@ -171,15 +117,7 @@ class Shared:
 
 
 def keeping() -> tuple[Keep, Callable[[], Integrate]]:
-    """Return the way through all stretches of one run that keeps the polynomials of their steps, and one beside it.
-
-    Returns
-    -------
-    keep : callable
-        As `dense`.
-    beside : callable
-        Returns what follows a run like it, or a part of it, as `integrate`.
-    """
+    """Return the way through all stretches of one run that keeps the polynomials of their steps, and one beside it."""
     shared = Shared()
     return partial(dense, shared=shared), lambda: partial(integrate, shared=shared.another())
 
@@ -192,33 +130,7 @@ def dense(
     most: int,
     shared: Shared | None = None,
 ) -> Leg | TooMany:
-    """Follow one law to its first stop, and keep the polynomial of each step.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Any system.
-    now : Next
-        The law, and where it begins.
-    end : float
-        Of the run, s.
-    tolerance : float
-        Of each step, relative.
-    most : int
-        How many steps may be kept.
-    shared : Shared, optional
-        As for `integrate`.
-
-    Returns
-    -------
-    Leg or TooMany
-        The second where it takes more steps.
-
-    Raises
-    ------
-    SolverError
-        If the integration breaks down.
-    """
+    """Follow one law to its first stop, and keep the polynomial of each step."""
     if now.law.brief:
         return runge_kutta.dense(system, now, end, runge_kutta.FINEST, most)
     shared = Shared() if shared is None else shared

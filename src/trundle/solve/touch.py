@@ -102,20 +102,6 @@ class Touch:
 def moment(system: RollingSystem, state: State, contact: tuple[float, float, float] | None = None) -> float:
     """Return a time in which a motion changes: |ρ| over its speed, or over what the forces make of it.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Body, support and loads.
-    state : State
-        At a contact.
-    contact : triple of float, optional
-        Where, m; absent: it is searched for.
-
-    Returns
-    -------
-    float
-        s.
-
     Examples
     --------
     >>> import trundle as tr
@@ -128,16 +114,6 @@ def moment(system: RollingSystem, state: State, contact: tuple[float, float, flo
 
 def floats(v: Vector) -> tuple[float, float, float]:
     """Return a vector's components.
-
-    Parameters
-    ----------
-    v : Vector
-        Of numbers.
-
-    Returns
-    -------
-    tuple of float
-        Three.
 
     Examples
     --------

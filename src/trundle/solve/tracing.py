@@ -44,20 +44,6 @@ class PythonLaw:
 def state_rates(system: RollingSystem, time: Scalar, state: Sequence[Scalar]) -> list[Scalar]:
     """Return the rates of the ten numbers (p, q, Ω) by the rolling law.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Its numbers may be any scalars.
-    time : Scalar
-        s.
-    state : sequence of 10 Scalar
-        p in m, q, Ω in rad/s, inertial support frame.
-
-    Returns
-    -------
-    list of 10 Scalar
-        Their time derivatives.
-
     Examples
     --------
     >>> import trundle as tr
@@ -70,18 +56,6 @@ def state_rates(system: RollingSystem, time: Scalar, state: Sequence[Scalar]) ->
 
 def contact_state(system: RollingSystem, start: State) -> list[float]:
     """Return the ten numbers (p, q, Ω) of a start, and those of the support's own motion.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Body and support.
-    start : State
-        Centre, orientation and Ω.
-
-    Returns
-    -------
-    list of float
-        p in m, q, Ω in rad/s.
 
     Examples
     --------
@@ -97,24 +71,6 @@ def python_law(
     system: RollingSystem, law: Law, extras: Sequence[float] = (), time: float = 0.0, state: Sequence[float] = ()
 ) -> PythonLaw:
     """Trace a law on a tape and return it as flat Python functions, some 20 times faster than the vectors.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Structure and numbers. A support given as a table cannot be traced: it is worked out on floats each time.
-    law : Law
-        Of the phase.
-    extras : sequence of float
-        What its stops take besides.
-    time : float
-        When the law begins to hold, s.
-    state : sequence of float
-        The numbers with which it begins; only a support given as a table needs these two, to name its stops.
-
-    Returns
-    -------
-    PythonLaw
-        Its rates and its stops.
 
     Examples
     --------

@@ -32,32 +32,7 @@ def examine(
     free: tuple[str, ...] = (),
     dimension: int = 0,
 ) -> Equilibrium:
-    """Return what there is to say of a place where the torque about the contact vanishes.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Its support at rest.
-    time : float
-        s.
-    place : Place
-        The equilibrium.
-    friction : float, optional
-        Coulomb's coefficient of the support.
-    energy : float, optional
-        J, from any zero.
-    line, angle : Line and float, optional
-        Of a cylinder: the line it rolls along, and where on it, rad.
-    free : tuple of str
-        What may be changed without leaving equilibrium.
-    dimension : int
-        Of its family.
-
-    Returns
-    -------
-    Equilibrium
-        With `distance` and `roll` for a cylinder.
-    """
+    """Return what there is to say of a place where the torque about the contact vanishes."""
     p, q = place.p, place.q
     now = roll(system, time, p, q, ZERO)
     contact, R = now.contact, now.reaction

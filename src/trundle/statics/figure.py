@@ -41,18 +41,7 @@ PULLED: dict[str, Any] = {"marker": "x", "color": GREY, "ms": 7, "mew": 1.6}
 
 
 def draw(result: Equilibria) -> Figure:
-    """Draw the findings.
-
-    Parameters
-    ----------
-    result : Equilibria
-        Any.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Needs neither a display nor pyplot.
-    """
+    """Draw the findings."""
     shown = [one for one in result.marked if one.stands and one.angle is not None]
     shown = sorted(shown, key=lambda one: one.energy or 0.0)
     drawings: list[Equilibrium | None] = [*shown[:MOST_DRAWN]] or [None]

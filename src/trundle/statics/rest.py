@@ -33,24 +33,6 @@ def still(system: RollingSystem, time: float, contact: Contact, q: Quaternion) -
 def virtual_work(system: RollingSystem, time: float, contact: Contact, q: Quaternion, turn: Vector) -> Scalar:
     """Return the work F·δr + K·δφ of the loads per radian of a virtual rolling, δr = −δφ×ρ, J/rad.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Its support at rest.
-    time : float
-        s.
-    contact : Contact
-        Where it touches.
-    q : Quaternion
-        Body frame to support frame.
-    turn : Vector
-        Direction of δφ, a unit vector; δr is what no slip makes of it.
-
-    Returns
-    -------
-    Scalar
-        0 for every admissible turn is equilibrium.
-
     Examples
     --------
     A ball of weight m g on a slope gives a m g sin α for each radian that it rolls down:
@@ -101,22 +83,7 @@ def has_energy(system: RollingSystem, time: float, p: Vector, q: Quaternion) -> 
 
 
 def room(system: RollingSystem, contact: Contact, q: Quaternion) -> Scalar:
-    """Return what falls through zero where the support ends, the body's shape, or what fits: the rolling law's bounds.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Its support at rest.
-    contact : Contact
-        Where it touches; of one body or many.
-    q : Quaternion
-        Body frame to support frame.
-
-    Returns
-    -------
-    Scalar
-        The least of them, of no particular unit; infinite where there is none.
-    """
+    """Return what falls through zero where the support ends, or its shape does: the rolling law's bounds."""
     least: Any = np.inf
     for bound in RollingLaw()._bounds(system, contact, q, 0.0).values():
         least = np.minimum(least, bound)
@@ -137,26 +104,6 @@ def linear_law(
     system: RollingSystem, time: float, p: Vector, q: Quaternion, turns: Sequence[Vector]
 ) -> tuple[Array, Array, Array]:
     """Return the linear part of the rolling law about rest: Ω̇ = H δφ + G Ω for rolling along some turns.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Its support at rest.
-    time : float
-        s.
-    p, q : Vector, Quaternion
-        An equilibrium: elsewhere H means nothing.
-    turns : sequence of Vector
-        Orthonormal directions of δφ that the body may take; 1 for a cylinder, 3 for a ball.
-
-    Returns
-    -------
-    H : (k, k) array
-        1/s².
-    G : (k, k) array
-        1/s; 0 without drag.
-    moves : (k, 3) array
-        How far the contact moves for a radian of each turn, m.
 
     Examples
     --------

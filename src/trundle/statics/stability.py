@@ -59,20 +59,6 @@ class Mode:
 def modes_of(H: Array, G: Array, turns: Array, moves: Array, scale: float) -> tuple[Mode, ...]:
     """Return the modes of δφ̈ = H δφ + G δφ̇.
 
-    Parameters
-    ----------
-    H, G : (k, k) array
-        1/s² and 1/s, as `linear_law` returns them.
-    turns, moves : (k, 3) array
-        The turns, and the contact's moves.
-    scale : float
-        The size, 1/s², against which an eigenvalue of H is nothing.
-
-    Returns
-    -------
-    tuple of Mode
-        The fastest growing first, the indifferent last.
-
     Examples
     --------
     >>> one = np.array([[1.0]])
@@ -115,18 +101,6 @@ def _damped(H: Array, G: Array) -> list[tuple[complex, Array]]:
 
 def stability_of(modes: tuple[Mode, ...], ignore_pivot: float = 0.0) -> str:
     """Return "unstable" where any mode grows, "stable" where any other swings or dies away, else "indifferent".
-
-    Parameters
-    ----------
-    modes : tuple of Mode
-        Of one equilibrium.
-    ignore_pivot : float
-        Modes that move the contact less than this, m, are turns on the spot.
-
-    Returns
-    -------
-    str
-        The word.
 
     Examples
     --------

@@ -19,16 +19,6 @@ SPOT = "turning on the spot"
 def direction_names(system: RollingSystem) -> tuple[str, str]:
     """Return how the two coordinates of the support are called as directions.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Any.
-
-    Returns
-    -------
-    tuple of 2 str
-        To stand behind "moves" or "rests anywhere".
-
     Examples
     --------
     >>> import trundle as tr
@@ -41,18 +31,7 @@ def direction_names(system: RollingSystem) -> tuple[str, str]:
 
 
 def report(result: Equilibria) -> str:
-    """Write the findings out, as the command prints them.
-
-    Parameters
-    ----------
-    result : Equilibria
-        Any.
-
-    Returns
-    -------
-    str
-        Several lines.
-    """
+    """Write the findings out, as the command prints them."""
     lines = [result.title] if result.title else []
     lines.append(count_of(result))
     for i, one in enumerate(result.found, 1):
@@ -61,20 +40,7 @@ def report(result: Equilibria) -> str:
 
 
 def report_one(one: Equilibrium, count: int = 1) -> str:
-    """Write out one equilibrium.
-
-    Parameters
-    ----------
-    one : Equilibrium
-        Any.
-    count : int
-        Of how many: of several, how their energies compare is told.
-
-    Returns
-    -------
-    str
-        Several lines.
-    """
+    """Write out one equilibrium."""
     said = facts(one, count)
     energy = said["energy"] if one.energy == 0 else f"energy {said['energy']}"
     force = f"contact force {said['contact force']}; {said['friction']}"
@@ -180,18 +146,6 @@ def _motion(mode: Mode, one: Equilibrium) -> str:
 
 def motion_words(mode: Mode, digits: int = 6) -> str:
     """Say in a few words what a nudge leads to.
-
-    Parameters
-    ----------
-    mode : Mode
-        Of an equilibrium.
-    digits : int
-        Of the time.
-
-    Returns
-    -------
-    str
-        With the time that it takes.
 
     Examples
     --------

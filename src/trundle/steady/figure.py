@@ -23,20 +23,7 @@ _UNSTABLE = "#FBEADF"
 
 
 def draw(sweep: Sweep, title: str) -> Sheet:
-    """Draw a sweep.
-
-    Parameters
-    ----------
-    sweep : Sweep
-        What to draw.
-    title : str
-        Over the figure.
-
-    Returns
-    -------
-    Sheet
-        Two panels, one over the other.
-    """
+    """Draw a sweep."""
     factor, unit = (180 / math.pi, "°") if sweep.name == "lean" else (1.0, sweep.unit)
     values = sweep.values * factor
     with look():

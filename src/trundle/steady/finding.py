@@ -49,27 +49,7 @@ class Relative:
 
 
 def flow_of(system: RollingSystem, start: State) -> tuple[Flow, Array]:
-    """Return the law as a flow in the frame in which it does not ask the time, and the start in its numbers.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Support at rest or turning steadily.
-    start : State
-        A start that rolls.
-
-    Returns
-    -------
-    flow : Flow
-        Ready for symmetries and slopes.
-    y : (10,) array
-        p, q, Ω.
-
-    Raises
-    ------
-    InvalidValueError
-        If the law asks the time in every frame that turns with the support.
-    """
+    """Return the law as a flow in the frame in which it does not ask the time, and the start in its numbers."""
     rate = system.support.motion.steady_rate
     if rate is None:
         remedy = "Let the support rest or turn steadily; or run the scenario."
@@ -108,22 +88,6 @@ def nearest(flow: Flow, y: Array, found: Array | None = None, held: tuple[Held, 
 
     Newton's method with the shortest of all steps that solve the linear equations: it ends on the family of steady
     motions next to where it began, and moves along no direction that does not matter.
-
-    Parameters
-    ----------
-    flow : Flow
-        The law.
-    y : (10,) array
-        Where to begin.
-    found : (k, 9) array, optional
-        The symmetries; absent: asked of the law.
-    held : tuple of Held
-        What must have given values.
-
-    Returns
-    -------
-    Relative
-        Its residual says whether it is one.
     """
     moves = symmetries(flow, y) if found is None else found
     best = None

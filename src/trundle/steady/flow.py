@@ -75,22 +75,7 @@ class Flow:
         return rates if self.turning == 0 else rates - self.turning * symmetry.moved_by(symmetry.TURN, y)
 
     def slopes(self, function: Function, y: Array, directions: Array) -> Array:
-        """Return the derivatives of a function of the ten numbers along some directions.
-
-        Parameters
-        ----------
-        function : callable
-            (10, n) -> (m, n) or (n,).
-        y : (10,) array
-            Where.
-        directions : (10, k) array
-            Along which.
-
-        Returns
-        -------
-        (m, k) or (k,) array
-            In the function's units.
-        """
+        """Return the derivatives of a function of the ten numbers along some directions."""
         if self.by_complex_step:
             return np.imag(function(y[:, None] + 1j * STEP * directions)) / STEP
         return differences(function, y, directions)

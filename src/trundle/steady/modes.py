@@ -71,18 +71,7 @@ class Reduced:
 
 
 def reduce(relative: Relative) -> Reduced:
-    """Return the linear law about a steady motion, symmetry divided out.
-
-    Parameters
-    ----------
-    relative : Relative
-        A steady motion.
-
-    Returns
-    -------
-    Reduced
-        Its eigenvalues do not depend on the frame, except where the motion itself is symmetric.
-    """
+    """Return the linear law about a steady motion, symmetry divided out."""
     flow, y = relative.flow, relative.y
     tangent = flow.tangent(y)
     rows = [tangent.T @ (moved_by(row, y) / flow.scale) for row in relative.symmetries]
@@ -105,20 +94,7 @@ def eigenvalues(reduced: Reduced) -> Array:
 
 
 def modes_of(reduced: Reduced, rate: float) -> tuple[Mode, ...]:
-    """Return the modes, the fastest growing first.
-
-    Parameters
-    ----------
-    reduced : Reduced
-        The linear law.
-    rate : float
-        The scale against which a mode is slow, rad/s.
-
-    Returns
-    -------
-    tuple of Mode
-        One for each pair of conjugate eigenvalues, one for each real one.
-    """
+    """Return the modes, the fastest growing first."""
     modes = []
     for value in eigenvalues(reduced):
         if value.imag < 0:
@@ -134,17 +110,6 @@ def modes_of(reduced: Reduced, rate: float) -> tuple[Mode, ...]:
 
 def verdict_of(modes: tuple[Mode, ...]) -> str:
     """Return the verdict of the linear law.
-
-    Parameters
-    ----------
-    modes : tuple of Mode
-        Of one steady motion.
-
-    Returns
-    -------
-    str
-        "unstable" where a nudge grows; "neutral" where the law says nothing of some nudge; "stable" where all die away;
-        "stable to first order" where some oscillate for ever.
 
     Examples
     --------

@@ -17,22 +17,7 @@ _GOOD = 1e-8  # agreement that smaller nudges need not better
 
 
 def carried(flow: Flow, y: Array, times: Any) -> Array:
-    """Return the states that a run passes through, in the frame of the flow.
-
-    Parameters
-    ----------
-    flow : Flow
-        The law.
-    y : (10,) array
-        The start.
-    times : float or (n,) array
-        Since the start, ascending, s.
-
-    Returns
-    -------
-    (10,) or (10, n) array
-        Integrated by Taylor's method where there is heyoka, else by DOP853.
-    """
+    """Return the states that a run passes through, in the frame of the flow."""
     method = methods.Method.of(methods.choose("taylor", flow.system, flow.state(y)))
     instants = np.atleast_1d(np.asarray(times, dtype=float))
     run = method.solve(flow.system, flow.state(y), flow.time + instants)
@@ -55,30 +40,7 @@ def slope_of_run(
     rough: bool = False,
     wide: float = WIDTHS[0],
 ) -> Array:
-    """Return how nudges have moved on after a time, seen after a finite move that brings the run back.
-
-    Parameters
-    ----------
-    flow : Flow
-        The law.
-    y : (10,) array
-        The start.
-    directions : (10, k) array
-        Nudges, of the scale's size.
-    time : float
-        s.
-    move : (11, 11) array
-        As `symmetry.group_matrix` makes it.
-    rough : bool
-        Whether a few digits will do.
-    wide : float
-        How far apart the nudges are, in units of `directions`.
-
-    Returns
-    -------
-    (10, k) array
-        By central differences of the eighth order between whole runs.
-    """
+    """Return how nudges have moved on after a time, seen after a finite move that brings the run back."""
     sheet = reference(flow, y, time, move)
 
     def after(states: Array) -> Array:
@@ -105,20 +67,7 @@ def _same_sheet(y: Array, other: Array) -> Array:
 
 
 def check(relative: Relative, reduced: Reduced) -> float:
-    """Return how far nudged runs are from what the linear law says of them, as a share.
-
-    Parameters
-    ----------
-    relative : Relative
-        A steady motion.
-    reduced : Reduced
-        Its linear law.
-
-    Returns
-    -------
-    float
-        Of the largest entry of exp(t A); the runs know nothing of A.
-    """
+    """Return how far nudged runs are from what the linear law says of them, as a share."""
     from scipy.linalg import expm
 
     flow, y = relative.flow, relative.y

@@ -133,16 +133,6 @@ class Sweep(Displayed):
     def plot(self, title: str = "") -> Figure:
         """Draw frequencies over growth, with the limits of stability.
 
-        Parameters
-        ----------
-        title : str
-            Over the figure.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            Needs neither a display nor pyplot.
-
         Examples
         --------
         >>> import trundle as tr

@@ -30,18 +30,6 @@ _COMMUTES = 1e-8  # share below which a commutator is nothing
 def moved_by(shares: Array, y: Any) -> Any:
     """Return the rates of (p, q, Ω) under a rigid move with given shares.
 
-    Parameters
-    ----------
-    shares : (9,) array
-        Shift, m/s; turn of space about axes through the origin, rad/s; turn of the body about its own axes, rad/s.
-    y : (10,) or (10, n) array
-        p, q, Ω.
-
-    Returns
-    -------
-    array
-        Same shape as y.
-
     Examples
     --------
     >>> moved_by(TURN, np.array([2.0, 0, 0, 1, 0, 0, 0, 0, 0, 0]))[:7].tolist()
@@ -62,16 +50,6 @@ def linear_part(shares: Array, y: Any) -> Any:
 
 def group_matrix(shares: Array) -> Array:
     """Return the finite move exp(ξ) as a matrix on (p, q, Ω, 1).
-
-    Parameters
-    ----------
-    shares : (9,) array
-        As for `moved_by`, times the time: m and rad.
-
-    Returns
-    -------
-    (11, 11) array
-        The move of the ten numbers, by its last column affine.
 
     Examples
     --------
@@ -94,18 +72,6 @@ def generator(shares: Array) -> Array:
 
 def symmetries(flow: Flow, y: Array) -> Array:
     """Return the symmetries of a flow: the moves of space and body that carry motions into motions.
-
-    Parameters
-    ----------
-    flow : Flow
-        The law, in a frame in which it does not ask the time.
-    y : (10,) array
-        Near which it is asked, at states on the support.
-
-    Returns
-    -------
-    (k, 9) array
-        Shares of k independent moves.
 
     Examples
     --------

@@ -15,18 +15,7 @@ if TYPE_CHECKING:
 
 
 def report(result: SteadyMotions) -> str:
-    """Write the findings out, as the command prints them.
-
-    Parameters
-    ----------
-    result : SteadyMotions
-        Any.
-
-    Returns
-    -------
-    str
-        Several lines.
-    """
+    """Write the findings out, as the command prints them."""
     lines, count = [result.title] if result.title else [], len(result.found)
     lines.append(count_of(result))
     for i, one in enumerate(result.found, 1):
@@ -53,18 +42,7 @@ def _moved(distance: float) -> str:
 
 
 def report_one(one: SteadyMotion) -> str:
-    """Write out one steady motion.
-
-    Parameters
-    ----------
-    one : SteadyMotion
-        Any.
-
-    Returns
-    -------
-    str
-        Several lines.
-    """
+    """Write out one steady motion."""
     told = facts(one)
     force = f"contact force {told['contact force']}; {told['friction']}"
     nudges = [f"a nudge {line}" for line in told["a nudge"].splitlines()]
@@ -122,16 +100,6 @@ def _twin(mode: Mode, modes: tuple[Mode, ...]) -> bool:
 def mode_words(mode: Mode) -> str:
     """Say in a few words what a nudge leads to.
 
-    Parameters
-    ----------
-    mode : Mode
-        Of a steady motion.
-
-    Returns
-    -------
-    str
-        With frequency and rate of growth.
-
     Examples
     --------
     >>> mode_words(Mode(2j)), mode_words(Mode(0.5 + 0j))
@@ -163,18 +131,7 @@ def _evidence(one: SteadyMotion) -> str:
 
 
 def periodic_report(motion: PeriodicMotion) -> str:
-    """Write out what was found of a periodic motion.
-
-    Parameters
-    ----------
-    motion : PeriodicMotion
-        Any.
-
-    Returns
-    -------
-    str
-        Several lines.
-    """
+    """Write out what was found of a periodic motion."""
     told = periodic_facts(motion)
     lines = [f"repeats {told['repeats']}", f"multipliers: {told['multipliers']}", f"evidence: {told['evidence']}"]
     return "\n".join([f"periodic, {motion.verdict}", *(f"   {row}" for line in lines for row in line.splitlines())])

@@ -29,16 +29,6 @@ START: dict[str, Any] = {"color": INK, "marker": "o", "mfc": "white", "ms": 7.5,
 def draw(found: VakonomicComparison) -> Sheet:
     """Draw the sheet.
 
-    Parameters
-    ----------
-    found : VakonomicComparison
-        Both paths.
-
-    Returns
-    -------
-    Sheet
-        A map with its legend below.
-
     Examples
     --------
     >>> import trundle as tr

@@ -41,24 +41,6 @@ _FITTED, _CIRCLES_FITTED = 2000, 20  # points and, where they are taken anew, ci
 def card(system: RollingSystem, start: State, samples: Samples, method: Method, title: str = "") -> Card:
     """Check a trajectory and return what was found.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        What moved.
-    start : State
-        Where it started.
-    samples : Samples
-        The trajectory in the inertial support frame.
-    method : Method
-        That made it, at its tolerance.
-    title : str
-        Of the run.
-
-    Returns
-    -------
-    Card
-        Each figure with its bound.
-
     Examples
     --------
     >>> import trundle as tr

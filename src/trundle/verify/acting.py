@@ -17,18 +17,6 @@ _ROUNDING = 1e-14  # of Ω and ω, that may be left of their difference along th
 def rotated(q: Array, v: Array) -> Array:
     """Return vectors turned by unit quaternions, v + 2w(u×v) + 2u×(u×v).
 
-    Parameters
-    ----------
-    q : array (n, 4)
-        (w, x, y, z), u = (x, y, z).
-    v : array (n, 3)
-        What is turned.
-
-    Returns
-    -------
-    array (n, 3)
-        Turned.
-
     Examples
     --------
     >>> rotated(np.array([[0.0, 0.0, 0.0, 1.0]]), np.array([[1.0, 2.0, 3.0]])).tolist()
@@ -39,40 +27,14 @@ def rotated(q: Array, v: Array) -> Array:
 
 
 def inertia_of(system: RollingSystem, q: Array) -> Array:
-    """Return J in the inertial support frame, turned by `rotated` and not by the law's own matrices.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Gives J in the body frame.
-    q : array (n, 4)
-        Orientations.
-
-    Returns
-    -------
-    array (n, 3, 3)
-        kg m².
-    """
+    """Return J in the inertial support frame, turned by `rotated` and not by the law's own matrices."""
     own = np.array([list(row) for row in system.body.inertia_in_space(Matrix.identity()).rows], dtype=float)
     axes = np.stack([rotated(q, np.broadcast_to(e, (len(q), 3))) for e in np.eye(3)], axis=2)
     return axes @ own @ axes.transpose(0, 2, 1)
 
 
 def acting(system: RollingSystem, at: Samples) -> tuple[Array, Array, Array, Array]:
-    """Return F, K, J and Ω×JΩ at each instant, as arrays.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Body, support and loads. Its weight is g(sin α, 0, −cos α) m, worked out here.
-    at : Samples
-        Instants of a motion, n of them; their contact force gives the normal force that couples follow.
-
-    Returns
-    -------
-    tuple of array
-        (n, 3) each, J (n, 3, 3); SI, inertial support frame.
-    """
+    """Return F, K, J and Ω×JΩ at each instant, as arrays."""
     tilt = float(system.support.tilt)
     weight = float(system.body.mass * system.gravity) * np.array([np.sin(tilt), 0.0, -np.cos(tilt)])
     F, K, _ = exerted(system, at)
@@ -82,20 +44,7 @@ def acting(system: RollingSystem, at: Samples) -> tuple[Array, Array, Array, Arr
 
 
 def unturning(system: RollingSystem, at: Samples) -> Any:
-    """Tell in which samples resistance to rolling keeps a body that slips or rests from turning over the support.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Its loads.
-    at : Samples
-        Instants of a motion, n of them, all in flight or none.
-
-    Returns
-    -------
-    array (n,) of bool
-        Where it touches, and no more of Ω − ω is along the support than rounding leaves.
-    """
+    """Tell in which samples resistance to rolling keeps a body that slips or rests from turning over the support."""
     if not system.resisted or (at.phase == FLIGHT).all():
         return np.zeros(at.time.size, dtype=bool)
     omega = np.broadcast_to(at.support(system).angular_velocity.array(), at.angular_velocity.shape)
@@ -106,20 +55,7 @@ def unturning(system: RollingSystem, at: Samples) -> Any:
 
 
 def exerted(system: RollingSystem, at: Samples) -> tuple[Array, Array, Array]:
-    """Return force and torque of the loads besides the weight, and the part of the torque that the support exerts.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Its loads.
-    at : Samples
-        Instants of a motion, n of them, all in flight or none.
-
-    Returns
-    -------
-    force, torque, from_support : array (n, 3)
-        N and N m.
-    """
+    """Return force and torque of the loads besides the weight, and the part of the torque that the support exerts."""
     force, torque, from_support = np.zeros((3, *at.position.shape))
     if not system.loads:
         return force, torque, from_support

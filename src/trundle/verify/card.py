@@ -69,16 +69,6 @@ class CardFigure(Displayed):
 def table_of(figures: Iterable[CardFigure]) -> Markup:
     r"""Return figures as the table that notebooks and saved pages show.
 
-    Parameters
-    ----------
-    figures : iterable of CardFigure
-        Of a card.
-
-    Returns
-    -------
-    Markup
-        A row for each.
-
     Examples
     --------
     >>> table_of([checked("no slip", 3e-16, 1e-12, "")]).count("✓\xa0holds")
@@ -99,16 +89,6 @@ def table_of(figures: Iterable[CardFigure]) -> Markup:
 
 def checked(name: str, value: float, bound: float, note: str, unit: str = "") -> CardFigure:
     """Return a figure that passes where its value is at most its bound.
-
-    Parameters
-    ----------
-    name, value, bound, note, unit
-        As of `CardFigure`.
-
-    Returns
-    -------
-    CardFigure
-        With its verdict.
 
     Examples
     --------

@@ -43,18 +43,6 @@ class MeasuredCircle:
 def measure(times: Array, path: NDArray[np.complex128]) -> MeasuredCircle | None:
     """Fit a drifting circle to a path.
 
-    Parameters
-    ----------
-    times : array (n,)
-        From 0 on, evenly spaced, s.
-    path : complex array (n,)
-        x + iy, m.
-
-    Returns
-    -------
-    MeasuredCircle or None
-        None where the path shows no circle: too few points, or no turning beyond rounding.
-
     Examples
     --------
     See `MeasuredCircle`.

@@ -31,26 +31,7 @@ _MOST_RADIANS = 50_000.0  # of turning that a cross-check follows
 def same_again(
     system: RollingSystem, start: State, ours: Samples, again: Samples, method: Method, kept: Dense | None
 ) -> Iterator[CardFigure]:
-    """Compare samples with the same method run again: then what is checked of that run holds for them.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        What moved.
-    start : State
-        Where it started.
-    ours, again : Samples
-        The samples, and the second run at their times and others.
-    method : Method
-        Of both.
-    kept : Dense or None
-        The second run, where a numerical method made it.
-
-    Yields
-    ------
-    CardFigure
-        The largest difference, as a share; and the samples whose phase is another.
-    """
+    """Compare samples with the same method run again: then what is checked of that run holds for them."""
     ours, theirs = at_the_same_times(ours, again)
     turned, sizes = turned_in(ours), sizes_of(system, ours)
     sizes |= {"contact": sizes["position"]}
@@ -69,20 +50,7 @@ def same_again(
 def cross_check(
     system: RollingSystem, start: State, at: Samples, method: Method, motion: ClosedForm | None
 ) -> Iterator[CardFigure]:
-    """Compare a closed form with a numerical method, whichever of the two made the run.
-
-    Parameters
-    ----------
-    system, start, at, method
-        As for `same_again`.
-    motion : ClosedForm or None
-        None: there is nothing to compare with.
-
-    Yields
-    ------
-    CardFigure
-        For motion and for orientation.
-    """
+    """Compare a closed form with a numerical method, whichever of the two made the run."""
     if motion is None:
         return
     other = numerical(method) if method.name == "exact" else Method.of("exact")
@@ -249,23 +217,7 @@ class Compared:
         return max(float(np.linalg.norm(moved)) / max(sizes["position"], 1e-300), *apart)
 
     def figure(self, name: str, share: Array, bound: float, said: str, unit: str = "") -> CardFigure:
-        """Return the figure of a difference: where a plain bound does not hold, with what the motion magnifies.
-
-        Parameters
-        ----------
-        name, said, unit
-            Of the figure.
-        share : array (n,)
-            At each sample.
-        bound : float
-            How much it may be while nothing is magnified.
-
-        Returns
-        -------
-        CardFigure
-            Of the instant that is farthest from its bound, among those of which anything can be told; without a
-            verdict where that is none.
-        """
+        """Return the figure of a difference: where a plain bound does not hold, with what the motion magnifies."""
         parts = parted(self.ours, self.theirs)
         plain = max(float(np.max(share, initial=0.0)), float(np.max(self._shifts, initial=0.0)) * bound / self.bound)
         if plain <= bound and parts == np.inf:

@@ -42,22 +42,6 @@ class Shares:
 def worst_of(name: str, conditions: list[Shares], time: Array, said: str) -> CardFigure:
     """Return one figure for several conditions: that of the one which is farthest from its bound.
 
-    Parameters
-    ----------
-    name : str
-        Of the figure.
-    conditions : list of Shares
-        One entry for each instant, or none.
-    time : array (n,)
-        The instants, s.
-    said : str
-        What they are, for the note.
-
-    Returns
-    -------
-    CardFigure
-        With the condition and the instant in its note.
-
     Examples
     --------
     >>> parts = [Shares("a", np.array([0.0, 2e-13]), 1e-12), Shares("b", np.array([0.0, 0.0]), 1.0)]

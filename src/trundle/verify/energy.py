@@ -28,18 +28,6 @@ _MOST_ROUGH = 5000  # panels: so many at once are rough from rounding, which no 
 def energy(system: RollingSystem, at: Samples) -> Array:
     """Return the kinetic energy and what potential energy there is, J, at each sample.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Gives inertia and loads.
-    at : Samples
-        Of the run.
-
-    Returns
-    -------
-    array (n,)
-        J.
-
     Examples
     --------
     >>> import trundle as tr
@@ -67,20 +55,7 @@ def _keeps(load: Load, motion: BodyMotion) -> bool:
 
 
 def powers(system: RollingSystem, at: Samples) -> Array:
-    """Return the power of friction, of the support and of loads without a potential, and how large they may be, W.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        What moves.
-    at : Samples
-        Of the run.
-
-    Returns
-    -------
-    array (4, n)
-        R·s, R·u, and the rest; couples at the contact belong to the loads. The last is |R| times the speeds.
-    """
+    """Return the power of friction, of the support and of loads without a potential, and how large they may be, W."""
     found = np.zeros((4, at.time.size))
     flies = at.phase == FLIGHT
     for which in (np.flatnonzero(flies), np.flatnonzero(~flies)):  # at the contact nothing acts in flight
@@ -157,30 +132,7 @@ def balance(
     bound: float,
     passes: int = 8,
 ) -> CardFigure:
-    """Compare what the energy gained over a run with the work done.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        What moved.
-    ends : Samples
-        The two ends of the run.
-    panels : array (n, 2)
-        Beginning and end of the panels of a quadrature, none of them across an event, s.
-    follow : callable
-        Takes ascending instants, returns the run's samples there.
-    landings : sequence of pairs
-        What the energy gained at each landing, and the work of its impulse, J.
-    bound : float
-        The share that may be left over.
-    passes : int
-        How often the run is followed at most; what a quadrature of so many looks cannot tell is allowed besides.
-
-    Returns
-    -------
-    CardFigure
-        With the parts in its note.
-    """
+    """Compare what the energy gained over a run with the work done."""
     first, last = energy(system, ends)[[0, -1]]
     struck = float(sum(work for _, work in landings))
     left, total, size = float(sum(gained - work for gained, work in landings)), np.zeros(3), 0.0

@@ -46,18 +46,6 @@ _BETWEEN = {
 def instants_of(events: tuple[Event, ...], begin: float) -> Array:
     """Return the last instant before each event and its own, s: where the method run again is asked for them.
 
-    Parameters
-    ----------
-    events : tuple of Event
-        Of a run.
-    begin : float
-        Of the run, s.
-
-    Returns
-    -------
-    array (n,)
-        Not sorted.
-
     Examples
     --------
     >>> instants_of((Event(1.0, "lift", ""),), 0.0).tolist() == [np.nextafter(1.0, 0.0), 1.0]

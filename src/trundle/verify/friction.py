@@ -26,42 +26,14 @@ _TOLD = 1e-2  # sharpness of a direction beyond which nothing is said of it
 
 
 def normal_and_friction(system: RollingSystem, at: Samples) -> tuple[Array, Array]:
-    """Return N and f of the contact force.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        What moved.
-    at : Samples
-        Any n of a run.
-
-    Returns
-    -------
-    N, f : array
-        (n,) and (n, 3), N.
-    """
+    """Return N and f of the contact force."""
     normal = at.normals(system)
     N = np.einsum("ni,ni->n", at.contact_force, normal)
     return N, at.contact_force - N[:, None] * normal
 
 
 def looked_into(system: RollingSystem, at: Samples, follow: Callable[[Array], Samples]) -> Samples:
-    """Return samples with more of them where, between two, the support might pull or friction might not do.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        What moved.
-    at : Samples
-        Of a run, in any order.
-    follow : callable
-        Takes ascending instants, returns the run's samples there.
-
-    Returns
-    -------
-    Samples
-        The same where N and what is left of the friction cone hardly fall between samples.
-    """
+    """Return samples with more of them where, between two, the support might pull or friction might not do."""
     at = at.part(np.unique(at.time, return_index=True)[1])
     for _ in range(_LOOKS):
         between = _dips(system, at)
@@ -94,18 +66,6 @@ def _dips(system: RollingSystem, at: Samples) -> Array:
 
 def contact_force(system: RollingSystem, *parts: Samples) -> Iterator[CardFigure]:
     """Say what friction rolling needs, and whether the support pushes rather than pulls.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        What moved.
-    parts : Samples
-        Of the run, one or several.
-
-    Yields
-    ------
-    CardFigure
-        Two, for the parts of the run in which the body touches, and rolls; and one of a body at rest.
 
     Examples
     --------
@@ -178,20 +138,7 @@ def _lever(system: RollingSystem, rests: Samples) -> tuple[float, float]:
 
 
 def holding(system: RollingSystem, held: Samples) -> tuple[Array, Array]:
-    """Return the couple along the support that keeps a body from turning over it, N m, and the normal force.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        What is held.
-    held : Samples
-        At rest on the support, which carries the body along, or slipping over it without turning.
-
-    Returns
-    -------
-    couple, N : array
-        (n, 3) and (n,).
-    """
+    """Return the couple along the support that keeps a body from turning over it, N m, and the normal force."""
     _, K, J, gyroscopic = acting(system, held)
     n = held.normals(system)
     torque = K - gyroscopic + np.cross(held.contact - held.position, held.contact_force)
@@ -216,24 +163,7 @@ def _carried_along(system: RollingSystem, held: Samples) -> Array:
 
 
 def friction_law(system: RollingSystem, slipping: Samples, bound: float) -> CardFigure:
-    """Check Coulomb's law of slipping: f = −μ N ŝ.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        What moved.
-    slipping : Samples
-        Samples in which it slips.
-    bound : float
-        The share of the contact force by which friction may be off.
-
-    Returns
-    -------
-    CardFigure
-        The largest departure, beside what is allowed there: V is the small difference that slip is made of, so that the
-        direction of a slow slip is only as sharp as that. How large friction is does not depend on it, but in the first
-        moment of slip, which has the direction of its end.
-    """
+    """Check Coulomb's law of slipping: f = −μ N ŝ."""
     support = system.support
     coefficient = support.friction if support.kinetic_friction is None else support.kinetic_friction
     if coefficient is None:

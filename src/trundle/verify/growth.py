@@ -80,52 +80,20 @@ class Growth:
 
 
 def alike(ours: Samples, theirs: Samples) -> NDArray[np.bool_]:
-    """Return which of the samples of two runs at the same times have as many events behind them in both.
-
-    Parameters
-    ----------
-    ours, theirs : Samples
-        At the same times; an event may lie a rounding sooner in one.
-
-    Returns
-    -------
-    array (n,) of bool
-        Where they can be compared: what lies between the same event in both is another phase in each.
-    """
+    """Return which of the samples of two runs at the same times have as many events behind them in both."""
     counts = (np.searchsorted([event.time for event in run.events], run.time, side="right") for run in (ours, theirs))
     mine, other = counts
     return mine == other
 
 
 def at_the_same_times(ours: Samples, theirs: Samples) -> tuple[Samples, Samples]:
-    """Return the samples of two runs at the times that both have: one may have ended sooner, at an instant of its own.
-
-    Parameters
-    ----------
-    ours, theirs : Samples
-        Ascending.
-
-    Returns
-    -------
-    tuple of Samples
-        As long as each other.
-    """
+    """Return the samples of two runs at the times that both have: one may have ended sooner."""
     _, mine, others = np.intersect1d(ours.time, theirs.time, assume_unique=True, return_indices=True)
     return ours.part(mine), theirs.part(others)
 
 
 def same_events(ours: tuple[Event, ...], theirs: tuple[Event, ...]) -> int:
     """Return how many events of two runs are of the same kinds, from the first on.
-
-    Parameters
-    ----------
-    ours, theirs : tuple of Event
-        Of two runs.
-
-    Returns
-    -------
-    int
-        The number.
 
     Examples
     --------
@@ -148,28 +116,7 @@ def growth(
     sizes: dict[str, float],
     kept: Dense | None = None,
 ) -> Growth:
-    """Return what a motion does to a small change of its state, at its start or at any instant since.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        What moves.
-    start : State
-        Where it starts.
-    at : Samples
-        Of the run: its times and how fast it turns.
-    method : Method
-        Follows the changed starts.
-    sizes : dict
-        Against what a difference of each quantity is small or not.
-    kept : Dense, optional
-        A run of the same system by the same method, gone through before.
-
-    Returns
-    -------
-    Growth
-        The most that any change shows.
-    """
+    """Return what a motion does to a small change of its state, at its start or at any instant since."""
     method = numerical(method)
     solve = partial(method.solve, system) if kept is None else kept.like_it
     times = np.union1d(at.time[:: max(1, at.time.size // _INSTANTS)], at.time[-1:])
@@ -270,36 +217,14 @@ def _back(state: Array) -> Array:
 
 
 def numerical(method: Method) -> Method:
-    """Return a method that follows any start: itself, or beside a closed form the finest that there is.
-
-    Parameters
-    ----------
-    method : Method
-        Any.
-
-    Returns
-    -------
-    Method
-        Taylor's or Runge-Kutta.
-    """
+    """Return a method that follows any start: itself, or beside a closed form the finest that there is."""
     from ..solve.taylor import available
 
     return method if method.name != "exact" else Method.of("taylor" if available() else "runge-kutta")
 
 
 def parted(ours: Samples, theirs: Samples) -> float:
-    """Return when two runs first meet different events, s; infinite where they do not.
-
-    Parameters
-    ----------
-    ours, theirs : Samples
-        Two runs over the same time.
-
-    Returns
-    -------
-    float
-        An event that one meets within a millionth of the run's end, the other may meet beyond it.
-    """
+    """Return when two runs first meet different events, s; infinite where they do not."""
     known = same_events(ours.events, theirs.events)
     rest = [run.events[known].time for run in (ours, theirs) if len(run.events) > known]
     end = float(max(ours.time[-1], theirs.time[-1]))

@@ -275,37 +275,13 @@ class Landing:
 
 
 def landings_of(system: RollingSystem, events: tuple[Event, ...]) -> list[Landing]:
-    """Return the landings of a run, or as many as are looked at, spread over it.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        What moved.
-    events : tuple of Event
-        Of the run.
-
-    Returns
-    -------
-    list of Landing
-        In order.
-    """
+    """Return the landings of a run, or as many as are looked at, spread over it."""
     found = [Landing(system, event) for event in events if event.kind in _KINDS and event.contact is not None]
     return found[:: -(-len(found) // _MOST)] if len(found) > _MOST else found
 
 
 def landing_figures(landings: list[Landing]) -> Iterator[CardFigure]:
-    """Yield two figures: what holds of any impulse, and the impulse itself.
-
-    Parameters
-    ----------
-    landings : list of Landing
-        Of a run; none, no figures.
-
-    Yields
-    ------
-    CardFigure
-        With the worst landing in its note.
-    """
+    """Yield two figures: what holds of any impulse, and the impulse itself."""
     if not landings:
         return
     times = np.array([landing.before.time for landing in landings])

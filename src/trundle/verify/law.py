@@ -42,18 +42,6 @@ class Residuals:
 def window_times(begin: float, end: float, fastest: float) -> Array:
     """Return the instants of short windows spread over a run.
 
-    Parameters
-    ----------
-    begin, end : float
-        Of the run, s.
-    fastest : float
-        The largest rate in the motion, rad/s.
-
-    Returns
-    -------
-    array (WINDOWS, nodes)
-        Chebyshev points of each window, ascending, s.
-
     Examples
     --------
     >>> window_times(0.0, 10.0, 1.0).shape
@@ -70,16 +58,6 @@ def window_times(begin: float, end: float, fastest: float) -> Array:
 def narrowed(times: Array) -> Array:
     """Return windows a quarter as wide about the same middles.
 
-    Parameters
-    ----------
-    times : array (windows, nodes)
-        As `window_times` returns them.
-
-    Returns
-    -------
-    array (windows, nodes)
-        s.
-
     Examples
     --------
     >>> narrowed(window_times(0.0, 10.0, 1.0)).shape
@@ -90,20 +68,7 @@ def narrowed(times: Array) -> Array:
 
 
 def slope_sizes(windows: Samples, times: Array) -> tuple[float, float]:
-    """Return against what a slope of V and one of Ω is small or not, m/s² and rad/s².
-
-    Parameters
-    ----------
-    windows : Samples
-        The trajectory at `times.ravel()`.
-    times : array (windows, nodes)
-        As `window_times` returns them.
-
-    Returns
-    -------
-    tuple of float
-        The largest slopes, with what only turns.
-    """
+    """Return against what a slope of V and one of Ω is small or not, m/s² and rad/s²."""
     turning = largest(windows.angular_velocity)
     linear, angular = (
         largest(_slope_at_middle(times, values.reshape(*times.shape, 3))) + turning * largest(values)
@@ -113,22 +78,7 @@ def slope_sizes(windows: Samples, times: Array) -> tuple[float, float]:
 
 
 def roughness(windows: Samples, times: Array, sizes: tuple[float, float]) -> Array:
-    """Return what the last Chebyshev coefficients of V and Ω in each window are to their slopes, as shares.
-
-    Parameters
-    ----------
-    windows : Samples
-        The trajectory at `times.ravel()`.
-    times : array (windows, nodes)
-        As `window_times` returns them.
-    sizes : tuple of float
-        As `slope_sizes` returns them, of all windows.
-
-    Returns
-    -------
-    array (windows,)
-        About what a polynomial leaves of a slope; nothing where the clock resolves no narrower window.
-    """
+    """Return what the last Chebyshev coefficients of V and Ω in each window are to their slopes, as shares."""
     nodes = times.shape[1]
     weights = np.ones(nodes)
     weights[[0, -1]] = 0.5
@@ -161,22 +111,6 @@ def _slope_at_middle(times: Array, values: Array) -> Array:
 
 def residuals(system: RollingSystem, windows: Samples, times: Array, bound: float) -> Residuals:
     """Compare a trajectory with the law by the independent route.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        What moved.
-    windows : Samples
-        The trajectory at `times.ravel()`.
-    times : array (windows, nodes)
-        As `window_times` returns them, none across an event.
-    bound : float
-        The share that is allowed; rounding is allowed besides.
-
-    Returns
-    -------
-    Residuals
-        The largest over the windows.
 
     Examples
     --------
@@ -399,41 +333,13 @@ def _euler(J: Array, torque: Array) -> Array:
 
 
 def applied(system: RollingSystem, at: Samples, p_rate: Array) -> tuple[Array, Array, Array, Array, Array]:
-    """Return F, K, J, Ω×JΩ and u̇ at each instant, for a motion of which no slopes are at hand.
-
-    Parameters
-    ----------
-    system, at
-        As for `acting`.
-    p_rate : array (n, 3)
-        ṗ, m/s.
-
-    Returns
-    -------
-    tuple of array
-        (n, 3) each, J (n, 3, 3); SI, inertial support frame.
-    """
+    """Return F, K, J, Ω×JΩ and u̇ at each instant, for a motion of which no slopes are at hand."""
     change = at.support(system).material_acceleration(Vector.of(at.contact), Vector.of(p_rate))
     return *acting(system, at), np.broadcast_to(change.array(), at.position.shape)
 
 
 def newton_euler(m: float, J: Array, rho: Array, F: Array, K: Array, constraint: Array) -> tuple[Any, Any, Any]:
-    """Solve m V̇ − R = F, J Ω̇ − ρ×R = K − Ω×JΩ, V̇ − ρ×Ω̇ = u̇ − Ω×ρ̇ for V̇, Ω̇ and R, one 9×9 system an instant.
-
-    Parameters
-    ----------
-    m : float
-        Mass, kg.
-    J : array (n, 3, 3)
-        kg m².
-    rho, F, K, constraint : array (n, 3)
-        ρ, F, K − Ω×JΩ and u̇ − Ω×ρ̇; SI, inertial support frame.
-
-    Returns
-    -------
-    V_rate, Omega_rate, R : array (n, 3)
-        V̇, Ω̇ and R.
-    """
+    """Solve m V̇ − R = F, J Ω̇ − ρ×R = K − Ω×JΩ, V̇ − ρ×Ω̇ = u̇ − Ω×ρ̇ for V̇, Ω̇ and R, one 9×9 system an instant."""
     n, one = len(F), np.eye(3)
     cross = np.zeros((n, 3, 3))
     cross[:, 0, 1], cross[:, 0, 2], cross[:, 1, 2] = -rho[:, 2], rho[:, 1], -rho[:, 0]

@@ -18,24 +18,6 @@ def nudged(system: RollingSystem, start: State, change: float, turn: float, move
     A body that rolls, rolls elsewhere or differently; one that slips, turns and slips differently along the support;
     one that flies, or is about to strike, turns and moves differently. A cylinder changes only what keeps it straight.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        What moves.
-    start : State
-        Touching the support or over it.
-    change : float
-        Of Ω, rad/s; of V as much times |ρ|.
-    turn : float
-        Of the orientation, rad.
-    move : float
-        Of the place, m.
-
-    Returns
-    -------
-    list of State
-        One for each way in which the state can change.
-
     Examples
     --------
     What slips backwards goes on slipping so:

@@ -21,20 +21,6 @@ def reactions(system: RollingSystem, at: Samples, bound: float) -> Iterator[Card
     They come from the lecture's elimination for a sphere on a fixed plane (Landau and Lifshitz, Mechanics, § 38,
     problem 1), which the rolling law does not use. F is all applied force, K all applied torque, at each sample.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Other systems have no such figures.
-    at : Samples
-        Of the run.
-    bound : float
-        The share of the force that they may be off.
-
-    Yields
-    ------
-    CardFigure
-        Two, with the values at the start in their notes.
-
     Examples
     --------
     >>> import trundle as tr
@@ -63,20 +49,6 @@ def reactions(system: RollingSystem, at: Samples, bound: float) -> Iterator[Card
 
 def straightness(system: RollingSystem, at: Samples, bound: float) -> Iterator[CardFigure]:
     """Check that a cylinder kept to its line: Ω along its axis, and the axis along the support.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        Bodies that touch at a point have no such figure.
-    at : Samples
-        Of the run.
-    bound : float
-        The share of Ω that may lie across the axis.
-
-    Yields
-    ------
-    CardFigure
-        One.
 
     Examples
     --------

@@ -32,26 +32,6 @@ def card_of_file(
 ) -> Card:
     """Check a trajectory as `card` does, and beside it whatever else a file says: its start, phases, slip and events.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        What is said to have moved.
-    start : State
-        Where it is said to have started.
-    time : array (n,)
-        Of the samples, s.
-    read : callable
-        Returns the samples in the inertial support frame, and the slip velocity there (n, 3), m/s.
-    method : Method
-        That is said to have made it.
-    title : str
-        Of the run.
-
-    Returns
-    -------
-    Card
-        It fails where the run cannot be repeated.
-
     Examples
     --------
     >>> import trundle as tr

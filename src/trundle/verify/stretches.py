@@ -84,20 +84,6 @@ class Stretch:
 def stretches(system: RollingSystem, begin: float, samples: Samples) -> list[Stretch]:
     """Cut a run at its events, and where a formula in the time has a kink.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        What moved.
-    begin : float
-        Of the run, s.
-    samples : Samples
-        The run.
-
-    Returns
-    -------
-    list of Stretch
-        Those that last at all, in order.
-
     Examples
     --------
     >>> import trundle as tr
@@ -132,16 +118,6 @@ def before_a_singular_end(samples: Samples) -> Samples:
     """Return a run without the sample at its very end, where its law is singular, and so are rounding and the force.
 
     By the force alone, a million times that of all others, all windows would be so short that a slope says nothing.
-
-    Parameters
-    ----------
-    samples : Samples
-        Of a run.
-
-    Returns
-    -------
-    Samples
-        Itself, where it does not end so.
 
     Examples
     --------

@@ -28,16 +28,6 @@ _SPOTS = np.array([[0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, 
 def gif_of(scene: Scene) -> bytes:
     """Return a scene as a GIF of at most eight seconds.
 
-    Parameters
-    ----------
-    scene : Scene
-        Any.
-
-    Returns
-    -------
-    bytes
-        In real time where that is short enough, else faster, as it says.
-
     Examples
     --------
     >>> import trundle as tr

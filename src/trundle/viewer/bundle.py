@@ -17,21 +17,6 @@ class NotBuiltError(TrundleError):
 def built(name: str) -> str:
     """Return a file of the built viewer.
 
-    Parameters
-    ----------
-    name : str
-        "viewer.js" or "viewer.css".
-
-    Returns
-    -------
-    str
-        Its text.
-
-    Raises
-    ------
-    NotBuiltError
-        If it is not there, which happens in a checkout that was never installed.
-
     Examples
     --------
     >>> "createViewer" in built("viewer.js")

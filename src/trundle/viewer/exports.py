@@ -46,29 +46,6 @@ class Format:
 def export(motion: Motion, suffix: str, make_scene: MakeScene | None = None) -> bytes:
     """Return a motion in another form.
 
-    Parameters
-    ----------
-    motion : Trajectory or RolledPath
-        What to hand on.
-    suffix : str
-        One of the keys of `FORMATS`, such as ".html".
-    make_scene : callable, optional
-        Takes the motion and `with_card`, returns a scene; absent: `trundle.scene.scene_of`, which takes a Trajectory.
-
-    Returns
-    -------
-    bytes
-        The content of a file.
-
-    Raises
-    ------
-    UnknownNameError
-        If there is no such form.
-    MissingExtraError
-        If the form needs an extra that is not installed.
-    TrundleError
-        If this motion does not have it.
-
     Examples
     --------
     >>> import trundle as tr
@@ -85,18 +62,6 @@ def export(motion: Motion, suffix: str, make_scene: MakeScene | None = None) -> 
 
 def check_installed(suffix: str, asked: str) -> None:
     """Refuse a form whose extra is not installed, before anything is computed for it.
-
-    Parameters
-    ----------
-    suffix : str
-        One of the keys of `FORMATS`.
-    asked : str
-        What the reader asked for, as they wrote it.
-
-    Raises
-    ------
-    MissingExtraError
-        If it is not installed.
 
     Examples
     --------

@@ -30,17 +30,6 @@ _SQUARES = 14  # of a board, along its longer side, at most
 def glb_of(scene: Scene) -> bytes:
     """Return a scene as an animated model.
 
-    Parameters
-    ----------
-    scene : Scene
-        Of a run.
-
-    Returns
-    -------
-    bytes
-        A GLB file: the nodes "body" and "support", with the animation of their poses, and "path", the line of the
-        body's centre, all below "world", which turns trundle's support frame to glTF's, y up.
-
     Examples
     --------
     >>> import trundle as tr
@@ -163,16 +152,6 @@ class Writer:
 def rising(time: Array) -> NDArray[np.bool_]:
     """Return which instants are later than all before them in float32 too, as glTF asks.
 
-    Parameters
-    ----------
-    time : array (n,)
-        Ascending, s.
-
-    Returns
-    -------
-    array (n,) of bool
-        The first is always among them.
-
     Examples
     --------
     >>> rising(np.array([0.0, 20.0, 20.0000001]))
@@ -184,16 +163,6 @@ def rising(time: Array) -> NDArray[np.bool_]:
 
 def board(sheet: Array) -> tuple[Array, Array, Array, Array]:
     """Return a sheet of a plane as a board whose squares have a round length and meet at the origin.
-
-    Parameters
-    ----------
-    sheet : array (v, 3)
-        The corners of a rectangle along the first two axes, m.
-
-    Returns
-    -------
-    vertices, normals, triangles, colours : arrays
-        Each square has corners of its own, so that colours do not run into each other.
 
     Examples
     --------

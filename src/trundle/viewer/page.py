@@ -24,23 +24,6 @@ MOST_SCENES = 5  # bodies that can be told apart on one stage
 def page_of(scenes: Sequence[Scene]) -> bytes:
     """Return a self-contained page that shows scenes on one stage.
 
-    Parameters
-    ----------
-    scenes : sequence of Scene
-        One, or several on the support of the first; with a card in its header where it was checked.
-
-    Returns
-    -------
-    bytes
-        HTML in UTF-8. Its policy lets nothing run or load but what it holds.
-
-    Raises
-    ------
-    InvalidValueError
-        If there are no scenes, or more than can be told apart.
-    NotBuiltError
-        If this copy of trundle has no viewer.
-
     Examples
     --------
     >>> import trundle as tr
@@ -74,16 +57,6 @@ def page_of(scenes: Sequence[Scene]) -> bytes:
 def check_count(count: int) -> None:
     """Refuse more scenes on one stage than can be told apart.
 
-    Parameters
-    ----------
-    count : int
-        How many there are to be.
-
-    Raises
-    ------
-    InvalidValueError
-        If there are none, or too many.
-
     Examples
     --------
     >>> check_count(1)
@@ -93,18 +66,7 @@ def check_count(count: int) -> None:
 
 
 def title_of(scenes: Sequence[Scene]) -> str:
-    """Return the title of a page: the first scene's, or the bodies' names where there are several.
-
-    Parameters
-    ----------
-    scenes : sequence of Scene
-        In their order.
-
-    Returns
-    -------
-    str
-        Not escaped.
-    """
+    """Return the title of a page: the first scene's, or the bodies' names where there are several."""
     titles = list(dict.fromkeys(str(scene.header["title"]) for scene in scenes))
     return titles[0] if len(titles) == 1 else f"{titles[0]}, and {len(scenes) - 1} more"
 

@@ -14,16 +14,6 @@ _ROWS = 50_000  # written at once
 def csv_of(data: xarray.Dataset) -> bytes:
     """Return labelled arrays as CSV: a column for each component, its unit in brackets behind its name.
 
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Over `time` or `distance`.
-
-    Returns
-    -------
-    bytes
-        Every digit is kept; `trundle check` reads it back.
-
     Examples
     --------
     >>> import trundle as tr

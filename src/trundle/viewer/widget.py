@@ -82,11 +82,6 @@ class SceneWidget(anywidget.AnyWidget):
     def seek(self, time: float) -> None:
         """Go to an instant, whether it plays or not.
 
-        Parameters
-        ----------
-        time : float
-            s; where it lies outside the run, its beginning or end is shown.
-
         Examples
         --------
         >>> import trundle as tr

@@ -17,16 +17,6 @@ _METHODS = {"exact": "closed form", "taylor": "Taylor integration", "runge-kutta
 def names_of(scenes: Sequence[Scene]) -> list[str]:
     """Return what to call the bodies of a page: what they are, unless that is the same of all.
 
-    Parameters
-    ----------
-    scenes : sequence of Scene
-        Of one page.
-
-    Returns
-    -------
-    list of str
-        Not escaped; one may still be twice.
-
     Examples
     --------
     >>> ball = {"body": {"label": "Ball"}}
@@ -40,18 +30,7 @@ def names_of(scenes: Sequence[Scene]) -> list[str]:
 
 
 def summary_of(scenes: Sequence[Scene]) -> str:
-    """Return who moves on what, for how long, and how it was computed.
-
-    Parameters
-    ----------
-    scenes : sequence of Scene
-        Of one page.
-
-    Returns
-    -------
-    str
-        Markup.
-    """
+    """Return who moves on what, for how long, and how it was computed."""
     first = scenes[0].header
     bodies = [escape(name) for name in names_of(scenes)]
     methods = dict.fromkeys(_METHODS.get(scene.header["method"], str(scene.header["method"])) for scene in scenes)
@@ -65,18 +44,7 @@ def summary_of(scenes: Sequence[Scene]) -> str:
 
 
 def formula_of(scenes: Sequence[Scene]) -> str:
-    """Return the formula that a motion follows, with its numbers put in; nothing where there is none.
-
-    Parameters
-    ----------
-    scenes : sequence of Scene
-        Of one page; the first one's is shown.
-
-    Returns
-    -------
-    str
-        Markup.
-    """
+    """Return the formula that a motion follows, with its numbers put in; nothing where there is none."""
     formula = scenes[0].header.get("formula")
     if not formula:
         return ""
@@ -86,18 +54,7 @@ def formula_of(scenes: Sequence[Scene]) -> str:
 
 
 def findings_of(scenes: Sequence[Scene]) -> str:
-    """Return what theory predicts beside what was measured on the computed path.
-
-    Parameters
-    ----------
-    scenes : sequence of Scene
-        Of one page.
-
-    Returns
-    -------
-    str
-        Markup; empty where nothing was found.
-    """
+    """Return what theory predicts beside what was measured on the computed path."""
     named = len(scenes) > 1
     rows = []
     for scene, name in zip(scenes, names_of(scenes), strict=True):
@@ -124,20 +81,7 @@ def _finding(finding: dict[str, Any]) -> list[str]:
 
 
 def card_of(scene: Scene, name: str = "") -> str:
-    """Return a scene's verification card.
-
-    Parameters
-    ----------
-    scene : Scene
-        With a card or without.
-    name : str
-        Whose it is, where there are several.
-
-    Returns
-    -------
-    str
-        Markup; empty where there is no card.
-    """
+    """Return a scene's verification card."""
     if not scene.header.get("card"):
         return ""
     card = Card.from_dict(scene.header["card"])
@@ -149,20 +93,7 @@ def card_of(scene: Scene, name: str = "") -> str:
 
 
 def scenario_of(scene: Scene, name: str = "") -> str:
-    """Return the scenario that gives this motion again.
-
-    Parameters
-    ----------
-    scene : Scene
-        Whose scenario.
-    name : str
-        Whose it is, where there are several.
-
-    Returns
-    -------
-    str
-        Markup; empty where the scenario format has no words for it.
-    """
+    """Return the scenario that gives this motion again."""
     text = scene.header.get("scenario_toml")
     if not text:
         return ""

@@ -218,25 +218,6 @@ Inertia = (Isotropic, RatioInertia, Principal, Tensor)
 def inertia_of(moments: Any, products: Any = None, turn: Any = 0.0) -> Isotropic | Principal | Tensor:
     """Return the inertia with given elements, of the simplest kind that holds them.
 
-    Parameters
-    ----------
-    moments : sequence of 3 floats or quantities
-        J_xx, J_yy, J_zz about the centre of mass, kg m².
-    products : sequence of 3 floats or quantities, optional
-        J_xy, J_xz, J_yz, elements of the tensor with their sign, kg m².
-    turn : float or quantity
-        The tensor is turned by this angle about the body's third axis, from the first towards the second, rad.
-
-    Returns
-    -------
-    Isotropic, Principal or Tensor
-        The inertia.
-
-    Raises
-    ------
-    InvalidValueError
-        If no body has such moments.
-
     Examples
     --------
     >>> inertia_of((1.0, 2.0, 2.5)), inertia_of((1.0, 2.0, 2.5), turn="90 deg").yy

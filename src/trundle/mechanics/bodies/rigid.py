@@ -84,27 +84,6 @@ class RigidBody:
 def mass_of(mass: Any, density: Any, volume: Scalar | None, missing: str = "") -> Scalar:
     """Return a mass that was given, or that of a homogeneous body whose density was given: exactly one of them.
 
-    Parameters
-    ----------
-    mass : float, quantity or None
-        kg.
-    density : float, quantity or None
-        kg/m³.
-    volume : float or None
-        m³; None where it is not known.
-    missing : str
-        What to give besides a density where the volume is not known.
-
-    Returns
-    -------
-    Scalar
-        kg.
-
-    Raises
-    ------
-    InvalidValueError
-        If both are given, or neither, or a density without a volume.
-
     Examples
     --------
     >>> mass_of(None, "7.8 g/cm^3", 2e-6)

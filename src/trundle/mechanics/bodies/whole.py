@@ -55,21 +55,6 @@ class Whole:
 def homogeneous(shape: Shape) -> Whole:
     """Return volume, centre of mass and second moments of a homogeneous body.
 
-    Parameters
-    ----------
-    shape : Shape
-        Smooth and in numbers.
-
-    Returns
-    -------
-    Whole
-        To rounding for smooth bodies.
-
-    Raises
-    ------
-    InvalidValueError
-        If the integrals do not settle: the body is too sharply curved somewhere.
-
     Examples
     --------
     >>> import math

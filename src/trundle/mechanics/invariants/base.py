@@ -63,16 +63,6 @@ class Invariant:
 def products(one: Vector, other: Vector) -> list[Scalar]:
     """Return the three terms of a scalar product, which say how large it would be did they not cancel.
 
-    Parameters
-    ----------
-    one, other : Vector
-        The factors.
-
-    Returns
-    -------
-    list of Scalar
-        Their sum is the product.
-
     Examples
     --------
     >>> products(Vector(1.0, 2.0, 3.0), Vector(4.0, 5.0, 6.0))

@@ -63,16 +63,6 @@ class Rim:
 def rim_of(body: Body) -> Rim | None:
     """Return the rim of a disc or hoop, found by asking its shape and its inertia; None for any other body.
 
-    Parameters
-    ----------
-    body : Body
-        Any.
-
-    Returns
-    -------
-    Rim or None
-        Its axis is one of the body frame's.
-
     Examples
     --------
     >>> import trundle as tr
@@ -102,16 +92,6 @@ def rim_of(body: Body) -> Rim | None:
 def covers(system: RollingSystem) -> bool:
     """Tell whether T10 holds: a disc or hoop on a level plane at rest, under gravity alone.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Any.
-
-    Returns
-    -------
-    bool
-        Told from the shape, the inertia and the loads, not from names.
-
     Examples
     --------
     >>> import trundle as tr
@@ -129,18 +109,6 @@ def transfer(x: Any, rim: Rim) -> tuple[Any, Any, Any, Any]:
 
     These are Legendre functions of degree ν, ν(ν + 1) = −σC/A, even and odd: power series about x = 0, and beyond it
     about 1/2, 3/4, 7/8, ... in turn, so that the terms always fall by half.
-
-    Parameters
-    ----------
-    x : float or array
-        e·n, the sine of the lean, inside (−1, 1).
-    rim : Rim
-        σ and C/A.
-
-    Returns
-    -------
-    tuple of 4 arrays
-        Of the shape of x.
 
     Examples
     --------
@@ -190,20 +158,6 @@ def _series(centre: float, h: Any, rim: Rim) -> Any:
 
 def upright_rates(rim: Rim, orientation: Quaternion, angular_velocity: Vector) -> tuple[list[Any], list[Any]]:
     """Return the two constants of T10: Ω·e and Ω·n as they would be with the disc upright, rad/s.
-
-    Parameters
-    ----------
-    rim : Rim
-        The body, on the plane whose normal is the third axis.
-    orientation : Quaternion
-        At one instant, or at many with arrays as components.
-    angular_velocity : Vector
-        Ω in the support frame, rad/s, likewise.
-
-    Returns
-    -------
-    spin, turning : list of 2 arrays
-        Terms; the sum of each list is constant along a motion.
 
     Examples
     --------

@@ -28,18 +28,6 @@ STILL = 1e-6  # m/s: below it the length of a velocity is rounded off, so that i
 def through_air(motion: BodyMotion, air_rate: Scalar) -> Vector:
     """Return V − ω_a×r, the velocity of the centre of mass through air that turns about the third axis.
 
-    Parameters
-    ----------
-    motion : BodyMotion
-        Of the body.
-    air_rate : Scalar
-        ω_a, rad/s.
-
-    Returns
-    -------
-    Vector
-        m/s.
-
     Examples
     --------
     >>> from trundle.mechanics.loads import at_rest

@@ -55,16 +55,6 @@ class Acting:
 def at_rest(mass: Scalar) -> BodyMotion:
     """Return a body at rest at the origin, where a load that is constant can be read.
 
-    Parameters
-    ----------
-    mass : Scalar
-        kg.
-
-    Returns
-    -------
-    BodyMotion
-        At t = 0.
-
     Examples
     --------
     >>> from trundle.mechanics.loads import Gravity
@@ -129,20 +119,6 @@ class Load(Part):
 
 def constant_part(loads: tuple[Load, ...], mass: Scalar) -> tuple[Vector, Vector, Scalar]:
     """Add up loads that are constant or linear drag.
-
-    Parameters
-    ----------
-    loads : tuple of Load
-        Each `constant`, or with a `linear_drag`.
-    mass : Scalar
-        Of the body, kg.
-
-    Returns
-    -------
-    force, torque : Vector
-        N and N m.
-    drag : Scalar
-        c, kg/s.
 
     Examples
     --------

@@ -162,16 +162,6 @@ class Move(Motion):
 def direction_of(axis: Vector) -> Vector:
     """Return the unit vector along an axis.
 
-    Parameters
-    ----------
-    axis : Vector
-        Of any length but 0.
-
-    Returns
-    -------
-    Vector
-        Of length 1.
-
     Examples
     --------
     >>> direction_of(Vector(0.0, 2.0, 0.0))

@@ -25,18 +25,6 @@ class Sizes(NamedTuple):
 def largest(value: Any, start: float, end: float) -> Sizes:
     """Return the largest sizes of a number or formula in the time, wherever in an interval it is finite.
 
-    Parameters
-    ----------
-    value : float or Expression
-        The number or formula in t.
-    start, end : float
-        The interval, s.
-
-    Returns
-    -------
-    Sizes
-        As equally spaced looks show them.
-
     Examples
     --------
     >>> from trundle.mechanics.expressions import Expression

@@ -12,16 +12,6 @@ from .base import SupportState
 def about_third_axis(angle: Scalar) -> Matrix:
     """Return the rotation about the third axis; a positive angle turns the first axis towards the second.
 
-    Parameters
-    ----------
-    angle : Scalar
-        rad.
-
-    Returns
-    -------
-    Matrix
-        Its third row and column stay literal.
-
     Examples
     --------
     >>> about_third_axis(0.0) @ Vector(1.0, 2.0, 3.0)
@@ -34,18 +24,6 @@ def about_third_axis(angle: Scalar) -> Matrix:
 
 def about(axis: Vector, angle: Scalar) -> Matrix:
     """Return the rotation about a unit vector by an angle, right-handed: cos θ 1 + sin θ [e]× + (1 − cos θ) e eᵀ.
-
-    Parameters
-    ----------
-    axis : Vector
-        e, of length 1.
-    angle : Scalar
-        θ, rad.
-
-    Returns
-    -------
-    Matrix
-        The rotation, by Rodrigues' formula.
 
     Examples
     --------
@@ -62,18 +40,6 @@ def about(axis: Vector, angle: Scalar) -> Matrix:
 def turned_about(axis: Vector, course: tuple[Scalar, Scalar, Scalar]) -> SupportState:
     """Return the state of a support turned about an axis through the origin that does not move.
 
-    Parameters
-    ----------
-    axis : Vector
-        Of length 1.
-    course : tuple of 3 Scalar
-        The angle, rad, and its first and second rate.
-
-    Returns
-    -------
-    SupportState
-        Its origin at rest.
-
     Examples
     --------
     >>> turned_about(Vector(0.0, 1.0, 0.0), (0.0, 2.0, 3.0)).angular_acceleration
@@ -85,22 +51,6 @@ def turned_about(axis: Vector, course: tuple[Scalar, Scalar, Scalar]) -> Support
 
 def swing(amplitude: Any, rate: Scalar, phase: Scalar, time: Scalar) -> tuple[Any, Any, Any]:
     """Return A sin(νt + φ), its first rate and its second.
-
-    Parameters
-    ----------
-    amplitude : Scalar or Vector
-        A.
-    rate : Scalar
-        ν, rad/s.
-    phase : Scalar
-        φ, rad.
-    time : Scalar
-        t, s.
-
-    Returns
-    -------
-    tuple of 3, each of the amplitude's kind
-        Per s⁰, s and s².
 
     Examples
     --------

@@ -56,16 +56,6 @@ class Shape:
 def centre_of(value: Any) -> Vector | None:
     """Return the place of a shape's own centre as a vector.
 
-    Parameters
-    ----------
-    value : Vector, sequence of 3 floats or quantities, or None
-        From the centre of mass, body frame, m.
-
-    Returns
-    -------
-    Vector or None
-        None where the two coincide.
-
     Examples
     --------
     >>> centre_of([0, 0, "2 mm"])

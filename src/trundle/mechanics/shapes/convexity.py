@@ -24,18 +24,6 @@ _CLOSER, _HALVINGS = 20, 30
 def check_convex(h: Callable[[Vector], Jet], text: str) -> None:
     """Refuse a support function that is not finite, or not that of a smooth convex body, naming a direction.
 
-    Parameters
-    ----------
-    h : callable
-        The support function with h(λν) = λ h(ν), as a jet, of a Vector of arrays.
-    text : str
-        Its formula, for the message.
-
-    Raises
-    ------
-    InvalidValueError
-        If somewhere h is not finite, a radius of curvature is negative, or X(ν) jumps.
-
     Examples
     --------
     >>> from trundle.mechanics.shapes import SupportFunction
@@ -148,16 +136,6 @@ class _Look:
 
 def looks_the_same_all_round(h: Callable[[Vector], Any]) -> bool:
     """Tell whether h changes with a turn about the third axis by no more than rounding.
-
-    Parameters
-    ----------
-    h : callable
-        The support function, of a Vector of arrays of length 1.
-
-    Returns
-    -------
-    bool
-        Whether it is a function of the height alone, in all directions tried.
 
     Examples
     --------

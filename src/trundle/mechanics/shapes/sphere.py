@@ -129,16 +129,6 @@ class HalfCylinder(Roller):
 def concentric_sphere(shape: Any) -> bool:
     """Tell whether a shape is a sphere about the centre of mass.
 
-    Parameters
-    ----------
-    shape : Shape
-        Any shape.
-
-    Returns
-    -------
-    bool
-        True where X(ν) = a ν.
-
     Examples
     --------
     >>> concentric_sphere(Sphere(1.0))

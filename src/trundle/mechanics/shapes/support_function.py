@@ -75,18 +75,6 @@ class SupportFunction(Shape):
 def support(formula: Expression, nu: Vector) -> Jet:
     """Return h, continued with h(λν) = λ h(ν), with its first and second derivatives at ν.
 
-    Parameters
-    ----------
-    formula : Expression
-        h, right for vectors of length 1.
-    nu : Vector
-        ν, of length 1.
-
-    Returns
-    -------
-    Jet
-        In the three components of ν.
-
     Examples
     --------
     >>> support(Expression.parse("2.0", NAMES, "h"), Vector(0.0, 0.0, 1.0)).gradient

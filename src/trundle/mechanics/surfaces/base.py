@@ -137,18 +137,6 @@ class Surface(Part):
 def tangential(bend: Matrix, n: Vector) -> Matrix:
     """Return P H P with P = 1 − n nᵀ, what is left of a symmetric H along a surface.
 
-    Parameters
-    ----------
-    bend : Matrix
-        H.
-    n : Vector
-        Unit normal.
-
-    Returns
-    -------
-    Matrix
-        Symmetric, and n maps to 0.
-
     Examples
     --------
     >>> tangential(Matrix.identity(), Vector(0.0, 0.0, 1.0)).c.z
@@ -160,18 +148,6 @@ def tangential(bend: Matrix, n: Vector) -> Matrix:
 
 def check_upright(tilt: float, received: Any) -> None:
     """Refuse a surface that stands upright or hangs over.
-
-    Parameters
-    ----------
-    tilt : float
-        α, rad.
-    received : object
-        As the user gave it.
-
-    Raises
-    ------
-    InvalidValueError
-        Unless α lies in (-90 deg, 90 deg).
 
     Examples
     --------

@@ -88,16 +88,6 @@ class Cylinder(Surface):
 def from_axis(p: Vector) -> tuple[Vector, Scalar]:
     """Return the direction away from the third axis, and the distance from it.
 
-    Parameters
-    ----------
-    p : Vector
-        A point off the axis, m.
-
-    Returns
-    -------
-    direction, distance : Vector, Scalar
-        The first of length 1, the second in m.
-
     Examples
     --------
     >>> from_axis(Vector(3.0, 4.0, 7.0))

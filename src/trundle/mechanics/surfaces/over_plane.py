@@ -75,18 +75,6 @@ class OverPlane(Surface):
 def around_axis(x: Scalar, y: Scalar, first: Scalar, second: Scalar) -> tuple[Slopes, Bends]:
     """Return the derivatives of h = f(x² + y²) from f′ and f″.
 
-    Parameters
-    ----------
-    x, y : Scalar
-        m.
-    first, second : Scalar
-        f′, 1/m, and f″, 1/m³, at x² + y².
-
-    Returns
-    -------
-    slopes, bends : tuples
-        As `OverPlane.derivatives` has them; nothing is divided by the distance from the axis.
-
     Examples
     --------
     >>> around_axis(3.0, 0.0, 0.5, 0.0)

@@ -14,16 +14,6 @@ class _NeitherError(Exception):
 def in_square(tree: Any) -> Any:
     """Return a formula in r as one in r2 = r², where it is even as it is written.
 
-    Parameters
-    ----------
-    tree : nested tuple
-        Of an `Expression` in r and r2.
-
-    Returns
-    -------
-    nested tuple or None
-        The same numbers in the same order; None where the formula is not seen to be even.
-
     Examples
     --------
     >>> in_square(("+", ("**", "r", "2"), ("*", 0.5, ("**", "r", "4"))))
@@ -39,16 +29,6 @@ def in_square(tree: Any) -> Any:
 
 def is_even(tree: Any) -> bool:
     """Tell whether a formula in r is even, f(−r) = f(r), also where it cannot be written in r².
-
-    Parameters
-    ----------
-    tree : nested tuple
-        Of an `Expression` in r and r2.
-
-    Returns
-    -------
-    bool
-        False where it is not seen to be.
 
     Examples
     --------

@@ -61,20 +61,7 @@ class Spline:
         return NdBSpline(tuple(knots), coefficients, degrees, extrapolate=True)
 
     def __call__(self, at: tuple[Scalar, ...], orders: tuple[int, ...] | None = None) -> Scalar:
-        """Return the spline or a derivative of it.
-
-        Parameters
-        ----------
-        at : tuple of 1 or 2 floats or arrays
-            Where; beyond the table its last pieces are continued.
-        orders : tuple of int, optional
-            How often to differentiate along each axis.
-
-        Returns
-        -------
-        float or array
-            The value there.
-        """
+        """Return the spline or a derivative of it."""
         import numpy as np
 
         _check_evaluable(at)
@@ -100,23 +87,6 @@ def _check_evaluable(at: tuple[Scalar, ...]) -> None:
 def ascending(values: Any, key: str) -> tuple[float, ...]:
     """Return the places of a table along one axis.
 
-    Parameters
-    ----------
-    values : sequence of floats or quantities
-        Four at least, ascending, m.
-    key : str
-        The name that an error message uses.
-
-    Returns
-    -------
-    tuple of float
-        m.
-
-    Raises
-    ------
-    InvalidValueError
-        If they are fewer, or do not ascend.
-
     Examples
     --------
     >>> ascending(["0 cm", "1 cm", "2 cm", "3 cm"], "r")
@@ -133,23 +103,6 @@ def ascending(values: Any, key: str) -> tuple[float, ...]:
 
 def lengths(values: Any, key: str) -> tuple[float, ...]:
     """Return a list of lengths in m.
-
-    Parameters
-    ----------
-    values : sequence of floats or quantities
-        Finite numbers.
-    key : str
-        The name that an error message uses.
-
-    Returns
-    -------
-    tuple of float
-        m.
-
-    Raises
-    ------
-    InvalidValueError
-        If it is no list of lengths.
 
     Examples
     --------

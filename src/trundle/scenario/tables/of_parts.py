@@ -186,26 +186,6 @@ def table_of(
 ) -> type[Table]:
     """Return the class of the tables of a part.
 
-    Parameters
-    ----------
-    part : type
-        A class of parts with a kind.
-    others : tuple of type
-        The tables that a list of parts in it may hold.
-    base : type
-        With the keys that all parts of the family have.
-    suffix : str
-        Of the class's name; absent: the family's.
-    instead : mapping
-        Points that may be given instead of the part's first field.
-    more : mapping
-        Further keys, each with its type and `Field`, behind the part's own.
-
-    Returns
-    -------
-    type
-        A model.
-
     Examples
     --------
     >>> import math
@@ -238,18 +218,6 @@ def _examples(field: Any) -> list[Any] | None:
 def annotation_of(field: Any, others: tuple[type[Table], ...] = ()) -> Any:
     """Return the type of what stands in a file for a field of a part.
 
-    Parameters
-    ----------
-    field : Number, Numbers, Formula, Choice or PartsOf
-        What the part says about it.
-    others : tuple of type
-        The tables that a list of parts may hold.
-
-    Returns
-    -------
-    type
-        For pydantic.
-
     Examples
     --------
     >>> annotation_of(Choice(("inside", "outside"), "side"))
@@ -275,18 +243,7 @@ def annotation_of(field: Any, others: tuple[type[Table], ...] = ()) -> Any:
 
 
 def one_of(tables: tuple[type[Table], ...]) -> Any:
-    """Return the type of one of several tables, told apart by kind.
-
-    Parameters
-    ----------
-    tables : tuple of type
-        Their classes.
-
-    Returns
-    -------
-    type
-        For pydantic.
-    """
+    """Return the type of one of several tables, told apart by kind."""
     return Annotated[Union[tables], Field(discriminator="kind")]  # noqa: UP007  they are known only now
 
 

@@ -20,21 +20,6 @@ _UPRIGHT = Matrix.identity()
 def body_words(body: Body) -> Words:
     """Return the table of a body.
 
-    Parameters
-    ----------
-    body : Body
-        One body, in numbers.
-
-    Returns
-    -------
-    dict
-        Its ``[body]``.
-
-    Raises
-    ------
-    ScenarioError
-        If the format has no words for it.
-
     Examples
     --------
     >>> body_words(Body.solid_sphere(radius=0.025, mass=0.065))

@@ -15,23 +15,6 @@ Words = dict[str, Any]
 def words_of(part: Part, key: str) -> Words:
     """Return the words of a part by its fields; what stands at its default is left out.
 
-    Parameters
-    ----------
-    part : Part
-        A surface, motion or load.
-    key : str
-        Its place in the file, for messages.
-
-    Returns
-    -------
-    dict
-        Its table.
-
-    Raises
-    ------
-    ScenarioError
-        If it has no kind that files know, or its numbers are none.
-
     Examples
     --------
     >>> from trundle.mechanics.motions import Shake
@@ -64,23 +47,6 @@ def _word_of(value: Any, place: str) -> Any:
 def number_of(value: Any, key: str) -> float:
     """Return a number as a file can hold it, finite and one.
 
-    Parameters
-    ----------
-    value : object
-        Of a system.
-    key : str
-        Its place in the file, for messages.
-
-    Returns
-    -------
-    float
-        The number.
-
-    Raises
-    ------
-    ScenarioError
-        If it is an array, a symbol or not finite.
-
     Examples
     --------
     >>> number_of(2, "gravity")
@@ -99,18 +65,6 @@ def number_of(value: Any, key: str) -> float:
 def numbers_of(values: Any, key: str) -> list[Any]:
     """Return numbers, and formulas as their texts.
 
-    Parameters
-    ----------
-    values : iterable
-        Of a system.
-    key : str
-        Their place in the file, for messages.
-
-    Returns
-    -------
-    list
-        Of float and str.
-
     Examples
     --------
     >>> numbers_of((1, 2.5), "value")
@@ -124,18 +78,6 @@ def numbers_of(values: Any, key: str) -> list[Any]:
 
 def wordless(key: str, thing: Any) -> ScenarioError:
     """Return the error of a part that the format has no words for.
-
-    Parameters
-    ----------
-    key : str
-        Its place in the file.
-    thing : object
-        The part.
-
-    Returns
-    -------
-    ScenarioError
-        To be raised.
 
     Examples
     --------

@@ -31,24 +31,7 @@ __all__ = ["Finding", "findings_of"]
 
 
 def findings_of(system: RollingSystem, start: State, samples: Samples, form: ClosedForm | None) -> list[dict[str, Any]]:
-    """Return predicted and measured numbers of a run.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        What moved.
-    start : State
-        Where it started.
-    samples : Samples
-        The run's own, evenly spaced, in the support frame: all that is measured is measured from them.
-    form : ClosedForm or None
-        Of the phase in which the run starts; all that is predicted comes from its constants.
-
-    Returns
-    -------
-    list of dict
-        As a scene's header holds them.
-    """
+    """Return predicted and measured numbers of a run."""
     seen = Seen.of(samples)
     found = list(_of_form(system, samples, form, seen)) if seen.time.size > 3 else []
     if not any(one.name == "Friction needed" for one in found):

@@ -72,20 +72,7 @@ def circle(seen: Seen, pace: float) -> MeasuredCircle | None:
 
 
 def exponent(seen: Seen, pace: float) -> tuple[complex, complex] | None:
-    """Return λ and φ of a path that obeys ζ̈ = λζ̇ + φ: its steps follow each other as d′ = e^{λh} d + c.
-
-    Parameters
-    ----------
-    seen : Seen
-        The path.
-    pace : float
-        About the fastest rate in it, 1/s.
-
-    Returns
-    -------
-    pair of complex or None
-        1/s and m/s²; None where the path does not tell them.
-    """
+    """Return λ and φ of a path that obeys ζ̈ = λζ̇ + φ: its steps follow each other as d′ = e^{λh} d + c."""
     some = seen.every(pace)
     steps, h = np.diff(seen.zeta[some]), seen.step * (some.step or 1)
     if steps.size < 4:

@@ -51,18 +51,6 @@ CLOSED_FORMS: tuple[type[ClosedForm], ...] = (
 def closed_form(system: RollingSystem, start: State) -> ClosedForm | None:
     """Return the closed form that covers a system, if there is one.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Any system.
-    start : State
-        Any start.
-
-    Returns
-    -------
-    ClosedForm or None
-        Of the phase in which the run starts; None where no closed form applies.
-
     Examples
     --------
     >>> import trundle as tr
@@ -78,24 +66,7 @@ def closed_form(system: RollingSystem, start: State) -> ClosedForm | None:
 
 
 def form_of_phase(phase: int, system: RollingSystem, start: State, numbers: Sequence[float]) -> ClosedForm | None:
-    """Return the closed form that covers one phase of contact from a state on, if there is one.
-
-    Parameters
-    ----------
-    phase : int
-        As in `Samples.phase`.
-    system : RollingSystem
-        Any system.
-    start : State
-        In that phase.
-    numbers : sequence of float
-        The same as the phase's law has it.
-
-    Returns
-    -------
-    ClosedForm or None
-        The motion, or None where no closed form applies.
-    """
+    """Return the closed form that covers one phase of contact from a state on, if there is one."""
     for form in CLOSED_FORMS:
         if phase in form.phases and not form.outside(system, start):
             return form.of_numbers(system, start, numbers)
@@ -103,18 +74,7 @@ def form_of_phase(phase: int, system: RollingSystem, start: State, numbers: Sequ
 
 
 def refusals(phase: int, system: RollingSystem, start: State) -> str:
-    """Say why no closed form covers a phase.
-
-    Parameters
-    ----------
-    phase, system, start
-        As for `form_of_phase`.
-
-    Returns
-    -------
-    str
-        Each form's domain and what lies outside it, and the remedy.
-    """
+    """Say why no closed form covers a phase."""
     found = " ".join(form.refusal(system, start) for form in CLOSED_FORMS if phase in form.phases)
     doing = ("rolls", "slips", "flies", "rests")[phase]
     return f'From t = {start.time:.6g} s the body {doing}. {found} Use method="taylor" or method="runge-kutta".'

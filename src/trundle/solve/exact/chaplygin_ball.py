@@ -77,23 +77,6 @@ class ChaplyginBall(ClosedForm):
     def of(cls, system: RollingSystem, start: State) -> ChaplyginBall:
         """Read the closed form's numbers from a system and a start.
 
-        Parameters
-        ----------
-        system : RollingSystem
-            Must lie in the domain.
-        start : State
-            A start that rolls.
-
-        Returns
-        -------
-        ChaplyginBall
-            The motion; its t = 0 is the start's time.
-
-        Raises
-        ------
-        OutOfDomainError
-            If the system lies outside the domain.
-
         Examples
         --------
         >>> import trundle as tr
@@ -123,18 +106,6 @@ class ChaplyginBall(ClosedForm):
     @classmethod
     def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:
         """Name what of a system lies outside the domain.
-
-        Parameters
-        ----------
-        system : RollingSystem
-            Any system.
-        start : State, optional
-            Its start; every one that rolls lies in the domain, unless it is at rest.
-
-        Returns
-        -------
-        list of str
-            Empty where the closed form applies.
 
         Examples
         --------
@@ -197,16 +168,6 @@ class ChaplyginBall(ClosedForm):
     def motion_at(self, t: Any) -> tuple[Vector, Vector, Vector, Vector]:
         """Return position, velocity, angular velocity and contact force together.
 
-        Parameters
-        ----------
-        t : float or array
-            Time since the start, s.
-
-        Returns
-        -------
-        position, velocity, angular_velocity, contact_force : Vector
-            In the inertial support frame, m, m/s, rad/s, N.
-
         Examples
         --------
         >>> ball = ChaplyginBall(0.1, 1.0, 4e-3, 3e-3, (0.0, 0.0), (0.6, 0.0, 0.8), (1.0, 2.0, 3.0), normal_force=9.8)
@@ -236,16 +197,6 @@ class ChaplyginBall(ClosedForm):
 
     def axis_at(self, t: Any) -> Vector:
         """Return the ball's axis e.
-
-        Parameters
-        ----------
-        t : float or array
-            Time since the start, s.
-
-        Returns
-        -------
-        Vector
-            A unit vector in the inertial support frame.
 
         Examples
         --------

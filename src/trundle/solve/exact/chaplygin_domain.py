@@ -22,16 +22,6 @@ Axes = tuple[tuple[float, float, float], ...]
 def reasons_outside(system: RollingSystem) -> list[str]:
     """Name what of a system is no ball with its own principal moments, level, at rest and under forces along n.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Any system.
-
-    Returns
-    -------
-    list of str
-        Empty where the closed forms of Chaplygin's ball may apply.
-
     Examples
     --------
     >>> import trundle as tr
@@ -61,18 +51,6 @@ def reasons_outside(system: RollingSystem) -> list[str]:
 def principal_axes(body: Any) -> tuple[tuple[float, float, float], Axes]:
     """Return a body's principal moments of inertia and their axes.
 
-    Parameters
-    ----------
-    body : Body
-        With numbers.
-
-    Returns
-    -------
-    moments : tuple of 3 float
-        kg m².
-    axes : tuple of 3 unit vectors
-        In the body frame, right-handed.
-
     Examples
     --------
     >>> import trundle as tr
@@ -92,16 +70,6 @@ def principal_axes(body: Any) -> tuple[tuple[float, float, float], Axes]:
 def two_are_equal(moments: tuple[float, float, float]) -> int | None:
     """Return which of three moments of inertia differs from two that are equal to rounding.
 
-    Parameters
-    ----------
-    moments : tuple of 3 float
-        kg m².
-
-    Returns
-    -------
-    int or None
-        None where no two are equal.
-
     Examples
     --------
     >>> two_are_equal((2.0, 3.0, 2.0)), two_are_equal((1.0, 2.0, 3.0))
@@ -117,16 +85,6 @@ def two_are_equal(moments: tuple[float, float, float]) -> int | None:
 def body_quaternion(axes: Axes) -> Quaternion:
     """Return the turn from a body's principal axes to its frame.
 
-    Parameters
-    ----------
-    axes : triple of unit vectors
-        As of `principal_axes`.
-
-    Returns
-    -------
-    Quaternion
-        1 where they are the frame's own.
-
     Examples
     --------
     >>> body_quaternion(((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
@@ -138,16 +96,6 @@ def body_quaternion(axes: Axes) -> Quaternion:
 
 def stance_of(before: Vector, now: Vector) -> Quaternion:
     """Return the shortest turn that takes one unit vector to another.
-
-    Parameters
-    ----------
-    before, now : Vector
-        Unit vectors.
-
-    Returns
-    -------
-    Quaternion
-        Half a turn about some axis across, where the two are opposite.
 
     Examples
     --------

@@ -123,18 +123,6 @@ class Now:
 def arc(sine: Any, curvature: Any) -> Any:
     """Return the angle φ with S(φ) = sine, S = sin(√βφ)/√β or, where β is negative, sinh(√−βφ)/√−β.
 
-    Parameters
-    ----------
-    sine : float, array or mpmath number
-        S.
-    curvature : float or mpmath number
-        β.
-
-    Returns
-    -------
-    as sine
-        φ, which is S itself for β = 0.
-
     Examples
     --------
     >>> import math

@@ -83,23 +83,6 @@ class CylinderOnCylinder(ClosedForm):
     def of(cls, system: RollingSystem, start: State) -> CylinderOnCylinder:
         """Read the closed form's numbers from a system and a start.
 
-        Parameters
-        ----------
-        system : RollingSystem
-            Must lie in the domain.
-        start : State
-            A start that rolls, in the plane across the axis.
-
-        Returns
-        -------
-        CylinderOnCylinder
-            The motion; its t = 0 is the start's time.
-
-        Raises
-        ------
-        OutOfDomainError
-            If the system or the start lies outside the domain.
-
         Examples
         --------
         >>> import trundle as tr
@@ -132,18 +115,6 @@ class CylinderOnCylinder(ClosedForm):
     @classmethod
     def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:
         """Name what of a system, and of a start where one is given, lies outside the domain.
-
-        Parameters
-        ----------
-        system : RollingSystem
-            Any system.
-        start : State, optional
-            Its start.
-
-        Returns
-        -------
-        list of str
-            Empty where the closed form applies.
 
         Examples
         --------
@@ -264,18 +235,6 @@ class CylinderOnCylinder(ClosedForm):
         The same addition theorems, less the start's angle by those of the circle: every term has a factor that
         vanishes with the time, so that a small way keeps all its digits beside a large angle.
 
-        Parameters
-        ----------
-        t : float or array
-            Time since the start, s.
-
-        Returns
-        -------
-        sine, cosine : float or array
-            Of (θ − θ₀)/2.
-        rounds : float or array
-            By how much the angle is further on, rad.
-
         Examples
         --------
         >>> sine, cosine, rounds = CylinderOnCylinder(0.1, 1.0, 0.5, 0.5, -1.0, 0.0, 0.0, 2.0).gone_at(10.0)
@@ -297,16 +256,6 @@ class CylinderOnCylinder(ClosedForm):
 
     def motion_at(self, t: Any) -> tuple[Vector, Vector, Vector, Vector]:
         """Return position, velocity, angular velocity and contact force together.
-
-        Parameters
-        ----------
-        t : float or array
-            Time since the start, s.
-
-        Returns
-        -------
-        position, velocity, angular_velocity, contact_force : Vector
-            In the inertial support frame, m, m/s, rad/s, N.
 
         Examples
         --------
@@ -339,16 +288,6 @@ class CylinderOnCylinder(ClosedForm):
     def angle_at(self, t: Any) -> Any:
         """Return θ at a time since the start, rad, counted on over whole rounds.
 
-        Parameters
-        ----------
-        t : float or array
-            Time since the start, s.
-
-        Returns
-        -------
-        float or array
-            From the direction of the pull.
-
         Examples
         --------
         >>> CylinderOnCylinder(0.1, 1.0, 0.5, 0.5, -1.0, 0.0, 0.0, 2.0).angle_at(10.0)  # no pull
@@ -358,16 +297,6 @@ class CylinderOnCylinder(ClosedForm):
 
     def turned_at(self, t: Any) -> Any:
         """Return θ − θ₀ at a time since the start, rad, counted on over whole rounds; no digit of it is lost beside θ₀.
-
-        Parameters
-        ----------
-        t : float or array
-            Time since the start, s.
-
-        Returns
-        -------
-        float or array
-            As good as its own last digit.
 
         Examples
         --------
@@ -444,16 +373,6 @@ def _constants(*given: Any) -> tuple[Any, ...]:
 
 def angles(along: float, across: float) -> tuple[float, float]:
     """Return the angle from the pull, rad, and that from the top, opposite to it, where it is nearer to that; else NaN.
-
-    Parameters
-    ----------
-    along, across : float
-        How far the centre is along the pull and across it, to any one scale.
-
-    Returns
-    -------
-    angle, from_top : float
-        As `CylinderOnCylinder` takes them.
 
     Examples
     --------

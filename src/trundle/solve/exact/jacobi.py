@@ -15,18 +15,6 @@ _MOST_STEPS = 40
 def elliptic(u: Scalar, complement: Scalar) -> tuple[Scalar, Scalar, Scalar]:
     """Return sn u, cn u and dn u by descending arithmetic-geometric means (Bulirsch, Numer. Math. 7, 78 (1965)).
 
-    Parameters
-    ----------
-    u : float, array or mpmath number
-        The argument; within a period of 0 nothing is lost.
-    complement : float, array or mpmath number
-        m₁ = 1 − m, from 0 (hyperbolic functions) to 1 (circular ones).
-
-    Returns
-    -------
-    sn, cn, dn : as u
-        With sn² + cn² = 1 and dn² + m sn² = 1.
-
     Examples
     --------
     >>> [round(part, 12) for part in elliptic(1.0, 1.0)]  # sin 1, cos 1, 1

@@ -23,20 +23,6 @@ _SERIES = [(-1) ** n / factorial(2 * n + 3) for n in range(_TERMS)]
 def inverse_of(time: Callable[[Any], tuple[Any, Any]], t: Any, high: Any) -> Any:
     """Return the x at which an increasing function has given values: Newton's method, kept within brackets.
 
-    Parameters
-    ----------
-    time : callable
-        Takes x (n,), returns t(x), which is 0 at 0, and dt/dx > 0.
-    t : array (n,)
-        At least 0.
-    high : array (n,)
-        A first guess of bounds; where the largest is too small, it is doubled.
-
-    Returns
-    -------
-    array (n,)
-        x ≥ 0.
-
     Examples
     --------
     >>> x = inverse_of(lambda x: (x + x**3, 1 + 3 * x**2), np.array([0.0, 10.0]), np.array([1.0, 1.0]))
@@ -87,20 +73,6 @@ def _begun(time: Callable[[Any], tuple[Any, Any]], t: Any, high: Any) -> tuple[A
 def precisely(time: Callable[[Any], tuple[Any, Any]], t: Any, near: float) -> Any:
     """Return the same with mpmath's digits, from a root known as a float.
 
-    Parameters
-    ----------
-    time : callable
-        As for `inverse_of`, of mpmath's numbers.
-    t : mpmath number
-        At least 0.
-    near : float
-        x to some digits.
-
-    Returns
-    -------
-    mpmath number
-        x.
-
     Examples
     --------
     >>> import mpmath
@@ -121,18 +93,6 @@ def precisely(time: Callable[[Any], tuple[Any, Any]], t: Any, near: float) -> An
 
 def stumpff(square: Any, x: Any) -> tuple[Any, Any, Any, Any]:
     """Return cos νx, sin νx/ν, (1 − cos νx)/ν² and (x − sin νx/ν)/ν², smooth where ν² falls through zero.
-
-    Parameters
-    ----------
-    square : float or mpmath number
-        ν², 1/s²; where it is negative, these are hyperbolic functions.
-    x : array or mpmath number
-        s.
-
-    Returns
-    -------
-    tuple of 4
-        As x.
 
     Examples
     --------

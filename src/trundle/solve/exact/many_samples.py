@@ -20,20 +20,6 @@ class ManySamples:
         The motion starts anew every few thousand samples from T5, and inside such a block it is the same linear
         function of the block's start, ζ_b + τφ₁(λτ) ζ̇_b + τ²φ₂(λτ) φ: one matrix product for all blocks.
 
-        Parameters
-        ----------
-        step : float
-            h, s.
-        count : int
-            Number of samples.
-        out : array (2, count rounded up to whole blocks of 2048), optional
-            Where to put them.
-
-        Returns
-        -------
-        array (2, count)
-            x and y in the inertial support frame, m; the path of `position_at` to the last digits.
-
         Examples
         --------
         >>> from trundle.solve.exact import SphereOnPlane
@@ -63,16 +49,6 @@ class ManySamples:
 
     def compiled(self: Any) -> Any:
         """Compile the path ζ(t) of this one ball to machine code with heyoka.
-
-        Returns
-        -------
-        heyoka.cfunc
-            A function of times, shape (1, n) in s, that returns x and y, shape (2, n) in m.
-
-        Raises
-        ------
-        OutOfDomainError
-            If a parameter is an array: the compiled path is of one ball.
 
         Examples
         --------

@@ -46,16 +46,6 @@ class OffADome:
     def slipping(self, angle: float) -> float:
         """Return ℓθ̇²/g while it slips: u = [(4μ² − 2) cos θ − 6μ sin θ]/(1 + 4μ²) + C e^{2μθ} (T12c).
 
-        Parameters
-        ----------
-        angle : float
-            θ, rad from the top, from where it begins to slip.
-
-        Returns
-        -------
-        float
-            u.
-
         Examples
         --------
         >>> dome = OffADome(0.4, 0.3)

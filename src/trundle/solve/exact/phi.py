@@ -80,18 +80,6 @@ def exponentials(x: Scalar, y: Scalar, turned: Scalar | None = None) -> tuple[Co
     and eˣ − 1 from expm1, so nothing is lost where y comes near a full turn. Exact kinds of scalars (SymPy,
     mpmath) use the definitions.
 
-    Parameters
-    ----------
-    x, y : Scalar
-        Real and imaginary part of z. A part known to be zero (the number 0) shortens the work.
-    turned : Scalar, optional
-        y less whole turns, where it is known to more digits than y itself holds.
-
-    Returns
-    -------
-    exponential, phi1, phi2 : Complex
-        Each as a pair.
-
     Examples
     --------
     >>> exponentials(0.0, 0.0)[2]
@@ -164,16 +152,6 @@ def quotient_times(factor: Scalar, k: Scalar) -> tuple[Scalar, Scalar]:
 
     A phase κt keeps its last digit only if κ does. Kinds of scalars without rounding leave no remainder.
 
-    Parameters
-    ----------
-    factor, k : Scalar
-        Numbers, arrays or symbols.
-
-    Returns
-    -------
-    value, remainder : Scalar
-        Their sum is the product.
-
     Examples
     --------
     >>> quotient_times(3.0, 0.5)
@@ -192,18 +170,6 @@ def quotient_times(factor: Scalar, k: Scalar) -> tuple[Scalar, Scalar]:
 
 def phase(rate: tuple[Scalar, Scalar], t: Scalar) -> tuple[Scalar, Scalar]:
     """Return a phase κt, and the same less whole turns: the second has lost nothing even after a million turns.
-
-    Parameters
-    ----------
-    rate : pair of Scalar
-        κ as a float and its remainder, rad/s.
-    t : Scalar
-        Time, s. For kinds of scalars that cannot be rounded to whole turns both phases are the same, off by 1 ulp.
-
-    Returns
-    -------
-    y, turned : Scalar
-        rad.
 
     Examples
     --------
@@ -227,16 +193,6 @@ def _rounds(value: Scalar) -> bool:
 
 def two_product(a: Scalar, b: Scalar) -> tuple[Scalar, Scalar]:
     """Return a·b rounded, and exactly what the rounding lost (Dekker's product; |a|, |b| below 1e290).
-
-    Parameters
-    ----------
-    a, b : float or array
-        The factors.
-
-    Returns
-    -------
-    product, error : float or array
-        product + error = a·b.
 
     Examples
     --------

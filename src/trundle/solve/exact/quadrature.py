@@ -42,18 +42,7 @@ class Rule:
 
 @cache
 def rule(digits: int | None = None) -> Rule:
-    """Return the rule for floats, or for mpmath's numbers of so many digits.
-
-    Parameters
-    ----------
-    digits : int, optional
-        Absent: floats.
-
-    Returns
-    -------
-    Rule
-        The larger `digits`, the more points.
-    """
+    """Return the rule for floats, or for mpmath's numbers of so many digits."""
     if digits is None:
         count, cos, pi, one = _POINTS, np.cos, np.pi, 1.0
     else:
@@ -79,20 +68,6 @@ def rule(digits: int | None = None) -> Rule:
 
 def series_at(series: NDArray[Any], piece: Any, x: Any) -> Any:
     """Return the sums of Chebyshev series of several functions, each time in its piece, by Clenshaw's recurrence.
-
-    Parameters
-    ----------
-    series : array (orders, functions, pieces)
-        The series.
-    piece : int or array of int
-        Of each time.
-    x : float or array
-        Place in the piece, in [−1, 1].
-
-    Returns
-    -------
-    array (functions, ...)
-        The sums.
 
     Examples
     --------
@@ -198,36 +173,12 @@ class PreciseRunning:
 
 
 def is_one(form: Any) -> bool:
-    """Tell whether every number of a closed form is a number, not an array of members.
-
-    Parameters
-    ----------
-    form : dataclass
-        A closed form.
-
-    Returns
-    -------
-    bool
-        False where it stands for several members.
-    """
+    """Tell whether every number of a closed form is a number, not an array of members."""
     return not any(np.ndim(value) for _, value in _numbers(form))
 
 
 def one_by_one(form: Any, t: Any) -> tuple[Vector, Vector, Vector, Vector]:
-    """Return the motion of a closed form whose numbers are arrays of members, member after member.
-
-    Parameters
-    ----------
-    form : dataclass
-        A closed form whose `motion_at` is for one member.
-    t : float or array
-        Times, s; they broadcast against the members.
-
-    Returns
-    -------
-    position, velocity, angular_velocity, contact_force : Vector
-        Of arrays.
-    """
+    """Return the motion of a closed form whose numbers are arrays of members, member after member."""
     t = np.asarray(t, dtype=float)
     shape = np.broadcast_shapes(t.shape, *(np.shape(value) for _, value in _numbers(form)))
     member_shape = np.broadcast_shapes((1,) * len(shape), *(np.shape(value) for _, value in _numbers(form)))

@@ -49,25 +49,7 @@ class Nodding:
 
     @staticmethod
     def of(system: RollingSystem, start: State) -> Nodding:
-        """Read the constants from a start.
-
-        Parameters
-        ----------
-        system : RollingSystem
-            A disc or hoop on a level plane.
-        start : State
-            One that rolls.
-
-        Returns
-        -------
-        Nodding
-            The constants of its motion.
-
-        Raises
-        ------
-        OutOfDomainError
-            If T10 does not cover the system.
-        """
+        """Read the constants from a start."""
         rim = rim_of(system.body)
         if rim is None or not covers(system):
             raise OutOfDomainError(_DOMAIN)
@@ -93,23 +75,7 @@ class Nodding:
         return 2.0 * room * left / (rim.across + rim.mass * rim.radius**2)
 
     def turning_points(self, x: float) -> tuple[float, float]:
-        """Return the lowest and highest x = e·n between which the disc nods, about one that it passes.
-
-        Parameters
-        ----------
-        x : float
-            One value on the way, such as that of the start.
-
-        Returns
-        -------
-        tuple of 2 float
-            Inside (−1, 1).
-
-        Raises
-        ------
-        SolverError
-            If the disc falls flat, or if x is not on the way.
-        """
+        """Return the lowest and highest x = e·n between which the disc nods, about one that it passes."""
         grid = np.sort(np.append(np.tanh(np.linspace(-12, 12, 4001)), x))
         square = self.square(grid)
         low, high = (self._end(grid, square, int(np.searchsorted(grid, x)), step) for step in (-1, 1))
@@ -129,18 +95,7 @@ class Nodding:
         return root(lambda u: float(self.square(u)), ends[0], ends[1], 1e-16)
 
     def period(self, x: float) -> float:
-        """Return the time in which the lean goes down and up again, s.
-
-        Parameters
-        ----------
-        x : float
-            One value of e·n on the way.
-
-        Returns
-        -------
-        float
-            ∮ dx/ẋ by the trapezoidal rule in an angle, which converges as fast as the integrand is smooth.
-        """
+        """Return the time in which the lean goes down and up again, s."""
         low, high = self.turning_points(x)
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
         known, nodes = math.inf, 16

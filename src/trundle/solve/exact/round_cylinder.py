@@ -18,16 +18,6 @@ _ASIDE = 1e-12  # share of the loads that may point across or along the axis by 
 def reasons_outside(system: RollingSystem) -> list[str]:
     """Name what keeps a system from being a ball on a cylinder that turns steadily, under a constant force.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Any system.
-
-    Returns
-    -------
-    list of str
-        Empty where nothing does.
-
     Examples
     --------
     >>> import trundle as tr
@@ -50,16 +40,6 @@ def reasons_outside(system: RollingSystem) -> list[str]:
 def pull(system: RollingSystem) -> tuple[float, float, float]:
     """Return the constant force on the body, N, without what is rounding only across or along the axis.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        With constant loads.
-
-    Returns
-    -------
-    tuple of 3 floats
-        In the support frame.
-
     Examples
     --------
     >>> import trundle as tr
@@ -76,18 +56,6 @@ def pull(system: RollingSystem) -> tuple[float, float, float]:
 
 def numbers_of(system: RollingSystem, start: State) -> dict[str, Any]:
     """Return body, cylinder and start as the closed forms take them, the angle from the first axis.
-
-    Parameters
-    ----------
-    system : RollingSystem
-        A ball on a cylinder.
-    start : State
-        A start that rolls.
-
-    Returns
-    -------
-    dict
-        Fields of `BallInUprightCylinder`, and of `BallInLeaningCylinder`.
 
     Examples
     --------
@@ -119,16 +87,6 @@ def numbers_of(system: RollingSystem, start: State) -> dict[str, Any]:
 def frequency_ratio(k: Scalar) -> tuple[Scalar, Scalar]:
     """Return √(k/(1 + k)) as a float and what the float leaves, so that a phase keeps its last digit.
 
-    Parameters
-    ----------
-    k : Scalar
-        Inertia ratio. Kinds of scalars without rounding leave no remainder.
-
-    Returns
-    -------
-    value, remainder : Scalar
-        Their sum is the root.
-
     Examples
     --------
     >>> frequency_ratio(1 / 3)[0]
@@ -146,26 +104,7 @@ def frequency_ratio(k: Scalar) -> tuple[Scalar, Scalar]:
 def vectors_of(
     form: Any, out: Vector, angular: tuple[Scalar, Scalar], along: tuple[Scalar, Scalar, Scalar], twist: Scalar
 ) -> tuple[Vector, Vector, Vector, Vector]:
-    """Return position, velocity, angular velocity and contact force from the motion round and along the cylinder.
-
-    Parameters
-    ----------
-    form : BallInUprightCylinder or BallInLeaningCylinder
-        The closed form, for its numbers.
-    out : Vector
-        Unit vector from the axis to the centre.
-    angular : pair of Scalar
-        θ̇, rad/s, and θ̈, rad/s².
-    along : triple of Scalar
-        z, ż and z̈ of the centre, m, m/s, m/s².
-    twist : Scalar
-        σ = a Ω·n, m/s.
-
-    Returns
-    -------
-    position, velocity, angular_velocity, contact_force : Vector
-        In the inertial support frame, m, m/s, rad/s, N.
-    """
+    """Return position, velocity, angular velocity and contact force from the motion round and along the cylinder."""
     length, (rate, rate_rate), (z, climb, climb_rate) = form.length, angular, along
     around, per_radius = Vector(-out.y, out.x, 0.0), form.side / form.radius
     speed = rate * length

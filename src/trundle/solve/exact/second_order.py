@@ -35,18 +35,6 @@ class Fundamental:
 def fundamental(lam: Any, mu: Any, t: Any) -> Fundamental:
     """Return the solutions at given times.
 
-    Parameters
-    ----------
-    lam, mu : complex or array
-        λ, 1/s, and μ, 1/s²: their exponents are s² = λs + μ.
-    t : float, array or mpmath number
-        Time, s.
-
-    Returns
-    -------
-    Fundamental
-        G in s, Ġ, H = ∫G dt in s², U = Ġ − λG.
-
     Examples
     --------
     >>> fundamental(0.0, 0.0, 3.0).H  # free: t²/2

@@ -85,23 +85,6 @@ class SphereInFlight(ClosedForm):
     def of(cls, system: RollingSystem, start: State) -> SphereInFlight:
         """Read the closed form's numbers from a system and a start.
 
-        Parameters
-        ----------
-        system : RollingSystem
-            Must lie in the domain.
-        start : State
-            In flight.
-
-        Returns
-        -------
-        SphereInFlight
-            The motion; its t = 0 is the start's time.
-
-        Raises
-        ------
-        OutOfDomainError
-            If the system lies outside the domain.
-
         Examples
         --------
         >>> import trundle as tr
@@ -138,18 +121,6 @@ class SphereInFlight(ClosedForm):
     @classmethod
     def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
         """Name what of a system lies outside the domain.
-
-        Parameters
-        ----------
-        system : RollingSystem
-            Any system.
-        start : State, optional
-            Its start.
-
-        Returns
-        -------
-        list of str
-            Empty where the closed form applies.
 
         Examples
         --------
@@ -224,16 +195,6 @@ class SphereInFlight(ClosedForm):
     def motion_at(self, t: Any) -> tuple[Vector, Vector, Vector, Vector]:
         """Return position, velocity, angular velocity and contact force together.
 
-        Parameters
-        ----------
-        t : float or array
-            Time since the start, s.
-
-        Returns
-        -------
-        position, velocity, angular_velocity, contact_force : Vector
-            In the inertial support frame, m, m/s, rad/s, N.
-
         Examples
         --------
         >>> SphereInFlight(0.1, 1.0, 0.4, (0.0, 0.0, 1.0), (0.0, 0.0, 3.0), (0.0, 1.0, 0.0)).motion_at(2.0)[0].z
@@ -266,16 +227,6 @@ class SphereInFlight(ClosedForm):
 
 def turns_freely(motion: Any) -> bool:
     """Tell whether a support turns on a free axle on which nothing else acts.
-
-    Parameters
-    ----------
-    motion : Motion
-        Any.
-
-    Returns
-    -------
-    bool
-        False for any other motion.
 
     Examples
     --------

@@ -73,23 +73,6 @@ class SphereOnFreePlane(ClosedForm):
     def of(cls, system: RollingSystem, start: State) -> SphereOnFreePlane:
         """Read the closed form's numbers from a system and a start.
 
-        Parameters
-        ----------
-        system : RollingSystem
-            Must lie in the domain.
-        start : State
-            A start that rolls.
-
-        Returns
-        -------
-        SphereOnFreePlane
-            The motion; its t = 0 is the start's time.
-
-        Raises
-        ------
-        OutOfDomainError
-            If the system lies outside the domain.
-
         Examples
         --------
         >>> import trundle as tr
@@ -115,18 +98,6 @@ class SphereOnFreePlane(ClosedForm):
     @classmethod
     def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
         """Name what of a system lies outside the domain.
-
-        Parameters
-        ----------
-        system : RollingSystem
-            Any system.
-        start : State, optional
-            Its start; every one that rolls lies in the domain.
-
-        Returns
-        -------
-        list of str
-            Empty where the closed form applies.
 
         Examples
         --------
@@ -187,16 +158,6 @@ class SphereOnFreePlane(ClosedForm):
 
     def motion_at(self, t: Any) -> tuple[Vector, Vector, Vector, Vector]:
         """Return position, velocity, angular velocity and contact force together.
-
-        Parameters
-        ----------
-        t : float or array
-            Time since the start, s.
-
-        Returns
-        -------
-        position, velocity, angular_velocity, contact_force : Vector
-            In the inertial support frame, m, m/s, rad/s, N.
 
         Examples
         --------

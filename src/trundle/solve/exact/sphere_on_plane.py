@@ -80,23 +80,6 @@ class SphereOnPlane(ManySamples, ClosedForm):
     def of(cls, system: RollingSystem, start: State) -> SphereOnPlane:
         """Read the closed form's numbers from a system and a start.
 
-        Parameters
-        ----------
-        system : RollingSystem
-            Must lie in the domain.
-        start : State
-            A start that rolls.
-
-        Returns
-        -------
-        SphereOnPlane
-            The motion; its t = 0 is the start's time.
-
-        Raises
-        ------
-        OutOfDomainError
-            If the system lies outside the domain: the message names what does.
-
         Examples
         --------
         >>> import trundle as tr
@@ -126,18 +109,6 @@ class SphereOnPlane(ManySamples, ClosedForm):
     @classmethod
     def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
         """Name what of a system lies outside the domain.
-
-        Parameters
-        ----------
-        system : RollingSystem
-            Any system.
-        start : State, optional
-            Its start; every one that rolls lies in the domain.
-
-        Returns
-        -------
-        list of str
-            Empty where the closed form applies.
 
         Examples
         --------
@@ -243,21 +214,6 @@ class SphereOnPlane(ManySamples, ClosedForm):
     def guiding_centre(self, t: Any) -> tuple[Scalar, Scalar]:
         """Return the point about which the ball circles, which drifts steadily.
 
-        Parameters
-        ----------
-        t : float or array
-            Time since the start, s.
-
-        Returns
-        -------
-        x, y : float or array
-            In the inertial support frame, m.
-
-        Raises
-        ------
-        OutOfDomainError
-            If the plane does not turn, or there is drag: then nothing circles steadily.
-
         Examples
         --------
         >>> SphereOnPlane(0.025, 0.065, 0.4, 3.5, (0.1, 0.0)).guiding_centre(7.0)
@@ -292,16 +248,6 @@ class SphereOnPlane(ManySamples, ClosedForm):
     def position_at(self, t: Any) -> Vector:
         """Return the centre of the ball.
 
-        Parameters
-        ----------
-        t : float, array or expression
-            Time since the start, s.
-
-        Returns
-        -------
-        Vector
-            In the inertial support frame, m.
-
         Examples
         --------
         >>> SphereOnPlane(0.025, 0.065, 0.4, 3.5, (0.1, 0.2)).position_at(5.0)
@@ -313,16 +259,6 @@ class SphereOnPlane(ManySamples, ClosedForm):
 
     def motion_at(self, t: Any) -> tuple[Vector, Vector, Vector, Vector]:
         """Return position, velocity, angular velocity and contact force together.
-
-        Parameters
-        ----------
-        t : float, array or expression
-            Time since the start, s.
-
-        Returns
-        -------
-        position, velocity, angular_velocity, contact_force : Vector
-            In the inertial support frame, m, m/s, rad/s, N.
 
         Examples
         --------

@@ -79,23 +79,6 @@ class SphereOnSphere(ClosedForm):
     def of(cls, system: RollingSystem, start: State) -> SphereOnSphere:
         """Read the closed form's numbers from a system and a start.
 
-        Parameters
-        ----------
-        system : RollingSystem
-            Must lie in the domain.
-        start : State
-            A start that rolls in the plane of a great circle.
-
-        Returns
-        -------
-        SphereOnSphere
-            The motion; its t = 0 is the start's time.
-
-        Raises
-        ------
-        OutOfDomainError
-            If the system or the start lies outside the domain.
-
         Examples
         --------
         >>> import trundle as tr
@@ -131,18 +114,6 @@ class SphereOnSphere(ClosedForm):
     @classmethod
     def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:
         """Name what of a system, and of a start where one is given, lies outside the domain.
-
-        Parameters
-        ----------
-        system : RollingSystem
-            Any system.
-        start : State, optional
-            Its start.
-
-        Returns
-        -------
-        list of str
-            Empty where the closed form applies.
 
         Examples
         --------
@@ -213,16 +184,6 @@ class SphereOnSphere(ClosedForm):
 
     def motion_at(self, t: Any) -> tuple[Vector, Vector, Vector, Vector]:
         """Return position, velocity, angular velocity and contact force together.
-
-        Parameters
-        ----------
-        t : float or array
-            Time since the start, s.
-
-        Returns
-        -------
-        position, velocity, angular_velocity, contact_force : Vector
-            In the inertial support frame, m, m/s, rad/s, N.
 
         Examples
         --------

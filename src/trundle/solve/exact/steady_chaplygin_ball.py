@@ -57,23 +57,6 @@ class SteadyChaplyginBall(ClosedForm):
     def of(cls, system: RollingSystem, start: State) -> SteadyChaplyginBall:
         """Read the closed form's numbers from a system and a start.
 
-        Parameters
-        ----------
-        system : RollingSystem
-            Must lie in the domain.
-        start : State
-            A start that rolls about a principal axis.
-
-        Returns
-        -------
-        SteadyChaplyginBall
-            The motion; its t = 0 is the start's time.
-
-        Raises
-        ------
-        OutOfDomainError
-            If the system or the start lies outside the domain.
-
         Examples
         --------
         >>> import trundle as tr
@@ -89,18 +72,6 @@ class SteadyChaplyginBall(ClosedForm):
     @classmethod
     def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:
         """Name what of a system, and of a start where one is given, lies outside the domain.
-
-        Parameters
-        ----------
-        system : RollingSystem
-            Any system.
-        start : State, optional
-            Its start.
-
-        Returns
-        -------
-        list of str
-            Empty where the closed form applies.
 
         Examples
         --------
@@ -134,16 +105,6 @@ class SteadyChaplyginBall(ClosedForm):
 
     def motion_at(self, t: Any) -> tuple[Vector, Vector, Vector, Vector]:
         """Return position, velocity, angular velocity and contact force together.
-
-        Parameters
-        ----------
-        t : float or array
-            Time since the start, s.
-
-        Returns
-        -------
-        position, velocity, angular_velocity, contact_force : Vector
-            In the inertial support frame, m, m/s, rad/s, N.
 
         Examples
         --------
