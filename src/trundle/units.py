@@ -29,6 +29,25 @@ UNITS: dict[str, tuple[str, str]] = {
     "number": ("", "0.4"),
 }
 
+# The units that a page offers for each of them, the SI unit first.
+OFFERED: dict[str, tuple[str, ...]] = {
+    "length": ("m", "cm", "mm", "in", "ft"),
+    "mass": ("kg", "g", "oz", "lb"),
+    "time": ("s", "ms", "min", "h"),
+    "angle": ("rad", "deg", "turn"),
+    "velocity": ("m/s", "cm/s", "mm/s", "km/h", "ft/s"),
+    "acceleration": ("m/s^2", "cm/s^2"),
+    "angular velocity": ("rad/s", "rpm", "turn/s", "deg/s"),
+    "force": ("N", "mN"),
+    "torque": ("N*m", "mN*m"),
+    "inertia": ("kg*m^2", "g*cm^2"),
+    "damping": ("kg/s", "g/s"),
+    "quadratic damping": ("kg/m", "g/m"),
+    "rotational damping": ("N*m*s", "mN*m*s"),
+    "density": ("kg/m^3", "g/cm^3"),
+    "number": ("",),
+}
+
 _LONGEST = 200
 _NUMBER = re.compile(
     r"([+-]?(?:\d+(?:_\d+)*(?:\.(?:\d+(?:_\d+)*)?)?|\.\d+(?:_\d+)*)(?:[eE][+-]?\d{1,4})?"

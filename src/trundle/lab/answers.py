@@ -232,6 +232,40 @@ def schema() -> Answer:
     return _json(ScenarioFile.schema())
 
 
+@answering
+def parts() -> Answer:
+    """Say what a scenario may be made of.
+
+    Examples
+    --------
+    >>> json.loads(parts().body)["motion"]["spin"]["first"]
+    {'kind': 'spin', 'rate': '33.3 rpm'}
+    """
+    from .parts import all_parts
+
+    return _json(all_parts())
+
+
+@answering
+def start(
+    data: dict[str, Any], at: dict[str, Any], velocity: list[float] | None = None, nudge: list[float] | None = None
+) -> Answer:
+    """Say a start made by hand in the words of a scenario: dragged there, thrown, or going on from there after a nudge.
+
+    Examples
+    --------
+    >>> at = {"position": [0.1, 0.0, 0.025], "contact": [0.1, 0.0, 0.0]}
+    >>> json.loads(start(files.parse(files.read("tilted-turntable"), ""), at).body)
+    {'position': [0.1, 0.0]}
+    """
+    from . import starts
+
+    scenario = scenario_from(data)
+    if nudge is not None:
+        return _json(starts.nudged(scenario, at, nudge))
+    return _json(starts.dragged(scenario, at) if velocity is None else starts.thrown(scenario, at, velocity))
+
+
 def told(scenario: Scenario | PathScenario) -> dict[str, Any]:
     """Return a scenario as JSON tables and as TOML.
 

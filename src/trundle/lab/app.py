@@ -15,7 +15,7 @@ from ..viewer.exports import FORMATS
 from . import answers, exports, pages
 from .errors import Refusal, RefusedError, of_validation
 from .lanes import LeftError
-from .requests import JSON, OPENED, AboutScenario, ToDraw, ToExport, ToRoll, ToSimulate, described
+from .requests import JSON, OPENED, AboutScenario, ToDraw, ToExport, ToRoll, ToSimulate, ToStart, described
 from .security import Guard
 from .service import Lab
 from .settings import Settings
@@ -82,6 +82,10 @@ def _reading(app: FastAPI, lab: Lab) -> None:
     async def schema(request: Request) -> Response:
         return await lab.shared(request, answers.schema)
 
+    @app.get("/api/parts", **described("What a scenario may be made of: each kind of part, and all of its numbers."))
+    async def parts(request: Request) -> Response:
+        return await lab.shared(request, answers.parts)
+
 
 def _asking(app: FastAPI, lab: Lab) -> None:
     """Add the routes that compute."""
@@ -102,6 +106,11 @@ def _asking(app: FastAPI, lab: Lab) -> None:
     @app.post("/api/twin", **described("The charge in crossed fields that moves so: a packed scene.", scene=True))
     async def twin(request: Request, asked: ToDraw) -> Response:
         return await lab.answer(request, answers.twin, asked.scenario, asked.samples)
+
+    @app.post("/api/start", **described("A start made by hand, in the words of a scenario."))
+    async def start(request: Request, asked: ToStart) -> Response:
+        at = asked.at.model_dump(exclude_none=True)
+        return await lab.answer(request, answers.start, asked.scenario, at, asked.velocity, asked.nudge)
 
     @app.post("/api/roll", **described("Roll a ball along a curve: a packed scene.", scene=True))
     async def roll(request: Request, asked: ToRoll) -> Response:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 from starlette.responses import Response
 
 from ..viewer.exports import FORMATS
@@ -64,6 +64,46 @@ class ToSimulate(ToDraw):
     """A scenario to be run and drawn."""
 
     tolerance: Tolerance = None
+
+
+_Finite = Annotated[float, Field(allow_inf_nan=False)]
+Triple = Annotated[list[_Finite], Field(min_length=3, max_length=3)]
+
+
+class Put(_Asked):
+    """A body at an instant, in the inertial support frame, SI; the velocities and the orientation for a nudge only."""
+
+    position: Triple = Field(description="Of the centre of mass.")
+    contact: Triple
+    velocity: Triple | None = None
+    angular_velocity: Triple | None = None
+    orientation: Annotated[list[_Finite], Field(min_length=4, max_length=4)] | None = None
+    time: _Finite = 0.0
+    support: Annotated[list[_Finite], Field(max_length=16)] = Field(
+        default=[], description="The coordinates of the support's own motion."
+    )
+    height: _Finite | None = Field(default=None, description="Over the support; absent: it touches.")
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.height is not None and self.height < 0:
+            raise ValueError("height must not be negative")
+        return self
+
+
+class ToStart(AboutScenario):
+    """A start made by hand: the body is dragged there; or thrown from there; or nudged there, and goes on."""
+
+    at: Put
+    velocity: Triple | None = Field(default=None, description="With which it is thrown.")
+    nudge: Triple | None = Field(default=None, description="What is added to its velocity.")
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        known = (self.at.velocity, self.at.angular_velocity, self.at.orientation)
+        if self.nudge is not None and None in known:
+            raise ValueError("a nudge needs velocity, angular_velocity and orientation")
+        return self
 
 
 class ToRoll(_Asked):

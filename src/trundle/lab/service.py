@@ -44,7 +44,8 @@ class Lab:
     async def start(self) -> None:
         """Start the workers, and prepare what every page asks for first."""
         await asyncio.to_thread(self.lanes.processes.start)
-        await self.prepare(answers.catalogue)
+        for function in (answers.parts, answers.catalogue):
+            await self.prepare(function)
 
     async def stop(self) -> None:
         """End the workers, whatever they do."""

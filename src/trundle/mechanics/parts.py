@@ -44,6 +44,8 @@ class Number:
         Texts that may stand instead, and what each means; itself where only the part can tell.
     limit : callable, optional
         A further check of (number in SI, as it was given); it raises `InvalidValueError`, its key ``""``.
+    label : str, optional
+        What stands at its control; absent: its key in words.
 
     Examples
     --------
@@ -58,6 +60,7 @@ class Number:
     varies: bool = False
     words: Mapping[str, Any] = field(default_factory=dict)
     limit: Callable[[Any, Any], None] | None = None
+    label: str = ""
 
     def read(self, value: Any, key: str) -> Any:
         """Return the number in SI, checked; a formula as one, and what a word means."""
@@ -86,6 +89,10 @@ class Numbers:
         One sentence.
     direction : bool
         Whether only its direction counts, so that it must have one.
+    example : sequence of 3 strings or numbers, optional
+        As it may stand in a file.
+    label : str, optional
+        What stands at the control of each, before its axis; absent: its key in words.
 
     Examples
     --------
@@ -96,6 +103,8 @@ class Numbers:
     each: Number
     said: str = ""
     direction: bool = False
+    example: Any = None
+    label: str = ""
 
     def read(self, value: Any, key: str) -> Vector:
         """Return the vector in SI, checked."""
@@ -214,6 +223,7 @@ class Part:
     """
 
     kind: ClassVar[str] = ""  # its name in files; none: it is not for files
+    label: ClassVar[str] = ""  # its name in a list to choose from; absent: its kind in words
     table_of: ClassVar[str] = ""  # of a part that is made from points: the kind in whose table they stand
     given: Any  # and these points, by key
 

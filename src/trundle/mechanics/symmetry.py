@@ -125,6 +125,47 @@ def _upright(motion: Motion, time: float) -> bool:
     return all(is_zero(part) for part in parts)
 
 
+def same_at_all_times(system: RollingSystem) -> bool:
+    """Tell whether it makes no difference when a run starts: neither the support's place nor a load goes by the clock.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Any.
+
+    Returns
+    -------
+    bool
+        True of a support at rest, and of one that turns evenly and looks the same from all sides, under loads that do
+        not depend on the time.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> ball, turning = tr.Body.solid_sphere(0.01, 0.1), tr.Spin(2.0)
+    >>> supports = [tr.Support(surface, motion=turning) for surface in (tr.Bowl(0.4), tr.HeightField("0.1*x*y"))]
+    >>> [same_at_all_times(tr.RollingSystem(ball, support)) for support in supports]
+    [True, False]
+    """
+    support = system.support
+    rate = support.motion.steady_rate
+    stays = rate is not None and (is_zero(rate) or support.surface.axisymmetric)
+    return stays and not any(_by_the_clock(load) for load in system.all_loads)
+
+
+def _by_the_clock(load: Load) -> bool:
+    turned = Quaternion(0.5, 0.5, 0.5, 0.5)
+
+    def at(time: float) -> tuple[Vector, ...]:
+        motion = BodyMotion(time, 1.0, _PLACE, _PLACE, turned, _PLACE, E_Z)
+        return load.force(motion), load.torque(motion), load.torque_per_normal_force(motion)
+
+    try:
+        return any(at(time) != at(_INSTANTS[0]) for time in _INSTANTS[1:])
+    except (ArithmeticError, ValueError):  # a formula that is not finite for ever
+        return True
+
+
 def frictionless(system: RollingSystem) -> bool:
     """Tell whether a body that slips here feels no friction.
 

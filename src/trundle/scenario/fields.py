@@ -256,6 +256,8 @@ class Measures:
         A text that may stand instead of the list.
     most : int, optional
         How many there may be at most, where some may be left out at the end; absent: `size`.
+    names : tuple of str
+        What tells one from the other at their controls; absent: the axes.
 
     Examples
     --------
@@ -267,6 +269,7 @@ class Measures:
     size: int
     word: str | None = None
     most: int | None = None
+    names: tuple[str, ...] = ("x", "y", "z")
 
     def __call__(self, value: Any) -> tuple[Quantity, ...] | str:
         """Return the checked numbers, or the word."""

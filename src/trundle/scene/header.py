@@ -11,6 +11,7 @@ import numpy as np
 
 from trundle.wording import as_ratio
 
+from ..mechanics.symmetry import ball_of
 from ..mechanics.system import RollingSystem
 from ..plots.words import noun_of, title_of
 from ..scenario import files
@@ -74,9 +75,11 @@ def header_with(
     return plain | told
 
 
-def body_table(kind: str, name: str, radius: float, mass: float | None = None, more: str = "") -> dict[str, Any]:
+def body_table(
+    kind: str, name: str, radius: float, mass: float | None = None, more: str = "", *, ball: bool = True
+) -> dict[str, Any]:
     """Return what a header says of a body; its label is the name and what more there is to it."""
-    return {"kind": kind, "radius": radius, "name": name, "mass": mass, "label": name + more}
+    return {"kind": kind, "radius": radius, "name": name, "mass": mass, "label": name + more, "ball": ball}
 
 
 def support_table(
@@ -84,6 +87,8 @@ def support_table(
     name: str,
     ground: Ground,
     *,
+    flat: bool = True,
+    deep: bool = False,
     moves: bool = False,
     rim: float | None = None,
     friction: float | None = None,
@@ -92,6 +97,8 @@ def support_table(
     return {
         "kind": kind,
         "name": name,
+        "flat": flat,
+        "deep": deep,
         "moves": moves,
         "size": ground.size,
         "centre": list(ground.centre),
@@ -116,7 +123,8 @@ def _body(system: RollingSystem, words: dict[str, Any], radius: float) -> dict[s
     kind = str(words.get("kind", noun_of(body)))
     name = kind.replace("-", " ").capitalize()
     ratio = f", k = {as_ratio(float(body.inertia_ratio))}" if body.is_isotropic_sphere else ""
-    return body_table(kind, name, radius, float(body.mass), ratio)
+    ball = ball_of(body)
+    return body_table(kind, name, radius, float(body.mass), ratio, ball=ball is not None and ball.concentric)
 
 
 def _support(system: RollingSystem, words: dict[str, Any], ground: Ground) -> dict[str, Any]:
@@ -130,6 +138,8 @@ def _support(system: RollingSystem, words: dict[str, Any], ground: Ground) -> di
         kind,
         name.capitalize(),
         ground,
+        flat=surface.flat,
+        deep=surface.where.startswith("in"),
         moves=support.motion.steady_rate != 0.0,
         rim=None if surface.rim is None else float(surface.rim),
         friction=None if support.friction is None else float(support.friction),

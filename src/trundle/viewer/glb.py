@@ -67,7 +67,7 @@ class Writer:
     def _support(self) -> int:
         told = self.scene.header["support"]
         polar = told.get("marks", "polar") == "polar"
-        if told["kind"] == "plane" and not polar:  # a rectangle, which has too few corners to be painted by them
+        if told["flat"] and not polar:  # a rectangle, which has too few corners to be painted by them
             return self._mesh("support", *board(self.columns["support_vertices"]))
         return self._mesh("support", *self._parts("support"), _support_colours(self.columns["support_marks"], polar))
 

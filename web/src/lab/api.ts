@@ -1,9 +1,10 @@
 /** Every route of the lab's server, typed. */
 
-import type { Scene } from '../viewer/scene'
+import type { Scene, Triple, Turn } from '../viewer/scene'
 import { unpack } from '../viewer/scene'
 import { createLanes } from './lanes'
-import type { Json, Quantity, Scenario } from './scenario'
+import type { Parts } from './parts'
+import type { Json, Quantity, Scenario, Table } from './scenario'
 
 /** What the package says is wrong, and at which key of the scenario ("support.tilt"). */
 export class ApiError extends Error {
@@ -84,10 +85,36 @@ export interface RollRequest {
   curve: { [key: string]: Json | undefined }
 }
 
+/** A body at an instant, in the support frame; what follows the contact is for a nudge. */
+export interface Instant {
+  position: Triple
+  contact: Triple
+  time: number
+  velocity: Triple
+  angular_velocity: Triple
+  orientation: Turn
+  /** The coordinates of the support's own motion, such as angle and rate of a free axle. */
+  support: number[]
+  /** How high over the support it flies, m; absent while it touches. */
+  height?: number
+}
+
+export interface StartRequest {
+  at: Pick<Instant, 'position' | 'contact'> & Partial<Instant>
+  /** With which it is thrown. */
+  velocity?: Triple
+  /** What is added to its velocity where it goes on. */
+  nudge?: Triple
+}
+
 export interface Api {
   scenarios(options?: RequestOptions): Promise<ScenarioEntry[]>
   scenario(name: string, options?: RequestOptions): Promise<NamedScenario>
   schema(options?: RequestOptions): Promise<Json>
+  /** What a scenario may be made of. */
+  parts(options?: RequestOptions): Promise<Parts>
+  /** A start made by hand, SI: what changes in it, null where a key goes. */
+  start(scenario: Scenario, put: StartRequest, options?: RequestOptions): Promise<Table>
   /** Has a worker answered yet, or are they starting? */
   ready(options?: RequestOptions): Promise<{ ready: boolean }>
   simulate(scenario: Scenario, options?: RunOptions): Promise<Simulated>
@@ -178,6 +205,8 @@ export function createApi(base = '', ask: typeof fetch = (input, init) => fetch(
     scenarios: (options) => get('/api/scenarios', options),
     scenario: (name, options) => get(`/api/scenarios/${encodeURIComponent(name)}`, options),
     schema: (options) => get('/api/schema', options),
+    parts: (options) => get('/api/parts', options),
+    start: (scenario, put, options = {}) => post('/api/start', { scenario, ...put }, options, 'start', json<Table>),
     ready: (options) => get('/api/ready', options),
     simulate: (scenario, { tolerance, ...options } = {}) =>
       packed('/api/simulate', { scenario, tolerance }, options, 'simulate'),

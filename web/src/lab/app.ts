@@ -1,11 +1,14 @@
 /** What every page of the lab is given, and what it must be. */
 import type { Api } from './api'
+import type { Parts } from './parts'
 import type { Route, Router } from './router'
 import type { Settings, SettingsStore } from './settings'
 import type { Store } from './store'
 
 export interface App {
   readonly api: Api
+  /** What a scenario may be made of: asked once. */
+  parts(): Promise<Parts>
   /** Theme, projector, reduced motion, units: as they are now. Watch `watchSettings` for changes. */
   readonly settings: Settings
   /** Light or dark, as drawn now: what a viewer or a plot should be told. */

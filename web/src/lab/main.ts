@@ -20,8 +20,22 @@ const settings = createSettings()
 const router = createRouter()
 const shell = createShell(document.body)
 
+/** Ask once, and again only where that failed. */
+function once<T>(ask: () => Promise<T>): () => Promise<T> {
+  let asked: Promise<T> | undefined
+  return () => {
+    asked ??= ask().catch((error: unknown) => {
+      asked = undefined
+      throw error
+    })
+    return asked
+  }
+}
+
+const api = createApi()
 const app: App = {
-  api: createApi(),
+  api,
+  parts: once(() => api.parts()),
   get settings() {
     return settings.value
   },
@@ -41,4 +55,4 @@ const app: App = {
 }
 
 startShell(shell, app, pages)
-void tellWhileStarting(app.api, (text) => shell.hold(text))
+void tellWhileStarting(api, (text) => shell.hold(text))

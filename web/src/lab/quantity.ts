@@ -1,41 +1,8 @@
 /** Texts such as "33.3 rpm" taken apart and put together. Only the server decides what they mean; this is for sliders. */
 import type { Json } from './scenario'
 
-export type Kind =
-  | 'length'
-  | 'mass'
-  | 'time'
-  | 'angle'
-  | 'velocity'
-  | 'acceleration'
-  | 'angular velocity'
-  | 'force'
-  | 'torque'
-  | 'inertia'
-  | 'damping'
-  | 'quadratic damping'
-  | 'rotational damping'
-  | 'density'
-  | 'number'
-
-/** Of each kind: the units offered, the SI unit first, and how many SI units each is. */
-export const UNITS: Record<Kind, Record<string, number>> = {
-  length: { m: 1, cm: 0.01, mm: 0.001, in: 0.0254, ft: 0.3048 },
-  mass: { kg: 1, g: 1e-3, oz: 0.028349523125, lb: 0.45359237 },
-  time: { s: 1, ms: 1e-3, min: 60, h: 3600 },
-  angle: { rad: 1, deg: Math.PI / 180, turn: 2 * Math.PI },
-  velocity: { 'm/s': 1, 'cm/s': 0.01, 'mm/s': 0.001, 'km/h': 1 / 3.6, 'ft/s': 0.3048 },
-  acceleration: { 'm/s^2': 1, 'cm/s^2': 0.01 },
-  'angular velocity': { 'rad/s': 1, rpm: Math.PI / 30, 'turn/s': 2 * Math.PI, 'deg/s': Math.PI / 180 },
-  force: { N: 1, mN: 1e-3 },
-  torque: { 'N*m': 1, 'mN*m': 1e-3 },
-  inertia: { 'kg*m^2': 1, 'g*cm^2': 1e-7 },
-  damping: { 'kg/s': 1, 'g/s': 1e-3 },
-  'quadratic damping': { 'kg/m': 1, 'g/m': 1e-3 },
-  'rotational damping': { 'N*m*s': 1, 'mN*m*s': 1e-3 },
-  density: { 'kg/m^3': 1, 'g/cm^3': 1000 },
-  number: { '': 1 },
-}
+/** The units of a dimension, the SI unit first, and how many SI units each is. */
+export type Units = Record<string, number>
 
 const NUMBER = /^\s*([+\-−]?(?:\d[\d_]*\.?[\d_]*|\.\d+)(?:[eE][+\-−]?\d{1,4})?)\s*(.*?)\s*$/s
 const SPELLINGS: Record<string, string> = {
@@ -74,23 +41,23 @@ export function parse(value: Json | undefined): Written {
   return { number: Number(digits.replaceAll('_', '')), digits, unit: SPELLINGS[written] ?? written }
 }
 
-/** The SI unit of a kind, which a bare number has. */
-export function siUnit(kind: Kind): string {
-  return Object.keys(UNITS[kind])[0] ?? ''
+/** The SI unit, which a bare number has. */
+export function siUnit(units: Units): string {
+  return Object.keys(units)[0] ?? ''
 }
 
 /** How many SI units it is: of a bare number itself. Null where the server refuses it, or may know more than this table. */
-export function toSI(value: Json | undefined, kind: Kind): number | null {
+export function toSI(value: Json | undefined, units: Units): number | null {
   const { number, unit } = parse(value)
   if (number === null || !Number.isFinite(number)) return null
   if (typeof value === 'number') return number
-  const factor = UNITS[kind][unit] // of text without a unit only where none is missing: "45" may be rad/s or rpm
+  const factor = units[unit] // of text without a unit only where none is missing: "45" may be rad/s or rpm
   return factor === undefined ? null : number * factor
 }
 
 /** A quantity in words: 3.487 rad/s as "33.3 rpm". Without a unit it stays a bare number. */
-export function write(si: number, kind: Kind, unit: string, digits = 4): number | string {
-  const factor = UNITS[kind][unit] ?? 1
+export function write(si: number, units: Units, unit: string, digits = 4): number | string {
+  const factor = units[unit] ?? 1
   const number = rounded(si / factor, digits)
   return unit === '' ? number : `${shortest(number)} ${unit}`
 }

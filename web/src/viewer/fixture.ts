@@ -44,8 +44,25 @@ const HEADER = {
   gravity: [0, 0, -9.81],
   tilt: 0,
   to_world: [1, 0, 0, 0],
-  body: { kind: 'solid-sphere', radius: 0.1, name: 'Solid sphere', mass: 0.5, label: 'Solid sphere, k = 2/5' },
-  support: { kind: 'plane', name: 'Turning plane', moves: true, size: 1, marks: 'polar', rim: 1, friction: 0.3 },
+  body: {
+    kind: 'solid-sphere',
+    radius: 0.1,
+    name: 'Solid sphere',
+    mass: 0.5,
+    label: 'Solid sphere, k = 2/5',
+    ball: true,
+  },
+  support: {
+    kind: 'plane',
+    name: 'Turning plane',
+    flat: true,
+    deep: false,
+    moves: true,
+    size: 1,
+    marks: 'polar',
+    rim: 1,
+    friction: 0.3,
+  },
   events: [],
 }
 

@@ -13,9 +13,9 @@ export function placesToShow(scenes: readonly Scene[], frame: Frame): Vector3[] 
   const found: Vector3[] = []
   if (!first) return found
   const at = poses(first, frame)
-  const { kind, rim } = first.header.support
+  const { flat, rim } = first.header.support
   const vertices = first.columns.support_vertices
-  if (vertices && !(kind === 'plane' && rim === null && !polar(first))) {
+  if (vertices && !(flat && rim === null && !polar(first))) {
     const step = 3 * Math.max(1, Math.floor(vertices.length / 3 / MOST_POINTS))
     const { material, view } = at(first.columns.time[0]!)
     for (let i = 0; i + 2 < vertices.length; i += step) {
@@ -61,12 +61,11 @@ function poses(scene: Scene, frame: Frame): (time: number) => { material: Pose; 
 
 /** From where, of the shown frame: over the shoulder; steeply into what is deep; along a pipe that lies. */
 export function directionFor(scene: Scene, frame: Frame): Vector3 {
-  const { kind } = scene.header.support
   const [w, x, y, z] = scene.header.to_world
   const axis = new Vector3(2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y))
   if (frame === 'world' && Math.abs(axis.z) < 0.5)
     return axis.multiplyScalar(Math.sign(axis.x) || 1).add(new Vector3(0.1, -0.55, 0.42))
-  if (/bowl|paraboloid|funnel|cone|cylinder|dish/.test(kind)) return new Vector3(0.3, -1, 0.85)
+  if (scene.header.support.deep) return new Vector3(0.3, -1, 0.85)
   return new Vector3(0.28, -1, 0.66)
 }
 

@@ -10,7 +10,7 @@ export function contactNormal(body: BodyModel, ground: Scene, contact: Vector3, 
   const { track, radius } = body
   const { support } = ground.header
   track.supportOrientation(turn)
-  if (support.kind === 'plane') return out.set(0, 0, 1).applyQuaternion(turn)
+  if (support.flat) return out.set(0, 0, 1).applyQuaternion(turn)
   track.position(centre)
   out.copy(centre).sub(contact)
   // A sphere's centre stands on the normal.

@@ -33,11 +33,17 @@ export interface BodyHeader {
   name: string
   mass: number
   label: string
+  /** A sphere about its centre of mass, which rolls any way. */
+  ball: boolean
 }
 
 export interface SupportHeader {
   kind: string
   name: string
+  /** The same normal everywhere: its own third axis. */
+  flat: boolean
+  /** What rolls on it is within it, so that one has to look into it. */
+  deep: boolean
   moves: boolean
   size: number
   centre?: Triple

@@ -65,34 +65,34 @@ export class SupportModel {
     const { support } = scene.header
     const { support_vertices: vertices, support_normals: normals, support_triangles: triangles } = scene.columns
     const there = vertices !== undefined && normals !== undefined && triangles !== undefined
-    const plane = support.kind === 'plane'
-    const boundless = plane && support.rim === null
+    const { flat } = support
+    const boundless = flat && support.rim === null
     repaint(this.paint, scene)
     const square = support.marks === 'square'
     for (const part of [this.front, this.back, this.side]) {
       part.visible = there && part !== this.side
-      mark(part.material, { square, flat: plane, endless: boundless })
+      mark(part.material, { square, flat, endless: boundless })
     }
     this.rim.setPoints(new Float32Array())
     if (!there) return
     const geometry = sheet ? sheetUnder(scenes) : geometryOf(scene)
-    this.measure(geometry, plane, square)
+    this.measure(geometry, flat, square)
     this.replace(this.front, geometry, boundless)
     this.replace(this.back, geometry, true)
-    this.side.visible = plane && !boundless
-    if (plane && support.rim !== null) this.replace(this.side, skirt(support.rim), false)
+    this.side.visible = flat && !boundless
+    if (flat && support.rim !== null) this.replace(this.side, skirt(support.rim), false)
     if (boundless) this.paint.fade.value.copy(extentOf(geometry))
     else this.rim.setPoints(pieces(edgesOf(vertices, triangles)))
   }
 
   /** Markings at round distances, and what they are in words. */
-  private measure(geometry: BufferGeometry, plane: boolean, square: boolean): void {
+  private measure(geometry: BufferGeometry, flat: boolean, square: boolean): void {
     geometry.computeBoundingBox()
     const { min, max } = geometry.boundingBox!
     const spacing = roundLength((square ? 0.07 : 0.15) * Math.max(max.x - min.x, max.y - min.y))
     this.paint.spacing.value = spacing
     const words = square ? 'squares of' : 'rings every'
-    this.note = plane || square ? `${words} ${lengthWords(spacing)}` : ''
+    this.note = flat || square ? `${words} ${lengthWords(spacing)}` : ''
   }
 
   private part(side: typeof FrontSide | typeof BackSide): Part {
@@ -139,7 +139,7 @@ export class SupportModel {
 
   /** Leave out the underside of a plane that is seen from above: its triangles would be tried one by one, and left. */
   seenFrom(eye: Vector3): void {
-    if (this.scene?.header.support.kind !== 'plane') return
+    if (!this.scene?.header.support.flat) return
     this.back.visible = this.front.visible && this.group.worldToLocal(from.copy(eye)).z <= 0
   }
 
@@ -238,7 +238,7 @@ function skirt(rim: number): BufferGeometry {
 
 /** A plane without an edge that does not turn: any part of it looks alike, so that one can show as much as one likes. */
 function endless({ header: { support } }: Scene): boolean {
-  return support.kind === 'plane' && support.rim === null && support.marks === 'square' && !support.moves
+  return support.flat && support.rim === null && support.marks === 'square' && !support.moves
 }
 
 /** A rectangle of such a plane under all paths, with much room about them. */

@@ -117,7 +117,7 @@ export class Tools {
   }
 
   private get flat(): boolean {
-    return this.world.scenes[0]?.header.support.kind === 'plane'
+    return this.world.scenes[0]?.header.support.flat ?? false
   }
 
   /** Where the pointer moves a contact to. It is held where it was taken: the ball is not to leap under the pointer. */

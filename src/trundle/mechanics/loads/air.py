@@ -88,9 +88,10 @@ class Drag(_ThroughAir):
     0.01
     """
 
-    coefficient: Annotated[Scalar, Number("damping", NOT_NEGATIVE)]
+    coefficient: Annotated[Scalar, Number("damping", NOT_NEGATIVE, "Of the force −c V through the air.", "10 g/s")]
     air: Annotated[Any, _AIR] = STANDING
     kind = "drag"
+    usual = True
 
     def key_numbers(self) -> list[str]:
         """Return the coefficient."""
@@ -127,7 +128,10 @@ class QuadraticDrag(_ThroughAir):
     """
 
     coefficient: Annotated[
-        Scalar, Number("quadratic damping", NOT_NEGATIVE, "0.5 times the air's density, the area and its coefficient.")
+        Scalar,
+        Number(
+            "quadratic damping", NOT_NEGATIVE, "0.5 times the air's density, the area and its coefficient.", "0.4 g/m"
+        ),
     ]
     air: Annotated[Any, _AIR] = STANDING
     kind = "quadratic-drag"
@@ -164,8 +168,9 @@ class Magnus(_OfAir):
     0.0001
     """
 
-    coefficient: Annotated[Scalar, Number("mass", said="Positive: topspin pushes down.", example="0.1 g")]
+    coefficient: Annotated[Scalar, Number("mass", said="Positive: topspin pushes down.", example="1 g")]
     kind = "magnus"
+    label = "Magnus force"
 
     def key_numbers(self) -> list[str]:
         """Return the coefficient."""

@@ -69,6 +69,7 @@ class Load(Part):
 
     constant: bool = False  # the same force and torque always and everywhere
     at_contact: bool = False  # its torque is exchanged with the support
+    usual: bool = False  # so common that a page keeps a slider for it, at 0 where it is not there
     stops: bool = False  # it brings rolling to rest in a finite time, where its direction is lost
     offset: Scalar  # of a load that stops: its couple for each newton of normal force, m
 

@@ -42,7 +42,7 @@ class RollingResistance(_AtContact):
     """
 
     offset: Annotated[
-        Scalar, Number("length", NOT_NEGATIVE, "How far ahead of the contact the normal force acts.", "0.05 mm")
+        Scalar, Number("length", NOT_NEGATIVE, "How far ahead of the contact the normal force acts.", "0.1 mm")
     ]
     kind = "rolling-resistance"
     stops = True
@@ -82,9 +82,11 @@ class PivotFriction(_AtContact):
     """
 
     offset: Annotated[
-        Scalar, Number("length", NOT_NEGATIVE, "Friction coefficient times the area's mean radius.", "20 um")
+        Scalar, Number("length", NOT_NEGATIVE, "Friction coefficient times the area's mean radius.", "0.2 mm")
     ]
-    below: Annotated[Scalar, Number("angular velocity", POSITIVE, "The spin below which it eases off.")] = 0.01
+    below: Annotated[
+        Scalar, Number("angular velocity", POSITIVE, "The spin below which it eases off.", label="Eases off below")
+    ] = 0.01
     kind = "pivot-friction"
 
     def key_numbers(self) -> list[str]:

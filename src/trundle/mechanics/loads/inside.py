@@ -32,6 +32,7 @@ class Motor(Given):
 
     value: Annotated[Any, Numbers(Number("torque", varies=True), "Along the body's axes, which turn with it.")]
     kind = "motor"
+    label = "Motor torque"
     noun = "motor torque"
 
     def torque(self, motion: BodyMotion) -> Vector:

@@ -43,15 +43,17 @@ class FreeAxle(Motion):
     (2.0, 1.0)
     """
 
-    inertia: Annotated[Scalar, Number("inertia", POSITIVE, "Of the support about its axle.", "0.01 kg*m^2")]
+    inertia: Annotated[Scalar, Number("inertia", POSITIVE, "Of the support about its axle.", "0.05 kg*m^2")]
     rate: Annotated[Scalar, Number("angular velocity", said="At the start.")] = 0.0
     motor_torque: Annotated[Any, Number("torque", said="A number or a formula in the time t.", varies=True)] = 0.0
     bearing_drag: Annotated[Scalar, Number("rotational damping", NOT_NEGATIVE, "Of a viscous bearing.")] = 0.0
     bearing_torque: Annotated[Scalar, Number("torque", NOT_NEGATIVE, "Of a dry bearing, against the turning.")] = 0.0
-    below: Annotated[Scalar, Number("angular velocity", POSITIVE, "The rate below which a dry bearing eases off.")] = (
-        0.01
-    )
+    below: Annotated[
+        Scalar,
+        Number("angular velocity", POSITIVE, "The rate below which a dry bearing eases off.", label="Eases off below"),
+    ] = 0.01
     kind = "free-axle"
+    label = "Turns freely"
     way = "freely turning"
     own = ("angle", "rate")
     keeps_axis = True

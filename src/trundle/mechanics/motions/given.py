@@ -40,6 +40,7 @@ class SpinBy(Motion):
         Number("angular velocity", said="A formula in the time t.", example="3.5*(1 - exp(-t/2))", varies=True),
     ]
     kind = "spin-by"
+    label = "Turns by a formula"
     way = "unevenly turning"
     own = ("angle",)
     keeps_axis = True
@@ -99,6 +100,7 @@ class Tilt(Motion):
     angle: Annotated[Any, Number("angle", said="A formula in the time t.", example="0.1*sin(2*t)", varies=True)]
     axis: Annotated[Any, AXIS] = (0.0, 1.0, 0.0)
     kind = "tilt"
+    label = "Tilts by a formula"
     way = "tilting"
 
     def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:  # noqa: ARG002
@@ -137,9 +139,14 @@ class Move(Motion):
 
     position: Annotated[
         Any,
-        Numbers(Number("length", varies=True), "Of the support's origin: numbers or formulas in the time t."),
+        Numbers(
+            Number("length", varies=True),
+            "Of the support's origin: numbers or formulas in the time t.",
+            example=("0.01*sin(6*t)", 0, 0),
+        ),
     ]
     kind = "move"
+    label = "Moves by a formula"
     turns = False
 
     @property

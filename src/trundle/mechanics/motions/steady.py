@@ -24,6 +24,7 @@ class Fixed(Motion):
     """
 
     kind = "fixed"
+    label = "At rest"
     way = "fixed"
     turns = False
 
@@ -57,6 +58,7 @@ class Spin(Motion):
         Number("angular velocity", said="Positive turns the first axis towards the second.", example="33.3 rpm"),
     ]
     kind = "spin"
+    label = "Turns evenly"
 
     @property
     def way(self) -> str:  # type: ignore[override]

@@ -31,6 +31,7 @@ class Combined(Motion):
 
     parts: Annotated[Any, PartsOf()]
     kind = "combined"
+    label = "Several, one upon the other"
 
     def __post_init__(self) -> None:
         parts = tuple(self.parts) if isinstance(self.parts, (list, tuple)) else (self.parts,)

@@ -36,11 +36,12 @@ class Rock(Motion):
     True
     """
 
-    amplitude: Annotated[Scalar, Number("angle", example="3 deg")]
-    rate: Annotated[Scalar, Number("angular velocity", example="2 rad/s")]
-    phase: Annotated[Scalar, Number("angle")] = 0.0
+    amplitude: Annotated[Scalar, Number("angle", example="2 deg")]
+    rate: Annotated[Scalar, Number("angular velocity", example="1 turn/s")]
+    phase: Annotated[Scalar, Number("angle", example="90 deg")] = 0.0
     axis: Annotated[Any, AXIS] = (0.0, 1.0, 0.0)
     kind = "rock"
+    label = "Rocks"
     way = "rocking"
 
     def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:  # noqa: ARG002
@@ -76,10 +77,11 @@ class Shake(Motion):
     Vector(x=0.02, y=0.0, z=0.0)
     """
 
-    amplitude: Annotated[Any, Numbers(Number("length", example="2 mm"), "In the support frame.")]
-    rate: Annotated[Scalar, Number("angular velocity", example="30 rad/s")]
-    phase: Annotated[Scalar, Number("angle")] = 0.0
+    amplitude: Annotated[Any, Numbers(Number("length", example="1 cm"), "In the support frame.")]
+    rate: Annotated[Scalar, Number("angular velocity", example="1 turn/s")]
+    phase: Annotated[Scalar, Number("angle", example="90 deg")] = 0.0
     kind = "shake"
+    label = "Shakes"
     way = "shaken"
     turns = False
 
@@ -120,10 +122,13 @@ class PrecessingTilt(Motion):
     """
 
     angle: Annotated[
-        Scalar, Number("angle", said="Between the support's own axis and the third axis.", example="3 deg")
+        Scalar, Number("angle", said="Between the support's own axis and the third axis.", example="2 deg")
     ]
-    rate: Annotated[Scalar, Number("angular velocity", said="At which the lowest side goes round.", example="2 rad/s")]
+    rate: Annotated[
+        Scalar, Number("angular velocity", said="At which the lowest side goes round.", example="0.5 turn/s")
+    ]
     kind = "precessing-tilt"
+    label = "Leans round about"
     way = "swirled"
 
     def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:  # noqa: ARG002

@@ -33,11 +33,12 @@ class UnevenSpin(Motion):
     """
 
     rate: Annotated[Scalar, Number("angular velocity", said="On the whole.", example="33.3 rpm")]
-    variation: Annotated[Scalar, Number("number", said="As a share of the rate.", example=0.01)]
+    variation: Annotated[Scalar, Number("number", said="As a share of the rate.", example=0.05)]
     variation_rate: Annotated[
         Scalar, Number("angular velocity", POSITIVE, "Of the variation; the rate itself: once a turn.")
     ]
     kind = "uneven-spin"
+    label = "Turns unevenly"
     way = "unevenly turning"
     keeps_axis = True
 
@@ -87,8 +88,9 @@ class Wobble(Motion):
     """
 
     rate: Annotated[Scalar, Number("angular velocity", said="About the axle.", example="33.3 rpm")]
-    angle: Annotated[Scalar, Number("angle", said="Between the axle and the support's own axis.", example="0.1 deg")]
+    angle: Annotated[Scalar, Number("angle", said="Between the axle and the support's own axis.", example="1 deg")]
     kind = "wobble"
+    label = "Turns askew on its axle"
     way = "turning"
 
     def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:  # noqa: ARG002

@@ -41,6 +41,8 @@ class Surface(Part):
     analytic = True  # a formula: heyoka and SymPy can trace it; a table is evaluated on floats and arrays only
     end = "the end of the surface"  # what the body comes to where `inside` falls to 0
     coordinates: tuple[str, str] = ("length", "length")  # kinds of quantity, as in `trundle.units`
+    coordinate_labels: tuple[str, str] = ("Position x", "Position y")  # at their controls
+    flat = False  # the same normal everywhere, the third axis
     tilt: ClassVar[Number] = Number("angle", said="Angle of the axis to the vertical; down the first axis.")
     points: ClassVar[Mapping[str, Lengths]] = MappingProxyType({})  # what `through` takes, where there is one
 

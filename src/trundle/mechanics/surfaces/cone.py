@@ -45,13 +45,14 @@ class Cone(Surface):
     """
 
     half_angle: Annotated[
-        Scalar, Number("angle", said="Between the axis and the wall.", example="30 deg", limit=_check_half_angle)
+        Scalar, Number("angle", said="Between the axis and the wall.", example="45 deg", limit=_check_half_angle)
     ]
     side: Annotated[str, Choice(SIDES, "side of a cone")] = "inside"
     rim: Annotated[
-        Scalar | None, Number("length", POSITIVE, "Distance of the edge from the axis; absent: unbounded.", "0.5 m")
+        Scalar | None, Number("length", POSITIVE, "Distance of the edge from the axis; absent: unbounded.", "40 cm")
     ] = None
     kind = "cone"
+    label = "Funnel"
     noun, ground = "cone", "cone"
     axisymmetric = True
     end = "the apex of the cone"

@@ -34,12 +34,13 @@ class Cylinder(Surface):
     (Vector(x=0.5, y=0.0, z=2.0), -1.0)
     """
 
-    radius: Annotated[Scalar, Number("length", POSITIVE)]
+    radius: Annotated[Scalar, Number("length", POSITIVE, example="40 cm")]
     side: Annotated[str, Choice(SIDES, "side of a cylinder")] = "inside"
     kind = "cylinder"
     noun, ground = "cylinder", "wall"
     axisymmetric = True
     coordinates = ("angle", "length")
+    coordinate_labels = ("Angle about the axis", "Height along the axis")
     tilt = Number("angle", said="Angle of the axis to the vertical; 90 deg: a trough or a log.")
 
     @property

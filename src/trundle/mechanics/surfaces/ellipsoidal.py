@@ -12,6 +12,8 @@ from ..parts import POSITIVE, Number, Numbers
 from ..scalars import Scalar, is_number, leaves, namespace
 from .base import Surface, check_upright, tangential
 
+_AXES = ("40 cm", "30 cm", "25 cm")
+
 
 @dataclass(frozen=True)
 class EllipsoidalBowl(Surface):
@@ -31,11 +33,15 @@ class EllipsoidalBowl(Surface):
     (0.05, False)
     """
 
-    semi_axes: Annotated[tuple[Scalar, Scalar, Scalar], Numbers(Number("length", POSITIVE), "Along the three axes.")]
+    semi_axes: Annotated[
+        tuple[Scalar, Scalar, Scalar],
+        Numbers(Number("length", POSITIVE), "Along the three axes.", example=_AXES, label="Semi-axis"),
+    ]
     depth: Annotated[
-        Scalar | None, Number("length", POSITIVE, "Height of the edge over the lowest point; absent: closed.")
+        Scalar | None, Number("length", POSITIVE, "Height of the edge over the lowest point; absent: closed.", "20 cm")
     ] = None
     kind = "ellipsoidal-bowl"
+    label = "Elliptic bowl"
     where, noun, ground = "in", "elliptic bowl", "bowl"
     end = "the edge of the bowl"
 

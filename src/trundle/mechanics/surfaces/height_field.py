@@ -36,11 +36,12 @@ class HeightField(OverPlane):
     0.1
     """
 
-    formula: Annotated[Any, Formula(("x", "y"), "z in x and y.", "0.1*x**2")]
+    formula: Annotated[Any, Formula(("x", "y"), "z in x and y.", "0.02*sin(10*x)*cos(8*y)")]
     rim: Annotated[
         Scalar | None, Number("length", POSITIVE, "Of a formula: distance of the edge from the axis.", "0.5 m")
     ] = None
     kind = "height-field"
+    label = "Hills"
     points = MappingProxyType(
         {
             "x": Lengths("Along the first axis, four at least, ascending."),

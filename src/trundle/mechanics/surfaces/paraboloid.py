@@ -37,12 +37,18 @@ class Paraboloid(OverPlane):
 
     radius: Annotated[
         Scalar,
-        Number("length", said="Radius of curvature at the vertex; negative: a mound.", limit=_check_not_zero),
+        Number(
+            "length",
+            said="Radius of curvature at the vertex; negative: a mound.",
+            example="50 cm",
+            limit=_check_not_zero,
+        ),
     ]
     rim: Annotated[
-        Scalar | None, Number("length", POSITIVE, "Distance of the edge from the axis; absent: unbounded.", "0.5 m")
+        Scalar | None, Number("length", POSITIVE, "Distance of the edge from the axis; absent: unbounded.", "40 cm")
     ] = None
     kind = "paraboloid"
+    label = "Dish"
     axisymmetric = True
 
     @property

@@ -43,11 +43,12 @@ class Revolution(OverPlane):
     0.1875
     """
 
-    formula: Annotated[Any, Formula(_VARIABLES, "z in r or r2 = r².", "2*r**2")]
+    formula: Annotated[Any, Formula(_VARIABLES, "z in r or r2 = r².", "0.5*r**2 - 0.8*r**4")]
     rim: Annotated[
-        Scalar | None, Number("length", POSITIVE, "Of a formula: distance of the edge from the axis.", "0.5 m")
+        Scalar | None, Number("length", POSITIVE, "Of a formula: distance of the edge from the axis.", "40 cm")
     ] = None
     kind = "revolution"
+    label = "Surface of revolution"
     noun = "surface of revolution"
     points = MappingProxyType(
         {

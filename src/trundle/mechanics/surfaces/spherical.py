@@ -17,10 +17,10 @@ from .base import Surface, check_upright
 class Spherical(Surface):
     """A sphere of radius b that touches the plane of the first two axes at the origin; see `Bowl` and `Dome`."""
 
-    radius: Annotated[Scalar, Number("length", POSITIVE)]
+    radius: Annotated[Scalar, Number("length", POSITIVE, example="40 cm")]
     rim: Annotated[
         Scalar | None,
-        Number("length", POSITIVE, "Distance of the edge from the axis; absent: the whole sphere.", "0.5 m"),
+        Number("length", POSITIVE, "Distance of the edge from the axis; absent: the whole sphere.", "35 cm"),
     ] = None
     sign: ClassVar[float] = 0.0  # +1 where the body is outside, −1 where it is inside
     axisymmetric = True

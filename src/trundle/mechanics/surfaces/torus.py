@@ -38,13 +38,15 @@ class TorusTrack(Surface):
     (Vector(x=0.4, y=0.0, z=-0.1), 1.0)
     """
 
-    ring_radius: Annotated[Scalar, Number("length", POSITIVE, "Of the circle that the tube follows.")]
-    tube_radius: Annotated[Scalar, Number("length", POSITIVE, "Of the tube.")]
+    ring_radius: Annotated[Scalar, Number("length", POSITIVE, "Of the circle that the tube follows.", "40 cm")]
+    tube_radius: Annotated[Scalar, Number("length", POSITIVE, "Of the tube.", "12 cm")]
     side: Annotated[str, Choice(SIDES, "side of a torus track")] = "inside"
     kind = "torus-track"
+    label = "Ring-shaped tube"
     noun, ground = "torus", "torus"
     axisymmetric = True
     coordinates = ("angle", "angle")
+    coordinate_labels = ("Angle about the axis", "Angle around the tube")
 
     def __post_init__(self) -> None:
         given = self.tube_radius

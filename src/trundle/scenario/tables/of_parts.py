@@ -202,7 +202,10 @@ def table_of(
     keys: dict[str, Any] = {"kind": (Literal[part.kind], ...)}
     for name, field in own.items():
         kind = annotation_of(field, others)
-        noted: Any = Field(defaults.get(name, ...), description=field.said or None, examples=_examples(field))
+        label = getattr(field, "label", "") or None
+        noted: Any = Field(
+            defaults.get(name, ...), title=label, description=field.said or None, examples=_examples(field)
+        )
         keys[name] = (kind | None if defaults.get(name, 0) is None else kind, noted)
     name = part.__name__ + (suffix or next(base.__name__ for base in part.__mro__ if Part in base.__bases__))
     made = create_model(name, __base__=base, __module__=_HOME, __doc__=sentence_of(part), **keys, **more)
@@ -212,7 +215,9 @@ def table_of(
 
 def _examples(field: Any) -> list[Any] | None:
     example = getattr(field, "example", None)
-    return None if example is None or isinstance(field, Formula) else [example]
+    if example is None or isinstance(field, Formula):
+        return None
+    return [list(example) if isinstance(example, tuple) else example]
 
 
 def annotation_of(field: Any, others: tuple[type[Table], ...] = ()) -> Any:

@@ -22,12 +22,26 @@ class Start(Table):
     velocity: Velocity = Field(
         default=(0.0, 0.0), description="Of the centre, along the two coordinates, and the normal if a third is given."
     )
-    spin: Rate | None = Field(default=None, description="Angular velocity about the normal; the rest follows.")
+    spin: Rate | None = Field(
+        default=None,
+        title="Spin about the normal",
+        description="Angular velocity about the normal; the rest follows.",
+        examples=["10 rad/s"],
+    )
     angular_velocity: Rate3 | None = Field(default=None, description="All of it, instead of spin.")
     orientation: Turn4 | None = Field(default=None, description="Quaternion w, x, y, z; absent: not turned.")
     attitude: Angle3 | None = Field(default=None, description="Heading, lean and turn, instead of orientation.")
-    roll: Angle = Field(default=0.0, description="Of a cylinder: how far it has rolled on since its mark was on top.")
-    height: Height = Field(default=0.0, description="Over the support, along the normal: above 0 it falls.")
+    roll: Angle = Field(
+        default=0.0,
+        title="Rolled on by",
+        examples=["90 deg"],
+        description="Of a cylinder: how far it has rolled on since its mark was on top.",
+    )
+    height: Height = Field(
+        default=0.0,
+        title="Height over the support",
+        description="Over the support, along the normal: above 0 it falls.",
+    )
     time: Instant = Field(default=0.0, description="On the clock of the support's motion, where the run starts.")
     support: Own | None = Field(default=None, description="Angle, and rate, of a support that turns by itself.")
 
@@ -70,7 +84,7 @@ class Run(Table):
     """How long, how finely and by which method."""
 
     duration: Duration = Field(examples=["60 s"])
-    every: Step = Field(description="Time between samples.", examples=["10 ms"])
+    every: Step = Field(title="Between samples", description="Time between samples.", examples=["10 ms"])
     method: Method = "auto"
 
     @model_validator(mode="after")

@@ -25,15 +25,21 @@ class OnSurface(PartTable):
         kind: str
         tilt: float
 
-    friction: Friction | None = Field(default=None, description="Coulomb coefficient; absent: never slips.")
+    friction: Friction | None = Field(
+        default=None, title="Friction coefficient", description="Coulomb coefficient; absent: never slips."
+    )
     kinetic_friction: Friction | None = Field(
-        default=None, description="Coefficient while it slips, at most `friction`; absent: the same."
+        default=None,
+        title="While it slips",
+        description="Coefficient while it slips, at most `friction`; absent: the same.",
     )
     restitution: Restitution = Field(
         default=0.0, description="Of a landing, 0 to 1: e, of which e² of the energy comes back."
     )
     tangential_restitution: Restitution = Field(
-        default=0.0, description="Of a landing, 0 to 1: e_t, of which e_t² of what friction took comes back."
+        default=0.0,
+        title="Restitution of the slip",
+        description="Of a landing, 0 to 1: e_t, of which e_t² of what friction took comes back.",
     )
     motion: Motions = MOTIONS["fixed"].model_validate({"kind": "fixed"})
 

@@ -71,15 +71,18 @@ Angle = Annotated[float, Measure("angle")]
 Rate = Annotated[float, Measure("angular velocity")]
 Duration = Annotated[float, Measure("time", "positive")]
 Step = Annotated[float, Measure("time", "positive", example='"10 ms"')]
-Rate3 = Annotated[tuple[float, float, float], Measures(Measure("angular velocity", example='"2 rad/s"'), 3)]
+Rate3 = Annotated[tuple[float, float, float], Measures(Measure("angular velocity", example='"10 rad/s"'), 3)]
 Place2 = Annotated[tuple[float, float], Measures(Coordinate("length", example='"10 cm"'), 2)]
 Velocity = Annotated[
     tuple[float, float] | tuple[float, float, float] | str, Measures(Measure("velocity"), 2, "co-rotating", most=3)
 ]
-Angle3 = Annotated[tuple[float, float, float], Measures(Measure("angle", example='"90 deg"'), 3)]
+_TURNS = ("heading", "lean", "turn")
+Angle3 = Annotated[tuple[float, float, float], Measures(Measure("angle", example='"90 deg"'), 3, names=_TURNS)]
 Instant = Annotated[float, Measure("time", example='"2 s"')]
 Own = Annotated[
     tuple[float, ...], Measures(Coordinate("angle", example='"30 deg"', otherwise="angular velocity"), 1, most=8)
 ]
 Height = Annotated[float, Measure("length", "not negative", example='"5 cm"')]
-Turn4 = Annotated[tuple[float, float, float, float], Measures(Measure("number", example="1.0"), 4)]
+Turn4 = Annotated[
+    tuple[float, float, float, float], Measures(Measure("number", example="1.0"), 4, names=("w", "x", "y", "z"))
+]

@@ -3,11 +3,12 @@ import { hide, say } from '../../viewer/elements'
 import type { ApiError } from '../api'
 import type { App } from '../app'
 import { cleanup, fill, h, uniqueId } from '../dom'
+import type { Parts } from '../parts'
 import type { Json, Path, Scenario } from '../scenario'
 import { valueAt, withValue } from '../scenario'
 import type { Field } from './field'
 import { createField } from './field'
-import { type Item, layout, type Section } from './layout'
+import { type Item, layout, type Option, type Section } from './layout'
 
 export interface Controls {
   element: HTMLElement
@@ -37,6 +38,7 @@ export function createControls(app: App): Controls {
   let shape = ''
   let reach = 0.5
   let wrong: ApiError | null = null
+  let parts: Parts | undefined
 
   const unitKey = (path: Path) => path.replace(/\.\d+$/, '').replace(/\.\d+\./, '.')
 
@@ -48,7 +50,7 @@ export function createControls(app: App): Controls {
       fallback,
       unit: () => {
         const unit = app.settings.units[unitKey(path)]
-        return unit !== undefined && (entry.units?.includes(unit) ?? true) ? unit : undefined
+        return unit !== undefined && unit in entry.units ? unit : undefined
       },
       keepUnit: (unit) => {
         app.changeSettings({ units: { ...app.settings.units, [unitKey(path)]: unit } })
@@ -68,12 +70,14 @@ export function createControls(app: App): Controls {
     const select = h(
       'select',
       { id, onchange: () => store.set(item.set(store.scenario, select.value)) },
-      item.options.map(([value, label]) => h('option', { value }, label)),
+      item.options.map(option),
     )
     select.value = item.value
     selects.set(item.path, select)
     return h('div', { class: 'row', 'data-path': item.path }, h('label', { for: id }, item.label), select)
   }
+
+  const option = ([value, label, said]: Option) => h('option', { value, title: said ?? null }, label)
 
   function makeSwitch(item: Extract<Item, { type: 'switch' }>): HTMLElement {
     const box = h('input', {
@@ -105,7 +109,7 @@ export function createControls(app: App): Controls {
       'select',
       { 'aria-label': item.label, onchange: () => store.set(item.set(store.scenario, select.value)) },
       h('option', { value: '', selected: true }, `${item.label} …`),
-      item.options.map(([value, label]) => h('option', { value }, label)),
+      item.options.map(option),
     )
     return h('div', { class: 'row' }, select)
   }
@@ -163,7 +167,8 @@ export function createControls(app: App): Controls {
   }
 
   function update(scenario: Scenario): void {
-    const sections = layout(scenario, reach)
+    if (!parts) return
+    const sections = layout(scenario, reach, parts)
     const now = shapeOf(sections)
     if (now !== shape) {
       shape = now
@@ -202,7 +207,16 @@ export function createControls(app: App): Controls {
   }
 
   undo.add(store.subscribe(update))
-  update(store.scenario)
+  app.parts().then(
+    (found) => {
+      parts = found
+      update(store.scenario)
+    },
+    (error: Error) => {
+      hide(alert, false)
+      say(alert, error.message)
+    },
+  )
   return {
     element,
     setReach(metres) {

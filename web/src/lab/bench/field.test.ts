@@ -2,14 +2,15 @@ import { beforeEach, expect, it, vi } from 'vitest'
 import type { Json } from '../scenario'
 import { createField } from './field'
 
-const entry = { label: 'Rate', kind: 'angular velocity', min: -10, max: 10, units: ['rpm', 'rad/s', 'turn/s'] } as const
+const units = { 'rad/s': 1, rpm: Math.PI / 30, 'turn/s': 2 * Math.PI }
+const entry = { label: 'Rate', units, unit: 'rpm', min: -10, max: 10, decades: false }
 
 function setUp(value: Json) {
   const change = vi.fn<(value: Json, gesture?: string) => void>()
   const chosen: { unit?: string } = {}
   const field = createField({
     path: 'support.motion.rate',
-    entry: { ...entry, units: [...entry.units] },
+    entry,
     unit: () => chosen.unit,
     keepUnit: (unit) => {
       chosen.unit = unit

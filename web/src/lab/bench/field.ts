@@ -1,9 +1,22 @@
 /** One number of the scenario: typed with its unit, dragged by a slider, stepped by the arrow keys. */
 import { hide, put, say } from '../../viewer/elements'
 import { h, uniqueId } from '../dom'
-import { parse, rounded, siUnit, stepped, toSI, UNITS, write } from '../quantity'
+import { parse, rounded, siUnit, stepped, toSI, type Units, write } from '../quantity'
 import type { Json, Path } from '../scenario'
-import type { Entry } from './catalogue'
+
+/** What a control shows of a number. */
+export interface Entry {
+  label: string
+  units: Units
+  /** To begin with. */
+  unit: string
+  /** Range of the slider, SI. It widens where the value lies outside. */
+  min: number
+  max: number
+  /** The slider goes by decades. */
+  decades: boolean
+  hint?: string
+}
 
 export interface FieldOptions {
   path: Path
@@ -33,7 +46,7 @@ const NOTCHES = 1000
 export function createField(options: FieldOptions): Field {
   const { entry, path } = options
   const id = uniqueId('field')
-  const units = entry.units ?? Object.keys(UNITS[entry.kind])
+  const units = [entry.unit, ...Object.keys(entry.units).filter((unit) => unit !== entry.unit)]
   let value: Json | undefined = options.fallback
   let range = { min: entry.min, max: entry.max }
   let typing = false
@@ -75,7 +88,7 @@ export function createField(options: FieldOptions): Field {
 
   /** Was the value refused, in a unit that is none for this place, without one, or as no number at all? */
   function misfit(): boolean {
-    return refused && toSI(value, entry.kind) === null
+    return refused && toSI(value, entry.units) === null
   }
 
   /** The unit shown: the visitor's choice, else the one written, else SI; never that of a value that was refused. */
@@ -104,12 +117,11 @@ export function createField(options: FieldOptions): Field {
     if (found.number === null || typeof value === 'object') return found.digits
     if (typeof value === 'number' && !hasUnits) return String(rounded(value, 6))
     if (typeof value === 'string' && hasUnits && !found.unit) return found.digits // which the package refuses
-    const factor = UNITS[entry.kind]
     const shown = shownUnit()
-    const written = found.unit || siUnit(entry.kind)
+    const written = found.unit || siUnit(entry.units)
     if (shown === written) return found.digits
-    const from = factor[written]
-    const to = factor[shown]
+    const from = entry.units[written]
+    const to = entry.units[shown]
     return from === undefined || to === undefined ? found.digits : String(rounded((found.number * from) / to, 6))
   }
 
@@ -133,7 +145,7 @@ export function createField(options: FieldOptions): Field {
   function draw(): void {
     if (hasUnits) fillUnits()
     if (!typing) input.value = digits()
-    const si = toSI(value, entry.kind)
+    const si = toSI(value, entry.units)
     slider.disabled = si === null
     if (si === null) return
     if (!slider.matches(':active')) widen(si)
@@ -156,7 +168,7 @@ export function createField(options: FieldOptions): Field {
     const found = parse(input.value)
     if (found.number === null) return { value: input.value.trim(), known: false }
     const written = found.unit || (hasUnits ? shownUnit() : '')
-    const known = written === '' || written in UNITS[entry.kind]
+    const known = written === '' || written in entry.units
     return { value: written === '' ? found.number : `${found.digits} ${written}`, known }
   }
 
@@ -170,7 +182,7 @@ export function createField(options: FieldOptions): Field {
     typing = false
     gesture += 1
     const found = parse(input.value)
-    if (found.unit && found.unit in UNITS[entry.kind]) options.keepUnit(found.unit)
+    if (found.unit && found.unit in entry.units) options.keepUnit(found.unit)
     const { value: next } = typed()
     if (next !== value) commit(next)
     else draw()
@@ -197,14 +209,14 @@ export function createField(options: FieldOptions): Field {
     const sideways = event.target === slider ? { ArrowRight: 1, ArrowLeft: -1 }[event.key] : undefined
     const way = direction ?? sideways
     if (way === undefined || event.ctrlKey || event.metaKey) return
-    const si = toSI(value, entry.kind)
+    const si = toSI(value, entry.units)
     if (si === null) return
     event.preventDefault()
     const scale = event.shiftKey || event.key.startsWith('Page') ? 10 : event.altKey ? 0.1 : 1
-    const factor = UNITS[entry.kind][shownUnit()] ?? 1
+    const factor = entry.units[shownUnit()] ?? 1
     const next = stepped(si / factor, way, scale)
     typing = false
-    commit(write(next * factor, entry.kind, hasUnits ? shownUnit() : '', 12), 'step')
+    commit(write(next * factor, entry.units, hasUnits ? shownUnit() : '', 12), 'step')
     input.value = digits()
   }
 
@@ -214,10 +226,10 @@ export function createField(options: FieldOptions): Field {
   })
   slider.addEventListener('input', () => {
     const shown = hasUnits ? shownUnit() : ''
-    const factor = UNITS[entry.kind][shown] ?? 1
+    const factor = entry.units[shown] ?? 1
     const raw = amountAt(Number(slider.value) / NOTCHES) / factor
     const next = entry.decades ? rounded(raw, 3) : rounded(Math.round(raw / grid(factor)) * grid(factor), 9)
-    commit(write(next * factor, entry.kind, shown, 9), `slide${gesture}`)
+    commit(write(next * factor, entry.units, shown, 9), `slide${gesture}`)
   })
 
   /** Round numbers for the slider: 1, 2 or 5 in some decade, two hundred or more of them over its range. */
@@ -228,9 +240,9 @@ export function createField(options: FieldOptions): Field {
   }
 
   unit.addEventListener('change', () => {
-    const si = toSI(value, entry.kind)
+    const si = toSI(value, entry.units)
     options.keepUnit(unit.value)
-    if (si !== null) commit(write(si, entry.kind, unit.value, 9))
+    if (si !== null) commit(write(si, entry.units, unit.value, 9))
     else draw()
   })
 

@@ -1,18 +1,7 @@
 /** The state at an instant, between two samples, as the samples say it. */
 import { countBefore } from '../../viewer/ascending'
 import { PHASE, type Scene, type Triple, type Turn } from '../../viewer/scene'
-import type { Pose, Spot } from './surfaces'
-
-export interface Instant extends Spot {
-  time: number
-  velocity: Triple
-  angularVelocity: Triple
-  orientation: Turn
-  /** The coordinates of the support's own motion, such as angle and rate of a free axle. */
-  own: number[]
-  /** How high over the support it flies, m; absent while it touches. */
-  height?: number | undefined
-}
+import type { Instant } from '../api'
 
 /** A body that leaves the support just now still touches, for single precision, m. */
 const LEAST = 1e-6
@@ -47,20 +36,15 @@ export function instantAt(scene: Scene, time: number): Instant {
   const contact = mixed(columns.contact ?? columns.position, 3) as Triple
   const flies = columns.phase?.[part < 1 ? index : next] === PHASE.flight
   const above = Math.hypot(...position.map((one, axis) => one - contact[axis]!)) - scene.header.body.radius
-  const support: Pose | undefined = columns.support_orientation && {
-    place: mixed(columns.support_position, 3) as Triple,
-    turn: turn(columns.support_orientation),
-  }
   return {
     time,
     position,
     contact,
-    support,
-    height: flies && above > LEAST ? above : undefined,
+    ...(flies && above > LEAST && { height: above }),
     velocity: mixed(columns.velocity, 3) as Triple,
-    angularVelocity: mixed(columns.angular_velocity, 3) as Triple,
+    angular_velocity: mixed(columns.angular_velocity, 3) as Triple,
     orientation: turn(columns.orientation),
-    own: mixed(columns.support_own, (columns.support_own?.length ?? 0) / columns.time.length),
+    support: mixed(columns.support_own, (columns.support_own?.length ?? 0) / columns.time.length),
   }
 }
 
@@ -71,9 +55,4 @@ export function sampleAt(scene: Scene, time: number): Instant {
   const after = Math.min(before + 1, times.length - 1)
   const nearer = Math.abs(times[after]! - time) < Math.abs(time - times[before]!) ? after : before
   return instantAt(scene, times[nearer]!)
-}
-
-/** The support's pose when the run begins. */
-export function startPose(scene: Scene): Pose | undefined {
-  return instantAt(scene, scene.columns.time[0] ?? 0).support
 }

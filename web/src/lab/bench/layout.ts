@@ -1,10 +1,13 @@
 /** Which controls a scenario has, in words only: sections of fields, choices, switches. */
+import type { Coordinate, Fields, Kind, NumberField, PartField, Parts, VectorField } from '../parts'
 import { parse } from '../quantity'
 import type { Json, Path, Scenario, Table } from '../scenario'
-import { withValue, withValues } from '../scenario'
-import type { Entry } from './catalogue'
-import { component, entry, keysOf, loadEntry } from './catalogue'
-import { ANGULAR, BODIES, LOADS, MOTIONS, ROUND, SURFACES, withBody, withMotion, withSurface } from './defaults'
+import { valueAt, withValue, withValues } from '../scenario'
+import { withBody, withLoad, withLoads, withMotion, withPart, withSurface } from './choosing'
+import type { Entry } from './field'
+
+/** What may be chosen: its word, its name, and a sentence about it. */
+export type Option = [value: string, label: string, said?: string]
 
 export type Item =
   | {
@@ -22,7 +25,7 @@ export type Item =
       path: Path
       label: string
       value: string
-      options: [string, string][]
+      options: Option[]
       set: (scenario: Scenario, value: string) => Scenario
     }
   | {
@@ -34,13 +37,7 @@ export type Item =
       set: (scenario: Scenario, on: boolean) => Scenario
     }
   | { type: 'remove'; path: Path; label: string; set: (scenario: Scenario) => Scenario }
-  | {
-      type: 'add'
-      path: Path
-      label: string
-      options: [string, string][]
-      set: (scenario: Scenario, kind: string) => Scenario
-    }
+  | { type: 'add'; path: Path; label: string; options: Option[]; set: (scenario: Scenario, kind: string) => Scenario }
 
 export interface Section {
   id: string
@@ -50,84 +47,113 @@ export interface Section {
   folded?: boolean
 }
 
-type Kinds = Record<string, { label: string }>
+type Loads = NonNullable<Scenario['loads']>
 
 /** The kinds on offer, and the scenario's own where it is not among them. */
-function offered(kinds: Kinds, own: string): [string, string][] {
-  const all = Object.entries(kinds).map(([kind, { label }]): [string, string] => [kind, label])
-  return own in kinds ? all : [[own, own.replaceAll('-', ' ')], ...all]
+function offered(kinds: Record<string, Kind>, own?: string): Option[] {
+  const ready = Object.entries(kinds).filter(([kind, { first }]) => first !== null || kind === own)
+  return ready.map(([kind, { label, said }]) => [kind, label, said])
 }
 
-function field(path: Path, of: Entry | undefined, fallback?: Json): Item[] {
-  if (!of) return []
-  return [{ type: 'field', path, entry: of, ...(fallback !== undefined && { fallback }) }]
+/** What makes controls of the fields of tables. */
+function createMaker(scenario: Scenario, parts: Parts) {
+  function entry(of: NumberField | VectorField, name?: string): Entry {
+    const { unit, min, max, decades, said } = of
+    const label = name === undefined ? of.label : `${of.label} ${name}`
+    return { label, units: parts.units[of.dimension] ?? {}, unit, min, max, decades, ...(said && { hint: said }) }
+  }
+
+  function number(path: Path, of: PartField | undefined, fallback?: Json): Item[] {
+    if (of?.type !== 'number') return []
+    return [{ type: 'field', path, entry: entry(of), ...(fallback !== undefined && { fallback }) }]
+  }
+
+  /** The parts of a vector, so many as there are; one that is not there yet is written whole. */
+  function vector(path: Path, of: PartField | undefined, otherwise: Json[] = []): Item[] {
+    if (of?.type !== 'vector') return []
+    const known = valueAt(scenario, path)
+    const values = Array.isArray(known) ? known : otherwise
+    return values.map((_, index) => ({
+      type: 'field',
+      path: `${path}.${index}`,
+      entry: entry(of, of.names[index] ?? String(index + 1)),
+      ...(otherwise[index] !== undefined && { fallback: otherwise[index] }),
+      set: (now, value) => withValue(now, path, withPart(valueAt(now, path), otherwise, index, value)),
+    }))
+  }
+
+  function choice(path: Path, { label, words, default: usual }: PartField & { type: 'choice' }): Item {
+    const value = String(valueAt(scenario, path) ?? usual ?? words[0])
+    const options = words.map((word): Option => [word, word])
+    return { type: 'choice', path, label, value, options, set: (now, next) => withValue(now, path, next) }
+  }
+
+  /** The controls of a table: of what it says, and, where `all`, of the numbers and words that it might say. */
+  function table(path: Path, fields: Fields, { except = [] as readonly string[], all = true } = {}): Item[] {
+    return Object.entries(fields).flatMap(([key, of]): Item[] => {
+      const at = `${path}.${key}`
+      const value = valueAt(scenario, at)
+      if (except.includes(key)) return []
+      if (of.type === 'choice') return value !== undefined || all ? [choice(at, of)] : []
+      if (of.type === 'formula')
+        return typeof value === 'string' ? [{ type: 'text', path: at, label: of.label, hint: of.said }] : []
+      if (of.type === 'vector') return vector(at, of)
+      const usual = all && typeof of.default === 'number' ? of.default : undefined
+      return value !== undefined || usual !== undefined ? number(at, of, usual) : []
+    })
+  }
+  return { entry, number, vector, table }
 }
 
-/** The numbers that a table says, in the catalogue's order. */
-function present(table: string, values: Table, except: string[] = []): Item[] {
-  const numbers = keysOf(table).filter((key) => key in values && !except.includes(key) && !Array.isArray(values[key]))
-  const vectors = Object.keys(values).filter((key) => Array.isArray(values[key]) && !except.includes(key))
-  return [
-    ...numbers.flatMap((key) => field(`${table}.${key}`, entry(table, key))),
-    ...vectors.flatMap((key) => vector(`${table}.${key}`, values[key] as Json[])),
-  ]
-}
+type Maker = ReturnType<typeof createMaker>
 
-function vector(path: Path, values: Json[], known = path): Item[] {
-  return values.flatMap((_, index) => field(`${path}.${index}`, component(known, index)))
-}
-
-function formula(table: string, values: Table, label: string): Item[] {
-  return typeof values.formula === 'string' ? [{ type: 'text', path: `${table}.formula`, label }] : []
-}
-
-function bodySection(scenario: Scenario): Section {
+function bodySection(scenario: Scenario, parts: Parts, make: Maker): Section {
   const { body } = scenario
-  const items: Item[] = []
-  if (body.kind)
-    items.push({
+  if (!body.kind) return { id: 'body', title: 'Body', items: make.table('body', parts.common.ball) }
+  const items: Item[] = [
+    {
       type: 'choice',
       path: 'body.kind',
       label: 'Shape',
       value: body.kind,
-      options: offered(BODIES, body.kind),
-      set: withBody,
-    })
-  const ratio: Record<string, number> = { 'solid-sphere': 0.4, 'hollow-sphere': 2 / 3 }
-  if (ROUND.has(body.kind) && body.kind !== 'sphere-with-moment' && body.density === undefined) {
-    const of = entry('body', 'inertia_ratio') as Entry
-    const fallback = ratio[body.kind]
-    const set = (now: Scenario, value: Json) =>
-      withValues(now, [
-        ['body.kind', 'sphere'],
-        ['body.inertia_ratio', value],
-      ])
-    items.push({
-      type: 'field',
-      path: 'body.inertia_ratio',
-      entry: of,
-      set,
-      ...(fallback !== undefined && { fallback }),
-    })
+      options: offered(parts.body, body.kind),
+      set: (now, kind) => withBody(now, kind, parts),
+    },
+  ]
+  const kind = parts.body[body.kind]
+  const ratio =
+    kind?.inertia_ratio != null && body.density === undefined ? ratioOf(kind.inertia_ratio, parts, make) : []
+  const except = ratio.length ? ['inertia_ratio'] : []
+  return {
+    id: 'body',
+    title: 'Body',
+    items: [...items, ...ratio, ...make.table('body', kind?.fields ?? {}, { except })],
   }
-  const kind = body.kind
-  items.push(...present('body', body, ROUND.has(kind) ? ['inertia_ratio'] : []))
-  if (typeof body.support_function === 'string')
-    items.push({ type: 'text', path: 'body.support_function', label: 'Support function' })
-  return { id: 'body', title: 'Body', items }
 }
 
-const LANDING = ['kinetic_friction', 'restitution', 'tangential_restitution']
+/** The k of a ball: where it is moved, the ball becomes one of any k. */
+function ratioOf(fallback: number, parts: Parts, make: Maker): Item[] {
+  const [any, of] = Object.entries(parts.body).find(([, { ball, fields }]) => ball && 'inertia_ratio' in fields) ?? []
+  const set = (now: Scenario, value: Json) =>
+    withValues(now, [
+      ['body.kind', any],
+      ['body.inertia_ratio', value],
+    ])
+  return make.number('body.inertia_ratio', of?.fields.inertia_ratio, fallback).map((item) => ({ ...item, set }) as Item)
+}
 
-function supportSection(scenario: Scenario): Section {
+function supportSection(scenario: Scenario, parts: Parts, make: Maker): Section {
   const { support } = scenario
-  const optional = (key: string, label: string, value: Json, hint: string): Item => ({
+  const own = parts.support[support.kind]?.fields ?? {}
+  const { friction, ...landing } = parts.common.support
+  const optional = Object.keys(own).filter((key) => own[key]!.type === 'number' && own[key]!.optional)
+  const turnedOn = (key: string, label: string, of: PartField | undefined, hint = of?.said): Item => ({
     type: 'switch',
     path: `support.${key}.on`,
     label,
     on: support[key] !== undefined,
-    hint,
-    set: (now, on) => withValue(now, `support.${key}`, on ? value : undefined),
+    ...(hint && { hint }),
+    set: (now, on) => withValue(now, `support.${key}`, on && of?.type === 'number' ? of.example : undefined),
   })
   const slips = support.friction !== undefined
   const items: Item[] = [
@@ -136,54 +162,55 @@ function supportSection(scenario: Scenario): Section {
       path: 'support.kind',
       label: 'Surface',
       value: support.kind,
-      options: offered(SURFACES, support.kind),
-      set: withSurface,
+      options: offered(parts.support, support.kind),
+      set: (now, kind) => withSurface(now, kind, parts),
     },
-    ...field('support.tilt', entry('support', 'tilt'), '0 deg'),
-    ...present('support', support, ['tilt', 'rim', 'friction', ...LANDING, 'r', 'x', 'y', 'z']),
-    ...formula('support', support, 'Height, in m'),
-    optional('rim', 'Has a rim', '50 cm', 'without one it has no end'),
-    ...(support.rim !== undefined ? field('support.rim', entry('support', 'rim')) : []),
-    optional('friction', 'Friction is limited', 0.3, 'otherwise it grips as much as it takes'),
-    ...(slips ? field('support.friction', entry('support', 'friction')) : []),
-    ...(slips ? field('support.kinetic_friction', entry('support', 'kinetic_friction'), support.friction as Json) : []),
-    ...(slips ? field('support.restitution', entry('support', 'restitution'), 0) : []),
-    ...(slips ? field('support.tangential_restitution', entry('support', 'tangential_restitution'), 0) : []),
+    ...make.number('support.tilt', own.tilt, 0),
+    ...make.table('support', own, { except: ['tilt', ...optional] }),
+    ...optional.flatMap((key) => [
+      turnedOn(key, `Has a ${own[key]!.label.toLowerCase()}`, own[key]),
+      ...(support[key] === undefined ? [] : make.number(`support.${key}`, own[key])),
+    ]),
+    turnedOn('friction', 'Friction is limited', friction, 'otherwise it grips as much as it takes'),
+    ...(slips ? make.number('support.friction', friction) : []),
+    ...Object.entries(slips ? landing : {}).flatMap(([key, of]) =>
+      make.number(`support.${key}`, of, of.default ?? (support.friction as Json)),
+    ),
   ]
   return { id: 'support', title: 'Support', items }
 }
 
-function motionSection(scenario: Scenario): Section {
-  const motion: Table & { kind: string } = scenario.support.motion ?? { kind: 'fixed' }
+function motionSection(scenario: Scenario, parts: Parts, make: Maker): Section {
+  const kind = scenario.support.motion?.kind ?? parts.at_rest
   const items: Item[] = [
     {
       type: 'choice',
       path: 'support.motion.kind',
       label: 'Kind',
-      value: motion.kind,
-      options: offered(MOTIONS, motion.kind),
-      set: withMotion,
+      value: kind,
+      options: offered(parts.motion, kind),
+      set: (now, next) => withMotion(now, next, parts),
     },
-    ...present('support.motion', motion),
+    ...make.table('support.motion', parts.motion[kind]?.fields ?? {}),
   ]
   return { id: 'motion', title: 'Motion of the support', items }
 }
 
-/** How a place on this surface is said: by x and y, or by angles. */
-function positionEntries(kind: string, reach: number): [Entry, Entry] {
-  const along = (label: string): Entry => ({ label, kind: 'length', min: -reach, max: reach })
-  const angle = (label: string): Entry => ({ label, kind: 'angle', min: -Math.PI, max: Math.PI, units: ['deg', 'rad'] })
-  if (kind === 'torus-track') return [angle('Angle about the axis'), angle('Angle around the tube')]
-  if (ANGULAR.has(kind)) return [angle('Angle about the axis'), along('Height along the axis')]
-  return [along('Position x'), along('Position y')]
+/** How a place on this surface is said: `reach` is how far the sliders of lengths go, in m. */
+function positions(coordinates: readonly Coordinate[], reach: number, parts: Parts): Item[] {
+  return coordinates.map(({ label, dimension, unit }, index) => {
+    const most = dimension === 'length' ? reach : Math.PI
+    const entry = { label, units: parts.units[dimension] ?? {}, unit, min: -most, max: most, decades: false }
+    return { type: 'field', path: `start.position.${index}`, entry, fallback: 0 }
+  })
 }
 
-function startSection(scenario: Scenario, reach: number): Section {
+function startSection(scenario: Scenario, reach: number, parts: Parts, make: Maker): Section {
   const { start, support } = scenario
-  const [first, second] = positionEntries(support.kind, reach)
+  const fields = parts.common.start
   const rides = start.velocity === 'co-rotating'
-  const moves = support.motion !== undefined && support.motion.kind !== 'fixed'
-  const items: Item[] = [...field('start.position.0', first, 0), ...field('start.position.1', second, 0)]
+  const moves = support.motion !== undefined && support.motion.kind !== parts.at_rest
+  const items = positions(parts.support[support.kind]?.coordinates ?? [], reach, parts)
   if (moves || rides)
     items.push({
       type: 'switch',
@@ -193,147 +220,98 @@ function startSection(scenario: Scenario, reach: number): Section {
       hint: 'and is let go',
       set: (now, on) => withValue(now, 'start.velocity', on ? 'co-rotating' : ['0 m/s', '0 m/s']),
     })
-  if (!rides) {
-    const length = Array.isArray(start.velocity) ? start.velocity.length : 2
-    for (let index = 0; index < length; index += 1) items.push(...velocity(index))
-  }
-  const turning = Array.isArray(start.angular_velocity)
-  if (turning) items.push(...vector('start.angular_velocity', start.angular_velocity as Json[]))
-  else items.push(...field('start.spin', entry('start', 'spin'), rides ? undefined : 0))
+  if (!rides) items.push(...make.vector('start.velocity', fields.velocity, ['0 m/s', '0 m/s']))
+  if (Array.isArray(start.angular_velocity))
+    items.push(...make.vector('start.angular_velocity', fields.angular_velocity))
+  else items.push(...make.number('start.spin', fields.spin, rides ? undefined : 0))
   if (support.friction !== undefined || start.height !== undefined)
-    items.push(...field('start.height', entry('start', 'height'), 0))
-  items.push(...present('start', start, ['position', 'velocity', 'angular_velocity', 'spin', 'height']))
+    items.push(...make.number('start.height', fields.height, 0))
+  const except = ['velocity', 'angular_velocity', 'spin', 'height']
+  items.push(...make.table('start', fields, { except, all: false }))
   return { id: 'start', title: 'Start', items }
 }
 
-/** A velocity that is not there yet is written as a pair. */
-function velocity(index: number): Item[] {
-  const of = component('start.velocity', index)
-  if (!of) return []
-  const set = (now: Scenario, value: Json) => {
-    const known = Array.isArray(now.start.velocity) ? now.start.velocity : ['0 m/s', '0 m/s']
-    return withValue(
-      now,
-      'start.velocity',
-      known.map((was, place) => (place === index ? value : was)),
-    )
-  }
-  return [{ type: 'field', path: `start.velocity.${index}`, entry: of, fallback: '0 m/s', set }]
-}
-
-/** The drag that has its own slider. */
-function mainDrag(loads: (Table & { kind: string })[]): number {
-  return loads.findIndex((load) => load.kind === 'drag')
-}
-
-/** Drag is always on offer; at nought there is no such load, unless it says more than a coefficient. */
-function dragOf(loads: (Table & { kind: string })[]): Item {
-  const at = mainDrag(loads)
+/** A load that is always on offer; at nought there is none, unless it says more than its first number. */
+function usualLoad(kind: string, loads: Loads, parts: Parts, make: Maker): Item[] {
+  const placeOf = (known: Loads) => known.findIndex((load) => load.kind === kind)
+  const [key = '', of] = Object.entries(parts.loads[kind]?.fields ?? {})[0] ?? []
   const set = (now: Scenario, value: Json) => {
     const known = now.loads ?? []
-    const index = mainDrag(known)
+    const index = placeOf(known)
     const none = parse(value).number === 0
-    const load = { ...known[index], kind: 'drag', coefficient: value }
+    const load = { ...known[index], kind, [key]: value }
     const goes = none && Object.keys(load).length === 2
     const next = known.flatMap((one, place) => (place !== index ? [one] : goes ? [] : [load]))
-    if (index < 0 && !none) next.push(load)
-    return withValue(now, 'loads', next.length ? (next as Json) : undefined)
+    return withLoads(now, index < 0 && !none ? [...next, load] : next)
   }
-  const of = loadEntry('drag', 'coefficient') as Entry
-  const item = { type: 'field' as const, path: 'loads.drag', entry: of, fallback: '0 g/s', set }
-  return at < 0 ? item : { ...item, place: `loads.${at}.coefficient` }
+  const at = placeOf(loads)
+  const place = at < 0 ? {} : { place: `loads.${at}.${key}` }
+  return make.number(`loads.${kind}`, of, 0).map((item) => ({ ...item, ...place, set }) as Item)
 }
 
-function loadsSection(scenario: Scenario): Section {
+function loadsSection(scenario: Scenario, parts: Parts, make: Maker): Section {
   const loads = scenario.loads ?? []
-  const gravity: Entry = { label: 'Gravity', kind: 'acceleration', min: 0, max: 25 }
-  const items: Item[] = [...field('gravity', gravity, 9.80665), dragOf(loads)]
+  const usual = Object.keys(parts.loads).filter((kind) => parts.loads[kind]!.usual)
+  const own = usual.map((kind) => loads.findIndex((load) => load.kind === kind))
+  const items: Item[] = [
+    ...make.number('gravity', parts.common.scenario.gravity, parts.common.scenario.gravity?.default),
+    ...usual.flatMap((kind) => usualLoad(kind, loads, parts, make)),
+  ]
   loads.forEach((load, place) => {
-    if (place === mainDrag(loads)) return
-    for (const [key, value] of Object.entries(load)) {
-      const path = `loads.${place}.${key}`
-      if (Array.isArray(value)) items.push(...vector(path, value, `${load.kind}.${key}`))
-      else items.push(...field(path, loadEntry(load.kind, key)))
-      if (key === 'formula') items.push({ type: 'text', path, label: 'Potential, in J' })
-    }
-    const label = LOADS[load.kind]?.label ?? load.kind.replaceAll('-', ' ')
-    const set = (now: Scenario) => {
-      const rest = (now.loads ?? []).filter((_, other) => other !== place)
-      return withValue(now, 'loads', rest.length ? (rest as Json) : undefined)
-    }
+    const { fields = {}, label = load.kind } = parts.loads[load.kind] ?? {}
+    const except = own.includes(place) ? Object.keys(fields).slice(0, 1) : []
+    items.push(...make.table(`loads.${place}`, fields, { except }))
+    if (own.includes(place)) return
+    const set = (now: Scenario) =>
+      withLoads(
+        now,
+        now.loads?.filter((_, other) => other !== place),
+      )
     items.push({ type: 'remove', path: `loads.${place}`, label: `Remove: ${label.toLowerCase()}`, set })
   })
-  items.push({
-    type: 'add',
-    path: 'loads',
-    label: 'Add a load',
-    options: Object.entries(LOADS)
-      .filter(([kind]) => kind !== 'drag')
-      .map(([kind, { label }]) => [kind, label]),
-    set: (now, kind) => withValue(now, 'loads', [...(now.loads ?? []), { kind, ...LOADS[kind]?.keys }] as Json),
-  })
+  const more = Object.fromEntries(Object.entries(parts.loads).filter(([kind]) => !usual.includes(kind)))
+  const set = (now: Scenario, kind: string) => withLoad(now, kind, parts)
+  items.push({ type: 'add', path: 'loads', label: 'Add a load', options: offered(more), set })
   return { id: 'loads', title: 'Gravity, drag, other loads', items }
 }
 
-function runSection(scenario: Scenario): Section {
-  const method = typeof scenario.run.method === 'string' ? scenario.run.method : 'auto'
-  const words: [string, string][] = [
-    ['auto', 'the best there is'],
-    ['exact', 'closed form'],
-    ['taylor', 'Taylor series'],
-    ['runge-kutta', 'Runge–Kutta'],
-  ]
-  return {
-    id: 'run',
-    title: 'Run',
-    items: [
-      ...present('run', scenario.run),
-      {
-        type: 'choice',
-        path: 'run.method',
-        label: 'Method',
-        value: method,
-        options: words,
-        set: (now, value) => withValue(now, 'run.method', value),
-      },
-    ],
-  }
+const METHODS: Record<string, string> = {
+  auto: 'the best there is',
+  exact: 'closed form',
+  taylor: 'Taylor series',
+  'runge-kutta': 'Runge–Kutta',
 }
 
-const PIECE: Record<string, Entry> = {
-  length: { label: 'Length', kind: 'length', min: 0, max: 0.5 },
-  heading: { label: 'Heading', kind: 'angle', min: -Math.PI, max: Math.PI, units: ['deg', 'rad', 'turn'] },
-  turn: { label: 'Turn of the ball', kind: 'angle', min: 0, max: 2 * Math.PI, units: ['deg', 'rad', 'turn'] },
-  radius: { label: 'Radius of the arc', kind: 'length', min: 0.001, max: 0.5, decades: true },
-  angle: {
-    label: 'Angle of the arc',
-    kind: 'angle',
-    min: -2 * Math.PI,
-    max: 2 * Math.PI,
-    units: ['deg', 'rad', 'turn'],
-  },
+function runSection(parts: Parts, make: Maker): Section {
+  const items = make.table('run', parts.common.run).map((item): Item => {
+    if (item.type !== 'choice') return item
+    return { ...item, options: item.options.map(([word]): Option => [word, METHODS[word] ?? word]) }
+  })
+  return { id: 'run', title: 'Run', items }
 }
 
 /** A ball that is rolled along a path, without forces, has pieces instead of a support and a start. */
-function pathSection(scenario: Scenario): Section {
+function pathSection(scenario: Scenario, parts: Parts, make: Maker): Section {
   const pieces = (scenario as unknown as { path?: Table[] }).path ?? []
   const items = pieces.flatMap((piece, place) =>
-    Object.keys(PIECE)
-      .filter((key) => key in piece && !Array.isArray(piece[key]))
-      .flatMap((key) => field(`path.${place}.${key}`, { ...PIECE[key]!, label: `${place + 1}. ${PIECE[key]!.label}` })),
+    make.table(`path.${place}`, parts.path[String(piece.kind)] ?? {}).map((item): Item => {
+      if (item.type !== 'field') return item
+      return { ...item, entry: { ...item.entry, label: `${place + 1}. ${item.entry.label}` } }
+    }),
   )
   return { id: 'path', title: 'Pieces of the path', items }
 }
 
 /** All sections of a scenario; `reach` is how far the sliders of the position go, in m. */
-export function layout(scenario: Scenario, reach: number): Section[] {
-  if (!scenario.support) return [bodySection(scenario), pathSection(scenario)]
+export function layout(scenario: Scenario, reach: number, parts: Parts): Section[] {
+  const make = createMaker(scenario, parts)
+  if (!scenario.support) return [bodySection(scenario, parts, make), pathSection(scenario, parts, make)]
   return [
-    bodySection(scenario),
-    supportSection(scenario),
-    motionSection(scenario),
-    startSection(scenario, reach),
-    loadsSection(scenario),
-    runSection(scenario),
+    bodySection(scenario, parts, make),
+    supportSection(scenario, parts, make),
+    motionSection(scenario, parts, make),
+    startSection(scenario, reach, parts, make),
+    loadsSection(scenario, parts, make),
+    runSection(parts, make),
   ]
 }

@@ -24,16 +24,11 @@ function over(scene: Scene, value: (index: number) => number): (number | null)[]
   })
 }
 
-function isBall(scene: Scene): boolean {
-  return /sphere|chaplygin|ball/.test(scene.header.body.kind) && !/hemi/.test(scene.header.body.kind)
-}
-
-/** The normal is known of a ball (from its contact to its centre, where that is in the middle) and of a plane at rest. */
+/** The normal is known of a ball (from its contact to its centre) and of a plane. */
 function normal(scene: Scene, index: number): [number, number, number] | null {
   const { columns, header } = scene
-  if (header.support.kind === 'plane' && !columns.support_orientation) return [0, 0, 1]
-  if (header.support.kind === 'plane' && columns.support_orientation) return turnedZ(columns.support_orientation, index)
-  if (!isBall(scene) || !columns.contact) return null
+  if (header.support.flat) return columns.support_orientation ? turnedZ(columns.support_orientation, index) : [0, 0, 1]
+  if (!header.body.ball || !columns.contact) return null
   const d = [0, 1, 2].map(
     (axis) => (columns.position[3 * index + axis] ?? 0) - (columns.contact![3 * index + axis] ?? 0),
   )

@@ -4,15 +4,17 @@ import { hide } from '../../viewer/elements'
 import type { Scene, Triple } from '../../viewer/scene'
 import type { Tool, Viewer } from '../../viewer/viewer'
 import { createViewer } from '../../viewer/viewer'
+import { isAbort, type StartRequest } from '../api'
 import type { App } from '../app'
 import { cleanup, fill, h } from '../dom'
 import { type IconName, icon } from '../icons'
 import { changing } from '../math'
 import { show } from '../quantity'
-import type { Scenario } from '../scenario'
+import { createRunner } from '../runner'
+import type { Change } from '../store'
 import { headline } from './findings'
-import { instantAt, sampleAt, startPose } from './instant'
-import { nudged, placed, thrown, whyNotDragged, whyNotHere, whyNotNudged } from './placing'
+import { instantAt, sampleAt } from './instant'
+import { goneOn, put, whyNotDragged, whyNotNudged } from './placing'
 
 /** "0.42 ms", "1.3 s". */
 function duration(seconds: number): string {
@@ -99,7 +101,7 @@ export function createStage(app: App): Stage {
 
   function useTool(tool: BenchTool): void {
     const why =
-      tool === 'nudge' ? whyNotNudged(store.scenario) : tool === 'orbit' ? null : whyNotDragged(store.scenario)
+      tool === 'nudge' ? whyNotNudged(store.scenario, scene) : tool === 'orbit' ? null : whyNotDragged(store.scenario)
     if (why) {
       app.toast(why)
       return
@@ -120,44 +122,53 @@ export function createStage(app: App): Stage {
   }
   useTool('orbit')
 
+  /** What is done by hand: the package says which start that is. */
+  const starts = createRunner<{ by: StartRequest; change: Change; done?: string }, () => void>({
+    async run({ by, change, done }, signal) {
+      const before = store.scenario
+      const [parts, found] = await Promise.all([app.parts(), app.api.start(before, by, { signal, lane: null })])
+      return () => {
+        store.set(by.nudge ? goneOn(before, found) : put(store.scenario, found, parts), change)
+        if (done) app.toast(done)
+      }
+    },
+    done: (apply) => apply(),
+    failed: (error, { by }) => {
+      // While it is dragged there is no need to say that it cannot lie just there.
+      if (by.nudge && !isAbort(error)) app.toast(error instanceof Error ? error.message : String(error))
+    },
+  })
+
   let gestures = 0
   undo.add(
     viewer.on('dragstart', () => {
       gestures += 1
     }),
-    viewer.on('drag', put),
-    viewer.on('dragend', put),
-    viewer.on('arrow', ({ vx, vy, vz, normal, done }) => {
+    viewer.on('drag', drag),
+    viewer.on('dragend', drag),
+    viewer.on('arrow', ({ vx, vy, vz, done }) => {
       if (!scene) return
-      const spot = { ...instantAt(scene, viewer.time), normal }
-      const next = thrown(store.scenario, spot, [vx, vy, vz], startPose(scene))
-      store.set(next, { source: 'drag', gesture: `arrow${gestures}` })
+      const { position, contact } = instantAt(scene, viewer.time)
+      const by: StartRequest = { at: { position, contact }, velocity: [vx, vy, vz] }
+      starts.ask({ by, change: { source: 'drag', gesture: `arrow${gestures}` } })
       if (done) gestures += 1
     }),
     viewer.on('nudge', ({ vx, vy, vz, time: when, done }) => {
       if (done) nudge([vx, vy, vz], when)
     }),
+    () => starts.stop(),
   )
 
-  function put({ x, y, z, contact }: Place): void {
-    if (!scene) return
-    const spot = { position: [x, y, z] as Triple, contact, support: instantAt(scene, viewer.time).support }
-    if (whyNotHere(store.scenario, spot, startPose(scene))) return
-    const next = placed(store.scenario, spot, startPose(scene))
-    store.set(next, { source: 'drag', gesture: `drag${gestures}` })
+  function drag({ x, y, z, contact }: Place): void {
+    const by: StartRequest = { at: { position: [x, y, z], contact } }
+    starts.ask({ by, change: { source: 'drag', gesture: `drag${gestures}` } })
   }
 
   function nudge(by: Triple, when: number): void {
     if (!scene) return
-    const before: Scenario = store.scenario
-    const [at, begin] = [sampleAt(scene, when), startPose(scene)]
-    const why = whyNotHere(before, at, begin)
-    if (why) {
-      app.toast(why)
-      return
-    }
-    store.set(nudged(before, at, by, begin), { source: 'nudge' })
-    app.toast(`Nudged at ${show(at.time, 3)} s by ${show(Math.hypot(...by), 2)} m/s: this is the new start.`)
+    const at = sampleAt(scene, when)
+    const done = `Nudged at ${show(at.time, 3)} s by ${show(Math.hypot(...by), 2)} m/s: this is the new start.`
+    starts.ask({ by: { at, nudge: by }, change: { source: 'nudge' }, done })
   }
 
   /** While it stands still the whole path is there; while it runs the ball draws it. */

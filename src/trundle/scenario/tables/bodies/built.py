@@ -36,20 +36,30 @@ Thickness = Annotated[float, Measure("length", "not negative", example='"2 mm"')
 SemiAxes = Annotated[tuple[float, float, float], AllPositive(Measure("length", "positive"), 3)]
 _Density = Annotated[float, Measure("density", "positive", example='"7.8 g/cm^3"')]
 _Centre = Annotated[tuple[float, float, float], Measures(Measure("length", example='"2 mm"'), 3)]
-_Moments = Annotated[tuple[float, float, float], AllPositive(Measure("inertia", "positive", example="1.6e-5"), 3)]
-_Products = Annotated[tuple[float, float, float], Measures(Measure("inertia", example="1e-6"), 3)]
+_Moments = Annotated[
+    tuple[float, float, float],
+    AllPositive(Measure("inertia", "positive", example="2.5e-5"), 3, names=("xx", "yy", "zz")),
+]
+_Products = Annotated[
+    tuple[float, float, float], Measures(Measure("inertia", example="1e-6"), 3, names=("xy", "xz", "yz"))
+]
 
 # Keys that may be left out.
-MassOr = Annotated[Mass | None, Field(description="Required, or `density`.")]
+MassOr = Annotated[Mass | None, Field(description="Required, or `density`.", examples=["200 g"])]
 DensityOr = Annotated[_Density | None, Field(description="Of a homogeneous body, instead of the mass.")]
-Centre = Annotated[_Centre | None, Field(description="Of the shape from the centre of mass, body frame.")]
-Moments = Annotated[_Moments, Field(description="J_xx, J_yy, J_zz about the centre of mass.")]
+Centre = Annotated[
+    _Centre | None, Field(title="Centre of the shape", description="Of the shape from the centre of mass, body frame.")
+]
+Moments = Annotated[_Moments, Field(title="Moment", description="J_xx, J_yy, J_zz about the centre of mass.")]
 OwnMoments = Annotated[
     _Moments | None,
-    Field(description="J_xx, J_yy, J_zz about the centre of mass; absent: those of a homogeneous body."),
+    Field(
+        title="Moment", description="J_xx, J_yy, J_zz about the centre of mass; absent: those of a homogeneous body."
+    ),
 ]
 Products = Annotated[
-    _Products | None, Field(description="J_xy, J_xz, J_yz, elements of the inertia tensor: J_xy = -∫ x y dm.")
+    _Products | None,
+    Field(title="Product", description="J_xy, J_xz, J_yz, elements of the inertia tensor: J_xy = -∫ x y dm."),
 ]
 
 

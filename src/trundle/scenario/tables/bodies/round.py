@@ -45,7 +45,9 @@ class AnySphere(Table):
     kind: Literal["sphere"]
     radius: Radius
     mass: Mass
-    inertia_ratio: Ratio = Field(description="k = I/(m a²), above 0 and at most a shell's 2/3.", examples=[0.4])
+    inertia_ratio: Ratio = Field(
+        title="Inertia ratio k", description="k = I/(m a²), above 0 and at most a shell's 2/3.", examples=[0.4]
+    )
 
     def build(self) -> Body:
         """Return the body."""
@@ -85,7 +87,9 @@ class CylinderBody(Table):
     kind: Literal["cylinder"]
     radius: Radius
     mass: Mass
-    inertia_ratio: CylinderRatio = Field(default=0.5, description="k = I/(m a²) about its axis, at most a hoop's 1.")
+    inertia_ratio: CylinderRatio = Field(
+        default=0.5, title="Inertia ratio k", description="k = I/(m a²) about its axis, at most a hoop's 1."
+    )
 
     def build(self) -> Body:
         """Return the body."""
@@ -114,9 +118,11 @@ class WeightedCylinder(Table):
     kind: Literal["weighted-cylinder"]
     radius: Radius
     mass: Mass = Field(description="Without the weight.")
-    inertia_ratio: CylinderRatio = Field(default=0.5, description="k of the cylinder without the weight.")
+    inertia_ratio: CylinderRatio = Field(
+        default=0.5, title="Inertia ratio k", description="k of the cylinder without the weight."
+    )
     weight: Mass = Field(description="Mass of the weight.", examples=["50 g"])
-    distance: Radius = Field(description="Of the weight from the axis.", examples=["30 mm"])
+    distance: Radius = Field(description="Of the weight from the axis.", examples=["15 mm"])
 
     @model_validator(mode="after")
     def _check(self) -> WeightedCylinder:

@@ -19,7 +19,7 @@ class EccentricSphere(Built):
     mass: Mass
     moments: Moments
     products: Products = None
-    centre: Centre = None
+    centre: Centre = Field(default=None, examples=[[0, 0, "3 mm"]])
 
 
 class Hemisphere(Built):
@@ -88,7 +88,7 @@ class Torus(Built):
     kind: Literal["torus"]
     builder: ClassVar[str] = "torus"
     radius: Radius = Field(description="Of the circle through the middle of the ring.")
-    rim_radius: Radius = Field(description="Of the cross-section, at most the radius.")
+    rim_radius: Radius = Field(description="Of the cross-section, at most the radius.", examples=["8 mm"])
     mass: MassOr = None
     density: DensityOr = None
     moments: OwnMoments = None
@@ -101,7 +101,9 @@ class Ellipsoid(Built):
 
     kind: Literal["ellipsoid"]
     builder: ClassVar[str] = "ellipsoid"
-    semi_axes: SemiAxes = Field(description="Along the axes of the body frame.")
+    semi_axes: SemiAxes = Field(
+        title="Semi-axis", description="Along the axes of the body frame.", examples=[["5 cm", "4 cm", "3 cm"]]
+    )
     mass: MassOr = None
     density: DensityOr = None
     moments: OwnMoments = None

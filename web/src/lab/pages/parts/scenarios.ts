@@ -1,4 +1,5 @@
 /** The scenarios that these pages start from; they are those that ship, cut down to what a page needs. */
+import { parse } from '../../quantity'
 import type { Scenario } from '../../scenario'
 
 const STEEL = { kind: 'solid-sphere', radius: '25 mm', mass: '510 g' }
@@ -12,9 +13,11 @@ export const CYLINDER: Scenario = {
   run: { duration: '1.6 s', every: '5 ms', method: 'auto' },
 }
 
+const TORQUE = 2.5 // mN*m, of a push at the top
+
 /** A level push of 0.1 N, at this share of the radius above the ball's centre: a force and its torque. */
 export function pushed(share: number): Scenario {
-  const torque = Number((share * 2.5).toPrecision(6))
+  const torque = Number((share * TORQUE).toPrecision(6))
   return {
     title: 'Ball on a level plane, pushed',
     body: STEEL,
@@ -26,6 +29,12 @@ export function pushed(share: number): Scenario {
     ],
     run: { duration: '2.5 s', every: '5 ms', method: 'auto' },
   }
+}
+
+/** At which share of the radius a push is. */
+export function shareOf({ loads }: Scenario): number {
+  const torque = loads?.[1]?.value
+  return Array.isArray(torque) ? (parse(torque[1]).number ?? 0) / TORQUE : 0
 }
 
 export const LEVEL: Scenario = {

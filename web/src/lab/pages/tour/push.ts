@@ -1,10 +1,8 @@
 /** Step 3: a level push, at a height that can be chosen. */
-import { toSI } from '../../quantity'
-import type { Scenario } from '../../scenario'
 import { slider } from '../parts/controls'
 import { column, finding, vectorAt } from '../parts/measure'
 import { rowOf } from '../parts/numbers'
-import { pushed } from '../parts/scenarios'
+import { pushed, shareOf } from '../parts/scenarios'
 import { createStage, playUnlessCalm, simulating } from '../parts/stage'
 import type { StepMount } from './place'
 import { createPushDiagram } from './push-diagram'
@@ -30,7 +28,7 @@ export const mountPush: StepMount = ({ app, stage: host, controls, numbers, work
       reaction && { ...reaction, name: 'reaction of the table', symbol: 'R_x' },
       gained && { ...gained, symbol: '\\dot V_x' },
     ])
-    diagram.set(heightOf(asked), sideways / PUSH)
+    diagram.set(shareOf(asked), sideways / PUSH)
     worked(scene)
     remark.textContent = saying(sideways)
   })
@@ -58,13 +56,6 @@ export const mountPush: StepMount = ({ app, stage: host, controls, numbers, work
     live.stop()
     stage.dispose()
   }
-}
-
-/** The height of the push in radii: its torque over force and radius. */
-function heightOf({ body, loads }: Scenario): number {
-  const torque = loads?.find(({ kind }) => kind === 'torque')?.value
-  const radius = toSI(body.radius, 'length') ?? 1
-  return Array.isArray(torque) ? (toSI(torque[1], 'torque') ?? 0) / (PUSH * radius) : 0
 }
 
 /** Which way the table pushes, and what that means. The smallest step of the slider moves it by 3.6 mN. */
