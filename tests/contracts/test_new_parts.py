@@ -147,6 +147,36 @@ print(json.dumps({
     "scene": len(run.save_html(sys.argv[2]).read_bytes()) > 100_000,
 }))
 """
+IN_THE_LAB = """
+import json
+from trundle.lab import answers
+from trundle.scene import unpack
+parts = json.loads(answers.parts().body)
+surface, motion, load = parts["support"]["elliptic-funnel"], parts["motion"]["heave"], parts["loads"]["tether"]
+chosen = {
+    "body": parts["body"]["solid-sphere"]["first"],
+    "support": surface["first"] | {"motion": motion["first"]},
+    "start": surface["start"],
+    "loads": [load["first"]],
+    "run": {"duration": 0.5, "every": 0.01},
+}
+scene = unpack(answers.simulate(chosen).body)
+def nudged(kind):
+    chosen["support"]["motion"] = parts["motion"][kind]["first"]
+    run = unpack(answers.simulate(chosen).body)
+    at = {key: run.columns[key][20].tolist() for key in ("position", "velocity", "contact", "angular_velocity")}
+    at |= {"orientation": run.columns["orientation"][20].tolist(), "time": float(run.columns["time"][20])}
+    return json.loads(answers.start(chosen, at, nudge=[0.0, 0.0, 0.0]).body)
+print(json.dumps({
+    "labels": [part["label"] for part in (surface, motion, load)],
+    "first": [part["first"] for part in (surface, motion, load)],
+    "field": surface["fields"]["first"],
+    "name": scene.header["support"]["name"],
+    "flat": scene.header["support"]["flat"],
+    "deep": scene.header["support"]["deep"],
+    "nudged": [nudged("spin"), nudged("fixed")],
+}))
+"""
 
 
 @pytest.fixture(scope="module")
@@ -197,3 +227,21 @@ def test_a_wrong_value_of_a_new_part_is_named(copy: Path) -> None:
     assert done.returncode == 2
     assert "`support.first` must be positive; got -1" in done.stderr
     assert not (copy / "none").exists()
+
+
+def test_new_parts_can_be_chosen_in_the_lab(copy: Path) -> None:
+    done = run(copy, "-c", IN_THE_LAB)
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    assert found["labels"] == ["Elliptic funnel", "Heave", "Tether"]
+    assert found["first"] == [
+        {"kind": "elliptic-funnel", "first": "30 cm", "second": "40 cm"},
+        {"kind": "heave", "amplitude": "1 mm", "rate": "5 rad/s"},
+        {"kind": "tether", "stiffness": 0.2},
+    ]
+    shown = {"label": "First", "said": "Along the first axis.", "unit": "cm", "min": 0.03, "max": 3.0, "decades": True}
+    assert shown.items() <= found["field"].items()
+    assert (found["name"], found["flat"], found["deep"]) == ("Heaving elliptic funnel", False, True)
+    turning, resting = found["nudged"]
+    assert turning["time"] == 0.2, "an uneven surface on a turntable is not taken for a round one"
+    assert "time" not in resting
