@@ -59,8 +59,6 @@ export interface Drawn {
   vx: number
   vy: number
   vz: number
-  /** Of the support where the body is, towards the body. */
-  normal: Triple
   done: boolean
 }
 

@@ -147,7 +147,7 @@ export class Tools {
     const least = LEAST * this.stage.metresPerPixel(from)
     let velocity = new Vector3()
     const tell = (done: boolean) => {
-      const drawn = { vx: velocity.x, vy: velocity.y, vz: velocity.z, normal: normal.toArray(), done }
+      const drawn = { vx: velocity.x, vy: velocity.y, vz: velocity.z, done }
       if (nudge) this.events.emit('nudge', { ...drawn, time: this.host.time() })
       else this.events.emit('arrow', drawn)
     }
