@@ -29,23 +29,23 @@ UNITS: dict[str, tuple[str, str]] = {
     "number": ("", "0.4"),
 }
 
-# The units that a page offers for each of them, the SI unit first.
-OFFERED: dict[str, tuple[str, ...]] = {
-    "length": ("m", "cm", "mm", "in", "ft"),
-    "mass": ("kg", "g", "oz", "lb"),
-    "time": ("s", "ms", "min", "h"),
-    "angle": ("rad", "deg", "turn"),
-    "velocity": ("m/s", "cm/s", "mm/s", "km/h", "ft/s"),
-    "acceleration": ("m/s^2", "cm/s^2"),
-    "angular velocity": ("rad/s", "rpm", "turn/s", "deg/s"),
-    "force": ("N", "mN"),
-    "torque": ("N*m", "mN*m"),
-    "inertia": ("kg*m^2", "g*cm^2"),
-    "damping": ("kg/s", "g/s"),
-    "quadratic damping": ("kg/m", "g/m"),
-    "rotational damping": ("N*m*s", "mN*m*s"),
-    "density": ("kg/m^3", "g/cm^3"),
-    "number": ("",),
+# The units that a page offers for each of them, the SI unit first, and how many SI units each is.
+OFFERED: dict[str, dict[str, float]] = {
+    "length": {"m": 1.0, "cm": 0.01, "mm": 1e-3, "in": 0.0254, "ft": 0.3048},
+    "mass": {"kg": 1.0, "g": 1e-3, "oz": 0.028349523125, "lb": 0.45359237},
+    "time": {"s": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0},
+    "angle": {"rad": 1.0, "deg": math.pi / 180, "turn": 2 * math.pi},
+    "velocity": {"m/s": 1.0, "cm/s": 0.01, "mm/s": 1e-3, "km/h": 1 / 3.6, "ft/s": 0.3048},
+    "acceleration": {"m/s^2": 1.0, "cm/s^2": 0.01},
+    "angular velocity": {"rad/s": 1.0, "rpm": math.pi / 30, "turn/s": 2 * math.pi, "deg/s": math.pi / 180},
+    "force": {"N": 1.0, "mN": 1e-3},
+    "torque": {"N*m": 1.0, "mN*m": 1e-3},
+    "inertia": {"kg*m^2": 1.0, "g*cm^2": 1e-7},
+    "damping": {"kg/s": 1.0, "g/s": 1e-3},
+    "quadratic damping": {"kg/m": 1.0, "g/m": 1e-3},
+    "rotational damping": {"N*m*s": 1.0, "mN*m*s": 1e-3},
+    "density": {"kg/m^3": 1.0, "g/cm^3": 1e3},
+    "number": {"": 1.0},
 }
 
 _LONGEST = 200

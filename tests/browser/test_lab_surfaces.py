@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import tomllib
+
 import numpy as np
 import pytest
+from playwright.sync_api import expect
 
 import trundle as tr
+from trundle.scenario import files
 
-from .bench import Bench, eventually
+from .bench import Bench, eventually, linked
 from .visiting import Visitor
 
 
@@ -58,3 +62,29 @@ def test_a_ball_in_a_bowl_is_dragged_up_its_side_and_nudged_while_it_runs(bench:
         assert added @ normal == pytest.approx(0.0, abs=1e-4), "along the bowl"
 
     eventually(bench.page, nudged)
+
+
+@pytest.mark.parametrize("path", ["body.kind", "support.kind", "support.motion.kind"])
+def test_every_kind_on_offer_can_be_chosen_and_is_computed(path: str, visitor: Visitor) -> None:
+    tables = tomllib.loads(files.read("level-turntable-nudged"))
+    if path != "support.motion.kind":
+        del tables["support"]["motion"]  # on which a cylinder cannot roll
+    bench = Bench(visitor.open(linked(tables), drawn=False))
+    choice = bench.control(path).get_by_role("combobox")
+    choice.wait_for()
+    kinds = choice.locator("option").evaluate_all("options => options.map(({ value }) => value)")
+    assert len(kinds) > 9
+    way, stale = path.split("."), bench.page.get_by_text("The last path that could be computed")
+    for kind in [*kinds[1:], kinds[0]]:
+        choice.select_option(kind)
+
+        def is_there(kind: str = kind) -> None:
+            found = bench.scenario()
+            for key in way[:-1]:
+                found = found.get(key, {"kind": "fixed"})
+            assert found["kind"] == kind, "the address did not follow"
+
+        eventually(bench.page, is_there)
+        bench.settle()
+        expect(stale).to_be_hidden()
+        tr.Scenario.read(bench.scenario())

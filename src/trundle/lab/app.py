@@ -84,7 +84,7 @@ def _reading(app: FastAPI, lab: Lab) -> None:
 
     @app.get("/api/parts", **described("What a scenario may be made of: each kind of part, and all of its numbers."))
     async def parts(request: Request) -> Response:
-        return await lab.shared(request, answers.parts)
+        return await lab.shared(request, answers.parts, here=True)  # before any worker is there
 
 
 def _asking(app: FastAPI, lab: Lab) -> None:

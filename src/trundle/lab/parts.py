@@ -9,14 +9,15 @@ import json
 from collections.abc import Iterator
 from typing import Any, Literal, get_args, get_origin
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from ..errors import InvalidValueError
+from ..mechanics.algebra import E_Z
 from ..mechanics.bodies import Body
-from ..mechanics.surfaces import Plane, Surface
+from ..mechanics.expressions import Expression
+from ..mechanics.surfaces import Surface
 from ..mechanics.symmetry import ball_of
-from ..mechanics.system import RollingSystem, Support
 from ..scenario.document import ScenarioFile
 from ..scenario.fields import Coordinate, Measure, Measures
 from ..scenario.path_file import Ball, PathFile
@@ -58,14 +59,8 @@ def all_parts() -> dict[str, Any]:
         },
         "path": {kind: _fields(piece) for kind, piece in PathFile.kinds["path"].items()},
         "at_rest": OnSurface.model_fields["motion"].default.kind,
-        "units": {dimension: _units(dimension) for dimension in UNITS},
+        "units": OFFERED,
     }
-
-
-def _units(dimension: str) -> dict[str, float]:
-    """Return how many SI units each unit is that a page offers."""
-    sizes = {unit: to_si(f"1 {unit}" if unit else 1.0, dimension, "unit") for unit in OFFERED[dimension]}
-    return {unit: float(f"{size:.15g}") for unit, size in sizes.items()}
 
 
 # --- families -----------------------------------------------------------------------------------------------
@@ -107,16 +102,15 @@ def _start_of_body(body: Body) -> dict[str, Any]:
     """Return what of a start goes with a body: what could stand still leans and rocks, what would lie flat rolls."""
     if body.is_isotropic_sphere or body.shape.axis is not None:
         return {}
-    try:
-        RollingSystem(body, Support(Plane())).place((0.0, 0.0))
-    except InvalidValueError:
-        return {"attitude": [0, "80 deg", 0], "velocity": ["1 m/s", 0]}
-    return {"attitude": [0, "20 deg", 0]}
+    covered = body.shape.covers(-E_Z)
+    if covered is not None and not covered > 0:
+        return {"attitude": [0, "80 deg", 0], "velocity": ["30 cm/s", 0]}
+    return {"attitude": [0, "20 deg", 0], "velocity": [0, 0]}
 
 
 def _surface(kind: str, table: type[Table]) -> dict[str, Any]:
     told = _kind(kind, table)
-    surface: Surface = table.model_validate(told["first"]).surface()  # type: ignore[attr-defined]
+    surface: Surface = _part(table, told["first"])
     pairs = zip(surface.coordinate_labels, surface.coordinates, strict=True)
     place = _example(Start.model_fields["position"])
     coordinates = [
@@ -146,12 +140,16 @@ def _is_rate(table: Any, first: dict[str, Any] | None, key: str) -> bool:
     """Tell whether a field is the number that says how fast the support turns on the whole."""
     if first is None or isinstance(first.get(key), list):
         return False
+    formula = isinstance(getattr(_part(table, first), key), Expression)
     try:
-        before, after = (table.model_validate({**first, key: rate}).build().mean_rate for rate in (1.0, 1.5))
-    except ValidationError:
+        return not formula and [_part(table, {**first, key: rate}).mean_rate for rate in (1.0, 1.5)] == [1.0, 1.5]
+    except InvalidValueError:
         return False
-    formula = isinstance(getattr(table.model_validate(first), key), str)
-    return not formula and (before, after) == (1.0, 1.5)
+
+
+def _part(table: Any, values: dict[str, Any]) -> Any:
+    """Return a part by what its table says."""
+    return table.part(**{key: value for key, value in values.items() if key != "kind"})
 
 
 def _load(kind: str, table: type[Table]) -> dict[str, Any]:

@@ -43,9 +43,9 @@ class Lab:
 
     async def start(self) -> None:
         """Start the workers, and prepare what every page asks for first."""
-        await asyncio.to_thread(self.lanes.processes.start)
-        for function in (answers.parts, answers.catalogue):
-            await self.prepare(function)
+        first = self.prepare(answers.parts, here=True)
+        await asyncio.gather(first, asyncio.to_thread(self.lanes.processes.start))
+        await self.prepare(answers.catalogue)
 
     async def stop(self) -> None:
         """End the workers, whatever they do."""
@@ -71,24 +71,24 @@ class Lab:
 
     async def at_once(self, request: Request, function: Callable[..., Answer | Refusal], *arguments: Any) -> Response:
         """Answer as `answer` does, in a thread of this process: for what only reads a file of the package's own."""
-        found = await asyncio.to_thread(function, *arguments)
-        if isinstance(found, Refusal):
-            raise RefusedError(found)
-        self.cache.put(key_of(function.__name__, *arguments), found)
+        await self._here(key_of(function.__name__, *arguments), function, arguments)
         return await self.answer(request, function, *arguments)
 
-    async def shared(self, request: Request, function: Callable[..., Answer | Refusal], *arguments: Any) -> Response:
+    async def shared(
+        self, request: Request, function: Callable[..., Answer | Refusal], *arguments: Any, here: bool = False
+    ) -> Response:
         """Answer as `answer` does, by a computation that all who ask meanwhile wait for, and that none of them ends."""
         key = key_of(function.__name__, *arguments)
         if self.cache.get(key) is None:
-            await self.prepare(function, *arguments)
+            await self.prepare(function, *arguments, here=here)
         return await self.answer(request, function, *arguments)
 
-    async def prepare(self, function: Callable[..., Answer | Refusal], *arguments: Any) -> None:
-        """Compute what will be asked for, once."""
+    async def prepare(self, function: Callable[..., Answer | Refusal], *arguments: Any, here: bool = False) -> None:
+        """Compute what will be asked for, once; `here`: in a thread of this process, without waiting for a worker."""
         key = key_of(function.__name__, *arguments)
         if key not in self._coming:
-            work = asyncio.create_task(self._computed(key, None, False, function, arguments))
+            computing = self._here(key, function, arguments) if here else None
+            work = asyncio.create_task(computing or self._computed(key, None, False, function, arguments))
             self._coming[key] = work
             work.add_done_callback(partial(self._came, key))
         await asyncio.wait({self._coming[key]})
@@ -114,6 +114,14 @@ class Lab:
         """Compute, and keep what came out."""
         found = await self.lanes.run(request, slow, function, *arguments)
         self.ready = True
+        if isinstance(found, Refusal):
+            raise RefusedError(found)
+        self.cache.put(key, found)
+        return found
+
+    async def _here(self, key: str, function: Callable[..., Answer | Refusal], arguments: Any) -> Answer:
+        """Compute in a thread, and keep what came out."""
+        found = await asyncio.to_thread(function, *arguments)
         if isinstance(found, Refusal):
             raise RefusedError(found)
         self.cache.put(key, found)
