@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
 from starlette.testclient import TestClient
 
 import trundle as tr
 from trundle.errors import OutOfDomainError
-from trundle.lab.starts import dragged, nudged, thrown
+from trundle.lab.parts import all_parts
+from trundle.lab.starts import dragged, nudged, start_by_hand, thrown
 
 BALL = {"kind": "solid-sphere", "radius": "10 cm", "mass": "1 kg"}
 SINE, COSINE = 0.5, math.sqrt(3) / 2
@@ -130,4 +134,32 @@ def test_the_server_says_it_and_refuses_what_makes_no_sense(lab: TestClient) -> 
     assert lab.post("/api/start", json=asked | {"nudge": [1, 0, 0]}).status_code == 422  # it does not say how it moves
     assert lab.post("/api/start", json=asked | {"at": {"position": [0, 0, 0]}}).status_code == 422
     far = asked | {"at": {"position": [1e308, 0, 0], "contact": [-1e308, 0, 0]}}
-    assert lab.post("/api/start", json=far).status_code in (200, 422)
+    assert lab.post("/api/start", json=far).status_code == 422
+
+
+NUMBERS = st.one_of(st.sampled_from([0.0, 0.1, -0.2, 1e308]), st.floats(allow_nan=False, allow_infinity=False))
+TRIPLES = st.tuples(NUMBERS, NUMBERS, NUMBERS)
+
+
+@pytest.mark.parametrize("kind", list(all_parts()["support"]))
+@given(at=st.fixed_dictionaries({"position": TRIPLES, "contact": TRIPLES}), drawn=st.none() | TRIPLES)
+@example(at={"position": (0.0, 0.0, 0.1), "contact": NO}, drawn=NO)  # where a cone has its apex, a cylinder its axis
+@settings(max_examples=30, deadline=None)
+def test_whatever_was_done_the_start_is_numbers_or_a_refusal(kind: str, at: Any, drawn: Any) -> None:
+    chosen = surfaces_chosen()[kind]
+    try:
+        found = start_by_hand(chosen, at, drawn)
+    except tr.TrundleError:
+        return
+    assert all(math.isfinite(number) for numbers in found.values() for number in numbers)
+
+
+@cache
+def surfaces_chosen() -> dict[str, tr.Scenario]:
+    """A small ball on each surface as the page chooses it."""
+    body = BALL | {"radius": "1 cm"}
+    run = {"duration": 1, "every": 0.1}
+    return {
+        kind: tr.Scenario.read({"body": body, "support": part["first"], "start": part["start"], "run": run})
+        for kind, part in all_parts()["support"].items()
+    }

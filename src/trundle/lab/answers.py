@@ -258,12 +258,9 @@ def start(
     >>> json.loads(start(files.parse(files.read("tilted-turntable"), ""), at).body)
     {'position': [0.1, 0.0]}
     """
-    from . import starts
+    from .starts import start_by_hand
 
-    scenario = scenario_from(data)
-    if nudge is not None:
-        return _json(starts.nudged(scenario, at, nudge))
-    return _json(starts.dragged(scenario, at) if velocity is None else starts.thrown(scenario, at, velocity))
+    return _json(start_by_hand(scenario_from(data), at, velocity, nudge))
 
 
 def told(scenario: Scenario | PathScenario) -> dict[str, Any]:

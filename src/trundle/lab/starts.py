@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ..errors import InvalidValueError, OutOfDomainError
+from ..errors import InvalidValueError, OutOfDomainError, TrundleError
 from ..mechanics.algebra import Vector
 from ..mechanics.motions import SupportState
 from ..mechanics.symmetry import same_at_all_times
@@ -36,8 +37,8 @@ class _Place:
         there = surface.point(*surface.coordinates_of(self.contact))
         if not (there - self.contact).norm() <= _NEAR * self.offset.norm():
             raise OutOfDomainError(
-                "No run can start here: a start says its place by its coordinates, and they say another place. "
-                "The surface overhangs."
+                "No run can start here: the surface overhangs, and a start says its place by coordinates that stand "
+                "for another place there. Go on from another instant."
             )
         return _numbers(surface.put_down_at(self.contact, self.offset))
 
@@ -52,6 +53,34 @@ class _Place:
         """Return the part of an angular velocity of the inertial frame along the normal."""
         normal = self.scenario.system().support.surface.normal(self.contact)
         return _number((self.begin.rotation.transpose @ turning).dot(normal))
+
+
+def start_by_hand(
+    scenario: Scenario,
+    at: Mapping[str, Any],
+    velocity: Sequence[float] | None = None,
+    nudge: Sequence[float] | None = None,
+) -> dict[str, Any]:
+    """Return what changes in the start of a scenario: as `nudged`, as `thrown`, or else as `dragged`.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> at = {"position": [0.0, 0.0, 0.014], "contact": [0.0, 0.0, 0.0]}
+    >>> start_by_hand(tr.Scenario.load("ball-in-a-funnel"), at)
+    Traceback (most recent call last):
+    ...
+    trundle.errors.OutOfDomainError: No run can start here: the surface is not smooth here. Choose another place.
+    """
+    try:
+        if nudge is not None:
+            return nudged(scenario, at, nudge)
+        return dragged(scenario, at) if velocity is None else thrown(scenario, at, velocity)
+    except TrundleError:
+        raise
+    except (ArithmeticError, ValueError):
+        said = "No run can start here: the surface is not smooth here. Choose another place."
+        raise OutOfDomainError(said) from None
 
 
 def dragged(scenario: Scenario, at: Mapping[str, Any]) -> dict[str, Any]:
@@ -133,6 +162,8 @@ def _place(scenario: Scenario, at: Mapping[str, Any], begin: SupportState) -> _P
 
 def _number(value: Any) -> float:
     """Return a number without what single precision leaves of it, and of a zero that was turned to and fro."""
+    if not math.isfinite(value):
+        raise OverflowError
     return 0.0 if abs(value) < _ROUNDING else float(f"{float(value):.{_DIGITS}g}")
 
 
