@@ -171,7 +171,7 @@ def _first(kind: str, table: type[Table]) -> dict[str, Any] | None:
             continue
         example = _example(field)
         instead = any(isinstance(note, FormulaText) for note in _notes(field))  # a table of points may stand for it
-        if field.is_required() or instead or (field.default is None and field.examples):
+        if field.is_required() or instead or field.examples:
             if example is None:
                 return None
             found[key] = example
@@ -197,9 +197,14 @@ def _field(key: str, field: FieldInfo) -> dict[str, Any] | None:
     for note in _notes(field):
         if isinstance(note, Measures) and not isinstance(note.each, Coordinate):
             names = note.names if note.size <= len(note.names) else ()
-            return {**told, "type": "vector", "names": list(names), **_number(note.each, _usual(field), True)}
+            return {
+                **told,
+                "type": "vector",
+                "names": list(names),
+                **_number(note.each, _usual(field, note.each), True),
+            }
         if isinstance(note, Measure):
-            return {**told, "type": "number", "example": _example(field), **_number(note, _usual(field), False)}
+            return {**told, "type": "number", "example": _example(field), **_number(note, _usual(field, note), False)}
         if isinstance(note, FormulaText):
             return {**told, "type": "formula", "label": note.formula.said.removesuffix(".")}
     if field.annotation is str:
@@ -211,17 +216,19 @@ def _number(measure: Measure, example: Any, many: bool) -> dict[str, Any]:
     """Return the dimension of a number, the unit to begin with, and the ends of its slider."""
     parts = example if isinstance(example, list) else [example]
     sizes = [size for part in parts if (size := _size(measure, part))]
-    usual = max(sizes, key=abs) if sizes else float(to_si(UNITS[measure.kind][1], measure.kind, ""))
-    ends = slider(measure, usual)
+    ends = slider(measure, max(sizes, key=abs, default=None))
     if many and measure.kind == "number":  # a direction
         ends |= {"min": -1.0, "max": 1.0}
     return {"dimension": measure.kind, "unit": _unit(parts, measure.kind), **ends}
 
 
-def _usual(field: FieldInfo) -> Any:
-    """Return a usual value of a field: its example, its default, or the example of its dimension."""
-    own = field.examples or field.is_required() or not isinstance(field.default, float) or not field.default
-    return _example(field) if own else field.default
+def _usual(field: FieldInfo, measure: Measure) -> Any:
+    """Return a usual value of a field: its example, its default or the example of what it is; None where none says."""
+    if field.examples:
+        return field.examples[0]
+    if isinstance(field.default, float) and field.default:
+        return field.default
+    return json.loads(measure.example) if measure.example else None
 
 
 def _size(measure: Measure, value: Any) -> float | None:

@@ -8,24 +8,25 @@ from typing import Any
 
 from ..errors import InvalidValueError
 from ..scenario.fields import Measure
+from ..units import UNITS, to_si
 
 _DECADE, _TIMES = 10.0, 5.0
 _HALVINGS = 50
 
 
-def slider(measure: Measure, example: float) -> dict[str, Any]:
+def slider(measure: Measure, example: float | None) -> dict[str, Any]:
     """Return the ends of a slider, SI, and whether it goes by decades.
 
     A number that must be positive goes from a tenth of its example to ten times that, by decades; any other goes five
     times as far as its example, to both sides if it may be negative. None goes further than it may, and no angle
-    further than half a turn.
+    further than half a turn, which is how far one goes that has no example.
 
     Parameters
     ----------
     measure : Measure
         What the number is.
-    example : float
-        A usual size of it, SI.
+    example : float, optional
+        A usual size of it, SI; absent: that of its dimension.
 
     Returns
     -------
@@ -39,7 +40,7 @@ def slider(measure: Measure, example: float) -> dict[str, Any]:
     >>> slider(Measure("velocity"), 0.2)
     {'min': -1.0, 'max': 1.0, 'decades': False}
     """
-    usual = abs(example) or 1.0
+    usual = abs(example or (math.pi if measure.kind == "angle" else to_si(UNITS[measure.kind][1], measure.kind, "")))
 
     def may_be(number: float) -> bool:
         try:

@@ -66,7 +66,8 @@ export class SupportModel {
     const { support_vertices: vertices, support_normals: normals, support_triangles: triangles } = scene.columns
     const there = vertices !== undefined && normals !== undefined && triangles !== undefined
     const { flat } = support
-    const boundless = flat && support.rim === null
+    const edged = flat && reachesRim(scene)
+    const boundless = flat && !edged
     repaint(this.paint, scene)
     const square = support.marks === 'square'
     for (const part of [this.front, this.back, this.side]) {
@@ -79,8 +80,8 @@ export class SupportModel {
     this.measure(geometry, flat, square)
     this.replace(this.front, geometry, boundless)
     this.replace(this.back, geometry, true)
-    this.side.visible = flat && !boundless
-    if (flat && support.rim !== null) this.replace(this.side, skirt(support.rim), false)
+    this.side.visible = edged
+    if (edged) this.replace(this.side, skirt(support.rim!), false)
     if (boundless) this.paint.fade.value.copy(extentOf(geometry))
     else this.rim.setPoints(pieces(edgesOf(vertices, triangles)))
   }
@@ -234,6 +235,11 @@ function skirt(rim: number): BufferGeometry {
     marks[2 * i + 1] = 0.9
   }
   return whole.setAttribute('marks', new BufferAttribute(marks, 2))
+}
+
+/** Of a large table with a short path only a part is shown, and not its edge. */
+function reachesRim({ header: { support } }: Scene): boolean {
+  return support.rim !== null && support.size > 0.999 * support.rim
 }
 
 /** A plane without an edge that does not turn: any part of it looks alike, so that one can show as much as one likes. */

@@ -44,7 +44,7 @@ class FreeAxle(Motion):
     """
 
     inertia: Annotated[Scalar, Number("inertia", POSITIVE, "Of the support about its axle.", "0.05 kg*m^2")]
-    rate: Annotated[Scalar, Number("angular velocity", said="At the start.")] = 0.0
+    rate: Annotated[Scalar, Number("angular velocity", said="At the start.", example="33.3 rpm")] = 0.0
     motor_torque: Annotated[Any, Number("torque", said="A number or a formula in the time t.", varies=True)] = 0.0
     bearing_drag: Annotated[Scalar, Number("rotational damping", NOT_NEGATIVE, "Of a viscous bearing.")] = 0.0
     bearing_torque: Annotated[Scalar, Number("torque", NOT_NEGATIVE, "Of a dry bearing, against the turning.")] = 0.0

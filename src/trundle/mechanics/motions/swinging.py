@@ -38,7 +38,7 @@ class Rock(Motion):
 
     amplitude: Annotated[Scalar, Number("angle", example="2 deg")]
     rate: Annotated[Scalar, Number("angular velocity", example="1 turn/s")]
-    phase: Annotated[Scalar, Number("angle", example="90 deg")] = 0.0
+    phase: Annotated[Scalar, Number("angle")] = 0.0
     axis: Annotated[Any, AXIS] = (0.0, 1.0, 0.0)
     kind = "rock"
     label = "Rocks"
@@ -79,7 +79,7 @@ class Shake(Motion):
 
     amplitude: Annotated[Any, Numbers(Number("length", example="1 cm"), "In the support frame.")]
     rate: Annotated[Scalar, Number("angular velocity", example="1 turn/s")]
-    phase: Annotated[Scalar, Number("angle", example="90 deg")] = 0.0
+    phase: Annotated[Scalar, Number("angle")] = 0.0
     kind = "shake"
     label = "Shakes"
     way = "shaken"

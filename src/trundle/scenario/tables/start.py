@@ -34,7 +34,6 @@ class Start(Table):
     roll: Angle = Field(
         default=0.0,
         title="Rolled on by",
-        examples=["90 deg"],
         description="Of a cylinder: how far it has rolled on since its mark was on top.",
     )
     height: Height = Field(
