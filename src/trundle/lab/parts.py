@@ -239,10 +239,13 @@ def _size(measure: Measure, value: Any) -> float | None:
 
 
 def _unit(examples: list[Any], dimension: str) -> str:
-    """Return the unit of an example, or of the example of its dimension."""
-    for text in (*examples, UNITS[dimension][1]):
+    """Return the unit of an example, the SI unit where it is a bare number; else that of the dimension's example."""
+    texts = [text for text in examples if isinstance(text, str)]
+    if any(examples) and not texts:
+        return UNITS[dimension][0]
+    for text in (*texts, UNITS[dimension][1]):
         for unit in OFFERED[dimension]:
-            if isinstance(text, str) and unit and text.endswith(f" {unit}"):
+            if unit and text.endswith(f" {unit}"):
                 return unit
     return UNITS[dimension][0]
 
