@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import fields, is_dataclass
 from typing import Any, ClassVar
 
 from .. import checks
@@ -26,6 +27,10 @@ class Shape:
     def covers(self, nu: Vector) -> Scalar | None:  # noqa: ARG002
         """Return what is positive where the formulas hold, as on the round side of a hemisphere; None: everywhere."""
         return None
+
+    def parameters(self) -> dict[str, Any]:
+        """Return the numbers of the shape by the names that builders of bodies give them; the fields of a dataclass."""
+        return {each.name: getattr(self, each.name) for each in fields(self)} if is_dataclass(self) else {}
 
     @property
     def axisymmetric(self) -> bool:

@@ -54,6 +54,10 @@ class Ellipsoid(Shape):
         A = Matrix.diagonal(self.a * self.a, self.b * self.b, self.c * self.c)
         return (A - Matrix.outer(x, x)) * shrunk
 
+    def parameters(self) -> dict[str, Any]:
+        """Return the semi-axes and the centre."""
+        return {"semi_axes": (self.a, self.b, self.c), "centre": self.centre}
+
     def _reached(self, nu: Vector) -> tuple[Vector, Scalar]:
         """Return the point Aν/h from the ellipsoid's centre, and 1/h."""
         stretched = Vector(self.a * self.a * nu.x, self.b * self.b * nu.y, self.c * self.c * nu.z)

@@ -53,6 +53,10 @@ class SupportFunction(Shape):
         if _in_numbers(self.formula.tree):
             _check(self.formula)
 
+    def parameters(self) -> dict[str, Any]:
+        """Return h and the centre."""
+        return {"support_function": self.formula, "centre": self.centre}
+
     @property
     def axisymmetric(self) -> bool:
         """Whether h changes with no turn about the third axis by more than rounding, and its centre lies on it."""
