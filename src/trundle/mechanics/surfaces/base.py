@@ -61,6 +61,12 @@ class Surface(Part):
         """Return φ(p), m."""
         raise NotImplementedError
 
+    def step_onto(self, p: Vector) -> Vector:
+        """Return the step from p to φ = 0 along ∇φ, one of Newton's method, m."""
+        level = self.level(Vector(*jets(tuple(p))))
+        slope = Vector(*level.gradient)
+        return slope * -(level.value / slope.dot(slope))
+
     def normal(self, p: Vector) -> Vector:
         """Return n = ∇φ/|∇φ|, from the support into the body."""
         slope = Vector(*self.level(Vector(*jets(tuple(p)))).gradient)

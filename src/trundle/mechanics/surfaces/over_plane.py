@@ -41,13 +41,22 @@ class OverPlane(Surface):
         (x_, y_), (xx, xy, yy) = h.gradient, h.hessian
         return (x_, y_), (xx, xy, yy)
 
+    def slopes(self, x: Scalar, y: Scalar) -> Slopes:
+        """Return the first derivatives of h."""
+        return self.derivatives(x, y)[0]
+
     def level(self, p: Vector) -> Scalar:
         """Return the height of p over the surface, along the third axis, m."""
         return p.z - self.height(p.x, p.y)
 
+    def step_onto(self, p: Vector) -> Vector:
+        """Return −n φ/|∇φ|."""
+        n, length = self.normal_of(self.slopes(p.x, p.y))
+        return n * -(self.level(p) / length)
+
     def normal(self, p: Vector) -> Vector:
         """Return n = (−h_x, −h_y, 1)/√(1 + h_x² + h_y²)."""
-        return self.normal_of(self.derivatives(p.x, p.y)[0])[0]
+        return self.normal_of(self.slopes(p.x, p.y))[0]
 
     def shape_operator(self, p: Vector) -> Matrix:
         """Return S = −P H P/√(1 + h_x² + h_y²), H the second derivatives of h."""
