@@ -85,11 +85,35 @@ class Body:
         (SPHERE_RATIO if self.shape.axis is None else CYLINDER_RATIO).read(k, "inertia_ratio")
 
     def inertia_in_space(self, Q: Matrix) -> Matrix:
-        """Return J in the support frame, kg m², for the rotation matrix Q from the body frame to that frame."""
+        """Return J in the support frame, kg m², for the rotation matrix Q from the body frame to that frame.
+
+        Parameters
+        ----------
+        Q : Matrix
+            Body frame to support frame.
+
+        Returns
+        -------
+        Matrix
+            Symmetric.
+        """
         return self.inertia.in_space(Q, self)
 
     def gyroscopic(self, Q: Matrix, Omega: Vector) -> Vector:
-        """Return Ω×JΩ in the support frame, N m."""
+        """Return Ω×JΩ in the support frame, N m.
+
+        Parameters
+        ----------
+        Q : Matrix
+            Body frame to support frame.
+        Omega : Vector
+            Ω, support frame, rad/s.
+
+        Returns
+        -------
+        Vector
+            Support frame.
+        """
         return self.inertia.gyroscopic(Q, Omega, self)
 
     @property

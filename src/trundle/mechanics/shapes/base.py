@@ -19,27 +19,83 @@ class Shape(Part):
     left: ClassVar[str] = "tipped onto the edge of its round side"  # what a body did that left what the shape covers
 
     def support_map(self, nu: Vector) -> Vector:
-        """Return X(ν), the body-frame point with outward unit normal ν, in m from the centre of mass."""
+        """Return X(ν), the body-frame point with outward unit normal ν, in m from the centre of mass.
+
+        Parameters
+        ----------
+        nu : Vector
+            Outward unit normal ν, body frame.
+
+        Returns
+        -------
+        Vector
+            Body frame.
+        """
         raise NotImplementedError
 
     def support_gradient(self, nu: Vector) -> Matrix:
-        """Return ∂X/∂ν on the tangent plane of ν, in m: symmetric, its eigenvalues the radii of curvature."""
+        """Return ∂X/∂ν on the tangent plane of ν, in m: symmetric, its eigenvalues the radii of curvature.
+
+        Parameters
+        ----------
+        nu : Vector
+            Outward unit normal ν, body frame.
+
+        Returns
+        -------
+        Matrix
+            Body frame, zero along ν.
+        """
         raise NotImplementedError
 
     def covers(self, nu: Vector) -> Scalar | None:  # noqa: ARG002
-        """Return what is positive where the formulas hold, as on the round side of a hemisphere; None: everywhere."""
+        """Return what is positive where the formulas hold, as on the round side of a hemisphere; None: everywhere.
+
+        Parameters
+        ----------
+        nu : Vector
+            Outward unit normal ν, body frame.
+
+        Returns
+        -------
+        Scalar or None
+            Where it falls to zero, a run ends.
+        """
         return None
 
     def noun_of(self, body: Any) -> str:  # noqa: ARG002  what a rim carries shows in the inertia only
-        """Return how titles name a body of this shape."""
+        """Return how titles name a body of this shape.
+
+        Parameters
+        ----------
+        body : Body
+            Of this shape.
+
+        Returns
+        -------
+        str
+            Such as "disc" or "ring".
+        """
         return self.noun
 
     def key_numbers(self) -> list[str]:
-        """Return what figures say of its size."""
+        """Return what figures say of its size.
+
+        Returns
+        -------
+        list of str
+            Such as ``["radius 25 mm"]``.
+        """
         return [f"radius {wording.small_length(self.radius)}"] if hasattr(self, "radius") else []
 
     def parameters(self) -> dict[str, Any]:
-        """Return the numbers of the shape by the names that builders of bodies give them; the fields of a dataclass."""
+        """Return the numbers of the shape by the names that builders of bodies give them; the fields of a dataclass.
+
+        Returns
+        -------
+        dict of str to number, Vector or Expression
+            SI, body frame.
+        """
         return {each.name: getattr(self, each.name) for each in fields(self)} if is_dataclass(self) else {}
 
     @property

@@ -30,11 +30,33 @@ class OverPlane(Surface):
     """
 
     def height(self, x: Scalar, y: Scalar) -> Scalar:
-        """Return h(x, y), m."""
+        """Return h(x, y), m.
+
+        Parameters
+        ----------
+        x, y : Scalar
+            m; jets included.
+
+        Returns
+        -------
+        Scalar
+            Over the plane of the first two axes.
+        """
         raise NotImplementedError
 
     def derivatives(self, x: Scalar, y: Scalar) -> tuple[Slopes, Bends]:
-        """Return the first derivatives of h, and the second, 1/m."""
+        """Return the first derivatives of h, and the second, 1/m.
+
+        Parameters
+        ----------
+        x, y : Scalar
+            m.
+
+        Returns
+        -------
+        slopes, bends
+            (h_x, h_y), and (h_xx, h_xy, h_yy).
+        """
         h = self.height(*jets((x, y)))
         if not isinstance(h, Jet):  # a formula in which neither stands
             return (0.0, 0.0), (0.0, 0.0, 0.0)
@@ -42,7 +64,18 @@ class OverPlane(Surface):
         return (x_, y_), (xx, xy, yy)
 
     def slopes(self, x: Scalar, y: Scalar) -> Slopes:
-        """Return the first derivatives of h."""
+        """Return the first derivatives of h.
+
+        Parameters
+        ----------
+        x, y : Scalar
+            m.
+
+        Returns
+        -------
+        tuple of 2 Scalar
+            h_x and h_y.
+        """
         return self.derivatives(x, y)[0]
 
     def level(self, p: Vector) -> Scalar:
