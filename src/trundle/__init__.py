@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from .mechanics.loads import (
         Drag,
         Force,
+        Load,
         Magnus,
         Motor,
         PivotFriction,
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
         Combined,
         Fixed,
         FreeAxle,
+        Motion,
         Move,
         PrecessingTilt,
         Rock,
@@ -71,10 +73,12 @@ if TYPE_CHECKING:
         Paraboloid,
         Plane,
         Revolution,
+        Surface,
         TorusTrack,
     )
     from .mechanics.system import RollingSystem, State, Support
     from .simulation import Scenario, simulate
+    from .solve.exact import ClosedForm
     from .statics import Equilibria, Equilibrium, equilibria
     from .steady import PeriodicMotion, SteadyMotion, SteadyMotions, periodic_motion, steady_motions
     from .trajectory import Event, Trajectory
@@ -119,12 +123,14 @@ _HOMES = {
         "Paraboloid",
         "Plane",
         "Revolution",
+        "Surface",
         "TorusTrack",
     ),
     "mechanics.motions": (
         "Combined",
         "Fixed",
         "FreeAxle",
+        "Motion",
         "Move",
         "PrecessingTilt",
         "Rock",
@@ -138,6 +144,7 @@ _HOMES = {
     "mechanics.loads": (
         "Drag",
         "Force",
+        "Load",
         "Magnus",
         "Motor",
         "PivotFriction",
@@ -148,6 +155,7 @@ _HOMES = {
         "Torque",
     ),
     "mechanics.system": ("RollingSystem", "State", "Support"),
+    "solve.exact": ("ClosedForm",),
     "derivation": ("derive",),
     "simulation": ("simulate", "Scenario"),
     "statics": ("equilibria", "Equilibria", "Equilibrium"),
@@ -166,6 +174,7 @@ __all__ = [
     "Card",
     "ChargedParticle",
     "Check",
+    "ClosedForm",
     "Combined",
     "Cone",
     "ConstraintAnalysis",
@@ -187,9 +196,11 @@ __all__ = [
     "Hemisphere",
     "InvalidValueError",
     "Isotropic",
+    "Load",
     "Magnus",
     "MissingExtraError",
     "Mistake",
+    "Motion",
     "Motor",
     "Move",
     "OutOfDomainError",
@@ -227,6 +238,7 @@ __all__ = [
     "Straight",
     "Support",
     "SupportFunction",
+    "Surface",
     "Tensor",
     "Tilt",
     "Torque",

@@ -92,6 +92,17 @@ def with_unit(value: float, kind: str, digits: int = 3) -> str:
     return f"{short(value / unit.scale, digits)} {unit.symbol}".strip()
 
 
+def small_length(size: Any) -> str:
+    """Write a radius in millimetres where balls are sold by them.
+
+    Examples
+    --------
+    >>> small_length(0.025), small_length(0.3)
+    ('25 mm', '30 cm')
+    """
+    return f"{float(size) * 1e3:.4g} mm" if 1e-3 <= float(size) < 0.1 else length(size)
+
+
 def as_ratio(value: float) -> str:
     """Write a number as a simple fraction where it is one, else with four digits.
 

@@ -1,4 +1,4 @@
-"""A new surface, motion and load, each one file and one line that names its module, are known to every room.
+"""A new shape of body, surface, motion and load, each one file and what names it, are known to every room.
 
 They are written into a copy of the package, and the copy is used as its users would.
 """
@@ -107,13 +107,70 @@ class Tether(Load):
     def potential(self, motion):
         return motion.position.dot(motion.position) * (0.5 * self.stiffness)
 '''
-FILES = {"surfaces": ("funnel", SURFACE, "EllipticFunnel"), "motions": ("heave", MOTION, "Heave")}
+SHAPE = '''
+from dataclasses import dataclass
+from typing import Annotated
+
+from ... import wording
+from ..algebra import Matrix, Vector
+from ..scalars import Scalar, namespace
+from .base import RADIUS, Shape
+
+
+@dataclass(frozen=True)
+class Spheroid(Shape):
+    """An ellipsoid of revolution about the third axis."""
+
+    noun = "spheroid"
+    equator: Annotated[Scalar, RADIUS]
+    pole: Annotated[Scalar, RADIUS]
+    axisymmetric = True
+
+    def key_numbers(self):
+        return [f"spheroid {wording.length(self.equator, self.pole)}"]
+
+    def _reached(self, nu):
+        a, c = self.equator * self.equator, self.pole * self.pole
+        stretched = Vector(a * nu.x, a * nu.y, c * nu.z)
+        h = namespace(*stretched).sqrt(nu.dot(stretched))
+        return stretched / h, h
+
+    def support_map(self, nu):
+        return self._reached(nu)[0]
+
+    def support_gradient(self, nu):
+        x, h = self._reached(nu)
+        a, c = self.equator * self.equator, self.pole * self.pole
+        return (Matrix.diagonal(a, a, c) - Matrix.outer(x, x)) * (1.0 / h)
+'''
+BUILDER = '''
+    @classmethod
+    @builder("spheroid", Spheroid)
+    def spheroid(
+        cls,
+        equator: Annotated[Any, Number("length", POSITIVE, "Half its width.", "3 cm")],
+        pole: Annotated[Any, Number("length", POSITIVE, "Half its height.", "2 cm")],
+        mass: MassOr = None,
+        density: DensityOr = None,
+    ) -> Self:
+        """Make a homogeneous ellipsoid of revolution."""
+        m = mass_of(mass, density, 4 / 3 * math.pi * equator * equator * pole)
+        across = m * (equator * equator + pole * pole) / 5
+        return cls(m, Principal(across, across, 2 / 5 * m * equator * equator), Spheroid(equator, pole))
+
+'''
+FILES = {
+    "shapes": ("spheroid", SHAPE, "Spheroid"),
+    "surfaces": ("funnel", SURFACE, "EllipticFunnel"),
+    "motions": ("heave", MOTION, "Heave"),
+}
 FILES |= {"loads": ("tether", LOAD, "Tether")}
 SCENARIO = """
 [body]
-kind = "solid-sphere"
-radius = "1 cm"
-mass = "10 g"
+kind = "spheroid"
+equator = "3 cm"
+pole = "2 cm"
+density = "1 g/cm^3"
 [support]
 kind = "elliptic-funnel"
 first = "30 cm"
@@ -143,6 +200,7 @@ print(json.dumps({
     "numbers": key_numbers(run.system),
     "same": again.system() == run.system,
     "schema": str(tr.Scenario.schema()),
+    "body": again.body.kind,
     "kinds": [list(KINDS["support"])[-1], list(KINDS["support.motion"])[-1], list(KINDS["loads"])[-1]],
     "scene": len(run.save_html(sys.argv[2]).read_bytes()) > 100_000,
 }))
@@ -152,9 +210,10 @@ import json
 from trundle.lab import answers
 from trundle.scene import unpack
 parts = json.loads(answers.parts().body)
-surface, motion, load = parts["support"]["elliptic-funnel"], parts["motion"]["heave"], parts["loads"]["tether"]
+body, surface = parts["body"]["spheroid"], parts["support"]["elliptic-funnel"]
+motion, load = parts["motion"]["heave"], parts["loads"]["tether"]
 chosen = {
-    "body": parts["body"]["solid-sphere"]["first"],
+    "body": body["first"],
     "support": surface["first"] | {"motion": motion["first"]},
     "start": surface["start"],
     "loads": [load["first"]],
@@ -168,8 +227,9 @@ def nudged(kind):
     at |= {"orientation": run.columns["orientation"][20].tolist(), "time": float(run.columns["time"][20])}
     return json.loads(answers.start(chosen, at, nudge=[0.0, 0.0, 0.0]).body)
 print(json.dumps({
-    "labels": [part["label"] for part in (surface, motion, load)],
-    "first": [part["first"] for part in (surface, motion, load)],
+    "labels": [part["label"] for part in (body, surface, motion, load)],
+    "first": [part["first"] for part in (body, surface, motion, load)],
+    "start": body["start"],
     "field": surface["fields"]["first"],
     "name": scene.header["support"]["name"],
     "flat": scene.header["support"]["flat"],
@@ -189,6 +249,10 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (home / f"{name}.py").write_text(f'"""New."""\n\nfrom __future__ import annotations\n{text}', encoding="utf-8")
         with (home / "__init__.py").open("a", encoding="utf-8") as listed:
             listed.write(f"\nfrom .{name} import {made}\n")
+    body = folder / "trundle" / "mechanics" / "bodies" / "body.py"
+    builds = body.read_text(encoding="utf-8").replace("    Shape,\n", "    Shape,\n    Spheroid,\n", 1)
+    first, there, rest = builds.partition("\n    @classmethod\n    @builder(")
+    body.write_text(first + BUILDER + there.lstrip("\n") + rest, encoding="utf-8")
     (folder / "new.toml").write_text(SCENARIO, encoding="utf-8")
     return folder
 
@@ -207,11 +271,13 @@ def test_new_parts_are_known_in_files_figures_and_scenes(copy: Path) -> None:
     assert found["passed"], found
     assert found["same"]
     assert found["scene"]
-    assert found["title"] == "Ball in a heaving elliptic funnel"
+    assert found["title"] == "Spheroid in a heaving elliptic funnel"
     assert {"table heaves by 1 mm", "funnel heaves by 1 mm"} & set(found["numbers"].split("  ·  "))
     assert "scales 30 cm × 40 cm" in found["numbers"]
     assert "tether 0.2 N/m" in found["numbers"]
-    for word in ("elliptic-funnel", "heave", "tether", "Along the first axis.", "Up and down."):
+    assert "spheroid 3 cm × 2 cm" in found["numbers"]
+    assert found["body"] == "spheroid"
+    for word in ("elliptic-funnel", "heave", "tether", "Along the first axis.", "Half its height.", "Up and down."):
         assert word in found["schema"]
 
 
@@ -233,12 +299,14 @@ def test_new_parts_can_be_chosen_in_the_lab(copy: Path) -> None:
     done = run(copy, "-c", IN_THE_LAB)
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)
-    assert found["labels"] == ["Elliptic funnel", "Heave", "Tether"]
+    assert found["labels"] == ["Spheroid", "Elliptic funnel", "Heave", "Tether"]
     assert found["first"] == [
+        {"kind": "spheroid", "equator": "3 cm", "pole": "2 cm", "mass": "200 g"},
         {"kind": "elliptic-funnel", "first": "30 cm", "second": "40 cm"},
         {"kind": "heave", "amplitude": "1 mm", "rate": "5 rad/s"},
         {"kind": "tether", "stiffness": 0.2},
     ]
+    assert found["start"] == {"attitude": [0, "20 deg", 0], "velocity": [0, 0]}, "it is no ball: it leans and rocks"
     shown = {"label": "First", "said": "Along the first axis.", "unit": "cm", "min": 0.03, "max": 3.0, "decades": True}
     assert shown.items() <= found["field"].items()
     assert (found["name"], found["flat"], found["deep"]) == ("Heaving elliptic funnel", False, True)

@@ -140,7 +140,11 @@ def test_what_a_file_cannot_hold_is_refused() -> None:
             "body.centre",
             "less than the radius",
         ),
-        ('kind = "formula"\nsupport_function = 3\nmass = 1', "body.support_function", "must be text"),
+        (
+            'kind = "formula"\nsupport_function = 3\nmass = 1',
+            "body.support_function",
+            "must be a formula in nu_x, nu_y, nu_z",
+        ),
         ('kind = "formula"\nsupport_function = "0.1 + nu"\nmass = 1', "body.support_function", "Not allowed: nu"),
         ('kind = "formula"\nsupport_function = "0.1*sin(nu_x)"\nmass = 1', "body.support_function", "at nu = "),
         ('kind = "coin"\nradius = 1\nmass = 1', "body.kind", "There are: solid-sphere"),

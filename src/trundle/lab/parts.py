@@ -67,11 +67,11 @@ def all_parts() -> dict[str, Any]:
 
 
 def _kind(kind: str, table: type[Table]) -> dict[str, Any]:
-    part = getattr(table, "part", None)
+    part: Any = getattr(table, "part", None)
     said = (table.__doc__ or "").partition("\n\n")[0]
     common = OnSurface.model_fields if issubclass(table, OnSurface) else {}
     return {
-        "label": (part and part.label) or _words(kind),
+        "label": getattr(part, "label", "") or _words(kind),
         "said": " ".join(said.split()),
         "fields": _fields(table, tuple(common)),
         "first": _first(kind, table),

@@ -45,14 +45,14 @@ def nearest(
 
     contact = touch(system, time, point, orientation, own)
     with np.errstate(all="ignore"):  # by the end of a formula
-        _, aside, down = _beside(system, contact, centre)
+        _, aside, down = beside(system, contact, centre)
         step = aside + down
         small = step.norm() <= _NEXT_TO * (point.norm() + contact.offset.norm())
     moved = Vector(*(np.where(small, there + by, there)[()] for there, by in zip(point, step, strict=True)))
     return touch(system, time, moved, orientation, own)
 
 
-def _beside(
+def beside(
     system: RollingSystem, contact: Contact, centre: Vector, *, bent: bool = True
 ) -> tuple[Vector, Vector, Vector]:
     """Return how far the body's point is aside of the support's, and Newton's step along the support and off it."""
@@ -60,7 +60,7 @@ def _beside(
     apart = centre + contact.offset - contact.point
     gap = n.dot(apart)
     off = apart - n * gap
-    down = n * -_height(system.support.surface, support.own_of(contact.point), support.rotation.transpose @ n)
+    down = support.rotation @ system.support.surface.step_onto(support.own_of(contact.point))
     # The normal leans by S along the support, and ρ follows it by C.
     return off, contact.across(gap).solve(off) if bent and not contact.flat else off, down
 
@@ -141,7 +141,7 @@ def _newton(
     try:
         contact = touch(system, time, point, orientation, own)
         for step in range(_MOST_STEPS):
-            off, aside, down = _beside(system, contact, centre, bent=step > 0)
+            off, aside, down = beside(system, contact, centre, bent=step > 0)
             size = point.norm() + contact.offset.norm()
             left = max(off.norm(), down.norm()) / size
             point = point + aside + down
@@ -208,9 +208,3 @@ def _guesses(
         if likely[which] and len(kept) < _GUESSES and (normals[kept] @ normals[which] < _ALIKE).all():
             kept.append(which)
     return [Vector(*places[which].tolist()) for which in kept]
-
-
-def _height(surface: Surface, there: Vector, n: Vector) -> Scalar:
-    """Return about how far a point is over the surface along n, m: φ over its slope."""
-    level, step = surface.level(there), 1e-6 * (there.norm() + 1e-6)
-    return 2 * step * level / (surface.level(there + n * step) - surface.level(there - n * step))

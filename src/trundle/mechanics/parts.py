@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import MISSING, dataclass, field, fields
 from functools import cache
 from importlib import import_module
-from inspect import get_annotations
+from inspect import get_annotations, signature
 from types import MappingProxyType
 from typing import Any, ClassVar, TypeVar, get_type_hints
 
@@ -68,13 +68,17 @@ class Number:
             return varying(value, self.dimension, key)
         if isinstance(value, str) and value in self.words:
             return self.words[value]
-        number = _CHECKS[self.sign](value, self.dimension, key)
-        if self.limit is not None and is_number(number):
-            try:
+        if self.limit is not None:
+            self._check_limit(value, key)
+        return _CHECKS[self.sign](value, self.dimension, key)
+
+    def _check_limit(self, value: Any, key: str) -> None:
+        number = checks.real(value, self.dimension, key)
+        try:
+            if self.limit is not None and is_number(number):
                 self.limit(number, value)
-            except InvalidValueError as error:
-                raise InvalidValueError(key, error.rule, error.received, error.remedy) from None
-        return number
+        except InvalidValueError as error:
+            raise InvalidValueError(key, error.rule, error.received, error.remedy) from None
 
 
 @dataclass(frozen=True)
@@ -92,7 +96,9 @@ class Numbers:
     example : sequence of 3 strings or numbers, optional
         As it may stand in a file.
     label : str, optional
-        What stands at the control of each, before its axis; absent: its key in words.
+        What stands at the control of each, before its name; absent: its key in words.
+    names : tuple of str
+        What tells one from the other.
 
     Examples
     --------
@@ -105,6 +111,7 @@ class Numbers:
     direction: bool = False
     example: Any = None
     label: str = ""
+    names: tuple[str, ...] = ("x", "y", "z")
 
     def read(self, value: Any, key: str) -> Vector:
         """Return the vector in SI, checked."""
@@ -228,15 +235,32 @@ class Part:
     given: Any  # and these points, by key
 
     def __post_init__(self) -> None:
-        defaults = defaults_of(type(self))
-        for name, says in fields_of(type(self)).items():
-            value = getattr(self, name)
-            if value is not None or defaults.get(name, MISSING) is not None:
-                object.__setattr__(self, name, says.read(value, name))
+        names = fields_of(type(self))
+        for name, value in read_fields(type(self), {name: getattr(self, name) for name in names}).items():
+            object.__setattr__(self, name, value)
 
 
-def fields_of(part: type[Part]) -> Mapping[str, Field]:
-    """Return what each field of a part says of itself.
+Maker = type[Part] | Callable[..., Any]  # what is called with the fields: the class of a part, or a builder of `Body`
+
+
+def read_fields(part: Maker, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what is given for the fields of a part, read by what each says of itself.
+
+    Examples
+    --------
+    >>> from trundle.mechanics.bodies import Body
+    >>> read_fields(Body.hoop, {"radius": "30 cm", "mass": 1})
+    {'radius': 0.3, 'mass': 1.0}
+    """
+    says, defaults = fields_of(part), defaults_of(part)
+    return {
+        name: None if value is None and defaults.get(name, MISSING) is None else says[name].read(value, name)
+        for name, value in given.items()
+    }
+
+
+def fields_of(part: Maker) -> Mapping[str, Field]:
+    """Return what each field of a part, or each parameter of a builder of bodies, says of itself.
 
     Examples
     --------
@@ -244,12 +268,20 @@ def fields_of(part: type[Part]) -> Mapping[str, Field]:
     >>> fields_of(Spin)["rate"].dimension
     'angular velocity'
     """
-    whole: Any = part
-    return _fields(whole)
+    return _fields(_plain(part))
+
+
+def _plain(part: Maker) -> Any:
+    """Return a class, or the function of a class method, which is the same each time one looks."""
+    return getattr(part, "__func__", part)
 
 
 @cache
 def _fields(part: Any) -> Mapping[str, Field]:
+    if not isinstance(part, type):
+        hints = get_type_hints(part, include_extras=True).items()
+        notes = {name: getattr(hint, "__metadata__", ()) for name, hint in hints}
+        return MappingProxyType({name: n for name, each in notes.items() for n in each if isinstance(n, Field)})
     found = {each.name: note for each in fields(part) for note in _notes(part, each.name) if isinstance(note, Field)}
     return MappingProxyType(found)
 
@@ -264,8 +296,8 @@ def _notes(part: Any, name: str) -> tuple[Any, ...]:
     return tuple(getattr(get_type_hints(alone, include_extras=True)[name], "__metadata__", ()))
 
 
-def defaults_of(part: type[Part]) -> Mapping[str, Any]:
-    """Return the defaults of those fields of a part that have one, as its class has them.
+def defaults_of(part: Maker) -> Mapping[str, Any]:
+    """Return the defaults of those fields of a part that have one, as its class or builder has them.
 
     Examples
     --------
@@ -273,12 +305,14 @@ def defaults_of(part: type[Part]) -> Mapping[str, Any]:
     >>> dict(defaults_of(PivotFriction))
     {'below': 0.01}
     """
-    whole: Any = part
-    return _defaults(whole)
+    return _defaults(_plain(part))
 
 
 @cache
 def _defaults(part: Any) -> Mapping[str, Any]:
+    if not isinstance(part, type):
+        parameters = signature(part).parameters.values()
+        return MappingProxyType({p.name: p.default for p in parameters if p.default is not p.empty})
     return MappingProxyType({f.name: f.default for f in fields(part) if f.default is not MISSING})
 
 
@@ -300,8 +334,8 @@ def _below(family: type[PartType]) -> list[type[PartType]]:
     return [each for part in family.__subclasses__() for each in (part, *_below(part))]
 
 
-def sentence_of(part: type[Part]) -> str:
-    """Return the first sentence of what a part says about itself.
+def sentence_of(part: Maker) -> str:
+    """Return the first sentence of what a part says about itself; of a builder, what it makes.
 
     Examples
     --------
@@ -309,4 +343,5 @@ def sentence_of(part: type[Part]) -> str:
     >>> sentence_of(Fixed)
     'A support at rest.'
     """
-    return (part.__doc__ or "").partition("\n\n")[0].replace("\n    ", " ").strip()
+    sentence = " ".join((part.__doc__ or "").partition("\n\n")[0].split()).removeprefix("Make ")
+    return sentence[:1].upper() + sentence[1:]

@@ -15,7 +15,7 @@ from trundle.solve.exact import SphereOnPlane, closed_form
 
 from .happenings import FLIGHT, Happening, Stretch, happenings_of, stretches_of
 from .scales import Array
-from .words import key_numbers, noun_of, title_of
+from .words import key_numbers, title_of
 
 if TYPE_CHECKING:
     from trundle.mechanics.motions import SupportState
@@ -87,7 +87,7 @@ def facts_of(run: Trajectory) -> Facts:
         fixed=support.motion.steady_rate == 0.0 or (stays and surface.axisymmetric),
         rim=None if surface.rim is None else float(surface.rim),
         friction=None if support.friction is None else float(support.friction),
-        noun=noun_of(system.body),
+        noun=system.body.shape.noun_of(system.body),
         wall=float(surface.radius) if isinstance(surface, Cylinder) else None,
         ground=surface.ground,
         outline=_outline(surface),

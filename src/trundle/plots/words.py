@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from trundle.mechanics import shapes, surfaces
+from trundle.mechanics import surfaces
 from trundle.mechanics.scalars import is_zero
-from trundle.wording import as_ratio, degrees, length, short
+from trundle.wording import as_ratio, degrees, short
 
 if TYPE_CHECKING:
     from trundle.mechanics.bodies import Body
@@ -33,37 +33,8 @@ def title_of(system: RollingSystem) -> str:
         ways.append("tilted")
     words = f"{', '.join(way for way in ways if way)} {support.surface.noun}"
     article = "an" if words[0] in "aeiou" else "a"
-    noun = noun_of(system.body)
+    noun = system.body.shape.noun_of(system.body)
     return f"{noun[0].upper()}{noun[1:]} {support.surface.where} {article} {words}"
-
-
-def noun_of(body: Body) -> str:
-    """Name a body by its shape.
-
-    Examples
-    --------
-    >>> import trundle as tr
-    >>> noun_of(tr.Body.ring(0.1, 1.0)), noun_of(tr.Body.hemisphere(0.1, 1.0))
-    ('ring', 'half-ball')
-    """
-    shape = body.shape
-    if isinstance(shape, shapes.Disc):
-        third, radius = getattr(body.inertia, "z", 0.0), shape.radius
-        return "ring" if third > 0.8 * body.mass * radius**2 else "disc"
-    for kind, noun in _NOUNS:
-        if isinstance(shape, kind):
-            return noun
-    return "cylinder" if shape.axis is not None else "body"
-
-
-_NOUNS: tuple[tuple[type, str], ...] = (
-    (shapes.HalfCylinder, "half-cylinder"),
-    (shapes.Roller, "cylinder"),
-    (shapes.Hemisphere, "half-ball"),
-    (shapes.Sphere, "ball"),
-    (shapes.Torus, "ring"),
-    (shapes.Ellipsoid, "ellipsoid"),
-)
 
 
 def key_numbers(system: RollingSystem, own: tuple[float, ...] | None = None) -> str:
@@ -95,17 +66,5 @@ def key_numbers(system: RollingSystem, own: tuple[float, ...] | None = None) -> 
 
 
 def _of_body(body: Body) -> list[str]:
-    if body.is_isotropic_sphere:
-        radius = float(getattr(body.shape, "radius", 0.0))
-        return [f"inertia ratio k = {as_ratio(float(body.inertia_ratio))}", f"radius {_small(radius)}"]
-    shape = body.shape
-    if isinstance(shape, shapes.Ellipsoid):
-        return [f"body {length(shape.a, shape.b, shape.c)}"]
-    if isinstance(shape, shapes.Torus):
-        return [f"radius {_small(float(shape.radius))}, rim {_small(float(shape.rim_radius))}"]
-    return [f"radius {_small(float(shape.radius))}"] if hasattr(shape, "radius") else []
-
-
-def _small(radius: float) -> str:
-    """Write a radius in millimetres where balls are sold by them."""
-    return f"{radius * 1e3:.4g} mm" if 1e-3 <= radius < 0.1 else length(radius)
+    ratio = [f"inertia ratio k = {as_ratio(float(body.inertia_ratio))}"] if body.is_isotropic_sphere else []
+    return ratio + body.shape.key_numbers()

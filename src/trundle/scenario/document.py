@@ -40,8 +40,8 @@ class ScenarioFile(Document):
     kinds: ClassVar[Kinds] = KINDS
 
     gravity: Gravity = Field(default=9.80665, description="g; 0 turns it off.")
-    body: Annotated[Bodies, Field(discriminator="kind")]
-    support: Annotated[Supports, Field(discriminator="kind")]
+    body: Bodies
+    support: Supports
     start: Start
     # Two keys have other names in Python, where `loads` reads a text, as in `json`, and `run` runs it.
     applied_loads: tuple[Loads, ...] = Field(default=(), alias="loads")

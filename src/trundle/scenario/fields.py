@@ -283,8 +283,10 @@ class Measures:
 
     @property
     def offer(self) -> str:
-        """An example of the value as it stands in a file: the first component something, the others 0."""
+        """An example of the value as it stands in a file: zeros follow the first component, where they may."""
         first = self.each.offer
+        if self.each.sign == "positive":
+            return f"[{', '.join([first] * self.size)}]"
         zero = re.sub(r"[\d.]+(e-?\d+)?", "0", first, count=1)
         return f"[{', '.join([first] + [zero] * (self.size - 1))}]"
 

@@ -95,7 +95,7 @@ def _directions(shape: Shape) -> Array:
     """Return the normals ν of a grid, thick where the body is sharply curved.
 
     They are those of an ellipsoid of the body's widths at the points of an even grid, as in the integrals over a
-    body's volume (`trundle.mechanics.bodies.whole`).
+    body's volume (`trundle.mechanics.bodies.homogeneous`).
     """
     axes = points(shape, np.vstack([np.eye(3), -np.eye(3)]))
     widths = 0.5 * np.diag(axes[:3] - axes[3:])

@@ -13,7 +13,7 @@ from trundle.wording import as_ratio
 
 from ..mechanics.symmetry import ball_of
 from ..mechanics.system import RollingSystem
-from ..plots.words import noun_of, title_of
+from ..plots.words import title_of
 from ..scenario import files
 from .support_mesh import Ground
 from .wire import FORMAT
@@ -120,7 +120,7 @@ def tables(text: str) -> dict[str, Any] | None:
 
 def _body(system: RollingSystem, words: dict[str, Any], radius: float) -> dict[str, Any]:
     body = system.body
-    kind = str(words.get("kind", noun_of(body)))
+    kind = str(words.get("kind", body.shape.noun_of(body)))
     name = kind.replace("-", " ").capitalize()
     ratio = f", k = {as_ratio(float(body.inertia_ratio))}" if body.is_isotropic_sphere else ""
     ball = ball_of(body)

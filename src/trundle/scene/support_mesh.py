@@ -156,11 +156,8 @@ def _onto(surface: Surface, vertices: Array) -> Array:
     p = vertices
     for _ in range(_PROJECTIONS):
         with np.errstate(all="ignore"):
-            off = np.broadcast_to(surface.level(Vector.of(p)), len(p))
-            ahead = p + 1e-6 * np.ptp(vertices) * (n := _normals(surface, p))
-            slope = (np.broadcast_to(surface.level(Vector.of(ahead)), len(p)) - off) / (1e-6 * np.ptp(vertices))
-            step = (off / slope)[:, None] * n
-        p = np.where(np.isfinite(step), p - step, p)
+            step = surface.step_onto(Vector.of(p)).array()
+        p = np.where(np.isfinite(step), p + step, p)
     return p
 
 

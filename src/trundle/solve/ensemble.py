@@ -18,7 +18,7 @@ import numpy as np
 
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import Contact, touch
-from ..mechanics.jets import jets
+from ..mechanics.nearest import beside
 from ..mechanics.parameters import numbers, with_numbers
 from ..mechanics.placing import SLIP_TOLERANCE
 from ..mechanics.system import RollingSystem, State
@@ -112,23 +112,14 @@ def _norm(v: Vector) -> Any:
 
 def _settled(system: RollingSystem, time: float, r: Vector, q: Quaternion, own: tuple[Any, ...]) -> Contact:
     """Return the contacts nearest to many bodies: `mechanics.nearest.settle` on arrays."""
-    surface, point = system.support.surface, r
+    point = r
     contact = touch(system, time, point, q, own)
     for step in range(_MOST_STEPS):
-        support, n = contact.support, contact.normal
-        apart = r + contact.offset - point
-        gap = n.dot(apart)
-        aside = apart - n * gap
-        there = support.own_of(point)
-        level = surface.level(Vector(*jets(tuple(there))))
-        slope = Vector(*level.gradient)
-        down = n * -(level.value / _norm(slope))
-        moved = _norm(aside) + _norm(down)
+        off, aside, down = beside(system, contact, r, bent=step > 0)
+        moved = _norm(off) + _norm(down)
         going = 1.0 if step == 0 else np.where(moved > 1e-15 * (point.norm() + contact.offset.norm()), 1.0, 0.0)
         if not np.any(going):
             break
-        if step > 0:
-            aside = contact.across(gap).solve(aside)
         point = point + (aside + down) * going  # who has arrived stays, however far the others have to go
         contact = touch(system, time, point, q, own)
     return contact

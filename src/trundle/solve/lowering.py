@@ -13,8 +13,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from ..mechanics.algebra import Vector
-from ..mechanics.jets import jets
 from ..mechanics.parameters import numbers, with_numbers
 from ..mechanics.scalars import Scalar, less, namespace
 from ..mechanics.system import RollingSystem
@@ -107,10 +105,7 @@ def _tidied(system: RollingSystem, law: Law, time: Scalar, state: Sequence[Scala
     """
     p, q, _, _, own = law.split(state)
     support = system.support.motion.at(time, *own)
-    there = support.own_of(p)
-    level = system.support.surface.level(Vector(*jets(tuple(there))))
-    slope = Vector(*level.gradient)
-    p = p - support.rotation @ (slope * (level.value / slope.dot(slope)))
+    p = p + support.rotation @ system.support.surface.step_onto(support.own_of(p))
     length = namespace(*q).sqrt(sum((part * part for part in q), 0.0))
     return [*p, *(part / length for part in q), *state[7:]]
 

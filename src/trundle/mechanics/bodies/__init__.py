@@ -1,11 +1,10 @@
-"""Bodies: a mass, an inertia tensor and a shape, and builders for the common ones, a file a family."""
+"""Bodies: a mass, an inertia tensor and a shape, and builders for the common ones."""
 
 from __future__ import annotations
 
-from .body import Body
+from .body import HOLLOW_SPHERE, HOOP, SOLID_CYLINDER, SOLID_SPHERE, Body
+from .homogeneous import Homogeneous, homogeneous
 from .inertia import Inertia, Isotropic, Principal, RatioInertia, Tensor, inertia_of
-from .rigid import HOLLOW_SPHERE, HOOP, SOLID_CYLINDER, SOLID_SPHERE, RigidBody
-from .whole import Whole, homogeneous
 
 __all__ = [
     "HOLLOW_SPHERE",
@@ -13,13 +12,12 @@ __all__ = [
     "SOLID_CYLINDER",
     "SOLID_SPHERE",
     "Body",
+    "Homogeneous",
     "Inertia",
     "Isotropic",
     "Principal",
     "RatioInertia",
-    "RigidBody",
     "Tensor",
-    "Whole",
     "homogeneous",
     "inertia_of",
 ]

@@ -8,9 +8,40 @@ from typing import Any
 from ...errors import InvalidValueError
 from .. import checks
 from ..algebra import ZERO, Matrix, Turned, Vector
+from ..parts import POSITIVE, Number
 from ..scalars import Scalar, is_number, is_zero, namespace
 
 _SLACK = 1e-12  # of a moment: the rounding that a rule is not held against
+
+
+def _at_most_a_shell(k: Scalar, received: Any) -> None:
+    # I ≤ (2/3) m a² for any mass inside a sphere: I is a third of the trace, (2/3) Σ m r² with r ≤ a.
+    if not 0 < k <= 2 / 3 * (1 + _SLACK):
+        remedy = "2/3 is a thin shell, all its mass at the surface; no sphere has more."
+        raise InvalidValueError("", "must lie in (0, 2/3]", received, remedy)
+
+
+def _at_most_a_hoop(k: Scalar, received: Any) -> None:
+    if not 0 < k <= 1 + _SLACK:
+        raise InvalidValueError("", "must lie in (0, 1]", received, "1 is a hoop; no cylinder has more.")
+
+
+SPHERE_RATIO = Number(
+    "number",
+    POSITIVE,
+    "k = I/(m a²), above 0 and at most a shell's 2/3.",
+    0.4,
+    limit=_at_most_a_shell,
+    label="Inertia ratio k",
+)
+CYLINDER_RATIO = Number(
+    "number",
+    POSITIVE,
+    "k = I/(m a²) about its axis, at most a hoop's 1.",
+    0.5,
+    limit=_at_most_a_hoop,
+    label="Inertia ratio k",
+)
 
 
 @dataclass(frozen=True)
@@ -42,6 +73,10 @@ class Isotropic:
     def gyroscopic(self, Q: Matrix, Omega: Vector, body: Any) -> Vector:  # noqa: ARG002
         """Return Ω×JΩ = 0: JΩ is along Ω."""
         return ZERO
+
+    def parameters(self, body: Any) -> dict[str, Any]:  # noqa: ARG002
+        """Return what a builder may be given instead."""
+        return {"moment_of_inertia": self.moment, "moments": (self.moment,) * 3}
 
     def ratio_of(self, body: Any) -> Scalar:
         """Return k = I/(m a²) for a spherical body of radius a."""
@@ -79,6 +114,11 @@ class RatioInertia:
         """Return Ω×JΩ = 0: JΩ is along Ω."""
         return ZERO
 
+    def parameters(self, body: Any) -> dict[str, Any]:
+        """Return what a builder may be given instead."""
+        moment = self.ratio * body.mass * body.radius * body.radius
+        return {"inertia_ratio": self.ratio, "moment_of_inertia": moment, "moments": (moment,) * 3}
+
     def ratio_of(self, body: Any) -> Scalar:  # noqa: ARG002
         """Return k."""
         return self.ratio
@@ -112,6 +152,10 @@ class Principal:
             raise InvalidValueError(
                 "inertia", "must obey the triangle rule, each moment at most the sum of the others", tuple(moments)
             )
+
+    def parameters(self, body: Any) -> dict[str, Any]:  # noqa: ARG002
+        """Return what a builder may be given instead."""
+        return {"moments": (self.x, self.y, self.z)}
 
     @property
     def axisymmetric(self) -> bool:
@@ -182,6 +226,10 @@ class Tensor:
     def elements(self) -> tuple[Scalar, ...]:
         """The six elements, as they are given."""
         return self.xx, self.yy, self.zz, self.xy, self.xz, self.yz
+
+    def parameters(self, body: Any) -> dict[str, Any]:  # noqa: ARG002
+        """Return what a builder may be given instead."""
+        return {"moments": self.elements[:3], "products": self.elements[3:]}
 
     @property
     def matrix(self) -> Matrix:

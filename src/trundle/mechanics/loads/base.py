@@ -48,7 +48,20 @@ class Acting:
         return not all(is_zero(part) for part in self.couple)
 
     def moment_on_axle(self, support: SupportState, N: Scalar) -> Scalar:
-        """Return the moment of these couples on the support about its axle under a normal force N, N m."""
+        """Return the moment of these couples on the support about its axle under a normal force N, N m.
+
+        Parameters
+        ----------
+        support : SupportState
+            Pose and twist of the support.
+        N : Scalar
+            Normal force, N.
+
+        Returns
+        -------
+        Scalar
+            About the third axis.
+        """
         return -support.axle.dot(self.from_support) - (support.axle.dot(self.couple) * N if self.has_couple else 0.0)
 
 
@@ -65,7 +78,16 @@ def at_rest(mass: Scalar) -> BodyMotion:
 
 
 class Load(Part):
-    """A force and a torque on the body; by default neither, and no potential."""
+    """A force and a torque on the body; by default neither, and no potential.
+
+    Examples
+    --------
+    >>> class Lifted(Load):
+    ...     def force(self, motion):
+    ...         return Vector(0.0, 0.0, 0.5 * motion.mass)
+    >>> Lifted().force(at_rest(2.0)).z
+    1.0
+    """
 
     constant: bool = False  # the same force and torque always and everywhere
     at_contact: bool = False  # its torque is exchanged with the support
@@ -74,11 +96,28 @@ class Load(Part):
     offset: Scalar  # of a load that stops: its couple for each newton of normal force, m
 
     def key_numbers(self) -> list[str]:
-        """Return what figures say of it."""
+        """Return what figures say of it.
+
+        Returns
+        -------
+        list of str
+            Such as ``["drag 0.01 kg/s"]``.
+        """
         return []
 
     def over(self, motion: Motion) -> Load:  # noqa: ARG002
-        """Return the load as it is over a support that moves so, which for most loads is the same."""
+        """Return the load as it is over a support that moves so, which for most loads is the same.
+
+        Parameters
+        ----------
+        motion : Motion
+            Of the support.
+
+        Returns
+        -------
+        Load
+            Of the same kind.
+        """
         return self
 
     @property
@@ -87,15 +126,48 @@ class Load(Part):
         return None
 
     def force(self, motion: BodyMotion) -> Vector:  # noqa: ARG002
-        """Return the force on the centre of mass, N."""
+        """Return the force on the centre of mass, N.
+
+        Parameters
+        ----------
+        motion : BodyMotion
+            What the body does at this instant.
+
+        Returns
+        -------
+        Vector
+            Support frame.
+        """
         return ZERO
 
     def torque(self, motion: BodyMotion) -> Vector:  # noqa: ARG002
-        """Return the torque about the centre of mass, N m."""
+        """Return the torque about the centre of mass, N m.
+
+        Parameters
+        ----------
+        motion : BodyMotion
+            What the body does at this instant.
+
+        Returns
+        -------
+        Vector
+            Support frame.
+        """
         return ZERO
 
     def torque_per_normal_force(self, motion: BodyMotion) -> Vector:  # noqa: ARG002
-        """Return the torque, m, that goes with each newton of normal force: of a couple of friction at the contact."""
+        """Return the torque, m, that goes with each newton of normal force: of a couple of friction at the contact.
+
+        Parameters
+        ----------
+        motion : BodyMotion
+            What the body does at this instant.
+
+        Returns
+        -------
+        Vector
+            Support frame.
+        """
         return ZERO
 
     @property
@@ -104,7 +176,18 @@ class Load(Part):
         return ()
 
     def potential(self, motion: BodyMotion) -> Scalar | None:  # noqa: ARG002
-        """Return the potential energy, J; None for a load that has none."""
+        """Return the potential energy, J; None for a load that has none.
+
+        Parameters
+        ----------
+        motion : BodyMotion
+            What the body does at this instant.
+
+        Returns
+        -------
+        Scalar or None
+            Its slope is −F: the balance of energy on the card uses it.
+        """
         return None
 
     @property

@@ -33,23 +33,80 @@ class SupportState:
         return self.rotation.transpose.c
 
     def lever(self, p: Vector) -> Vector:
-        """Return e×(p − X): how the material at p speeds up for each rad/s² about the axle, m."""
+        """Return e×(p − X): how the material at p speeds up for each rad/s² about the axle, m.
+
+        Parameters
+        ----------
+        p : Vector
+            A point, support frame, m.
+
+        Returns
+        -------
+        Vector
+            m, support frame.
+        """
         return self.axle.cross(p - self.origin)
 
     def carried(self, own: Vector) -> Vector:
-        """Return where the point of the support with given own coordinates is, m."""
+        """Return where the point of the support with given own coordinates is, m.
+
+        Parameters
+        ----------
+        own : Vector
+            Coordinates in the support's own frame, m.
+
+        Returns
+        -------
+        Vector
+            Support frame.
+        """
         return self.origin + self.rotation @ own
 
     def own_of(self, p: Vector) -> Vector:
-        """Return the support's own coordinates of a point, m."""
+        """Return the support's own coordinates of a point, m.
+
+        Parameters
+        ----------
+        p : Vector
+            A point, support frame, m.
+
+        Returns
+        -------
+        Vector
+            In the support's own frame.
+        """
         return self.rotation.transpose @ (p - self.origin)
 
     def material_velocity(self, p: Vector) -> Vector:
-        """Return u(p) = Ẋ + ω×(p − X), the velocity of the support's material at p, m/s."""
+        """Return u(p) = Ẋ + ω×(p − X), the velocity of the support's material at p, m/s.
+
+        Parameters
+        ----------
+        p : Vector
+            A point, support frame, m.
+
+        Returns
+        -------
+        Vector
+            Support frame.
+        """
         return self.velocity + self.angular_velocity.cross(p - self.origin)
 
     def material_acceleration(self, p: Vector, p_rate: Vector) -> Vector:
-        """Return u̇ = Ẍ + ω̇×(p − X) + ω×(ṗ − Ẋ), the rate of u along a moving contact point, m/s²."""
+        """Return u̇ = Ẍ + ω̇×(p − X) + ω×(ṗ − Ẋ), the rate of u along a moving contact point, m/s².
+
+        Parameters
+        ----------
+        p : Vector
+            The contact point, support frame, m.
+        p_rate : Vector
+            ṗ, how it moves, m/s.
+
+        Returns
+        -------
+        Vector
+            Support frame.
+        """
         return (
             self.acceleration
             + self.angular_acceleration.cross(p - self.origin)
@@ -58,7 +115,25 @@ class SupportState:
 
 
 class Motion(Part):
-    """How a support moves: as a function of time, and of coordinates of its own that the run carries along."""
+    """How a support moves: as a function of time, and of coordinates of its own that the run carries along.
+
+    A motion of one's own needs `at`, for any scalar; what it says of itself in the attributes below should be true.
+
+    Examples
+    --------
+    >>> from dataclasses import dataclass
+    >>> from trundle.mechanics.algebra import ZERO
+    >>> @dataclass(frozen=True)
+    ... class Lift(Motion):
+    ...     rate: Scalar
+    ...     turns = False
+    ...
+    ...     def at(self, time, *own):
+    ...         up = Vector(0.0, 0.0, 1.0) * self.rate
+    ...         return SupportState(Matrix.identity(), up * time, up, ZERO, ZERO, ZERO)
+    >>> Lift(0.5).at(2.0).origin.z
+    1.0
+    """
 
     way: str = "moving"  # what figures call a support that moves so
     own: tuple[str, ...] = ()  # names of these coordinates: ("angle",) or, of a free axle, ("angle", "rate")
@@ -74,23 +149,83 @@ class Motion(Part):
         return tuple("angular velocity" if name.startswith("rate") else "angle" for name in self.own)
 
     def axle_torque(self, time: Scalar, own: tuple[Scalar, ...]) -> Scalar:  # noqa: ARG002
-        """Return what drives or brakes a free axle besides the body, N m."""
+        """Return what drives or brakes a free axle besides the body, N m.
+
+        Parameters
+        ----------
+        time : Scalar
+            s.
+        own : tuple of Scalar
+            Its own coordinates, as many as `own` names.
+
+        Returns
+        -------
+        Scalar
+            About the axle.
+        """
         return 0.0
 
     def at(self, time: Scalar, *own: Scalar) -> SupportState:
-        """Return pose, twist and acceleration at a time in s, the coordinates of its own having the given values."""
+        """Return pose, twist and acceleration at a time in s, the coordinates of its own having the given values.
+
+        Parameters
+        ----------
+        time : Scalar
+            s.
+        *own : Scalar
+            Its own coordinates, as many as `own` names.
+
+        Returns
+        -------
+        SupportState
+            In the inertial support frame.
+        """
         raise NotImplementedError
 
     def own_start(self) -> tuple[Scalar, ...]:
-        """Return the coordinates of its own at the start of a run."""
+        """Return the coordinates of its own at the start of a run.
+
+        Returns
+        -------
+        tuple of Scalar
+            As many as `own` names.
+        """
         return ()
 
     def own_rates(self, time: Scalar, own: tuple[Scalar, ...], moment: Scalar) -> tuple[Scalar, ...]:  # noqa: ARG002
-        """Return the rates of these coordinates under a moment about the axle that the body exerts, N m."""
+        """Return the rates of these coordinates under a moment about the axle that the body exerts, N m.
+
+        Parameters
+        ----------
+        time : Scalar
+            s.
+        own : tuple of Scalar
+            Its own coordinates, as many as `own` names.
+        moment : Scalar
+            Of the body, N m.
+
+        Returns
+        -------
+        tuple of Scalar
+            As many as `own` names, each for a second.
+        """
         return ()
 
     def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:  # noqa: ARG002
-        """Return what figures say of it, given a word for what moves and the coordinates of its own at the start."""
+        """Return what figures say of it, given a word for what moves and the coordinates of its own at the start.
+
+        Parameters
+        ----------
+        ground : str
+            The word for what moves: "table", "bowl".
+        own : tuple of float
+            Its own coordinates at the start.
+
+        Returns
+        -------
+        list of str
+            Such as ``["ω = 3.5 rad/s"]``.
+        """
         return []
 
     @property
@@ -109,5 +244,16 @@ class Motion(Part):
         return abs(self.mean_rate)
 
     def fastest_rate_within(self, start: float, end: float) -> float:  # noqa: ARG002  formulas ask when
-        """Return the fastest rate in the motion from one time to another, rad/s."""
+        """Return the fastest rate in the motion from one time to another, rad/s.
+
+        Parameters
+        ----------
+        start, end : float
+            s.
+
+        Returns
+        -------
+        float
+            Of the time between.
+        """
         return float(self.fastest_rate)

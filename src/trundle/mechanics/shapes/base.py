@@ -2,30 +2,101 @@
 
 from __future__ import annotations
 
+from dataclasses import fields, is_dataclass
 from typing import Any, ClassVar
 
-from .. import checks
+from ... import wording
 from ..algebra import Matrix, Turned, Vector
+from ..parts import POSITIVE, Number, Numbers, Part
 from ..scalars import Scalar, is_zero
 
 
-class Shape:
+class Shape(Part):
     """A convex body's surface, known by the point where its outward normal is ν (theory page, section 2)."""
 
-    axis: Vector | None = None  # of a body that touches along a line, in the body frame: it rolls across it, straight
+    noun: ClassVar[str] = "body"  # in titles and lists
+    axis: ClassVar[Vector | None] = None  # body frame; touching along a line, it rolls straight across
     left: ClassVar[str] = "tipped onto the edge of its round side"  # what a body did that left what the shape covers
 
     def support_map(self, nu: Vector) -> Vector:
-        """Return X(ν), the body-frame point with outward unit normal ν, in m from the centre of mass."""
+        """Return X(ν), the body-frame point with outward unit normal ν, in m from the centre of mass.
+
+        Parameters
+        ----------
+        nu : Vector
+            Outward unit normal ν, body frame.
+
+        Returns
+        -------
+        Vector
+            Body frame.
+        """
         raise NotImplementedError
 
     def support_gradient(self, nu: Vector) -> Matrix:
-        """Return ∂X/∂ν on the tangent plane of ν, in m: symmetric, its eigenvalues the radii of curvature."""
+        """Return ∂X/∂ν on the tangent plane of ν, in m: symmetric, its eigenvalues the radii of curvature.
+
+        Parameters
+        ----------
+        nu : Vector
+            Outward unit normal ν, body frame.
+
+        Returns
+        -------
+        Matrix
+            Body frame, zero along ν.
+        """
         raise NotImplementedError
 
     def covers(self, nu: Vector) -> Scalar | None:  # noqa: ARG002
-        """Return what is positive where the formulas hold, as on the round side of a hemisphere; None: everywhere."""
+        """Return what is positive where the formulas hold, as on the round side of a hemisphere; None: everywhere.
+
+        Parameters
+        ----------
+        nu : Vector
+            Outward unit normal ν, body frame.
+
+        Returns
+        -------
+        Scalar or None
+            Where it falls to zero, a run ends.
+        """
         return None
+
+    def noun_of(self, body: Any) -> str:  # noqa: ARG002  what a rim carries shows in the inertia only
+        """Return how titles name a body of this shape.
+
+        Parameters
+        ----------
+        body : Body
+            Of this shape.
+
+        Returns
+        -------
+        str
+            Such as "disc" or "ring".
+        """
+        return self.noun
+
+    def key_numbers(self) -> list[str]:
+        """Return what figures say of its size.
+
+        Returns
+        -------
+        list of str
+            Such as ``["radius 25 mm"]``.
+        """
+        return [f"radius {wording.small_length(self.radius)}"] if hasattr(self, "radius") else []
+
+    def parameters(self) -> dict[str, Any]:
+        """Return the numbers of the shape by the names that builders of bodies give them; the fields of a dataclass.
+
+        Returns
+        -------
+        dict of str to number, Vector or Expression
+            SI, body frame.
+        """
+        return {each.name: getattr(self, each.name) for each in fields(self)} if is_dataclass(self) else {}
 
     @property
     def axisymmetric(self) -> bool:
@@ -53,15 +124,8 @@ class Shape:
         return Q @ self.support_map(nu), Turned(Q, self.support_gradient(nu))
 
 
-def centre_of(value: Any) -> Vector | None:
-    """Return the place of a shape's own centre as a vector.
-
-    Examples
-    --------
-    >>> centre_of([0, 0, "2 mm"])
-    Vector(x=0.0, y=0.0, z=0.002)
-    """
-    return None if value is None else Vector(*checks.components(value, "length", "centre"))
+RADIUS = Number("length", POSITIVE)
+CENTRE = Numbers(Number("length"), "From the centre of mass, body frame.")
 
 
 def moved(centre: Vector | None, point: Vector) -> Vector:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
-from .. import checks
+from ... import wording
 from ..algebra import Matrix, Vector
 from ..scalars import Scalar, is_number, namespace
-from .base import Shape, centre_of, moved, on_third_axis
+from .base import CENTRE, RADIUS, Shape, moved, on_third_axis
 
 
 @dataclass(frozen=True)
@@ -28,15 +28,11 @@ class Ellipsoid(Shape):
     Vector(x=0.0, y=0.0, z=-0.02)
     """
 
-    a: Scalar
-    b: Scalar
-    c: Scalar
-    centre: Any = None  # a Vector or None once it is made
-
-    def __post_init__(self) -> None:
-        for i, name in enumerate("abc"):
-            object.__setattr__(self, name, checks.positive(getattr(self, name), "length", f"semi_axes[{i}]"))
-        object.__setattr__(self, "centre", centre_of(self.centre))
+    noun = "ellipsoid"
+    a: Annotated[Scalar, RADIUS]
+    b: Annotated[Scalar, RADIUS]
+    c: Annotated[Scalar, RADIUS]
+    centre: Annotated[Any, CENTRE] = None  # a Vector or None once it is made
 
     @property
     def axisymmetric(self) -> bool:
@@ -53,6 +49,14 @@ class Ellipsoid(Shape):
         x, shrunk = self._reached(nu)
         A = Matrix.diagonal(self.a * self.a, self.b * self.b, self.c * self.c)
         return (A - Matrix.outer(x, x)) * shrunk
+
+    def key_numbers(self) -> list[str]:
+        """Return its semi-axes."""
+        return [f"body {wording.length(self.a, self.b, self.c)}"]
+
+    def parameters(self) -> dict[str, Any]:
+        """Return the semi-axes and the centre."""
+        return {"semi_axes": (self.a, self.b, self.c), "centre": self.centre}
 
     def _reached(self, nu: Vector) -> tuple[Vector, Scalar]:
         """Return the point Aν/h from the ellipsoid's centre, and 1/h."""

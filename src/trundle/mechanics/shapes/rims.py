@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
-from .. import checks
+from ... import wording
 from ..algebra import Matrix, Vector
+from ..parts import NOT_NEGATIVE, Number
 from ..scalars import Scalar
-from .base import Shape, centre_of, moved, on_third_axis
+from .base import CENTRE, RADIUS, Shape, moved, on_third_axis
 
 FLAT = 1e-6  # rad; a disc this near to lying flat touches on its face, which is no longer a contact at one point
 
@@ -61,12 +62,14 @@ class Disc(_Rim):
     Vector(x=0.3, y=0.0, z=0.0)
     """
 
-    radius: Scalar
-    centre: Any = None  # a Vector or None once it is made
+    noun = "disc"
+    radius: Annotated[Scalar, RADIUS]
+    centre: Annotated[Any, CENTRE] = None  # a Vector or None once it is made
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "radius", checks.positive(self.radius, "length", "radius"))
-        object.__setattr__(self, "centre", centre_of(self.centre))
+    def noun_of(self, body: Any) -> str:
+        """Return "ring" where the mass lies near the rim."""
+        third = getattr(body.inertia, "z", 0.0)
+        return "ring" if third > 0.8 * body.mass * self.radius**2 else self.noun
 
 
 @dataclass(frozen=True)
@@ -91,14 +94,15 @@ class Torus(_Rim):
     0.35
     """
 
-    radius: Scalar
-    rim_radius: Scalar
-    centre: Any = None  # a Vector or None once it is made
+    noun = "ring"
+    radius: Annotated[Scalar, RADIUS]
+    rim_radius: Annotated[Scalar, Number("length", NOT_NEGATIVE)]
+    centre: Annotated[Any, CENTRE] = None  # a Vector or None once it is made
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "radius", checks.positive(self.radius, "length", "radius"))
-        object.__setattr__(self, "centre", centre_of(self.centre))
-        object.__setattr__(self, "rim_radius", checks.non_negative(self.rim_radius, "length", "rim_radius"))
+    def key_numbers(self) -> list[str]:
+        """Return both radii."""
+        radii = (wording.small_length(radius) for radius in (self.radius, self.rim_radius))
+        return ["radius {}, rim {}".format(*radii)]
 
     def support_map(self, nu: Vector) -> Vector:
         """Return X = c + a ν_t/|ν_t| + e ν."""

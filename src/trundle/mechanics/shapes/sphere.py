@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 from ...errors import InvalidValueError
-from .. import checks
 from ..algebra import E_Z, Matrix, Vector
 from ..scalars import Scalar, is_number
-from .base import Shape, centre_of, moved, on_third_axis
+from .base import CENTRE, RADIUS, Shape, moved, on_third_axis
 
 
 @dataclass(frozen=True)
@@ -29,12 +28,9 @@ class Sphere(Shape):
     Vector(x=0.0, y=0.0, z=-0.025)
     """
 
-    radius: Scalar
-    centre: Any = None  # a Vector or None once it is made
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "radius", checks.positive(self.radius, "length", "radius"))
-        object.__setattr__(self, "centre", centre_of(self.centre))
+    noun = "ball"
+    radius: Annotated[Scalar, RADIUS]
+    centre: Annotated[Any, CENTRE] = None  # a Vector or None once it is made
 
     @property
     def axisymmetric(self) -> bool:
@@ -73,6 +69,8 @@ class Hemisphere(Sphere):
     1.0
     """
 
+    noun = "half-ball"
+
     def covers(self, nu: Vector) -> Scalar:
         """Return −ν_z: positive on the round side, zero at the edge."""
         return -nu.z
@@ -96,6 +94,7 @@ class Roller(Sphere):
     Vector(x=0.0, y=0.0, z=1.0)
     """
 
+    noun = "cylinder"
     axis = E_Z
 
     def __post_init__(self) -> None:
@@ -120,6 +119,8 @@ class HalfCylinder(Roller):
     >>> HalfCylinder(0.1, Vector(0.04244, 0.0, 0.0)).covers(Vector(-1.0, 0.0, 0.0))
     1.0
     """
+
+    noun = "half-cylinder"
 
     def covers(self, nu: Vector) -> Scalar:
         """Return −ν_x: positive on the round side, zero at the edge."""

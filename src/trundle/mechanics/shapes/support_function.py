@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
+from typing import Annotated, Any
 
 from ..algebra import Matrix, Turned, Vector
 from ..expressions import Expression
 from ..jets import Jet, jets
 from ..scalars import is_number, leaves, namespace
-from .base import Shape, centre_of, moved, on_third_axis
+from .base import CENTRE, Shape, moved, on_third_axis
 
 NAMES = ("nu_x", "nu_y", "nu_z")
 
@@ -44,14 +44,18 @@ class SupportFunction(Shape):
     """
 
     formula: Any  # an Expression once it is made
-    centre: Any = None  # a Vector or None
+    centre: Annotated[Any, CENTRE] = None  # a Vector or None
 
     def __post_init__(self) -> None:
         if not isinstance(self.formula, Expression):
             object.__setattr__(self, "formula", Expression.parse(self.formula, NAMES, "support_function"))
-        object.__setattr__(self, "centre", centre_of(self.centre))
+        super().__post_init__()
         if _in_numbers(self.formula.tree):
             _check(self.formula)
+
+    def parameters(self) -> dict[str, Any]:
+        """Return h and the centre."""
+        return {"support_function": self.formula, "centre": self.centre}
 
     @property
     def axisymmetric(self) -> bool:

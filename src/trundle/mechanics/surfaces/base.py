@@ -51,7 +51,13 @@ class Surface(Part):
     ground: str = "surface"
 
     def key_numbers(self) -> list[str]:
-        """Return what figures say of its size."""
+        """Return what figures say of its size.
+
+        Returns
+        -------
+        list of str
+            Such as ``["bowl of radius 30 cm"]``.
+        """
         return []
 
     @property
@@ -60,16 +66,66 @@ class Surface(Part):
         raise NotImplementedError
 
     def level(self, p: Vector) -> Scalar:
-        """Return φ(p), m."""
+        """Return φ(p), m.
+
+        Parameters
+        ----------
+        p : Vector
+            A point, in the support's own frame, m.
+
+        Returns
+        -------
+        Scalar
+            Positive on the side of the body, zero on the surface; any scalar, jets included.
+        """
         raise NotImplementedError
 
+    def step_onto(self, p: Vector) -> Vector:
+        """Return the step from p to φ = 0 along ∇φ, one of Newton's method, m.
+
+        Parameters
+        ----------
+        p : Vector
+            A point, in the support's own frame, m.
+
+        Returns
+        -------
+        Vector
+            To be added to p.
+        """
+        level = self.level(Vector(*jets(tuple(p))))
+        slope = Vector(*level.gradient)
+        return slope * -(level.value / slope.dot(slope))
+
     def normal(self, p: Vector) -> Vector:
-        """Return n = ∇φ/|∇φ|, from the support into the body."""
+        """Return n = ∇φ/|∇φ|, from the support into the body.
+
+        Parameters
+        ----------
+        p : Vector
+            A point, in the support's own frame, m.
+
+        Returns
+        -------
+        Vector
+            Unit normal, own frame.
+        """
         slope = Vector(*self.level(Vector(*jets(tuple(p)))).gradient)
         return slope / slope.norm()
 
     def shape_operator(self, p: Vector) -> Matrix:
-        """Return S with dn = S dp along the surface, 1/m: outside a sphere of radius b it is +1/b."""
+        """Return S with dn = S dp along the surface, 1/m: outside a sphere of radius b it is +1/b.
+
+        Parameters
+        ----------
+        p : Vector
+            A point, in the support's own frame, m.
+
+        Returns
+        -------
+        Matrix
+            Symmetric, own frame, with S n = 0.
+        """
         level = self.level(Vector(*jets(tuple(p))))
         slope, (xx, xy, xz, yy, yz, zz) = Vector(*level.gradient), level.hessian
         bend = Matrix(Vector(xx, xy, xz), Vector(xy, yy, yz), Vector(xz, yz, zz))
@@ -77,19 +133,63 @@ class Surface(Part):
         return tangential(bend, slope / length) * (1.0 / length)
 
     def inside(self, p: Vector) -> Scalar | None:  # noqa: ARG002  most have no end
-        """Return a number that falls through 0 where the surface ends or has a singular point; None where neither."""
+        """Return a number that falls through 0 where the surface ends or has a singular point; None where neither.
+
+        Parameters
+        ----------
+        p : Vector
+            A point, in the support's own frame, m.
+
+        Returns
+        -------
+        Scalar or None
+            Positive inside; its size does not matter.
+        """
         return None
 
     def point(self, u: Scalar, v: Scalar) -> Vector:
-        """Return the point of the surface with given coordinates, m."""
+        """Return the point of the surface with given coordinates, m.
+
+        Parameters
+        ----------
+        u, v : Scalar
+            Of the kinds in `coordinates`.
+
+        Returns
+        -------
+        Vector
+            In the support's own frame.
+        """
         raise NotImplementedError
 
     def coordinates_of(self, p: Vector) -> tuple[Scalar, Scalar]:
-        """Return the coordinates of a point of the surface: x and y, unless it has others."""
+        """Return the coordinates of a point of the surface: x and y, unless it has others.
+
+        Parameters
+        ----------
+        p : Vector
+            A point, in the support's own frame, m.
+
+        Returns
+        -------
+        tuple of 2 Scalar
+            Of the kinds in `coordinates`.
+        """
         return p.x, p.y
 
     def directions(self, p: Vector) -> tuple[Vector, Vector]:
-        """Return two unit tangents at right angles: on the first x grows and y stays, on the second y grows."""
+        """Return two unit tangents at right angles: on the first x grows and y stays, on the second y grows.
+
+        Parameters
+        ----------
+        p : Vector
+            A point, in the support's own frame, m.
+
+        Returns
+        -------
+        tuple of 2 Vector
+            Own frame: along them a start's velocity is given.
+        """
         n = self.normal(p)
         length = namespace(*n).sqrt(n.x * n.x + n.z * n.z)
         first = Vector(n.z / length, 0.0, -(n.x / length))

@@ -155,12 +155,11 @@ class HeightTable(OverPlane):
     def derivatives(self, x: Scalar, y: Scalar) -> tuple[Slopes, Bends]:
         """Return the derivatives of the spline."""
         at = (x, y)
-        first = (self.grid(at, (1, 0)), self.grid(at, (0, 1)))
-        return first, (self.grid(at, (2, 0)), self.grid(at, (1, 1)), self.grid(at, (0, 2)))
+        return self.slopes(x, y), (self.grid(at, (2, 0)), self.grid(at, (1, 1)), self.grid(at, (0, 2)))
 
-    def normal(self, p: Vector) -> Vector:
-        """Return n = (−h_x, −h_y, 1)/√(1 + h_x² + h_y²), without the second derivatives."""
-        return self.normal_of((self.grid((p.x, p.y), (1, 0)), self.grid((p.x, p.y), (0, 1))))[0]
+    def slopes(self, x: Scalar, y: Scalar) -> Slopes:
+        """Return the first derivatives of the spline."""
+        return self.grid((x, y), (1, 0)), self.grid((x, y), (0, 1))
 
     def inside(self, p: Vector) -> Scalar:
         """Return what falls through 0 at the edges of the grid: the product of the shares left on either side."""

@@ -30,24 +30,66 @@ class OverPlane(Surface):
     """
 
     def height(self, x: Scalar, y: Scalar) -> Scalar:
-        """Return h(x, y), m."""
+        """Return h(x, y), m.
+
+        Parameters
+        ----------
+        x, y : Scalar
+            m; jets included.
+
+        Returns
+        -------
+        Scalar
+            Over the plane of the first two axes.
+        """
         raise NotImplementedError
 
     def derivatives(self, x: Scalar, y: Scalar) -> tuple[Slopes, Bends]:
-        """Return the first derivatives of h, and the second, 1/m."""
+        """Return the first derivatives of h, and the second, 1/m.
+
+        Parameters
+        ----------
+        x, y : Scalar
+            m.
+
+        Returns
+        -------
+        slopes, bends
+            (h_x, h_y), and (h_xx, h_xy, h_yy).
+        """
         h = self.height(*jets((x, y)))
         if not isinstance(h, Jet):  # a formula in which neither stands
             return (0.0, 0.0), (0.0, 0.0, 0.0)
         (x_, y_), (xx, xy, yy) = h.gradient, h.hessian
         return (x_, y_), (xx, xy, yy)
 
+    def slopes(self, x: Scalar, y: Scalar) -> Slopes:
+        """Return the first derivatives of h.
+
+        Parameters
+        ----------
+        x, y : Scalar
+            m.
+
+        Returns
+        -------
+        tuple of 2 Scalar
+            h_x and h_y.
+        """
+        return self.derivatives(x, y)[0]
+
     def level(self, p: Vector) -> Scalar:
         """Return the height of p over the surface, along the third axis, m."""
         return p.z - self.height(p.x, p.y)
 
+    def step_onto(self, p: Vector) -> Vector:
+        """Return −n φ/|∇φ|."""
+        n, length = self.normal_of(self.slopes(p.x, p.y))
+        return n * -(self.level(p) / length)
+
     def normal(self, p: Vector) -> Vector:
         """Return n = (−h_x, −h_y, 1)/√(1 + h_x² + h_y²)."""
-        return self.normal_of(self.derivatives(p.x, p.y)[0])[0]
+        return self.normal_of(self.slopes(p.x, p.y))[0]
 
     def shape_operator(self, p: Vector) -> Matrix:
         """Return S = −P H P/√(1 + h_x² + h_y²), H the second derivatives of h."""

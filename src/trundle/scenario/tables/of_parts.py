@@ -17,6 +17,7 @@ from ...mechanics.parts import (
     Choice,
     Formula,
     Lengths,
+    Maker,
     Number,
     Numbers,
     Part,
@@ -153,15 +154,15 @@ _HOME = __package__  # where a pickle looks for a class that is made here
 class PartTable(Table):
     """The table of a part: its keys are the part's fields."""
 
-    part: ClassVar[type[Part]]
+    part: ClassVar[Maker]
 
     def build(self) -> Any:
         """Return the part."""
-        return self.part(**{name: _value(getattr(self, name)) for name in fields_of(self.part)})
+        return type(self).part(**{name: _value(getattr(self, name)) for name in fields_of(type(self).part)})
 
     @model_validator(mode="after")
     def _check(self) -> Any:
-        if any(isinstance(field, PartsOf) for field in fields_of(self.part).values()):
+        if any(isinstance(field, PartsOf) for field in fields_of(type(self).part).values()):
             self.build()  # it knows which parts go together
         return self
 
@@ -176,15 +177,15 @@ def _value(value: Any) -> Any:
 
 
 def table_of(
-    part: type[Part],
+    part: Any,
     others: tuple[type[Table], ...] = (),
     *,
     base: type[PartTable] = PartTable,
-    suffix: str = "",
+    name: str = "",
     instead: Mapping[str, Lengths] = MappingProxyType({}),
     more: Mapping[str, Any] = MappingProxyType({}),
 ) -> type[Table]:
-    """Return the class of the tables of a part.
+    """Return the class of the tables of a part: of its class, or of a builder of bodies.
 
     Examples
     --------
@@ -200,14 +201,14 @@ def table_of(
         own = {first: own[first], **instead, **own}
         defaults |= dict.fromkeys((first, *instead))
     keys: dict[str, Any] = {"kind": (Literal[part.kind], ...)}
-    for name, field in own.items():
+    for key, field in own.items():
         kind = annotation_of(field, others)
         label = getattr(field, "label", "") or None
         noted: Any = Field(
-            defaults.get(name, ...), title=label, description=field.said or None, examples=_examples(field)
+            defaults.get(key, ...), title=label, description=field.said or None, examples=_examples(field)
         )
-        keys[name] = (kind | None if defaults.get(name, 0) is None else kind, noted)
-    name = part.__name__ + (suffix or next(base.__name__ for base in part.__mro__ if Part in base.__bases__))
+        keys[key] = (kind | None if defaults.get(key, 0) is None else kind, noted)
+    name = name or part.__name__ + next(base.__name__ for base in part.__mro__ if Part in base.__bases__)
     made = create_model(name, __base__=base, __module__=_HOME, __doc__=sentence_of(part), **keys, **more)
     made.part = part
     return made
@@ -234,7 +235,7 @@ def annotation_of(field: Any, others: tuple[type[Table], ...] = ()) -> Any:
         case Numbers():
             each = float | str if field.each.varies else float
             measures = Direction if field.direction else Measures
-            return Annotated[tuple[each, each, each], measures(_measure(field.each), 3)]  # type: ignore[valid-type]
+            return Annotated[tuple[each, each, each], measures(_measure(field.each), 3, names=field.names)]  # type: ignore[valid-type]
         case Formula():
             return Annotated[str, FormulaText(field)]
         case Choice():

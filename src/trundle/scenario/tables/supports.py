@@ -109,7 +109,7 @@ def _by_formula(table: Any, keys: tuple[str, ...]) -> bool:
 def _table(part: type[Surface]) -> type[Table]:
     """Return the class of the tables of supports with a surface."""
     lean = (Annotated[float, Measure("angle", example='"3 deg"')], Field(default=0.0, description=part.tilt.said))
-    return table_of(part, base=OnSurface, suffix="Support", instead=part.points, more={"tilt": lean})
+    return table_of(part, base=OnSurface, name=f"{part.__name__}Support", instead=part.points, more={"tilt": lean})
 
 
 SUPPORTS: dict[str, type[Table]] = {kind: _table(part) for kind, part in kinds_of(Surface).items()}

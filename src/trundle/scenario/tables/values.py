@@ -43,28 +43,12 @@ class Table(BaseModel):
         return schema
 
 
-def _check_inertia_ratio(ratio: float, received: Any) -> None:
-    # I ≤ (2/3) m a² for any mass inside a sphere: I is a third of the trace, (2/3) Σ m r² with r ≤ a.
-    if not 0 < ratio <= 2 / 3 * (1 + 1e-12):
-        remedy = "2/3 is a thin shell, all its mass at the surface; no sphere has more."
-        raise InvalidValueError("", "must lie in (0, 2/3]", received, remedy)
-
-
-def _check_cylinder_ratio(ratio: float, received: Any) -> None:
-    if not 0 < ratio <= 1 + 1e-12:
-        raise InvalidValueError("", "must lie in (0, 1]", received, "1 is a hoop; no cylinder has more.")
-
-
 def _check_restitution(share: float, received: Any) -> None:
     if not share <= 1:
         raise InvalidValueError("", "must lie in [0, 1]", received, "1 gives back all that the landing took.")
 
 
 Radius = Annotated[float, Measure("length", "positive")]
-Mass = Annotated[float, Measure("mass", "positive")]
-CylinderRatio = Annotated[float, Measure("number", "positive", _check_cylinder_ratio, "0.5")]
-Ratio = Annotated[float, Measure("number", "positive", _check_inertia_ratio, "0.4")]
-Moment = Annotated[float, Measure("inertia", "positive")]
 Friction = Annotated[float, Measure("number", "not negative", example="0.3")]
 Restitution = Annotated[float, Measure("number", "not negative", _check_restitution, "0.5")]
 Angle = Annotated[float, Measure("angle")]

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from ...errors import ScenarioError
+from ...mechanics.algebra import Vector
 from ...mechanics.expressions import Expression
 from ...mechanics.parts import Part, defaults_of, fields_of
 
@@ -30,18 +31,25 @@ def words_of(part: Part, key: str) -> Words:
         value, place = getattr(part, name), f"{key}.{name}"
         default = defaults.get(name)
         if value is not None and (default is None or value != field.read(default, name)):
-            words[name] = _word_of(value, place)
+            words[name] = word_of(value, place)
     return words
 
 
-def _word_of(value: Any, place: str) -> Any:
+def word_of(value: Any, place: str) -> Any:
+    """Return what stands in a file for the value of a field.
+
+    Examples
+    --------
+    >>> word_of((1, 2.5), "position")
+    [1.0, 2.5]
+    """
     if isinstance(value, str):
         return value
     if isinstance(value, Expression):
         return value.text
     if isinstance(value, tuple) and all(isinstance(part, Part) for part in value):
         return [words_of(part, f"{place}[{i}]") for i, part in enumerate(value)]
-    return numbers_of(value, place) if hasattr(value, "__iter__") else number_of(value, place)
+    return numbers_of(value, place) if isinstance(value, (tuple, Vector)) else number_of(value, place)
 
 
 def number_of(value: Any, key: str) -> float:

@@ -19,8 +19,8 @@ _ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
-class Whole:
-    """What a homogeneous body is as a whole.
+class Homogeneous:
+    """Volume, centre of mass and second moments of a homogeneous body.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ class Whole:
         )
 
 
-def homogeneous(shape: Shape) -> Whole:
+def homogeneous(shape: Shape) -> Homogeneous:
     """Return volume, centre of mass and second moments of a homogeneous body.
 
     Examples
@@ -136,7 +136,7 @@ def _integrals(shape: Shape, latitudes: int, widths: tuple[float, ...]) -> Any:
     )
 
 
-def _whole(found: Any, size: float) -> Whole:
+def _whole(found: Any, size: float) -> Homogeneous:
     volume, *rest = (float(part) for part in found)
     # What is rounding is no asymmetry: a body that looks symmetric is made so.
     x, y, z = (0.0 if abs(part) <= _ROUNDING * volume else part / volume for part in rest[:3])
@@ -149,4 +149,4 @@ def _whole(found: Any, size: float) -> Whole:
         if abs(own[i] - own[j]) <= _ROUNDING * largest:
             own[i] = own[j] = min(own[i], own[j])
     second = tuple(moment * size * size for moment in (*own, *off))
-    return Whole(volume * size**3, Vector(x * size, y * size, z * size), second)
+    return Homogeneous(volume * size**3, Vector(x * size, y * size, z * size), second)
