@@ -8,11 +8,11 @@ import numpy as np
 
 from ..errors import InvalidValueError
 from ..mechanics.surfaces import Plane
+from ..solve.exact.formula import formula_of
 from ..solve.samples import Samples
 from .body_mesh import body_mesh
 from .columns import UNITS, columns_of, guiding_centre, material, moves, pose_of
 from .findings import findings_of
-from .formulas import formula_of
 from .header import header_of, radius_about_centre
 from .instants import MOST, flying, shown
 from .support_mesh import Ground, ground_of

@@ -14,12 +14,12 @@ from ..mechanics.algebra import Vector
 from ..mechanics.invariants import Record, invariants_of
 from ..mechanics.system import RollingSystem, State
 from ..solve.exact import ClosedForm, SphereOnPlane, closed_form
+from ..solve.exact.circle import measure
 from ..solve.methods import Method
 from ..solve.samples import FLIGHT, ROLLING, SLIPPING, Samples
 from .again import Again
 from .bounds import EXACT, SOLVER, Array, bound_of, largest, speed_of, turned_in
 from .card import Card, CardFigure, checked
-from .circle import measure
 from .compared import cross_check, same_again
 from .each_sample import EachSample
 from .energy import balance

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -14,6 +15,9 @@ from ...mechanics.scalars import Scalar, namespace
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
 from .cylinder_on_cylinder import CylinderOnCylinder, angles
+from .finding import Finding
+from .fits import Seen
+from .formula import Lines, decimal
 from .phi import phase, two_product
 from .quadrature import PreciseRunning, Running, is_one, one_by_one
 from .round_cylinder import frequency_ratio, numbers_of, reasons_outside
@@ -309,6 +313,24 @@ class BallInLeaningCylinder(ClosedForm):
     def position_at(self, t: Any) -> Vector:
         """Return the centre in the inertial support frame, m, at a time since the start, s."""
         return self.motion_at(t)[0]
+
+    # What is shown
+
+    def formulas(self, system: RollingSystem) -> Lines:
+        """Return the pendulum, and the way along the axis."""
+        q = decimal(math.sqrt(self._share))
+        formula = r"\dot z - iq\sigma = W_0\,e^{iq(\theta - \theta_0)} + \dots,\quad q = \sqrt{\frac{k}{1+k}}"
+        return [*self.pendulum.formulas(system), (formula, f"q = {q}")]
+
+    def findings(self, seen: Seen) -> Iterator[Finding]:
+        """Compare the pendulum, and the way along the axis in one swing."""
+        pendulum = self.pendulum
+        yield from pendulum.swinging(seen, pendulum.from_pull(seen.at.position))
+        advance = float(self.advance)
+        if math.isfinite(advance) and advance and seen.time[-1] >= pendulum.period:
+            z = seen.at.position[:, 2]
+            gone = float(np.interp(float(pendulum.period), seen.time, z) - z[0])
+            yield Finding("Way along the axis in one swing", r"\Delta z", advance, gone, "m", "", float(np.ptp(z)))
 
 
 def _is_mpmath(t: Any) -> bool:

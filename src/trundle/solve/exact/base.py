@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, ClassVar, Self
+
+import numpy as np
 
 from ...errors import OutOfDomainError
 from ...mechanics.algebra import Quaternion, Vector
 from ...mechanics.system import RollingSystem, State
 from ..samples import ROLLING
+from .finding import Finding
+from .fits import Seen
+from .formula import NEWTON_AND_EULER, Lines, body_numbers
 
 # What is said of when a phase ends, by the stop that ends it.
 _ENDS = {
@@ -98,6 +103,19 @@ class ClosedForm:
         rows = [(_ENDS[stop], f"{t:.6g} s") for stop, t in self.ends_at.items() if stop in _ENDS and t < math.inf]
         period = float(self.period)
         return [*rows, *([("one period, while it stays on", f"{period:.6g} s")] if period < math.inf else [])]
+
+    def formulas(self, system: RollingSystem) -> Lines:
+        """Return its formulas in LaTeX, each with the numbers put in; the laws that it obeys, unless it has its own."""
+        force, torque = NEWTON_AND_EULER
+        return [(force, body_numbers(system)), (torque, "")]
+
+    def findings(self, seen: Seen) -> Iterator[Finding]:
+        """Return numbers that it predicts beside what samples show; how far it gets, unless it has its own."""
+        end = float(seen.time[-1])
+        gone = self.motion_at(end)[0] - self.motion_at(0.0)[0]
+        measured = float(np.linalg.norm(seen.at.position[-1] - seen.at.position[0]))
+        name, note = "Distance from the start", f"straight, after {end:.4g} s"
+        yield Finding(name, "d", float(gone.norm()), measured, "m", note, seen.way or None)
 
     def repeats(self, stop: str) -> float:  # noqa: ARG002
         """Return after how long the course of one of the law's stops repeats, s; infinite where it does not."""

@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
+
+import numpy as np
 
 from ...mechanics.algebra import Quaternion, Vector
 from ...mechanics.loads import constant_part
 from ...mechanics.scalars import Scalar
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
-from .chaplygin_domain import principal_axes, reasons_outside, stance_of, two_are_equal
+from .chaplygin_domain import principal_axes, reasons_outside, stance_of, turning_faster, two_are_equal
 from .chaplygin_nutation import Constants
+from .finding import Finding
+from .fits import Seen
+from .formula import Lines, quantity
 from .quadrature import is_one, one_by_one
 
 _NEVER = 1e30  # s
@@ -210,3 +216,25 @@ class ChaplyginBall(ClosedForm):
     def stance(self, t: Any) -> Quaternion:
         """Return an orientation with which the axis is where it is: its turns about e do not change the forces."""
         return stance_of(Vector(*self.body_axis), self.axis_at(t))
+
+    # What is shown
+
+    def formulas(self, system: RollingSystem) -> Lines:  # noqa: ARG002
+        """Return the momentum about the contact, which it keeps."""
+        momentum = quantity(self.momentum.norm(), r"kg\,m^2/s")
+        return [(r"M = J\Omega + m a^2\,n\times(\Omega\times n)", f"|M| = {momentum}")]
+
+    def findings(self, seen: Seen) -> Iterator[Finding]:
+        """Compare the time of a nutation, and how far the ball has got on by then."""
+        found = turning_faster("Time of one nutation", float(self.nutation_period), seen)
+        if found is None:
+            return
+        finding, times = found
+        yield finding
+        speed = None
+        if finding.measured:
+            ends = np.array([np.interp(times[[0, -1]], seen.time, part) for part in seen.at.position.T[:2]]).T
+            speed = float(np.linalg.norm(ends[1] - ends[0]) / (times[-1] - times[0]))
+        drift = math.hypot(float(self.drift.x), float(self.drift.y))
+        fastest = float(np.max(np.linalg.norm(seen.at.velocity, axis=1)))
+        yield Finding("Speed from one nutation to the next", r"\bar v", drift, speed, "m/s", "", max(drift, fastest))

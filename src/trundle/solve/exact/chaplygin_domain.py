@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,8 @@ from ...mechanics.scalars import is_number, is_zero, namespace
 from ...mechanics.shapes import concentric_sphere
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem
+from .finding import Finding
+from .fits import Array, Seen, crossings
 
 _EQUAL = 1e-15  # share of a moment by which two that are equal may differ after rounding
 
@@ -111,3 +114,15 @@ def stance_of(before: Vector, now: Vector) -> Quaternion:
     x, y, z = (xp.where(opposite, away + 0 * size, part + 0 * size) for away, part in zip(across, axis, strict=True))
     length = xp.sqrt(w * w + x * x + y * y + z * z)
     return Quaternion(w / length, x / length, y / length, z / length)
+
+
+def turning_faster(name: str, predicted: float, seen: Seen) -> tuple[Finding, Array] | None:
+    """Compare the time from one rise of |Ω| to the next, and return when it rises; None where |Ω| stays the same."""
+    square = np.sum(seen.at.angular_velocity**2, axis=1)
+    low, high = float(np.min(square)), float(np.max(square))
+    if not math.isfinite(predicted) or high - low <= 1e-9 * high:
+        return None
+    times = crossings(seen.time, square - 0.5 * (low + high))
+    measured = float((times[-1] - times[0]) / (len(times) - 1)) if len(times) > 1 else None
+    note = "from one rise of |Ω| to the next" if measured else "the run shows less than one"
+    return Finding(name, "T", predicted, measured, "s", note), times

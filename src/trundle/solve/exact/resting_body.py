@@ -12,6 +12,7 @@ from ...mechanics.scalars import Scalar, is_zero
 from ...mechanics.system import RollingSystem, State
 from ..samples import RESTING
 from .base import ClosedForm
+from .formula import Lines, quantity
 
 _SILENT = (Drag, QuadraticDrag, RollingCouple, RollingResistance)  # at rest
 
@@ -109,3 +110,7 @@ class RestingBody(ClosedForm):
     def straight_turn(self, t: Any) -> tuple[Vector, Any]:
         """Return no turn at all."""
         return Vector(0.0, 0.0, 1.0), 0 * t
+
+    def formulas(self, system: RollingSystem) -> Lines:  # noqa: ARG002
+        """Return what the support bears."""
+        return [(r"R = -F,\quad V = \Omega = 0", f"|R| = {quantity(math.hypot(*map(float, self.force)), 'N')}")]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,6 +17,9 @@ from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
 from ..samples import RESTING, ROLLING
 from .base import ClosedForm
+from .finding import Finding
+from .fits import Seen, zero_ahead
+from .formula import Lines, quantity
 from .second_order import fundamental
 
 _BRAKES = (Drag, QuadraticDrag, RollingCouple, RollingResistance)
@@ -295,6 +299,36 @@ class SphereComingToRest(ClosedForm):
             return None
         x, y = self._direction
         return Vector(-y, x, 0.0), self._along(t)[0] / self.radius
+
+    # What is shown
+
+    def formulas(self, system: RollingSystem) -> Lines:  # noqa: ARG002
+        """Return what slows it, and when it stops."""
+        parts = (("r", self.deceleration, "m/s^2"), (r"\gamma", self.gamma, "1/s"), (r"\eta", self.eta, "1/m"))
+        shown = r",\quad ".join(f"{name} = {quantity(value, unit)}" for name, value, unit in parts if float(value))
+        lines = [(r"\dot v = -(r + \gamma v + \eta v^2)", shown)]
+        if math.isfinite(float(self.stops_at)):
+            lines.append((r"v(t_s) = 0", rf"t_s = {quantity(self.stops_at, 's')}"))
+        return lines
+
+    def findings(self, seen: Seen) -> Iterator[Finding]:
+        """Compare when and where it comes to rest, or how it slows."""
+        samples, predicted = seen.samples, float(self.stops_at)
+        rolls = samples.phase == ROLLING
+        count = int(np.argmin(rolls)) if not rolls.all() else rolls.size
+        part = samples.part(slice(0, count))
+        time = part.time - samples.time[0]
+        speed = np.hypot(part.velocity[:, 0], part.velocity[:, 1])
+        if math.isfinite(predicted) and count < rolls.size:
+            stops, note = zero_ahead(time, speed), "where its speed, drawn on, ends"
+            yield Finding("Time at which it stops", "t_s", predicted, stops, "s", note)
+            gone = float(np.linalg.norm(samples.position[-1, :2] - samples.position[0, :2]))
+            yield Finding("Way to there", "d_s", float(self.way), gone, "m")
+        elif count > 3:
+            at_start = float(self.deceleration + self.gamma * self.speed + self.eta * self.speed**2)
+            slowed = -float(np.gradient(speed[:3], time[:3], edge_order=2)[0])
+            note = "by the first three samples"
+            yield Finding("Deceleration at the start", r"-\dot v_0", at_start, slowed, "m/s²", note)
 
 
 def _log_share(z: Any) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -17,6 +18,9 @@ from ...mechanics.surfaces import Bowl, Cylinder, Dome, Plane
 from ...mechanics.system import RollingSystem, State
 from ..samples import FLIGHT
 from .base import ClosedForm
+from .finding import Finding
+from .fits import Seen
+from .formula import Lines, quantity
 
 # Shares of their sizes below which the gap, its rate and its curvature at the start are rounding: a flight begins
 # where the support lets go, with all three 0, or after a bounce, with a rate.
@@ -223,6 +227,31 @@ class SphereInFlight(ClosedForm):
         Omega = Vector(*self.angular_velocity)
         size = namespace(Omega.x).sqrt(Omega.dot(Omega))
         return (Omega / size, size * t) if size else (Vector(0.0, 0.0, 1.0), 0 * t)
+
+    # What is shown
+
+    def formulas(self, system: RollingSystem) -> Lines:  # noqa: ARG002
+        """Return the parabola, and when it lands."""
+        lands = float(self.ends_at.get("land", math.inf))
+        shown = rf"t_l = {quantity(lands, 's')}" if math.isfinite(lands) else ""
+        return [(r"r = r_0 + V_0\,t + \frac{F}{2m}\,t^2", shown)]
+
+    def findings(self, seen: Seen) -> Iterator[Finding]:
+        """Compare when and where it lands on a plane; measured by the parabola of the samples."""
+        predicted = float(self.ends_at.get("land", math.inf))
+        landed = seen.time.size < seen.samples.time.size
+        if not (math.isfinite(predicted) and landed) or tuple(self.across) != (0.0, 0.0, 1.0):
+            return
+        course = np.polynomial.polynomial.polyfit(seen.time, seen.at.position, 2)
+        heights = course[:, 2] - np.array([float(self.radius), 0.0, 0.0])
+        lands = float(np.max(np.polynomial.polynomial.polyroots(heights).real))
+        yield Finding("Time at which it lands", "t_l", predicted, lands, "s", "by the parabola through its heights")
+        ahead = self.motion_at(predicted)[0]
+        way = math.hypot(float(ahead.x) - float(self.position[0]), float(ahead.y) - float(self.position[1]))
+        if way:
+            there = np.asarray(np.polynomial.polynomial.polyval(lands, course[:, :2]))
+            gone = float(np.linalg.norm(there - seen.samples.position[0, :2]))
+            yield Finding("Distance to there", "d_l", way, gone, "m")
 
 
 def turns_freely(motion: Any) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,6 +16,9 @@ from ...mechanics.scalars import Scalar, namespace
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
+from .finding import Finding
+from .fits import TOO_LITTLE, Seen, two_exponents
+from .formula import Lines, quantity
 from .second_order import fundamental
 
 
@@ -229,3 +233,22 @@ class SphereInMovingAir(ClosedForm):
         """Return Ω·n: the couple brings it to the plane's rate, a torque drives it."""
         gain = (self.torque[2] - self.pivot_couple * (self.spin - self.rate)) / moment
         return self.spin + gain * fundamental(-self.pivot_couple / moment, 0.0, t).G.real
+
+    # What is shown
+
+    def formulas(self, system: RollingSystem) -> Lines:  # noqa: ARG002
+        """Return its equation of motion."""
+        formula = r"\ddot\zeta = (i\kappa - \gamma)\,\dot\zeta + i\beta\,\zeta + \varphi"
+        parts = (("\\kappa", self.kappa, "rad/s"), (r"\gamma", self.gamma, "1/s"), (r"\beta", self.beta, "1/s^2"))
+        return [(formula, r",\quad ".join(f"{name} = {quantity(value, unit)}" for name, value, unit in parts))]
+
+    def findings(self, seen: Seen) -> Iterator[Finding]:
+        """Compare its two exponents."""
+        predicted = sorted((complex(part) for part in self.exponents), key=abs, reverse=True)
+        found = two_exponents(seen, abs(predicted[0]))
+        for name, mark, s, measured in zip(("faster", "slower"), "12", predicted, found or (None, None), strict=False):
+            size, note = abs(s) or None, "" if measured is not None else TOO_LITTLE
+            turn, grow = (None, None) if measured is None else (measured.imag, measured.real)
+            turns, grows = rf"\mathrm{{Im}}\,s_{mark}", rf"\mathrm{{Re}}\,s_{mark}"
+            yield Finding(f"Angular rate of the {name} part", turns, s.imag, turn, "rad/s", note, size)
+            yield Finding(f"Growth of the {name} part", grows, s.real, grow, "1/s", note, size)

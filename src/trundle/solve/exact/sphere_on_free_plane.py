@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,6 +15,9 @@ from ...mechanics.scalars import Scalar, is_number
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
+from .finding import Finding
+from .fits import Seen, conic, round_time
+from .formula import Lines, quantity
 from .kepler import inverse_of, precisely, stumpff
 from .quadrature import is_one, one_by_one
 from .sphere_in_flight import turns_freely
@@ -185,6 +189,40 @@ class SphereOnFreePlane(ClosedForm):
             Vector(m * A.real + zero, m * A.imag + zero, number(self.normal_force) + zero),
         )
         return motion, (angle, omega - self.rate)
+
+    # What is shown
+
+    def formulas(self, system: RollingSystem) -> Lines:  # noqa: ARG002
+        """Return its two integrals."""
+        momentum = quantity(self.angular_momentum, r"kg\,m^2/s")
+        drive = math.hypot(*map(float, self.drive))
+        return [
+            (r"L = I_t\,\omega + m\,\mathrm{Im}(\bar\zeta\dot\zeta)", f"L = {momentum}"),
+            (r"M = \dot\zeta - i\frac{k}{1+k}\,\omega\,\zeta", rf"|M| = {quantity(drive, 'm/s')}"),
+        ]
+
+    def findings(self, seen: Seen) -> Iterator[Finding]:
+        """Compare the angular momentum of ball and table, and the conic."""
+        own, V = seen.at.own, seen.at.velocity
+        rate = own[:, 1] if own.shape[1] > 1 else np.full(seen.time.size, np.nan)
+        x, y = seen.at.position[:, 0], seen.at.position[:, 1]
+        momentum = float(self.axle_inertia) * rate + float(self.mass) * (x * V[:, 1] - y * V[:, 0])
+        predicted = float(self.angular_momentum)
+        worst = float(momentum[np.argmax(np.abs(momentum - predicted))])
+        scale = float(np.max(np.abs(float(self.axle_inertia) * rate)))
+        yield Finding("Angular momentum about the axle", "L", predicted, worst, "kg m²/s", "of ball and table", scale)
+        if not self.rate:
+            return  # a table at rest that the ball sets going: no conic
+        centre, measured = conic(seen)
+        share = float(self.inertia_ratio) / (1 + float(self.inertia_ratio))
+        square = float(self.axle_inertia) + float(self.mass) * share * abs(complex(*self.position)) ** 2
+        drive = math.hypot(*map(float, self.drive)) * math.sqrt(float(self.mass) / share)
+        eccentricity = drive / (abs(float(self.rate)) * math.sqrt(square))
+        yield Finding(f"Eccentricity of the {self.path}", "e", eccentricity, measured, "", "", max(eccentricity, 0.1))
+        if math.isfinite(self.period):
+            angle = np.unwrap(np.angle(seen.zeta - centre))
+            measured = None if measured is None else round_time(seen.time, angle)
+            yield Finding("Time round the ellipse", "T", float(self.period), measured, "s")
 
 
 @dataclass(frozen=True)

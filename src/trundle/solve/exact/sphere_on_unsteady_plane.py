@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Any
+
+import numpy as np
 
 from ...mechanics.algebra import Vector
 from ...mechanics.loads import Force, Load, Torque, at_rest, constant_part
@@ -15,6 +18,9 @@ from ...mechanics.scalars import Scalar
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
+from .finding import Finding
+from .fits import Seen
+from .formula import Lines, number
 from .quadrature import is_one, one_by_one
 from .unsteady_course import Course, PreciseCourse
 
@@ -231,6 +237,29 @@ class SphereOnUnsteadyPlane(ClosedForm):
     @cached_property
     def _precise(self) -> PreciseCourse:
         return PreciseCourse(self)
+
+    # What is shown
+
+    def formulas(self, system: RollingSystem) -> Lines:
+        """Return its equation of motion."""
+        shown = rf"\kappa(t) = {number(self.share)}\,\omega(t)"
+        if system.loads or float(system.support.tilt):
+            return [(r"\frac{d}{dt}\big[\dot\zeta - (i\kappa - \gamma)\,\zeta\big] = \varphi(t)", shown)]
+        return [(r"\dot\zeta - i\kappa(t)\,\zeta = M,\quad \kappa = \frac{k}{1+k}\,\omega(t)", shown)]
+
+    def findings(self, seen: Seen) -> Iterator[Finding]:
+        """Compare M = ζ̇ − iκζ of the start with that of the samples, where no load changes it."""
+        if seen.system.loads or float(seen.system.support.tilt):
+            return
+        rate, share = seen.at.support(seen.system).angular_velocity.z, float(self.share)
+        velocity = seen.at.velocity[:, 0] + 1j * seen.at.velocity[:, 1]
+        kept = velocity - 1j * share * np.broadcast_to(rate, seen.time.shape) * seen.zeta
+        at_start = float(self.motion.at(float(self.start_time), *self.motion.own_start()).angular_velocity.z)
+        predicted = abs(complex(*self.velocity) - 1j * share * at_start * complex(*self.position))
+        worst = float(np.abs(kept)[np.argmax(np.abs(np.abs(kept) - predicted))])
+        name, symbol = "Velocity less its share of the table's", r"|\dot\zeta - i\kappa\zeta|"
+        size, note = max(float(np.max(np.abs(velocity))), predicted), "stays as it is, however the table is turned"
+        yield Finding(name, symbol, predicted, worst, "m/s", note, size)
 
 
 def _is_mpmath(t: Any) -> bool:

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
+
+import numpy as np
 
 from ...mechanics.algebra import E_Z, Quaternion, Vector
 from ...mechanics.loads import constant_part
@@ -12,6 +15,9 @@ from ...mechanics.scalars import Scalar, namespace
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
 from .chaplygin_domain import principal_axes, reasons_outside, two_are_equal
+from .finding import Finding
+from .fits import Seen, needed_friction
+from .formula import Lines, quantity
 
 _ASIDE = 1e-14  # share of the momentum that may lie across Ω by rounding
 
@@ -126,3 +132,23 @@ class SteadyChaplyginBall(ClosedForm):
         xp = namespace(Omega.x, Omega.y, Omega.z)
         speed = xp.sqrt(Omega.dot(Omega))
         return (Omega / speed if speed else E_Z), speed * t
+
+    # What is shown
+
+    def formulas(self, system: RollingSystem) -> Lines:  # noqa: ARG002
+        """Return how the ball moves along its line."""
+        p, q, r = map(float, self.angular_velocity)
+        turning, speed = quantity(math.hypot(p, q, r), "rad/s"), quantity(float(self.radius) * math.hypot(p, q), "m/s")
+        return [
+            (r"\dot\Omega = 0", rf"|\Omega| = {turning}"),
+            (r"V = a\,\Omega\times n", f"|V| = {speed}"),
+        ]
+
+    def findings(self, seen: Seen) -> Iterator[Finding]:
+        """Compare its speed, and the friction that it takes: none."""
+        p, q, r = map(float, self.angular_velocity)
+        gone = float(np.abs(seen.zeta[-1] - seen.zeta[0]) / seen.time[-1])
+        scale = float(self.radius) * math.hypot(p, q, r)
+        note = "it turns about the same axis and keeps its speed"
+        yield Finding("Speed", "v", float(self.radius) * math.hypot(p, q), gone, "m/s", note, scale)
+        yield needed_friction(0.0, seen.at)

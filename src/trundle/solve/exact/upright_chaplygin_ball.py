@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -14,7 +15,10 @@ from ...mechanics.loads import constant_part
 from ...mechanics.scalars import Scalar, namespace
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
-from .chaplygin_domain import body_quaternion, principal_axes, reasons_outside, stance_of, two_are_equal
+from .chaplygin_domain import body_quaternion, principal_axes, reasons_outside, stance_of, turning_faster, two_are_equal
+from .finding import Finding
+from .fits import Seen
+from .formula import Lines, quantity
 from .phi import phase
 from .quadrature import PreciseRunning, Running, is_one, one_by_one
 from .upright_polhode import Constants, Now, Polhode, precession
@@ -267,6 +271,19 @@ class UprightChaplyginBall(ClosedForm):
         half = 0.5 * xp.atan2(s2, c2)
         turn = Quaternion(xp.cos(half), 0.0, 0.0, xp.sin(half))
         return turn * leaned * Quaternion(*self.body_axes).conjugate
+
+    # What is shown
+
+    def formulas(self, system: RollingSystem) -> Lines:  # noqa: ARG002
+        """Return the momentum about the contact, which it keeps."""
+        momentum = quantity(self.momentum, r"kg\,m^2/s")
+        return [(r"(J + m a^2)\,\Omega = L\,n", f"L = {momentum}")]
+
+    def findings(self, seen: Seen) -> Iterator[Finding]:
+        """Compare the time after which Ω is as long as before."""
+        found = turning_faster("Time of half a round of the normal in the ball", self.round_period, seen)
+        if found is not None:
+            yield found[0]
 
 
 def _momentum(system: RollingSystem, start: State) -> Vector:
