@@ -20,7 +20,7 @@ from .fits import Seen
 from .formula import Lines, decimal
 from .phi import phase, two_product
 from .quadrature import PreciseRunning, Running, is_one, one_by_one
-from .round_cylinder import frequency_ratio, numbers_of, reasons_outside
+from .round_cylinder import ON_CYLINDER, frequency_ratio, numbers_of
 
 _PIECE = 1.0  # of the pendulum's own argument λt: its functions are analytic at least π/2 off the real axis
 _STANDS = 90.0  # on the separatrix it has come to rest on top, to the last digit, after so long
@@ -83,10 +83,7 @@ class BallInLeaningCylinder(ClosedForm):
     name = "ball round and along a leaning cylinder"
     equation = "T8"
     source = "Abramowitz and Stegun (1964), ch. 16, and one quadrature; Cross, Am. J. Phys. 89, 459 (2021); theory page"
-    domain = (
-        "a ball with the same inertia about every axis inside or outside a cylinder at any angle to gravity, fixed or "
-        "turning steadily about its axis, under gravity and constant force"
-    )
+    conditions = ON_CYLINDER
 
     never = frozenset({"curved"})
 
@@ -105,19 +102,6 @@ class BallInLeaningCylinder(ClosedForm):
         numbers = numbers_of(system, start)
         (fx, fy, _), (x, y, _) = numbers["force"], start.position
         return cls(**numbers, from_top=angles(fx * x + fy * y, fx * y - fy * x)[1])
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
-        """Name what of a system lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> slope = tr.Support(tr.Cylinder(1.0), tilt="70 deg")
-        >>> BallInLeaningCylinder.outside(tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), slope))
-        []
-        """
-        return reasons_outside(system)
 
     # The constants of the motion
 

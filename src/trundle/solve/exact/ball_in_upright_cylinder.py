@@ -13,11 +13,12 @@ from ...mechanics.algebra import Vector
 from ...mechanics.scalars import Scalar, is_number, is_zero, namespace
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
+from .domain import FORCES, that
 from .finding import Finding
 from .fits import Seen, even_rate, slope
 from .formula import Lines, number, quantity
 from .phi import exponentials, phase, two_product
-from .round_cylinder import frequency_ratio, numbers_of, pull, reasons_outside, vectors_of
+from .round_cylinder import ON_CYLINDER, frequency_ratio, numbers_of, pull, vectors_of
 
 
 @dataclass(frozen=True)
@@ -73,9 +74,14 @@ class BallInUprightCylinder(ClosedForm):
     name = "ball round an upright cylinder"
     equation = "T7"
     source = "Gualtieri et al., Golfer's dilemma, Am. J. Phys. 74, 497 (2006); theory page, T7"
-    domain = (
-        "a ball with the same inertia about every axis inside or outside a cylinder that is fixed or turns steadily "
-        "about its axis, under gravity and constant force along that axis"
+    conditions = (
+        *ON_CYLINDER,
+        that(
+            lambda system: pull(system)[:2] == (0, 0),
+            ", with every force along that axis",
+            "gravity or a force pulls across the cylinder's axis",
+            FORCES,
+        ),
     )
 
     never = frozenset({"lift", "curved"})  # N is constant
@@ -93,22 +99,6 @@ class BallInUprightCylinder(ClosedForm):
         """
         cls.check_domain(system, start)
         return cls(**numbers_of(system, start))
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
-        """Name what of a system lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> level = tr.Support(tr.Cylinder(1.0), tilt="90 deg")
-        >>> BallInUprightCylinder.outside(tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), level))
-        ["gravity or a force pulls across the cylinder's axis"]
-        """
-        reasons = reasons_outside(system)
-        if not reasons and pull(system)[:2] != (0, 0):
-            reasons.append("gravity or a force pulls across the cylinder's axis")
-        return reasons
 
     # The constants of the motion
 

@@ -12,6 +12,7 @@ from ...errors import OutOfDomainError
 from ...mechanics.algebra import Quaternion, Vector
 from ...mechanics.system import RollingSystem, State
 from ..samples import ROLLING
+from .domain import FORCES, PARTS, START, Condition
 from .finding import Finding
 from .fits import Seen
 from .formula import NEWTON_AND_EULER, Lines, body_numbers
@@ -32,7 +33,7 @@ class ClosedForm:
     name: ClassVar[str]
     equation: ClassVar[str]
     source: ClassVar[str]
-    domain: ClassVar[str]
+    conditions: ClassVar[tuple[Condition, ...]]  # of which the domain is put together
     phases: ClassVar[tuple[int, ...]] = (ROLLING,)  # of contact that it covers
     of_arrays: ClassVar[bool] = False  # whether its numbers may be arrays, one element for each time asked for
     never: ClassVar[frozenset[str]] = frozenset()  # stops of the phase that cannot come
@@ -48,9 +49,18 @@ class ClosedForm:
         return cls.of(system, start)
 
     @classmethod
+    def domain(cls) -> str:
+        """Say what it covers."""
+        return "".join(condition.words for condition in cls.conditions)
+
+    @classmethod
     def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:
         """Name what of a system, and of a start where one is given, lies outside the domain."""
-        raise NotImplementedError
+        for about in (PARTS, FORCES, START)[: 2 if start is None else 3]:
+            asked = [condition for condition in cls.conditions if condition.about == about]
+            if found := [failure for condition in asked for failure in condition.failures(system, start)]:
+                return found
+        return []
 
     @classmethod
     def refusal(cls, system: RollingSystem, start: State | None = None) -> str:
@@ -58,7 +68,7 @@ class ClosedForm:
         outside = cls.outside(system, start)
         if not outside:
             return ""
-        return f"The closed form {cls.equation} ({cls.name}) covers {cls.domain}. Outside it: {'; '.join(outside)}."
+        return f"The closed form {cls.equation} ({cls.name}) covers {cls.domain()}. Outside it: {'; '.join(outside)}."
 
     @classmethod
     def check_domain(cls, system: RollingSystem, start: State) -> None:

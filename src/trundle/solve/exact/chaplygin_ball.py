@@ -15,14 +15,27 @@ from ...mechanics.loads import constant_part
 from ...mechanics.scalars import Scalar
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
-from .chaplygin_domain import principal_axes, reasons_outside, stance_of, turning_faster, two_are_equal
+from .chaplygin_domain import (
+    CHAPLYGIN_BALL,
+    ON_LEVEL_PLANE,
+    TURNS,
+    principal_axes,
+    stance_of,
+    turning_faster,
+    two_are_equal,
+)
 from .chaplygin_nutation import Constants
+from .domain import FORCES, that
 from .finding import Finding
 from .fits import Seen
 from .formula import Lines, quantity
 from .quadrature import is_one, one_by_one
 
 _NEVER = 1e30  # s
+
+
+def _symmetric(system: RollingSystem) -> bool:
+    return two_are_equal(principal_axes(system.body)[0]) is not None
 
 
 @dataclass(frozen=True)
@@ -73,9 +86,11 @@ class ChaplyginBall(ClosedForm):
     name = "Chaplygin's ball with two equal moments"
     equation = "T15"
     source = "Chaplygin, Mat. Sb. 24, 139 (1903), for the integrals; theory page, T15, for the time and the path"
-    domain = (
-        "a ball with its centre of mass at its centre and two equal principal moments of inertia, on a level plane at "
-        "rest, under constant forces along the normal"
+    conditions = (
+        *CHAPLYGIN_BALL,
+        that(_symmetric, ", with two equal moments of inertia", "no two of its moments of inertia are equal", FORCES),
+        *ON_LEVEL_PLANE,
+        TURNS,
     )
     never = frozenset({"lift", "curved"})  # N is constant
 
@@ -108,24 +123,6 @@ class ChaplyginBall(ClosedForm):
             body_axis=body_axis,
             normal_force=-float(force.z),
         )
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:
-        """Name what of a system lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> ball = tr.Body(1.0, tr.Principal(3e-3, 4e-3, 5e-3), tr.Sphere(0.1))
-        >>> ChaplyginBall.outside(tr.RollingSystem(ball, tr.Support(tr.Plane())))
-        ['no two of its moments of inertia are equal']
-        """
-        reasons = reasons_outside(system)
-        if not reasons and two_are_equal(principal_axes(system.body)[0]) is None:
-            reasons.append("no two of its moments of inertia are equal")
-        if start is not None and not any(start.angular_velocity):
-            reasons.append("the ball does not turn")
-        return reasons
 
     # The constants of the motion
 

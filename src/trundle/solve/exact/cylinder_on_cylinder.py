@@ -17,6 +17,18 @@ from ...mechanics.surfaces import Cylinder
 from ...mechanics.system import RollingSystem, State
 from ..samples import FLIGHT
 from .base import ClosedForm
+from .domain import (
+    CONSTANT_LOADS,
+    FORCES,
+    NO_TORQUE,
+    ROUND,
+    START,
+    TURNING_STEADILY,
+    Condition,
+    constant_forces,
+    on,
+    that,
+)
 from .finding import Finding
 from .fits import COMES_OFF, Array, Seen, angle_where, round_time, swing
 from .formula import Lines, decimal, number, quantity
@@ -25,6 +37,18 @@ from .phi import phase
 
 _DIGITS = 60  # for the few constants: near the separatrix they are small differences
 _ASIDE = 1e-12  # share of the start's speed, or of the load, that may point along the axis by rounding
+
+
+def _pulled_across(system: RollingSystem) -> bool:
+    fx, fy, fz = constant_forces(system)[0]
+    return bool(abs(fz) <= _ASIDE * math.hypot(fx, fy))
+
+
+def _aside(system: RollingSystem, start: State) -> Iterator[str]:
+    (*_, vz), (wx, wy, _) = start.velocity, start.angular_velocity
+    speed = max(map(abs, (*start.velocity, *(system.body.radius * w for w in start.angular_velocity))))
+    if max(abs(vz), system.body.radius * math.hypot(wx, wy)) > _ASIDE * speed:
+        yield "the start moves along the cylinder's axis or spins across it"
 
 
 @dataclass(frozen=True)
@@ -78,10 +102,14 @@ class CylinderOnCylinder(ClosedForm):
     name = "cylinder or ball on a cylinder"
     equation = "T6"
     source = "Abramowitz and Stegun, Handbook of Mathematical Functions (1964), ch. 16; theory page, round a cylinder"
-    domain = (
-        "a cylinder, hoop or ball with the same inertia about every axis that rolls inside or outside a cylinder, in "
-        "the plane across its axis, the cylinder fixed or turning steadily, under gravity and constant force in that "
-        "plane"
+    conditions = (
+        ROUND,
+        on(Cylinder),
+        TURNING_STEADILY,
+        CONSTANT_LOADS,
+        that(_pulled_across, " across that axis", "gravity or a force pulls along the cylinder's axis", FORCES),
+        NO_TORQUE,
+        Condition(", for a motion in the plane across it", _aside, START),
     )
 
     never = frozenset({"curved"})
@@ -118,38 +146,6 @@ class CylinderOnCylinder(ClosedForm):
             force=(fx, fy),
             from_top=from_top,
         )
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:
-        """Name what of a system, and of a start where one is given, lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> CylinderOnCylinder.outside(tr.RollingSystem(tr.Body.hoop(1.0, 1.0), tr.Support(tr.Plane())))
-        ['the surface is a Plane, not a Cylinder']
-        """
-        reasons = []
-        if not system.body.is_isotropic_sphere:
-            reasons.append("the body is no cylinder or sphere with isotropic inertia about its centre")
-        if not isinstance(system.support.surface, Cylinder):
-            reasons.append(f"the surface is a {type(system.support.surface).__name__}, not a Cylinder")
-        if system.support.motion.steady_rate is None:
-            reasons.append(f"the support's motion {type(system.support.motion).__name__} is no steady turn")
-        varying = [load for load in system.loads if not load.constant]
-        reasons += [f"the load {type(load).__name__} is not constant" for load in varying]
-        if not reasons:
-            (fx, fy, fz), torque, _ = constant_part(system.all_loads, system.body.mass)
-            if abs(fz) > _ASIDE * math.hypot(fx, fy):
-                reasons.append("gravity or a force pulls along the cylinder's axis")
-            if tuple(torque) != (0, 0, 0):
-                reasons.append("a torque acts on the body")
-        if start is not None and not reasons:
-            (*_, vz), (wx, wy, _) = start.velocity, start.angular_velocity
-            speed = max(map(abs, (*start.velocity, *(system.body.radius * w for w in start.angular_velocity))))
-            if max(abs(vz), system.body.radius * math.hypot(wx, wy)) > _ASIDE * speed:
-                reasons.append("the start moves along the cylinder's axis or spins across it")
-        return reasons
 
     # The constants of the motion
 

@@ -11,12 +11,13 @@ import numpy as np
 
 from ...mechanics.algebra import Vector
 from ...mechanics.loads import constant_part
-from ...mechanics.scalars import Scalar, is_number, is_zero
+from ...mechanics.scalars import Scalar, is_zero
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
 from ...wording import as_ratio
 from ..samples import ROLLING, SLIPPING, Samples
 from .base import ClosedForm
+from .domain import CONSTANT_LOADS, NO_TORQUE, PRESSED, ROUND, TURNING_STEADILY, on, that
 from .finding import Finding
 from .fits import Seen, acceleration, zero_ahead
 from .formula import Lines, quantity
@@ -24,6 +25,11 @@ from .kepler import inverse_of, precisely
 from .quadrature import is_one, one_by_one
 
 _MOST_STEPS = 400
+
+
+def _rests_or_is_smooth(system: RollingSystem) -> bool:
+    rate, support = system.support.motion.steady_rate, system.support
+    return rate is None or is_zero(rate) or support.friction is None or is_zero(support.sliding_friction)
 
 
 @dataclass(frozen=True)
@@ -72,9 +78,19 @@ class SlidingSphere(ClosedForm):
     name = "sphere slipping on a plane"
     equation = "T11"
     source = "Coriolis, Théorie mathématique des effets du jeu de billard (1835), level; theory page, T11"
-    domain = (
-        "a sphere about its centre of mass with the same inertia about every axis that slips on a plane at rest, level "
-        "or tilted, under gravity and constant force; without friction the plane may turn steadily"
+    conditions = (
+        ROUND,
+        on(Plane),
+        that(
+            lambda system: system.support.friction is not None,
+            "",
+            "the support has no friction coefficient",
+        ),
+        that(_rests_or_is_smooth, " at rest", "the plane turns, so that its own velocity differs from place to place"),
+        replace(TURNING_STEADILY, words=" or, without friction, turning steadily"),
+        CONSTANT_LOADS,
+        NO_TORQUE,
+        PRESSED,
     )
     phases = (SLIPPING,)
     never = frozenset({"lift", "jam"})  # N is constant
@@ -111,37 +127,6 @@ class SlidingSphere(ClosedForm):
     def of_numbers(cls, system: RollingSystem, start: State, numbers: Sequence[float]) -> SlidingSphere:
         """Take the slip from the law's own numbers: where slip begins, it is smaller than a rounding of V and Ω."""
         return replace(cls.of(system, start), slip=(float(numbers[10]), float(numbers[11])))
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
-        """Name what of a system lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> table = tr.Support(tr.Plane(), motion=tr.Spin(2.0), friction=0.2)
-        >>> SlidingSphere.outside(tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), table))
-        ['the plane turns, so that its own velocity differs from place to place']
-        """
-        reasons, rate = [], system.support.motion.steady_rate
-        if not system.body.is_isotropic_sphere:
-            reasons.append("the body is no sphere with isotropic inertia about its centre")
-        if not isinstance(system.support.surface, Plane):
-            reasons.append(f"the surface is a {type(system.support.surface).__name__}, not a Plane")
-        if system.support.friction is None:
-            reasons.append("the support has no friction coefficient")
-        elif rate is None:
-            reasons.append(f"the support's motion {type(system.support.motion).__name__} is no steady turn")
-        elif not is_zero(rate) and not is_zero(system.support.sliding_friction):
-            reasons.append("the plane turns, so that its own velocity differs from place to place")
-        reasons += [f"the load {type(load).__name__} is not constant" for load in system.loads if not load.constant]
-        if not reasons:
-            force, torque, _ = constant_part(system.all_loads, system.body.mass)
-            if any(torque):
-                reasons.append("a torque acts on the body")
-            if is_number(force.z) and force.z > 0:
-                reasons.append("the plane does not press on the body")
-        return reasons
 
     # The constants of the motion
 

@@ -17,12 +17,11 @@ from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
 from ..samples import RESTING, ROLLING
 from .base import ClosedForm
+from .domain import ALONG_NORMAL, AT_REST, PRESSED, ROUND, STILL_AIR, on, under
 from .finding import Finding
 from .fits import Seen, zero_ahead
 from .formula import Lines, quantity
 from .second_order import fundamental
-
-_BRAKES = (Drag, QuadraticDrag, RollingCouple, RollingResistance)
 
 
 @dataclass(frozen=True)
@@ -77,9 +76,18 @@ class SphereComingToRest(ClosedForm):
     name = "sphere coming to rest on a level plane"
     equation = "T14b"
     source = "theory page, T14; rolling resistance as in Landau and Lifshitz, Mechanics (1976), section 38, with drag"
-    domain = (
-        "a sphere about its centre of mass with the same inertia about every axis, on a plane at rest and level, under "
-        "forces along its normal, rolling resistance, linear and quadratic drag in still air and a viscous couple"
+    conditions = (
+        ROUND,
+        on(Plane),
+        AT_REST,
+        under(
+            ", under rolling resistance, linear and quadratic drag, a viscous couple, gravity and constant forces",
+            "no resistance of this kind",
+            (Drag, QuadraticDrag, RollingCouple, RollingResistance),
+        ),
+        ALONG_NORMAL,
+        STILL_AIR,
+        PRESSED,
     )
 
     phases = (ROLLING, RESTING)
@@ -120,36 +128,6 @@ class SphereComingToRest(ClosedForm):
             couple=total(RollingCouple, "coefficient"),
             pivot_couple=sum(pivots, 0.0),
         )
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
-        """Name what of a system lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> slope = tr.Support(tr.Plane(), tilt="1 deg")
-        >>> SphereComingToRest.outside(tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), slope))
-        ['a force pushes along the plane, or a torque acts']
-        """
-        reasons = []
-        if not system.body.is_isotropic_sphere:
-            reasons.append("the body is no sphere with isotropic inertia about its centre")
-        if not isinstance(system.support.surface, Plane):
-            reasons.append(f"the surface is a {type(system.support.surface).__name__}, not a Plane")
-        if system.support.motion.steady_rate is None or not is_zero(system.support.motion.steady_rate):
-            reasons.append("the support moves")
-        others = [load for load in system.loads if not (load.constant or isinstance(load, _BRAKES))]
-        reasons += [f"the load {type(load).__name__} is no resistance of this kind" for load in others]
-        if any(not is_zero(load.air) for load in system.loads if isinstance(load, (Drag, QuadraticDrag))):
-            reasons.append("the air moves")
-        constant = tuple(load for load in system.all_loads if load.constant)
-        force, torque, _ = constant_part(constant, system.body.mass)
-        if not all(is_zero(part) for part in (force.x, force.y, *torque)):
-            reasons.append("a force pushes along the plane, or a torque acts")
-        if is_number(force.z) and force.z > 0:
-            reasons.append("the plane does not press on the body")
-        return reasons
 
     # The constants of the motion
 

@@ -18,6 +18,7 @@ from ...mechanics.surfaces import Bowl, Cylinder, Dome, Plane
 from ...mechanics.system import RollingSystem, State
 from ..samples import FLIGHT
 from .base import ClosedForm
+from .domain import CONSTANT_LOADS, ROUND, TURNING_SO_OR_SO, on
 from .finding import Finding
 from .fits import Seen
 from .formula import Lines, quantity
@@ -76,11 +77,7 @@ class SphereInFlight(ClosedForm):
     name = "sphere in flight"
     equation = "T11a"
     source = "Galilei, Discorsi (1638), fourth day; theory page, T11"
-    domain = (
-        "a sphere about its centre of mass with the same inertia about every axis, in flight over a plane, a cylinder, "
-        "a bowl or a dome that is fixed or turns about its axis steadily or freely, under gravity and constant force "
-        "and torque"
-    )
+    conditions = (ROUND, on(Plane, Cylinder, Bowl, Dome), TURNING_SO_OR_SO, CONSTANT_LOADS)
     phases = (FLIGHT,)
     of_arrays = True
     never = frozenset({"curved"})
@@ -121,28 +118,6 @@ class SphereInFlight(ClosedForm):
             side=side,
             axle_rate=start.support[1] if isinstance(system.support.motion, FreeAxle) else None,
         )
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
-        """Name what of a system lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> bowl = tr.Support(tr.Paraboloid(2.0))
-        >>> SphereInFlight.outside(tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), bowl))
-        ['the surface is a Paraboloid, not a Plane, Cylinder, Bowl or Dome']
-        """
-        reasons, motion = [], system.support.motion
-        if not system.body.is_isotropic_sphere:
-            reasons.append("the body is no sphere with isotropic inertia about its centre")
-        if not isinstance(system.support.surface, (Plane, Cylinder, Bowl, Dome)):
-            kind = type(system.support.surface).__name__
-            reasons.append(f"the surface is a {kind}, not a Plane, Cylinder, Bowl or Dome")
-        if motion.steady_rate is None and not turns_freely(motion):
-            reasons.append(f"the support's motion {type(motion).__name__} is no steady or free turn")
-        reasons += [f"the load {type(load).__name__} is not constant" for load in system.loads if not load.constant]
-        return reasons
 
     @property
     def period(self) -> float:
@@ -252,19 +227,6 @@ class SphereInFlight(ClosedForm):
             there = np.asarray(np.polynomial.polynomial.polyval(lands, course[:, :2]))
             gone = float(np.linalg.norm(there - seen.samples.position[0, :2]))
             yield Finding("Distance to there", "d_l", way, gone, "m")
-
-
-def turns_freely(motion: Any) -> bool:
-    """Tell whether a support turns on a free axle on which nothing else acts.
-
-    Examples
-    --------
-    >>> turns_freely(FreeAxle(0.5, 2.0)), turns_freely(FreeAxle(0.5, 2.0, bearing_drag=0.1))
-    (True, False)
-    """
-    if not isinstance(motion, FreeAxle):
-        return False
-    return all(is_zero(part) for part in (motion.motor_torque, motion.bearing_drag, motion.bearing_torque))
 
 
 def _real_roots(f: list[float]) -> list[float]:

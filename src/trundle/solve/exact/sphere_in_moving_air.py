@@ -16,6 +16,7 @@ from ...mechanics.scalars import Scalar, namespace
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
+from .domain import ROUND, TURNING_STEADILY, on, under
 from .finding import Finding
 from .fits import TOO_LITTLE, Seen, two_exponents
 from .formula import Lines, quantity
@@ -75,10 +76,16 @@ class SphereInMovingAir(ClosedForm):
     name = "sphere on a plane in moving air"
     equation = "T14a"
     source = "theory page, T14; Milne, Vectorial Mechanics (1948), without air"
-    domain = (
-        "a sphere about its centre of mass with the same inertia about every axis, on a plane that is fixed or turns "
-        "steadily about its normal, under gravity, constant force and torque, linear drag in air that is still or "
-        "turns about the same axis, and a viscous couple at the contact"
+    conditions = (
+        ROUND,
+        on(Plane),
+        TURNING_STEADILY,
+        under(
+            ", under gravity, constant loads, linear drag in air that is still or turns about the same axis, and a "
+            "viscous couple at the contact",
+            "neither constant nor linear drag nor a viscous couple",
+            (Drag, RollingCouple),
+        ),
     )
 
     never = frozenset({"lift"})  # N is constant
@@ -116,31 +123,6 @@ class SphereInMovingAir(ClosedForm):
             couple=sum((load.coefficient for load in couples), 0.0),
             pivot_couple=sum(pivots, 0.0),
         )
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
-        """Name what of a system lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> gale = tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), tr.Support(tr.Plane()), [tr.Drag(0.1, 2.0)])
-        >>> SphereInMovingAir.outside(gale)
-        []
-        """
-        reasons = []
-        if not system.body.is_isotropic_sphere:
-            reasons.append("the body is no sphere with isotropic inertia about its centre")
-        if not isinstance(system.support.surface, Plane):
-            reasons.append(f"the surface is a {type(system.support.surface).__name__}, not a Plane")
-        if system.support.motion.steady_rate is None:
-            reasons.append(f"the support's motion {type(system.support.motion).__name__} is no steady turn")
-        reasons += [
-            f"the load {type(load).__name__} is neither constant nor linear drag nor a viscous couple"
-            for load in system.loads
-            if not (load.constant or isinstance(load, (Drag, RollingCouple)))
-        ]
-        return reasons
 
     # The constants of the motion
 

@@ -11,16 +11,16 @@ import numpy as np
 
 from ...mechanics.algebra import Vector
 from ...mechanics.loads import constant_part
-from ...mechanics.scalars import Scalar, is_number
+from ...mechanics.scalars import Scalar
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
+from .domain import ALONG_NORMAL, CONSTANT_LOADS, PRESSED, SPHERE, TURNING_FREELY, on
 from .finding import Finding
 from .fits import Seen, conic, round_time
 from .formula import Lines, quantity
 from .kepler import inverse_of, precisely, stumpff
 from .quadrature import is_one, one_by_one
-from .sphere_in_flight import turns_freely
 
 
 @dataclass(frozen=True)
@@ -67,10 +67,7 @@ class SphereOnFreePlane(ClosedForm):
     name = "sphere on a free turntable"
     equation = "T13"
     source = "Weckesser, Am. J. Phys. 65, 736 (1997), for the conic; theory page, T13, for the time"
-    domain = (
-        "a ball about its centre of mass with the same inertia about every axis, on a level plane that turns freely "
-        "about its normal, under forces along that normal"
-    )
+    conditions = (SPHERE, on(Plane), TURNING_FREELY, CONSTANT_LOADS, ALONG_NORMAL, PRESSED)
     never = frozenset({"lift"})  # N is constant
 
     @classmethod
@@ -98,33 +95,6 @@ class SphereOnFreePlane(ClosedForm):
             spin=start.angular_velocity[2],
             normal_force=-force.z,
         )
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
-        """Name what of a system lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> table = tr.Support(tr.Plane(), motion=tr.FreeAxle(0.01, 3.0, bearing_drag=0.1))
-        >>> SphereOnFreePlane.outside(tr.RollingSystem(tr.Body.solid_sphere(0.025, 0.065), table))
-        ["the support's motion FreeAxle is no turn on an axle without motor or bearing torque"]
-        """
-        reasons, kind = [], type(system.support.motion).__name__
-        if not system.body.is_isotropic_sphere or system.body.shape.axis is not None:
-            reasons.append("the body is no sphere with isotropic inertia about its centre")
-        if not isinstance(system.support.surface, Plane):
-            reasons.append(f"the surface is a {type(system.support.surface).__name__}, not a Plane")
-        if not turns_freely(system.support.motion):
-            reasons.append(f"the support's motion {kind} is no turn on an axle without motor or bearing torque")
-        reasons += [f"the load {type(load).__name__} is not constant" for load in system.loads if not load.constant]
-        if not reasons:
-            force, torque, _ = constant_part(system.all_loads, system.body.mass)
-            if any((force.x, force.y, *torque)):
-                reasons.append("a force pushes along the plane, or a torque acts")
-            if is_number(force.z) and force.z > 0:
-                reasons.append("the plane does not press on the body")
-        return reasons
 
     # The constants of the motion
 

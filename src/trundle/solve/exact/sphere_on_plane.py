@@ -18,6 +18,7 @@ from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
 from ...wording import as_ratio, pair
 from .base import ClosedForm
+from .domain import ROUND, TURNING_STEADILY, on, under
 from .finding import Finding
 from .fits import TOO_LITTLE, Seen, acceleration, circle, exponent, needed_friction
 from .formula import Lines, decimal, number, quantity
@@ -77,9 +78,15 @@ class SphereOnPlane(ManySamples, ClosedForm):
     name = "sphere on a plane"
     equation = "T5"
     source = "Milne, Vectorial Mechanics (1948); Weltner, Am. J. Phys. 47, 984 (1979); theory page, section 5"
-    domain = (
-        "a sphere about its centre of mass with the same inertia about every axis, on a plane that is fixed or "
-        "turns steadily about its normal, under gravity, constant force, constant torque and linear drag in still air"
+    conditions = (
+        ROUND,
+        on(Plane),
+        TURNING_STEADILY,
+        under(
+            ", under gravity, constant loads and linear drag in still air",
+            "neither constant nor linear drag",
+            lambda load: load.linear_drag is not None,
+        ),
     )
 
     never = frozenset({"lift"})  # N is constant
@@ -113,30 +120,6 @@ class SphereOnPlane(ManySamples, ClosedForm):
             torque=tuple(torque),
             drag=drag,
         )
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
-        """Name what of a system lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> SphereOnPlane.outside(tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), tr.Support(tr.Plane())))
-        []
-        """
-        reasons = []
-        if not system.body.is_isotropic_sphere:
-            reasons.append("the body is no sphere with isotropic inertia about its centre")
-        if not isinstance(system.support.surface, Plane):
-            reasons.append(f"the surface is a {type(system.support.surface).__name__}, not a Plane")
-        if system.support.motion.steady_rate is None:
-            reasons.append(f"the support's motion {type(system.support.motion).__name__} is no steady turn")
-        reasons += [
-            f"the load {type(load).__name__} is neither constant nor linear drag"
-            for load in system.loads
-            if not (load.constant or load.linear_drag is not None)
-        ]
-        return reasons
 
     # The constants of the motion
 

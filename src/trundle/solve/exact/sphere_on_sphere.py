@@ -13,12 +13,13 @@ import numpy as np
 
 from ...mechanics.algebra import E_X, E_Y, E_Z, Vector
 from ...mechanics.loads import constant_part
-from ...mechanics.scalars import Scalar, is_zero
+from ...mechanics.scalars import Scalar
 from ...mechanics.surfaces import Bowl, Dome
 from ...mechanics.system import RollingSystem, State
 from ..samples import FLIGHT, ROLLING
 from .base import ClosedForm
 from .cylinder_on_cylinder import CylinderOnCylinder, angles
+from .domain import AT_REST, CONSTANT_LOADS, NO_TORQUE, SPHERE, START, Condition, constant_forces, on
 from .finding import Finding
 from .fits import BEGINS_TO_SLIP, COMES_OFF, Array, Seen, angle_where
 from .formula import Lines, decimal, quantity
@@ -26,6 +27,23 @@ from .off_a_dome import OffADome
 
 _ASIDE = 1e-12  # share of the motion that may lead out of the plane by rounding
 _ROUNDING = 16 * sys.float_info.epsilon
+
+
+def _aside(system: RollingSystem, start: State) -> Iterator[str]:
+    surface: Any = system.support.surface
+    arm = Vector(*start.position) + E_Z * (surface.sign * surface.radius)
+    V, Omega, force = Vector(*start.velocity), Vector(*start.angular_velocity), constant_forces(system)[0]
+    n, a = arm / arm.norm(), system.body.radius
+    lever, speed = arm.cross(force), max(V.norm(), a * Omega.norm())
+    # Near the top and the bottom the way aside is small or not beside the swing, not beside the sphere.
+    heavy = (1 + system.body.inertia_ratio) * system.body.mass * arm.norm()
+    swing = max(lever.norm(), speed * math.sqrt(force.norm() * heavy))
+    if abs(lever.dot(V)) > _ASIDE * speed * swing + _rounding(arm, force) * speed:
+        yield "the start moves out of the plane of the pull"
+    elif a * abs(Omega.dot(n)) > _ASIDE * speed:
+        yield "the start spins about the normal"
+    elif speed == 0 and lever.norm() <= _rounding(arm, force) and arm.dot(force) < 0:
+        yield "the start balances on the top, where a rounding would decide which way it falls"
 
 
 @dataclass(frozen=True)
@@ -77,9 +95,13 @@ class SphereOnSphere(ClosedForm):
     name = "ball in a great circle of a bowl or dome"
     equation = "T12"
     source = "Abramowitz and Stegun (1964), ch. 16, for the pendulum; theory page, T12"
-    domain = (
-        "a ball with the same inertia about every axis on a bowl or dome at rest, in the plane of a great circle that "
-        "gravity and constant force lie in, without spin out of it"
+    conditions = (
+        SPHERE,
+        on(Bowl, Dome),
+        AT_REST,
+        CONSTANT_LOADS,
+        NO_TORQUE,
+        Condition(", in the plane of a great circle that the force lies in, without spin out of it", _aside, START),
     )
     never = frozenset({"curved"})
 
@@ -118,44 +140,6 @@ class SphereOnSphere(ClosedForm):
             second=tuple(second),
             from_top=from_top,
         )
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:
-        """Name what of a system, and of a start where one is given, lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> SphereOnSphere.outside(tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane())))
-        ['the surface is a Plane, not a Bowl or Dome']
-        """
-        reasons, motion = [], system.support.motion
-        if not system.body.is_isotropic_sphere or system.body.shape.axis is not None:
-            reasons.append("the body is no sphere with isotropic inertia about its centre")
-        if not isinstance(system.support.surface, (Bowl, Dome)):
-            reasons.append(f"the surface is a {type(system.support.surface).__name__}, not a Bowl or Dome")
-        if motion.steady_rate is None or not is_zero(motion.steady_rate):
-            reasons.append("the support moves")
-        reasons += [f"the load {type(load).__name__} is not constant" for load in system.loads if not load.constant]
-        if not reasons and any(constant_part(system.all_loads, system.body.mass)[1]):
-            reasons.append("a torque acts on the body")
-        if start is not None and not reasons:
-            surface: Any = system.support.surface
-            arm = Vector(*start.position) + E_Z * (surface.sign * surface.radius)
-            V, Omega = Vector(*start.velocity), Vector(*start.angular_velocity)
-            force, _, _ = constant_part(system.all_loads, system.body.mass)
-            n, a = arm / arm.norm(), system.body.radius
-            lever, speed = arm.cross(force), max(V.norm(), a * Omega.norm())
-            # Near the top and the bottom the way aside is small or not beside the swing, not beside the sphere.
-            heavy = (1 + system.body.inertia_ratio) * system.body.mass * arm.norm()
-            swing = max(lever.norm(), speed * math.sqrt(force.norm() * heavy))
-            if abs(lever.dot(V)) > _ASIDE * speed * swing + _rounding(arm, force) * speed:
-                reasons.append("the start moves out of the plane of the pull")
-            elif a * abs(Omega.dot(n)) > _ASIDE * speed:
-                reasons.append("the start spins about the normal")
-            elif speed == 0 and lever.norm() <= _rounding(arm, force) and arm.dot(force) < 0:
-                reasons.append("the start balances on the top, where a rounding would decide which way it falls")
-        return reasons
 
     # The constants of the motion
 

@@ -18,6 +18,7 @@ from ...mechanics.scalars import Scalar
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
+from .domain import ROUND, moving, on, under
 from .finding import Finding
 from .fits import Seen
 from .formula import Lines, number
@@ -70,9 +71,19 @@ class SphereOnUnsteadyPlane(ClosedForm):
     name = "sphere on a plane that turns unevenly"
     equation = "T9"
     source = "theory page, T9, by two quadratures; for a steady turn Milne, Vectorial Mechanics (1948)"
-    domain = (
-        "a sphere about its centre of mass with the same inertia about every axis, on a plane that turns about its "
-        "normal at a rate given in time, under gravity, forces and torques given in time and linear drag in still air"
+    conditions = (
+        ROUND,
+        on(Plane),
+        moving(
+            lambda motion: motion.steady_rate is not None or isinstance(motion, (SpinBy, UnevenSpin)),
+            " that turns about its normal at a rate given in time",
+            "turn about its normal at a rate given in time",
+        ),
+        under(
+            ", under gravity, forces and torques given in time and linear drag in still air",
+            "neither given in time nor linear drag in still air",
+            lambda load: load.linear_drag is not None or isinstance(load, (Force, Torque)),
+        ),
     )
 
     @classmethod
@@ -99,33 +110,6 @@ class SphereOnUnsteadyPlane(ClosedForm):
             loads=system.all_loads,
             start_time=start.time,
         )
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
-        """Name what of a system lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> table = tr.Support(tr.Plane(), motion=tr.Wobble(3.5, 0.1))
-        >>> SphereOnUnsteadyPlane.outside(tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), table))
-        ["the support's motion Wobble is no turn about its normal at a rate given in time"]
-        """
-        reasons, motion = [], system.support.motion
-        if not system.body.is_isotropic_sphere:
-            reasons.append("the body is no sphere with isotropic inertia about its centre")
-        if not isinstance(system.support.surface, Plane):
-            reasons.append(f"the surface is a {type(system.support.surface).__name__}, not a Plane")
-        if motion.steady_rate is None and not (isinstance(motion, (SpinBy, UnevenSpin))):
-            reasons.append(
-                f"the support's motion {type(motion).__name__} is no turn about its normal at a rate given in time"
-            )
-        reasons += [
-            f"the load {type(load).__name__} is neither given in time nor linear drag in still air"
-            for load in system.loads
-            if not (load.constant or load.linear_drag is not None or isinstance(load, (Force, Torque)))
-        ]
-        return reasons
 
     # What is given
 
