@@ -11,7 +11,7 @@ import numpy as np
 from trundle.mechanics.loads import Force, Torque
 from trundle.mechanics.shapes import Ellipsoid, Roller, Sphere
 from trundle.mechanics.surfaces import Bowl, Cylinder, Dome, Plane, TorusTrack
-from trundle.solve.exact import SphereOnPlane, closed_form
+from trundle.solve.exact import closed_form
 
 from .happenings import FLIGHT, Happening, Stretch, happenings_of, stretches_of
 from .scales import Array
@@ -157,12 +157,13 @@ def _outline(surface: Any) -> float | None:
 def guiding_centre(run: Trajectory, times: Array) -> Array | None:
     """Return the point about which the ball circles, (n, 2), m, support frame, where a closed form has it."""
     form = closed_form(run.system, run.start)
-    if not isinstance(form, SphereOnPlane) or not form.has_guiding_centre:
+    circle = None if form is None else form.circle
+    if circle is None:
         return None
     if any(stretch.phase for stretch in stretches_of(run)):
         return None  # it moves while the ball slips
-    x, y = form.guiding_centre(times - run.start.time)
-    return np.column_stack([x, y])
+    centre = circle.centre_at(times - run.start.time)
+    return np.column_stack([centre.real, centre.imag])
 
 
 def turns_in(time: Array, velocity: Array) -> float:

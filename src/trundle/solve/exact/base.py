@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
@@ -12,10 +12,14 @@ from ...errors import OutOfDomainError
 from ...mechanics.algebra import Quaternion, Vector
 from ...mechanics.system import RollingSystem, State
 from ..samples import ROLLING
+from .circle import Circle
 from .domain import FORCES, PARTS, START, Condition
 from .finding import Finding
 from .fits import Seen
 from .formula import NEWTON_AND_EULER, Lines, body_numbers
+
+if TYPE_CHECKING:
+    from ..monodromy import Monodromy
 
 # What is said of when a phase ends, by the stop that ends it.
 _ENDS = {
@@ -132,13 +136,17 @@ class ClosedForm:
         return float(self.period)
 
     @property
-    def has_guiding_centre(self) -> bool:
-        """Whether the body circles steadily about a point."""
-        return False
+    def circle(self) -> Circle | None:
+        """The circle in which the body goes about a point that drifts steadily; None where it goes in none."""
+        return None
 
     def straight_turn(self, t: Any) -> tuple[Vector, Any] | None:
         """Return the fixed axis about which the body has turned and the angle, rad, where the position gives them."""
         del t
+        return None
+
+    def monodromy(self) -> Monodromy | None:
+        """Return the turn of the body over one period, to more digits than a float has; None where it is not known."""
         return None
 
     def stance(self, t: Any) -> Quaternion | None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,12 +18,16 @@ from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
 from ...wording import as_ratio, pair
 from .base import ClosedForm
+from .circle import Circle
 from .domain import ROUND, TURNING_STEADILY, on, under
 from .finding import Finding
 from .fits import TOO_LITTLE, Seen, acceleration, circle, exponent, needed_friction
 from .formula import Lines, decimal, number, quantity
 from .many_samples import ManySamples
 from .phi import Complex, exponentials, phase, quotient_times
+
+if TYPE_CHECKING:
+    from ..monodromy import Monodromy
 
 _STILL = 1e-12  # share of the table's speed below which a ball that was put down gently has not moved
 _SLOWEST = 1e-12  # rad/s; a slower circle is a straight line to anyone
@@ -294,6 +298,42 @@ class SphereOnPlane(ManySamples, ClosedForm):
         along = Vector(x / size, y / size, 0.0)
         gone = self.position_at(t) - Vector(*self.position, self.radius)
         return Vector(-along.y, along.x, 0.0), gone.dot(along) / self.radius
+
+    @property
+    def circle(self) -> Circle | None:
+        """The circle in which it goes on a plane that turns, without drag."""
+        if not self.has_guiding_centre:
+            return None
+        drift = complex(*map(float, self.drift_velocity))
+        arm = (complex(*map(float, self.velocity)) - drift) / (1j * float(self.kappa))
+        centre = complex(*map(float, self.guiding_centre(0.0)))
+        return Circle(float(self.kappa), centre, drift, arm, said="κ = ω k/(1 + k)")
+
+    def monodromy(self) -> Monodromy | None:
+        """Return the turn over one circle from numbers that start exact: a Ω = ω ζ_c + (ω − κ)(ζ − ζ_c)."""
+        if not is_zero(self.torque[2]):
+            return None
+        import mpmath
+
+        from ..monodromy import Monodromy
+
+        with mpmath.workdps(40):
+            number = mpmath.mpf
+            precise = replace(
+                self,
+                radius=number(self.radius),
+                mass=number(self.mass),
+                inertia_ratio=number(self.inertia_ratio),
+                rate=number(self.rate),
+                position=tuple(number(part) for part in self.position),
+                velocity=tuple(number(part) for part in self.velocity),
+            )
+            centre = mpmath.mpc(*precise.guiding_centre(0))
+            arm = mpmath.mpc(*precise.position) - centre
+            turning = (precise.rate - precise.kappa) * arm / precise.radius
+            return Monodromy.of_turning_vector(
+                precise.rate * centre / precise.radius, turning, self.spin, precise.kappa
+            )
 
     # What is shown
 
