@@ -112,11 +112,15 @@ class ClosedForm:
         """When the phase ends, s since the start, by those of its law's stops that the form knows; or never, inf."""
         return {}
 
-    def expected(self, duration: float) -> list[tuple[str, str]]:  # noqa: ARG002  some ask how long
+    def expected(self, duration: float) -> list[tuple[str, str]]:
         """Return numbers that it promises of a run, each with its name, for a reader before the run."""
         rows = [(_ENDS[stop], f"{t:.6g} s") for stop, t in self.ends_at.items() if stop in _ENDS and t < math.inf]
-        period = float(self.period)
-        return [*rows, *([("one period, while it stays on", f"{period:.6g} s")] if period < math.inf else [])]
+        if (period := float(self.period)) < math.inf:
+            rows.append(("one period, while it stays on", f"{period:.6g} s"))
+        if rows:
+            return rows
+        x, y, z = self.motion_at(duration)[0]
+        return [(f"centre after {duration:g} s, if nothing happens", f"({x:.6g}, {y:.6g}, {z:.6g}) m")]
 
     def formulas(self, system: RollingSystem) -> Lines:
         """Return its formulas in LaTeX, each with the numbers put in; the laws that it obeys, unless it has its own."""

@@ -25,7 +25,7 @@ from .second_order import fundamental
 
 @dataclass(frozen=True)
 class SphereInMovingAir(ClosedForm):
-    """The motion of ζ̈ = (iκ − γ)ζ̇ + iβζ + φ: two complex exponents, one of which may grow (T14a).
+    """The motion of ζ̈ = (iκ − γ)ζ̇ + iβζ + φ: two complex exponents, one of which may grow (T14).
 
     Air that turns at ω_a carries the ball along, −c(ζ̇ − iω_aζ); a couple −c_r(Ω − ω) at the contact does the same as
     air of c = c_r/a² that turns with the plane. Every number may be a float, or an array of members.
@@ -74,7 +74,7 @@ class SphereInMovingAir(ClosedForm):
     pivot_couple: Scalar = 0.0
 
     name = "sphere on a plane in moving air"
-    equation = "T14a"
+    equation = "T14"
     source = "theory page, T14; Milne, Vectorial Mechanics (1948), without air"
     conditions = (
         ROUND,
