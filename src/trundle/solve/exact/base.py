@@ -120,7 +120,7 @@ class ClosedForm:
         if rows:
             return rows
         x, y, z = self.motion_at(duration)[0]
-        return [(f"centre after {duration:g} s, if nothing happens", f"({x:.6g}, {y:.6g}, {z:.6g}) m")]
+        return [(f"centre after {duration:g} s, if no event comes first", f"({x:.6g}, {y:.6g}, {z:.6g}) m")]
 
     def formulas(self, system: RollingSystem) -> Lines:
         """Return its formulas in LaTeX, each with the numbers put in; the laws that it obeys, unless it has its own."""

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from ...mechanics.algebra import Quaternion, Vector
-from ...mechanics.loads import constant_part
 from ...mechanics.scalars import Scalar
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
@@ -25,7 +24,7 @@ from .chaplygin_domain import (
     two_are_equal,
 )
 from .chaplygin_nutation import Constants
-from .domain import FORCES, that
+from .domain import FORCES, constant_forces, that
 from .finding import Finding
 from .fits import Seen
 from .formula import Lines, quantity
@@ -111,7 +110,7 @@ class ChaplyginBall(ClosedForm):
         odd = two_are_equal(moments) or 0
         body_axis = axes[odd]
         e = Quaternion(*start.orientation).matrix() @ Vector(*body_axis)
-        force, _, _ = constant_part(system.all_loads, system.body.mass)
+        force, _ = constant_forces(system)
         return cls(
             radius=system.body.radius,
             mass=system.body.mass,

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from ...mechanics.algebra import E_Z, Vector
-from ...mechanics.loads import constant_part
 from ...mechanics.scalars import Scalar, is_number, less, namespace
 from ...mechanics.surfaces import Cylinder
 from ...mechanics.system import RollingSystem, State
@@ -128,7 +127,7 @@ class CylinderOnCylinder(ClosedForm):
         """
         cls.check_domain(system, start)
         surface: Any = system.support.surface
-        (fx, fy, _), _, _ = constant_part(system.all_loads, system.body.mass)
+        fx, fy, _ = constant_forces(system)[0]
         r, V = Vector(*start.position), Vector(*start.velocity)
         length = surface.radius + surface.sign * system.body.radius
         pull = (fx, fy) if (fx, fy) != (0, 0) else (1.0, 0.0)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ...mechanics.algebra import Vector
-from ...mechanics.loads import Load, constant_part
+from ...mechanics.loads import Drag, Load, QuadraticDrag, RollingCouple, RollingResistance, constant_part
 from ...mechanics.motions import FreeAxle, Motion
 from ...mechanics.scalars import is_number, is_zero
 from ...mechanics.surfaces import Surface
@@ -81,25 +81,31 @@ def moving(holds: Callable[[Any], bool], words: str, kind: str) -> Condition:
     return Condition(words, failures)
 
 
-def under(words: str, failure: str, also: Callable[[Any], bool] | tuple[type[Load], ...] = ()) -> Condition:
-    """Return the condition that each load is constant, or one of some others.
+def under(words: str, failure: str, *others: type[Load] | Callable[[Load], Any]) -> Condition:
+    """Return the condition that each load is constant, or of one of some other kinds.
 
     Examples
     --------
     >>> import trundle as tr
-    >>> still = under(", under gravity and still air", "not of still air", (tr.Drag,))
+    >>> still = under(", under gravity and still air", "not of still air", tr.QuadraticDrag, linear_drag)
     >>> ball, table = tr.Body.solid_sphere(1.0, 1.0), tr.Support(tr.Plane())
     >>> list(still.failures(tr.RollingSystem(ball, table, (tr.Drag(0.1), tr.Magnus(0.1))), None))
     ['the load Magnus is not of still air']
     """
 
     def allowed(load: Load) -> bool:
-        return load.constant or (isinstance(load, also) if isinstance(also, tuple) else also(load))
+        kinds = (isinstance(load, one) if isinstance(one, type) else one(load) for one in others)
+        return load.constant or any(kinds)
 
     def failures(system: RollingSystem, start: Any) -> Iterable[str]:  # noqa: ARG001
         return (f"the load {type(load).__name__} is {failure}" for load in system.loads if not allowed(load))
 
     return Condition(words, failures)
+
+
+def linear_drag(load: Load) -> bool:
+    """Tell whether a load is linear drag in still air."""
+    return load.linear_drag is not None
 
 
 def constant_forces(system: RollingSystem) -> tuple[Vector, Vector]:
@@ -152,6 +158,7 @@ def _pressed(system: RollingSystem) -> bool:
     return not is_number(down) or down <= 0
 
 
+RESISTANCES = (Drag, QuadraticDrag, RollingCouple, RollingResistance)  # nothing on a body at rest, in still air
 _ISOTROPIC = "with isotropic inertia about its centre"
 ROUND = that(
     lambda system: system.body.is_isotropic_sphere,

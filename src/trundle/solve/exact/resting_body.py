@@ -7,13 +7,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ...mechanics.algebra import ZERO, Vector
-from ...mechanics.loads import Drag, QuadraticDrag, RollingCouple, RollingResistance, at_rest
+from ...mechanics.algebra import Vector
 from ...mechanics.scalars import Scalar
 from ...mechanics.system import RollingSystem, State
 from ..samples import RESTING
 from .base import ClosedForm
-from .domain import ANY_BODY, AT_REST, START, STILL_AIR, Condition, under
+from .domain import ANY_BODY, AT_REST, RESISTANCES, START, STILL_AIR, Condition, constant_forces, under
 from .formula import Lines, quantity
 
 
@@ -52,7 +51,7 @@ class RestingBody(ClosedForm):
         under(
             ", under gravity, constant loads and resistances",
             "not constant",
-            (Drag, QuadraticDrag, RollingCouple, RollingResistance),
+            *RESISTANCES,
         ),
         STILL_AIR,
     )
@@ -72,10 +71,7 @@ class RestingBody(ClosedForm):
         (0.0, 0.0, -9.80665)
         """
         cls.check_domain(system, start)
-        force = ZERO
-        for load in system.all_loads:
-            force = force + load.force(at_rest(system.body.mass)) if load.constant else force
-        return cls(start.position, tuple(force))
+        return cls(start.position, tuple(constant_forces(system)[0]))
 
     @property
     def period(self) -> float:

@@ -6,11 +6,10 @@ import math
 from typing import Any
 
 from ...mechanics.algebra import E_Z, Vector
-from ...mechanics.loads import constant_part
 from ...mechanics.scalars import Scalar, is_number, namespace
 from ...mechanics.surfaces import Cylinder
 from ...mechanics.system import RollingSystem, State
-from .domain import CONSTANT_LOADS, NO_TORQUE, SPHERE, TURNING_STEADILY, on
+from .domain import CONSTANT_LOADS, NO_TORQUE, SPHERE, TURNING_STEADILY, constant_forces, on
 from .phi import quotient_times, two_product
 
 _ASIDE = 1e-12  # share of the loads that may point across or along the axis by rounding
@@ -27,7 +26,7 @@ def pull(system: RollingSystem) -> tuple[float, float, float]:
     >>> pull(tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), upside_down))
     (0.0, 0.0, 9.80665)
     """
-    fx, fy, fz = constant_part(system.all_loads, system.body.mass)[0]
+    fx, fy, fz = constant_forces(system)[0]
     across = math.hypot(fx, fy)
     if across <= _ASIDE * abs(fz):
         return 0.0, 0.0, fz

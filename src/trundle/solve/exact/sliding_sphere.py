@@ -10,14 +10,13 @@ from typing import Any
 import numpy as np
 
 from ...mechanics.algebra import Vector
-from ...mechanics.loads import constant_part
 from ...mechanics.scalars import Scalar, is_zero
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
 from ...wording import as_ratio
 from ..samples import ROLLING, SLIPPING, Samples
 from .base import ClosedForm
-from .domain import CONSTANT_LOADS, NO_TORQUE, PRESSED, ROUND, TURNING_STEADILY, on, that
+from .domain import CONSTANT_LOADS, NO_TORQUE, PRESSED, ROUND, TURNING_STEADILY, constant_forces, on, that
 from .finding import Finding
 from .fits import Seen, acceleration, zero_ahead
 from .formula import Lines, quantity
@@ -110,7 +109,7 @@ class SlidingSphere(ClosedForm):
         cls.check_domain(system, start)
         (vx, vy, _), (wx, wy, _), a = start.velocity, start.angular_velocity, system.body.radius
         rate, (x, y, _) = system.support.motion.steady_rate or 0.0, start.position
-        force, _, _ = constant_part(system.all_loads, system.body.mass)
+        force, _ = constant_forces(system)
         return cls(
             radius=a,
             mass=system.body.mass,

@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 
 from ...mechanics.algebra import Vector
-from ...mechanics.loads import Drag, QuadraticDrag, RollingCouple, RollingResistance, constant_part
+from ...mechanics.loads import Drag, QuadraticDrag, RollingCouple, RollingResistance
 from ...mechanics.loads.air import STILL
 from ...mechanics.scalars import Scalar, is_number, is_zero, namespace
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
 from ..samples import RESTING, ROLLING
 from .base import ClosedForm
-from .domain import ALONG_NORMAL, AT_REST, PRESSED, ROUND, STILL_AIR, on, under
+from .domain import ALONG_NORMAL, AT_REST, PRESSED, RESISTANCES, ROUND, STILL_AIR, constant_forces, on, under
 from .finding import Finding
 from .fits import Seen, zero_ahead
 from .formula import Lines, quantity
@@ -83,7 +83,7 @@ class SphereComingToRest(ClosedForm):
         under(
             ", under rolling resistance, linear and quadratic drag, a viscous couple, gravity and constant forces",
             "no resistance of this kind",
-            (Drag, QuadraticDrag, RollingCouple, RollingResistance),
+            *RESISTANCES,
         ),
         ALONG_NORMAL,
         STILL_AIR,
@@ -106,8 +106,7 @@ class SphereComingToRest(ClosedForm):
         52.495
         """
         cls.check_domain(system, start)
-        constant = tuple(load for load in system.all_loads if load.constant)
-        force, _, _ = constant_part(constant, system.body.mass)
+        force, _ = constant_forces(system)
 
         def total(kind: type, name: str) -> Any:
             return sum((getattr(load, name) for load in system.loads if isinstance(load, kind)), 0.0)

@@ -11,14 +11,13 @@ from typing import Any
 import numpy as np
 
 from ...mechanics.algebra import Vector
-from ...mechanics.loads import constant_part
 from ...mechanics.motions import FreeAxle
 from ...mechanics.scalars import Scalar, is_number, is_zero, namespace
 from ...mechanics.surfaces import Bowl, Cylinder, Dome, Plane
 from ...mechanics.system import RollingSystem, State
 from ..samples import FLIGHT
 from .base import ClosedForm
-from .domain import CONSTANT_LOADS, ROUND, TURNING_SO_OR_SO, on
+from .domain import CONSTANT_LOADS, ROUND, TURNING_SO_OR_SO, constant_forces, on
 from .finding import Finding
 from .fits import Seen
 from .formula import Lines, quantity
@@ -94,7 +93,7 @@ class SphereInFlight(ClosedForm):
         0.2
         """
         cls.check_domain(system, start)
-        force, torque, _ = constant_part(system.all_loads, system.body.mass)
+        force, torque = constant_forces(system)
         surface: Any = system.support.surface
         a = system.body.radius
         across, middle, distance, side = (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), a, 1.0

@@ -11,12 +11,12 @@ import numpy as np
 
 from ...errors import SolverError
 from ...mechanics.algebra import Vector
-from ...mechanics.loads import Drag, RollingCouple, constant_part
+from ...mechanics.loads import Drag, RollingCouple
 from ...mechanics.scalars import Scalar, namespace
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
-from .domain import ROUND, TURNING_STEADILY, on, under
+from .domain import ROUND, TURNING_STEADILY, constant_forces, on, under
 from .finding import Finding
 from .fits import TOO_LITTLE, Seen, two_exponents
 from .formula import Lines, quantity
@@ -84,7 +84,8 @@ class SphereInMovingAir(ClosedForm):
             ", under gravity, constant loads, linear drag in air that is still or turns about the same axis, and a "
             "viscous couple at the contact",
             "neither constant nor linear drag nor a viscous couple",
-            (Drag, RollingCouple),
+            Drag,
+            RollingCouple,
         ),
     )
 
@@ -105,8 +106,7 @@ class SphereInMovingAir(ClosedForm):
         cls.check_domain(system, start)
         drags = [load for load in system.loads if isinstance(load, Drag)]
         couples = [load for load in system.loads if isinstance(load, RollingCouple)]
-        steady = tuple(load for load in system.all_loads if load.constant)
-        force, torque, _ = constant_part(steady, system.body.mass)
+        force, torque = constant_forces(system)
         pivots = [c.coefficient if c.pivot_coefficient is None else c.pivot_coefficient for c in couples]
         return cls(
             radius=system.body.radius,

@@ -10,12 +10,11 @@ from typing import Any
 import numpy as np
 
 from ...mechanics.algebra import Vector
-from ...mechanics.loads import constant_part
 from ...mechanics.scalars import Scalar
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
-from .domain import ALONG_NORMAL, CONSTANT_LOADS, PRESSED, SPHERE, TURNING_FREELY, on
+from .domain import ALONG_NORMAL, CONSTANT_LOADS, PRESSED, SPHERE, TURNING_FREELY, constant_forces, on
 from .finding import Finding
 from .fits import Seen, conic, round_time
 from .formula import Lines, quantity
@@ -83,7 +82,7 @@ class SphereOnFreePlane(ClosedForm):
         'ellipse'
         """
         cls.check_domain(system, start)
-        force, _, _ = constant_part(system.all_loads, system.body.mass)
+        force, _ = constant_forces(system)
         return cls(
             radius=system.body.radius,
             mass=system.body.mass,

@@ -19,7 +19,7 @@ from ...mechanics.system import RollingSystem, State
 from ...wording import as_ratio, pair
 from .base import ClosedForm
 from .circle import Circle
-from .domain import ROUND, TURNING_STEADILY, on, under
+from .domain import ROUND, TURNING_STEADILY, linear_drag, on, under
 from .finding import Finding
 from .fits import TOO_LITTLE, Seen, acceleration, circle, exponent, needed_friction
 from .formula import Lines, decimal, number, quantity
@@ -89,7 +89,7 @@ class SphereOnPlane(ManySamples, ClosedForm):
         under(
             ", under gravity, constant loads and linear drag in still air",
             "neither constant nor linear drag",
-            lambda load: load.linear_drag is not None,
+            linear_drag,
         ),
     )
 

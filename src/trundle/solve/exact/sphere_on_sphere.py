@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from ...mechanics.algebra import E_X, E_Y, E_Z, Vector
-from ...mechanics.loads import constant_part
 from ...mechanics.scalars import Scalar
 from ...mechanics.surfaces import Bowl, Dome
 from ...mechanics.system import RollingSystem, State
@@ -120,7 +119,7 @@ class SphereOnSphere(ClosedForm):
         surface: Any = system.support.surface
         a, b, side = system.body.radius, surface.radius, surface.sign
         arm, V = Vector(*start.position) + E_Z * (side * b), Vector(*start.velocity)
-        force, _, _ = constant_part(system.all_loads, system.body.mass)
+        force, _ = constant_forces(system)
         G, length = force.norm(), b + side * a
         first = force / G if G else arm / arm.norm()
         across = _plane(arm, V, first)

@@ -18,7 +18,7 @@ from ...mechanics.scalars import Scalar
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
-from .domain import ROUND, moving, on, under
+from .domain import ROUND, linear_drag, moving, on, under
 from .finding import Finding
 from .fits import Seen
 from .formula import Lines, number
@@ -82,7 +82,9 @@ class SphereOnUnsteadyPlane(ClosedForm):
         under(
             ", under gravity, forces and torques given in time and linear drag in still air",
             "neither given in time nor linear drag in still air",
-            lambda load: load.linear_drag is not None or isinstance(load, (Force, Torque)),
+            linear_drag,
+            Force,
+            Torque,
         ),
     )
 

@@ -10,12 +10,11 @@ from typing import Any
 import numpy as np
 
 from ...mechanics.algebra import E_Z, Quaternion, Vector
-from ...mechanics.loads import constant_part
 from ...mechanics.scalars import Scalar, namespace
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
 from .chaplygin_domain import CHAPLYGIN_BALL, ON_LEVEL_PLANE, principal_axes, two_are_equal
-from .domain import START, Condition
+from .domain import START, Condition, constant_forces
 from .finding import Finding
 from .fits import Seen, needed_friction
 from .formula import Lines, quantity
@@ -87,7 +86,7 @@ class SteadyChaplyginBall(ClosedForm):
         (0.0, 0.0, 3.0)
         """
         cls.check_domain(system, start)
-        force, _, _ = constant_part(system.all_loads, system.body.mass)
+        force, _ = constant_forces(system)
         return cls(system.body.radius, start.position[:2], start.angular_velocity, -float(force.z))
 
     @property

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from ...mechanics.algebra import E_Z, Quaternion, Vector
-from ...mechanics.loads import constant_part
 from ...mechanics.scalars import Scalar, namespace
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
@@ -25,7 +24,7 @@ from .chaplygin_domain import (
     turning_faster,
     two_are_equal,
 )
-from .domain import FORCES, START, Condition, that
+from .domain import FORCES, START, Condition, constant_forces, that
 from .finding import Finding
 from .fits import Seen
 from .formula import Lines, quantity
@@ -129,7 +128,7 @@ class UprightChaplyginBall(ClosedForm):
         cls.check_domain(system, start)
         moments, axes = principal_axes(system.body)
         turn = body_quaternion(axes)
-        force, _, _ = constant_part(system.all_loads, system.body.mass)
+        force, _ = constant_forces(system)
         q = Quaternion(*start.orientation) * turn
         return cls(
             radius=system.body.radius,
