@@ -101,6 +101,12 @@ def test_its_expectations_are_told(form: type[ClosedForm]) -> None:
     assert all(said and value for said, value in rows)
 
 
+def test_expectations_say_why_there_is_no_number() -> None:
+    system, start = placed(plane(tr.Spin(50.0)), loads=(tr.Drag(0.5, air=60.0),), **NUDGED)
+    scenario = tr.Scenario.describe(system, start, duration=1e6, every=1e3)
+    assert "driven out beyond any number" in expectations(scenario)[1][1]
+
+
 @one_by_one()
 def test_the_card_names_it_and_holds_it_against_another_method(form: type[ClosedForm]) -> None:
     card = run_of(form).card()

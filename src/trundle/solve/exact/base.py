@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
-from ...errors import OutOfDomainError
+from ...errors import OutOfDomainError, SolverError
 from ...mechanics.algebra import Quaternion, Vector
 from ...mechanics.system import RollingSystem, State
 from ..samples import ROLLING
@@ -119,8 +119,12 @@ class ClosedForm:
             rows.append(("one period, while it stays on", f"{period:.6g} s"))
         if rows:
             return rows
-        x, y, z = self.motion_at(duration)[0]
-        return [(f"centre after {duration:g} s, if no event comes first", f"({x:.6g}, {y:.6g}, {z:.6g}) m")]
+        try:
+            x, y, z = self.motion_at(duration)[0]
+            told = f"({x:.6g}, {y:.6g}, {z:.6g}) m"
+        except SolverError as error:
+            told = str(error)
+        return [(f"centre after {duration:g} s, if no event comes first", told)]
 
     def formulas(self, system: RollingSystem) -> Lines:
         """Return its formulas in LaTeX, each with the numbers put in; the laws that it obeys, unless it has its own."""
