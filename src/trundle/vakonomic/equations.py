@@ -209,6 +209,8 @@ def vakonomic_path(
     import numpy as np
     from scipy.integrate import solve_ivp
 
+    checks.instance(system, RollingSystem, "system", "Give a tr.RollingSystem.")
+    checks.instance(start, State, "start", "Let system.place(...) make it.")
     ball, t = _ball(system), np.asarray(times, dtype=float)
     pair = tuple(checks.components(multipliers, "number", "multipliers", 2))
     y = np.array([*start.position[:2], *start.velocity[:2], *pair, start.angular_velocity[2]], dtype=float)
