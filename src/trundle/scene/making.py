@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import InvalidValueError
-from ..mechanics.surfaces import Plane
 from ..solve.exact.formula import formula_of
 from ..solve.samples import Samples
 from .body_mesh import body_mesh
@@ -62,5 +61,5 @@ def _ground(run: Trajectory, at: Samples, contact: np.ndarray, radius: float) ->
     support, touching = run.system.support, ~flying(at)
     turns = moves(run.system) and support.motion.turns
     # Below a flight there is a plane too, seen to be flown over.
-    some = touching.any() and not isinstance(support.surface, Plane)
+    some = touching.any() and not support.surface.flat
     return ground_of(support.surface, turns, contact[touching] if some else contact, radius)

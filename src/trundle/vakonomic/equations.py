@@ -25,7 +25,6 @@ from ..errors import InvalidValueError, OutOfDomainError, SolverError
 from ..mechanics import checks
 from ..mechanics.loads import Force, Gravity, at_rest
 from ..mechanics.scalars import is_number
-from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem, State
 
 if TYPE_CHECKING:
@@ -140,7 +139,7 @@ def _ball(system: RollingSystem) -> _Ball:
     """Return the numbers of a system that the equations here are for."""
     support, body = system.support, system.body
     outside = []
-    if not isinstance(support.surface, Plane):
+    if not support.surface.flat:
         outside.append("the surface is no plane")
     if support.motion.steady_rate is None:
         outside.append("the plane does not turn steadily")

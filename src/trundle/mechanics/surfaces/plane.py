@@ -28,6 +28,7 @@ class Plane(Surface):
 
     rim: Annotated[Scalar | None, Number("length", POSITIVE, "Radius of the rim; absent: unbounded.", "0.5 m")] = None
     kind = "plane"
+    flat = True
     noun, ground = "plane", "table"
     axisymmetric = True
     tilt = Number("angle", said="Angle of the plane's normal to the vertical; down the first axis.")

@@ -43,6 +43,12 @@ class TorusTrack(Surface):
     side: Annotated[str, Choice(SIDES, "side of a torus track")] = "inside"
     kind = "torus-track"
     noun, ground = "torus", "torus"
+
+    @property
+    def outline(self) -> tuple[Scalar, ...]:
+        """The outer edge and the hole."""
+        return self.ring_radius + self.tube_radius, self.ring_radius - self.tube_radius
+
     axisymmetric = True
     coordinates = ("angle", "angle")
 
