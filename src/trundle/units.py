@@ -75,7 +75,7 @@ def to_si(value: Any, kind: str, key: str) -> Any:
     """
     if isinstance(value, str):
         return finite(_from_text(value, kind, key), key, value)
-    if isinstance(value, bool) or value is None:
+    if isinstance(value, bool) or not hasattr(value, "__neg__"):  # nothing, a list, a table: no kind of number
         raise InvalidValueError(key, _must_be(kind), value, _example(kind))
     if isinstance(value, (int, float)):
         return finite(_as_float(value, key), key, value)

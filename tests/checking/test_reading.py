@@ -173,3 +173,9 @@ def test_the_height_follows_on_a_plane() -> None:
     checked = tr.check(seen, SYSTEM)
     assert checked.passed
     assert "touches the support" not in [figure.name for figure in checked.figures]
+
+
+@pytest.mark.parametrize("scenario", [{"t": [0.0, 1.0]}, 7, None])
+def test_what_is_no_scenario_is_refused(scenario: Any) -> None:
+    with pytest.raises(tr.InvalidValueError, match=r"`scenario` must be the name of a scenario"):
+        tr.check(run(), scenario)

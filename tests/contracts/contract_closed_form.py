@@ -59,7 +59,7 @@ class ClosedFormContract:
 
     def test_it_says_where_it_comes_from_and_where_it_holds(self) -> None:
         assert self.form in CLOSED_FORMS
-        assert all(len(text) > 1 for text in (self.form.name, self.form.equation, self.form.source, self.form.domain))
+        assert all(len(text) > 1 for text in (self.form.name, self.form.equation, self.form.source, self.form.domain()))
 
     def test_it_begins_at_the_start(self) -> None:
         for system, start in self.cases():

@@ -26,6 +26,16 @@ class ShapeContract:
         return max(self.shape.support_map(nu).norm() for nu in directions("size", 20))
 
     @precisely
+    def test_it_says_truly_how_far_it_reaches_and_whether_it_is_a_sphere(self) -> None:
+        reach, widths = self.shape.reach, []
+        for nu in directions("widths", 200):
+            across = self.shape.support_map(nu) - self.shape.support_map(-nu)
+            widths.append(across.dot(nu) / 2)
+            assert not self.shape.spherical or size_of(across - nu * (2 * reach)) <= EXACT(16, reach)
+        if reach is not None:
+            assert 0.9 * reach <= max(widths) <= reach * (1 + EXACT(16, 1))
+
+    @precisely
     def test_the_support_map_lies_on_the_shape(self) -> None:
         for nu in directions("on", 30):
             x = self.shape.support_map(nu)

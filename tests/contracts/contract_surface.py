@@ -85,6 +85,21 @@ class SurfaceContract:
             assert size_of(bends) <= EXACT(16, 1 / self.length)
 
     @precisely
+    def test_it_says_truly_whether_it_is_flat(self) -> None:
+        normals, points = [self.surface.normal(p) for p in self.points()], self.points()
+        same = all(size_of(n - normals[0]) <= EXACT(16, 1) for n in normals)
+        assert self.surface.flat == same
+        assert same == all(size_of(self.surface.shape_operator(p)) <= EXACT(16, 1 / self.length) for p in points)
+
+    @precisely
+    def test_a_step_onto_it_leaves_the_square_of_what_was_off(self) -> None:
+        for p in self.points():
+            by = self.length / 10**6
+            off = p + self.surface.normal(p) * by
+            left = self.surface.step_onto(off) + off - p
+            assert size_of(left) <= 100 * by * by / self.length
+
+    @precisely
     def test_it_is_defined_where_it_is(self) -> None:
         for p in self.points():
             room = self.surface.inside(p)

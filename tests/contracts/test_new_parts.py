@@ -1,4 +1,4 @@
-"""A new shape of body, surface, motion and load, each one file and what names it, are known to every room.
+"""A new shape of body, surface, motion, load and closed form, each one file and what names it, are known everywhere.
 
 They are written into a copy of the package, and the copy is used as its users would.
 """
@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -159,12 +160,85 @@ BUILDER = '''
         return cls(m, Principal(across, across, 2 / 5 * m * equator * equator), Spheroid(equator, pole))
 
 '''
+FORM = '''
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from ...mechanics.algebra import E_Z, Quaternion, Vector
+from ...mechanics.shapes import Disc
+from ...mechanics.surfaces import Plane
+from ...mechanics.system import RollingSystem, State
+from .base import ClosedForm
+from .domain import ALONG_NORMAL, AT_REST, CONSTANT_LOADS, PRESSED, START, Condition, constant_forces, on, that
+from .formula import Lines, quantity
+
+
+def _aside(system: RollingSystem, start: State) -> Iterator[str]:
+    axis = Quaternion(*start.orientation).matrix() @ E_Z
+    Omega = Vector(*start.angular_velocity)
+    if abs(axis.z) > 1e-12:
+        yield "the disc leans"
+    if axis.cross(Omega).norm() > 1e-12 * Omega.norm():
+        yield "the disc does not turn about its own axis"
+
+
+@dataclass(frozen=True)
+class UprightDisc(ClosedForm):
+    """A disc that rolls upright along a line: V and Ω stay as they are, and the support bears the weight."""
+
+    radius: float
+    position: tuple[float, float]
+    velocity: tuple[float, float]
+    force: float
+
+    name = "disc rolling upright"
+    equation = "D1"
+    source = "by symmetry"
+    conditions = (
+        that(lambda system: isinstance(system.body.shape, Disc), "a disc", "the body is no disc"),
+        on(Plane),
+        AT_REST,
+        CONSTANT_LOADS,
+        ALONG_NORMAL,
+        PRESSED,
+        Condition(", upright and straight ahead", _aside, START),
+    )
+    never = frozenset({"lift"})
+
+    @classmethod
+    def of(cls, system, start):
+        cls.check_domain(system, start)
+        force, _ = constant_forces(system)
+        return cls(system.body.shape.radius, start.position[:2], start.velocity[:2], -force.z)
+
+    @property
+    def period(self):
+        return math.inf
+
+    def pace(self, duration):
+        return math.hypot(*self.velocity) / self.radius
+
+    def motion_at(self, t):
+        (x, y), (vx, vy), a, zero = self.position, self.velocity, self.radius, 0.0 * t
+        return (
+            Vector(x + vx * t, y + vy * t, a + zero),
+            Vector(vx + zero, vy + zero, zero),
+            Vector(-vy / a + zero, vx / a + zero, zero),
+            Vector(zero, zero, self.force + zero),
+        )
+
+    def formulas(self, system: RollingSystem) -> Lines:
+        return [("V = V_0", "|V| = " + quantity(math.hypot(*self.velocity), "m/s"))]
+'''
 FILES = {
-    "shapes": ("spheroid", SHAPE, "Spheroid"),
-    "surfaces": ("funnel", SURFACE, "EllipticFunnel"),
-    "motions": ("heave", MOTION, "Heave"),
+    "mechanics/shapes": ("spheroid", SHAPE, "Spheroid"),
+    "mechanics/surfaces": ("funnel", SURFACE, "EllipticFunnel"),
+    "mechanics/motions": ("heave", MOTION, "Heave"),
+    "mechanics/loads": ("tether", LOAD, "Tether"),
+    "solve/exact": ("upright_disc", FORM, "UprightDisc"),
 }
-FILES |= {"loads": ("tether", LOAD, "Tether")}
 SCENARIO = """
 [body]
 kind = "spheroid"
@@ -184,6 +258,21 @@ position = ["10 cm", "5 cm"]
 velocity = ["0.1 m/s", 0]
 [run]
 duration = "0.5 s"
+every = "10 ms"
+"""
+COIN = """
+[body]
+kind = "disc"
+radius = "12 mm"
+mass = "8 g"
+[support]
+kind = "plane"
+[start]
+position = [0, 0]
+velocity = ["30 cm/s", "10 cm/s"]
+attitude = ["18.434948822922 deg", "90 deg", "0 deg"]
+[run]
+duration = "1 s"
 every = "10 ms"
 """
 ASKED = """
@@ -237,6 +326,31 @@ print(json.dumps({
     "nudged": [nudged("spin"), nudged("fixed")],
 }))
 """
+SHOWN = """
+import json, sys
+import trundle as tr
+from trundle.cli.expectations import expectations
+from trundle.scene import scene_of
+run = tr.Scenario.load(sys.argv[1]).run()
+card, header = run.card(), scene_of(run).header
+leaning = tr.Scenario.load("coin-rolling-upright")
+try:
+    leaning.run(method="exact")
+    refused = ""
+except tr.OutOfDomainError as error:
+    refused = str(error)
+page = run.save_html(sys.argv[2]).read_text(encoding="utf-8")
+print(json.dumps({
+    "method": run.method,
+    "passed": card.passed,
+    "card": str(card),
+    "formula": header["formula"],
+    "findings": header["findings"],
+    "page": [word in page for word in ("Disc rolling upright", "Distance from the start")],
+    "refused": refused,
+    "expected": expectations(tr.Scenario.load(sys.argv[1])),
+}))
+"""
 
 
 @pytest.fixture(scope="module")
@@ -245,15 +359,17 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("copy")
     shutil.copytree(Path(trundle.__file__).parent, folder / "trundle", ignore=shutil.ignore_patterns("__pycache__"))
     for family, (name, text, made) in FILES.items():
-        home = folder / "trundle" / "mechanics" / family
+        home = folder / "trundle" / family
         (home / f"{name}.py").write_text(f'"""New."""\n\nfrom __future__ import annotations\n{text}', encoding="utf-8")
-        with (home / "__init__.py").open("a", encoding="utf-8") as listed:
-            listed.write(f"\nfrom .{name} import {made}\n")
+        listed, line = home / "__init__.py", f"from .{name} import {made}\n"
+        text = listed.read_text(encoding="utf-8")
+        listed.write_text(re.sub(r"(?m)^(from \.base import .+\n)", rf"\1{line}", text), encoding="utf-8")
     body = folder / "trundle" / "mechanics" / "bodies" / "body.py"
     builds = body.read_text(encoding="utf-8").replace("    Shape,\n", "    Shape,\n    Spheroid,\n", 1)
     first, there, rest = builds.partition("\n    @classmethod\n    @builder(")
     body.write_text(first + BUILDER + there.lstrip("\n") + rest, encoding="utf-8")
     (folder / "new.toml").write_text(SCENARIO, encoding="utf-8")
+    (folder / "coin.toml").write_text(COIN, encoding="utf-8")
     return folder
 
 
@@ -313,3 +429,27 @@ def test_new_parts_can_be_chosen_in_the_lab(copy: Path) -> None:
     turning, resting = found["nudged"]
     assert turning["time"] == 0.2, "an uneven surface on a turntable is not taken for a round one"
     assert "time" not in resting
+
+
+def test_a_new_closed_form_is_chosen_checked_and_shown(copy: Path) -> None:
+    done = run(copy, "-c", SHOWN, "coin.toml", "coin.html")
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    assert found["method"] == "exact"
+    assert found["passed"], found["card"]
+    assert "closed form D1, disc rolling upright (by symmetry)" in found["card"]
+    assert "closed form against Taylor" in found["card"]
+    assert found["formula"] == {
+        "name": "Disc rolling upright",
+        "source": "D1",
+        "latex": "V = V_0",
+        "numbers_latex": r"|V| = 0.3162\,\mathrm{m/s}",
+    }
+    way = next(row for row in found["findings"] if row["name"] == "Distance from the start")
+    assert way["predicted"] == pytest.approx(0.1**0.5, rel=1e-12)
+    assert way["difference"] < 1e-12
+    assert all(found["page"])
+    assert found["expected"][0] == ["closed form", "D1, disc rolling upright"]
+    assert found["expected"][1][1] == "(0.3, 0.1, 0.012) m"
+    assert "D1 (disc rolling upright) covers a disc, on a plane at rest" in found["refused"]
+    assert "Outside it: the disc leans" in found["refused"]

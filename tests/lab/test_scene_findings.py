@@ -10,8 +10,9 @@ import pytest
 import trundle as tr
 from trundle.scenario.files import is_shipped_path, names
 from trundle.scene import scene_of
-from trundle.scene.findings import Finding, findings_of
+from trundle.scene.findings import findings_of
 from trundle.solve.exact import closed_form
+from trundle.solve.exact.finding import Finding
 
 BALL = {"solid": tr.Body.solid_sphere(0.025, 0.51), "hollow": tr.Body.hollow_sphere(0.025, 0.51)}
 

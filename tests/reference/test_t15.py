@@ -90,7 +90,7 @@ class TestChaplyginBall(ClosedFormContract):
         return [
             (*rolled((3e-3, 4e-3, 5e-3)), "no two of its moments"),
             (tilted, tilted.place((0.1, 0.0), (0.3, 0.2)), "along the plane"),
-            (turntable, turntable.place((0.1, 0.0)), "the plane moves"),
+            (turntable, turntable.place((0.1, 0.0)), "the support moves"),
             (off, off.place((0.1, 0.0), (0.3, 0.2)), "centre of mass at its centre"),
             (replace(inside, loads=(Spring(1.0),)), start, "Spring"),
             (replace(inside, loads=(tr.Torque((0.0, 0.0, 0.1)),)), start, "torque"),

@@ -1,7 +1,9 @@
 """Files and tables that are no scenario are refused in a second and in words, however they are made."""
 
+import inspect
 import resource
 import time
+from typing import Any
 
 import pytest
 
@@ -122,3 +124,31 @@ def test_what_looks_like_it_but_is_a_scenario_is_read() -> None:
     described = tr.Scenario.loads(TEXT).model_dump(by_alias=True, exclude_unset=True)
     whole = {**described, "notes": notes, "support": {**table, "z": heights}, "start": {"position": [50, 50]}}
     assert tr.Scenario.loads(tr.Scenario.read(whole).to_toml()).notes == notes
+
+
+def kind(value: Any) -> str:
+    """Return the name of a kind of value."""
+    return type(value).__name__
+
+
+ASKED = [name for name in tr.__all__ if inspect.isfunction(getattr(tr, name))]
+
+
+@pytest.mark.parametrize("nonsense", [7, None, {"a": 1}, [1], object()], ids=kind)
+@pytest.mark.parametrize("name", ASKED)
+def test_what_is_nothing_of_the_kind_is_refused_in_words(name: str, nonsense: Any) -> None:
+    function = getattr(tr, name)
+    needed = [one for one in inspect.signature(function).parameters.values() if one.default is one.empty]
+    given = [nonsense for one in needed if one.kind is one.POSITIONAL_OR_KEYWORD]
+    named = {one.name: nonsense for one in needed if one.kind is one.KEYWORD_ONLY}
+    if (name, nonsense) == ("air_drag", 7):  # that is a ball
+        return
+    with pytest.raises(tr.TrundleError):
+        function(*given, **named)
+
+
+@pytest.mark.parametrize("nonsense", [None, {"a": 1}, [1.0], (1.0,), {1.0}, object(), b"1 m", True], ids=kind)
+@pytest.mark.parametrize("part", [tr.Sphere, tr.Spin, tr.Drag, tr.Bowl, lambda x: tr.Body.hoop(x, 1.0)])
+def test_what_is_no_number_is_refused(part: Any, nonsense: Any) -> None:
+    with pytest.raises(tr.InvalidValueError, match="must be a"):
+        part(nonsense)

@@ -323,6 +323,7 @@ def to_turntable(
     >>> round(system.support.motion.rate, 12)  # 7/2 of the rate of the circles
     3.5
     """
+    checks.instance(particle, ChargedParticle, "particle", "Give a tr.ChargedParticle.")
     pace = checks.positive(slow_motion, "number", "slow_motion")
     body = body or Body.solid_sphere(radius=0.025, mass=particle.mass)
     k = body.inertia_ratio

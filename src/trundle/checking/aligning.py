@@ -9,7 +9,6 @@ import numpy as np
 
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.shapes import concentric_sphere
-from ..mechanics.surfaces import Plane
 from .case import Case
 from .examining import SLIP
 from .fitting import least_squares
@@ -83,7 +82,7 @@ class _Rolling:
         self._velocity, self._carried = ((v / self._bound).ravel() for v in (at.velocity, at.carried))
         self._offset, self._arm = _by_columns(at.offset), np.linalg.norm(at.offset, axis=1)
         self._turning = _by_columns(at.angular_velocity)
-        flat = isinstance(case.system.support.surface, Plane) and case.system.body.is_isotropic_sphere
+        flat = case.system.support.surface.flat and case.system.body.is_isotropic_sphere
         self._normal = np.broadcast_to(at.contact.normal.array(), at.position.shape) if flat else 0.0 * at.position
 
     def fitted(self, start: Quaternion) -> Aligned | None:

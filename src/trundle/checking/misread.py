@@ -11,7 +11,6 @@ import numpy as np
 
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.shapes import concentric_sphere
-from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem, State
 from .aligning import Aligned, aligned
 from .case import Case
@@ -183,7 +182,7 @@ def _holonomic(case: Case) -> Iterator[Suspect]:
     theirs, body = case.theirs, case.system.body
     if theirs.orientation is None or "orientation" in theirs.doubts or not concentric_sphere(body.shape):
         return
-    if not isinstance(case.system.support.surface, Plane) or not body.is_isotropic_sphere:
+    if not case.system.support.surface.flat or not body.is_isotropic_sphere:
         return
     index, a = case.motion.index, float(body.radius)
     q, where = theirs.orientation[index], case.motion.estimates["position"]

@@ -14,7 +14,6 @@ from functools import partial
 
 from ..mechanics.bodies import Principal, Tensor
 from ..mechanics.loads import at_rest
-from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem
 from . import laws
 from .examining import SLIP
@@ -235,7 +234,7 @@ def _with_gravity(system: RollingSystem, g: float) -> RollingSystem:
 def _gravities(system: RollingSystem) -> Iterator[Suspect]:
     """Yield other values of g, where it is of any consequence."""
     g = float(system.gravity)
-    flat = isinstance(system.support.surface, Plane)
+    flat = system.support.surface.flat
     if not g or (flat and not float(system.support.tilt)):
         return
     for other in GRAVITIES:

@@ -9,7 +9,6 @@ import numpy as np
 
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import Contact
-from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem, State
 from ..solve.samples import Samples
 from .doubts import Doubt, doubt_of
@@ -201,7 +200,7 @@ def spin_of(system: RollingSystem, theirs: Theirs, start: State | None, index: I
     """
     n = theirs.time.size
     some = np.unique(np.linspace(0, n - 1, min(n, _SPINNING)).round().astype(int))
-    flat = isinstance(system.support.surface, Plane)
+    flat = system.support.surface.flat
     at = some[:1] if flat else some
     position, velocity = theirs.slope("position", at, 0).values, _velocity(theirs, at)
     q = np.tile(first_orientation(start), (at.size, 1))

@@ -14,7 +14,6 @@ from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import Contact, touch
 from ..mechanics.nearest import settle
 from ..mechanics.shapes import concentric_sphere
-from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem
 from .doubts import Doubt
 from .noise import noise_of
@@ -134,7 +133,7 @@ def checked(theirs: Theirs, system: RollingSystem) -> Theirs:
 
 
 def _with_height(position: Array, system: RollingSystem) -> Array:
-    if not (isinstance(system.support.surface, Plane) and concentric_sphere(system.body.shape)):
+    if not (system.support.surface.flat and concentric_sphere(system.body.shape)):
         raise InvalidValueError(
             "columns", "must hold all of x, y, z unless a ball rolls on a plane", "x and y", "Add the third component."
         )

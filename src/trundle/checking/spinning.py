@@ -8,7 +8,6 @@ from functools import partial
 
 import numpy as np
 
-from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem, State
 from .case import Case
 from .comparisons import ACCELERATION
@@ -24,7 +23,7 @@ _WINDOWS = 16
 def acts(system: RollingSystem, theirs: Theirs) -> bool:
     """Tell whether nothing that was given tells a spin that acts on the path."""
     known = theirs.angular_velocity is not None or theirs.orientation is not None
-    return not known and not isinstance(system.support.surface, Plane)
+    return not known and not system.support.surface.flat
 
 
 def fitted_spin(

@@ -13,7 +13,7 @@ from ..mechanics.expressions import Expression
 from ..mechanics.loads import Force, Torque
 from ..mechanics.parameters import numbers, with_numbers
 from ..mechanics.scalars import is_number
-from ..mechanics.surfaces import Plane, Surface
+from ..mechanics.surfaces import Surface
 from ..mechanics.system import RollingSystem
 from .law import UNIT_QUATERNION, at_one_instant, inertia
 from .steps import Proof, Step
@@ -97,11 +97,7 @@ def special_steps(system: RollingSystem) -> Iterator[Step]:
     >>> [step.title for step in special_steps(ball)]
     ['This system', 'Its laws again', 'Its equations of motion']
     """
-    if (
-        not system.body.is_isotropic_sphere
-        or not isinstance(system.support.surface, Plane)
-        or system.support.motion.own
-    ):
+    if not system.body.is_isotropic_sphere or not system.support.surface.flat or system.support.motion.own:
         return
     own = with_symbols(system)
     tilted_axis = system.support.motion.at(0.0).rotation.c.z != 1

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from ..scene import Scene
-from ..scene.findings import Finding
-from ..scene.formulas import quantity
 from ..scene.header import tables
 from ..scene.instants import MOST
 from ..scene.sphere import sphere_scene
+from ..solve.exact.finding import Finding
+from ..solve.exact.formula import quantity
 from .rolled import RolledPath
 
 _FINEST = math.radians(3.0)  # turned between two samples: what an eye takes for smooth

@@ -13,7 +13,6 @@ from ..errors import InvalidValueError
 from ..mechanics.algebra import Vector
 from ..mechanics.loads import Drag, Load, RollingResistance
 from ..mechanics.motions import Motion, Spin
-from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem, State
 from .resisted import ResistedCircle
 
@@ -242,7 +241,7 @@ def _integral(rate: complex, time: float) -> complex:
 
 def _check(system: RollingSystem) -> None:
     support = system.support
-    if not (system.body.is_isotropic_sphere and system.body.shape.axis is None and isinstance(support.surface, Plane)):
+    if not (system.body.is_isotropic_sphere and system.body.shape.axis is None and support.surface.flat):
         shown = f"{type(system.body.shape).__name__} on {type(support.surface).__name__}"
         raise InvalidValueError("scenario", "must be a ball on a plane", shown)
     if support.motion.own:

@@ -13,8 +13,6 @@ from .algebra import E_Z, ZERO, Matrix, Quaternion, Vector
 from .loads import BodyMotion, Load, at_rest
 from .motions import Motion
 from .scalars import is_number, is_zero
-from .shapes import Sphere
-from .surfaces import Plane
 
 if TYPE_CHECKING:
     from .bodies import Body
@@ -206,9 +204,9 @@ def ball_of(body: Body) -> Ball | None:
     >>> ball_of(top).axis, ball_of(top).moments
     (Vector(x=0.0, y=0.0, z=1.0), (0.002, 0.001))
     """
-    shape = body.shape
+    shape: Any = body.shape
     J = body.inertia_in_space(Matrix.identity())
-    if not isinstance(shape, Sphere) or shape.axis is not None:
+    if not shape.spherical or shape.axis is not None:
         return None
     centre = ZERO if shape.centre is None else shape.centre
     known = (shape.radius, *centre, *(part for row in J.rows for part in row))
@@ -255,7 +253,7 @@ def on_plane(system: RollingSystem) -> bool:
     >>> on_plane(tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane(), motion=tr.Spin(2.0))))
     True
     """
-    return isinstance(system.support.surface, Plane) and keeps_axis(system.support.motion)
+    return system.support.surface.flat and keeps_axis(system.support.motion)
 
 
 def symmetric_potential(system: RollingSystem) -> bool:

@@ -10,7 +10,6 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Circle
 
 from trundle.mechanics.algebra import Vector
-from trundle.mechanics.surfaces import Cylinder, TorusTrack
 from trundle.wording import unit_for, with_unit
 
 from . import marks, solid
@@ -83,8 +82,7 @@ class CurvedDrawing(Drawing):
         if self.facts.outline is not None and crosses(panel, self.facts.outline):
             marks.rim(ax, panel.page, ruler, self.facts.outline, 0.0)
             self.legend["rim"] = "wall" if self.facts.wall else "rim" if self.surface.rim is not None else "outline"
-        if isinstance(self.surface, TorusTrack):
-            hole = float(self.surface.ring_radius) - float(self.surface.tube_radius)
+        for hole in map(float, self.surface.outline[1:]):
             ax.add_patch(
                 Circle(tuple(ruler(np.zeros(2))), hole / ruler.unit.scale, fc="white", ec=GREY, lw=1.1, zorder=0.6)
             )
@@ -126,7 +124,7 @@ class CurvedDrawing(Drawing):
 
     def _side(self, ax: Axes, width: float, height: float) -> None:
         """Draw the view from the side: of a surface of revolution the meridian, of a cylinder its wall unrolled."""
-        if isinstance(self.surface, Cylinder):
+        if self.facts.wall is not None:
             self._unrolled(ax, width)
             return
         if self.surface.axisymmetric:

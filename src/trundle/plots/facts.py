@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trundle.mechanics.loads import Force, Torque
-from trundle.mechanics.shapes import Ellipsoid, Roller, Sphere
-from trundle.mechanics.surfaces import Bowl, Cylinder, Dome, Plane, TorusTrack
-from trundle.solve.exact import SphereOnPlane, closed_form
+from trundle.mechanics.algebra import ZERO
+from trundle.mechanics.loads import at_rest
+from trundle.mechanics.shapes import concentric_sphere
+from trundle.solve.exact import closed_form
 
 from .happenings import FLIGHT, Happening, Stretch, happenings_of, stretches_of
 from .scales import Array
@@ -72,14 +72,14 @@ def facts_of(run: Trajectory) -> Facts:
     system, support = run.system, run.system.support
     surface, shape = support.surface, system.body.shape
     given = run.data.attrs.get("title")
-    straight = isinstance(shape, Roller)
-    wall = isinstance(surface, Cylinder)
+    straight = shape.axis is not None
+    wall = surface.wall_radius
     stays = support.motion.steady_rate is not None or _stays(run)
     return Facts(
         title="".join(letter if letter.isprintable() else " " for letter in str(given)) if given else title_of(system),
         numbers=key_numbers(system, run.start.support),
         radius=_size(run),
-        round=isinstance(shape, Sphere) and (wall or not straight),
+        round=shape.spherical and (wall is not None or not straight),
         tilt=float(support.tilt),
         rate=_rate(run),
         moving=support.motion.steady_rate != 0.0,
@@ -88,11 +88,11 @@ def facts_of(run: Trajectory) -> Facts:
         rim=None if surface.rim is None else float(surface.rim),
         friction=None if support.friction is None else float(support.friction),
         noun=system.body.shape.noun_of(system.body),
-        wall=float(surface.radius) if isinstance(surface, Cylinder) else None,
+        wall=None if wall is None else float(wall),
         ground=surface.ground,
-        outline=_outline(surface),
-        curved=not isinstance(surface, Plane) and not (wall and _flat(run)),
-        off_centre=not straight and not (isinstance(shape, Sphere) and shape.centre is None),
+        outline=next(map(float, surface.outline), None),
+        curved=not surface.flat and not (wall is not None and _flat(run)),
+        off_centre=not straight and not concentric_sphere(shape),
         pushes=_pushes(system),
         stretches=tuple(stretches_of(run)),
         happenings=tuple(happenings_of(run)),
@@ -112,11 +112,9 @@ def own_variables(run: Trajectory) -> list[str]:
 
 
 def _size(run: Trajectory) -> float:
-    shape: Any = run.system.body.shape
-    if isinstance(shape, Ellipsoid):
-        return float(max(shape.a, shape.b, shape.c))
-    if hasattr(shape, "radius"):
-        return float(shape.radius) + float(getattr(shape, "rim_radius", 0.0))
+    reach = run.system.body.shape.reach
+    if reach is not None:
+        return float(reach)
     return float(np.linalg.norm(run.data["contact"].values[0] - run.data["position"].values[0]))
 
 
@@ -146,23 +144,16 @@ def _flat(run: Trajectory) -> bool:
     return bool(np.ptp(place[:, 2]) <= 1e-6 * max(float(np.max(np.ptp(place, axis=0))), _size(run)))
 
 
-def _outline(surface: Any) -> float | None:
-    if isinstance(surface, TorusTrack):
-        return float(surface.ring_radius) + float(surface.tube_radius)
-    if isinstance(surface, Cylinder) or (isinstance(surface, Bowl | Dome) and surface.rim is None):
-        return float(surface.radius)
-    return None if surface.rim is None else float(surface.rim)
-
-
 def guiding_centre(run: Trajectory, times: Array) -> Array | None:
     """Return the point about which the ball circles, (n, 2), m, support frame, where a closed form has it."""
     form = closed_form(run.system, run.start)
-    if not isinstance(form, SphereOnPlane) or not form.has_guiding_centre:
+    circle = None if form is None else form.circle
+    if circle is None:
         return None
     if any(stretch.phase for stretch in stretches_of(run)):
         return None  # it moves while the ball slips
-    x, y = form.guiding_centre(times - run.start.time)
-    return np.column_stack([x, y])
+    centre = circle.centre_at(times - run.start.time)
+    return np.column_stack([centre.real, centre.imag])
 
 
 def turns_in(time: Array, velocity: Array) -> float:
@@ -190,10 +181,13 @@ def turns_in(time: Array, velocity: Array) -> float:
 
 
 def _pushes(system: RollingSystem) -> tuple[tuple[str, float, float], ...]:
-    pushes = []
-    for kind, name in ((Force, "force"), (Torque, "torque")):
-        of_kind = [load.value for load in system.loads if isinstance(load, kind) and load.constant]
-        x, y = sum(float(value.x) for value in of_kind), sum(float(value.y) for value in of_kind)
+    constant, still, pushes = [load for load in system.loads if load.constant], at_rest(system.body.mass), []
+    totals = {
+        "force": sum((load.force(still) for load in constant), ZERO),
+        "torque": sum((load.torque(still) for load in constant), ZERO),
+    }
+    for name, total in totals.items():
+        x, y = float(total.x), float(total.y)
         if math.hypot(x, y) > 0.0:
             pushes.append((name, x / math.hypot(x, y), y / math.hypot(x, y)))
     return tuple(pushes)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from trundle.mechanics.algebra import Vector
-from trundle.mechanics.surfaces import Surface, TorusTrack
+from trundle.mechanics.surfaces import Surface
 
 from .scales import Array
 
@@ -49,17 +49,15 @@ def window_of(surface: Surface, places: Array, size: float) -> Window:
             z = np.asarray(surface.point(np.linspace(0.0, reach, 200), np.zeros(200)).z, dtype=float)
         z = z[np.abs(z - places[0, 2]) < 1.5 * reach]  # not all the way down a steep funnel
         low[2], high[2] = min(low[2], *z), max(high[2], *z)
-    if isinstance(surface, TorusTrack):
-        low[2], high[2] = -1.03 * float(surface.tube_radius), 1.03 * float(surface.tube_radius)
+    if len(surface.outline) > 1:  # a tube round a hole: all of its section
+        tube = 0.5 * float(surface.outline[0] - surface.outline[1])
+        low[2], high[2] = -1.03 * tube, 1.03 * tube
     return Window(low, high, reach)
 
 
 def _whole(surface: Surface, reach: float) -> float:
     """Return how far to show a surface of revolution: to its edge, if that is not far away."""
-    edges = [surface.rim, getattr(surface, "radius", None)]
-    if isinstance(surface, TorusTrack):
-        edges = [surface.ring_radius + surface.tube_radius]
-    for edge in edges:
+    for edge in (*surface.outline[:1], getattr(surface, "radius", None)):
         if edge is not None and float(edge) > 0 and reach <= 1.15 * float(edge) <= 2.5 * reach:
             return 1.02 * float(edge)
         if edge is not None and float(edge) > 0 and float(edge) < reach:

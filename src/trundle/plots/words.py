@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from trundle.mechanics import surfaces
 from trundle.mechanics.scalars import is_zero
 from trundle.wording import as_ratio, degrees, short
 
@@ -29,7 +28,7 @@ def title_of(system: RollingSystem) -> str:
     """
     support = system.support
     ways = [support.motion.way]
-    if support.tilt and not isinstance(support.surface, surfaces.Cylinder):
+    if support.tilt and support.surface.wall_radius is None:
         ways.append("tilted")
     words = f"{', '.join(way for way in ways if way)} {support.surface.noun}"
     article = "an" if words[0] in "aeiou" else "a"
@@ -49,7 +48,7 @@ def key_numbers(system: RollingSystem, own: tuple[float, ...] | None = None) -> 
     ['free table of 0.03 kg m², at first 3 rad/s (28.65 rpm)', 'inertia ratio k = 2/5']
     """
     support = system.support
-    wall = isinstance(support.surface, surfaces.Cylinder)
+    wall = support.surface.wall_radius is not None
     first = tuple(map(float, support.motion.own_start())) if own is None else own
     parts = support.motion.key_numbers(support.surface.ground, first) + support.surface.key_numbers()
     if support.tilt and not wall:

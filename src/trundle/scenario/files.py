@@ -92,6 +92,9 @@ def read(name_or_path: str | os.PathLike[str]) -> str:
     >>> read("tilted-turntable").splitlines()[0]
     'title = "Steel ball on a tilted turntable"'
     """
+    if not isinstance(name_or_path, (str, os.PathLike)):
+        remedy = "`trundle list` names those that ship."
+        raise ScenarioError("scenario", "must be the name of a scenario or a file", name_or_path, remedy)
     shown = os.fspath(name_or_path)
     try:
         with locate(name_or_path).open("rb") as stream:

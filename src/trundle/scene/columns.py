@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..mechanics.motions import SupportState
 from ..mechanics.system import RollingSystem
-from ..solve.exact import ClosedForm, SphereOnPlane
+from ..solve.exact import ClosedForm
 from ..solve.samples import ROLLING, Samples
 
 if TYPE_CHECKING:
@@ -63,10 +63,11 @@ def pose_of(system: RollingSystem, at: Samples, state: SupportState) -> dict[str
 
 def guiding_centre(run: Trajectory, form: ClosedForm | None, at: Samples) -> dict[str, NDArray[Any]]:
     """Return the column of the point about which a ball circles, where a closed form has one throughout."""
-    if not isinstance(form, SphereOnPlane) or not form.has_guiding_centre or (at.phase != ROLLING).any():
+    circle = None if form is None else form.circle
+    if circle is None or (at.phase != ROLLING).any():
         return {}
-    x, y = form.guiding_centre(at.time - run.start.time)
-    return {"guiding_centre": np.column_stack(np.broadcast_arrays(x, y, 0.0 * at.time)).astype(np.float32)}
+    centre = circle.centre_at(at.time - run.start.time)
+    return {"guiding_centre": np.column_stack([centre.real, centre.imag, 0.0 * at.time]).astype(np.float32)}
 
 
 def rotations(state: SupportState, count: int) -> Array:

@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import InvalidValueError
-from ..mechanics.surfaces import Plane
+from ..solve.exact.formula import formula_of
 from ..solve.samples import Samples
 from .body_mesh import body_mesh
 from .columns import UNITS, columns_of, guiding_centre, material, moves, pose_of
 from .findings import findings_of
-from .formulas import formula_of
 from .header import header_of, radius_about_centre
 from .instants import MOST, flying, shown
 from .support_mesh import Ground, ground_of
@@ -62,5 +61,5 @@ def _ground(run: Trajectory, at: Samples, contact: np.ndarray, radius: float) ->
     support, touching = run.system.support, ~flying(at)
     turns = moves(run.system) and support.motion.turns
     # Below a flight there is a plane too, seen to be flown over.
-    some = touching.any() and not isinstance(support.surface, Plane)
+    some = touching.any() and not support.surface.flat
     return ground_of(support.surface, turns, contact[touching] if some else contact, radius)

@@ -45,7 +45,7 @@ class Ground:
 
 def ground_of(surface: Surface, turns: bool, places: Array, radius: float) -> Ground:
     """Return the part of a surface that a run needs, as a mesh."""
-    if isinstance(surface, Plane) and not turns and surface.rim is None:
+    if surface.flat and not turns and surface.rim is None:
         low, high = np.min(places[:, :2], axis=0), np.max(places[:, :2], axis=0)
         pad = max(0.25 * float(np.max(high - low)), 4 * radius)
         return _sheet(*(_outwards(float(part), pad) for part in (-low[0], -low[1], high[0], high[1])))

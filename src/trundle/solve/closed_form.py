@@ -16,11 +16,10 @@ from ..mechanics.nearest import settle
 from ..mechanics.scalars import is_number
 from ..mechanics.system import RollingSystem, State
 from . import phases
-from .exact import ClosedForm, SphereOnPlane, form_of_phase, refusals
+from .exact import ClosedForm, form_of_phase, refusals
 from .first_stop import first_stop
 from .following import Next, Stop
 from .laws import Law
-from .monodromy import Monodromy
 from .orientation import orientation, periodic_orientation
 from .phases import Stretch, cut
 from .samples import AT_ONCE, FLIGHT, RESTING, SLIPPING, Array, Progress, Samples
@@ -227,10 +226,11 @@ def orientations(motion: ClosedForm, start: State, times: Array) -> Array:
     Examples
     --------
     >>> import trundle as tr
+    >>> from trundle.solve.exact import closed_form
     >>> table = tr.Support(tr.Plane(), motion=tr.Spin(3.5))
     >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.025, 0.065), table)
     >>> start = system.place((0.1, 0.0), (0.0, 0.2))
-    >>> orientations(SphereOnPlane.of(system, start), start, np.array([0.0]))[0].tolist()
+    >>> orientations(closed_form(system, start), start, np.array([0.0]))[0].tolist()
     [1.0, 0.0, 0.0, 0.0]
     """
     straight = motion.straight_turn(times - start.time)
@@ -248,30 +248,10 @@ def orientations(motion: ClosedForm, start: State, times: Array) -> Array:
         return angular_velocity(t - start.time)
 
     long = times[-1] - start.time > _PERIODS_WORTH_A_MONODROMY * motion.period
-    if long and isinstance(motion, SphereOnPlane) and motion.torque[2] == 0:
-        return periodic_orientation(angular_velocity, _monodromy(motion), times, start.orientation, start.time)
+    monodromy = motion.monodromy() if long else None
+    if monodromy is not None:
+        return periodic_orientation(angular_velocity, monodromy, times, start.orientation, start.time)
     try:
         return orientation(absolute, times, start.orientation, start.time)
     except SolverError as error:  # a method that takes steps may still follow it
         raise OutOfDomainError(f"{error} A numerical method may do.") from None
-
-
-def _monodromy(motion: SphereOnPlane) -> Monodromy:
-    """Work out the rotation over one circle from numbers that start exact: a Ω = ω ζ_c + (ω − κ)(ζ − ζ_c)."""
-    import mpmath
-
-    with mpmath.workdps(40):
-        number = mpmath.mpf
-        precise = replace(
-            motion,
-            radius=number(motion.radius),
-            mass=number(motion.mass),
-            inertia_ratio=number(motion.inertia_ratio),
-            rate=number(motion.rate),
-            position=tuple(number(part) for part in motion.position),
-            velocity=tuple(number(part) for part in motion.velocity),
-        )
-        centre = mpmath.mpc(*precise.guiding_centre(0))
-        arm = mpmath.mpc(*precise.position) - centre
-        turning = (precise.rate - precise.kappa) * arm / precise.radius
-        return Monodromy.of_turning_vector(precise.rate * centre / precise.radius, turning, motion.spin, precise.kappa)

@@ -227,8 +227,10 @@ def compare_vakonomic(
     """
     import numpy as np
 
+    from ..scenario import ScenarioFile
     from ..solve.exact import SphereOnPlane
 
+    checks.instance(scenario, ScenarioFile, "scenario", "Give for instance tr.Scenario.load('tilted-turntable').")
     system, start = scenario.system(), scenario.start_state()
     begin = vakonomic_path(system, start, [start.time, start.time + 1e-9])  # refuses what is not covered
     motion = SphereOnPlane.of(system, start)

@@ -25,7 +25,6 @@ from ..errors import InvalidValueError, OutOfDomainError, SolverError
 from ..mechanics import checks
 from ..mechanics.loads import Force, Gravity, at_rest
 from ..mechanics.scalars import is_number
-from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem, State
 
 if TYPE_CHECKING:
@@ -140,7 +139,7 @@ def _ball(system: RollingSystem) -> _Ball:
     """Return the numbers of a system that the equations here are for."""
     support, body = system.support, system.body
     outside = []
-    if not isinstance(support.surface, Plane):
+    if not support.surface.flat:
         outside.append("the surface is no plane")
     if support.motion.steady_rate is None:
         outside.append("the plane does not turn steadily")
@@ -209,6 +208,8 @@ def vakonomic_path(
     import numpy as np
     from scipy.integrate import solve_ivp
 
+    checks.instance(system, RollingSystem, "system", "Give a tr.RollingSystem.")
+    checks.instance(start, State, "start", "Let system.place(...) make it.")
     ball, t = _ball(system), np.asarray(times, dtype=float)
     pair = tuple(checks.components(multipliers, "number", "multipliers", 2))
     y = np.array([*start.position[:2], *start.velocity[:2], *pair, start.angular_velocity[2]], dtype=float)

@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from ..mechanics.algebra import Vector
 from ..mechanics.invariants import Record, invariants_of
 from ..mechanics.system import RollingSystem, State
-from ..solve.exact import ClosedForm, SphereOnPlane, closed_form
+from ..solve.exact import ClosedForm, closed_form
+from ..solve.exact.circle import Circle, measure
 from ..solve.methods import Method
 from ..solve.samples import FLIGHT, ROLLING, SLIPPING, Samples
 from .again import Again
 from .bounds import EXACT, SOLVER, Array, bound_of, largest, speed_of, turned_in
 from .card import Card, CardFigure, checked
-from .circle import measure
 from .compared import cross_check, same_again
 from .each_sample import EachSample
 from .energy import balance
@@ -52,6 +52,7 @@ def card(system: RollingSystem, start: State, samples: Samples, method: Method, 
     every = max(1, samples.time.size // _MOST_SAMPLES)
     some = samples.part(slice(None, None, every)) if every > 1 else samples
     rolls = bool((samples.phase == ROLLING).all()) and all(event.final for event in samples.events)
+    circle = motion.circle if motion is not None and rolls else None
     bound = bound_of(method, turned_in(some))
     again, landings = Again(system, start, some, method), landings_of(system, samples.events)
     followed = not again.broken
@@ -63,10 +64,10 @@ def card(system: RollingSystem, start: State, samples: Samples, method: Method, 
         *(_balance(again, bound) if followed else ()),
         *(reactions(system, some, bound) if rolls else ()),
         *_integrals(system, some, method),
-        *(_guiding_centre(motion, start, some, method) if rolls else ()),
+        *(_guiding_centre(circle, start, some, method) if circle is not None else ()),
         *(same_again(system, start, again.sampled, again.samples, method, again.kept) if followed else ()),
         *cross_check(system, start, some, method, motion),
-        *(_circle(system, motion, start, samples, method) if rolls else ()),
+        *(_circle(system, circle, start, samples, method) if circle is not None else ()),
         *(contact_force(system, samples, looked_into(system, again.samples, again.follow)) if followed else ()),
         *landing_figures(landings),
         *(AtEvents(system, again.samples, bound).figures() if followed else ()),
@@ -187,14 +188,12 @@ def _drift(values: Any, sizes: Any) -> float:
     return 0.0 if change == 0 else float(change / max(size, 1e-300))
 
 
-def _guiding_centre(motion: ClosedForm | None, start: State, at: Samples, method: Method) -> Iterator[CardFigure]:
+def _guiding_centre(circle: Circle, start: State, at: Samples, method: Method) -> Iterator[CardFigure]:
     """Check centre and radius of the circle from positions and velocities: integrals on a turning plane."""
-    if not isinstance(motion, SphereOnPlane) or not motion.has_guiding_centre:
-        return
     t, bound = at.time - start.time, bound_of(method, turned_in(at))
-    if abs(motion.kappa) * float(t[-1]) <= bound:
+    kappa, drift = circle.rate, circle.drift
+    if abs(kappa) * float(t[-1]) <= bound:
         return  # of a circle so large these hold whatever the motion
-    kappa, drift = motion.kappa, complex(*motion.drift_velocity)
     zeta, rate = (a[:, 0] + 1j * a[:, 1] for a in (at.position, at.velocity))
     arm = -1j * (rate - drift) / kappa
     centre = zeta - arm - drift * t
@@ -206,33 +205,30 @@ def _guiding_centre(motion: ClosedForm | None, start: State, at: Samples, method
 
 
 def _circle(
-    system: RollingSystem, motion: ClosedForm | None, start: State, samples: Samples, method: Method
+    system: RollingSystem, circle: Circle, start: State, samples: Samples, method: Method
 ) -> Iterator[CardFigure]:
     """Measure rate, centre and drift from the positions alone, beside the formula's."""
-    if not isinstance(motion, SphereOnPlane) or not motion.has_guiding_centre:
-        return
-    yield CardFigure("circle rate by the formula", motion.kappa, "rad/s", note="κ = ω k/(1 + k)")
-    turns = abs(motion.kappa) * float(samples.time[-1] - start.time) / (2 * math.pi)
+    yield CardFigure("circle rate by the formula", circle.rate, "rad/s", note=circle.said)
+    turns = abs(circle.rate) * float(samples.time[-1] - start.time) / (2 * math.pi)
     too_little = CardFigure("circle not measured", turns, "turns", note="the run shows too little of the circle")
     if turns <= bound_of(method):
         yield too_little
         return
-    t, path = _even_path(system, start, samples, method, abs(float(motion.kappa)))
-    found = measure(t, path) if motion.circle_radius > 0 else None
-    if motion.circle_radius == 0:
-        moved = float(np.abs(path - path[0] - complex(*motion.drift_velocity) * t).max())
+    t, path = _even_path(system, start, samples, method, abs(circle.rate))
+    found = measure(t, path) if circle.arm else None
+    if not circle.arm:
+        moved = float(np.abs(path - path[0] - circle.drift * t).max())
         size = max(float(np.abs(path).max()), 1e-300)
         yield checked("stays where it was put", moved / size, bound_of(method), "largest departure over the distance")
         return
-    if found is None or turns < 0.25 or found.rate_error > 1e-6 * abs(motion.kappa):
+    if found is None or turns < 0.25 or found.rate_error > 1e-6 * abs(circle.rate):
         yield too_little
         return
     slack = max(10.0, SOLVER * method.tolerance / 2.2e-16)
-    centre, drift = complex(*motion.guiding_centre(0.0)), complex(*motion.drift_velocity)
     for name, value, formula, error, unit in (
-        ("circle rate measured", found.rate, motion.kappa, found.rate_error, "rad/s"),
-        ("centre measured", found.centre, centre, found.centre_error, "m"),
-        ("drift measured", found.drift, drift, found.drift_error, "m/s"),
+        ("circle rate measured", found.rate, circle.rate, found.rate_error, "rad/s"),
+        ("centre measured", found.centre, circle.centre, found.centre_error, "m"),
+        ("drift measured", found.drift, circle.drift, found.drift_error, "m/s"),
     ):
         scale = max(abs(formula), 1e-300)
         shown = f"{value:.12g} {unit}" if isinstance(value, float) else _pair(value, unit)

@@ -8,7 +8,6 @@ import numpy as np
 
 from ..mechanics.algebra import E_Z, Quaternion, Vector
 from ..mechanics.scalars import is_zero
-from ..mechanics.surfaces import Plane
 from ..mechanics.system import RollingSystem
 from ..solve.samples import Samples
 from .bounds import Array, largest
@@ -28,7 +27,7 @@ def reactions(system: RollingSystem, at: Samples, bound: float) -> Iterator[Card
     >>> card["reaction in the plane"].passed, card["reaction in the plane"].note[:46]
     (True, '(K×n/a − kF)/(1 + k); at the start (0.0714286,')
     """
-    if not (system.body.is_isotropic_sphere and isinstance(system.support.surface, Plane)) or not _is_fixed(system):
+    if not (system.body.is_isotropic_sphere and system.support.surface.flat) or not _is_fixed(system):
         return
     k, a, m = (float(number) for number in (system.body.inertia_ratio, system.body.radius, system.body.mass))
     acting = system.acting_on(at.motion(system))

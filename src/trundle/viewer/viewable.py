@@ -43,7 +43,7 @@ class Viewable(Displayed):
 
     def _parts(self) -> Iterator[Markup]:
         from ..plots.words import key_numbers
-        from ..scene.formulas import formula_of
+        from ..solve.exact.formula import formula_of
 
         run = cast("Trajectory", self)
         form = run._kept.get("form") if run.method == "exact" else None

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 
 from ..algebra import Matrix, Quaternion, Vector
 from ..scalars import is_zero
-from ..surfaces import Plane
 from ..system import RollingSystem
 from .base import ROLLING, Invariant, Record
 
@@ -100,7 +99,7 @@ def covers(system: RollingSystem) -> bool:
     """
     support = system.support
     rate = support.motion.steady_rate
-    level = isinstance(support.surface, Plane) and is_zero(support.tilt) and rate is not None and is_zero(rate)
+    level = support.surface.flat and is_zero(support.tilt) and rate is not None and is_zero(rate)
     return level and not system.loads and rim_of(system.body) is not None
 
 

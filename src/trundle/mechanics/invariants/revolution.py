@@ -17,7 +17,6 @@ from __future__ import annotations
 from typing import Any
 
 from ..algebra import Vector
-from ..surfaces import Plane
 from ..symmetry import symmetric_potential, without_torque
 from ..system import RollingSystem
 from .base import ROLLING, Invariant, Record
@@ -32,7 +31,7 @@ _WIDER = 8  # times that the stretch is widened, each time to twice what it was
 def _has_pair(system: RollingSystem) -> tuple[str, ...]:
     surface, body = system.support.surface, system.body
     ball = body.is_isotropic_sphere and body.shape.axis is None
-    round_ = bool(surface.axisymmetric) and not isinstance(surface, Plane)  # on a plane they are simpler ones
+    round_ = bool(surface.axisymmetric) and not surface.flat  # on a plane they are simpler ones
     steady = system.support.motion.steady_rate is not None
     loads = symmetric_potential(system) and all(without_torque(load) for load in system.all_loads)
     return (ROLLING,) if ball and round_ and steady and loads else ()

@@ -15,6 +15,7 @@ class Shape(Part):
     """A convex body's surface, known by the point where its outward normal is ν (theory page, section 2)."""
 
     noun: ClassVar[str] = "body"  # in titles and lists
+    spherical: ClassVar[bool] = False  # a sphere where it touches
     axis: ClassVar[Vector | None] = None  # body frame; touching along a line, it rolls straight across
     left: ClassVar[str] = "tipped onto the edge of its round side"  # what a body did that left what the shape covers
 
@@ -87,6 +88,11 @@ class Shape(Part):
             Such as ``["radius 25 mm"]``.
         """
         return [f"radius {wording.small_length(self.radius)}"] if hasattr(self, "radius") else []
+
+    @property
+    def reach(self) -> Scalar | None:
+        """Half its largest width, m; None where only its support map tells."""
+        return getattr(self, "radius", None)
 
     def parameters(self) -> dict[str, Any]:
         """Return the numbers of the shape by the names that builders of bodies give them; the fields of a dataclass.

@@ -50,6 +50,11 @@ class Ellipsoid(Shape):
         A = Matrix.diagonal(self.a * self.a, self.b * self.b, self.c * self.c)
         return (A - Matrix.outer(x, x)) * shrunk
 
+    @property
+    def reach(self) -> Scalar:
+        """The longest semi-axis."""
+        return max(self.a, self.b, self.c)
+
     def key_numbers(self) -> list[str]:
         """Return its semi-axes."""
         return [f"body {wording.length(self.a, self.b, self.c)}"]

@@ -99,6 +99,11 @@ class Torus(_Rim):
     rim_radius: Annotated[Scalar, Number("length", NOT_NEGATIVE)]
     centre: Annotated[Any, CENTRE] = None  # a Vector or None once it is made
 
+    @property
+    def reach(self) -> Scalar:
+        """Out to the edge of the rim."""
+        return self.radius + self.rim_radius
+
     def key_numbers(self) -> list[str]:
         """Return both radii."""
         radii = (wording.small_length(radius) for radius in (self.radius, self.rim_radius))

@@ -29,6 +29,7 @@ class Sphere(Shape):
     """
 
     noun = "ball"
+    spherical = True
     radius: Annotated[Scalar, RADIUS]
     centre: Annotated[Any, CENTRE] = None  # a Vector or None once it is made
 

@@ -38,11 +38,12 @@ class Surface(Part):
     """
 
     rim: Scalar | None = None  # distance of the edge from the axis, m
+    flat = False  # a plane: one normal everywhere
+    wall_radius: Scalar | None = None  # of a cylinder, which one sees along its axis, m
     analytic = True  # a formula: heyoka and SymPy can trace it; a table is evaluated on floats and arrays only
     end = "the end of the surface"  # what the body comes to where `inside` falls to 0
     coordinates: tuple[str, str] = ("length", "length")  # kinds of quantity, as in `trundle.units`
     coordinate_labels: tuple[str, str] = ("Position x", "Position y")  # at their controls
-    flat = False  # the same normal everywhere, the third axis
     tilt: ClassVar[Number] = Number("angle", said="Angle of the axis to the vertical; down the first axis.")
     points: ClassVar[Mapping[str, Lengths]] = MappingProxyType({})  # what `through` takes, where there is one
 
@@ -59,6 +60,11 @@ class Surface(Part):
             Such as ``["bowl of radius 30 cm"]``.
         """
         return []
+
+    @property
+    def outline(self) -> tuple[Scalar, ...]:
+        """Distances from the axis at which it is seen to end from above, the outermost first, m."""
+        return () if self.rim is None else (self.rim,)
 
     @property
     def axisymmetric(self) -> bool:

@@ -38,6 +38,17 @@ class Cylinder(Surface):
     side: Annotated[str, Choice(SIDES, "side of a cylinder")] = "inside"
     kind = "cylinder"
     noun, ground = "cylinder", "wall"
+
+    @property
+    def wall_radius(self) -> Scalar:  # type: ignore[override]
+        """Its radius."""
+        return self.radius
+
+    @property
+    def outline(self) -> tuple[Scalar, ...]:
+        """The wall, seen along its axis."""
+        return (self.radius,)
+
     axisymmetric = True
     coordinates = ("angle", "length")
     coordinate_labels = ("Angle about the axis", "Height along the axis")

@@ -33,6 +33,11 @@ class Spherical(Surface):
             remedy = f"The sphere's radius is {self.radius:g} m; a rim of that makes a hemisphere."
             raise InvalidValueError("rim", "must be at most the radius", given, remedy)
 
+    @property
+    def outline(self) -> tuple[Scalar, ...]:
+        """Its rim, or else its widest circle."""
+        return (self.radius if self.rim is None else self.rim,)
+
     def key_numbers(self) -> list[str]:
         """Return its radius."""
         return [f"{self.ground} of radius {wording.length(self.radius)}"]

@@ -44,6 +44,12 @@ class TorusTrack(Surface):
     kind = "torus-track"
     label = "Ring-shaped tube"
     noun, ground = "torus", "torus"
+
+    @property
+    def outline(self) -> tuple[Scalar, ...]:
+        """The outer edge and the hole."""
+        return self.ring_radius + self.tube_radius, self.ring_radius - self.tube_radius
+
     axisymmetric = True
     coordinates = ("angle", "angle")
     coordinate_labels = ("Angle about the axis", "Angle around the tube")

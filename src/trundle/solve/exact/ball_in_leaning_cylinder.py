@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -14,9 +15,12 @@ from ...mechanics.scalars import Scalar, namespace
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
 from .cylinder_on_cylinder import CylinderOnCylinder, angles
+from .finding import Finding
+from .fits import Seen
+from .formula import Lines, decimal
 from .phi import phase, two_product
 from .quadrature import PreciseRunning, Running, is_one, one_by_one
-from .round_cylinder import frequency_ratio, numbers_of, reasons_outside
+from .round_cylinder import ON_CYLINDER, frequency_ratio, numbers_of
 
 _PIECE = 1.0  # of the pendulum's own argument λt: its functions are analytic at least π/2 off the real axis
 _STANDS = 90.0  # on the separatrix it has come to rest on top, to the last digit, after so long
@@ -79,10 +83,7 @@ class BallInLeaningCylinder(ClosedForm):
     name = "ball round and along a leaning cylinder"
     equation = "T8"
     source = "Abramowitz and Stegun (1964), ch. 16, and one quadrature; Cross, Am. J. Phys. 89, 459 (2021); theory page"
-    domain = (
-        "a ball with the same inertia about every axis inside or outside a cylinder at any angle to gravity, fixed or "
-        "turning steadily about its axis, under gravity and constant force"
-    )
+    conditions = ON_CYLINDER
 
     never = frozenset({"curved"})
 
@@ -101,19 +102,6 @@ class BallInLeaningCylinder(ClosedForm):
         numbers = numbers_of(system, start)
         (fx, fy, _), (x, y, _) = numbers["force"], start.position
         return cls(**numbers, from_top=angles(fx * x + fy * y, fx * y - fy * x)[1])
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
-        """Name what of a system lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> slope = tr.Support(tr.Cylinder(1.0), tilt="70 deg")
-        >>> BallInLeaningCylinder.outside(tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), slope))
-        []
-        """
-        return reasons_outside(system)
 
     # The constants of the motion
 
@@ -309,6 +297,24 @@ class BallInLeaningCylinder(ClosedForm):
     def position_at(self, t: Any) -> Vector:
         """Return the centre in the inertial support frame, m, at a time since the start, s."""
         return self.motion_at(t)[0]
+
+    # What is shown
+
+    def formulas(self, system: RollingSystem) -> Lines:
+        """Return the pendulum, and the way along the axis."""
+        q = decimal(math.sqrt(self._share))
+        formula = r"\dot z - iq\sigma = W_0\,e^{iq(\theta - \theta_0)} + \dots,\quad q = \sqrt{\frac{k}{1+k}}"
+        return [*self.pendulum.formulas(system), (formula, f"q = {q}")]
+
+    def findings(self, seen: Seen) -> Iterator[Finding]:
+        """Compare the pendulum, and the way along the axis in one swing."""
+        pendulum = self.pendulum
+        yield from pendulum.swinging(seen, pendulum.from_pull(seen.at.position))
+        advance = float(self.advance)
+        if math.isfinite(advance) and advance and seen.time[-1] >= pendulum.period:
+            z = seen.at.position[:, 2]
+            gone = float(np.interp(float(pendulum.period), seen.time, z) - z[0])
+            yield Finding("Way along the axis in one swing", r"\Delta z", advance, gone, "m", "", float(np.ptp(z)))
 
 
 def _is_mpmath(t: Any) -> bool:

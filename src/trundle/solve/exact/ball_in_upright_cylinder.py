@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
+
+import numpy as np
 
 from ...mechanics.algebra import Vector
 from ...mechanics.scalars import Scalar, is_number, is_zero, namespace
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
+from .domain import FORCES, that
+from .finding import Finding
+from .fits import Seen, even_rate, slope
+from .formula import Lines, number, quantity
 from .phi import exponentials, phase, two_product
-from .round_cylinder import frequency_ratio, numbers_of, pull, reasons_outside, vectors_of
+from .round_cylinder import ON_CYLINDER, frequency_ratio, numbers_of, pull, vectors_of
 
 
 @dataclass(frozen=True)
@@ -67,9 +74,14 @@ class BallInUprightCylinder(ClosedForm):
     name = "ball round an upright cylinder"
     equation = "T7"
     source = "Gualtieri et al., Golfer's dilemma, Am. J. Phys. 74, 497 (2006); theory page, T7"
-    domain = (
-        "a ball with the same inertia about every axis inside or outside a cylinder that is fixed or turns steadily "
-        "about its axis, under gravity and constant force along that axis"
+    conditions = (
+        *ON_CYLINDER,
+        that(
+            lambda system: pull(system)[:2] == (0, 0),
+            ", with every force along that axis",
+            "gravity or a force pulls across the cylinder's axis",
+            FORCES,
+        ),
     )
 
     never = frozenset({"lift", "curved"})  # N is constant
@@ -87,22 +99,6 @@ class BallInUprightCylinder(ClosedForm):
         """
         cls.check_domain(system, start)
         return cls(**numbers_of(system, start))
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
-        """Name what of a system lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> level = tr.Support(tr.Cylinder(1.0), tilt="90 deg")
-        >>> BallInUprightCylinder.outside(tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), level))
-        ["gravity or a force pulls across the cylinder's axis"]
-        """
-        reasons = reasons_outside(system)
-        if not reasons and pull(system)[:2] != (0, 0):
-            reasons.append("gravity or a force pulls across the cylinder's axis")
-        return reasons
 
     # The constants of the motion
 
@@ -216,3 +212,30 @@ class BallInUprightCylinder(ClosedForm):
         xp, of_start = namespace(turned), namespace(self.angle, turned)
         c, s, c0, s0 = xp.cos(turned), xp.sin(turned), of_start.cos(self.angle), of_start.sin(self.angle)
         return Vector(c * c0 - s * s0, s * c0 + c * s0, 0.0)
+
+    # What is shown
+
+    def formulas(self, system: RollingSystem) -> Lines:  # noqa: ARG002
+        """Return the rate of bobbing."""
+        root = rf"\sqrt{{{number(self.inertia_ratio / (1 + self.inertia_ratio))}}}"
+        shown = rf"\nu = {root}\cdot {quantity(self.angular_rate, 'rad/s')} = {quantity(self.bobbing_rate, 'rad/s')}"
+        return [(r"\nu = \sqrt{\frac{k}{1+k}}\;\dot\theta", shown)]
+
+    def findings(self, seen: Seen) -> Iterator[Finding]:
+        """Compare going round and bobbing."""
+        x, y, z = seen.at.position.T
+        round_ = float(slope(seen.time, np.unwrap(np.arctan2(y, x))))
+        yield Finding("Rate of going round", r"\dot\theta", float(self.angular_rate), round_, "rad/s")
+        if not self.angular_rate:
+            return
+        amplitude = float(self.amplitude)
+        found = even_rate(seen.time, z) if amplitude > 1e-9 * abs(self.length) else None
+        yield Finding("Rate of bobbing", r"\nu", abs(float(self.bobbing_rate)), found, "rad/s")
+        ratio = None if found is None else found / abs(round_)
+        note = "of bobbing to going round, whatever the radii"
+        yield Finding("Ratio of the two", r"\sqrt{k/(1+k)}", float(self.frequency_ratio), ratio, "", note)
+        if found is not None and found * seen.time[-1] >= 2 * math.pi:
+            wave = found * seen.time
+            design = np.column_stack([np.ones_like(wave), np.cos(wave), np.sin(wave)])
+            _, c, s = np.linalg.lstsq(design, z, rcond=None)[0]
+            yield Finding("Height that it bobs through", r"2z_1", 2 * amplitude, float(2 * math.hypot(c, s)), "m")

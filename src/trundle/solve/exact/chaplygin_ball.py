@@ -3,20 +3,38 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from ...mechanics.algebra import Quaternion, Vector
-from ...mechanics.loads import constant_part
 from ...mechanics.scalars import Scalar
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
-from .chaplygin_domain import principal_axes, reasons_outside, stance_of, two_are_equal
+from .chaplygin_domain import (
+    CHAPLYGIN_BALL,
+    ON_LEVEL_PLANE,
+    TURNS,
+    principal_axes,
+    stance_of,
+    turning_faster,
+    two_are_equal,
+)
 from .chaplygin_nutation import Constants
+from .domain import FORCES, constant_forces, that
+from .finding import Finding
+from .fits import Seen
+from .formula import Lines, quantity
 from .quadrature import is_one, one_by_one
 
 _NEVER = 1e30  # s
+
+
+def _symmetric(system: RollingSystem) -> bool:
+    return two_are_equal(principal_axes(system.body)[0]) is not None
 
 
 @dataclass(frozen=True)
@@ -67,9 +85,11 @@ class ChaplyginBall(ClosedForm):
     name = "Chaplygin's ball with two equal moments"
     equation = "T15"
     source = "Chaplygin, Mat. Sb. 24, 139 (1903), for the integrals; theory page, T15, for the time and the path"
-    domain = (
-        "a ball with its centre of mass at its centre and two equal principal moments of inertia, on a level plane at "
-        "rest, under constant forces along the normal"
+    conditions = (
+        *CHAPLYGIN_BALL,
+        that(_symmetric, ", with two equal moments of inertia", "no two of its moments of inertia are equal", FORCES),
+        *ON_LEVEL_PLANE,
+        TURNS,
     )
     never = frozenset({"lift", "curved"})  # N is constant
 
@@ -90,7 +110,7 @@ class ChaplyginBall(ClosedForm):
         odd = two_are_equal(moments) or 0
         body_axis = axes[odd]
         e = Quaternion(*start.orientation).matrix() @ Vector(*body_axis)
-        force, _, _ = constant_part(system.all_loads, system.body.mass)
+        force, _ = constant_forces(system)
         return cls(
             radius=system.body.radius,
             mass=system.body.mass,
@@ -102,24 +122,6 @@ class ChaplyginBall(ClosedForm):
             body_axis=body_axis,
             normal_force=-float(force.z),
         )
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:
-        """Name what of a system lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> ball = tr.Body(1.0, tr.Principal(3e-3, 4e-3, 5e-3), tr.Sphere(0.1))
-        >>> ChaplyginBall.outside(tr.RollingSystem(ball, tr.Support(tr.Plane())))
-        ['no two of its moments of inertia are equal']
-        """
-        reasons = reasons_outside(system)
-        if not reasons and two_are_equal(principal_axes(system.body)[0]) is None:
-            reasons.append("no two of its moments of inertia are equal")
-        if start is not None and not any(start.angular_velocity):
-            reasons.append("the ball does not turn")
-        return reasons
 
     # The constants of the motion
 
@@ -210,3 +212,25 @@ class ChaplyginBall(ClosedForm):
     def stance(self, t: Any) -> Quaternion:
         """Return an orientation with which the axis is where it is: its turns about e do not change the forces."""
         return stance_of(Vector(*self.body_axis), self.axis_at(t))
+
+    # What is shown
+
+    def formulas(self, system: RollingSystem) -> Lines:  # noqa: ARG002
+        """Return the momentum about the contact, which it keeps."""
+        momentum = quantity(self.momentum.norm(), r"kg\,m^2/s")
+        return [(r"M = J\Omega + m a^2\,n\times(\Omega\times n)", f"|M| = {momentum}")]
+
+    def findings(self, seen: Seen) -> Iterator[Finding]:
+        """Compare the time of a nutation, and how far the ball has got on by then."""
+        found = turning_faster("Time of one nutation", float(self.nutation_period), seen)
+        if found is None:
+            return
+        finding, times = found
+        yield finding
+        speed = None
+        if finding.measured:
+            ends = np.array([np.interp(times[[0, -1]], seen.time, part) for part in seen.at.position.T[:2]]).T
+            speed = float(np.linalg.norm(ends[1] - ends[0]) / (times[-1] - times[0]))
+        drift = math.hypot(float(self.drift.x), float(self.drift.y))
+        fastest = float(np.max(np.linalg.norm(seen.at.velocity, axis=1)))
+        yield Finding("Speed from one nutation to the next", r"\bar v", drift, speed, "m/s", "", max(drift, fastest))

@@ -2,50 +2,45 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from ...mechanics.algebra import Matrix, Quaternion, Vector
-from ...mechanics.bodies.inertia import Isotropic, RatioInertia
-from ...mechanics.loads import constant_part
-from ...mechanics.scalars import is_number, is_zero, namespace
+from ...mechanics.scalars import namespace
 from ...mechanics.shapes import concentric_sphere
 from ...mechanics.surfaces import Plane
-from ...mechanics.system import RollingSystem
+from ...mechanics.system import RollingSystem, State
+from .domain import ALONG_NORMAL, AT_REST, CONSTANT_LOADS, PRESSED, START, Condition, on, that
+from .finding import Finding
+from .fits import Array, Seen, crossings
 
 _EQUAL = 1e-15  # share of a moment by which two that are equal may differ after rounding
 
 Axes = tuple[tuple[float, float, float], ...]
 
 
-def reasons_outside(system: RollingSystem) -> list[str]:
-    """Name what of a system is no ball with its own principal moments, level, at rest and under forces along n.
+def _still(system: RollingSystem, start: State) -> Iterator[str]:  # noqa: ARG001
+    if not any(start.angular_velocity):
+        yield "the ball does not turn"
 
-    Examples
-    --------
-    >>> import trundle as tr
-    >>> ball = tr.Body(1.0, tr.Principal(3e-3, 4e-3, 5e-3), tr.Sphere(0.1))
-    >>> reasons_outside(tr.RollingSystem(ball, tr.Support(tr.Plane(), tilt=0.1)))
-    ['gravity or a force pushes along the plane, or a torque acts']
-    """
-    reasons, motion = [], system.support.motion
-    if not concentric_sphere(system.body.shape):
-        reasons.append("the body is no sphere with its centre of mass at its centre")
-    elif isinstance(system.body.inertia, (Isotropic, RatioInertia)):
-        reasons.append("the ball has the same moment of inertia about every axis")
-    if not isinstance(system.support.surface, Plane):
-        reasons.append(f"the surface is a {type(system.support.surface).__name__}, not a Plane")
-    if motion.steady_rate is None or not is_zero(motion.steady_rate):
-        reasons.append("the plane moves")
-    reasons += [f"the load {type(load).__name__} is not constant" for load in system.loads if not load.constant]
-    if not reasons:
-        force, torque, _ = constant_part(system.all_loads, system.body.mass)
-        if any((force.x, force.y, *torque)):
-            reasons.append("gravity or a force pushes along the plane, or a torque acts")
-        if is_number(force.z) and force.z > 0:
-            reasons.append("the plane does not press on the body")
-    return reasons
+
+CHAPLYGIN_BALL = (
+    that(
+        lambda system: concentric_sphere(system.body.shape),
+        "a ball with its centre of mass at its centre",
+        "the body is no sphere with its centre of mass at its centre",
+    ),
+    that(
+        lambda system: not system.body.is_isotropic_sphere,
+        "",
+        "the ball has the same moment of inertia about every axis",
+    ),
+)
+ON_LEVEL_PLANE = (on(Plane), AT_REST, CONSTANT_LOADS, ALONG_NORMAL, PRESSED)
+TURNS = Condition("", _still, START)
 
 
 def principal_axes(body: Any) -> tuple[tuple[float, float, float], Axes]:
@@ -111,3 +106,15 @@ def stance_of(before: Vector, now: Vector) -> Quaternion:
     x, y, z = (xp.where(opposite, away + 0 * size, part + 0 * size) for away, part in zip(across, axis, strict=True))
     length = xp.sqrt(w * w + x * x + y * y + z * z)
     return Quaternion(w / length, x / length, y / length, z / length)
+
+
+def turning_faster(name: str, predicted: float, seen: Seen) -> tuple[Finding, Array] | None:
+    """Compare the time from one rise of |Ω| to the next, and return when it rises; None where |Ω| stays the same."""
+    square = np.sum(seen.at.angular_velocity**2, axis=1)
+    low, high = float(np.min(square)), float(np.max(square))
+    if not math.isfinite(predicted) or high - low <= 1e-9 * high:
+        return None
+    times = crossings(seen.time, square - 0.5 * (low + high))
+    measured = float((times[-1] - times[0]) / (len(times) - 1)) if len(times) > 1 else None
+    note = "from one rise of |Ω| to the next" if measured else "the run shows less than one"
+    return Finding(name, "T", predicted, measured, "s", note), times

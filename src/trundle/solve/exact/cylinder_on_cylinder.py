@@ -3,21 +3,51 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from ...mechanics.algebra import E_Z, Vector
-from ...mechanics.loads import constant_part
 from ...mechanics.scalars import Scalar, is_number, less, namespace
 from ...mechanics.surfaces import Cylinder
 from ...mechanics.system import RollingSystem, State
+from ..samples import FLIGHT
 from .base import ClosedForm
+from .domain import (
+    CONSTANT_LOADS,
+    FORCES,
+    NO_TORQUE,
+    ROUND,
+    START,
+    TURNING_STEADILY,
+    Condition,
+    constant_forces,
+    on,
+    that,
+)
+from .finding import Finding
+from .fits import COMES_OFF, Array, Seen, angle_where, round_time, swing
+from .formula import Lines, decimal, number, quantity
 from .jacobi import elliptic
 from .phi import phase
 
 _DIGITS = 60  # for the few constants: near the separatrix they are small differences
 _ASIDE = 1e-12  # share of the start's speed, or of the load, that may point along the axis by rounding
+
+
+def _pulled_across(system: RollingSystem) -> bool:
+    fx, fy, fz = constant_forces(system)[0]
+    return bool(abs(fz) <= _ASIDE * math.hypot(fx, fy))
+
+
+def _aside(system: RollingSystem, start: State) -> Iterator[str]:
+    (*_, vz), (wx, wy, _) = start.velocity, start.angular_velocity
+    speed = max(map(abs, (*start.velocity, *(system.body.radius * w for w in start.angular_velocity))))
+    if max(abs(vz), system.body.radius * math.hypot(wx, wy)) > _ASIDE * speed:
+        yield "the start moves along the cylinder's axis or spins across it"
 
 
 @dataclass(frozen=True)
@@ -71,10 +101,14 @@ class CylinderOnCylinder(ClosedForm):
     name = "cylinder or ball on a cylinder"
     equation = "T6"
     source = "Abramowitz and Stegun, Handbook of Mathematical Functions (1964), ch. 16; theory page, round a cylinder"
-    domain = (
-        "a cylinder, hoop or ball with the same inertia about every axis that rolls inside or outside a cylinder, in "
-        "the plane across its axis, the cylinder fixed or turning steadily, under gravity and constant force in that "
-        "plane"
+    conditions = (
+        ROUND,
+        on(Cylinder),
+        TURNING_STEADILY,
+        CONSTANT_LOADS,
+        that(_pulled_across, " across that axis", "gravity or a force pulls along the cylinder's axis", FORCES),
+        NO_TORQUE,
+        Condition(", for a motion in the plane across it", _aside, START),
     )
 
     never = frozenset({"curved"})
@@ -93,7 +127,7 @@ class CylinderOnCylinder(ClosedForm):
         """
         cls.check_domain(system, start)
         surface: Any = system.support.surface
-        (fx, fy, _), _, _ = constant_part(system.all_loads, system.body.mass)
+        fx, fy, _ = constant_forces(system)[0]
         r, V = Vector(*start.position), Vector(*start.velocity)
         length = surface.radius + surface.sign * system.body.radius
         pull = (fx, fy) if (fx, fy) != (0, 0) else (1.0, 0.0)
@@ -112,38 +146,6 @@ class CylinderOnCylinder(ClosedForm):
             from_top=from_top,
         )
 
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:
-        """Name what of a system, and of a start where one is given, lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> CylinderOnCylinder.outside(tr.RollingSystem(tr.Body.hoop(1.0, 1.0), tr.Support(tr.Plane())))
-        ['the surface is a Plane, not a Cylinder']
-        """
-        reasons = []
-        if not system.body.is_isotropic_sphere:
-            reasons.append("the body is no cylinder or sphere with isotropic inertia about its centre")
-        if not isinstance(system.support.surface, Cylinder):
-            reasons.append(f"the surface is a {type(system.support.surface).__name__}, not a Cylinder")
-        if system.support.motion.steady_rate is None:
-            reasons.append(f"the support's motion {type(system.support.motion).__name__} is no steady turn")
-        varying = [load for load in system.loads if not load.constant]
-        reasons += [f"the load {type(load).__name__} is not constant" for load in varying]
-        if not reasons:
-            (fx, fy, fz), torque, _ = constant_part(system.all_loads, system.body.mass)
-            if abs(fz) > _ASIDE * math.hypot(fx, fy):
-                reasons.append("gravity or a force pulls along the cylinder's axis")
-            if tuple(torque) != (0, 0, 0):
-                reasons.append("a torque acts on the body")
-        if start is not None and not reasons:
-            (*_, vz), (wx, wy, _) = start.velocity, start.angular_velocity
-            speed = max(map(abs, (*start.velocity, *(system.body.radius * w for w in start.angular_velocity))))
-            if max(abs(vz), system.body.radius * math.hypot(wx, wy)) > _ASIDE * speed:
-                reasons.append("the start moves along the cylinder's axis or spins across it")
-        return reasons
-
     # The constants of the motion
 
     @property
@@ -160,8 +162,6 @@ class CylinderOnCylinder(ClosedForm):
             return _Constants(*map(float, _constants(*given)))
         if any(type(value).__module__.partition(".")[0] == "mpmath" for value in given):
             return _Constants(*_constants(*given))
-        import numpy as np
-
         arrays = np.broadcast_arrays(*given)
         members = zip(*map(np.ravel, arrays), strict=True)
         rows = np.array([[float(c) for c in _constants(*map(float, one))] for one in members])
@@ -318,6 +318,73 @@ class CylinderOnCylinder(ClosedForm):
         """Return the axis and the angle by which the body has turned: from its place alone, as x = aφ on a plane."""
         gone = self.length * self.turned_at(t) - self.track_radius * self.rate * t
         return E_Z, gone * self.side / self.radius
+
+    # What is shown
+
+    @property
+    def lift_cosine(self) -> Any:
+        """Cosine of the angle from the top at which the body comes off, [2 cos θ₀ + (1 + k) mℓθ̇₀²/G]/(3 + k)."""
+        k, (fx, fy) = self.inertia_ratio, self.force
+        xp = namespace(self.angle, fx, fy)
+        speed = self.mass * self.length * self.angular_rate * self.angular_rate / xp.hypot(fx, fy)
+        return (-2 * xp.cos(self.angle) + (1 + k) * speed) / (3 + k)
+
+    def formulas(self, system: RollingSystem) -> Lines:  # noqa: ARG002
+        """Return the pendulum, and how long it takes for one swing, or round."""
+        pull, heavy = math.hypot(*map(float, self.force)), float(self.mass) * (1 + float(self.inertia_ratio))
+        square = pull / (heavy * float(self.length))
+        below = rf"{decimal(self.mass)}\cdot(1 + {number(self.inertia_ratio)})\cdot {decimal(self.length)}"
+        shown = rf"\nu^2 = \frac{{{decimal(pull)}}}{{{below}}}\,\mathrm{{s^{{-2}}}} = {quantity(square, '1/s^2')}"
+        lines = [(r"\ddot\theta = -\nu^2\sin\theta,\quad \nu^2 = \frac{G}{m(1+k)\,\ell}", shown)]
+        period = float(self.period)
+        if math.isfinite(period):
+            whole = r"T = \frac{2}{\sqrt\epsilon}\,K\!\left(\frac{\nu^2}{\epsilon}\right)"
+            swings = r"T = \frac{4}{\nu}\,K\!\left(\sin^2\tfrac{\theta_{\max}}{2}\right)"
+            lines.append((whole if self.goes_round else swings, rf"T = {quantity(period, 's')}"))
+        return lines
+
+    def findings(self, seen: Seen) -> Iterator[Finding]:
+        """Compare its swing or round, or where it comes off."""
+        if not any(event.kind == "lift" for event in seen.samples.events):
+            yield from self.swinging(seen, self.from_pull(seen.at.position))
+        else:
+            yield from self.coming_off(seen, np.abs(self.from_pull(seen.samples.position) % (2 * math.pi) - math.pi))
+
+    def from_pull(self, position: Array) -> Array:
+        """Return the angle of the centre about the third axis from the direction of the pull, without jumps, rad."""
+        fx, fy = (float(part) for part in self.force)
+        angle = np.unwrap(np.arctan2(position[:, 1], position[:, 0]))
+        angle = angle - math.atan2(fy, fx)
+        return np.asarray(angle - 2 * math.pi * np.round(angle[0] / (2 * math.pi)))
+
+    def swinging(self, seen: Seen, angle: Array) -> Iterator[Finding]:
+        """Compare the time and the size of a swing, or the time of a round, with an angle from the pull."""
+        if seen.time.size < 6 or not np.ptp(angle) > 0:
+            return
+        period = float(self.period)
+        finite = period if math.isfinite(period) else None
+        if self.goes_round:
+            yield Finding("Time of one round", "T", finite, round_time(seen.time, angle), "s")
+            return
+        measured, largest = swing(seen.time, angle)
+        if finite is not None:
+            note = "" if measured else "the run shows less than one"
+            yield Finding("Time of one swing", "T", period, measured, "s", note)
+        pull = math.hypot(*map(float, self.force))
+        if pull and seen.time[-1] >= 0.5 * period:
+            heavy = float(self.mass) * float(self.length) * (1 + float(self.inertia_ratio))
+            cosine = math.cos(float(self.angle)) - 0.5 * heavy * float(self.angular_rate) ** 2 / pull
+            yield Finding("Amplitude", r"\theta_{\max}", math.degrees(math.acos(cosine)), math.degrees(largest), "°")
+
+    def coming_off(self, seen: Seen, from_top: Array) -> Iterator[Finding]:
+        """Compare the angle from the top at which the normal force has gone."""
+        cosine, samples = float(self.lift_cosine), seen.samples
+        flying = samples.phase == FLIGHT
+        if abs(cosine) <= 1 and flying.any():
+            part = slice(0, int(np.argmax(flying)))
+            normal, _ = seen.forces
+            predicted, time = math.acos(cosine), samples.time[part]
+            yield angle_where(COMES_OFF, predicted, time, from_top[part], normal[part])
 
 
 @dataclass(frozen=True)

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from typing import Any
 
-from ...mechanics.algebra import ZERO, Vector
-from ...mechanics.loads import Drag, QuadraticDrag, RollingCouple, RollingResistance, at_rest
-from ...mechanics.scalars import Scalar, is_zero
+from ...mechanics.algebra import Vector
+from ...mechanics.scalars import Scalar
 from ...mechanics.system import RollingSystem, State
 from ..samples import RESTING
 from .base import ClosedForm
+from .domain import ANY_BODY, AT_REST, RESISTANCES, START, STILL_AIR, Condition, constant_forces, under
+from .formula import Lines, quantity
 
-_SILENT = (Drag, QuadraticDrag, RollingCouple, RollingResistance)  # at rest
+
+def _moves(system: RollingSystem, start: State) -> Iterator[str]:  # noqa: ARG001
+    if any((*start.velocity, *start.angular_velocity)):
+        yield "the body moves"
 
 
 @dataclass(frozen=True)
@@ -39,7 +44,17 @@ class RestingBody(ClosedForm):
     name = "body at rest"
     equation = "T3"
     source = "theory page, T3, with nothing moving"
-    domain = "any body at rest on a support at rest, under gravity, constant loads, resistances and still air"
+    conditions = (
+        ANY_BODY,
+        Condition(" at rest", _moves, START),
+        replace(AT_REST, words=", on a support at rest"),
+        under(
+            ", under gravity, constant loads and resistances",
+            "not constant",
+            *RESISTANCES,
+        ),
+        STILL_AIR,
+    )
     phases = (RESTING,)
     never = frozenset({"lift", "start", "slip", "rim", "end", "edge", "curved"})
 
@@ -56,34 +71,7 @@ class RestingBody(ClosedForm):
         (0.0, 0.0, -9.80665)
         """
         cls.check_domain(system, start)
-        force = ZERO
-        for load in system.all_loads:
-            force = force + load.force(at_rest(system.body.mass)) if load.constant else force
-        return cls(start.position, tuple(force))
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:
-        """Name what of a system lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> table = tr.Support(tr.Plane(), motion=tr.Spin(2.0))
-        >>> RestingBody.outside(tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), table))
-        ['the support moves']
-        """
-        reasons = []
-        rate = system.support.motion.steady_rate
-        if rate is None or not is_zero(rate):
-            reasons.append("the support moves")
-        for load in system.loads:
-            if not load.constant and not isinstance(load, _SILENT):
-                reasons.append(f"the load {type(load).__name__} is not constant")
-            elif isinstance(load, (Drag, QuadraticDrag)) and not is_zero(load.air):
-                reasons.append("the air moves")
-        if start is not None and any((*start.velocity, *start.angular_velocity)):
-            reasons.append("the body moves")
-        return reasons
+        return cls(start.position, tuple(constant_forces(system)[0]))
 
     @property
     def period(self) -> float:
@@ -109,3 +97,7 @@ class RestingBody(ClosedForm):
     def straight_turn(self, t: Any) -> tuple[Vector, Any]:
         """Return no turn at all."""
         return Vector(0.0, 0.0, 1.0), 0 * t
+
+    def formulas(self, system: RollingSystem) -> Lines:  # noqa: ARG002
+        """Return what the support bears."""
+        return [(r"R = -F,\quad V = \Omega = 0", f"|R| = {quantity(math.hypot(*map(float, self.force)), 'N')}")]

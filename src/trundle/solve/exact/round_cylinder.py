@@ -6,35 +6,14 @@ import math
 from typing import Any
 
 from ...mechanics.algebra import E_Z, Vector
-from ...mechanics.loads import constant_part
 from ...mechanics.scalars import Scalar, is_number, namespace
 from ...mechanics.surfaces import Cylinder
 from ...mechanics.system import RollingSystem, State
+from .domain import CONSTANT_LOADS, NO_TORQUE, SPHERE, TURNING_STEADILY, constant_forces, on
 from .phi import quotient_times, two_product
 
 _ASIDE = 1e-12  # share of the loads that may point across or along the axis by rounding
-
-
-def reasons_outside(system: RollingSystem) -> list[str]:
-    """Name what keeps a system from being a ball on a cylinder that turns steadily, under a constant force.
-
-    Examples
-    --------
-    >>> import trundle as tr
-    >>> reasons_outside(tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), tr.Support(tr.Plane())))
-    ['the surface is a Plane, not a Cylinder']
-    """
-    reasons = []
-    if not system.body.is_isotropic_sphere or system.body.shape.axis is not None:
-        reasons.append("the body is no sphere with isotropic inertia about its centre")
-    if not isinstance(system.support.surface, Cylinder):
-        reasons.append(f"the surface is a {type(system.support.surface).__name__}, not a Cylinder")
-    if system.support.motion.steady_rate is None:
-        reasons.append(f"the support's motion {type(system.support.motion).__name__} is no steady turn")
-    reasons += [f"the load {type(load).__name__} is not constant" for load in system.loads if not load.constant]
-    if not reasons and tuple(constant_part(system.all_loads, system.body.mass)[1]) != (0, 0, 0):
-        reasons.append("a torque acts on the body")
-    return reasons
+ON_CYLINDER = (SPHERE, on(Cylinder), TURNING_STEADILY, CONSTANT_LOADS, NO_TORQUE)
 
 
 def pull(system: RollingSystem) -> tuple[float, float, float]:
@@ -47,7 +26,7 @@ def pull(system: RollingSystem) -> tuple[float, float, float]:
     >>> pull(tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), upside_down))
     (0.0, 0.0, 9.80665)
     """
-    fx, fy, fz = constant_part(system.all_loads, system.body.mass)[0]
+    fx, fy, fz = constant_forces(system)[0]
     across = math.hypot(fx, fy)
     if across <= _ASIDE * abs(fz):
         return 0.0, 0.0, fz

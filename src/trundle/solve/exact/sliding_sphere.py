@@ -3,23 +3,32 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from ...mechanics.algebra import Vector
-from ...mechanics.loads import constant_part
-from ...mechanics.scalars import Scalar, is_number, is_zero
+from ...mechanics.scalars import Scalar, is_zero
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
-from ..samples import SLIPPING
+from ...wording import as_ratio
+from ..samples import ROLLING, SLIPPING, Samples
 from .base import ClosedForm
+from .domain import CONSTANT_LOADS, NO_TORQUE, PRESSED, ROUND, TURNING_STEADILY, constant_forces, on, that
+from .finding import Finding
+from .fits import Seen, acceleration, zero_ahead
+from .formula import Lines, quantity
 from .kepler import inverse_of, precisely
 from .quadrature import is_one, one_by_one
 
 _MOST_STEPS = 400
+
+
+def _rests_or_is_smooth(system: RollingSystem) -> bool:
+    rate, support = system.support.motion.steady_rate, system.support
+    return rate is None or is_zero(rate) or support.friction is None or is_zero(support.sliding_friction)
 
 
 @dataclass(frozen=True)
@@ -68,9 +77,19 @@ class SlidingSphere(ClosedForm):
     name = "sphere slipping on a plane"
     equation = "T11"
     source = "Coriolis, Théorie mathématique des effets du jeu de billard (1835), level; theory page, T11"
-    domain = (
-        "a sphere about its centre of mass with the same inertia about every axis that slips on a plane at rest, level "
-        "or tilted, under gravity and constant force; without friction the plane may turn steadily"
+    conditions = (
+        ROUND,
+        on(Plane),
+        that(
+            lambda system: system.support.friction is not None,
+            "",
+            "the support has no friction coefficient",
+        ),
+        that(_rests_or_is_smooth, " at rest", "the plane turns, so that its own velocity differs from place to place"),
+        replace(TURNING_STEADILY, words=" or, without friction, turning steadily"),
+        CONSTANT_LOADS,
+        NO_TORQUE,
+        PRESSED,
     )
     phases = (SLIPPING,)
     never = frozenset({"lift", "jam"})  # N is constant
@@ -90,7 +109,7 @@ class SlidingSphere(ClosedForm):
         cls.check_domain(system, start)
         (vx, vy, _), (wx, wy, _), a = start.velocity, start.angular_velocity, system.body.radius
         rate, (x, y, _) = system.support.motion.steady_rate or 0.0, start.position
-        force, _, _ = constant_part(system.all_loads, system.body.mass)
+        force, _ = constant_forces(system)
         return cls(
             radius=a,
             mass=system.body.mass,
@@ -107,37 +126,6 @@ class SlidingSphere(ClosedForm):
     def of_numbers(cls, system: RollingSystem, start: State, numbers: Sequence[float]) -> SlidingSphere:
         """Take the slip from the law's own numbers: where slip begins, it is smaller than a rounding of V and Ω."""
         return replace(cls.of(system, start), slip=(float(numbers[10]), float(numbers[11])))
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
-        """Name what of a system lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> table = tr.Support(tr.Plane(), motion=tr.Spin(2.0), friction=0.2)
-        >>> SlidingSphere.outside(tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), table))
-        ['the plane turns, so that its own velocity differs from place to place']
-        """
-        reasons, rate = [], system.support.motion.steady_rate
-        if not system.body.is_isotropic_sphere:
-            reasons.append("the body is no sphere with isotropic inertia about its centre")
-        if not isinstance(system.support.surface, Plane):
-            reasons.append(f"the surface is a {type(system.support.surface).__name__}, not a Plane")
-        if system.support.friction is None:
-            reasons.append("the support has no friction coefficient")
-        elif rate is None:
-            reasons.append(f"the support's motion {type(system.support.motion).__name__} is no steady turn")
-        elif not is_zero(rate) and not is_zero(system.support.sliding_friction):
-            reasons.append("the plane turns, so that its own velocity differs from place to place")
-        reasons += [f"the load {type(load).__name__} is not constant" for load in system.loads if not load.constant]
-        if not reasons:
-            force, torque, _ = constant_part(system.all_loads, system.body.mass)
-            if any(torque):
-                reasons.append("a torque acts on the body")
-            if is_number(force.z) and force.z > 0:
-                reasons.append("the plane does not press on the body")
-        return reasons
 
     # The constants of the motion
 
@@ -193,6 +181,70 @@ class SlidingSphere(ClosedForm):
             Vector(Omega[0] + gained[1] / (k * a), Omega[1] - gained[0] / (k * a), Omega[2] + zero),
             Vector(zero - mu * N * direction[0], zero - mu * N * direction[1], N + zero),
         )
+
+    # What is shown
+
+    def formulas(self, system: RollingSystem) -> Lines:  # noqa: ARG002
+        """Return how the slip changes, and when it has gone."""
+        k, mu = float(self.inertia_ratio), float(self.friction)
+        brake = mu * -float(self.force[2]) / float(self.mass) * (1 + 1 / k)
+        formula = r"\dot s = \frac{F}{m} - B\,\hat s,\quad B = \frac{\mu N}{m}\Big(1 + \frac1k\Big)"
+        lines = [(formula, rf"B = {quantity(brake, 'm/s^2')}")]
+        grips = float(self.grips_at)
+        if not math.isfinite(grips):
+            return lines
+        if any(map(float, self.force[:2])):
+            return [*lines, (r"s(t_g) = 0", rf"t_g = {quantity(grips, 's')}")]
+        slip = math.hypot(*map(float, self.slip))
+        share = rf"\frac{{{quantity(slip, 'm/s')}}}{{{quantity(brake, 'm/s^2')}}}"
+        return [*lines, (r"t_g = \frac{|s_0|}{B}", rf"t_g = {share} = {quantity(grips, 's')}")]
+
+    def findings(self, seen: Seen) -> Iterator[Finding]:
+        """Compare when, where and how fast it grips; measured from where the slip of the samples ends."""
+        predicted, samples, system = float(self.grips_at), seen.samples, seen.system
+        slips = samples.phase == SLIPPING
+        count = int(np.argmin(slips)) if not slips.all() else slips.size
+        part = samples.part(slice(0, count))
+        if not math.isfinite(predicted):
+            yield from self._slipping_on(system, part)
+            return
+        if count < 3:
+            return
+        V, carried, u = part.speeds(system)
+        slip = np.broadcast_to((V + carried - u).norm(), part.time.shape)
+        time = part.time - samples.time[0]
+        gripped = zero_ahead(time, slip) if slips.size > count or slip[-1] < 0.5 * slip[0] else None
+        yield Finding("Time at which it grips", "t_g", predicted, gripped, "s", "where the slip, drawn on, ends")
+        if gripped is None or slips.size <= count:
+            return
+        r, velocity, _, _ = self.motion_at(predicted)
+        way = math.hypot(float(r.x) - float(self.position[0]), float(r.y) - float(self.position[1]))
+        degree = min(6 if system.support.tilt else 2, count - 1)
+        course = np.polynomial.polynomial.polyfit(time, part.position[:, :2], degree)
+        there = np.polynomial.polynomial.polyval(gripped, course)
+        gone = float(np.linalg.norm(there - part.position[0, :2]))
+        yield Finding("Distance to there", "d_g", way, gone, "m", "from start to grip, straight", max(way, self.radius))
+        after = samples.part(slice(count, None))
+        rolls = int(np.argmin(after.phase == ROLLING)) if not (after.phase == ROLLING).all() else after.time.size
+        pushed = float(system.support.tilt) != 0 or bool(system.loads)
+        if rolls > 3 and not pushed:
+            path = after.position[:rolls, :2]
+            speed = float(np.linalg.norm(path[-1] - path[0]) / (after.time[rolls - 1] - after.time[0]))
+            final = math.hypot(float(velocity.x), float(velocity.y))
+            started = math.hypot(*map(float, self.velocity))
+            plain = not any(self.angular_velocity[:2]) and started > 0
+            note = f"{as_ratio(1 / (1 + float(self.inertia_ratio)))} of the start's" if plain else ""
+            yield Finding("Speed after it grips", "v_g", final, speed, "m/s", note, max(final, started))
+
+    def _slipping_on(self, system: RollingSystem, part: Samples) -> Iterator[Finding]:
+        """Compare the acceleration where it slips for ever, and straight: F/m − μN/m along the slip."""
+        pull, slip = complex(*map(float, self.force[:2])), complex(*map(float, self.slip))
+        aside = abs((pull * slip.conjugate()).imag)
+        if part.time.size < 4 or not slip or aside > 1e-12 * abs(pull) * abs(slip):
+            return
+        held = float(self.friction) * -float(self.force[2]) * slip / abs(slip)
+        predicted, measured = abs(pull - held) / float(self.mass), abs(acceleration(Seen.of(system, part)))
+        yield Finding("Acceleration while it slips", r"\dot v", predicted, measured, "m/s²")
 
 
 @dataclass(frozen=True)

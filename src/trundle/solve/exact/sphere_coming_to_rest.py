@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ...mechanics.algebra import Vector
-from ...mechanics.loads import Drag, QuadraticDrag, RollingCouple, RollingResistance, constant_part
+from ...mechanics.loads import Drag, QuadraticDrag, RollingCouple, RollingResistance
 from ...mechanics.loads.air import STILL
 from ...mechanics.scalars import Scalar, is_number, is_zero, namespace
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
 from ..samples import RESTING, ROLLING
 from .base import ClosedForm
+from .domain import ALONG_NORMAL, AT_REST, PRESSED, RESISTANCES, ROUND, STILL_AIR, constant_forces, on, under
+from .finding import Finding
+from .fits import Seen, zero_ahead
+from .formula import Lines, quantity
 from .second_order import fundamental
-
-_BRAKES = (Drag, QuadraticDrag, RollingCouple, RollingResistance)
 
 
 @dataclass(frozen=True)
@@ -73,9 +76,18 @@ class SphereComingToRest(ClosedForm):
     name = "sphere coming to rest on a level plane"
     equation = "T14b"
     source = "theory page, T14; rolling resistance as in Landau and Lifshitz, Mechanics (1976), section 38, with drag"
-    domain = (
-        "a sphere about its centre of mass with the same inertia about every axis, on a plane at rest and level, under "
-        "forces along its normal, rolling resistance, linear and quadratic drag in still air and a viscous couple"
+    conditions = (
+        ROUND,
+        on(Plane),
+        AT_REST,
+        under(
+            ", under rolling resistance, linear and quadratic drag, a viscous couple, gravity and constant forces",
+            "no resistance of this kind",
+            *RESISTANCES,
+        ),
+        ALONG_NORMAL,
+        STILL_AIR,
+        PRESSED,
     )
 
     phases = (ROLLING, RESTING)
@@ -94,8 +106,7 @@ class SphereComingToRest(ClosedForm):
         52.495
         """
         cls.check_domain(system, start)
-        constant = tuple(load for load in system.all_loads if load.constant)
-        force, _, _ = constant_part(constant, system.body.mass)
+        force, _ = constant_forces(system)
 
         def total(kind: type, name: str) -> Any:
             return sum((getattr(load, name) for load in system.loads if isinstance(load, kind)), 0.0)
@@ -116,36 +127,6 @@ class SphereComingToRest(ClosedForm):
             couple=total(RollingCouple, "coefficient"),
             pivot_couple=sum(pivots, 0.0),
         )
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
-        """Name what of a system lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> slope = tr.Support(tr.Plane(), tilt="1 deg")
-        >>> SphereComingToRest.outside(tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), slope))
-        ['a force pushes along the plane, or a torque acts']
-        """
-        reasons = []
-        if not system.body.is_isotropic_sphere:
-            reasons.append("the body is no sphere with isotropic inertia about its centre")
-        if not isinstance(system.support.surface, Plane):
-            reasons.append(f"the surface is a {type(system.support.surface).__name__}, not a Plane")
-        if system.support.motion.steady_rate is None or not is_zero(system.support.motion.steady_rate):
-            reasons.append("the support moves")
-        others = [load for load in system.loads if not (load.constant or isinstance(load, _BRAKES))]
-        reasons += [f"the load {type(load).__name__} is no resistance of this kind" for load in others]
-        if any(not is_zero(load.air) for load in system.loads if isinstance(load, (Drag, QuadraticDrag))):
-            reasons.append("the air moves")
-        constant = tuple(load for load in system.all_loads if load.constant)
-        force, torque, _ = constant_part(constant, system.body.mass)
-        if not all(is_zero(part) for part in (force.x, force.y, *torque)):
-            reasons.append("a force pushes along the plane, or a torque acts")
-        if is_number(force.z) and force.z > 0:
-            reasons.append("the plane does not press on the body")
-        return reasons
 
     # The constants of the motion
 
@@ -295,6 +276,36 @@ class SphereComingToRest(ClosedForm):
             return None
         x, y = self._direction
         return Vector(-y, x, 0.0), self._along(t)[0] / self.radius
+
+    # What is shown
+
+    def formulas(self, system: RollingSystem) -> Lines:  # noqa: ARG002
+        """Return what slows it, and when it stops."""
+        parts = (("r", self.deceleration, "m/s^2"), (r"\gamma", self.gamma, "1/s"), (r"\eta", self.eta, "1/m"))
+        shown = r",\quad ".join(f"{name} = {quantity(value, unit)}" for name, value, unit in parts if float(value))
+        lines = [(r"\dot v = -(r + \gamma v + \eta v^2)", shown)]
+        if math.isfinite(float(self.stops_at)):
+            lines.append((r"v(t_s) = 0", rf"t_s = {quantity(self.stops_at, 's')}"))
+        return lines
+
+    def findings(self, seen: Seen) -> Iterator[Finding]:
+        """Compare when and where it comes to rest, or how it slows."""
+        samples, predicted = seen.samples, float(self.stops_at)
+        rolls = samples.phase == ROLLING
+        count = int(np.argmin(rolls)) if not rolls.all() else rolls.size
+        part = samples.part(slice(0, count))
+        time = part.time - samples.time[0]
+        speed = np.hypot(part.velocity[:, 0], part.velocity[:, 1])
+        if math.isfinite(predicted) and count < rolls.size:
+            stops, note = zero_ahead(time, speed), "where its speed, drawn on, ends"
+            yield Finding("Time at which it stops", "t_s", predicted, stops, "s", note)
+            gone = float(np.linalg.norm(samples.position[-1, :2] - samples.position[0, :2]))
+            yield Finding("Way to there", "d_s", float(self.way), gone, "m")
+        elif count > 3:
+            at_start = float(self.deceleration + self.gamma * self.speed + self.eta * self.speed**2)
+            slowed = -float(np.gradient(speed[:3], time[:3], edge_order=2)[0])
+            note = "by the first three samples"
+            yield Finding("Deceleration at the start", r"-\dot v_0", at_start, slowed, "m/s²", note)
 
 
 def _log_share(z: Any) -> Any:

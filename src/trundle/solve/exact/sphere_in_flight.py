@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -10,13 +11,16 @@ from typing import Any
 import numpy as np
 
 from ...mechanics.algebra import Vector
-from ...mechanics.loads import constant_part
 from ...mechanics.motions import FreeAxle
 from ...mechanics.scalars import Scalar, is_number, is_zero, namespace
 from ...mechanics.surfaces import Bowl, Cylinder, Dome, Plane
 from ...mechanics.system import RollingSystem, State
 from ..samples import FLIGHT
 from .base import ClosedForm
+from .domain import CONSTANT_LOADS, ROUND, TURNING_SO_OR_SO, constant_forces, on
+from .finding import Finding
+from .fits import Seen
+from .formula import Lines, quantity
 
 # Shares of their sizes below which the gap, its rate and its curvature at the start are rounding: a flight begins
 # where the support lets go, with all three 0, or after a bounce, with a rate.
@@ -72,11 +76,7 @@ class SphereInFlight(ClosedForm):
     name = "sphere in flight"
     equation = "T11a"
     source = "Galilei, Discorsi (1638), fourth day; theory page, T11"
-    domain = (
-        "a sphere about its centre of mass with the same inertia about every axis, in flight over a plane, a cylinder, "
-        "a bowl or a dome that is fixed or turns about its axis steadily or freely, under gravity and constant force "
-        "and torque"
-    )
+    conditions = (ROUND, on(Plane, Cylinder, Bowl, Dome), TURNING_SO_OR_SO, CONSTANT_LOADS)
     phases = (FLIGHT,)
     of_arrays = True
     never = frozenset({"curved"})
@@ -93,7 +93,7 @@ class SphereInFlight(ClosedForm):
         0.2
         """
         cls.check_domain(system, start)
-        force, torque, _ = constant_part(system.all_loads, system.body.mass)
+        force, torque = constant_forces(system)
         surface: Any = system.support.surface
         a = system.body.radius
         across, middle, distance, side = (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), a, 1.0
@@ -117,28 +117,6 @@ class SphereInFlight(ClosedForm):
             side=side,
             axle_rate=start.support[1] if isinstance(system.support.motion, FreeAxle) else None,
         )
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
-        """Name what of a system lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> bowl = tr.Support(tr.Paraboloid(2.0))
-        >>> SphereInFlight.outside(tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), bowl))
-        ['the surface is a Paraboloid, not a Plane, Cylinder, Bowl or Dome']
-        """
-        reasons, motion = [], system.support.motion
-        if not system.body.is_isotropic_sphere:
-            reasons.append("the body is no sphere with isotropic inertia about its centre")
-        if not isinstance(system.support.surface, (Plane, Cylinder, Bowl, Dome)):
-            kind = type(system.support.surface).__name__
-            reasons.append(f"the surface is a {kind}, not a Plane, Cylinder, Bowl or Dome")
-        if motion.steady_rate is None and not turns_freely(motion):
-            reasons.append(f"the support's motion {type(motion).__name__} is no steady or free turn")
-        reasons += [f"the load {type(load).__name__} is not constant" for load in system.loads if not load.constant]
-        return reasons
 
     @property
     def period(self) -> float:
@@ -224,18 +202,30 @@ class SphereInFlight(ClosedForm):
         size = namespace(Omega.x).sqrt(Omega.dot(Omega))
         return (Omega / size, size * t) if size else (Vector(0.0, 0.0, 1.0), 0 * t)
 
+    # What is shown
 
-def turns_freely(motion: Any) -> bool:
-    """Tell whether a support turns on a free axle on which nothing else acts.
+    def formulas(self, system: RollingSystem) -> Lines:  # noqa: ARG002
+        """Return the parabola, and when it lands."""
+        lands = float(self.ends_at.get("land", math.inf))
+        shown = rf"t_l = {quantity(lands, 's')}" if math.isfinite(lands) else ""
+        return [(r"r = r_0 + V_0\,t + \frac{F}{2m}\,t^2", shown)]
 
-    Examples
-    --------
-    >>> turns_freely(FreeAxle(0.5, 2.0)), turns_freely(FreeAxle(0.5, 2.0, bearing_drag=0.1))
-    (True, False)
-    """
-    if not isinstance(motion, FreeAxle):
-        return False
-    return all(is_zero(part) for part in (motion.motor_torque, motion.bearing_drag, motion.bearing_torque))
+    def findings(self, seen: Seen) -> Iterator[Finding]:
+        """Compare when and where it lands on a plane; measured by the parabola of the samples."""
+        predicted = float(self.ends_at.get("land", math.inf))
+        landed = seen.time.size < seen.samples.time.size
+        if not (math.isfinite(predicted) and landed) or tuple(self.across) != (0.0, 0.0, 1.0):
+            return
+        course = np.polynomial.polynomial.polyfit(seen.time, seen.at.position, 2)
+        heights = course[:, 2] - np.array([float(self.radius), 0.0, 0.0])
+        lands = float(np.max(np.polynomial.polynomial.polyroots(heights).real))
+        yield Finding("Time at which it lands", "t_l", predicted, lands, "s", "by the parabola through its heights")
+        ahead = self.motion_at(predicted)[0]
+        way = math.hypot(float(ahead.x) - float(self.position[0]), float(ahead.y) - float(self.position[1]))
+        if way:
+            there = np.asarray(np.polynomial.polynomial.polyval(lands, course[:, :2]))
+            gone = float(np.linalg.norm(there - seen.samples.position[0, :2]))
+            yield Finding("Distance to there", "d_l", way, gone, "m")
 
 
 def _real_roots(f: list[float]) -> list[float]:

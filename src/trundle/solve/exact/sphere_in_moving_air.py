@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,17 +11,21 @@ import numpy as np
 
 from ...errors import SolverError
 from ...mechanics.algebra import Vector
-from ...mechanics.loads import Drag, RollingCouple, constant_part
+from ...mechanics.loads import Drag, RollingCouple
 from ...mechanics.scalars import Scalar, namespace
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
+from .domain import ROUND, TURNING_STEADILY, constant_forces, on, under
+from .finding import Finding
+from .fits import TOO_LITTLE, Seen, two_exponents
+from .formula import Lines, quantity
 from .second_order import fundamental
 
 
 @dataclass(frozen=True)
 class SphereInMovingAir(ClosedForm):
-    """The motion of ζ̈ = (iκ − γ)ζ̇ + iβζ + φ: two complex exponents, one of which may grow (T14a).
+    """The motion of ζ̈ = (iκ − γ)ζ̇ + iβζ + φ: two complex exponents, one of which may grow (T14).
 
     Air that turns at ω_a carries the ball along, −c(ζ̇ − iω_aζ); a couple −c_r(Ω − ω) at the contact does the same as
     air of c = c_r/a² that turns with the plane. Every number may be a float, or an array of members.
@@ -69,12 +74,19 @@ class SphereInMovingAir(ClosedForm):
     pivot_couple: Scalar = 0.0
 
     name = "sphere on a plane in moving air"
-    equation = "T14a"
+    equation = "T14"
     source = "theory page, T14; Milne, Vectorial Mechanics (1948), without air"
-    domain = (
-        "a sphere about its centre of mass with the same inertia about every axis, on a plane that is fixed or turns "
-        "steadily about its normal, under gravity, constant force and torque, linear drag in air that is still or "
-        "turns about the same axis, and a viscous couple at the contact"
+    conditions = (
+        ROUND,
+        on(Plane),
+        TURNING_STEADILY,
+        under(
+            ", under gravity, constant loads, linear drag in air that is still or turns about the same axis, and a "
+            "viscous couple at the contact",
+            "neither constant nor linear drag nor a viscous couple",
+            Drag,
+            RollingCouple,
+        ),
     )
 
     never = frozenset({"lift"})  # N is constant
@@ -94,8 +106,7 @@ class SphereInMovingAir(ClosedForm):
         cls.check_domain(system, start)
         drags = [load for load in system.loads if isinstance(load, Drag)]
         couples = [load for load in system.loads if isinstance(load, RollingCouple)]
-        steady = tuple(load for load in system.all_loads if load.constant)
-        force, torque, _ = constant_part(steady, system.body.mass)
+        force, torque = constant_forces(system)
         pivots = [c.coefficient if c.pivot_coefficient is None else c.pivot_coefficient for c in couples]
         return cls(
             radius=system.body.radius,
@@ -112,31 +123,6 @@ class SphereInMovingAir(ClosedForm):
             couple=sum((load.coefficient for load in couples), 0.0),
             pivot_couple=sum(pivots, 0.0),
         )
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
-        """Name what of a system lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> gale = tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), tr.Support(tr.Plane()), [tr.Drag(0.1, 2.0)])
-        >>> SphereInMovingAir.outside(gale)
-        []
-        """
-        reasons = []
-        if not system.body.is_isotropic_sphere:
-            reasons.append("the body is no sphere with isotropic inertia about its centre")
-        if not isinstance(system.support.surface, Plane):
-            reasons.append(f"the surface is a {type(system.support.surface).__name__}, not a Plane")
-        if system.support.motion.steady_rate is None:
-            reasons.append(f"the support's motion {type(system.support.motion).__name__} is no steady turn")
-        reasons += [
-            f"the load {type(load).__name__} is neither constant nor linear drag nor a viscous couple"
-            for load in system.loads
-            if not (load.constant or isinstance(load, (Drag, RollingCouple)))
-        ]
-        return reasons
 
     # The constants of the motion
 
@@ -229,3 +215,22 @@ class SphereInMovingAir(ClosedForm):
         """Return Ω·n: the couple brings it to the plane's rate, a torque drives it."""
         gain = (self.torque[2] - self.pivot_couple * (self.spin - self.rate)) / moment
         return self.spin + gain * fundamental(-self.pivot_couple / moment, 0.0, t).G.real
+
+    # What is shown
+
+    def formulas(self, system: RollingSystem) -> Lines:  # noqa: ARG002
+        """Return its equation of motion."""
+        formula = r"\ddot\zeta = (i\kappa - \gamma)\,\dot\zeta + i\beta\,\zeta + \varphi"
+        parts = (("\\kappa", self.kappa, "rad/s"), (r"\gamma", self.gamma, "1/s"), (r"\beta", self.beta, "1/s^2"))
+        return [(formula, r",\quad ".join(f"{name} = {quantity(value, unit)}" for name, value, unit in parts))]
+
+    def findings(self, seen: Seen) -> Iterator[Finding]:
+        """Compare its two exponents."""
+        predicted = sorted((complex(part) for part in self.exponents), key=abs, reverse=True)
+        found = two_exponents(seen, abs(predicted[0]))
+        for name, mark, s, measured in zip(("faster", "slower"), "12", predicted, found or (None, None), strict=False):
+            size, note = abs(s) or None, "" if measured is not None else TOO_LITTLE
+            turn, grow = (None, None) if measured is None else (measured.imag, measured.real)
+            turns, grows = rf"\mathrm{{Im}}\,s_{mark}", rf"\mathrm{{Re}}\,s_{mark}"
+            yield Finding(f"Angular rate of the {name} part", turns, s.imag, turn, "rad/s", note, size)
+            yield Finding(f"Growth of the {name} part", grows, s.real, grow, "1/s", note, size)

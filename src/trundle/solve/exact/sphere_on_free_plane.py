@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ...mechanics.algebra import Vector
-from ...mechanics.loads import constant_part
-from ...mechanics.scalars import Scalar, is_number
+from ...mechanics.scalars import Scalar
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
+from .domain import ALONG_NORMAL, CONSTANT_LOADS, PRESSED, SPHERE, TURNING_FREELY, constant_forces, on
+from .finding import Finding
+from .fits import Seen, conic, round_time
+from .formula import Lines, quantity
 from .kepler import inverse_of, precisely, stumpff
 from .quadrature import is_one, one_by_one
-from .sphere_in_flight import turns_freely
 
 
 @dataclass(frozen=True)
@@ -63,10 +66,7 @@ class SphereOnFreePlane(ClosedForm):
     name = "sphere on a free turntable"
     equation = "T13"
     source = "Weckesser, Am. J. Phys. 65, 736 (1997), for the conic; theory page, T13, for the time"
-    domain = (
-        "a ball about its centre of mass with the same inertia about every axis, on a level plane that turns freely "
-        "about its normal, under forces along that normal"
-    )
+    conditions = (SPHERE, on(Plane), TURNING_FREELY, CONSTANT_LOADS, ALONG_NORMAL, PRESSED)
     never = frozenset({"lift"})  # N is constant
 
     @classmethod
@@ -82,7 +82,7 @@ class SphereOnFreePlane(ClosedForm):
         'ellipse'
         """
         cls.check_domain(system, start)
-        force, _, _ = constant_part(system.all_loads, system.body.mass)
+        force, _ = constant_forces(system)
         return cls(
             radius=system.body.radius,
             mass=system.body.mass,
@@ -94,33 +94,6 @@ class SphereOnFreePlane(ClosedForm):
             spin=start.angular_velocity[2],
             normal_force=-force.z,
         )
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
-        """Name what of a system lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> table = tr.Support(tr.Plane(), motion=tr.FreeAxle(0.01, 3.0, bearing_drag=0.1))
-        >>> SphereOnFreePlane.outside(tr.RollingSystem(tr.Body.solid_sphere(0.025, 0.065), table))
-        ["the support's motion FreeAxle is no turn on an axle without motor or bearing torque"]
-        """
-        reasons, kind = [], type(system.support.motion).__name__
-        if not system.body.is_isotropic_sphere or system.body.shape.axis is not None:
-            reasons.append("the body is no sphere with isotropic inertia about its centre")
-        if not isinstance(system.support.surface, Plane):
-            reasons.append(f"the surface is a {type(system.support.surface).__name__}, not a Plane")
-        if not turns_freely(system.support.motion):
-            reasons.append(f"the support's motion {kind} is no turn on an axle without motor or bearing torque")
-        reasons += [f"the load {type(load).__name__} is not constant" for load in system.loads if not load.constant]
-        if not reasons:
-            force, torque, _ = constant_part(system.all_loads, system.body.mass)
-            if any((force.x, force.y, *torque)):
-                reasons.append("a force pushes along the plane, or a torque acts")
-            if is_number(force.z) and force.z > 0:
-                reasons.append("the plane does not press on the body")
-        return reasons
 
     # The constants of the motion
 
@@ -185,6 +158,40 @@ class SphereOnFreePlane(ClosedForm):
             Vector(m * A.real + zero, m * A.imag + zero, number(self.normal_force) + zero),
         )
         return motion, (angle, omega - self.rate)
+
+    # What is shown
+
+    def formulas(self, system: RollingSystem) -> Lines:  # noqa: ARG002
+        """Return its two integrals."""
+        momentum = quantity(self.angular_momentum, r"kg\,m^2/s")
+        drive = math.hypot(*map(float, self.drive))
+        return [
+            (r"L = I_t\,\omega + m\,\mathrm{Im}(\bar\zeta\dot\zeta)", f"L = {momentum}"),
+            (r"M = \dot\zeta - i\frac{k}{1+k}\,\omega\,\zeta", rf"|M| = {quantity(drive, 'm/s')}"),
+        ]
+
+    def findings(self, seen: Seen) -> Iterator[Finding]:
+        """Compare the angular momentum of ball and table, and the conic."""
+        own, V = seen.at.own, seen.at.velocity
+        rate = own[:, 1] if own.shape[1] > 1 else np.full(seen.time.size, np.nan)
+        x, y = seen.at.position[:, 0], seen.at.position[:, 1]
+        momentum = float(self.axle_inertia) * rate + float(self.mass) * (x * V[:, 1] - y * V[:, 0])
+        predicted = float(self.angular_momentum)
+        worst = float(momentum[np.argmax(np.abs(momentum - predicted))])
+        scale = float(np.max(np.abs(float(self.axle_inertia) * rate)))
+        yield Finding("Angular momentum about the axle", "L", predicted, worst, "kg m²/s", "of ball and table", scale)
+        if not self.rate:
+            return  # a table at rest that the ball sets going: no conic
+        centre, measured = conic(seen)
+        share = float(self.inertia_ratio) / (1 + float(self.inertia_ratio))
+        square = float(self.axle_inertia) + float(self.mass) * share * abs(complex(*self.position)) ** 2
+        drive = math.hypot(*map(float, self.drive)) * math.sqrt(float(self.mass) / share)
+        eccentricity = drive / (abs(float(self.rate)) * math.sqrt(square))
+        yield Finding(f"Eccentricity of the {self.path}", "e", eccentricity, measured, "", "", max(eccentricity, 0.1))
+        if math.isfinite(self.period):
+            angle = np.unwrap(np.angle(seen.zeta - centre))
+            measured = None if measured is None else round_time(seen.time, angle)
+            yield Finding("Time round the ellipse", "T", float(self.period), measured, "s")
 
 
 @dataclass(frozen=True)

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import cmath
 import math
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from ...errors import OutOfDomainError
 from ...mechanics.algebra import Vector
@@ -12,11 +16,20 @@ from ...mechanics.loads import constant_part
 from ...mechanics.scalars import Scalar, is_number, is_zero, namespace
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
-from ...wording import pair
+from ...wording import as_ratio, pair
 from .base import ClosedForm
+from .circle import Circle
+from .domain import ROUND, TURNING_STEADILY, linear_drag, on, under
+from .finding import Finding
+from .fits import TOO_LITTLE, Seen, acceleration, circle, exponent, needed_friction
+from .formula import Lines, decimal, number, quantity
 from .many_samples import ManySamples
 from .phi import Complex, exponentials, phase, quotient_times
 
+if TYPE_CHECKING:
+    from ..monodromy import Monodromy
+
+_STILL = 1e-12  # share of the table's speed below which a ball that was put down gently has not moved
 _SLOWEST = 1e-12  # rad/s; a slower circle is a straight line to anyone
 
 
@@ -69,9 +82,15 @@ class SphereOnPlane(ManySamples, ClosedForm):
     name = "sphere on a plane"
     equation = "T5"
     source = "Milne, Vectorial Mechanics (1948); Weltner, Am. J. Phys. 47, 984 (1979); theory page, section 5"
-    domain = (
-        "a sphere about its centre of mass with the same inertia about every axis, on a plane that is fixed or "
-        "turns steadily about its normal, under gravity, constant force, constant torque and linear drag in still air"
+    conditions = (
+        ROUND,
+        on(Plane),
+        TURNING_STEADILY,
+        under(
+            ", under gravity, constant loads and linear drag in still air",
+            "neither constant nor linear drag",
+            linear_drag,
+        ),
     )
 
     never = frozenset({"lift"})  # N is constant
@@ -105,30 +124,6 @@ class SphereOnPlane(ManySamples, ClosedForm):
             torque=tuple(torque),
             drag=drag,
         )
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
-        """Name what of a system lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> SphereOnPlane.outside(tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), tr.Support(tr.Plane())))
-        []
-        """
-        reasons = []
-        if not system.body.is_isotropic_sphere:
-            reasons.append("the body is no sphere with isotropic inertia about its centre")
-        if not isinstance(system.support.surface, Plane):
-            reasons.append(f"the surface is a {type(system.support.surface).__name__}, not a Plane")
-        if system.support.motion.steady_rate is None:
-            reasons.append(f"the support's motion {type(system.support.motion).__name__} is no steady turn")
-        reasons += [
-            f"the load {type(load).__name__} is neither constant nor linear drag"
-            for load in system.loads
-            if not (load.constant or load.linear_drag is not None)
-        ]
-        return reasons
 
     # The constants of the motion
 
@@ -303,3 +298,206 @@ class SphereOnPlane(ManySamples, ClosedForm):
         along = Vector(x / size, y / size, 0.0)
         gone = self.position_at(t) - Vector(*self.position, self.radius)
         return Vector(-along.y, along.x, 0.0), gone.dot(along) / self.radius
+
+    @property
+    def circle(self) -> Circle | None:
+        """The circle in which it goes on a plane that turns, without drag."""
+        if not self.has_guiding_centre:
+            return None
+        drift = complex(*map(float, self.drift_velocity))
+        arm = (complex(*map(float, self.velocity)) - drift) / (1j * float(self.kappa))
+        centre = complex(*map(float, self.guiding_centre(0.0)))
+        return Circle(float(self.kappa), centre, drift, arm, said="κ = ω k/(1 + k)")
+
+    def monodromy(self) -> Monodromy | None:
+        """Return the turn over one circle from numbers that start exact: a Ω = ω ζ_c + (ω − κ)(ζ − ζ_c)."""
+        if not is_zero(self.torque[2]):
+            return None
+        import mpmath
+
+        from ..monodromy import Monodromy
+
+        with mpmath.workdps(40):
+            number = mpmath.mpf
+            precise = replace(
+                self,
+                radius=number(self.radius),
+                mass=number(self.mass),
+                inertia_ratio=number(self.inertia_ratio),
+                rate=number(self.rate),
+                position=tuple(number(part) for part in self.position),
+                velocity=tuple(number(part) for part in self.velocity),
+            )
+            centre = mpmath.mpc(*precise.guiding_centre(0))
+            arm = mpmath.mpc(*precise.position) - centre
+            turning = (precise.rate - precise.kappa) * arm / precise.radius
+            return Monodromy.of_turning_vector(
+                precise.rate * centre / precise.radius, turning, self.spin, precise.kappa
+            )
+
+    # What is shown
+
+    def formulas(self, system: RollingSystem) -> Lines:
+        """Return its circle, its braked motion or its acceleration."""
+        if self.has_guiding_centre:
+            return self._circle_formulas(system)
+        k, push, lines = float(self.inertia_ratio), complex(self.phi.re, self.phi.im), []
+        if self.drag:
+            turning = r"\ddot\zeta = (i\kappa - \gamma)\,\dot\zeta + \varphi,\quad \kappa = \frac{k}{1+k}\,\omega"
+            if self.kappa:
+                lines.append((turning, rf"\kappa = {quantity(self.kappa, 'rad/s')}"))
+            else:
+                lines.append(
+                    (r"\dot V = \varphi - \gamma V", rf"|\varphi| = {quantity(abs(push), 'm/s^2')}" if push else "")
+                )
+            heavy = rf"{decimal(self.mass)}\cdot(1 + {number(k)})"
+            found = (
+                rf"\gamma = \frac{{{decimal(self.drag)}}}{{{heavy}}}\,\mathrm{{s^{{-1}}}} "
+                rf"= {quantity(self.gamma, '1/s')}"
+            )
+            lines.append((r"\gamma = \frac{c}{m(1+k)}", found))
+            if push:
+                speed = abs(push / complex(-float(self.gamma), float(self.kappa)))
+                formula = r"|V| \to |\varphi/(i\kappa - \gamma)|" if self.kappa else r"|V| \to |\varphi|/\gamma"
+                lines.append((formula, rf"|V| \to {quantity(speed, 'm/s')}"))
+            return lines
+        if not push:
+            speed = math.hypot(*map(float, self.velocity))
+            return [(r"\zeta = \zeta_0 + \dot\zeta_0\,t", rf"|\dot\zeta_0| = {quantity(speed, 'm/s')}")]
+        if system.loads:
+            formula = r"\dot V = \frac{F + K\times n/a}{m(1+k)}"
+            heavy = rf"{decimal(self.mass)}\,\mathrm{{kg}}\cdot(1 + {number(k)})"
+            above = quantity(abs(push) * float(self.mass) * (1 + k), "N")
+            return [(formula, rf"|\dot V| = \frac{{{above}}}{{{heavy}}} = {quantity(abs(push), 'm/s^2')}")]
+        above = rf"{quantity(system.gravity, 'm/s^2')}\cdot\sin {_degrees(abs(float(system.support.tilt)))}"
+        numbers = rf"\dot v = \frac{{{above}}}{{1 + {number(k)}}} = {quantity(abs(push), 'm/s^2')}"
+        return [(r"\dot v = \frac{g\sin\alpha}{1+k}", numbers)]
+
+    def _circle_formulas(self, system: RollingSystem) -> Lines:
+        k, rate, kappa = float(self.inertia_ratio), float(self.rate), float(self.kappa)
+        radius, drift = float(self.circle_radius), complex(*map(float, self.drift_velocity))
+        numbers = rf"\kappa = {number(k / (1 + k))}\cdot {quantity(rate, 'rad/s')} = {quantity(kappa, 'rad/s')}"
+        lines = [(r"\kappa = \frac{k}{1+k}\,\omega", numbers)]
+        if drift and system.loads:
+            lines.append((r"v_d = \frac{i\varphi}{\kappa}", rf"|v_d| = {quantity(abs(drift), 'm/s')}"))
+        elif drift:
+            above = rf"{quantity(system.gravity, 'm/s^2')}\cdot\sin {_degrees(float(system.support.tilt))}"
+            below = rf"{number(k)}\cdot {quantity(rate, 'rad/s')}"
+            signed = quantity(math.copysign(abs(drift), drift.imag), "m/s")
+            lines.append((r"v_d = \frac{g\sin\alpha}{k\,\omega}", rf"v_d = \frac{{{above}}}{{{below}}} = {signed}"))
+        if radius:
+            above = r"|\dot\zeta_0 - v_d|" if drift else r"|\dot\zeta_0|"
+            share = rf"\frac{{{quantity(radius * abs(kappa), 'm/s')}}}{{{quantity(abs(kappa), 'rad/s')}}}"
+            lines.append((rf"\varrho = \frac{{{above}}}{{|\kappa|}}", rf"\varrho = {share} = {quantity(radius, 'm')}"))
+        return lines
+
+    def findings(self, seen: Seen) -> Iterator[Finding]:
+        """Compare its circle, its braked motion or its acceleration, and the friction that rolling takes (T5f)."""
+        if self.has_guiding_centre:
+            yield from self._circling(seen)
+        elif self.drag:
+            yield from self._braked(seen)
+        else:
+            yield from self._pushed(seen)
+        if not self.drag:
+            yield from self._friction_needed(seen)
+
+    def _circling(self, seen: Seen) -> Iterator[Finding]:
+        kappa, drift, radius = float(self.kappa), complex(*self.drift_velocity), float(self.circle_radius)
+        centre, share = complex(*self.guiding_centre(0.0)), float(self.inertia_ratio) / (1 + float(self.inertia_ratio))
+        if radius <= _STILL * abs(self.rate) * (abs(centre) + self.radius):
+            zeta = seen.zeta
+            moved = float(np.max(np.abs(zeta - zeta[0] - drift * seen.time)))
+            if not drift:
+                note = "put down gently, it stays while the table turns away under it"
+                scale = max(abs(centre), self.radius)
+                yield Finding("Distance that it moves", r"\varrho", 0.0, moved, "m", note, scale)
+                return
+            speed = abs(zeta[-1] - zeta[0]) / float(seen.time[-1])
+            yield Finding("Drift speed", r"|v_d|", abs(drift), speed, "m/s", "straight, without loops")
+            yield _direction(drift, zeta[-1] - zeta[0], seen.system)
+            return
+        found = circle(seen, abs(kappa))
+        note = "" if found else TOO_LITTLE
+        rate = found.rate if found else None
+        yield Finding("Angular rate of the circle", r"\kappa", kappa, rate, "rad/s", note)
+        of_table = f"{as_ratio(share)} of the table's rate, whatever its size and mass"
+        measured = rate and rate / float(self.rate)
+        yield Finding("Share of the table's rate", r"\kappa/\omega", share, measured, "", of_table)
+        yield Finding("Radius of the circle", r"\varrho", radius, abs(found.arm) if found else None, "m", note)
+        if not drift:
+            name, scale = "Distance of its centre from the axis", max(abs(centre), radius)
+            measured = abs(found.centre) if found else None
+            yield Finding(name, r"|\zeta_c|", abs(centre), measured, "m", note, scale)
+            return
+        yield Finding("Drift speed", r"|v_d|", abs(drift), abs(found.drift) if found else None, "m/s", note)
+        yield _direction(drift, found.drift if found else None, seen.system)
+
+    def _pushed(self, seen: Seen) -> Iterator[Finding]:
+        """Compare with the parabola on a plane at rest."""
+        push, system = complex(self.phi.re, self.phi.im), seen.system
+        if not push:
+            gone = float(np.abs(seen.zeta[-1] - seen.zeta[0]) / seen.time[-1])
+            note = "nothing pushes it: it keeps its speed"
+            yield Finding("Speed", "v", math.hypot(*map(float, self.velocity)), gone, "m/s", note)
+            return
+        found = acceleration(seen)
+        yield Finding("Acceleration", r"|\varphi|", abs(push), abs(found), "m/s²")
+        slide = float(system.gravity) * math.sin(abs(float(system.support.tilt)))
+        if slide and not system.loads:
+            share = 1 / (1 + float(self.inertia_ratio))
+            note = f"{as_ratio(share)} of that of a block without friction"
+            yield Finding("Share of a sliding block's", r"\frac{1}{1+k}", share, abs(found) / slide, "", note)
+            return
+        turned = math.degrees(cmath.phase(push) + cmath.phase(found / push))
+        note = "from the first axis towards the second"
+        yield Finding("Its direction", r"\arg\varphi", math.degrees(cmath.phase(push)), turned, "°", note, 360.0)
+        applied, along = complex(*map(float, self.force[:2])), push / abs(push)
+        reaction, seen_so = (((float(self.mass) * a - applied) / along).real for a in (push, found))
+        note = "along the acceleration; negative: it holds the ball back"
+        scale = max(abs(applied), float(self.mass) * abs(push))
+        yield Finding("Reaction of the support", r"R_\parallel", reaction, seen_so, "N", note, scale)
+
+    def _braked(self, seen: Seen) -> Iterator[Finding]:
+        """Compare with the spiral or the straight course that air brakes."""
+        gamma, kappa, push = float(self.gamma), float(self.kappa), complex(self.phi.re, self.phi.im)
+        found = exponent(seen, math.hypot(gamma, kappa))
+        rate = found[0] if found else None
+        note = "" if found else TOO_LITTLE
+        yield Finding("Rate at which air slows it", r"\gamma", gamma, None if rate is None else -rate.real, "1/s", note)
+        if kappa:
+            measured = None if rate is None else rate.imag
+            yield Finding("Angular rate of the spiral", r"\kappa", kappa, measured, "rad/s", note)
+        if push:
+            final = abs(push / complex(-gamma, kappa))
+            measured = abs(found[1] / found[0]) if found else None
+            yield Finding("Speed that it comes to", r"|\varphi/\lambda|", final, measured, "m/s", note)
+
+    def _friction_needed(self, seen: Seen) -> Iterator[Finding]:
+        """Compare the friction that rolling takes with T5f, where no torque acts."""
+        fx, fy, fz = (float(part) for part in self.force)
+        if any(self.torque) or not fz < 0:
+            return
+        pull = math.hypot(fx, fy)
+        if self.has_guiding_centre:
+            turned = abs(float(self.kappa)) * float(seen.time[-1])
+            radius = float(self.circle_radius)
+            if pull and radius and turned < 2 * math.pi:
+                return  # the largest comes with a full turn
+            needed = (pull + float(self.mass) * float(self.kappa) ** 2 * radius) / -fz
+        else:
+            needed = pull * float(self.inertia_ratio) / (1 + float(self.inertia_ratio)) / -fz
+        yield needed_friction(needed, seen.at)
+
+
+def _degrees(angle: float) -> str:
+    return quantity(math.degrees(angle), "deg")
+
+
+def _direction(predicted: complex, measured: complex | None, system: RollingSystem) -> Finding:
+    """Compare directions, in degrees from the first axis towards the second: from downhill, where there is a slope."""
+    tilted = float(system.support.tilt) != 0
+    name = "Direction of the drift, from straight downhill" if tilted else "Direction of the drift"
+    turned = None if measured is None else math.degrees(cmath.phase(predicted) + cmath.phase(measured / predicted))
+    note = "90° is level: on average it does not come down" if tilted and not system.loads else ""
+    return Finding(name, r"\arg v_d", math.degrees(cmath.phase(predicted)), turned, "°", note, 360.0)

@@ -4,20 +4,45 @@ from __future__ import annotations
 
 import math
 import sys
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from ...mechanics.algebra import E_X, E_Y, E_Z, Vector
-from ...mechanics.loads import constant_part
-from ...mechanics.scalars import Scalar, is_zero, namespace
+from ...mechanics.scalars import Scalar
 from ...mechanics.surfaces import Bowl, Dome
 from ...mechanics.system import RollingSystem, State
+from ..samples import FLIGHT, ROLLING
 from .base import ClosedForm
 from .cylinder_on_cylinder import CylinderOnCylinder, angles
+from .domain import AT_REST, CONSTANT_LOADS, NO_TORQUE, SPHERE, START, Condition, constant_forces, on
+from .finding import Finding
+from .fits import BEGINS_TO_SLIP, COMES_OFF, Array, Seen, angle_where
+from .formula import Lines, decimal, quantity
+from .off_a_dome import OffADome
 
 _ASIDE = 1e-12  # share of the motion that may lead out of the plane by rounding
 _ROUNDING = 16 * sys.float_info.epsilon
+
+
+def _aside(system: RollingSystem, start: State) -> Iterator[str]:
+    surface: Any = system.support.surface
+    arm = Vector(*start.position) + E_Z * (surface.sign * surface.radius)
+    V, Omega, force = Vector(*start.velocity), Vector(*start.angular_velocity), constant_forces(system)[0]
+    n, a = arm / arm.norm(), system.body.radius
+    lever, speed = arm.cross(force), max(V.norm(), a * Omega.norm())
+    # Near the top and the bottom the way aside is small or not beside the swing, not beside the sphere.
+    heavy = (1 + system.body.inertia_ratio) * system.body.mass * arm.norm()
+    swing = max(lever.norm(), speed * math.sqrt(force.norm() * heavy))
+    if abs(lever.dot(V)) > _ASIDE * speed * swing + _rounding(arm, force) * speed:
+        yield "the start moves out of the plane of the pull"
+    elif a * abs(Omega.dot(n)) > _ASIDE * speed:
+        yield "the start spins about the normal"
+    elif speed == 0 and lever.norm() <= _rounding(arm, force) and arm.dot(force) < 0:
+        yield "the start balances on the top, where a rounding would decide which way it falls"
 
 
 @dataclass(frozen=True)
@@ -69,9 +94,13 @@ class SphereOnSphere(ClosedForm):
     name = "ball in a great circle of a bowl or dome"
     equation = "T12"
     source = "Abramowitz and Stegun (1964), ch. 16, for the pendulum; theory page, T12"
-    domain = (
-        "a ball with the same inertia about every axis on a bowl or dome at rest, in the plane of a great circle that "
-        "gravity and constant force lie in, without spin out of it"
+    conditions = (
+        SPHERE,
+        on(Bowl, Dome),
+        AT_REST,
+        CONSTANT_LOADS,
+        NO_TORQUE,
+        Condition(", in the plane of a great circle that the force lies in, without spin out of it", _aside, START),
     )
     never = frozenset({"curved"})
 
@@ -90,7 +119,7 @@ class SphereOnSphere(ClosedForm):
         surface: Any = system.support.surface
         a, b, side = system.body.radius, surface.radius, surface.sign
         arm, V = Vector(*start.position) + E_Z * (side * b), Vector(*start.velocity)
-        force, _, _ = constant_part(system.all_loads, system.body.mass)
+        force, _ = constant_forces(system)
         G, length = force.norm(), b + side * a
         first = force / G if G else arm / arm.norm()
         across = _plane(arm, V, first)
@@ -111,44 +140,6 @@ class SphereOnSphere(ClosedForm):
             from_top=from_top,
         )
 
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:
-        """Name what of a system, and of a start where one is given, lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> SphereOnSphere.outside(tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane())))
-        ['the surface is a Plane, not a Bowl or Dome']
-        """
-        reasons, motion = [], system.support.motion
-        if not system.body.is_isotropic_sphere or system.body.shape.axis is not None:
-            reasons.append("the body is no sphere with isotropic inertia about its centre")
-        if not isinstance(system.support.surface, (Bowl, Dome)):
-            reasons.append(f"the surface is a {type(system.support.surface).__name__}, not a Bowl or Dome")
-        if motion.steady_rate is None or not is_zero(motion.steady_rate):
-            reasons.append("the support moves")
-        reasons += [f"the load {type(load).__name__} is not constant" for load in system.loads if not load.constant]
-        if not reasons and any(constant_part(system.all_loads, system.body.mass)[1]):
-            reasons.append("a torque acts on the body")
-        if start is not None and not reasons:
-            surface: Any = system.support.surface
-            arm = Vector(*start.position) + E_Z * (surface.sign * surface.radius)
-            V, Omega = Vector(*start.velocity), Vector(*start.angular_velocity)
-            force, _, _ = constant_part(system.all_loads, system.body.mass)
-            n, a = arm / arm.norm(), system.body.radius
-            lever, speed = arm.cross(force), max(V.norm(), a * Omega.norm())
-            # Near the top and the bottom the way aside is small or not beside the swing, not beside the sphere.
-            heavy = (1 + system.body.inertia_ratio) * system.body.mass * arm.norm()
-            swing = max(lever.norm(), speed * math.sqrt(force.norm() * heavy))
-            if abs(lever.dot(V)) > _ASIDE * speed * swing + _rounding(arm, force) * speed:
-                reasons.append("the start moves out of the plane of the pull")
-            elif a * abs(Omega.dot(n)) > _ASIDE * speed:
-                reasons.append("the start spins about the normal")
-            elif speed == 0 and lever.norm() <= _rounding(arm, force) and arm.dot(force) < 0:
-                reasons.append("the start balances on the top, where a rounding would decide which way it falls")
-        return reasons
-
     # The constants of the motion
 
     @property
@@ -166,10 +157,8 @@ class SphereOnSphere(ClosedForm):
 
     @property
     def lift_cosine(self) -> Any:
-        """Cosine of the angle from the top at which a dome lets the ball go, [2 cos θ₀ + (1 + k) mℓθ̇₀²/G]/(3 + k)."""
-        k, above = self.inertia_ratio, -namespace(self.angle).cos(self.angle)
-        speed = self.mass * self.length * self.angular_rate * self.angular_rate / self.pull
-        return (2 * above + (1 + k) * speed) / (3 + k)
+        """Cosine of the angle from the top at which a dome lets the ball go."""
+        return self.pendulum.lift_cosine
 
     @property
     def period(self) -> Any:
@@ -214,6 +203,60 @@ class SphereOnSphere(ClosedForm):
     def straight_turn(self, t: Any) -> tuple[Vector, Any]:
         """Return the axis and the angle by which the ball has turned: from its place alone."""
         return Vector(*self.first).cross(Vector(*self.second)), self.pendulum.straight_turn(t)[1]
+
+    # What is shown
+
+    def _off_the_top(self, friction: Any) -> OffADome:
+        """As if it had started on the top, with the energy that it has."""
+        k, above = float(self.inertia_ratio), -math.cos(float(self.angle))
+        speed = float(self.mass) * float(self.length) * float(self.angular_rate) ** 2 / float(self.pull)
+        return OffADome(k, float(friction), speed - 2 * (1 - above) / (1 + k))
+
+    def formulas(self, system: RollingSystem) -> Lines:
+        """Return the pendulum in a bowl, and where a dome lets the ball go or slip."""
+        if self.side < 0:
+            return self.pendulum.formulas(system)
+        friction = system.support.friction
+        if friction is not None:
+            slips = quantity(math.degrees(self._off_the_top(friction).slips_at), "deg")
+            formula = (
+                r"(3+k)\,\mu\cos\theta_s - k\sin\theta_s = \mu\,\big[2\cos\theta_0 + (1+k)\,\ell\dot\theta_0^2/g\big]"
+            )
+            return [(formula, rf"\mu = {decimal(friction)},\quad \theta_s = {slips}")]
+        cosine = float(self.lift_cosine)
+        formula = r"\cos\theta_l = \frac{2\cos\theta_0 + (1+k)\,\ell\dot\theta_0^2/g}{3+k}"
+        angle = rf",\quad \theta_l = {quantity(math.degrees(math.acos(cosine)), 'deg')}" if abs(cosine) <= 1 else ""
+        return [(formula, rf"\cos\theta_l = {decimal(cosine)}{angle}")]
+
+    def findings(self, seen: Seen) -> Iterator[Finding]:
+        """Compare the pendulum, or where a dome lets the ball slip and go."""
+        leaves = any(event.kind in ("slip", "lift") for event in seen.samples.events)
+        if not leaves:
+            yield from self.pendulum.swinging(seen, self._from_pull(seen.at.position))
+        if self.side < 0 or not leaves:
+            return
+        from_top, support = np.abs(np.abs(self._from_pull(seen.samples.position)) - math.pi), seen.system.support
+        if support.friction is None:
+            yield from self.pendulum.coming_off(seen, from_top)
+        elif support.kinetic_friction in (None, support.friction):
+            yield from self._giving_way(self._off_the_top(support.friction), seen, from_top)
+
+    def _giving_way(self, dome: OffADome, seen: Seen, from_top: Array) -> Iterator[Finding]:
+        """Compare where friction gives way, and where the normal force has gone, with T12b and T12c."""
+        time, phase, (normal, along) = seen.samples.time, seen.samples.phase, seen.forces
+        rolls = slice(0, int(np.argmax(phase != ROLLING)))
+        room = dome.friction * normal - along
+        yield angle_where(BEGINS_TO_SLIP, dome.slips_at, time[rolls], from_top[rolls], room[rolls])
+        flying = phase == FLIGHT
+        if flying.any():
+            part = slice(rolls.stop, int(np.argmax(flying)))
+            yield angle_where(COMES_OFF, dome.lifts_at, time[part], from_top[part], normal[part])
+
+    def _from_pull(self, position: Array) -> Array:
+        """Return the angle of the centre along its great circle from the direction of the pull, rad."""
+        arm = position - np.array([0.0, 0.0, -float(self.side) * float(self.track_radius)])
+        first, second = (np.array([float(part) for part in axis]) for axis in (self.first, self.second))
+        return np.asarray(np.unwrap(np.arctan2(arm @ second, arm @ first)))
 
 
 def _plane(arm: Vector, V: Vector, first: Vector) -> Vector:

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Any
+
+import numpy as np
 
 from ...mechanics.algebra import Vector
 from ...mechanics.loads import Force, Load, Torque, at_rest, constant_part
@@ -15,6 +18,10 @@ from ...mechanics.scalars import Scalar
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
+from .domain import ROUND, linear_drag, moving, on, under
+from .finding import Finding
+from .fits import Seen
+from .formula import Lines, number
 from .quadrature import is_one, one_by_one
 from .unsteady_course import Course, PreciseCourse
 
@@ -64,9 +71,21 @@ class SphereOnUnsteadyPlane(ClosedForm):
     name = "sphere on a plane that turns unevenly"
     equation = "T9"
     source = "theory page, T9, by two quadratures; for a steady turn Milne, Vectorial Mechanics (1948)"
-    domain = (
-        "a sphere about its centre of mass with the same inertia about every axis, on a plane that turns about its "
-        "normal at a rate given in time, under gravity, forces and torques given in time and linear drag in still air"
+    conditions = (
+        ROUND,
+        on(Plane),
+        moving(
+            lambda motion: motion.steady_rate is not None or isinstance(motion, (SpinBy, UnevenSpin)),
+            " that turns about its normal at a rate given in time",
+            "turn about its normal at a rate given in time",
+        ),
+        under(
+            ", under gravity, forces and torques given in time and linear drag in still air",
+            "neither given in time nor linear drag in still air",
+            linear_drag,
+            Force,
+            Torque,
+        ),
     )
 
     @classmethod
@@ -93,33 +112,6 @@ class SphereOnUnsteadyPlane(ClosedForm):
             loads=system.all_loads,
             start_time=start.time,
         )
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:  # noqa: ARG003  any start
-        """Name what of a system lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> table = tr.Support(tr.Plane(), motion=tr.Wobble(3.5, 0.1))
-        >>> SphereOnUnsteadyPlane.outside(tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), table))
-        ["the support's motion Wobble is no turn about its normal at a rate given in time"]
-        """
-        reasons, motion = [], system.support.motion
-        if not system.body.is_isotropic_sphere:
-            reasons.append("the body is no sphere with isotropic inertia about its centre")
-        if not isinstance(system.support.surface, Plane):
-            reasons.append(f"the surface is a {type(system.support.surface).__name__}, not a Plane")
-        if motion.steady_rate is None and not (isinstance(motion, (SpinBy, UnevenSpin))):
-            reasons.append(
-                f"the support's motion {type(motion).__name__} is no turn about its normal at a rate given in time"
-            )
-        reasons += [
-            f"the load {type(load).__name__} is neither given in time nor linear drag in still air"
-            for load in system.loads
-            if not (load.constant or load.linear_drag is not None or isinstance(load, (Force, Torque)))
-        ]
-        return reasons
 
     # What is given
 
@@ -231,6 +223,29 @@ class SphereOnUnsteadyPlane(ClosedForm):
     @cached_property
     def _precise(self) -> PreciseCourse:
         return PreciseCourse(self)
+
+    # What is shown
+
+    def formulas(self, system: RollingSystem) -> Lines:
+        """Return its equation of motion."""
+        shown = rf"\kappa(t) = {number(self.share)}\,\omega(t)"
+        if system.loads or float(system.support.tilt):
+            return [(r"\frac{d}{dt}\big[\dot\zeta - (i\kappa - \gamma)\,\zeta\big] = \varphi(t)", shown)]
+        return [(r"\dot\zeta - i\kappa(t)\,\zeta = M,\quad \kappa = \frac{k}{1+k}\,\omega(t)", shown)]
+
+    def findings(self, seen: Seen) -> Iterator[Finding]:
+        """Compare M = ζ̇ − iκζ of the start with that of the samples, where no load changes it."""
+        if seen.system.loads or float(seen.system.support.tilt):
+            return
+        rate, share = seen.at.support(seen.system).angular_velocity.z, float(self.share)
+        velocity = seen.at.velocity[:, 0] + 1j * seen.at.velocity[:, 1]
+        kept = velocity - 1j * share * np.broadcast_to(rate, seen.time.shape) * seen.zeta
+        at_start = float(self.motion.at(float(self.start_time), *self.motion.own_start()).angular_velocity.z)
+        predicted = abs(complex(*self.velocity) - 1j * share * at_start * complex(*self.position))
+        worst = float(np.abs(kept)[np.argmax(np.abs(np.abs(kept) - predicted))])
+        name, symbol = "Velocity less its share of the table's", r"|\dot\zeta - i\kappa\zeta|"
+        size, note = max(float(np.max(np.abs(velocity))), predicted), "stays as it is, however the table is turned"
+        yield Finding(name, symbol, predicted, worst, "m/s", note, size)
 
 
 def _is_mpmath(t: Any) -> bool:

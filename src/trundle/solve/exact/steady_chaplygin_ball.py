@@ -3,17 +3,36 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from ...mechanics.algebra import E_Z, Quaternion, Vector
-from ...mechanics.loads import constant_part
 from ...mechanics.scalars import Scalar, namespace
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
-from .chaplygin_domain import principal_axes, reasons_outside, two_are_equal
+from .chaplygin_domain import CHAPLYGIN_BALL, ON_LEVEL_PLANE, principal_axes, two_are_equal
+from .domain import START, Condition, constant_forces
+from .finding import Finding
+from .fits import Seen, needed_friction
+from .formula import Lines, quantity
 
 _ASIDE = 1e-14  # share of the momentum that may lie across Ω by rounding
+
+
+def _wobbles(system: RollingSystem, start: State) -> Iterator[str]:
+    if not any(start.angular_velocity):
+        return
+    Omega = Vector(*start.angular_velocity)
+    own = system.body.inertia_in_space(Quaternion(*start.orientation).matrix()) @ Omega
+    moments = principal_axes(system.body)[0]
+    about = Omega.dot(own) / Omega.dot(Omega)
+    if Omega.cross(own).norm() > _ASIDE * Omega.norm() * own.norm():
+        yield "the ball does not turn about a principal axis"
+    elif two_are_equal(moments) is None and sorted(moments, key=lambda J: abs(J - about))[0] == sorted(moments)[1]:
+        yield "the ball turns about its middle axis, where a rounding would decide which way it goes over"
 
 
 @dataclass(frozen=True)
@@ -47,9 +66,10 @@ class SteadyChaplyginBall(ClosedForm):
     name = "Chaplygin's ball about a principal axis"
     equation = "T15d"
     source = "Chaplygin, Mat. Sb. 24, 139 (1903); theory page, T15"
-    domain = (
-        "a ball with its centre of mass at its centre that turns about a principal axis, not the middle one, or is at "
-        "rest, on a level plane at rest, under constant forces along the normal"
+    conditions = (
+        *CHAPLYGIN_BALL,
+        *ON_LEVEL_PLANE,
+        Condition(", turning about a principal axis that is not the middle one, or at rest", _wobbles, START),
     )
     never = frozenset({"lift", "slip", "curved"})
 
@@ -66,33 +86,8 @@ class SteadyChaplyginBall(ClosedForm):
         (0.0, 0.0, 3.0)
         """
         cls.check_domain(system, start)
-        force, _, _ = constant_part(system.all_loads, system.body.mass)
+        force, _ = constant_forces(system)
         return cls(system.body.radius, start.position[:2], start.angular_velocity, -float(force.z))
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:
-        """Name what of a system, and of a start where one is given, lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> ball = tr.Body(1.0, tr.Principal(3e-3, 4e-3, 5e-3), tr.Sphere(0.1))
-        >>> system = tr.RollingSystem(ball, tr.Support(tr.Plane()))
-        >>> SteadyChaplyginBall.outside(system, system.place(velocity=(1.0, 0.0)))
-        ['the ball turns about its middle axis, where a rounding would decide which way it goes over']
-        """
-        reasons = reasons_outside(system)
-        if start is None or reasons or not any(start.angular_velocity):
-            return reasons
-        Omega = Vector(*start.angular_velocity)
-        own = system.body.inertia_in_space(Quaternion(*start.orientation).matrix()) @ Omega
-        moments = principal_axes(system.body)[0]
-        about = Omega.dot(own) / Omega.dot(Omega)
-        if Omega.cross(own).norm() > _ASIDE * Omega.norm() * own.norm():
-            reasons.append("the ball does not turn about a principal axis")
-        elif two_are_equal(moments) is None and sorted(moments, key=lambda J: abs(J - about))[0] == sorted(moments)[1]:
-            reasons.append("the ball turns about its middle axis, where a rounding would decide which way it goes over")
-        return reasons
 
     @property
     def period(self) -> float:
@@ -126,3 +121,23 @@ class SteadyChaplyginBall(ClosedForm):
         xp = namespace(Omega.x, Omega.y, Omega.z)
         speed = xp.sqrt(Omega.dot(Omega))
         return (Omega / speed if speed else E_Z), speed * t
+
+    # What is shown
+
+    def formulas(self, system: RollingSystem) -> Lines:  # noqa: ARG002
+        """Return how the ball moves along its line."""
+        p, q, r = map(float, self.angular_velocity)
+        turning, speed = quantity(math.hypot(p, q, r), "rad/s"), quantity(float(self.radius) * math.hypot(p, q), "m/s")
+        return [
+            (r"\dot\Omega = 0", rf"|\Omega| = {turning}"),
+            (r"V = a\,\Omega\times n", f"|V| = {speed}"),
+        ]
+
+    def findings(self, seen: Seen) -> Iterator[Finding]:
+        """Compare its speed, and the friction that it takes: none."""
+        p, q, r = map(float, self.angular_velocity)
+        gone = float(np.abs(seen.zeta[-1] - seen.zeta[0]) / seen.time[-1])
+        scale = float(self.radius) * math.hypot(p, q, r)
+        note = "it turns about the same axis and keeps its speed"
+        yield Finding("Speed", "v", float(self.radius) * math.hypot(p, q), gone, "m/s", note, scale)
+        yield needed_friction(0.0, seen.at)

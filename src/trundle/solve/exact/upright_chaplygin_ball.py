@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -10,11 +11,23 @@ from typing import Any
 import numpy as np
 
 from ...mechanics.algebra import E_Z, Quaternion, Vector
-from ...mechanics.loads import constant_part
 from ...mechanics.scalars import Scalar, namespace
 from ...mechanics.system import RollingSystem, State
 from .base import ClosedForm
-from .chaplygin_domain import body_quaternion, principal_axes, reasons_outside, stance_of, two_are_equal
+from .chaplygin_domain import (
+    CHAPLYGIN_BALL,
+    ON_LEVEL_PLANE,
+    TURNS,
+    body_quaternion,
+    principal_axes,
+    stance_of,
+    turning_faster,
+    two_are_equal,
+)
+from .domain import FORCES, START, Condition, constant_forces, that
+from .finding import Finding
+from .fits import Seen
+from .formula import Lines, quantity
 from .phi import phase
 from .quadrature import PreciseRunning, Running, is_one, one_by_one
 from .upright_polhode import Constants, Now, Polhode, precession
@@ -24,6 +37,25 @@ _PIECE = 0.5  # of Jacobi's argument λt: the functions are analytic at least 0.
 _TURN = 3.0  # rad of precession on a piece, at most
 _MOST_PIECES = 20_000
 _SEPARATRIX = 1e-14  # m₁ so small is one that rounding has made
+
+
+def _asymmetric(system: RollingSystem) -> bool:
+    return two_are_equal(principal_axes(system.body)[0]) is None
+
+
+def _leaning(system: RollingSystem, start: State) -> Iterator[str]:
+    L = _momentum(system, start)
+    if math.hypot(L.x, L.y) > _ASIDE * L.norm():
+        yield "the momentum about the contact is not along the normal"
+    elif any(start.angular_velocity):
+        moments, axes = principal_axes(system.body)
+        q = Quaternion(*start.orientation) * body_quaternion(axes)
+        a, m = system.body.radius, system.body.mass
+        form = UprightChaplyginBall(a, m, moments, (0.0, 0.0), (q.w, q.x, q.y, q.z), L.z)
+        if Polhode.of(form).complement < _SEPARATRIX:
+            yield "the ball turns about its middle axis or comes to, where a rounding would decide"
+        elif form._pieces > _MOST_PIECES:
+            yield "two moments are so nearly equal that it goes round too slowly to be followed"
 
 
 @dataclass(frozen=True)
@@ -73,9 +105,12 @@ class UprightChaplyginBall(ClosedForm):
     name = "Chaplygin's ball with upright momentum"
     equation = "T15c"
     source = "Chaplygin, Mat. Sb. 24, 139 (1903); Landau and Lifshitz, Mechanics (1976), section 37, for the free body"
-    domain = (
-        "a ball with its centre of mass at its centre, three different moments of inertia and its momentum about the "
-        "contact along the normal, on a level plane at rest, under constant forces along the normal"
+    conditions = (
+        *CHAPLYGIN_BALL,
+        that(_asymmetric, ", with three different moments", "two of the moments of inertia are equal", FORCES),
+        *ON_LEVEL_PLANE,
+        TURNS,
+        Condition(", with its momentum about the contact along the normal", _leaning, START),
     )
     never = frozenset({"lift", "curved"})  # N is constant
 
@@ -93,7 +128,7 @@ class UprightChaplyginBall(ClosedForm):
         cls.check_domain(system, start)
         moments, axes = principal_axes(system.body)
         turn = body_quaternion(axes)
-        force, _, _ = constant_part(system.all_loads, system.body.mass)
+        force, _ = constant_forces(system)
         q = Quaternion(*start.orientation) * turn
         return cls(
             radius=system.body.radius,
@@ -105,38 +140,6 @@ class UprightChaplyginBall(ClosedForm):
             body_axes=(turn.w, turn.x, turn.y, turn.z),
             normal_force=-float(force.z),
         )
-
-    @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:
-        """Name what of a system, and of a start where one is given, lies outside the domain.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> ball = tr.Body(1.0, tr.Principal(3e-3, 4e-3, 5e-3), tr.Sphere(0.1))
-        >>> system = tr.RollingSystem(ball, tr.Support(tr.Plane()))
-        >>> UprightChaplyginBall.outside(system, system.place(velocity=(1.0, 0.0), spin=1.0))
-        ['the momentum about the contact is not along the normal']
-        """
-        reasons = reasons_outside(system)
-        if not reasons and two_are_equal(principal_axes(system.body)[0]) is not None:
-            reasons.append("two of the moments of inertia are equal")
-        if start is None or reasons:
-            return reasons
-        L = _momentum(system, start)
-        if not any(start.angular_velocity):
-            reasons.append("the ball does not turn")
-        elif math.hypot(L.x, L.y) > _ASIDE * L.norm():
-            reasons.append("the momentum about the contact is not along the normal")
-        else:
-            moments, axes = principal_axes(system.body)
-            q = Quaternion(*start.orientation) * body_quaternion(axes)
-            form = cls(system.body.radius, system.body.mass, moments, (0.0, 0.0), (q.w, q.x, q.y, q.z), L.z)
-            if Polhode.of(form).complement < _SEPARATRIX:
-                reasons.append("the ball turns about its middle axis or comes to, where a rounding would decide")
-            elif form._pieces > _MOST_PIECES:
-                reasons.append("two moments are so nearly equal that it goes round too slowly to be followed")
-        return reasons
 
     # The constants of the motion
 
@@ -267,6 +270,19 @@ class UprightChaplyginBall(ClosedForm):
         half = 0.5 * xp.atan2(s2, c2)
         turn = Quaternion(xp.cos(half), 0.0, 0.0, xp.sin(half))
         return turn * leaned * Quaternion(*self.body_axes).conjugate
+
+    # What is shown
+
+    def formulas(self, system: RollingSystem) -> Lines:  # noqa: ARG002
+        """Return the momentum about the contact, which it keeps."""
+        momentum = quantity(self.momentum, r"kg\,m^2/s")
+        return [(r"(J + m a^2)\,\Omega = L\,n", f"L = {momentum}")]
+
+    def findings(self, seen: Seen) -> Iterator[Finding]:
+        """Compare the time after which Ω is as long as before."""
+        found = turning_faster("Time of half a round of the normal in the ball", self.round_period, seen)
+        if found is not None:
+            yield found[0]
 
 
 def _momentum(system: RollingSystem, start: State) -> Vector:

@@ -1,8 +1,9 @@
-"""The circle measured from a path alone: rate, centre and drift, without a look at the formula."""
+"""A circle about a centre that drifts, and the same measured from a path alone, without a look at a formula."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,8 +12,8 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class MeasuredCircle:
-    """A path fitted by ζ(t) = centre + drift·t + arm·e^{iκt}, with the digits that the fit can have.
+class Circle:
+    """A path ζ(t) = centre + drift·t + arm·e^{iκt}.
 
     Parameters
     ----------
@@ -20,6 +21,34 @@ class MeasuredCircle:
         κ, rad/s.
     centre, drift, arm : complex
         x + iy: m, m/s and m, at t = 0.
+    said : str
+        How the rate follows from other numbers.
+
+    Examples
+    --------
+    >>> Circle(1.0, 0.3j, 0.1 + 0j, 0.5 + 0j).centre_at(2.0)
+    (0.2+0.3j)
+    """
+
+    rate: float
+    centre: complex
+    drift: complex
+    arm: complex
+    said: str = field(default="", kw_only=True)
+
+    def centre_at(self, t: Any) -> Any:
+        """Return where the centre is at a time since the start, x + iy, m."""
+        return self.centre + self.drift * t
+
+
+@dataclass(frozen=True)
+class MeasuredCircle(Circle):
+    """A path fitted by such a circle, with the digits that the fit can have.
+
+    Parameters
+    ----------
+    rate, centre, drift, arm, said : see Circle
+        Fitted.
     rate_error, centre_error, drift_error : float
         What one rounding of the path's coordinates can do to each, rad/s, m, m/s.
 
@@ -31,10 +60,6 @@ class MeasuredCircle:
     (0.8, 0.5, 0.1)
     """
 
-    rate: float
-    centre: complex
-    drift: complex
-    arm: complex
     rate_error: float
     centre_error: float
     drift_error: float

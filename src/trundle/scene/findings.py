@@ -1,4 +1,4 @@
-"""Findings that every run has: what friction it takes, and first integrals at the start and later."""
+"""What theory promises of a run beside what its samples show, each number taken in two ways that share nothing."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from ...mechanics.algebra import Quaternion, Vector
-from ...mechanics.invariants import Record, invariants_of
-from ...mechanics.invariants.legendre import LEGENDRE_PAIR
-from ...mechanics.invariants.revolution import ROUTH_PAIR
-from ...mechanics.loads import BodyMotion
-from ...mechanics.system import RollingSystem, State
-from ...solve.samples import FLIGHT, ROLLING, SLIPPING, Samples
-from .finding import Finding
-from .fits import Seen
-from .plane import needed_friction
+from ..mechanics.algebra import Quaternion, Vector
+from ..mechanics.invariants import Record, invariants_of
+from ..mechanics.invariants.legendre import LEGENDRE_PAIR
+from ..mechanics.invariants.revolution import ROUTH_PAIR
+from ..mechanics.loads import BodyMotion
+from ..mechanics.system import RollingSystem, State
+from ..solve.exact import ClosedForm
+from ..solve.exact.finding import Finding
+from ..solve.exact.fits import Seen, needed_friction
+from ..solve.samples import FLIGHT, ROLLING, SLIPPING, Samples
 
 _LOOKED_AT = 200  # samples
 _NAMES = {ROLLING: "rolling", SLIPPING: "slipping", FLIGHT: "flight"}
@@ -24,26 +24,38 @@ _SEVERAL = (ROUTH_PAIR.name, LEGENDRE_PAIR.name)  # two numbers each, and slow t
 _SYMBOLS = {"energy": "E", "moving energy": r"\tilde E", "spin about the normal": r"\Omega_n"}
 
 
-def friction(system: RollingSystem, seen: Seen) -> Iterator[Finding]:
+def findings_of(system: RollingSystem, start: State, samples: Samples, form: ClosedForm | None) -> list[dict[str, Any]]:
+    """Return predicted and measured numbers of a run: those of its closed form, and those that every run has."""
+    seen = Seen.of(system, samples)
+    found = list(form.findings(seen)) if form is not None and seen.time.size > 3 else []
+    if not any(one.name == "Friction needed" for one in found):
+        found += [*_friction(seen), *_sliding_friction(seen)]
+    found += _integrals(system, start, samples)
+    return [one.as_dict() for one in found]
+
+
+def _friction(seen: Seen) -> Iterator[Finding]:
     """Say what friction rolling takes in the first stretch, with no prediction."""
     lifts = any(event.kind == "lift" for event in seen.at.events)  # before that N falls to 0, and the share has no end
     if seen.time.size and seen.at.phase[0] == ROLLING and not lifts:
         some = seen.at.part(slice(None, None, max(1, seen.time.size // 2000)))
-        found = needed_friction(None, Seen(some, seen.time), system.support.friction, some.normals(system))
+        system = seen.system
+        found = needed_friction(None, some, system.support.friction, some.normals(system))
         if found.measured is not None:
             yield found
 
 
-def sliding_friction(system: RollingSystem, seen: Seen) -> Iterator[Finding]:
+def _sliding_friction(seen: Seen) -> Iterator[Finding]:
     """Compare |f|/N while it slips with the coefficient of slipping."""
     if seen.time.size and seen.at.phase[0] == SLIPPING:
         some = seen.at.part(slice(None, None, max(1, seen.time.size // _LOOKED_AT)))
+        system = seen.system
         mu = float(system.support.sliding_friction)
-        found = needed_friction(mu, Seen(some, seen.time), None, some.normals(system))
+        found = needed_friction(mu, some, None, some.normals(system))
         yield Finding("Friction while it slips", r"\mu_k", mu, found.measured, "", "largest |f|/N while it slips")
 
 
-def integrals(system: RollingSystem, start: State, samples: Samples) -> Iterator[Finding]:
+def _integrals(system: RollingSystem, start: State, samples: Samples) -> Iterator[Finding]:
     """Compare each first integral at the start with its value where it is furthest from it."""
     phases = {int(code) for code in np.unique(samples.phase)}
     if not phases <= set(_NAMES) or not samples.time.size:

@@ -9,40 +9,51 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...solve.samples import Samples
-from ...verify.circle import MeasuredCircle, measure
+from ...mechanics.system import RollingSystem
+from ..samples import Samples
+from .circle import MeasuredCircle, measure
+from .finding import Finding
 
 Array = NDArray[np.float64]
 Path = NDArray[np.complex128]
 
 _FITTED = 240  # points, about
+TOO_LITTLE = "the run shows too little of it to measure"
+BEGINS_TO_SLIP = ("Angle from the top where it begins to slip", r"\theta_s")
+COMES_OFF = ("Angle from the top where it comes off", r"\theta_l")
 _PHASE = 0.5  # rad of the motion's own pace between two points of a fit
 
 
 @dataclass(frozen=True)
 class Seen:
-    """The stretch of a run that its first phase lasts, at an even step.
+    """A run in the support frame, and the stretch that its first phase lasts, at an even step.
 
     Parameters
     ----------
+    system : RollingSystem
+        What moves.
+    samples : Samples
+        Of all the run.
     at : Samples
-        In the support frame.
+        Of that stretch.
     time : (n,) array
         Since the start, s.
     """
 
+    system: RollingSystem
+    samples: Samples
     at: Samples
     time: Array
 
     @staticmethod
-    def of(samples: Samples) -> Seen:
+    def of(system: RollingSystem, samples: Samples) -> Seen:
         """Take what lies before the first event, less a last step that is shorter than the others."""
         ends = [event.time for event in samples.events if not event.final]
         count = int(np.searchsorted(samples.time, ends[0])) if ends else samples.time.size
         time = samples.time[:count] - samples.time[0]
         if count > 2 and time[-1] - time[-2] < 0.999 * (time[1] - time[0]):
             count -= 1
-        return Seen(samples.part(slice(0, count)), time[:count])
+        return Seen(system, samples, samples.part(slice(0, count)), time[:count])
 
     @property
     def step(self) -> float:
@@ -50,9 +61,21 @@ class Seen:
         return float(self.time[1] - self.time[0]) if self.time.size > 1 else math.inf
 
     @property
+    def way(self) -> float:
+        """Length of the way that the centre takes, m."""
+        return float(np.linalg.norm(np.diff(self.at.position, axis=0), axis=1).sum())
+
+    @property
     def zeta(self) -> Path:
         """The centre over the plane of the first two axes as x + iy, m."""
         return self.at.position[:, 0] + 1j * self.at.position[:, 1]
+
+    @property
+    def forces(self) -> tuple[Array, Array]:
+        """N and |f| of the contact force, of all the run, N."""
+        force, normals = self.samples.contact_force, self.samples.normals(self.system)
+        normal = np.sum(force * normals, axis=1)
+        return normal, np.linalg.norm(force - normal[:, None] * normals, axis=1)
 
     def every(self, pace: float) -> slice:
         """Return which samples a fit takes: not too many, and none so far apart that the motion could hide."""
@@ -165,3 +188,47 @@ def zero_ahead(time: Array, values: Array) -> float | None:
 def slope(time: Array, values: Any) -> Any:
     """Return the rate of change along a stretch by its two ends."""
     return (values[-1] - values[0]) / (time[-1] - time[0])
+
+
+def conic(seen: Seen) -> tuple[complex, float | None]:
+    """Fit a conic to a path; return its centre, and its eccentricity unless the path is too short or straight."""
+    middle, size = np.mean(seen.zeta), float(np.max(np.abs(seen.zeta - np.mean(seen.zeta))))
+    if not size > 0:
+        return complex(middle), None
+    z = (seen.zeta[seen.every(0.0)] - middle) / size
+    x, y = z.real, z.imag
+    design = np.column_stack([x * x, x * y, y * y, x, y, np.ones_like(x)])
+    _, sizes, rows = np.linalg.svd(design, full_matrices=False)
+    if len(sizes) < 6 or sizes[-2] < 1e-7 * sizes[0]:
+        return complex(middle), None
+    a, b, c, d, e, f = rows[-1]
+    centre = np.linalg.solve([[2 * a, b], [b, 2 * c]], [-d, -e])
+    level = -(f + 0.5 * float(np.dot([d, e], centre)))  # of λ₁u² + λ₂v², counted from the centre
+    one, other = np.linalg.eigvalsh([[a, 0.5 * b], [0.5 * b, c]]) / level
+    # The main axis of an ellipse is its longer one, that of a hyperbola the one that it crosses.
+    along, across = (min(one, other), max(one, other)) if one * other > 0 else (max(one, other), min(one, other))
+    return complex(middle + size * complex(*centre)), math.sqrt(max(0.0, 1.0 - float(along / across)))
+
+
+def angle_where(what: tuple[str, str], predicted: float, time: Array, angle: Array, falling: Array) -> Finding:
+    """Compare the angle where a force that falls reaches 0, rad, both drawn on behind the last samples before."""
+    end, measured = zero_ahead(time, falling), None
+    if end is not None:
+        course = np.polynomial.polynomial.polyfit(time[-3:] - time[-1], angle[-3:], 2)
+        measured = math.degrees(float(np.polynomial.polynomial.polyval(end - time[-1], course)))
+    return Finding(*what, math.degrees(predicted), measured, "°", "drawn on behind the last samples before")
+
+
+def needed_friction(predicted: float | None, at: Samples, friction: Any = None, normals: Any = None) -> Finding:
+    """Compare the largest |f|/N of the samples with a prediction."""
+    force = at.contact_force
+    normal = force[:, 2] if normals is None else np.sum(force * normals, axis=1)
+    along = np.sqrt(np.maximum(np.sum(force * force, axis=1) - normal * normal, 0.0))
+    if normals is None:
+        along = np.hypot(force[:, 0], force[:, 1])
+    pressed = normal > 1e-9 * float(np.max(np.abs(normal), initial=0.0))
+    share = float(np.max(along[pressed] / normal[pressed])) if pressed.any() else None
+    note = "largest |f|/N while it rolls"
+    if friction is not None:
+        note += f"; there is {float(friction):g}"
+    return Finding("Friction needed", r"\mu", predicted, share, "", note, max(predicted or 0.0, 1e-3))
