@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..mechanics.kinks import kinks
+from ..mechanics.kinks import kinks_and_jolts
 from ..mechanics.system import RollingSystem, State
 from . import phases
 from .following import Next, Stop
@@ -89,7 +89,7 @@ class Dense:
     ) -> None:
         self.keep, self.beside = keep, beside
         self.system, self.start, self.end, self.tolerance = system, start, end, tolerance
-        self.bends = kinks(system, start.time, end)
+        self.bends = kinks_and_jolts(system, start.time, end)
         self.legs: list[Leg] = []
         self.follows: dict[int, Next] = {}
 
@@ -121,7 +121,7 @@ class Dense:
 
     def _leg(self, system: RollingSystem, now: Next, times: Array, tolerance: float, progress: Progress | None) -> Leg:
         """Go through a stretch, and keep its steps, or where they are too many, some states on its way."""
-        end = next((bend for bend in self.bends if bend > now.time), self.end)
+        end = next((kink.behind for kink in self.bends if kink.behind > now.time), self.end)
         left = _MOST_STEPS - self.steps
         leg = self.keep(system, now, end, tolerance, left) if left > 0 else TooMany(0, end)
         if isinstance(leg, Leg):

@@ -14,13 +14,13 @@ import numpy as np
 
 from ..errors import SolverError
 from ..mechanics.algebra import ZERO, Quaternion, Vector
-from ..mechanics.kinks import kinks
+from ..mechanics.kinks import Kink, kinks_and_jolts
 from ..mechanics.slipping import slip
 from ..mechanics.system import RollingSystem, State
 from . import corners, following
-from .following import Next, Stop
+from .following import JOLT, Next, Stop
 from .laws import CORNER, Law, RollingLaw, SlippingLaw
-from .samples import AT_ONCE, RESTING, ROLLING, SLIPPING, Array, Event, Progress, Recording, Samples
+from .samples import AT_ONCE, FLIGHT, RESTING, ROLLING, SLIPPING, Array, Event, Progress, Recording, Samples
 
 _MOST_EVENTS = 10_000
 _AT_ONE_INSTANT = 20  # events: more means that no phase goes on
@@ -67,7 +67,7 @@ def solve(
     *,
     in_steps: bool = True,
     after: Callable[[RollingSystem, Law, Stop], Next] | None = None,
-    bends: list[float] | None = None,
+    bends: list[Kink] | None = None,
 ) -> Samples:
     """Follow a body through its phases and return its samples with all events.
 
@@ -90,8 +90,8 @@ def solve(
         direction settles at once is a phase of its own; to a closed form it is slip.
     after : callable, optional
         What follows a stop, if it is known already; absent: `following_stop`.
-    bends : list of float, optional
-        The kinks of its formulas, s, if they are known already.
+    bends : list of Kink, optional
+        The kinks of its formulas, if they are known already.
 
     Returns
     -------
@@ -108,7 +108,7 @@ def solve(
     record = _Record(system, times.size + 1)  # an event that ends a run is sampled, too
     begin = corners.beyond if in_steps else following.slipping
     if bends is None:
-        bends = kinks(system, start.time, float(times[-1])) if in_steps and times.size else []
+        bends = kinks_and_jolts(system, start.time, float(times[-1])) if in_steps and times.size else []
     now = begin(system, following.at_start(system, start))
     events += now.events
     left, told = times, _telling(progress, times)
@@ -127,7 +127,7 @@ def solve(
             record.put(samples)
             events.append(event)
             break
-        now = begin(system, (after or following_stop)(system, law, stop))
+        now = _behind_it(system, begin(system, (after or following_stop)(system, law, stop)), bends)
         events += now.events
         _check_count(system, events)
         if stop.name.startswith(CORNER):
@@ -142,25 +142,41 @@ def _between_kinks(
     system: RollingSystem,
     now: Next,
     times: Array,
-    bends: list[float],
+    bends: list[Kink],
     tolerance: float,
     progress: Progress | None,
 ) -> Iterator[Stretch]:
-    """Follow one law to its first stop, and begin anew behind each kink on the way: no step is to lead across it."""
-    for bend in bends:
-        if not now.time < bend < times[-1:].max(initial=-np.inf):
+    """Follow one law to its first stop, and begin anew behind each kink on the way: no step is to lead across it.
+
+    Where the velocity of the support jumps under a body that touches it, this is a stop.
+    """
+    for kink in bends:
+        last = times[-1:].max(initial=-np.inf)
+        jolted = kink.jolts and now.law.code != FLIGHT and now.time < kink.time <= last
+        if not jolted and not now.time < kink.behind < last:
             continue
-        before, times = cut(times, bend)
-        for piece in integrate(system, now, np.append(before, bend), tolerance, progress):
+        before, times = cut(times, kink.time if jolted else kink.behind)
+        for piece in integrate(system, now, np.append(before, kink.behind), tolerance, progress):
             if piece.stop is not None:
                 yield piece
                 return
-            short = piece.times.size - bool(piece.times.size and piece.times[-1] == bend)
+            short = min(piece.times.size, before.size)
+            before = before[short:]
             yield replace(piece, times=piece.times[:short], states=piece.states[:short])
         there = piece.states[-1]
-        at = now.law.meant(system, bend, there)
+        if jolted:
+            known = following.jolted(system, now.law, kink, there)
+            yield Stretch(piece.times[:0], piece.states[:0], Stop(kink.time, JOLT, there, known))
+            return
+        at = now.law.meant(system, kink.behind, there)
         now = replace(now, start=at.state, numbers=there.tolist(), events=(), across=None)
     yield from integrate(system, now, times, tolerance, progress)
+
+
+def _behind_it(system: RollingSystem, now: Next, bends: list[Kink]) -> Next:
+    """Return what begins on a kink as it is just behind it, where every method evaluates its formulas alike."""
+    wait = next((kink.behind - now.time for kink in bends if kink.time <= now.time < kink.behind), 0.0)
+    return corners.advanced(system, now, wait) if wait else now
 
 
 class _Record:

@@ -100,7 +100,8 @@ def stretches(system: RollingSystem, begin: float, samples: Samples) -> list[Str
         settling.setdefault(begin, _FIRST * moment(system, samples.state(0)))
     smooth = before_a_singular_end(samples)
     happenings = (event.time for event in samples.events if begin < event.time < end)
-    edges = sorted([begin, *happenings, *kinks(system, begin, end), end])
+    bends = (kink.behind for kink in kinks(system, begin, end) if kink.behind < end)
+    edges = sorted([begin, *happenings, *bends, end])
     found = []
     for first, last in itertools.pairwise(edges):
         if last - first <= 1e-12 * (end - begin):
