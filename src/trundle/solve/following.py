@@ -151,18 +151,24 @@ def _jolted(system: RollingSystem, law: Law, at: Touch, stop: Stop) -> Next:
     if jump <= limit and isinstance(law, SlippingLaw) and not law.held:
         extras = (*_floor(system, law, at), *_extras(system, law, at, stop.numbers))
         return Next(law, at.state, list(stop.numbers), extras)
-    if at.approach > limit:
-        event = _event(JOLT, f"the support jerked away from the body at {at.approach:.4g} m/s", at)
-        return _fly(at, max(at.gap, _first_gap(at, at.approach, _pull(system, at))), (event,))
+    said = f"the support jerked sideways at {jump:.4g} m/s"
     if at.approach < -limit:
         return _struck(system, at, f"the support struck the body at {-at.approach:.4g} m/s")
-    said = f"the support jerked sideways at {jump:.4g} m/s" if jump > limit else "the turning of the support jumped"
-    if system.support.friction is None and jump > limit:
-        return _struck(system, at, said)
-    follows = _touching(system, _set_down(system, at))
+    if at.approach > limit:
+        said, pull = f"the support jerked away from the body at {at.approach:.4g} m/s", _pull(system, at)
+        if not _is_low(at, at.approach, pull):
+            gap = max(at.gap, _first_gap(at, at.approach, pull))
+            return _fly(at, gap, (_event(JOLT, said, at),))
+        said += "; the flight is lower than a millionth of the body and was cut"
+    elif jump <= limit:
+        said = "the turning of the support jumped"
+    after = _set_down(system, at)
+    if system.support.friction is None and after.sliding.norm() > limit:
+        return _struck(system, after, said, at)
+    follows = _touching(system, after)
     if jump <= limit and follows.law.code == law.code:
         return follows
-    return replace(follows, events=(_event(JOLT, said, at), *follows.events))
+    return replace(follows, events=(_event(JOLT, said, at, after), *follows.events))
 
 
 def _said(stop: str, before: int, after: int) -> tuple[tuple[str, str], ...]:
@@ -268,6 +274,11 @@ def _first_gap(at: Touch, off: float, pull: float) -> float:
     return _TAKE_OFF * min(at.arm, height)
 
 
+def _is_low(at: Touch, off: float, pull: float) -> bool:
+    """Tell whether a body that comes off so fast, m/s, comes back before it is any height off, against a pull, m/s²."""
+    return pull > 0 and off * off < 2 * pull * SETTLED * at.arm
+
+
 def _pulled_back(system: RollingSystem, at: Touch) -> bool:
     """Tell whether friction alone keeps a body from coming straight down again."""
     pull, limit = _pull(system, at), _PULLED_BACK * at.scale(system) ** 2 / at.arm
@@ -301,8 +312,9 @@ def _opens(system: RollingSystem, at: Touch) -> bool:
     return opening > floor
 
 
-def _struck(system: RollingSystem, at: Touch, jolt: str = "") -> Next:
+def _struck(system: RollingSystem, at: Touch, jolt: str = "", before: Touch | None = None) -> Next:
     """Let the body strike the support, or be struck by it, of which is told; it bounces or stays."""
+    begin = before or at
     V, Omega, own, off, after = at.V, at.Omega, at.state.support, 0.0, at
     if at.approach < 0 or jolt:
         struck = land(system, at.contact, at.orientation, at.slip)
@@ -315,18 +327,18 @@ def _struck(system: RollingSystem, at: Touch, jolt: str = "") -> Next:
         if (sideways or system.support.restitution == 0) and off <= SLIP_TOLERANCE * at.speed:
             off = 0.0  # slip that is given back may throw a body off, rounding does not
     pull = _pull(system, after)  # by the motion that it has now: what it came down with is gone
-    bounces = off > 0 and not (pull > 0 and off * off < 2 * pull * SETTLED * at.arm)
+    bounces = off > 0 and not _is_low(at, off, pull)
     if not bounces and system.support.friction is None and system.support.tangential_restitution > 0:
         holding = replace(system.support, tangential_restitution=0.0)  # nothing slips that stays on it
-        return _struck(replace(system, support=holding), at, jolt)
+        return _struck(replace(system, support=holding), at, jolt, before)
     said = jolt or f"landed at {-at.approach:.4g} m/s"
     if bounces:
         said = f"{jolt} and threw it off" if jolt else f"{said} and bounced"
-        return _fly(after, _first_gap(at, off, pull), (_event(JOLT if jolt else "land", said, at, after),))
+        return _fly(after, _first_gap(at, off, pull), (_event(JOLT if jolt else "land", said, begin, after),))
     after = _set_down(system, after)
     cut = "; the bounces to come are lower than a millionth of the body and were cut" if off > 0 else ""
     kind = JOLT if jolt else "settle" if off > 0 else "land"
-    event = _event(kind, f"{said}{cut}", at, after)
+    event = _event(kind, f"{said}{cut}", begin, after)
     follows = _touching(system, after)
     return replace(follows, events=(event, *follows.events))
 

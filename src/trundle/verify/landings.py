@@ -132,7 +132,10 @@ class Landing:
         if self.lever is not None:
             M = M + np.outer(self.lever, self.lever) / float(self.system.support.motion.inertia)
         support, axes, mu = self.system.support, self._axes, self.mu
-        landing = partial(Course, axes @ M @ axes.T, mu, float(support.restitution), axes @ self.comes)
+        slip = axes @ self.comes
+        if self.jolted and self.stays:  # what would open the contact was cut
+            slip[2] = min(slip[2], 0.0)
+        landing = partial(Course, axes @ M @ axes.T, mu, float(support.restitution), slip)
         back = float(support.tangential_restitution)
         if mu is None and back > 0:  # nothing slips that stays on it, or that would with the slip it is given back
             found = landing(back)
@@ -153,7 +156,7 @@ class Landing:
         down = -float(self.comes @ self.n)
         if not self.jolted:
             return down > 0
-        return down > _UNCLEAR * self.speed or (self.mu is None and down >= -_UNCLEAR * self.speed)
+        return down > _UNCLEAR * self.speed or (self.mu is None and (self.stays or down >= -_UNCLEAR * self.speed))
 
     @property
     def mu(self) -> float | None:
