@@ -159,7 +159,7 @@ def _jolted(system: RollingSystem, law: Law, at: Touch, stop: Stop) -> Next:
         if not _is_low(at, at.approach, pull):
             gap = max(at.gap, _first_gap(at, at.approach, pull))
             return _fly(at, gap, (_event(JOLT, said, at),))
-        said += "; the flight is lower than a millionth of the body and was cut"
+        said += "; a flight lower than a millionth of the body was cut"
     elif jump <= limit:
         said = "the turning of the support jumped"
     after = _set_down(system, at)

@@ -34,6 +34,10 @@ _ENDS = {
 }
 
 
+_BREAKS = ("lift", "slip", "start", "jam")  # stops that forces decide
+_CLOSE = 1e-14  # of an instant: a stop found so shortly before a kink is of the kink
+
+
 class Known(Protocol):
     """What completes the states of a method that knows more than a law's numbers; of several stretches at once."""
 
@@ -146,31 +150,47 @@ def _between_kinks(
     tolerance: float,
     progress: Progress | None,
 ) -> Iterator[Stretch]:
-    """Follow one law to its first stop, and begin anew behind each kink on the way: no step is to lead across it.
-
-    Where the velocity of the support jumps under a body that touches it, this is a stop.
-    """
+    """Follow one law to its first stop, and begin anew behind each kink on the way: no step is to lead across it."""
     for kink in bends:
-        last = times[-1:].max(initial=-np.inf)
-        jolted = kink.jolts and now.law.code != FLIGHT and now.time < kink.time <= last
-        if not jolted and not now.time < kink.behind < last:
+        if not (now.time < kink.behind and kink.time <= times[-1:].max(initial=-np.inf)):
             continue
-        before, times = cut(times, kink.time if jolted else kink.behind)
-        for piece in integrate(system, now, np.append(before, kink.behind), tolerance, progress):
-            if piece.stop is not None:
+        here, times = cut(times, kink.behind)
+        before, there = cut(here, kink.time)[0].size, np.array(now.numbers)
+        for piece in integrate(system, now, np.append(here, kink.behind), tolerance, progress):
+            if piece.stop is not None and not _is_of(kink, piece.stop):
                 yield piece
                 return
-            short = min(piece.times.size, before.size)
-            before = before[short:]
-            yield replace(piece, times=piece.times[:short], states=piece.states[:short])
-        there = piece.states[-1]
-        if jolted:
-            known = following.jolted(system, now.law, kink, there)
-            yield Stretch(piece.times[:0], piece.states[:0], Stop(kink.time, JOLT, there, known))
+            count = min(piece.times.size, before)
+            yield replace(piece, times=piece.times[:count], states=piece.states[:count], stop=None)
+            here, before = here[count:], before - count
+            there = piece.stop.numbers if piece.stop is not None else piece.states[-1] if piece.times.size else there
+        stop = _at_kink(system, now, kink, there)
+        rest = here if stop is None else cut(here, kink.time)[0]
+        yield Stretch(rest, np.broadcast_to(there, (rest.size, there.size)), stop)
+        if stop is not None:
             return
         at = now.law.meant(system, kink.behind, there)
         now = replace(now, start=at.state, numbers=there.tolist(), events=(), across=None)
     yield from integrate(system, now, times, tolerance, progress)
+
+
+def _at_kink(system: RollingSystem, now: Next, kink: Kink, numbers: Array) -> Stop | None:
+    """Return the stop of a law at a kink under a body that touches: the velocity of the support jumps, or forces do.
+
+    Where the acceleration of the support jumps, forces do, and may break what the contact can bear.
+    """
+    if now.law.code == FLIGHT or kink.time <= now.time:
+        return None
+    if kink.jolts:
+        return Stop(kink.time, JOLT, numbers, following.jolted(system, now.law, kink, numbers))
+    stops = now.law.stops(system, kink.behind, numbers.tolist(), now.extras)
+    broken = next((name for name, left in stops.items() if name in _BREAKS and left < 0), None)
+    return None if broken is None else Stop(kink.time, broken, numbers)
+
+
+def _is_of(kink: Kink, stop: Stop) -> bool:
+    """Tell whether forces seem to have broken a contact just before a kink, as they have just behind it."""
+    return stop.name in _BREAKS and kink.before - stop.time <= _CLOSE * abs(kink.time)
 
 
 def _behind_it(system: RollingSystem, now: Next, bends: list[Kink]) -> Next:

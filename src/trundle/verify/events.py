@@ -16,8 +16,9 @@ from typing import Any
 import numpy as np
 
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import touch
+from ..mechanics.contact import roll, touch
 from ..mechanics.kinks import Kink
+from ..mechanics.slipping import slip
 from ..mechanics.system import RollingSystem, State
 from ..solve.following import JOLT
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Event, Samples
@@ -32,6 +33,7 @@ _SHORT = 2e-6  # a run stops a millionth short of an end at which the law is sin
 _MOST = 1000  # events looked at
 _GOES_ON = 100.0  # times the bound: a run goes straight on from where slip or turning has all but ended
 _STRIKES = ("land", "settle", JOLT)
+_BROKEN = ("lift", "slip")  # by forces that jump where the acceleration of the support does
 _ANY, _TOUCHING = frozenset(range(4)), frozenset((ROLLING, SLIPPING, RESTING))
 # What an event may lie between: the phases before it and after it.
 _BETWEEN = {
@@ -211,6 +213,10 @@ class AtEvents:
         if event.kind == JOLT:
             yield event, "the velocity of the support jumps", 0.0 if self._jumps(event) else np.inf, 1.0
             return
+        kink = next((kink for kink in self.kinks if kink.before < event.time <= kink.behind), None)
+        if kink is not None and event.kind in _BROKEN and phase in (ROLLING, SLIPPING):
+            yield event, "no contact bears the forces behind it", self._borne(kink, at), _SLACK + _GOES_ON * self.bound
+            return
         if phase == FLIGHT:
             apart, height = each.apart
             gap = abs(float(apart[0] @ each.normals[0])) + abs(float(height[0]))
@@ -233,6 +239,24 @@ class AtEvents:
                 self._turning(at, each) / self._sizes["angular_velocity"],
                 _GOES_ON * self.bound,
             )
+
+    def _borne(self, kink: Kink, at: Samples) -> float:
+        """Return how much more a body that goes on behind a kink as before it could push or rub, as a share."""
+        p, q, Omega, own = (
+            Vector(*at.contact[0]),
+            Quaternion(*at.orientation[0]),
+            Vector(*at.angular_velocity[0]),
+            at.own[0].tolist(),
+        )
+        if int(at.phase[0]) == SLIPPING:
+            s = Vector(*EachSample(self.system, at, self.bound).slip[0])
+            left = float(slip(self.system, kink.behind, p, q, Omega, s, tuple(own)).normal_force)
+        else:
+            now = roll(self.system, kink.behind, p, q, Omega, tuple(own))
+            N = float(now.reaction.dot(now.contact.normal))
+            f = _row(now.reaction - now.contact.normal * N)
+            left = N if self.system.support.friction is None else min(N, self._short_of_slipping(N, f))
+        return max(left, 0.0) / max(self._sizes["contact_force"], 1e-300)
 
     def _jumps(self, event: Event) -> bool:
         """Tell whether the support's velocity, or its turning, jumps within the last two floats before an event."""

@@ -292,7 +292,10 @@ class Landing:
         sliding = Vector(*(slip - self.n * (slip @ self.n)))
         Omega = Vector(*self.after.angular_velocity)
         back = -float(unpushed(self.system, self.before.time, contact, q, Omega, sliding, own).opening)
-        return self.off**2 / (2 * max(back, 1e-300)) / float(np.linalg.norm(self.rho))
+        # Of a jolt the flight may be cut, and what friction without limit would make of it.
+        left_behind = max(0.0, float(self.comes @ self.n))
+        off = max(left_behind, self.off - left_behind)
+        return off**2 / (2 * max(back, 1e-300)) / float(np.linalg.norm(self.rho))
 
     def by_its_course(self) -> Iterator[tuple[str, float, float]]:
         """Yield how far V and Ω after it are from what the impulse of its course makes of them."""
