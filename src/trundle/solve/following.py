@@ -151,23 +151,33 @@ def _jolted(system: RollingSystem, law: Law, at: Touch, stop: Stop) -> Next:
     if jump <= limit and isinstance(law, SlippingLaw) and not law.held:
         extras = (*_floor(system, law, at), *_extras(system, law, at, stop.numbers))
         return Next(law, at.state, list(stop.numbers), extras)
-    said = f"the support jerked sideways at {jump:.4g} m/s"
     if at.approach < -limit:
         return _struck(system, at, f"the support struck the body at {-at.approach:.4g} m/s")
     if at.approach > limit:
-        said, pull = f"the support jerked away from the body at {at.approach:.4g} m/s", _pull(system, at)
-        if not _is_low(at, at.approach, pull):
-            gap = max(at.gap, _first_gap(at, at.approach, pull))
-            return _fly(at, gap, (_event(JOLT, said, at),))
-        said += "; a flight lower than a millionth of the body was cut"
-    elif jump <= limit:
-        said = "the turning of the support jumped"
+        return _left_behind(system, at, limit)
+    said = f"the support jerked sideways at {jump:.4g} m/s" if jump > limit else "the turning of the support jumped"
+    if system.support.friction is None and at.sliding.norm() > limit:
+        return _struck(system, at, said)
     after = _set_down(system, at)
-    if system.support.friction is None and after.sliding.norm() > limit:
-        return _struck(system, after, said, at)
     follows = _touching(system, after)
     if jump <= limit and follows.law.code == law.code:
         return follows
+    return replace(follows, events=(_event(JOLT, said, at, after), *follows.events))
+
+
+def _left_behind(system: RollingSystem, at: Touch, limit: float) -> Next:
+    """Return the flight of a body from which the support jerks away; one as low as a bounce that is cut is cut."""
+    said, pull = f"the support jerked away from the body at {at.approach:.4g} m/s", _pull(system, at)
+    flies = _fly(at, max(at.gap, _first_gap(at, at.approach, pull)), (_event(JOLT, said, at),))
+    if not _is_low(at, at.approach, pull):
+        return flies
+    said += "; a flight lower than a millionth of the body was cut"
+    after = _set_down(system, at)
+    if system.support.friction is None and after.sliding.norm() > limit:  # which takes it along
+        holding = replace(system.support, tangential_restitution=0.0)
+        follows = _struck(replace(system, support=holding), after, said, at)
+        return flies if isinstance(follows.law, FlightLaw) else follows
+    follows = _touching(system, after)
     return replace(follows, events=(_event(JOLT, said, at, after), *follows.events))
 
 

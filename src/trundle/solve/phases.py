@@ -113,7 +113,7 @@ def solve(
     begin = corners.beyond if in_steps else following.slipping
     if bends is None:
         bends = kinks_and_jolts(system, start.time, float(times[-1])) if in_steps and times.size else []
-    now = begin(system, following.at_start(system, start))
+    now = _behind_it(system, begin(system, following.at_start(system, start)), bends)
     events += now.events
     left, told = times, _telling(progress, times)
     if now.time > start.time:  # it slips from rest: its first moment is behind it

@@ -135,8 +135,9 @@ class AtEvents:
 
     def _group(self, group: list[Event]) -> Iterator[tuple[Event, str, float, float]]:
         """Yield the conditions of events that happen at one instant: event, name, share, bound."""
-        time = group[0].time
-        before, after = self._sample(float(np.nextafter(time, -np.inf))), self._sample(time)
+        time, kink = group[0].time, self._kink_at(group[0].time)
+        since = float(np.nextafter(time, -np.inf)) if kink is None else kink.before
+        before, after = self._sample(since), self._sample(time)
         for event in group:
             if event.before is not None and event.kind not in _STRIKES:
                 yield from self._same(event, event.before, event.after, "no jump")
@@ -144,7 +145,7 @@ class AtEvents:
             yield from self._same(other, event.after, other.before, "no jump")
         first, last = group[0], group[-1]
         if before is not None:
-            changing = self._in_a_moment(before)
+            changing = self._in_a_moment(before, time - since)
             yield from self._same(first, before.state(0), first.before, "no jump before", changing)
             yield from self._met(first, before)
         if last.final:
@@ -164,6 +165,10 @@ class AtEvents:
         none = Event(kink.time, JOLT, "nothing happened")
         changing = self._in_a_moment(before, kink.behind - kink.before)
         yield from self._same(none, before.state(0), after.state(0), "no jump without an event", changing)
+
+    def _kink_at(self, time: float) -> Kink | None:
+        """Return the kink of the support's motion at an instant, if there is one."""
+        return next((kink for kink in self.kinks if kink.before < time <= kink.behind), None)
 
     def _in_a_moment(self, at: Samples, span: float = 0.0) -> dict[str, float]:
         """Return by what shares V, Ω and an axle's rate change while the clock, or the place, is not told apart.
@@ -210,10 +215,11 @@ class AtEvents:
         if event.final:
             yield from self._ended(event, at, each)
             return
+        kink = self._kink_at(event.time)
         if event.kind == JOLT:
-            yield event, "the velocity of the support jumps", 0.0 if self._jumps(event) else np.inf, 1.0
+            jumps = kink is not None and self._jumps(event, kink)
+            yield event, "the velocity of the support jumps", 0.0 if jumps else np.inf, 1.0
             return
-        kink = next((kink for kink in self.kinks if kink.before < event.time <= kink.behind), None)
         if kink is not None and event.kind in _BROKEN and phase in (ROLLING, SLIPPING):
             yield event, "no contact bears the forces behind it", self._borne(kink, at), _SLACK + _GOES_ON * self.bound
             return
@@ -258,13 +264,12 @@ class AtEvents:
             left = N if self.system.support.friction is None else min(N, self._short_of_slipping(N, f))
         return max(left, 0.0) / max(self._sizes["contact_force"], 1e-300)
 
-    def _jumps(self, event: Event) -> bool:
-        """Tell whether the support's velocity, or its turning, jumps within the last two floats before an event."""
+    def _jumps(self, event: Event, kink: Kink) -> bool:
+        """Tell whether the support's velocity where it touches, or its turning, jumps at a kink."""
         assert event.before is not None  # noqa: S101  a jolt has both
         assert event.contact is not None  # noqa: S101
-        instants = np.nextafter(np.nextafter(event.time, -np.inf), -np.inf), event.time
         motion, p = self.system.support.motion, Vector(*event.contact)
-        one, other = (motion.at(float(time), *event.before.support) for time in instants)
+        one, other = (motion.at(time, *event.before.support) for time in (kink.before, kink.behind))
         jump = _row(other.material_velocity(p) - one.material_velocity(p))
         turned = _row(other.angular_velocity - one.angular_velocity)
         return bool(np.linalg.norm(jump) + np.linalg.norm(turned) * self._arm > self.bound * self._speed)
