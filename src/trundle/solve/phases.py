@@ -21,6 +21,7 @@ from . import corners, following
 from .following import JOLT, Next, Stop
 from .laws import CORNER, Law, RollingLaw, SlippingLaw
 from .samples import AT_ONCE, FLIGHT, RESTING, ROLLING, SLIPPING, Array, Event, Progress, Recording, Samples
+from .touch import Touch
 
 _MOST_EVENTS = 10_000
 _AT_ONE_INSTANT = 20  # events: more means that no phase goes on
@@ -112,7 +113,7 @@ def solve(
     record = _Record(system, times.size + 1)  # an event that ends a run is sampled, too
     begin = corners.beyond if in_steps else following.slipping
     if bends is None:
-        bends = kinks_and_jolts(system, start.time, float(times[-1])) if in_steps and times.size else []
+        bends = kinks_and_jolts(system, start.time, float(times[-1])) if times.size else []
     now = _behind_it(system, begin(system, following.at_start(system, start)), bends)
     events += now.events
     left, told = times, _telling(progress, times)
@@ -121,11 +122,12 @@ def solve(
         left = _across(system, held, Stop(start.time, "", np.array(held.pack(system, start))), now, left, record)
     while True:
         law, stop, taken = now.law, None, 0
-        for piece in _between_kinks(integrate, system, now, left, bends, tolerance, told):
+        for piece in _between_kinks(integrate, system, now, left, bends if in_steps else [], tolerance, told):
             record.take(law, piece)
             stop, taken = piece.stop, taken + piece.times.size
         if stop is None:
             break
+        stop = _on_kink(system, law, stop, bends)
         if stop.name in _ENDS or _spinning_on(system, law, stop):
             samples, event = _ended(system, law, stop)
             record.put(samples)
@@ -191,6 +193,16 @@ def _at_kink(system: RollingSystem, now: Next, kink: Kink, numbers: Array) -> St
 def _is_of(kink: Kink, stop: Stop) -> bool:
     """Tell whether forces seem to have broken a contact just before a kink, as they have just behind it."""
     return stop.name in _BREAKS and kink.before - stop.time <= _CLOSE * abs(kink.time)
+
+
+def _on_kink(system: RollingSystem, law: Law, stop: Stop, bends: list[Kink]) -> Stop:
+    """Return a stop by forces that jump at a kink, found a rounding before it, as it is on the kink."""
+    kink = next((kink for kink in bends if stop.time < kink.time and _is_of(kink, stop)), None)
+    if kink is None:
+        return stop
+    known = stop.at(system, law)
+    known = Touch.of(system, replace(known.state, time=kink.time), known.contact.point)
+    return replace(stop, time=kink.time, known=known)
 
 
 def _behind_it(system: RollingSystem, now: Next, bends: list[Kink]) -> Next:
