@@ -168,9 +168,9 @@ class Compared:
         apart = min(self._apart_from, float(self.ours.time[-1]))
         met = int(np.searchsorted(events, self._apart_from))
         begin, end = met - _EVENTS_BEFORE, met + _EVENTS_AFTER
-        around = 0.5 * self._affordable
-        first = max(events[begin] if begin > 0 else -np.inf, apart - around)
-        upto = self.ours.time <= apart + around
+        affordable = self._affordable(apart)
+        first = max(events[begin] if begin > 0 else -np.inf, affordable[0])
+        upto = self.ours.time <= affordable[1]
         if end < events.size:
             upto &= self.ours.time < events[end]
         start, carried = self.start, 0.0
@@ -182,12 +182,12 @@ class Compared:
         grown = growth(self.system, start, self.ours.part(upto), self.follower, self.sizes, self.kept)
         return replace(grown, carried=carried, skipped=int(np.searchsorted(events, start.time)) if before.size else 0)
 
-    @property
-    def _affordable(self) -> float:
-        """For how long a small change can be followed in a dozen runs, s."""
+    def _affordable(self, time: float) -> tuple[float, float]:
+        """Return between which times about an instant a small change can be followed in a dozen runs, s."""
         most = _STEPS_FOLLOWED[self.follower.name] / _RUNS
-        steps = self.kept.steps if self.kept is not None else 0
-        return float(self.ours.time[-1] - self.start.time) * most / steps if steps > most else np.inf
+        if self.kept is None or self.kept.steps <= most:
+            return -np.inf, np.inf
+        return self.kept.around(time, most)
 
     @cached_property
     def _apart_from(self) -> float:
