@@ -29,8 +29,10 @@ def moved(*position: Any) -> tr.Move:
     return tr.Move(position)
 
 
-def run_of(system: tr.RollingSystem, method: str = "taylor", duration: float = 1.2, **start: Any) -> tr.Trajectory:
-    run = tr.simulate(system, system.place(**start), duration, 0.05, method)
+def run_of(
+    system: tr.RollingSystem, method: str = "taylor", duration: float = 1.2, every: float = 0.05, **start: Any
+) -> tr.Trajectory:
+    run = tr.simulate(system, system.place(**start), duration, every, method)
     failures = run.card().failures
     assert not failures, failures
     return run
@@ -249,6 +251,15 @@ def test_many_members_are_jolted_one_by_one() -> None:
     runs = tr.simulate_many(system, starts, 1.0, 0.25)
     assert runs.events.values.tolist() == [1, 1]
     assert np.allclose(runs.velocity[:, -1, 0], [2 / 7, 0.4 + 2 / 7], rtol=0, atol=EXACT)
+
+
+def test_a_check_takes_the_parts_before_and_behind_a_jolt() -> None:
+    system = on(moved("0.5*abs(t - 1)", 0.0, 0.0))
+    data = run_of(system, duration=2.0, every=0.01, velocity=(0.2, 0.1)).data
+    with pytest.raises(InvalidValueError, match="with a jump at 1 s"):
+        tr.check(data, system)
+    for part in (data.sel(time=slice(0.0, 0.995)), data.sel(time=slice(0.995, 2.0))):
+        assert tr.check(part, system).passed
 
 
 @pytest.mark.parametrize("text", ["abs(t - 1)/(t - 1)", "(t - 1)/sqrt((t - 1)**2)", "sign(t - 1)", "heaviside(t)"])
