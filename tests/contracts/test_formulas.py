@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import mpmath
+import numpy as np
 import pytest
 from tests.precise import precisely, slope
 from tests.tolerances import EXACT
@@ -105,22 +106,44 @@ KINKED = {
 
 
 @pytest.mark.parametrize("text", KINKED)
-def test_each_kink_is_known_and_lies_just_before_its_instant(text: str) -> None:
+def test_each_kink_is_known_and_lies_between_its_instants(text: str) -> None:
     found, wanted = kinks(formula(text), -1.0, 5.0), sorted(KINKED[text])
     assert len(found) == len(wanted)
-    for instant, kink in zip(found, wanted, strict=True):
-        assert 0 < instant - kink <= EXACT(64, 5.0)
+    for kink, instant in zip(found, wanted, strict=True):
+        assert kink.before < instant < kink.behind
+        assert kink.before < kink.time <= kink.behind
+        assert kink.behind - kink.before <= EXACT(64, 5.0)
+
+
+def test_kinks_at_one_instant_are_one() -> None:
+    (found,) = kinks((formula("abs(t - 0.1)"), formula("abs(3*t - 0.3)"), formula("abs(sin(t - 0.1))")), 0.0, 1.0)
+    assert found.before < 0.1 < found.behind
+    assert found.time == pytest.approx(0.1, abs=EXACT(1, 1.0))
+
+
+@pytest.mark.parametrize("text", ["abs(t - 1)", "abs(1 - t)", "abs(-(t - 1))", "abs((1 - t)*t)"])
+def test_a_kink_at_a_float_has_the_slope_behind_it(text: str) -> None:
+    (kink,) = kinks(formula(text), 0.5, 1.5)
+    slopes = np.array([formula(text).slope("t", t=time) for time in (kink.before, kink.time, kink.behind)])
+    assert kink.time == 1.0
+    assert np.allclose(slopes, [-1.0, 1.0, 1.0], rtol=0, atol=1e-12)
+    assert formula(text).slope("t", t=np.array([1.0, 2.0]))[0] == pytest.approx(1.0, abs=1e-12)
+
+
+def test_a_kink_at_the_end_of_a_run_is_one_too() -> None:
+    assert [kink.time for kink in kinks(formula("abs(t - 1)"), 0.0, 1.0)] == [1.0]
+    assert kinks(formula("abs(t - 1)"), 0.0, 0.999) == []
 
 
 def test_kinks_are_told_apart_where_there_are_many_of_them() -> None:
     found = kinks(formula("abs(sin(50*t) - 0.3)"), 0.0, 100.0)
     each = [(turn * math.pi + (-1) ** turn * math.asin(0.3)) / 50 for turn in range(1593)]
     assert len(found) == len([instant for instant in each if instant < 100.0])
-    assert all(abs(one - other) <= EXACT(64, 100.0) for one, other in zip(found, each, strict=False))
+    assert all(abs(one.time - other) <= EXACT(64, 100.0) for one, other in zip(found, each, strict=False))
 
 
 def test_only_the_time_has_kinks_at_instants() -> None:
-    assert kinks(tr.Potential("abs(x)*abs(t - 1)"), 0.0, 3.0) == pytest.approx([1.0], abs=1e-14)
+    assert [kink.time for kink in kinks(tr.Potential("abs(x)*abs(t - 1)"), 0.0, 3.0)] == [1.0]
     assert not has_kinks(tr.Potential("abs(x)*t"))
     assert kinks(formula("abs(t - t)"), 0.0, 3.0) == []  # between the bars nothing passes through zero
 

@@ -219,6 +219,36 @@ def egg_slips_as_it_lands() -> Trajectory:
     return egg_lands(0.02)
 
 
+def egg_jerked() -> Trajectory:
+    """A body that is no ball rolls on a floor that jerks up and aside."""
+    motion = tr.Move(("0.2*abs(t - 0.05)", "0.1*t", "0.1*abs(t - 0.05)"))
+    system = tr.RollingSystem(*_egg(surface=tr.Plane(), motion=motion, friction=0.3, restitution=0.4))
+    return _run(system, system.place((0.1, 0.0), (0.1, 0.3), spin=3.0, attitude=(0.3, 0.4, 0.5)), 0.1)
+
+
+def _ball_moved(*position: Any, friction: float | None = None) -> Trajectory:
+    support = tr.Support(tr.Plane(), motion=tr.Move(position), friction=friction)
+    system = tr.RollingSystem(tr.Body.solid_sphere(**BALL), support)
+    return _run(system, system.place(velocity=(0.2, 0.1)), 0.3, "taylor")
+
+
+def ball_jerked_sideways() -> Trajectory:
+    """A floor on which nothing can slip jerks sideways under a ball."""
+    return _ball_moved("0.2*abs(t - 0.05)", 0.0, 0.0)
+
+
+def ball_left_behind() -> Trajectory:
+    """A floor drops away from under a ball."""
+    return _ball_moved(0.0, 0.0, "-0.2*abs(t - 0.05)", friction=0.3)
+
+
+def ball_on_table_that_speeds_up() -> Trajectory:
+    """A ball rolls on a turntable, until all at once that speeds up more than friction can follow."""
+    motion = tr.SpinBy("5 + 15*(abs(t - 0.1) + t - 0.1)")
+    system = tr.RollingSystem(tr.Body.solid_sphere(**BALL), tr.Support(tr.Plane(), motion=motion, friction=0.1))
+    return _run(system, system.place((0.3, 0.0)), 0.3, "taylor")
+
+
 def cylinder_exactly() -> Trajectory:
     """A cylinder rolls to and fro in a pipe, by its closed form."""
     system = tr.RollingSystem(tr.Body.cylinder(**BALL), tr.Support(tr.Cylinder(0.5), tilt="90 deg"))

@@ -11,6 +11,7 @@ import numpy as np
 from trundle.wording import with_unit
 
 from ..errors import InvalidValueError
+from ..mechanics.kinks import kinks_and_jolts
 from ..mechanics.system import RollingSystem, State
 from ..scenario import ScenarioFile
 from ..verify import CardFigure
@@ -136,6 +137,7 @@ def check(
     check_covered(system)
     conventions = Conventions(columns or {}, axes, angles, quaternion, orientation, euler, frame, time, length)
     theirs = checked(read(data, system, conventions), system)
+    _check_smooth(system, theirs)
     given = theirs.parts
     theirs, coarse = followed(theirs, system)
     theirs = with_orientation(system, theirs, start)
@@ -162,6 +164,16 @@ def check(
         _apart(ours),
         _drawn=Drawn(system, case.motion, tuple(case.series.values()), ours),
     )
+
+
+def _check_smooth(system: RollingSystem, theirs: Theirs) -> None:
+    """Refuse data that lead across a jump of the support's velocity: a window across it has no slopes."""
+    first, last = float(theirs.time[0]), float(theirs.time[-1])
+    jolt = next((kink.time for kink in kinks_and_jolts(system, first, last) if kink.jolts and kink.time > first), None)
+    if jolt is not None:
+        rule = "must not lead across a jump of the support's velocity, which strikes the body"
+        remedy = "Check what lies before that instant and what lies behind it by themselves."
+        raise InvalidValueError("time", rule, f"{first:g} s to {last:g} s, with a jump at {jolt:.9g} s", remedy)
 
 
 def _with_spin(system: RollingSystem, theirs: Theirs, tolerance: float) -> tuple[Theirs, list[CardFigure]]:

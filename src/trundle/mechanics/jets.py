@@ -7,12 +7,11 @@ heyoka expressions and SymPy symbols alike (forward accumulation: Griewank and W
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any
 
-from .scalars import Scalar, is_number, namespace
+from .scalars import Scalar, less, namespace
 from .values import value
 
 
@@ -148,8 +147,10 @@ class JetFunctions:
         return self._of(x, "log", lambda v, f: (1.0 / v, -1.0 / (v * v)))  # noqa: ARG005
 
     def abs(self, x: Any) -> Any:
-        """Return |x|; its slope at 0 is taken as that of x."""
-        return self._of(x, "abs", lambda v, f: (self._sign(v), 0.0))  # noqa: ARG005
+        """Return |x|; its slope at 0 is that to the right in a single variable, and else that of x."""
+        if not isinstance(x, Jet):
+            return self._inner.abs(x)
+        return x.through(self._inner.abs(x.value), self._sign(x), 0.0)
 
     def hypot(self, x: Any, y: Any) -> Any:
         """Return √(x² + y²)."""
@@ -189,10 +190,12 @@ class JetFunctions:
         f = function(x.value)
         return x.through(f, *slopes(x.value, f))
 
-    def _sign(self, v: Any) -> Any:
-        from .scalars import less
-
-        return math.copysign(1.0, v) if is_number(v) else self._inner.where(less(v, 0.0), -1.0, 1.0)
+    def _sign(self, x: Jet) -> Any:
+        v = x.value
+        if len(x.gradient) == 1:
+            zero = v == 0  # never, of a symbol
+            v = (x.gradient[0] if zero else v) if isinstance(zero, bool) else self._inner.where(zero, x.gradient[0], v)
+        return self._inner.where(less(v, 0.0), -1.0, 1.0)
 
 
 def jets(values: Sequence[Scalar]) -> tuple[Jet, ...]:

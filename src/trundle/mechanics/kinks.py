@@ -1,19 +1,24 @@
 """The instants at which a formula in the time has a kink: where what stands between bars passes through zero.
 
 They are found by interval arithmetic and not by looking. Where the bounds of what stands between the bars leave out
-zero, there is no kink; elsewhere an interval is halved, until what is left of it is rounding [moore1966].
+zero, there is no kink; elsewhere an interval is halved, until what is left of it is rounding [moore1966]. A place or an
+angle of a support that has a kink makes its velocity jump.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import fields, is_dataclass
-from typing import Any
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .expressions import Expression
+
+if TYPE_CHECKING:
+    from .motions import Motion
+    from .system import RollingSystem
 
 Array = NDArray[np.float64]
 Bounds = tuple[Array, Array]
@@ -22,19 +27,76 @@ _FIRST = 64  # intervals
 _MOST = 20_000  # of them at a time: no formula with so many kinks is followed from one to the next
 _BLUR = 4e-16  # of a number, by which each operation, and the clock itself, may be off
 _WIDEST = 1e-6  # of the span: what is left of an instant that is known at all
+_BEYOND = 1e-7  # of the span, by which is looked farther: a kink at its end is one, too
+_JUMP = 1e-9  # of the support's velocities: what is no more is no jump
+_ANY_TURN = 0.7391  # of a support's own coordinates, at which the jumps of two parts do not cancel by chance
 
 
-def kinks(thing: Any, begin: float, end: float) -> list[float]:
-    """Return the instants just behind the kinks of a system's formulas in the time.
+@dataclass(frozen=True)
+class Kink:
+    """An instant at which a formula in the time has a kink, as exactly as floats can tell it.
+
+    Parameters
+    ----------
+    before, behind : float
+        What stands between the bars is surely not zero at either, nor beyond them, s.
+    time : float
+        The first float at which it is evaluated as it is behind the kink, s.
+    jolts : bool
+        Whether the velocity of the support jumps there.
+    """
+
+    before: float
+    time: float
+    behind: float
+    jolts: bool = False
+
+
+def kinks(thing: Any, begin: float, end: float) -> list[Kink]:
+    """Return the kinks of a system's formulas in the time, ascending; those at one instant are one.
 
     Examples
     --------
     >>> from trundle.mechanics.motions import SpinBy
-    >>> [round(instant, 12) for instant in kinks(SpinBy("2*abs(t - 1.5) + abs(cos(t))"), 0.0, 3.0)]
+    >>> found = kinks(SpinBy("2*abs(t - 1.5) + abs(cos(t))"), 0.0, 3.0)
+    >>> [round(kink.time, 12) for kink in found]
     [1.5, 1.570796326795]
     """
-    found = {instant for tree in set(_between_bars(thing)) for instant in _passed(tree, begin, end)}
-    return sorted(instant for instant in found if begin < instant < end)
+    further = end + _BEYOND * (end - begin)
+    found = [kink for tree in set(_between_bars(thing)) for kink in _passed(tree, begin, further)]
+    merged: list[Kink] = []
+    for kink in sorted(found, key=lambda kink: kink.before):
+        if merged and kink.before <= merged[-1].behind:
+            last = merged.pop()
+            kink = Kink(last.before, max(last.time, kink.time), max(last.behind, kink.behind))
+        merged.append(kink)
+    return [kink for kink in merged if begin < kink.behind and kink.time <= end]
+
+
+def kinks_and_jolts(system: RollingSystem, begin: float, end: float) -> list[Kink]:
+    """Return the kinks of a system's formulas, and of each whether the velocity of the support jumps there.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> shelf = tr.Support(tr.Plane(), motion=tr.Move(("abs(t - 1)", 0.0, 0.0)))
+    >>> [kink.jolts for kink in kinks_and_jolts(tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), shelf), 0.0, 2.0)]
+    [True]
+    """
+    motion = system.support.motion
+    return [replace(kink, jolts=has_kinks(motion) and _jumps(motion, kink)) for kink in kinks(system, begin, end)]
+
+
+def _jumps(motion: Motion, kink: Kink) -> bool:
+    """Tell whether the velocity of a support jumps at a kink, by more than it changes in the time that is unclear."""
+    before, after = (motion.at(time, *(_ANY_TURN for _ in motion.own)) for time in (kink.before, kink.behind))
+    pairs = ("velocity", "acceleration"), ("angular_velocity", "angular_acceleration")
+    for velocity, acceleration in pairs:
+        v, w = getattr(before, velocity), getattr(after, velocity)
+        rates = getattr(before, acceleration).norm() + getattr(after, acceleration).norm()
+        if (w - v).norm() > _JUMP * max(v.norm(), w.norm()) + rates * (kink.behind - kink.before):
+            return True
+    return False
 
 
 def has_kinks(thing: Any) -> bool:
@@ -73,8 +135,8 @@ def _in_tree(tree: Any) -> Iterator[Any]:
         yield from _in_tree(part)
 
 
-def _passed(tree: Any, begin: float, end: float) -> list[float]:
-    """Return the instants just behind the zeros of a formula; none where they cannot be told apart."""
+def _passed(tree: Any, begin: float, end: float) -> list[Kink]:
+    """Return the zeros of a formula; none where they cannot be told apart."""
     edges = np.linspace(begin, end, _FIRST + 1)
     a, b, blur = edges[:-1], edges[1:], _BLUR * max(abs(begin), abs(end))
     while True:
@@ -94,7 +156,20 @@ def _passed(tree: Any, begin: float, end: float) -> list[float]:
     parts = np.flatnonzero(a[1:] > b[:-1]) + 1
     firsts, lasts = a[np.append(0, parts)], b[np.append(parts - 1, a.size - 1)]
     known = lasts - firsts <= _WIDEST * (end - begin)
-    return [float(last) for last in lasts[known]]
+    return [_located(tree, *ends) for ends in zip(firsts[known].tolist(), lasts[known].tolist(), strict=True)]
+
+
+def _located(tree: Any, before: float, behind: float) -> Kink:
+    """Return the kink between two instants, found by halving.
+
+    What is zero at a float counts as behind it, as the slope of what stands between bars does.
+    """
+    formula = Expression(tree, "")
+    sign = np.sign(formula.at(t=behind))
+    first, last = before, behind
+    while first < (middle := 0.5 * (first + last)) < last:
+        first, last = (first, middle) if formula.at(t=middle) * sign >= 0 else (middle, last)
+    return Kink(before, last, behind)
 
 
 def _bounds(tree: Any, a: Array, b: Array) -> Bounds:

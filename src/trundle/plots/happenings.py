@@ -31,6 +31,7 @@ _SAID = {
     "land": "landed",
     "bounce": "bounced",
     "settle": "settled from its bounces",
+    "jolt": "was jolted by the support",
     "stop": "came to rest",
     "off": "began to move",
 }

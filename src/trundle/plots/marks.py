@@ -169,6 +169,7 @@ STYLES: dict[str, dict[str, Any]] = {
     "land": {"color": SKY, "marker": "v"} | _EVENT,
     "bounce": {"color": "white", "marker": "v"} | _EVENT,
     "settle": {"color": SKY, "marker": "P"} | _EVENT,
+    "jolt": {"color": VERMILION, "marker": "*"} | _EVENT,
     "stop": {"color": PURPLE, "marker": "h"} | _EVENT,
     "off": {"color": PURPLE, "marker": ">"} | _EVENT,
     "axis": {"color": GREY, "marker": "+", "ms": 11, "mew": 1.3, "ls": "none", "zorder": 3},

@@ -60,7 +60,7 @@ def _integrals(system: RollingSystem, start: State, samples: Samples) -> Iterato
     phases = {int(code) for code in np.unique(samples.phase)}
     if not phases <= set(_NAMES) or not samples.time.size:
         return
-    struck = any(event.kind in ("land", "settle") for event in samples.events)
+    struck = any(event.kind in ("land", "settle", "jolt") for event in samples.events)
     some = samples.part(slice(None, None, max(1, samples.time.size // _LOOKED_AT)))
     record = Record(some.motion(system), Vector.of(some.contact), some.support_own)
     at_start = _record(system, start, samples)

@@ -91,15 +91,15 @@ def beyond(system: RollingSystem, now: Next) -> Next:
     share, wait = _BEHIND, 2 * float(np.spacing(now.time))
     for _ in range(_TRIES if any(w.any() for w in on) else 0):
         wait = max(share * _moment(system, now), wait)
-        behind = _advanced(system, now, wait)
+        behind = advanced(system, now, wait)
         if not any(_is_on(w, w + later[i] - here[i]) for i, w in enumerate(_vectors(system, behind, 0.0))):
             # Closer to it the high terms of a series are greater than any float.
-            return _advanced(system, behind, max(_CLEAR * _moment(system, now), wait))
+            return advanced(system, behind, max(_CLEAR * _moment(system, now), wait))
         share *= _FURTHER
     return now
 
 
-def _advanced(system: RollingSystem, now: Next, wait: float) -> Next:
+def advanced(system: RollingSystem, now: Next, wait: float) -> Next:
     """Return the same a moment later, by its own law until then."""
     numbers = now.law.advanced(system, now.time, now.numbers, wait)
     at = now.law.meant(system, now.time + wait, numbers)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..mechanics.kinks import kinks
+from ..mechanics.kinks import kinks_and_jolts
 from ..mechanics.system import RollingSystem, State
 from . import phases
 from .following import Next, Stop
@@ -89,8 +89,9 @@ class Dense:
     ) -> None:
         self.keep, self.beside = keep, beside
         self.system, self.start, self.end, self.tolerance = system, start, end, tolerance
-        self.bends = kinks(system, start.time, end)
+        self.bends = kinks_and_jolts(system, start.time, end)
         self.legs: list[Leg] = []
+        self.ends: list[float] = []  # of the legs, s
         self.follows: dict[int, Next] = {}
 
     def __call__(self, times: Array) -> Samples:
@@ -108,12 +109,22 @@ class Dense:
         """About how many steps it took."""
         return sum(leg.steps for leg in self.legs)
 
+    def around(self, time: float, steps: float) -> tuple[float, float]:
+        """Return the times between which it took so many steps, half of them before an instant and half after, s."""
+        edges = np.array([self.start.time, *self.ends])
+        taken = np.cumsum([0, *(leg.steps for leg in self.legs)])
+        here = np.interp(time, edges, taken)
+        first, last = (np.interp(here + half, taken, edges) for half in (-0.5 * steps, 0.5 * steps))
+        return float(first), float(last)
+
     def _through(
         self, system: RollingSystem, now: Next, times: Array, tolerance: float, progress: Progress | None
     ) -> Iterator[Stretch]:
         """Read a stretch off what is kept of it."""
         if self.passed == len(self.legs):
-            self.legs.append(self._leg(system, now, times, tolerance, progress))
+            leg = self._leg(system, now, times, tolerance, progress)
+            self.legs.append(leg)
+            self.ends.append(self._end_after(now) if leg.stop is None else leg.stop.time)
         leg, self.passed = self.legs[self.passed], self.passed + 1
         stop = leg.stop if times.size and leg.stop is not None and leg.stop.time <= times[-1] else None
         here = times if stop is None else cut(times, stop.time)[0]
@@ -121,7 +132,7 @@ class Dense:
 
     def _leg(self, system: RollingSystem, now: Next, times: Array, tolerance: float, progress: Progress | None) -> Leg:
         """Go through a stretch, and keep its steps, or where they are too many, some states on its way."""
-        end = next((bend for bend in self.bends if bend > now.time), self.end)
+        end = self._end_after(now)
         left = _MOST_STEPS - self.steps
         leg = self.keep(system, now, end, tolerance, left) if left > 0 else TooMany(0, end)
         if isinstance(leg, Leg):
@@ -132,6 +143,10 @@ class Dense:
         share = (leg.time - now.time) / ((end if stop is None else stop.time) - now.time)
         marks = _Marks(self.beside, system, now, tolerance, parts)
         return Leg(marks.states, stop, max(leg.steps, int(leg.steps / max(share, 1e-6))))
+
+    def _end_after(self, now: Next) -> float:
+        """Return up to when a law may be followed: the next kink, or the end, s."""
+        return next((kink.behind for kink in self.bends if kink.behind > now.time), self.end)
 
     def _after(self, system: RollingSystem, law: Law, stop: Stop) -> Next:
         """Return what follows the stretch just passed."""

@@ -12,6 +12,7 @@ from ..errors import SolverError
 from ..mechanics.algebra import ZERO, Vector
 from ..mechanics.contact import roll
 from ..mechanics.impact import land
+from ..mechanics.kinks import Kink
 from ..mechanics.placing import SLIP_TOLERANCE, no_gap
 from ..mechanics.slipping import response, slip, unpushed, unturned
 from ..mechanics.system import RollingSystem, State
@@ -41,6 +42,7 @@ _PULLED_BACK = 1e-8  # share of the accelerations at hand at which a body that l
 _LOOKS = (1e-6, 1e-5, 1e-4, 1e-3)  # shares of the time in which the motion changes: what comes at once
 _TAKE_OFF = 1e-15  # gap, as a share of the least length at hand, with which a flight begins: it must not end there
 SETTLED = 1e-6  # height, as a share of |ρ|, below which a bounce is cut
+JOLT = "jolt"  # the stop where the velocity of the support jumps under a body that touches it
 
 
 @dataclass(frozen=True)
@@ -103,6 +105,8 @@ def after(system: RollingSystem, law: Law, stop: Stop) -> Next:
     if name.startswith(CORNER) or (name in ("grip", "stop") and _goes_on(system, law, at, stop)):
         extras = (*_floor(system, law, at), *_extras(system, law, at, stop.numbers))
         return Next(law, at.state, list(stop.numbers), extras)
+    if name == JOLT:
+        return _jolted(system, law, at, stop)
     if name == "land":
         # The gap and r may differ by rounding. The gap has said when; r gives way, or each bounce would add its share.
         return _struck(system, at.over(0.0))
@@ -125,6 +129,56 @@ def after(system: RollingSystem, law: Law, stop: Stop) -> Next:
         return replace(follows, events=())
     said = _said(name, law.code, follows.law.code)
     return replace(follows, events=(*(_event(kind, text, at) for kind, text in said), *follows.events))
+
+
+def jolted(system: RollingSystem, law: Law, kink: Kink, numbers: Array) -> Touch:
+    """Return a body as it moves before the velocity of the support jumps, on the support as it is after.
+
+    The slip is that against the support as it moves then.
+    """
+    before = law.meant(system, kink.before, numbers)
+    return Touch.of(system, replace(before.state, time=kink.time), before.contact.point)
+
+
+def _jolted(system: RollingSystem, law: Law, at: Touch, stop: Stop) -> Next:
+    """Return what follows where the velocity of the support jumps.
+
+    A support that comes towards the body strikes it as in a landing, and from one that goes away the body comes off.
+    Along the support friction acts from now on; without limit it takes the body along at once.
+    """
+    limit = SLIP_TOLERANCE * at.speed
+    jump = (at.slip - law.meant(system, stop.time, stop.numbers).slip).norm()
+    if jump <= limit and isinstance(law, SlippingLaw) and not law.held:
+        extras = (*_floor(system, law, at), *_extras(system, law, at, stop.numbers))
+        return Next(law, at.state, list(stop.numbers), extras)
+    if at.approach < -limit:
+        return _struck(system, at, f"the support struck the body at {-at.approach:.4g} m/s")
+    if at.approach > limit:
+        return _left_behind(system, at, limit)
+    said = f"the support jerked sideways at {jump:.4g} m/s" if jump > limit else "the turning of the support jumped"
+    if system.support.friction is None and at.sliding.norm() > limit:
+        return _struck(system, at, said)
+    after = _set_down(system, at)
+    follows = _touching(system, after)
+    if jump <= limit and follows.law.code == law.code:
+        return follows
+    return replace(follows, events=(_event(JOLT, said, at, after), *follows.events))
+
+
+def _left_behind(system: RollingSystem, at: Touch, limit: float) -> Next:
+    """Return the flight of a body from which the support jerks away; one as low as a bounce that is cut is cut."""
+    said, pull = f"the support jerked away from the body at {at.approach:.4g} m/s", _pull(system, at)
+    flies = _fly(at, max(at.gap, _first_gap(at, at.approach, pull)), (_event(JOLT, said, at),))
+    if not _is_low(at, at.approach, pull):
+        return flies
+    said += "; a flight lower than a millionth of the body was cut"
+    after = _set_down(system, at)
+    if system.support.friction is None and after.sliding.norm() > limit:  # which takes it along
+        holding = replace(system.support, tangential_restitution=0.0)
+        follows = _struck(replace(system, support=holding), after, said, at)
+        return flies if isinstance(follows.law, FlightLaw) else follows
+    follows = _touching(system, after)
+    return replace(follows, events=(_event(JOLT, said, at, after), *follows.events))
 
 
 def _said(stop: str, before: int, after: int) -> tuple[tuple[str, str], ...]:
@@ -230,6 +284,11 @@ def _first_gap(at: Touch, off: float, pull: float) -> float:
     return _TAKE_OFF * min(at.arm, height)
 
 
+def _is_low(at: Touch, off: float, pull: float) -> bool:
+    """Tell whether a body that comes off so fast, m/s, comes back before it is any height off, against a pull, m/s²."""
+    return pull > 0 and off * off < 2 * pull * SETTLED * at.arm
+
+
 def _pulled_back(system: RollingSystem, at: Touch) -> bool:
     """Tell whether friction alone keeps a body from coming straight down again."""
     pull, limit = _pull(system, at), _PULLED_BACK * at.scale(system) ** 2 / at.arm
@@ -263,29 +322,33 @@ def _opens(system: RollingSystem, at: Touch) -> bool:
     return opening > floor
 
 
-def _struck(system: RollingSystem, at: Touch) -> Next:
-    """Let the body strike the support, and bounce or stay."""
+def _struck(system: RollingSystem, at: Touch, jolt: str = "", before: Touch | None = None) -> Next:
+    """Let the body strike the support, or be struck by it, of which is told; it bounces or stays."""
+    begin = before or at
     V, Omega, own, off, after = at.V, at.Omega, at.state.support, 0.0, at
-    if at.approach < 0:
+    if at.approach < 0 or jolt:
         struck = land(system, at.contact, at.orientation, at.slip)
         V, Omega = V + struck.velocity_change, Omega + struck.angular_velocity_change
         if system.support.motion.free:
             own = (*own[:-1], own[-1] + float(struck.axle_rate_change))
         after = at.moving(system, V, Omega, own)
         off = after.approach  # a free axle that was struck carries the contact along
-        if system.support.restitution == 0 and off <= SLIP_TOLERANCE * at.speed:
+        sideways = at.approach >= -SLIP_TOLERANCE * at.speed
+        if (sideways or system.support.restitution == 0) and off <= SLIP_TOLERANCE * at.speed:
             off = 0.0  # slip that is given back may throw a body off, rounding does not
     pull = _pull(system, after)  # by the motion that it has now: what it came down with is gone
-    bounces = off > 0 and not (pull > 0 and off * off < 2 * pull * SETTLED * at.arm)
+    bounces = off > 0 and not _is_low(at, off, pull)
     if not bounces and system.support.friction is None and system.support.tangential_restitution > 0:
         holding = replace(system.support, tangential_restitution=0.0)  # nothing slips that stays on it
-        return _struck(replace(system, support=holding), at)
-    said = f"landed at {-at.approach:.4g} m/s"
+        return _struck(replace(system, support=holding), at, jolt, before)
+    said = jolt or f"landed at {-at.approach:.4g} m/s"
     if bounces:
-        return _fly(after, _first_gap(at, off, pull), (_event("land", f"{said} and bounced", at, after),))
+        said = f"{jolt} and threw it off" if jolt else f"{said} and bounced"
+        return _fly(after, _first_gap(at, off, pull), (_event(JOLT if jolt else "land", said, begin, after),))
     after = _set_down(system, after)
     cut = "; the bounces to come are lower than a millionth of the body and were cut" if off > 0 else ""
-    event = _event("settle" if off > 0 else "land", f"{said}{cut}", at, after)
+    kind = JOLT if jolt else "settle" if off > 0 else "land"
+    event = _event(kind, f"{said}{cut}", begin, after)
     follows = _touching(system, after)
     return replace(follows, events=(event, *follows.events))
 

@@ -14,13 +14,14 @@ import numpy as np
 
 from ..errors import SolverError
 from ..mechanics.algebra import ZERO, Quaternion, Vector
-from ..mechanics.kinks import kinks
+from ..mechanics.kinks import Kink, kinks_and_jolts
 from ..mechanics.slipping import slip
 from ..mechanics.system import RollingSystem, State
 from . import corners, following
-from .following import Next, Stop
+from .following import JOLT, Next, Stop
 from .laws import CORNER, Law, RollingLaw, SlippingLaw
-from .samples import AT_ONCE, RESTING, ROLLING, SLIPPING, Array, Event, Progress, Recording, Samples
+from .samples import AT_ONCE, FLIGHT, RESTING, ROLLING, SLIPPING, Array, Event, Progress, Recording, Samples
+from .touch import Touch
 
 _MOST_EVENTS = 10_000
 _AT_ONE_INSTANT = 20  # events: more means that no phase goes on
@@ -32,6 +33,10 @@ _ENDS = {
     "curved": "came where the support is as hollow as the body is round: 1 + C S is singular",
     "spot": "stopped rolling while it still spins about the normal, which is not covered",
 }
+
+
+_BREAKS = ("lift", "slip", "start", "jam")  # stops that forces decide
+_CLOSE = 1e-14  # of an instant: a stop found so shortly before a kink is of the kink
 
 
 class Known(Protocol):
@@ -67,7 +72,7 @@ def solve(
     *,
     in_steps: bool = True,
     after: Callable[[RollingSystem, Law, Stop], Next] | None = None,
-    bends: list[float] | None = None,
+    bends: list[Kink] | None = None,
 ) -> Samples:
     """Follow a body through its phases and return its samples with all events.
 
@@ -90,8 +95,8 @@ def solve(
         direction settles at once is a phase of its own; to a closed form it is slip.
     after : callable, optional
         What follows a stop, if it is known already; absent: `following_stop`.
-    bends : list of float, optional
-        The kinks of its formulas, s, if they are known already.
+    bends : list of Kink, optional
+        The kinks of its formulas, if they are known already.
 
     Returns
     -------
@@ -108,8 +113,8 @@ def solve(
     record = _Record(system, times.size + 1)  # an event that ends a run is sampled, too
     begin = corners.beyond if in_steps else following.slipping
     if bends is None:
-        bends = kinks(system, start.time, float(times[-1])) if in_steps and times.size else []
-    now = begin(system, following.at_start(system, start))
+        bends = kinks_and_jolts(system, start.time, float(times[-1])) if times.size else []
+    now = _behind_it(system, begin(system, following.at_start(system, start)), bends)
     events += now.events
     left, told = times, _telling(progress, times)
     if now.time > start.time:  # it slips from rest: its first moment is behind it
@@ -117,17 +122,18 @@ def solve(
         left = _across(system, held, Stop(start.time, "", np.array(held.pack(system, start))), now, left, record)
     while True:
         law, stop, taken = now.law, None, 0
-        for piece in _between_kinks(integrate, system, now, left, bends, tolerance, told):
+        for piece in _between_kinks(integrate, system, now, left, bends if in_steps else [], tolerance, told):
             record.take(law, piece)
             stop, taken = piece.stop, taken + piece.times.size
         if stop is None:
             break
+        stop = _on_kink(system, law, stop, bends)
         if stop.name in _ENDS or _spinning_on(system, law, stop):
             samples, event = _ended(system, law, stop)
             record.put(samples)
             events.append(event)
             break
-        now = begin(system, (after or following_stop)(system, law, stop))
+        now = _behind_it(system, begin(system, (after or following_stop)(system, law, stop)), bends)
         events += now.events
         _check_count(system, events)
         if stop.name.startswith(CORNER):
@@ -142,25 +148,67 @@ def _between_kinks(
     system: RollingSystem,
     now: Next,
     times: Array,
-    bends: list[float],
+    bends: list[Kink],
     tolerance: float,
     progress: Progress | None,
 ) -> Iterator[Stretch]:
     """Follow one law to its first stop, and begin anew behind each kink on the way: no step is to lead across it."""
-    for bend in bends:
-        if not now.time < bend < times[-1:].max(initial=-np.inf):
+    for kink in bends:
+        if not (now.time < kink.behind and kink.time <= times[-1:].max(initial=-np.inf)):
             continue
-        before, times = cut(times, bend)
-        for piece in integrate(system, now, np.append(before, bend), tolerance, progress):
-            if piece.stop is not None:
+        here, times = cut(times, kink.behind)
+        before, there = cut(here, kink.time)[0].size, np.array(now.numbers)
+        for piece in integrate(system, now, np.append(here, kink.behind), tolerance, progress):
+            if piece.stop is not None and not _is_of(kink, piece.stop):
                 yield piece
                 return
-            short = piece.times.size - bool(piece.times.size and piece.times[-1] == bend)
-            yield replace(piece, times=piece.times[:short], states=piece.states[:short])
-        there = piece.states[-1]
-        at = now.law.meant(system, bend, there)
+            count = min(piece.times.size, before)
+            yield replace(piece, times=piece.times[:count], states=piece.states[:count], stop=None)
+            here, before = here[count:], before - count
+            there = piece.stop.numbers if piece.stop is not None else piece.states[-1] if piece.times.size else there
+        stop = _at_kink(system, now, kink, there)
+        rest = here if stop is None else cut(here, kink.time)[0]
+        yield Stretch(rest, np.broadcast_to(there, (rest.size, there.size)), stop)
+        if stop is not None:
+            return
+        at = now.law.meant(system, kink.behind, there)
         now = replace(now, start=at.state, numbers=there.tolist(), events=(), across=None)
     yield from integrate(system, now, times, tolerance, progress)
+
+
+def _at_kink(system: RollingSystem, now: Next, kink: Kink, numbers: Array) -> Stop | None:
+    """Return the stop of a law at a kink under a body that touches: the velocity of the support jumps, or forces do.
+
+    Where the acceleration of the support jumps, forces do, and may break what the contact can bear.
+    """
+    if now.law.code == FLIGHT or kink.time <= now.time:
+        return None
+    if kink.jolts:
+        return Stop(kink.time, JOLT, numbers, following.jolted(system, now.law, kink, numbers))
+    stops = now.law.stops(system, kink.behind, numbers.tolist(), now.extras)
+    broken = next((name for name, left in stops.items() if name in _BREAKS and left < 0), None)
+    return None if broken is None else Stop(kink.time, broken, numbers)
+
+
+def _is_of(kink: Kink, stop: Stop) -> bool:
+    """Tell whether forces seem to have broken a contact just before a kink, as they have just behind it."""
+    return stop.name in _BREAKS and kink.before - stop.time <= _CLOSE * abs(kink.time)
+
+
+def _on_kink(system: RollingSystem, law: Law, stop: Stop, bends: list[Kink]) -> Stop:
+    """Return a stop by forces that jump at a kink, found a rounding before it, as it is on the kink."""
+    kink = next((kink for kink in bends if stop.time < kink.time and _is_of(kink, stop)), None)
+    if kink is None:
+        return stop
+    known = stop.at(system, law)
+    known = Touch.of(system, replace(known.state, time=kink.time), known.contact.point)
+    return replace(stop, time=kink.time, known=known)
+
+
+def _behind_it(system: RollingSystem, now: Next, bends: list[Kink]) -> Next:
+    """Return what begins on a kink as it is just behind it, where every method evaluates its formulas alike."""
+    wait = next((kink.behind - now.time for kink in bends if kink.time <= now.time < kink.behind), 0.0)
+    return corners.advanced(system, now, wait) if wait else now
 
 
 class _Record:

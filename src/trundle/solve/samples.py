@@ -25,7 +25,7 @@ AT_ONCE = 50_000  # samples that are worked on together, lest what is worked out
 
 ROLLING, SLIPPING, FLIGHT, RESTING = range(4)  # phases of the contact
 ENDS = ("rim", "end", "edge", "curved", "spot")  # kinds of event that end a run
-KINDS = ("slip", "grip", "lift", "land", "settle", "stop", "start", *ENDS)
+KINDS = ("slip", "grip", "lift", "land", "settle", "jolt", "stop", "start", *ENDS)
 
 
 @dataclass(frozen=True, repr=False)
@@ -39,7 +39,9 @@ class Event(Displayed):
     kind : str
         ``"slip"``: rolling gave way to slipping, or it slips on another way. ``"grip"``: slipping ended. ``"lift"``:
         the support no longer held the body. ``"land"``: a flight ended, the body bouncing or not. ``"settle"``: it
-        landed, and its bounces were cut short. ``"stop"``, ``"start"``: it came to rest on the support, or left it.
+        landed, and its bounces were cut short. ``"jolt"``: the velocity of the support jumped under the body, and the
+        support struck it, jerked sideways, or jerked away. ``"stop"``, ``"start"``: it came to rest on the support, or
+        left it.
         The run ended at ``"rim"``: the contact reached the rim; ``"end"``: the end of the surface; ``"edge"``: of what
         the body's shape covers; ``"curved"``: where the support is too hollow for the body; ``"spot"``: rolling stopped
         while the body still spins.

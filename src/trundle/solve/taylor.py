@@ -139,7 +139,7 @@ def dense(
         run.patience = shared.patience(now.time, end)
         part = min(_LONGEST, (end - now.time) / _PARTS)
         while stop is None and run.reference < end:
-            until = min(end, run.reference + part)
+            until = min(end, max(run.reference + part, math.nextafter(run.reference, end)))
             reached = run.go_to(until - run.reference)
             if run.kept.steps > most:
                 return TooMany(run.kept.steps, run.time)

@@ -70,7 +70,7 @@ def card(system: RollingSystem, start: State, samples: Samples, method: Method, 
         *(_circle(system, circle, start, samples, method) if circle is not None else ()),
         *(contact_force(system, samples, looked_into(system, again.samples, again.follow)) if followed else ()),
         *landing_figures(landings),
-        *(AtEvents(system, again.samples, bound).figures() if followed else ()),
+        *(AtEvents(system, again.samples, bound, again.kinks).figures() if followed else ()),
         *_events(samples),
     ]
     return Card(title, _described(method, motion), tuple(figures))

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import SolverError
+from ..mechanics.kinks import Kink, kinks
 from ..mechanics.system import RollingSystem, State
 from ..solve.dense import Dense
 from ..solve.methods import Method
@@ -91,6 +92,11 @@ class Again:
         return stretches(self.system, self.start.time, self.itself)
 
     @cached_property
+    def kinks(self) -> list[Kink]:
+        """Where the velocity of the support may jump."""
+        return kinks(self.system.support.motion, self.start.time, float(self.at.time[-1]))
+
+    @cached_property
     def windows(self) -> Array:
         """Instants of short windows, spread over the stretches that are long enough to have slopes."""
         return self._followed[0]
@@ -137,7 +143,7 @@ class Again:
         times = np.concatenate([windows.ravel(), self.sampled.time, ends])
         events = self.itself.events
         for _ in range(2):  # what was gone through again, not kept, may have its events a rounding aside
-            now = np.unique(np.concatenate([times, instants_of(events, self.start.time)]))
+            now = np.unique(np.concatenate([times, instants_of(events, self.start.time, self.kinks)]))
             found = self._run(now[now <= ends[1]])
             if [event.time for event in found.events] == [event.time for event in events]:
                 break

@@ -55,6 +55,7 @@ def cross_check(
         return
     other = numerical(method) if method.name == "exact" else Method.of("exact")
     finer = numerical(method)
+    name = f"closed form against {'Taylor' if finer.name == 'taylor' else 'Runge-Kutta'}"
     span, speed = float(at.time[-1] - start.time), largest(at.angular_velocity)
     times = start.time + np.linspace(0.0, min(span, _MOST_RADIANS / max(speed, 1e-300)), _INSTANTS)
     ours = method.solve(system, start, times)
@@ -64,11 +65,14 @@ def cross_check(
         times = times[times < min((event.time for event in ours.events), default=times[-1])]
         if not times.size:
             return
-        ours, theirs = (one.solve(system, start, times) for one in (method, other))
+        try:
+            ours, theirs = (one.solve(system, start, times) for one in (method, other))
+        except OutOfDomainError as error:  # which happens at another instant, or to one of them only
+            yield checked(name, np.inf, 0.0, str(error).partition(". ")[0])
+            return
     ours, theirs = at_the_same_times(ours, theirs)
     turned = speed * float(ours.time[-1] - start.time)
     both = Compared(system, start, ours, theirs, finer, finer, sizes_of(system, ours), turned)
-    name = f"closed form against {'Taylor' if finer.name == 'taylor' else 'Runge-Kutta'}"
     over = f"over {ours.time[-1] - start.time:g} s, {ours.time.size} instants"
     yield both.figure(name, both.share, both.bound, f"position, velocity, Ω, force, events; {over}")
     alone = "; exact from the place alone" if motion.straight_turn(0.0) is not None else ""
@@ -164,9 +168,9 @@ class Compared:
         apart = min(self._apart_from, float(self.ours.time[-1]))
         met = int(np.searchsorted(events, self._apart_from))
         begin, end = met - _EVENTS_BEFORE, met + _EVENTS_AFTER
-        around = 0.5 * self._affordable
-        first = max(events[begin] if begin > 0 else -np.inf, apart - around)
-        upto = self.ours.time <= apart + around
+        affordable = self._affordable(apart)
+        first = max(events[begin] if begin > 0 else -np.inf, affordable[0])
+        upto = self.ours.time <= affordable[1]
         if end < events.size:
             upto &= self.ours.time < events[end]
         start, carried = self.start, 0.0
@@ -178,12 +182,12 @@ class Compared:
         grown = growth(self.system, start, self.ours.part(upto), self.follower, self.sizes, self.kept)
         return replace(grown, carried=carried, skipped=int(np.searchsorted(events, start.time)) if before.size else 0)
 
-    @property
-    def _affordable(self) -> float:
-        """For how long a small change can be followed in a dozen runs, s."""
+    def _affordable(self, time: float) -> tuple[float, float]:
+        """Return between which times about an instant a small change can be followed in a dozen runs, s."""
         most = _STEPS_FOLLOWED[self.follower.name] / _RUNS
-        steps = self.kept.steps if self.kept is not None else 0
-        return float(self.ours.time[-1] - self.start.time) * most / steps if steps > most else np.inf
+        if self.kept is None or self.kept.steps <= most:
+            return -np.inf, np.inf
+        return self.kept.around(time, most)
 
     @cached_property
     def _apart_from(self) -> float:

@@ -155,7 +155,7 @@ def balance(
         allowed = np.repeat(allowed[rough] / _PARTS, _PARTS)
     size = max(most, size, 1e-300)
     friction, support, loads = total
-    parts = {"friction": friction, "the support": support, "loads": loads, "landings": struck}
+    parts = {"friction": friction, "the support": support, "loads": loads, "impacts": struck}
     said = ", ".join(f"{name} {value:+.6g} J" for name, value in parts.items() if abs(value) > 1e-15 * size)
     note = f"energy {first:.6g} to {last:.6g} J; work of {said}" if said else f"energy stays at {first:.6g} J"
     return checked("energy balance", abs(left) / size, bound + unknown / size, note)

@@ -6,7 +6,7 @@ on friction and on the gap say that no event was missed.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby, pairwise
@@ -16,8 +16,11 @@ from typing import Any
 import numpy as np
 
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import touch
+from ..mechanics.contact import roll, touch
+from ..mechanics.kinks import Kink
+from ..mechanics.slipping import slip
 from ..mechanics.system import RollingSystem, State
+from ..solve.following import JOLT
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Event, Samples
 from .acting import acting
 from .bounds import A_STEP, SOLVER, Array, largest, sizes_of
@@ -29,7 +32,8 @@ _SLACK = 1e-8  # by which static friction and resistance hold more than they say
 _SHORT = 2e-6  # a run stops a millionth short of an end at which the law is singular
 _MOST = 1000  # events looked at
 _GOES_ON = 100.0  # times the bound: a run goes straight on from where slip or turning has all but ended
-_STRIKES = ("land", "settle")
+_STRIKES = ("land", "settle", JOLT)
+_BROKEN = ("lift", "slip")  # by forces that jump where the acceleration of the support does
 _ANY, _TOUCHING = frozenset(range(4)), frozenset((ROLLING, SLIPPING, RESTING))
 # What an event may lie between: the phases before it and after it.
 _BETWEEN = {
@@ -38,13 +42,16 @@ _BETWEEN = {
     "lift": (_TOUCHING, {FLIGHT}),
     "land": ({FLIGHT}, _ANY),
     "settle": ({FLIGHT}, _TOUCHING),
+    JOLT: (_TOUCHING, _ANY),
     "stop": ({ROLLING, SLIPPING}, {RESTING}),
     "start": ({RESTING}, {ROLLING}),
 }
 
 
-def instants_of(events: tuple[Event, ...], begin: float) -> Array:
+def instants_of(events: tuple[Event, ...], begin: float, kinks: Sequence[Kink] = ()) -> Array:
     """Return the last instant before each event and its own, s: where the method run again is asked for them.
+
+    So it is at both sides of kinks of the support's motion, where the body's may jump by an event only.
 
     Examples
     --------
@@ -52,7 +59,8 @@ def instants_of(events: tuple[Event, ...], begin: float) -> Array:
     True
     """
     times = np.array([event.time for event in _looked_at(events)])
-    both = np.concatenate([np.nextafter(times, -np.inf), times])
+    sides = [side for kink in kinks[:_MOST] for side in (kink.before, kink.behind)]
+    both = np.concatenate([np.nextafter(times, -np.inf), times, sides])
     return both[both >= begin]
 
 
@@ -73,6 +81,8 @@ class AtEvents:
         The method run again, at `instants_of` its events and at other times.
     bound : float
         The share that the method may be off.
+    kinks : sequence of Kink
+        Of the support's motion.
 
     Examples
     --------
@@ -82,17 +92,19 @@ class AtEvents:
     system: RollingSystem
     again: Samples
     bound: float
+    kinks: Sequence[Kink] = ()
 
     def figures(self) -> Iterator[CardFigure]:
         """Yield the figure, if anything happened."""
         events = _looked_at(self.again.events)
-        if not events:
-            return
         found = [one for _, group in groupby(events, key=lambda event: event.time) for one in self._group(list(group))]
+        found += [one for kink in self.kinks[:_MOST] for one in self._at_kink(kink)]
+        if not found:
+            return
         conditions = [Shares(f"{event.kind}: {what}", np.array([share]), bound) for event, what, share, bound in found]
         worst = max(range(len(found)), key=lambda i: conditions[i].ratio[0])
-        looked = f"{len(events)} event{'s' if len(events) > 1 else ''}"
-        said = f"{looked}: N = 0 at lift, |f| = μN at slip, s = 0 at grip, gap 0 at landing; no jump but by landing"
+        looked = f"{len(events)} event{'s' if len(events) != 1 else ''}"
+        said = f"{looked}: N = 0 at lift, |f| = μN at slip, s = 0 at grip, gap 0 at landing; no jump but by impact"
         yield worst_of("events at their instants", [conditions[worst]], np.array([found[worst][0].time]), said)
 
     @cached_property
@@ -123,8 +135,9 @@ class AtEvents:
 
     def _group(self, group: list[Event]) -> Iterator[tuple[Event, str, float, float]]:
         """Yield the conditions of events that happen at one instant: event, name, share, bound."""
-        time = group[0].time
-        before, after = self._sample(float(np.nextafter(time, -np.inf))), self._sample(time)
+        time, kink = group[0].time, self._kink_at(group[0].time)
+        since = float(np.nextafter(time, -np.inf)) if kink is None else kink.before
+        before, after = self._sample(since), self._sample(time)
         for event in group:
             if event.before is not None and event.kind not in _STRIKES:
                 yield from self._same(event, event.before, event.after, "no jump")
@@ -132,7 +145,7 @@ class AtEvents:
             yield from self._same(other, event.after, other.before, "no jump")
         first, last = group[0], group[-1]
         if before is not None:
-            changing = self._in_a_moment(before)
+            changing = self._in_a_moment(before, time - since)
             yield from self._same(first, before.state(0), first.before, "no jump before", changing)
             yield from self._met(first, before)
         if last.final:
@@ -144,7 +157,20 @@ class AtEvents:
             fits = int(before.phase[0]) in may and int(after.phase[0]) in then
             yield first, "the phases that it lies between", 0.0 if fits else np.inf, 1.0
 
-    def _in_a_moment(self, at: Samples) -> dict[str, float]:
+    def _at_kink(self, kink: Kink) -> Iterator[tuple[Event, str, float, float]]:
+        """Yield whether a kink of the support's motion at which nothing happened leaves the body's alone."""
+        before, after = self._sample(kink.before), self._sample(kink.behind)
+        if before is None or after is None or any(kink.before < e.time <= kink.behind for e in self.again.events):
+            return
+        none = Event(kink.time, JOLT, "nothing happened")
+        changing = self._in_a_moment(before, kink.behind - kink.before)
+        yield from self._same(none, before.state(0), after.state(0), "no jump without an event", changing)
+
+    def _kink_at(self, time: float) -> Kink | None:
+        """Return the kink of the support's motion at an instant, if there is one."""
+        return next((kink for kink in self.kinks if kink.before < time <= kink.behind), None)
+
+    def _in_a_moment(self, at: Samples, span: float = 0.0) -> dict[str, float]:
         """Return by what shares V, Ω and an axle's rate change while the clock, or the place, is not told apart.
 
         Where the support becomes as hollow as the body is round they change a million times as fast as the place.
@@ -152,7 +178,7 @@ class AtEvents:
         F, K, J, gyroscopic = (part[0] for part in acting(self.system, at))
         R, V, Omega, sizes = at.contact_force[0], at.velocity[0], at.angular_velocity[0], self._sizes
         pace = np.linalg.norm(V) / sizes["position"] + np.linalg.norm(Omega)
-        moment = np.spacing(abs(float(at.time[0]))) + A_STEP * self.bound / SOLVER / max(float(pace), 1e-300)
+        moment = span + np.spacing(abs(float(at.time[0]))) + A_STEP * self.bound / SOLVER / max(float(pace), 1e-300)
         turned = np.linalg.solve(J, K - gyroscopic + np.cross(at.contact[0] - at.position[0], R))
         rates = {"velocity": (F + R) / float(self.system.body.mass), "angular_velocity": turned}
         motion = self.system.support.motion
@@ -189,6 +215,14 @@ class AtEvents:
         if event.final:
             yield from self._ended(event, at, each)
             return
+        kink = self._kink_at(event.time)
+        if event.kind == JOLT:
+            jumps = kink is not None and self._jumps(event, kink)
+            yield event, "the velocity of the support jumps", 0.0 if jumps else np.inf, 1.0
+            return
+        if kink is not None and event.kind in _BROKEN and phase in (ROLLING, SLIPPING):
+            yield event, "no contact bears the forces behind it", self._borne(kink, at), _SLACK + _GOES_ON * self.bound
+            return
         if phase == FLIGHT:
             apart, height = each.apart
             gap = abs(float(apart[0] @ each.normals[0])) + abs(float(height[0]))
@@ -211,6 +245,34 @@ class AtEvents:
                 self._turning(at, each) / self._sizes["angular_velocity"],
                 _GOES_ON * self.bound,
             )
+
+    def _borne(self, kink: Kink, at: Samples) -> float:
+        """Return how much more a body that goes on behind a kink as before it could push or rub, as a share."""
+        p, q, Omega, own = (
+            Vector(*at.contact[0]),
+            Quaternion(*at.orientation[0]),
+            Vector(*at.angular_velocity[0]),
+            at.own[0].tolist(),
+        )
+        if int(at.phase[0]) == SLIPPING:
+            s = Vector(*EachSample(self.system, at, self.bound).slip[0])
+            left = float(slip(self.system, kink.behind, p, q, Omega, s, tuple(own)).normal_force)
+        else:
+            now = roll(self.system, kink.behind, p, q, Omega, tuple(own))
+            N = float(now.reaction.dot(now.contact.normal))
+            f = _row(now.reaction - now.contact.normal * N)
+            left = N if self.system.support.friction is None else min(N, self._short_of_slipping(N, f))
+        return max(left, 0.0) / max(self._sizes["contact_force"], 1e-300)
+
+    def _jumps(self, event: Event, kink: Kink) -> bool:
+        """Tell whether the support's velocity where it touches, or its turning, jumps at a kink."""
+        assert event.before is not None  # noqa: S101  a jolt has both
+        assert event.contact is not None  # noqa: S101
+        motion, p = self.system.support.motion, Vector(*event.contact)
+        one, other = (motion.at(time, *event.before.support) for time in (kink.before, kink.behind))
+        jump = _row(other.material_velocity(p) - one.material_velocity(p))
+        turned = _row(other.angular_velocity - one.angular_velocity)
+        return bool(np.linalg.norm(jump) + np.linalg.norm(turned) * self._arm > self.bound * self._speed)
 
     def _turning(self, at: Samples, each: EachSample) -> float:
         """Return how fast a body turns over the support, rad/s."""

@@ -1,5 +1,7 @@
 """Each landing by itself: one impulse at the contact, inside the friction cone, by Keller's course and Stronge's work.
 
+So is each jolt, in which the velocity of the support jumps under a body: all is relative to the support as it is after.
+
 `mechanics.impact`, which makes the landings of a run, is not asked: the states before and after are held against the
 momentum that one impulse carries, and against the impulse of `course`.
 """
@@ -16,6 +18,7 @@ from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import normal_at, touch
 from ..mechanics.slipping import unpushed
 from ..mechanics.system import RollingSystem, State
+from ..solve.following import JOLT
 from ..solve.samples import Event
 from .acting import inertia_of
 from .bounds import EXACT, SOLVER, Array
@@ -23,17 +26,18 @@ from .card import CardFigure
 from .course import Course
 from .each_sample import Shares, worst_of
 
-_KINDS = ("land", "settle")
+_KINDS = ("land", "settle", JOLT)
 _MOST = 1000  # landings looked at
 _TURNED = SOLVER * 1e-12  # the tolerance at which a run follows slip that turns
 _CUT = 1e-6  # of |ρ|: how high a bounce may rise that is cut
 _ROUNDING = 1e-15  # of the speeds at hand
+_UNCLEAR = 1e-9  # of them, by which it may seem to come off or down where the support jerks along itself
 _SET_DOWN = 4 * _ROUNDING  # of them, by which the contact of a body that stays seems to come off
 
 
 @dataclass(frozen=True)
 class Landing:
-    """One landing: where, with what momentum, and what its impulse should have been.
+    """One landing, or one jolt: where, with what momentum, and what its impulse should have been.
 
     Parameters
     ----------
@@ -127,18 +131,39 @@ class Landing:
         M = np.eye(3) / float(self.system.body.mass) + turn.T @ np.linalg.solve(self.J, turn)
         if self.lever is not None:
             M = M + np.outer(self.lever, self.lever) / float(self.system.support.motion.inertia)
-        support, axes = self.system.support, self._axes
-        coefficient = support.friction if support.kinetic_friction is None else support.kinetic_friction
-        mu = None if coefficient is None else float(coefficient)
-        landing = partial(Course, axes @ M @ axes.T, mu, float(support.restitution), axes @ self.comes)
+        support, axes, mu = self.system.support, self._axes, self.mu
+        slip = axes @ self.comes
+        if self.jolted and self.stays:  # what would open the contact was cut
+            slip[2] = min(slip[2], 0.0)
+        landing = partial(Course, axes @ M @ axes.T, mu, float(support.restitution), slip)
         back = float(support.tangential_restitution)
         if mu is None and back > 0:  # nothing slips that stays on it, or that would with the slip it is given back
             found = landing(back)
-            if self.comes @ self.n < 0:
+            if self.strikes:
                 found.impulse()
             if min(float(self.goes @ self.n), float(found.slip[2])) <= EXACT * self.speed:
                 back = 0.0
         return landing(back)
+
+    @cached_property
+    def jolted(self) -> bool:
+        """Whether it was the support whose velocity jumped."""
+        return self.event.kind == JOLT
+
+    @cached_property
+    def strikes(self) -> bool:
+        """Whether there is an impulse: as they come together, or as friction without limit takes the body along."""
+        down = -float(self.comes @ self.n)
+        if not self.jolted:
+            return down > 0
+        return down > _UNCLEAR * self.speed or (self.mu is None and (self.stays or down >= -_UNCLEAR * self.speed))
+
+    @property
+    def mu(self) -> float | None:
+        """The coefficient of slipping; None: no limit."""
+        support = self.system.support
+        coefficient = support.friction if support.kinetic_friction is None else support.kinetic_friction
+        return None if coefficient is None else float(coefficient)
 
     @cached_property
     def _axes(self) -> Array:
@@ -150,10 +175,8 @@ class Landing:
 
     @cached_property
     def wanted(self) -> Array:
-        """The impulse that the course makes, N s; none where it does not come down."""
-        if self.comes @ self.n >= 0:
-            return np.zeros(3)
-        return self._axes.T @ self.course.impulse()
+        """The impulse that the course makes, N s; none where nothing strikes."""
+        return self._axes.T @ self.course.impulse() if self.strikes else np.zeros(3)
 
     @cached_property
     def off(self) -> float:
@@ -182,6 +205,11 @@ class Landing:
         """Whether the body was set down: what is left of the speed off the support is gone, were it a rounding."""
         return self.event.kind == "settle" or float(self.goes @ self.n) <= _SET_DOWN * self.speed
 
+    @property
+    def cut(self) -> bool:
+        """Whether bounces to come were cut."""
+        return self.event.kind == "settle" or (self.jolted and self.stays and self.off > _UNCLEAR * self.speed)
+
     @cached_property
     def expected(self) -> tuple[Array, Array]:
         """V and Ω after that impulse, and after the bounces to come were cut where they were."""
@@ -196,7 +224,9 @@ class Landing:
 
     @cached_property
     def size(self) -> float:
-        """Of the impulse, N s: what an error of it is a share of."""
+        """Of the impulse, or where there is none the momentum, N s: what an error of it is a share of."""
+        if not self.strikes:
+            return float(self.system.body.mass) * self.speed
         return max(float(np.linalg.norm(self.wanted)), float(np.linalg.norm(self.impulse)), 1e-300)
 
     @cached_property
@@ -241,7 +271,8 @@ class Landing:
         if self.course.mu is not None:
             aside = float(np.linalg.norm(P - along * self.n))
             yield "the friction cone", (aside - self.course.mu * along) / self.size, self.sharp
-        yield "comes down before", float(self.comes @ self.n) / self.speed, EXACT
+        if not self.jolted:
+            yield "comes down before", float(self.comes @ self.n) / self.speed, EXACT
         yield "and not after", -float(self.goes @ self.n) / self.speed, EXACT
         place = np.subtract(self.after.position, self.before.position)
         yield "the place stays", float(np.abs(place).max()), 0.0
@@ -250,7 +281,7 @@ class Landing:
             float(np.abs(np.subtract(self.after.orientation, self.before.orientation)).max()),
             0.0,
         )
-        if self.event.kind == "settle":
+        if self.cut:
             yield "only low bounces are cut", max(0.0, self._rise() / _CUT - 1), 1e-3
 
     def _rise(self) -> float:
@@ -261,7 +292,10 @@ class Landing:
         sliding = Vector(*(slip - self.n * (slip @ self.n)))
         Omega = Vector(*self.after.angular_velocity)
         back = -float(unpushed(self.system, self.before.time, contact, q, Omega, sliding, own).opening)
-        return self.off**2 / (2 * max(back, 1e-300)) / float(np.linalg.norm(self.rho))
+        # Of a jolt the flight may be cut, and what friction without limit would make of it.
+        left_behind = max(0.0, float(self.comes @ self.n))
+        off = max(left_behind, self.off - left_behind)
+        return off**2 / (2 * max(back, 1e-300)) / float(np.linalg.norm(self.rho))
 
     def by_its_course(self) -> Iterator[tuple[str, float, float]]:
         """Yield how far V and Ω after it are from what the impulse of its course makes of them."""
@@ -275,7 +309,7 @@ class Landing:
 
 
 def landings_of(system: RollingSystem, events: tuple[Event, ...]) -> list[Landing]:
-    """Return the landings of a run, or as many as are looked at, spread over it."""
+    """Return the landings and jolts of a run, or as many as are looked at, spread over it."""
     found = [Landing(system, event) for event in events if event.kind in _KINDS and event.contact is not None]
     return found[:: -(-len(found) // _MOST)] if len(found) > _MOST else found
 
@@ -285,7 +319,9 @@ def landing_figures(landings: list[Landing]) -> Iterator[CardFigure]:
     if not landings:
         return
     times = np.array([landing.before.time for landing in landings])
-    count = f"{len(landings)} landing{'s' if len(landings) > 1 else ''}"
+    jolts = sum(landing.jolted for landing in landings)
+    kinds = ((len(landings) - jolts, "landing"), (jolts, "jolt"))
+    count = " and ".join(f"{many} {kind}{'s' * (many > 1)}" for many, kind in kinds if many)
     one = [list(landing.one_impulse()) for landing in landings]
     said = f"{count}: m ΔV turns the body as J ΔΩ = ρ×m ΔV, pushes, inside the friction cone"
     yield _figure("landings: one impulse at the contact", one, times, said)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -99,18 +98,21 @@ def stretches(system: RollingSystem, begin: float, samples: Samples) -> list[Str
     if samples.phase[0] == SLIPPING:
         settling.setdefault(begin, _FIRST * moment(system, samples.state(0)))
     smooth = before_a_singular_end(samples)
-    happenings = (event.time for event in samples.events if begin < event.time < end)
-    edges = sorted([begin, *happenings, *kinks(system, begin, end), end])
-    found = []
-    for first, last in itertools.pairwise(edges):
-        if last - first <= 1e-12 * (end - begin):
+    happenings = [event.time for event in samples.events] + [kink.time for kink in kinks(system, begin, end)]
+    edges = sorted({begin, *(time for time in happenings if begin < time < end), end})
+    found: list[Stretch] = []
+    first, settles = begin, settling.get(begin, 0.0)
+    for last in edges[1:]:
+        if last - first <= 1e-12 * (end - begin):  # one and the same instant
+            settles = max(settles, settling.get(last, 0.0))
             continue
         inside = np.flatnonzero((smooth.time >= first) & (smooth.time <= last))
         part = smooth.part(inside) if inside.size > 2 else smooth
         pace = pace_of(system, part) + 1 / (last - first)
         slips = bool((part.phase == SLIPPING).any())
         pace += _TURNS / (last - first) if slips else 0.0
-        found.append(Stretch(first, last, pace, slips, settling.get(first, 0.0)))
+        found.append(Stretch(first, last, pace, slips, settles))
+        first, settles = last, settling.get(last, 0.0)
     return found
 
 
