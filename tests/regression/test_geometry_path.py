@@ -30,7 +30,7 @@ def rolled(*pieces: Any) -> tr.RolledPath:
         (lambda: tr.Straight(length="1 kg"), "`length` must be a length; got '1 kg'"),
         (lambda: tr.Straight(length=0), "`length` must be positive; got 0"),
         (lambda: tr.Straight(length=math.nan), "`length` must be a finite number; got nan"),
-        (lambda: tr.Straight(length=[1, 2]), "`length` must be one length"),
+        (lambda: tr.Straight(length=[1, 2]), "`length` must be a length"),
         (lambda: tr.Straight(to=3), "`to` must be a pair of lengths; got 3"),
         (lambda: tr.Arc(radius=1, angle=0), "`angle` must not be zero"),
         (lambda: tr.Arc(radius=-1, angle=1), "`radius` must be positive"),
