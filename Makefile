@@ -101,7 +101,7 @@ STAMP = if [ ! -f .venv/web ]; then touch .venv/web; fi; touch
 
 # Newer than an installation as soon as anything that the viewer and the lab page are built from is newer, or they are gone.
 .venv/web: always
-	@if [ ! -f $@ ] || [ ! -f src/trundle/viewer/static/built-from ] || [ -n "$$(find $(WEB) -newer $@ -print)" ]; then \
+	@if [ ! -f $@ ] || [ ! -f src/trundle/views/viewer/static/built-from ] || [ -n "$$(find $(WEB) -newer $@ -print)" ]; then \
 	  mkdir -p .venv && touch $@; \
 	fi
 always:
@@ -142,6 +142,6 @@ PREPARE = \
 	$(PIP) pip
 
 clean:
-	rm -rf .venv demo fuzz out dist build web/node_modules src/trundle/viewer/static
+	rm -rf .venv demo fuzz out dist build web/node_modules src/trundle/views/viewer/static
 	rm -rf .pytest_cache .hypothesis .mypy_cache .ruff_cache .import_linter_cache .benchmarks
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -60,7 +60,7 @@ def run_toml(example: Example) -> None:
 
         ScenarioFile.read(tables).start_state()
     elif tables.keys() >= WHOLE_PATH:
-        from trundle.geometry import PathScenario
+        from trundle.analysis.geometry import PathScenario
 
         PathScenario.read(tables).run()
 

@@ -11,7 +11,7 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 
 class WebBuildHook(BuildHookInterface[Any]):
-    """Makes `src/trundle/viewer/static/`, unless it is there and made from the present sources."""
+    """Makes `src/trundle/views/viewer/static/`, unless it is there and made from the present sources."""
 
     PLUGIN_NAME = "custom"
 

@@ -16,7 +16,7 @@ import tempfile
 from pathlib import Path
 
 WEB = Path(__file__).resolve().parent
-STATIC = WEB.parent / "src" / "trundle" / "viewer" / "static"
+STATIC = WEB.parent / "src" / "trundle" / "views" / "viewer" / "static"
 SOURCES = (
     "src",
     "lab.html",

@@ -2,7 +2,7 @@ import { fileURLToPath } from 'node:url'
 import { defineConfig, type Plugin, type UserConfig } from 'vite'
 
 const here = (path: string) => fileURLToPath(new URL(path, import.meta.url))
-const output = process.env.TRUNDLE_STATIC ?? here('../src/trundle/viewer/static')
+const output = process.env.TRUNDLE_STATIC ?? here('../src/trundle/views/viewer/static')
 
 /** Every browser with WebGL 2 reads woff2: leave the older copies of fonts out of the bundle. */
 const onlyWoff2: Plugin = {

@@ -7,9 +7,16 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from . import units
-    from .analogy import ChargedParticle, Twin, to_turntable, twin
-    from .checking import Check, Mistake, check, check_equations
-    from .derivation import derive
+    from .analysis.analogy import ChargedParticle, Twin, to_turntable, twin
+    from .analysis.checking import Check, Mistake, check, check_equations
+    from .analysis.derivation import derive
+    from .analysis.geometry import Arc, Curve, PathScenario, RolledPath, Rotation, Straight, roll_along
+    from .analysis.holonomy import ConstraintAnalysis, PfaffianSystem
+    from .analysis.imperfections import Sensitivity, air_drag, sensitivity
+    from .analysis.many import simulate_many
+    from .analysis.statics import Equilibria, Equilibrium, equilibria
+    from .analysis.steady import PeriodicMotion, SteadyMotion, SteadyMotions, periodic_motion, steady_motions
+    from .analysis.vakonomic import VakonomicComparison, VakonomicPath, compare_vakonomic, vakonomic_path
     from .errors import (
         InvalidValueError,
         MissingExtraError,
@@ -19,10 +26,6 @@ if TYPE_CHECKING:
         TrundleError,
         UnknownNameError,
     )
-    from .geometry import Arc, Curve, PathScenario, RolledPath, Rotation, Straight, roll_along
-    from .holonomy import ConstraintAnalysis, PfaffianSystem
-    from .imperfections import Sensitivity, air_drag, sensitivity
-    from .many import simulate_many
     from .mechanics.bodies import Body, Isotropic, Principal, RatioInertia, Tensor
     from .mechanics.loads import (
         Drag,
@@ -77,17 +80,14 @@ if TYPE_CHECKING:
         TorusTrack,
     )
     from .mechanics.system import RollingSystem, State, Support
-    from .simulation import Scenario, simulate
+    from .simulation.simulate import Scenario, simulate
+    from .simulation.trajectory import Event, Trajectory
     from .solve.exact import ClosedForm
-    from .statics import Equilibria, Equilibrium, equilibria
-    from .steady import PeriodicMotion, SteadyMotion, SteadyMotions, periodic_motion, steady_motions
-    from .trajectory import Event, Trajectory
-    from .vakonomic import VakonomicComparison, VakonomicPath, compare_vakonomic, vakonomic_path
     from .verify import Card
 
 # Public name -> module that holds it: `import trundle` loads nothing until a name is used.
 _HOMES = {
-    "analogy": ("ChargedParticle", "Twin", "twin", "to_turntable"),
+    "analysis.analogy": ("ChargedParticle", "Twin", "twin", "to_turntable"),
     "errors": (
         "TrundleError",
         "InvalidValueError",
@@ -97,10 +97,10 @@ _HOMES = {
         "SolverError",
         "UnknownNameError",
     ),
-    "geometry": ("roll_along", "Straight", "Arc", "Curve", "RolledPath", "Rotation", "PathScenario"),
-    "holonomy": ("PfaffianSystem", "ConstraintAnalysis"),
-    "imperfections": ("sensitivity", "Sensitivity", "air_drag"),
-    "many": ("simulate_many",),
+    "analysis.geometry": ("roll_along", "Straight", "Arc", "Curve", "RolledPath", "Rotation", "PathScenario"),
+    "analysis.holonomy": ("PfaffianSystem", "ConstraintAnalysis"),
+    "analysis.imperfections": ("sensitivity", "Sensitivity", "air_drag"),
+    "analysis.many": ("simulate_many",),
     "mechanics.bodies": ("Body", "Isotropic", "Principal", "RatioInertia", "Tensor"),
     "mechanics.shapes": (
         "Disc",
@@ -156,14 +156,14 @@ _HOMES = {
     ),
     "mechanics.system": ("RollingSystem", "State", "Support"),
     "solve.exact": ("ClosedForm",),
-    "derivation": ("derive",),
-    "simulation": ("simulate", "Scenario"),
-    "statics": ("equilibria", "Equilibria", "Equilibrium"),
-    "steady": ("steady_motions", "SteadyMotions", "SteadyMotion", "periodic_motion", "PeriodicMotion"),
-    "trajectory": ("Trajectory", "Event"),
-    "vakonomic": ("compare_vakonomic", "vakonomic_path", "VakonomicComparison", "VakonomicPath"),
+    "analysis.derivation": ("derive",),
+    "simulation.simulate": ("simulate", "Scenario"),
+    "analysis.statics": ("equilibria", "Equilibria", "Equilibrium"),
+    "analysis.steady": ("steady_motions", "SteadyMotions", "SteadyMotion", "periodic_motion", "PeriodicMotion"),
+    "simulation.trajectory": ("Trajectory", "Event"),
+    "analysis.vakonomic": ("compare_vakonomic", "vakonomic_path", "VakonomicComparison", "VakonomicPath"),
     "verify": ("Card",),
-    "checking": ("check", "check_equations", "Check", "Mistake"),
+    "analysis.checking": ("check", "check_equations", "Check", "Mistake"),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 

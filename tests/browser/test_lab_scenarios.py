@@ -27,7 +27,7 @@ def end_of(name: str) -> tuple[float, ...]:
     """Where the body's centre is at last, seen by somebody who stands beside the support."""
     tables = files.parse(files.read(name), name)
     if files.rolls_along_path(tables):
-        from trundle.geometry import PathScenario
+        from trundle.analysis.geometry import PathScenario
 
         rolled = PathScenario.read(tables).run()
         return tuple(float(value) for value in rolled.stages.position[-1])

@@ -122,7 +122,7 @@ def test_states_roll_on_any_surface() -> None:
     from tests.additions import Ball as Hollow
     from tests.additions import Tumble
 
-    from trundle.checking.equations import states
+    from trundle.analysis.checking.equations import states
     from trundle.mechanics.algebra import Quaternion, Vector
     from trundle.mechanics.contact import touch
     from trundle.mechanics.shapes import Ellipsoid

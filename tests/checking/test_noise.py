@@ -9,8 +9,8 @@ import pytest
 from scipy.signal import savgol_filter
 
 import trundle as tr
-from trundle.checking.noise import noise_of
-from trundle.checking.slopes import derivative
+from trundle.analysis.checking.noise import noise_of
+from trundle.analysis.checking.slopes import derivative
 
 from .textbook import data, shaken, system
 

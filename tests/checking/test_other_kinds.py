@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import trundle as tr
-from trundle.checking import laws
+from trundle.analysis.checking import laws
 
 
 def test_a_turned_tensor_of_inertia_is_not_taken_for_a_number() -> None:

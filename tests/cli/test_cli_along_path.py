@@ -81,7 +81,7 @@ def test_a_wrong_path_leaves_nothing(here: Command, folder: Path) -> None:
 
 
 def test_a_failed_check_is_told(here: Command, monkeypatch: pytest.MonkeyPatch) -> None:
-    from trundle.geometry import bends
+    from trundle.analysis.geometry import bends
 
     honest = bends.turn
     monkeypatch.setattr(bends, "turn", lambda *words: honest(*words) * [1, 1, -1, 1])

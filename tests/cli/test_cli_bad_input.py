@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from trundle import memory
 from trundle.scenario import files
+from trundle.simulation import memory
 
 from .conftest import Command
 

@@ -7,7 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from trundle.holonomy.names import NAMES
+from trundle.analysis.holonomy.names import NAMES
 
 from .conftest import Command
 

@@ -15,7 +15,7 @@ from trundle.errors import OutOfDomainError
 from trundle.mechanics.algebra import Matrix, Quaternion, Vector
 from trundle.mechanics.loads import BodyMotion
 from trundle.mechanics.system import RollingSystem, State
-from trundle.simulation import simulate
+from trundle.simulation.simulate import simulate
 from trundle.solve.exact import CLOSED_FORMS, closed_form
 
 NAMES = ("position", "velocity", "angular_velocity", "contact_force")

@@ -13,9 +13,9 @@ from tests.reference.test_t15 import TUMBLING
 import trundle as tr
 from trundle.cli.expectations import expectations
 from trundle.mechanics.system import RollingSystem, State
-from trundle.scene import scene_of
-from trundle.scene.findings import findings_of
 from trundle.solve.exact import CLOSED_FORMS, ClosedForm, closed_form, form_of_phase, refusals
+from trundle.views.scene import scene_of
+from trundle.views.scene.findings import findings_of
 
 THEORY = (Path(__file__).parents[2] / "docs" / "theory.md").read_text(encoding="utf-8")
 BALL = tr.Body.solid_sphere(0.025, 0.5)

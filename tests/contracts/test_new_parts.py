@@ -282,7 +282,7 @@ from trundle.scenario.tables import KINDS
 scenario = tr.Scenario.load(sys.argv[1])
 run = scenario.run()
 again = tr.Scenario.describe(run.system, scenario.start_state(), duration=0.5, every=0.01)
-from trundle.plots.words import key_numbers, title_of
+from trundle.views.plots.words import key_numbers, title_of
 print(json.dumps({
     "passed": run.card().passed,
     "title": title_of(run.system),
@@ -297,7 +297,7 @@ print(json.dumps({
 IN_THE_LAB = """
 import json
 from trundle.lab import answers
-from trundle.scene import unpack
+from trundle.views.scene import unpack
 parts = json.loads(answers.parts().body)
 body, surface = parts["body"]["spheroid"], parts["support"]["elliptic-funnel"]
 motion, load = parts["motion"]["heave"], parts["loads"]["tether"]
@@ -330,7 +330,7 @@ SHOWN = """
 import json, sys
 import trundle as tr
 from trundle.cli.expectations import expectations
-from trundle.scene import scene_of
+from trundle.views.scene import scene_of
 run = tr.Scenario.load(sys.argv[1]).run()
 card, header = run.card(), scene_of(run).header
 leaning = tr.Scenario.load("coin-rolling-upright")

@@ -13,10 +13,10 @@ from tests.additions import Tumble
 from tests.derivation.derived import derived
 
 import trundle as tr
-from trundle.derivation import DerivationError, derivable, forms, general, law, pendulum
-from trundle.derivation.jacobi import cn, dn, sn
-from trundle.derivation.steps import Derivation, Equation, Proof, Step
-from trundle.derivation.symbols import (
+from trundle.analysis.derivation import DerivationError, derivable, forms, general, law, pendulum
+from trundle.analysis.derivation.jacobi import cn, dn, sn
+from trundle.analysis.derivation.steps import Derivation, Equation, Proof, Step
+from trundle.analysis.derivation.symbols import (
     F_XYZ,
     K_XYZ,
     R_XYZ,
@@ -37,9 +37,9 @@ from trundle.derivation.symbols import (
     thetadot,
     v_d,
 )
-from trundle.derivation.topics import TOPICS
-from trundle.derivation.vectors import Cross, vector
-from trundle.derivation.zero import is_zero, numerator
+from trundle.analysis.derivation.topics import TOPICS
+from trundle.analysis.derivation.vectors import Cross, vector
+from trundle.analysis.derivation.zero import is_zero, numerator
 from trundle.errors import InvalidValueError, ScenarioError, UnknownNameError
 from trundle.mechanics.algebra import Vector
 from trundle.mechanics.contact import Contact
@@ -243,7 +243,7 @@ def test_every_shipped_scenario_has_its_derivation() -> None:
 
 
 def test_the_setting_is_read_off_the_system() -> None:
-    from trundle.derivation.sphere_setting import Setting
+    from trundle.analysis.derivation.sphere_setting import Setting
 
     table = tr.Support(tr.Plane(), motion=tr.Spin(3.5), tilt=0.1)
     loads = (tr.Force((0.1, 0, 0)), tr.Drag(0.01), tr.Force((-0.1, 0, 0.2)))

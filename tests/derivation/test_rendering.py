@@ -15,9 +15,9 @@ import sympy as sp
 from tests.derivation.derived import derived
 
 import trundle as tr
-from trundle.derivation.printers import latex_name
-from trundle.derivation.topics import TOPICS
-from trundle.derivation.vectors import Dot, evaluate
+from trundle.analysis.derivation.printers import latex_name
+from trundle.analysis.derivation.topics import TOPICS
+from trundle.analysis.derivation.vectors import Dot, evaluate
 
 SHOWN = [*TOPICS, "real-demonstration"]
 # All of it is in KaTeX's table of supported functions.
@@ -294,7 +294,7 @@ def test_what_the_dictionary_holds_is_json() -> None:
 
 def test_a_scalar_product_is_read_back() -> None:
     left, right = sp.MatrixSymbol("u", 3, 1), sp.MatrixSymbol("v", 3, 1)
-    from trundle.derivation.printers import FormulaPrinter
+    from trundle.analysis.derivation.printers import FormulaPrinter
 
     wanted = value_of(Dot(left, right))
     assert Reader(FormulaPrinter().doprint(Dot(left, right))).total() == pytest.approx(wanted.real)

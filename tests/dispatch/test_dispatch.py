@@ -56,7 +56,7 @@ def test_no_more_places_ask_for_a_concrete_part_than_did():
 
 @pytest.mark.parametrize("source", WAYS)
 def test_every_way_to_ask_is_seen_and_nothing_else(source):
-    assert [one.part for one in in_source(IMPORTED + source, "trundle.scene.made_up", "made_up.py")] == WAYS[source]
+    assert [one.part for one in in_source(IMPORTED + source, "trundle.views.made_up", "made_up.py")] == WAYS[source]
 
 
 def test_a_part_may_be_asked_for_in_its_own_home_only():

@@ -11,11 +11,11 @@ from starlette.testclient import TestClient
 from tests.lab.conftest import shipped
 
 import trundle as tr
-from trundle.derivation.naming import derive_scenario_numbers
+from trundle.analysis.derivation.naming import derive_scenario_numbers
 from trundle.lab import create_app
 from trundle.lab.deriving import rows_of
 from trundle.scenario import ScenarioFile, files
-from trundle.scene import unpack
+from trundle.views.scene import unpack
 
 
 def ask(lab: TestClient, route: str, **asked: Any) -> Any:

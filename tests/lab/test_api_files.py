@@ -14,7 +14,7 @@ from starlette.testclient import TestClient
 from tests.lab.conftest import shipped
 
 import trundle as tr
-from trundle.viewer.exports import FORMATS
+from trundle.views.viewer.exports import FORMATS
 
 NAME = "level-turntable-nudged"
 KINDS = sorted(ending.removeprefix(".") for ending in FORMATS)

@@ -20,7 +20,7 @@ from PIL import Image
 import trundle as tr
 from trundle.cli import run as command
 from trundle.errors import TrundleError, UnknownNameError
-from trundle.viewer.exports import FORMATS, export
+from trundle.views.viewer.exports import FORMATS, export
 
 NAME = "level-turntable-nudged"
 Say = Callable[..., tuple[int, str, str]]

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from tests.draws import anything, imperfect, rollers, runs
 
 import trundle as tr
-from trundle.scene import pack, scene_of, unpack
+from trundle.views.scene import pack, scene_of, unpack
 
 
 @settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))

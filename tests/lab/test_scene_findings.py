@@ -9,10 +9,10 @@ import pytest
 
 import trundle as tr
 from trundle.scenario.files import is_shipped_path, names
-from trundle.scene import scene_of
-from trundle.scene.findings import findings_of
 from trundle.solve.exact import closed_form
 from trundle.solve.exact.finding import Finding
+from trundle.views.scene import scene_of
+from trundle.views.scene.findings import findings_of
 
 BALL = {"solid": tr.Body.solid_sphere(0.025, 0.51), "hollow": tr.Body.hollow_sphere(0.025, 0.51)}
 

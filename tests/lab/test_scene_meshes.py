@@ -7,8 +7,8 @@ import pytest
 
 import trundle as tr
 from trundle.mechanics.algebra import Vector
-from trundle.scene.body_mesh import body_mesh
-from trundle.scene.support_mesh import ground_of
+from trundle.views.scene.body_mesh import body_mesh
+from trundle.views.scene.support_mesh import ground_of
 
 INERTIA = tr.Principal(1e-3, 1e-3, 1e-3)
 BODIES = {

@@ -8,7 +8,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 import trundle as tr
 from trundle.scenario.files import is_shipped_path, names
-from trundle.scene import pack, scene_of, unpack
+from trundle.views.scene import pack, scene_of, unpack
 
 SHIPPED = [name for name in names() if not is_shipped_path(name)]
 ROLLING, FLIGHT = 0, 2

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import trundle as tr
-from trundle.scene import Scene, pack, scene_of, unpack
+from trundle.views.scene import Scene, pack, scene_of, unpack
 
 
 @pytest.fixture(scope="module")

@@ -334,5 +334,5 @@ def test_the_server_itself_loads_nothing_that_computes_or_draws() -> None:
     script = "import sys, trundle.lab.app; print(sorted(sys.modules))"
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=True)  # noqa: S603
     assert "'fastapi'" in done.stdout
-    for heavy in ("numpy", "scipy", "matplotlib", "pygltflib", "xarray", "PIL", "sympy", "trundle.scene"):
+    for heavy in ("numpy", "scipy", "matplotlib", "pygltflib", "xarray", "PIL", "sympy", "trundle.views.scene"):
         assert f"'{heavy}'" not in done.stdout

@@ -274,7 +274,7 @@ WATCHED = """
 import json, sys, tempfile
 from trundle.lab import answers, exports
 from trundle.scenario import files
-from trundle.viewer.exports import FORMATS
+from trundle.views.viewer.exports import FORMATS
 
 MARK = "marked-4711"
 opened, leaked = [], []

@@ -12,8 +12,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import trundle as tr
-from trundle.scene import scene_of
-from trundle.viewer.glb import glb_of, rising
+from trundle.views.scene import scene_of
+from trundle.views.viewer.glb import glb_of, rising
 
 FLOAT32 = 2.0**-23
 TO_GLTF = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])  # world: z up; glTF: y up

@@ -19,10 +19,10 @@ import trundle as tr
 from trundle.display import mathml, number
 from trundle.errors import InvalidValueError, TrundleError
 from trundle.scenario import files
-from trundle.scene import Scene, scene_of, unpack
-from trundle.viewer import bundle
-from trundle.viewer.bundle import NotBuiltError
-from trundle.viewer.page import page_of
+from trundle.views.scene import Scene, scene_of, unpack
+from trundle.views.viewer import bundle
+from trundle.views.viewer.bundle import NotBuiltError
+from trundle.views.viewer.page import page_of
 
 NAME = "tilted-turntable"
 NASTY = "</script></title><script>alert(1)</script> \"quoted\" & 'so' <!-- $title Kugel übt 🎱"

@@ -13,8 +13,8 @@ from PIL import Image
 
 import trundle as tr
 from trundle.errors import InvalidValueError, MissingExtraError, UnknownNameError
-from trundle.scene import scene_of, unpack
-from trundle.viewer.widget import SceneWidget
+from trundle.views.scene import scene_of, unpack
+from trundle.views.viewer.widget import SceneWidget
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import trundle as tr
-from trundle.trajectory import Trajectory
+from trundle.simulation.trajectory import Trajectory
 
 BALL = {"radius": 0.03, "mass": 0.2}
 

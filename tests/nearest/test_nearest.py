@@ -33,7 +33,7 @@ def test_what_a_test_takes_from_the_package_itself_it_imports_from_its_home(dist
 
 
 def test_modules_are_found_by_their_files_and_files_by_their_modules():
-    for file in (CONTACT, "src/trundle/scene/__init__.py", "tests/nearest/test_nearest.py"):
+    for file in (CONTACT, "src/trundle/views/scene/__init__.py", "tests/nearest/test_nearest.py"):
         assert file_of(module_of(file)) == Path(file)
 
 

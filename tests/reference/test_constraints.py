@@ -17,7 +17,7 @@ from tests.precise import precisely, slope, turn
 from tests.tolerances import SOLVER
 
 import trundle as tr
-from trundle.holonomy.analysis import ConstraintAnalysis
+from trundle.analysis.holonomy.analysis import ConstraintAnalysis
 from trundle.mechanics.algebra import Quaternion, Vector
 
 NAMES = tr.PfaffianSystem.names()

@@ -13,7 +13,7 @@ from tests.precise import precisely
 from tests.tolerances import EXACT, SOLVER
 
 import trundle as tr
-from trundle.analogy import ELECTRON_MASS, ELEMENTARY_CHARGE
+from trundle.analysis.analogy import ELECTRON_MASS, ELEMENTARY_CHARGE
 from trundle.solve.methods import tolerance_of
 
 BALL = tr.Body.solid_sphere(radius=0.025, mass=0.065)

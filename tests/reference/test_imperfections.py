@@ -16,9 +16,9 @@ from tests.reference.imperfect import Table
 from tests.tolerances import EXACT, SOLVER
 
 import trundle as tr
-from trundle.imperfections.circle import Demonstration
-from trundle.imperfections.measuring import measure
-from trundle.imperfections.resisted import _slope
+from trundle.analysis.imperfections.circle import Demonstration
+from trundle.analysis.imperfections.measuring import measure
+from trundle.analysis.imperfections.resisted import _slope
 
 RATE, G = 3.5, 9.80665
 BALL = tr.Body.solid_sphere(radius=0.025, mass=0.51)

@@ -14,12 +14,12 @@ from scipy.optimize import brentq
 from tests.tolerances import SOLVER
 
 import trundle as tr
+from trundle.analysis.statics import rest
 from trundle.errors import InvalidValueError
 from trundle.mechanics.algebra import ZERO, Quaternion, Vector
 from trundle.mechanics.contact import roll, touch
 from trundle.mechanics.loads import BodyMotion, Load
 from trundle.solve.tracing import state_rates
-from trundle.statics import rest
 
 G = 9.80665
 A, BARE, WEIGHT, AT = 0.05, 0.3, 0.1, 0.04  # a cylinder with a weight: radius, mass, weight, its distance
@@ -417,7 +417,7 @@ def test_the_work_vanishes_exactly_where_the_law_gives_no_acceleration() -> None
 
 def test_the_work_is_the_slope_of_the_energy() -> None:
     """Along a line in a trough: the work integrated there, against the potential of each place."""
-    from trundle.statics.line import lay
+    from trundle.analysis.statics.line import lay
 
     system = in_trough(WEIGHTED, loads=(tr.Force((0.3, 0.4, 0.0)),))
     start = system.place((0.4, 0.0), roll=0.3)

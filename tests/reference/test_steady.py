@@ -11,10 +11,10 @@ import pytest
 from tests.tolerances import SOLVER
 
 import trundle as tr
+from trundle.analysis.steady.finding import flow_of
+from trundle.analysis.steady.runs import slope_of_run
+from trundle.analysis.steady.symmetry import group_matrix, symmetries
 from trundle.mechanics.algebra import E_Z, Vector
-from trundle.steady.finding import flow_of
-from trundle.steady.runs import slope_of_run
-from trundle.steady.symmetry import group_matrix, symmetries
 
 G = 9.80665
 SOLID, SHELL = tr.Body.solid_sphere(0.1, 2.0), tr.Body.hollow_sphere(0.1, 2.0)

@@ -10,7 +10,7 @@ import pytest
 from tests.tolerances import EXACT, SOLVER
 
 import trundle as tr
-from trundle.vakonomic.equations import TOLERANCE
+from trundle.analysis.vakonomic.equations import TOLERANCE
 
 BALL = tr.Body.solid_sphere(0.5, 2.0)
 OMEGA, TILT, MULTIPLIERS = 1.3, 0.02, (0.05, -0.3)

@@ -21,7 +21,7 @@ from IPython.core.interactiveshell import InteractiveShell
 
 import trundle as tr
 from trundle import verify
-from trundle.checking import Mistake
+from trundle.analysis.checking import Mistake
 from trundle.display import Displayed, Headline, markup
 from trundle.verify import CardFigure
 

@@ -11,8 +11,8 @@ import pytest
 import xarray as xr
 
 import trundle as tr
-from trundle import frames
 from trundle.mechanics.algebra import Quaternion, Vector
+from trundle.solve import frames
 
 BALL = tr.Body.solid_sphere(radius=0.02, mass=0.05)
 MOTIONS = {

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 import trundle as tr
+from trundle.analysis.geometry import ball, bends
+from trundle.analysis.geometry.curves import RolledCurve
 from trundle.errors import InvalidValueError, UnknownNameError
-from trundle.geometry import ball, bends
-from trundle.geometry.curves import RolledCurve
 from trundle.mechanics.algebra import Quaternion
 
 

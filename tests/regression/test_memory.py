@@ -13,8 +13,8 @@ import pytest
 from tests.tolerances import EXACT
 
 import trundle as tr
-from trundle import labels, memory
-from trundle.plots import fewer
+from trundle.simulation import labels, memory
+from trundle.views.plots import fewer
 
 LIMITED = """
 import resource, sys
@@ -170,7 +170,7 @@ def test_an_event_does_not_keep_all_samples(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_a_table_is_written_some_rows_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    from trundle.viewer import table
+    from trundle.views.viewer import table
 
     run = tr.Scenario.load("free-turntable-ellipse").run(duration=1.0, every=0.01)
     whole = table.csv_of(run.data)
@@ -187,8 +187,7 @@ def test_a_table_is_written_some_rows_at_a_time(monkeypatch: pytest.MonkeyPatch)
 @pytest.mark.parametrize("method", ["auto", "runge-kutta"])
 def test_blocks_leave_no_seam(method: str, motion: tr.Motion, frame: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """What is worked out some at a time is what it is all at once."""
-    from trundle import frames
-    from trundle.solve import closed_form, phases, runge_kutta, samples, taylor
+    from trundle.solve import closed_form, frames, phases, runge_kutta, samples, taylor
 
     table = tr.Support(tr.Plane(), motion=motion, tilt=0.02, friction=0.2)
     system = tr.RollingSystem(tr.Body.solid_sphere(0.02, 0.1), table)

@@ -19,7 +19,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.patches import Ellipse
 
 import trundle as tr
-from trundle.plots import path_figure, series_figure
+from trundle.views.plots import path_figure, series_figure
 
 OMEGA = 3.487  # rad/s
 SCALES = {"10⁷ m": 1e7, "km": 1e3, "m": 1.0, "cm": 1e-2, "mm": 1e-3, "µm": 1e-6, "nm": 1e-9}
@@ -515,6 +515,6 @@ def test_titles_of_any_script_are_shown_plainly() -> None:
 
 
 def test_importing_the_room_loads_no_matplotlib() -> None:
-    code = "import sys, trundle.plots; print('matplotlib' in sys.modules)"
+    code = "import sys, trundle.views.plots; print('matplotlib' in sys.modules)"
     answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)  # noqa: S603
     assert answer.stdout.strip() == "False"

@@ -13,10 +13,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import trundle as tr
 from trundle.mechanics.algebra import Vector
-from trundle.plots import ground, path_figure, series_figure
-from trundle.plots.facts import facts_of
-from trundle.plots.happenings import FLIGHT, ROLLING, SLIPPING, stretches_of
-from trundle.plots.words import key_numbers, title_of
+from trundle.views.plots import ground, path_figure, series_figure
+from trundle.views.plots.facts import facts_of
+from trundle.views.plots.happenings import FLIGHT, ROLLING, SLIPPING, stretches_of
+from trundle.views.plots.words import key_numbers, title_of
 
 BALL = tr.Body.solid_sphere(radius=0.02, mass=0.05)
 COIN = tr.Body.disc(radius=0.012, mass=0.0075)
@@ -201,7 +201,7 @@ def test_a_view_in_space_has_one_scale_for_all_axes() -> None:
 def test_what_is_behind_a_dome_is_drawn_faint() -> None:
     (ax,) = [ax for ax in sheet("dome").axes if ax.name == "3d"]
     solid, faint = (line.get_data_3d() for line in ax.lines[:2])
-    from trundle.plots.solid import _page
+    from trundle.views.plots.solid import _page
 
     eye = np.cross(*_page())
     for drawn, sense in ((solid, 1.0), (faint, -1.0)):

@@ -18,8 +18,9 @@ import pytest
 import xarray
 
 import trundle as tr
-from trundle import run_file, verify
+from trundle import verify
 from trundle.cli import run as command
+from trundle.simulation import run_file
 from trundle.verify import reread
 
 ARRAYS = ("position", "contact", "velocity", "angular_velocity", "orientation", "contact_force", "slip_velocity")

@@ -380,7 +380,7 @@ def test_a_path_may_be_text_and_must_have_its_folder(tmp_path: Path) -> None:
 KILLED = """
 import os, signal, sys
 import trundle as tr
-from trundle import netcdf
+from trundle.simulation import netcdf
 
 run = tr.Scenario.load("level-turntable-nudged").run(duration=0.5, every=0.1)
 run.card()

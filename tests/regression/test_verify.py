@@ -24,10 +24,10 @@ from trundle import verify
 from trundle.mechanics import contact
 from trundle.mechanics.shapes import Sphere
 from trundle.mechanics.system import RollingSystem, State
+from trundle.simulation.trajectory import Trajectory
 from trundle.solve import methods
 from trundle.solve.methods import Method
 from trundle.solve.samples import FLIGHT, Samples
-from trundle.trajectory import Trajectory
 from trundle.verify import Card
 from trundle.verify.course import Course
 from trundle.verify.growth import _lasts

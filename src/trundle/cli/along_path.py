@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import InvalidValueError, ScenarioError
 
 if TYPE_CHECKING:
-    from ..geometry import PathScenario, RolledPath
+    from ..analysis.geometry import PathScenario, RolledPath
     from ..verify import Card
 
 FILES = ("run.nc", "stages.png")
@@ -45,7 +45,7 @@ def run(
 
 
 def _load(tables: dict[str, Any], source: str, given: dict[str, str]) -> PathScenario:
-    from ..geometry import PathScenario
+    from ..analysis.geometry import PathScenario
 
     for option in ("duration", "method", "tolerance"):
         if option in given:
@@ -73,7 +73,7 @@ def expected(text: str, source: str) -> Callable[[], list[tuple[str, str]]]:
     >>> expected(files.read("roll-home-turned"), "roll-home-turned")()[-1]
     ('came home turned by', '120 deg about (0.57735, 0.57735, -0.57735)')
     """
-    from ..geometry import PathScenario
+    from ..analysis.geometry import PathScenario
 
     scenario = PathScenario.loads(text, source)
 

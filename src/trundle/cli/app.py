@@ -25,7 +25,7 @@ from .twin import twin
 from .vakonomic import vakonomic
 
 if TYPE_CHECKING:
-    from ..trajectory import Trajectory
+    from ..simulation.trajectory import Trajectory
     from ..verify import Card
 
 FILES = ("run.nc", "path.png", "series.png")
@@ -200,7 +200,7 @@ METHODS = ["auto", "exact", "taylor", "runge-kutta"]
 
 def load(scenario: str, **overrides: str | None) -> Any:
     """Read a scenario, with some keys of its [run] table replaced by options of the command line."""
-    from ..simulation import Scenario
+    from ..simulation.simulate import Scenario
 
     given = {key: value for key, value in overrides.items() if value is not None}
     tables = files.parse(files.read(scenario), scenario)

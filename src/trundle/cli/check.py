@@ -11,7 +11,7 @@ from ..errors import InvalidValueError
 from . import CANNOT_DECIDE, CARD_FAILED, screen
 
 if TYPE_CHECKING:
-    from ..checking import Check
+    from ..analysis.checking import Check
 
 FIGURE = "check.png"
 
@@ -50,7 +50,7 @@ def check(
     Exit status: 0, it holds; 2, bad input; 3, it does not hold; 4, these data cannot decide; 130, interrupted;
     1, all else.
     """
-    from ..checking import check as check_trajectory
+    from ..analysis.checking import check as check_trajectory
     from .writing import check_folder, write_together
 
     folder = Path(theirs.stem) if output is None else output.expanduser()
@@ -97,8 +97,8 @@ def _scenario(theirs: Path, scenario: str | None) -> object:
     if scenario is not None:
         return scenario
     if theirs.suffix == ".nc":
-        from ..run_file import scenario_in
         from ..scenario import ScenarioFile
+        from ..simulation.run_file import scenario_in
 
         text = scenario_in(theirs)
         if text:

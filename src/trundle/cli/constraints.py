@@ -6,8 +6,8 @@ from typing import Annotated
 
 import typer
 
+from ..analysis.holonomy.names import NAMES
 from ..errors import InvalidValueError, UnknownNameError
-from ..holonomy.names import NAMES
 from . import screen
 
 Name = Annotated[
@@ -39,7 +39,7 @@ def constraints(
         return
     if system not in NAMES:
         raise UnknownNameError("system of constraints", system, list(NAMES))
-    from ..holonomy import PfaffianSystem
+    from ..analysis.holonomy import PfaffianSystem
 
     found = PfaffianSystem.load(system).analyse()
     if as_json:

@@ -13,7 +13,7 @@ from . import screen
 
 
 def _complete(incomplete: str) -> list[str]:
-    from ..derivation.topics import TOPICS
+    from ..analysis.derivation.topics import TOPICS
 
     names = sorted({*TOPICS, *files.names()})
     return [name for name in names if name.startswith(incomplete)]
@@ -42,8 +42,8 @@ def derive(
 
     The steps stand in the order of the lecture: Newton, Euler, rolling condition, elimination, path.
     """
-    from ..derivation import derivable
-    from ..derivation import derive as derivation_of
+    from ..analysis.derivation import derivable
+    from ..analysis.derivation import derive as derivation_of
 
     chosen = [option for option, on in {"--markdown": markdown, "--latex": latex, "--json": as_json}.items() if on]
     if len(chosen) > 1:

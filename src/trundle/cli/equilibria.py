@@ -48,8 +48,8 @@ def equilibria(
     if files.rolls_along_path(tables):
         remedy = "A ball rolled along a path feels no forces; name a scenario with a body under gravity."
         raise ScenarioError("path", "has no equilibria", scenario, remedy)
+    from ..analysis.statics import equilibria as find
     from ..scenario import ScenarioFile
-    from ..statics import equilibria as find
 
     if not no_figure:
         check_folder(folder, (FILE,))

@@ -10,11 +10,11 @@ import typer
 
 from ..errors import InvalidValueError
 from ..scenario import files
-from ..viewer import exports
+from ..views.viewer import exports
 from . import screen, signals
 
 if TYPE_CHECKING:
-    from ..scene import Scene
+    from ..views.scene import Scene
 
 _SEVERAL = ".html"
 
@@ -73,7 +73,7 @@ def _content(names: list[str], suffix: str, *, bar: bool) -> bytes:
     if len(names) == 1:
         motion, make_scene = _motion(names[0], bar=bar)
         return exports.export(motion, suffix, make_scene)
-    from ..viewer.page import check_count, page_of
+    from ..views.viewer.page import check_count, page_of
 
     check_count(len(names))
     found = [_motion(name, bar=bar) for name in names]
@@ -86,7 +86,7 @@ def _is_run(name: str) -> bool:
 
 def _scenario(name: str) -> Any:
     """Return a scenario, or a path to roll along."""
-    from ..geometry import PathScenario
+    from ..analysis.geometry import PathScenario
     from .app import load
 
     tables = files.parse(files.read(name), name)
@@ -95,10 +95,10 @@ def _scenario(name: str) -> Any:
 
 def _motion(name: str, *, bar: bool) -> tuple[Any, Callable[..., Scene]]:
     """Return a motion, loaded or computed, and what makes a scene of it."""
-    from ..scene import scene_of
+    from ..views.scene import scene_of
 
     if _is_run(name):
-        from ..trajectory import Trajectory
+        from ..simulation.trajectory import Trajectory
 
         run = Trajectory.load(Path(name).expanduser())
         if bar and run.changed:
@@ -106,7 +106,7 @@ def _motion(name: str, *, bar: bool) -> tuple[Any, Callable[..., Scene]]:
         return run, scene_of
     scenario = _scenario(name)
     if hasattr(scenario, "path"):
-        from ..geometry.scene import rolled_scene
+        from ..analysis.geometry.scene import rolled_scene
 
         return scenario.run(), rolled_scene
     with screen.ProgressBar(wanted=bar) as progress:

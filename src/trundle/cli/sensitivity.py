@@ -11,7 +11,7 @@ from ..errors import InvalidValueError
 from . import screen, signals
 
 if TYPE_CHECKING:
-    from ..imperfections import Sensitivity
+    from ..analysis.imperfections import Sensitivity
 
 FILE = "sensitivity.png"
 OPTIONS = {  # where they differ from Python's names
@@ -54,7 +54,7 @@ def sensitivity(
     wobble, a rate uneven by 1 % once a turn, the drag of room air on the ball, and a resistance to rolling of a
     ten-thousandth of the weight.
     """
-    from ..imperfections import sensitivity as vary
+    from ..analysis.imperfections import sensitivity as vary
     from .writing import check_folder, write_together
 
     folder = Path(Path(scenario).stem) if output is None else output.expanduser()
@@ -89,7 +89,7 @@ def sensitivity(
 
 def _load(scenario: str) -> object:
     from ..scenario import files
-    from ..simulation import Scenario
+    from ..simulation.simulate import Scenario
 
     return Scenario.read(files.parse(files.read(scenario), scenario), scenario)
 
@@ -104,7 +104,7 @@ def _show(table: Sensitivity) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    from ..imperfections.report import HEADINGS
+    from ..analysis.imperfections.report import HEADINGS
 
     ruled = Table(*HEADINGS, box=SIMPLE_HEAD)
     for row, cells in zip((*table.rows, table.given), table.cells, strict=True):

@@ -13,7 +13,7 @@ from ..scenario import files
 from . import screen
 
 if TYPE_CHECKING:
-    from ..steady import SteadyMotions
+    from ..analysis.steady import SteadyMotions
 
 FILE = "steady.png"
 
@@ -67,7 +67,7 @@ def steady(
     asked = ScenarioFile.read(tables, scenario)
     if periodic:
         return _periodic(asked, as_json)
-    from ..steady import steady_motions
+    from ..analysis.steady import steady_motions
 
     if not no_figure:
         check_folder(folder, (FILE,))
@@ -89,7 +89,7 @@ def _held(options: list[str]) -> dict[str, str | None]:
 
 
 def _periodic(asked: Any, as_json: bool) -> None:
-    from ..steady import periodic_motion
+    from ..analysis.steady import periodic_motion
 
     motion = periodic_motion(asked)
     if as_json:
@@ -101,7 +101,7 @@ def _periodic(asked: Any, as_json: bool) -> None:
 def _report(
     found: SteadyMotions, folder: Path, asked: tuple[str | None, str | None, str | None], *, figure: bool, as_json: bool
 ) -> None:
-    from ..steady.sweep import deciding
+    from ..analysis.steady.sweep import deciding
     from .writing import write_together
 
     name, lowest, highest = asked

@@ -11,7 +11,7 @@ from ..errors import InvalidValueError
 from . import CARD_FAILED, screen
 
 if TYPE_CHECKING:
-    from ..analogy import Twin
+    from ..analysis.analogy import Twin
 
 FILE = "twin.png"
 
@@ -55,7 +55,7 @@ def twin(
 
 
 def _found(scenario: Any, **options: Any) -> Twin:
-    from ..analogy import twin as find
+    from ..analysis.analogy import twin as find
 
     try:
         return find(scenario, **options)

@@ -49,8 +49,8 @@ def vakonomic(
     if files.rolls_along_path(tables):
         remedy = "A ball rolled along a path feels no forces; name a scenario of a ball on a turntable."
         raise ScenarioError("path", "has no vakonomic counterpart", scenario, remedy)
+    from ..analysis.vakonomic import compare_vakonomic
     from ..scenario import ScenarioFile
-    from ..vakonomic import compare_vakonomic
 
     if not no_figure:
         check_folder(folder, (FILE,))

@@ -16,9 +16,9 @@ from .errors import Refusal, refusal_of, refused
 from .requests import JSON, SCENE
 
 if TYPE_CHECKING:
-    from ..geometry import PathScenario
-    from ..simulation import Scenario
-    from ..trajectory import Trajectory
+    from ..analysis.geometry import PathScenario
+    from ..simulation.simulate import Scenario
+    from ..simulation.trajectory import Trajectory
 
 P = ParamSpec("P")
 
@@ -54,7 +54,7 @@ def scenario_from(data: Any) -> Scenario:
     >>> scenario_from(files.parse(files.read("tilted-turntable"), "")).body.kind
     'solid-sphere'
     """
-    from ..simulation import Scenario
+    from ..simulation.simulate import Scenario
 
     limits.check_size(data)
     return Scenario.read(data, "")
@@ -62,7 +62,7 @@ def scenario_from(data: Any) -> Scenario:
 
 def path_from(data: Any) -> PathScenario:
     """Return the path to roll along that a visitor sent; as `scenario_from`."""
-    from ..geometry import PathScenario
+    from ..analysis.geometry import PathScenario
 
     limits.check_size(data)
     return PathScenario.read(data, "")
@@ -96,10 +96,10 @@ def simulate(
     >>> simulate(files.parse(files.read("tilted-turntable"), ""), samples=100).body[:8]
     b'TRUNDLE1'
     """
-    from ..scene import pack, scene_of
+    from ..views.scene import pack, scene_of
 
     if files.rolls_along_path(data):
-        from ..geometry.scene import rolled_scene
+        from ..analysis.geometry.scene import rolled_scene
 
         return Answer(pack(rolled_scene(path_from(data).run(), samples, card)), SCENE)
     run, seconds = run_of(scenario_from(data), limits.MOST_SAVED, samples, tolerance)
@@ -144,7 +144,7 @@ def twin(data: dict[str, Any], samples: int | None = None) -> Answer:
     >>> twin(files.parse(files.read("tilted-turntable"), "")).body[:8]
     b'TRUNDLE1'
     """
-    from ..scene import pack
+    from ..views.scene import pack
     from .charge import charge_scene
 
     scenario = scenario_from(data)
@@ -161,8 +161,8 @@ def roll(radius: Any, curve: Mapping[str, Any], samples: int | None = None, card
     >>> roll("25 mm", {"kind": "straight", "turn": "90 deg"}).body[:8]
     b'TRUNDLE1'
     """
-    from ..geometry.scene import rolled_scene
-    from ..scene import pack
+    from ..analysis.geometry.scene import rolled_scene
+    from ..views.scene import pack
     from .curves import path_of
 
     return Answer(pack(rolled_scene(path_from(path_of(radius, curve)).run(), samples, card)), SCENE)
@@ -181,7 +181,7 @@ def catalogue() -> Answer:
 
 
 def _entry(name: str) -> dict[str, Any]:
-    from ..simulation import Scenario
+    from ..simulation.simulate import Scenario
     from ..solve.exact import closed_form
 
     tables = files.parse(files.read(name), name)

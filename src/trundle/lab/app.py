@@ -11,7 +11,7 @@ from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
 from starlette.responses import JSONResponse, Response
 
-from ..viewer.exports import FORMATS
+from ..views.viewer.exports import FORMATS
 from . import answers, exports, pages
 from .errors import Refusal, RefusedError, of_validation
 from .lanes import LeftError

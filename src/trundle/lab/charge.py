@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..scene.header import body_table
-from ..scene.sphere import Array, sphere_scene
+from ..views.scene.header import body_table
+from ..views.scene.sphere import Array, sphere_scene
 from .limits import MOST_SAMPLES
 
 if TYPE_CHECKING:
-    from ..analogy import Twin
-    from ..scene import Scene
-    from ..simulation import Scenario
+    from ..analysis.analogy import Twin
+    from ..simulation.simulate import Scenario
+    from ..views.scene import Scene
 
 _SIZE = 0.6  # of the charge as it is drawn, over the radius of the ball
 
@@ -28,8 +28,8 @@ def charge_scene(scenario: Scenario, samples: int | None = None) -> Scene:
     >>> charge_scene(tr.Scenario.load("tilted-turntable")).header["kind"]
     'charge'
     """
-    from ..analogy import twin
-    from ..analogy.table import rows, settings
+    from ..analysis.analogy import twin
+    from ..analysis.analogy.table import rows, settings
 
     pair = twin(scenario)
     duration = pair.shown_duration

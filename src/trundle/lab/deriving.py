@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ..derivation.steps import Number
-    from ..simulation import Scenario
+    from ..analysis.derivation.steps import Number
+    from ..simulation.simulate import Scenario
 
 _COMPLEX = ", as a complex number"
 _OF_THE_FORM = ("The path", "The closed form is a solution")
@@ -22,8 +22,8 @@ def derivation_of(scenario: Scenario) -> dict[str, Any]:
     >>> [number["value"] for number in told["numbers"] if number["symbol"] == "k"], told["steps"][-1]["source"]
     ([0.4], 'T5')
     """
-    from ..derivation import derive
-    from ..derivation.forms import form_of
+    from ..analysis.derivation import derive
+    from ..analysis.derivation.forms import form_of
 
     form, _ = form_of(scenario.system(), scenario.start_state())
     found = derive(scenario, with_numbers=form is not None)
@@ -53,7 +53,7 @@ def rows_of(number: Number, symbol: str) -> list[dict[str, Any]]:
     >>> [row["name"] for row in rows_of(Number(v_d, 1.0 + 2.0j, "m/s"), "v_d")][0]
     'velocity at which the circle drifts, along the first axis'
     """
-    from ..derivation.symbols import MEANINGS
+    from ..analysis.derivation.symbols import MEANINGS
 
     name = MEANINGS.get(number.symbol, ("", ""))[0].removesuffix(_COMPLEX)
     unit = "" if number.unit == "1" else number.unit

@@ -11,7 +11,7 @@ from typing import Any
 
 from ..errors import RunFileError
 from ..scenario import files
-from ..viewer.exports import FORMATS
+from ..views.viewer.exports import FORMATS
 from . import limits
 from .answers import answering, path_from, run_of, scenario_from, told
 from .cache import Answer
@@ -40,10 +40,10 @@ def export(data: dict[str, Any], kind: str, folder: str) -> Answer:
 
 
 def _written(scenario: Any, kind: str) -> bytes:
-    from ..viewer.exports import export as write
+    from ..views.viewer.exports import export as write
 
     if not hasattr(scenario, "timing"):
-        from ..geometry.scene import rolled_scene
+        from ..analysis.geometry.scene import rolled_scene
 
         return write(scenario.run(), f".{kind}", rolled_scene)
     run, _ = run_of(scenario, limits.MOST_SAVED)
@@ -100,7 +100,7 @@ def _decoded(content: bytes) -> str:
 
 def _text_in(content: bytes, folder: Path) -> str:
     """Return the scenario in a NetCDF file; it is read from a name of our own, never from one that came."""
-    from ..run_file import scenario_in
+    from ..simulation.run_file import scenario_in
 
     target = folder / "upload.nc"
     target.write_bytes(content)

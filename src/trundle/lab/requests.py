@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 from starlette.responses import Response
 
-from ..viewer.exports import FORMATS
+from ..views.viewer.exports import FORMATS
 from .limits import MOST_SAMPLES
 
 if TYPE_CHECKING:

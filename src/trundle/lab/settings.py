@@ -94,4 +94,4 @@ class Settings:
     cache_bytes: int = 64 * _MIB
     body_bytes: int = _MIB // 2
     upload_bytes: int = 32 * _MIB
-    static: Path = Path(__file__).resolve().parent.parent / "viewer" / "static"
+    static: Path = Path(__file__).resolve().parent.parent / "views" / "viewer" / "static"

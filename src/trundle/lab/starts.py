@@ -14,7 +14,7 @@ from ..mechanics.symmetry import same_at_all_times
 from ..scenario.fields import written
 
 if TYPE_CHECKING:
-    from ..simulation import Scenario
+    from ..simulation.simulate import Scenario
 
 _DIGITS = 9
 _NEAR = 0.5  # of the body's size: what is picked on a mesh lies this near to the surface

@@ -8,7 +8,7 @@ import { createViewer } from './viewer'
 
 export { createViewer, unpack }
 
-/** The traits of the Python side, `trundle.viewer.widget.SceneWidget`. */
+/** The traits of the Python side, `trundle.views.viewer.widget.SceneWidget`. */
 interface Traits {
   scenes: DataView[]
   theme: Theme

@@ -1,0 +1,128 @@
+"""From which orientation a ball starts if its Ω is along its own axes: it must then roll as its path says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...mechanics.algebra import Quaternion, Vector
+from ...mechanics.shapes import concentric_sphere
+from .case import Case
+from .examining import SLIP
+from .fitting import least_squares
+from .motion import first_orientation, motion_of, turned_to_space
+from .record import Array, Theirs
+
+_LITTLE = 1e-4  # of what rolls, that slips: no start is told more closely
+_FAR_BETTER = 0.5  # of the slip that the given start leaves: another must be so much better
+_TOGETHER = 10.0  # residuals that noise moves together
+_UNIT = (1.0, 0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Aligned:
+    """Where the sum of Ω along the body's axes starts.
+
+    Parameters
+    ----------
+    start : Quaternion
+        Body frame to support frame.
+    given : bool
+        Whether it is the one that a run is taken to start with; else it was fitted.
+    unsure : float
+        By what a fit may be off, rad.
+    """
+
+    start: Quaternion
+    given: bool
+    unsure: float = 0.0
+
+
+def aligned(case: Case) -> Aligned:
+    """Take their Ω for one along the body's axes, and find the orientation from which the ball rolls best."""
+    given = Quaternion(*first_orientation(case.start))
+    if not concentric_sphere(case.system.body.shape):  # where another touches, its orientation tells
+        return Aligned(given, given=True)
+    own = turned_to_space(case.theirs, _UNIT)
+    little = max(_LITTLE, float(own.doubts["orientation"].angle.max()))
+    best = Aligned(given, given=True)
+    # On a circle about the centre the path cannot tell one rate from another, and the one that is said comes first.
+    for rolling in (_Rolling(case, own, rate_free=False), _Rolling(case, own, rate_free=True)):
+        if rolling.left(given) <= little:
+            return Aligned(given, given=True)
+        fits = [fit for start in _starts(given) if (fit := rolling.fitted(start)) is not None]
+        found = min(fits, key=lambda fit: rolling.left(fit.start), default=best)
+        if rolling.left(found.start) <= _FAR_BETTER * rolling.left(best.start):
+            best = found
+        if rolling.left(best.start) <= little:
+            return best
+    return best
+
+
+def _starts(given: Quaternion) -> Iterator[Quaternion]:
+    """Yield orientations of which one is near each, the given one first: it is turned as a cube is onto itself."""
+    from scipy.spatial.transform import Rotation
+
+    turns = sorted(Rotation.create_group("O"), key=lambda turn: turn.magnitude())
+    yield from (Quaternion(*turn.as_quat(scalar_first=True)) * given for turn in turns)
+
+
+class _Rolling:
+    """The slip of a ball, over its bounds, if Ω was added up along its own axes from one start or another.
+
+    The support may be free to turn at another rate than is said, the mistake that is most often made beside this one.
+    """
+
+    def __init__(self, case: Case, own: Theirs, *, rate_free: bool) -> None:
+        self._rate_free = rate_free
+        at = motion_of(case.system, own, case.start, case.view.instants)
+        self._bound = case.series[SLIP].bound[:, None]
+        self._velocity, self._carried = ((v / self._bound).ravel() for v in (at.velocity, at.carried))
+        self._offset, self._arm = _by_columns(at.offset), np.linalg.norm(at.offset, axis=1)
+        self._turning = _by_columns(at.angular_velocity)
+        flat = case.system.support.surface.flat and case.system.body.is_isotropic_sphere
+        self._normal = np.broadcast_to(at.contact.normal.array(), at.position.shape) if flat else 0.0 * at.position
+
+    def fitted(self, start: Quaternion) -> Aligned | None:
+        """Turn a start until least is off."""
+        found = least_squares(lambda angles: self._off(_turn(angles) * start), [0.0, 0.0, 0.0])
+        if found is None:
+            return None
+        angles, doubts = found  # as if all residuals were moved together
+        unsure = float(np.linalg.norm(doubts)) * np.sqrt(_TOGETHER / self._velocity.size)
+        return Aligned(_turn(angles) * start, given=False, unsure=unsure)
+
+    def left(self, start: Quaternion) -> float:
+        """Return the slip as a share of what rolls."""
+        slip, rolled = self._slip(start.matrix() @ self._turning)
+        return float(np.linalg.norm(slip) / max(float(np.linalg.norm(rolled)), 1e-300))
+
+    def _off(self, start: Quaternion) -> Array:
+        """Return what slips, and by how much the spin of a ball on a plane changes, which no contact can change."""
+        turning = start.matrix() @ self._turning
+        spin = (turning.array() * self._normal).sum(axis=1) * self._arm
+        return np.concatenate([self._slip(turning)[0], (spin - spin.mean()) / self._bound[:, 0]])
+
+    def _slip(self, turning: Vector) -> tuple[Array, Array]:
+        """Return what slips, and what rolls, if Ω is this in space."""
+        rolled = (turning.cross(self._offset).array() / self._bound).ravel()
+        moved, carried, share = self._velocity + rolled, self._carried, 1.0
+        if self._rate_free:  # the share of it with which least slips
+            share = float(moved @ carried) / max(float(carried @ carried), 1e-300)
+        return moved - share * carried, rolled
+
+
+def _by_columns(rows: Array) -> Vector:
+    """Return vectors whose components lie together each, as they are gone through thousands of times."""
+    return Vector.of(np.asfortranarray(rows))
+
+
+def _turn(angles: Array) -> Quaternion:
+    """Return the turn about a vector by its length, rad."""
+    half = float(np.linalg.norm(angles)) / 2
+    return Quaternion(float(np.cos(half)), *(0.5 * float(np.sinc(half / np.pi)) * angles))
+
+
+__all__ = ["Aligned", "aligned"]

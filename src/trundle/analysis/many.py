@@ -1,0 +1,286 @@
+"""Many members of one system in one call: initial states and parameters varied, one dataset over member and time."""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..errors import InvalidValueError, TrundleError
+from ..mechanics.finiteness import check_finite, varies
+from ..mechanics.kinks import has_kinks
+from ..mechanics.parameters import structure_of
+from ..mechanics.system import RollingSystem, State
+from ..simulation import labels
+from ..simulation.memory import check_room
+from ..simulation.simulate import check_state, simulate
+from ..solve import taylor
+from ..solve.methods import Method
+from ..solve.samples import Progress
+from ..solve.sampling import MOST_SAMPLES, check_clock, sample_times
+
+if TYPE_CHECKING:
+    import xarray
+
+    from ..simulation.trajectory import Trajectory
+    from ..solve.ensemble import Block
+
+ENDED = -1  # the phase of a member whose run is over
+
+
+def simulate_many(
+    systems: RollingSystem | Sequence[RollingSystem],
+    starts: State | Sequence[State],
+    duration: Any,
+    every: Any,
+    *,
+    workers: int | None = 1,
+    progress: Progress | None = None,
+) -> xarray.Dataset:
+    """Run many members of one system and return them as one dataset over member and time.
+
+    Members that roll all the way go through Taylor's method eight at a time. A member that starts in another phase, or
+    comes to an event, is run by `simulate` instead, phase by phase: the result is the same either way, only slower.
+
+    Parameters
+    ----------
+    systems : RollingSystem or sequence of RollingSystem
+        One for each member, or one for all. They may differ in their numbers, not in what they are made of.
+    starts : State or sequence of State
+        One for each member, or one for all; all at the same time.
+    duration : float or quantity
+        Length of the runs, s.
+    every : float or quantity
+        Step between samples, s; the end is always sampled.
+    workers : int, optional
+        Threads; None: as many as there are processors.
+    progress : callable, optional
+        Told the fraction done, 0 to 1.
+
+    Returns
+    -------
+    xarray.Dataset
+        The variables of `Trajectory.data` over `member` and `time`, and for each member `end`, the time its run
+        reached, `events`, how many there were, `ending`, what ended it early, or nothing, and `reason`, the same in
+        words. After its end a member is NaN, its phase −1. Its events and its card are those of `simulate` for that
+        member alone. Where `simulate` would refuse a member, its ending is "refused", and where it would break down,
+        "failed": such a member is NaN throughout, and the others are what they are without it.
+
+    Raises
+    ------
+    InvalidValueError
+        If the systems are not of one structure, the starts not at one time, or there would be too many samples: what
+        is wrong with the call, not with one member.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> table = tr.Support(tr.Plane(), motion=tr.Spin("33.3 rpm"))
+    >>> balls = [tr.RollingSystem(tr.Body.solid_sphere(a, 0.1), table) for a in (0.01, 0.02, 0.03)]
+    >>> runs = tr.simulate_many(balls, [ball.place((0.1, 0.0)) for ball in balls], duration=1.0, every=0.5)
+    >>> dict(runs.position.sizes)
+    {'member': 3, 'time': 3, 'axis': 3}
+    """
+    systems, starts = _members(systems, starts)
+    instants = sample_times(duration, every)
+    _check(systems, starts, instants.size, every, workers)
+    check_clock(systems[0], starts[0], float(instants[1]))
+    times = starts[0].time + instants
+    result = _Result(systems[0], len(systems), times, progress)
+    rest = _rolled(result, systems, starts, times, workers) if _batched(systems[0]) else range(len(systems))
+    for member in rest:
+        result.put_alone(member, systems[member], starts[member], duration, every)
+    return result.dataset()
+
+
+def _members(systems: Any, starts: Any) -> tuple[list[RollingSystem], list[State]]:
+    """Return as many systems as starts."""
+    many_systems = [systems] if isinstance(systems, RollingSystem) else _listed(systems, "systems", RollingSystem)
+    many_starts = [starts] if isinstance(starts, State) else _listed(starts, "starts", State)
+    if len(many_systems) == 1:
+        many_systems *= len(many_starts)
+    if len(many_starts) == 1:
+        many_starts *= len(many_systems)
+    if len(many_systems) != len(many_starts):
+        rule = f"must be one, or as many as the systems, {len(many_systems)}"
+        raise InvalidValueError("starts", rule, len(many_starts))
+    return many_systems, many_starts
+
+
+def _listed(values: Any, key: str, kind: type) -> list[Any]:
+    found = list(values) if isinstance(values, Iterable) else [values]
+    for i, value in enumerate(found):
+        if not isinstance(value, kind):
+            raise InvalidValueError(f"{key}[{i}]", f"must be a {kind.__name__}", value)
+    if not found:
+        raise InvalidValueError(key, "must have at least one member", values)
+    return found
+
+
+def _check(systems: list[RollingSystem], starts: list[State], instants: int, every: Any, workers: int | None) -> None:
+    first = structure_of(systems[0])
+    for i, system in enumerate(systems):
+        if system is not systems[0] and structure_of(system) != first:
+            remedy = "Members differ in numbers only; run other bodies, supports or loads in another call."
+            raise InvalidValueError(f"systems[{i}]", "must be made of the same parts as systems[0]", system, remedy)
+    if not (isinstance(starts[0].time, (int, float)) and math.isfinite(starts[0].time)):
+        raise InvalidValueError("starts[0].time", "must be a finite number, s", starts[0].time)
+    for i, start in enumerate(starts):
+        if start.time != starts[0].time:
+            raise InvalidValueError(f"starts[{i}].time", f"must be that of starts[0], {starts[0].time:g} s", start.time)
+
+    def fewer(most: int) -> str:
+        each = max(most // len(systems), 2)
+        return f"ask each of the {len(systems):,} members for {each:,} instants or fewer, or part the members"
+
+    if len(systems) * instants > MOST_SAMPLES:
+        rule, count = f"must leave at most {MOST_SAMPLES:,} samples of all members together", len(systems) * instants
+        raise InvalidValueError("every", rule, every, f"It makes {count:,}; {fewer(MOST_SAMPLES)}.")
+    check_room(len(systems) * instants, labels.size_of(systems[0]), "every", every, fewer)
+    if workers is not None and (not isinstance(workers, int) or workers < 1):
+        raise InvalidValueError("workers", "must be a whole number, 1 or more, or None", workers)
+
+
+def _batched(system: RollingSystem) -> bool:
+    """Tell whether heyoka can take members of such a system eight at a time.
+
+    Resistances that bring a body to rest make nearly every run an event; a straight roller is checked one by one; each
+    member comes to a kink of its own formulas, or to a corner of its loads, at an instant of its own.
+    """
+    alone = system.resisted or system.body.shape.axis is not None or system.corners or has_kinks(system)
+    return taylor.available() and system.support.surface.analytic and not alone
+
+
+def _rolled(
+    result: _Result, systems: list[RollingSystem], starts: list[State], times: Any, workers: int | None
+) -> list[int]:
+    """Run the members that roll, and return those that are left."""
+    from ..solve import ensemble
+
+    sound = np.flatnonzero(_sound(systems, starts, times))  # `simulate` says what is wrong with the others
+    some = [systems[i] for i in sound]
+    if not some:
+        return list(range(len(systems)))
+    states, rolls = ensemble.rolling_from(some, [starts[i] for i in sound])
+    members = np.flatnonzero(rolls).tolist()
+    count = min(workers or ensemble.cores(), -(-len(members) // ensemble.LANES) or 1)
+
+    def done(block: Block) -> None:
+        result.put(replace(block, members=sound[block.members]))
+
+    stopped = ensemble.integrate(some, states, members, times, done, workers=count) if members else []
+    rolled = np.zeros(len(systems), dtype=bool)
+    rolled[sound[members]] = True
+    rolled[sound[stopped]] = False
+    return np.flatnonzero(~rolled).tolist()
+
+
+def _sound(systems: list[RollingSystem], starts: list[State], times: Any) -> list[bool]:
+    """Tell of which members start and formulas in the time are numbers, throughout the run."""
+    finite: dict[int, bool] = {}  # of each system, once
+    for system in systems if varies(systems[0]) else ():
+        if id(system) not in finite:
+            finite[id(system)] = _passes(check_finite, system, float(times[0]), float(times[-1]))
+    pairs = zip(systems, starts, strict=True)
+    return [finite.get(id(system), True) and _passes(check_state, system, start) for system, start in pairs]
+
+
+def _passes(check: Callable[..., None], *given: Any) -> bool:
+    try:
+        check(*given)
+    except InvalidValueError:
+        return False
+    return True
+
+
+class _Result:
+    """The arrays of all members, filled as the members come in."""
+
+    def __init__(self, system: RollingSystem, members: int, times: Any, progress: Progress | None) -> None:
+        self.times, self.progress = times, progress
+        self.facts = labels.facts(system)
+        sizes = {"time": times.size, "axis": 3, "quaternion": 4}
+        self.arrays = {
+            name: np.full(
+                (members, *(sizes[dim] for dim in dims)),
+                ENDED if name == "phase" else np.nan,
+                dtype=np.int8 if name == "phase" else np.float64,
+            )
+            for name, (dims, _) in self.facts.items()
+        }
+        self.end = np.full(members, float(times[-1]))
+        self.events = np.zeros(members, dtype=np.int32)
+        self.ending, self.reason = (np.full(members, "", dtype=object) for _ in range(2))
+        self.done, self.told, self.lock = np.zeros(members), 0.0, threading.Lock()
+
+    def put(self, block: Block) -> None:
+        """Take members that rolled through some of the instants."""
+        for name, values in labels.columns(block.system, block.samples).items():
+            shaped = values.reshape(-1, block.members.size, *values.shape[1:]).swapaxes(0, 1)
+            self.arrays[name][block.members, block.rows] = shaped
+        self._tell(block.members, block.rows.stop / self.times.size)
+
+    def put_alone(self, member: int, system: RollingSystem, start: State, duration: Any, every: Any) -> None:
+        """Run one member by itself, through all its phases; what `simulate` has against it becomes its ending."""
+        method = "taylor" if system.support.surface.analytic else "runge-kutta"
+        run, refused = None, None
+        try:
+            run = simulate(system, start, duration, every, method=method, scenario="")
+        except InvalidValueError as error:
+            key = error.key.replace("start", f"starts[{member}]", 1) if error.key.startswith("start") else error.key
+            refused = "refused", str(InvalidValueError(key, error.rule, error.received, error.remedy))
+        except TrundleError as error:
+            refused = "failed", str(error)
+        except (ArithmeticError, ValueError) as error:  # a load of somebody's own divides by nothing, for one
+            refused = "failed", f"{type(error).__name__}: {error}"
+        for name, array in self.arrays.items():  # it may have come some way with others
+            array[member] = ENDED if name == "phase" else np.nan
+        if refused is not None:
+            self.end[member], (self.ending[member], self.reason[member]) = np.nan, refused
+        if run is not None:
+            self._take(member, run)
+        self._tell(member, 1.0)
+
+    def _take(self, member: int, run: Trajectory) -> None:
+        """Take a run that a member made by itself."""
+        reached = run.data.time.values  # the last may be the instant of the event that ended it, between two samples
+        count = min(reached.size, self.times.size)
+        kept = int((reached[:count] == self.times[:count]).sum())
+        for name, array in self.arrays.items():
+            array[member, :kept] = run.data[name].values[:kept]
+        self.end[member], self.events[member] = reached[-1], len(run.events)
+        if run.events and reached[-1] < self.times[-1]:
+            self.ending[member], self.reason[member] = run.events[-1].kind, run.events[-1].text
+
+    def _tell(self, members: Any, share: float) -> None:
+        with self.lock:
+            self.done[members] = share
+            self.told = max(self.told, float(self.done.mean()))
+            if self.progress is not None:
+                self.progress(self.told)
+
+    def dataset(self) -> xarray.Dataset:
+        """Return all members as one dataset."""
+        import pandas as pd
+        import xarray
+
+        phase = self.facts["phase"][1]
+        phase["flag_values"] = np.append(phase["flag_values"], np.int8(ENDED))
+        phase["flag_meanings"] += " ended"
+        variables = {name: (("member", *dims), self.arrays[name], said) for name, (dims, said) in self.facts.items()}
+        about = {
+            "end": (("member",), self.end, {"long_name": "time that the run reached", "units": "s"}),
+            "events": (("member",), self.events, {"long_name": "events on the way", "units": "1"}),
+            "ending": (("member",), self.ending, {"long_name": "what ended the run early"}),
+            "reason": (("member",), self.reason, {"long_name": "what ended the run early, in words"}),
+        }
+        coordinates = {**labels.coordinates(self.times), "member": pd.RangeIndex(self.end.size)}
+        attributes = labels.attributes("", Method.of("taylor"))
+        return xarray.Dataset({**variables, **about}, coords=coordinates, attrs=attributes)
+
+
+__all__ = ["simulate_many"]

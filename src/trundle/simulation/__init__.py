@@ -1,0 +1,1 @@
+"""Runs: from a system or a scenario to a trajectory, its labelled arrays and its file."""

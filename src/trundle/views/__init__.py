@@ -1,0 +1,1 @@
+"""How a run is shown: figures, scenes, and the viewer that plays them."""

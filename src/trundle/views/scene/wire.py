@@ -1,0 +1,128 @@
+"""A scene, and the bytes that carry it to a viewer: a header in JSON, then the columns as they lie in memory.
+
+Little-endian: ``TRUNDLE1``, the length of the header and 0 as uint32, the header padded with spaces to a multiple of
+eight bytes, then each column from a multiple of eight on. Offsets count from the end of the header.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import struct
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import TrundleError
+
+MAGIC = b"TRUNDLE1"
+FORMAT = 1
+_START = struct.Struct("<8sII")
+_STEP = 8  # bytes: headers and columns begin at multiples of it
+_TYPES = ("float32", "float64", "uint32", "uint8")
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Everything that a viewer needs to draw a run.
+
+    Parameters
+    ----------
+    header : dict
+        Title, scenario, body, support, events, findings, formula: plain values, as JSON has them.
+    columns : dict of arrays
+        Samples over `time`, and the two meshes, each as float32, float64, uint32 or uint8.
+    units : dict
+        The unit of each column that has one.
+
+    Examples
+    --------
+    >>> scene = Scene({"title": "Still"}, {"time": np.array([0.0, 1.0])}, {"time": "s"})
+    >>> unpack(pack(scene)).columns["time"]
+    array([0., 1.])
+    """
+
+    header: dict[str, Any]
+    columns: dict[str, NDArray[Any]]
+    units: dict[str, str] = field(default_factory=dict)
+
+
+def pack(scene: Scene) -> bytes:
+    """Return a scene as bytes.
+
+    Examples
+    --------
+    >>> blob = pack(Scene({"title": "Still"}, {"phase": np.zeros(3, dtype=np.uint8)}))
+    >>> blob[:8], len(blob) % 8
+    (b'TRUNDLE1', 0)
+    """
+    described, parts, offset = {}, [], 0
+    for name, column in scene.columns.items():
+        kind = column.dtype.name
+        if kind not in _TYPES:
+            raise TypeError(f"the column {name!r} must be one of {', '.join(_TYPES)}; got {kind}")
+        described[name] = {
+            "dtype": kind,
+            "shape": list(column.shape),
+            "offset": offset,
+            "unit": scene.units.get(name, ""),
+        }
+        content = np.ascontiguousarray(column, dtype=column.dtype.newbyteorder("<")).tobytes()
+        parts += [content, b"\0" * (-len(content) % _STEP)]
+        offset += len(content) + len(parts[-1])
+    header = plain({**scene.header, "columns": described})
+    text = json.dumps(header, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode()
+    text += b" " * (-len(text) % _STEP)
+    return b"".join([_START.pack(MAGIC, len(text), 0), text, *parts])
+
+
+def unpack(blob: bytes) -> Scene:
+    """Return the scene that `pack` wrote.
+
+    Examples
+    --------
+    >>> unpack(b"something else")
+    Traceback (most recent call last):
+    ...
+    trundle.errors.TrundleError: These bytes are no scene of trundle's: they do not begin with TRUNDLE1.
+    """
+    if len(blob) < _START.size or not blob.startswith(MAGIC):
+        raise TrundleError(f"These bytes are no scene of trundle's: they do not begin with {MAGIC.decode()}.")
+    _, length, _ = _START.unpack_from(blob)
+    begin = _START.size + length
+    try:
+        header = json.loads(blob[_START.size : begin])
+        described: Mapping[str, Any] = header.pop("columns")
+        columns = {name: _column(blob, begin, facts) for name, facts in described.items()}
+    except (ValueError, KeyError, TypeError) as error:
+        raise TrundleError(f"This scene is damaged or cut short ({error}).") from None
+    return Scene(header, columns, {name: facts["unit"] for name, facts in described.items() if facts["unit"]})
+
+
+def _column(blob: bytes, begin: int, facts: Mapping[str, Any]) -> NDArray[Any]:
+    if facts["dtype"] not in _TYPES:
+        raise ValueError(f"a column of {facts['dtype']!r}")
+    kind, shape = np.dtype(facts["dtype"]).newbyteorder("<"), tuple(facts["shape"])
+    return np.frombuffer(blob, kind, math.prod(shape), begin + facts["offset"]).reshape(shape)
+
+
+def plain(value: Any) -> Any:
+    """Return a value as JSON has it: NumPy's numbers as Python's, and null for what is not finite.
+
+    Examples
+    --------
+    >>> plain({"rate": np.float64(1.5), "ratio": float("inf"), "pair": (1, True)})
+    {'rate': 1.5, 'ratio': None, 'pair': [1, True]}
+    """
+    if isinstance(value, Mapping):
+        return {str(key): plain(part) for key, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(part) for part in value]
+    if isinstance(value, np.ndarray | np.generic):
+        return plain(value.tolist())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

@@ -1,0 +1,104 @@
+"""A page of its own: one file that plays a run wherever there is a browser, and asks nothing of any network."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import hashlib
+import re
+from collections.abc import Sequence
+from functools import lru_cache
+from html import escape
+from importlib.metadata import version
+from importlib.resources import files
+from string import Template
+
+from ...errors import InvalidValueError
+from ..scene import Scene, pack
+from .bundle import built
+from .words import card_of, findings_of, formula_of, names_of, scenario_of, summary_of
+
+MOST_SCENES = 5  # bodies that can be told apart on one stage
+
+
+def page_of(scenes: Sequence[Scene]) -> bytes:
+    """Return a self-contained page that shows scenes on one stage.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> from trundle.views.scene import scene_of
+    >>> page = page_of([scene_of(tr.Scenario.load("level-turntable-nudged").run())])
+    >>> page[:15], b"Content-Security-Policy" in page
+    (b'<!doctype html>', True)
+    """
+    check_count(len(scenes))
+    script, style = _script(built("viewer.js")), _style(built("viewer.css"), _own("page.css"))
+    title = title_of(scenes)
+    names = names_of(scenes) if len(scenes) > 1 else [""]
+    parts = {
+        "policy": _policy(script, style),
+        "version": escape(version("trundle")),
+        "title": escape(title),
+        "summary": summary_of(scenes),
+        "formula": formula_of(scenes),
+        "findings": findings_of(scenes),
+        "cards": "".join(map(card_of, scenes, names)),
+        "scenarios": "".join(map(scenario_of, scenes, names)),
+        "scenes": "\n".join(_data(scene) for scene in scenes),
+        "style": style,
+        "script": script,
+    }
+    template = Template(_own("page.html"))
+    whole = template.substitute(parts, size="00.0 MB")
+    return template.substitute(parts, size=_size(len(whole.encode()))).encode()
+
+
+def check_count(count: int) -> None:
+    """Refuse more scenes on one stage than can be told apart.
+
+    Examples
+    --------
+    >>> check_count(1)
+    """
+    if not 1 <= count <= MOST_SCENES:
+        raise InvalidValueError("runs", f"must be 1 to {MOST_SCENES} on one stage", count)
+
+
+def title_of(scenes: Sequence[Scene]) -> str:
+    """Return the title of a page: the first scene's, or the bodies' names where there are several."""
+    titles = list(dict.fromkeys(str(scene.header["title"]) for scene in scenes))
+    return titles[0] if len(titles) == 1 else f"{titles[0]}, and {len(scenes) - 1} more"
+
+
+def _data(scene: Scene) -> str:
+    packed = gzip.compress(pack(scene), 6, mtime=0)
+    return f'<script type="application/gzip" data-trundle-scene>{base64.b64encode(packed).decode()}</script>'
+
+
+def _policy(script: str, style: str) -> str:
+    """Return a policy under which nothing runs but the page's own script, and nothing is asked for."""
+    own = (f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'" for text in (script, style))
+    allowed = "default-src 'none'; script-src {}; style-src {}".format(*own)
+    return f"{allowed}; img-src data: blob:; font-src data:; base-uri 'none'; form-action 'none'"
+
+
+@lru_cache(maxsize=2)
+def _script(module: str) -> str:
+    """Return a module as it may stand within a page: nothing in it ends the element, or opens a comment."""
+    text = module.replace("\r\n", "\n").replace("\r", "\\r")
+    return re.sub(r"<(?=/script|script|!--)", r"\\x3C", text, flags=re.IGNORECASE)
+
+
+@lru_cache(maxsize=2)
+def _style(*sheets: str) -> str:
+    text = "\n".join(sheets).replace("\r\n", "\n")
+    return re.sub(r"</(?=style)", r"<\\/", text, flags=re.IGNORECASE)
+
+
+def _own(name: str) -> str:
+    return (files(__package__) / name).read_text(encoding="utf-8")
+
+
+def _size(count: int) -> str:
+    return f"{count / 1e6:.1f} MB"
