@@ -16,9 +16,9 @@ from bodies import bowl
 from by_hand import G
 from measure import Row, check, seconds, timed
 from trundle.solve import taylor
-from trundle.solve.following import Next
 from trundle.solve.laws import RollingLaw
 from trundle.solve.taylor import TOLERANCE
+from trundle.solve.transitions import PhaseStart
 
 TITLE = "Ball in a spinning elliptic bowl, 10^6 s by Taylor's method, looked at each 10 s"
 
@@ -30,7 +30,7 @@ Array = NDArray[Any]
 def rows() -> Iterator[Row]:
     """Run once."""
     case = bowl(DURATION, SIZE)
-    times, begin = np.linspace(0.0, DURATION, LOOKS), Next(RollingLaw(), case.start, case.state.tolist())
+    times, begin = np.linspace(0.0, DURATION, LOOKS), PhaseStart(RollingLaw(), case.start, case.state.tolist())
     took, pieces = timed(lambda: list(taylor.integrate(case.system, begin, times, TOLERANCE)))
     check(pieces[-1].stop is None, "the ball must stay in the bowl")
     states = np.concatenate([piece.states for piece in pieces])

@@ -124,7 +124,7 @@ def test_states_roll_on_any_surface() -> None:
 
     from trundle.analysis.checking.equations import states
     from trundle.mechanics.algebra import Quaternion, Vector
-    from trundle.mechanics.contact import touch
+    from trundle.mechanics.contact import contact_at
     from trundle.mechanics.shapes import Ellipsoid
 
     body = tr.Body(0.75, tr.Principal(0.003, 0.004, 0.005), Ellipsoid(0.15, 0.125, 0.1))
@@ -133,7 +133,7 @@ def test_states_roll_on_any_surface() -> None:
         somewhere = tr.RollingSystem(body, tr.Support(Hollow(0.75, -1.0), motion=motion))
         at = states(somewhere, 20)
         for t, p, V, q, w in zip(at.time, at.point, at.velocity, at.orientation, at.angular_velocity, strict=True):
-            contact = touch(somewhere, t, Vector(*p), Quaternion(*q))
+            contact = contact_at(somewhere, t, Vector(*p), Quaternion(*q))
             now = motion.at(t)
             own = now.rotation.transpose @ (Vector(*p) - now.origin)
             assert abs(somewhere.support.surface.level(own)) < 1e-12

@@ -97,7 +97,7 @@ def test_what_ships_passes_on_every_surface(name: str) -> None:
     short = scenario.run(duration=min(1.0, float(scenario.timing.duration)))
     if short.events or (short.data.phase.values != 0).any():
         pytest.skip("it slips, flies or stops: a check is about rolling")
-    if short.system.support.motion.own:
+    if short.system.support.motion.coordinates:
         with pytest.raises(tr.InvalidValueError, match=r"support\.motion"):
             tr.check(short, scenario)
         return

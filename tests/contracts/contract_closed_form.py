@@ -22,7 +22,7 @@ NAMES = ("position", "velocity", "angular_velocity", "contact_force")
 
 
 class ClosedFormContract:
-    """Set `form`, and write `cases` and `outside`. It is for spheres with the same inertia about every axis.
+    """Set `form`, and write `cases` and `violations`. It is for spheres with the same inertia about every axis.
 
     A form for another body overrides `inertia` and `offset`.
     """
@@ -34,7 +34,7 @@ class ClosedFormContract:
         """Return systems of the domain, each with a start."""
         raise NotImplementedError
 
-    def outside(self) -> list[tuple[RollingSystem, State, str]]:
+    def violations(self) -> list[tuple[RollingSystem, State, str]]:
         """Return systems outside the domain, and a word that the refusal must name."""
         raise NotImplementedError
 
@@ -85,7 +85,9 @@ class ClosedFormContract:
             return self.offset(system, motion.motion_at(t)[0])
 
         def material_velocity(t: Any) -> Vector:
-            own = (of_start + gone for of_start, gone in zip(start.support, motion.own_at(t), strict=True))
+            own = (
+                of_start + gone for of_start, gone in zip(start.support, motion.support_coordinates_at(t), strict=True)
+            )
             return support.at(start.time + t, *own).material_velocity(motion.motion_at(t)[0] + offset(t))
 
         rho = offset(t)
@@ -127,9 +129,9 @@ class ClosedFormContract:
                 assert np.allclose(of_all, alone, rtol=0, atol=EXACT(64, size)), name
 
     def test_it_refuses_by_name_what_lies_outside(self) -> None:
-        assert self.outside()
-        for system, start, word in self.outside():
-            assert self.form.outside(system, start)
+        assert self.violations()
+        for system, start, word in self.violations():
+            assert self.form.violations(system, start)
             with pytest.raises(OutOfDomainError, match=word):
                 self.form.of(system, start)
             with pytest.raises(OutOfDomainError, match=word):
@@ -138,7 +140,7 @@ class ClosedFormContract:
 
     def test_it_is_found_for_what_lies_inside(self) -> None:
         for system, start in self.cases():
-            assert not self.form.outside(system, start)
+            assert not self.form.violations(system, start)
             r, _, _, R = self.form.of(system, start).motion_at(0.0)
             if R.dot(self.offset(system, r)) > 0:  # the support would have to pull: it lifts off
                 assert not isinstance(closed_form(system, start), self.form)

@@ -18,8 +18,8 @@ from trundle.mechanics.motions import Motion, SupportState
 class MotionContract:
     """Set `motion`. Its rates are checked against difference quotients of its rotation and origin.
 
-    A motion with coordinates of its own needs `own_at`, which says what they are at a time by another way than by
-    integrating `own_rates`; a free axle's are those of ω̇ = 0.
+    A motion with coordinates of its own needs `support_coordinates_at`, which says what they are at a time by another
+    way than by integrating `coordinate_rates`; a free axle's are those of ω̇ = 0.
     """
 
     motion: Motion
@@ -28,11 +28,11 @@ class MotionContract:
     def times(self) -> list[Any]:
         return numbers("times", 6, 4.0)
 
-    def own_at(self, t: Any) -> tuple[Any, ...]:  # noqa: ARG002
+    def support_coordinates_at(self, t: Any) -> tuple[Any, ...]:  # noqa: ARG002
         return ()
 
     def at(self, t: Any) -> SupportState:
-        return self.motion.at(t, *self.own_at(t))
+        return self.motion.at(t, *self.support_coordinates_at(t))
 
     def _carried(self, own: Vector) -> Callable[[Any], Vector]:
         """Return where a point of the support's material is, as a function of time."""
@@ -88,15 +88,19 @@ class MotionContract:
 
     @precisely
     def test_its_own_coordinates_change_as_it_says(self) -> None:
-        assert len(self.motion.own) == len(set(self.motion.own)) == len(self.motion.own_start())
+        assert (
+            len(self.motion.coordinates) == len(set(self.motion.coordinates)) == len(self.motion.initial_coordinates())
+        )
         for t in self.times():
-            own = self.own_at(t)
+            own = self.support_coordinates_at(t)
             moment = -self.motion.axle_torque(t, own) if self.motion.free else numbers("moment", 1)[0]
-            rates = self.motion.own_rates(t, own, moment)
+            rates = self.motion.coordinate_rates(t, own, moment)
             for i, rate in enumerate(rates):
-                assert abs(rate - slope(lambda t, i=i: self.own_at(t)[i], t)) <= EXACT(64, self.rate)
+                assert abs(rate - slope(lambda t, i=i: self.support_coordinates_at(t)[i], t)) <= EXACT(64, self.rate)
             assert len(rates) == len(own)
-        for start, at_start in zip(self.motion.own_start(), self.own_at(mpmath.mpf(0)), strict=True):
+        for start, at_start in zip(
+            self.motion.initial_coordinates(), self.support_coordinates_at(mpmath.mpf(0)), strict=True
+        ):
             assert abs(start - at_start) <= EXACT(4, 1 + abs(start))
 
     @precisely
@@ -112,18 +116,21 @@ class MotionContract:
     def test_it_runs_on_symbols(self) -> None:
         import heyoka
 
-        names = ("t", *self.motion.own)
+        names = ("t", *self.motion.coordinates)
         symbols = [heyoka.expression(name) for name in names]
         there = self.motion.at(*symbols).material_acceleration(Vector(0.3, -0.2, 0.1), Vector(0.1, 0.2, 0.3))
         compiled = heyoka.cfunc([part + 0.0 * symbols[0] for part in there], symbols)
         for t in map(float, self.times()):
-            values = [t, *map(float, self.own_at(mpmath.mpf(t)))]
+            values = [t, *map(float, self.support_coordinates_at(mpmath.mpf(t)))]
             one = self.motion.at(*values).material_acceleration(Vector(0.3, -0.2, 0.1), Vector(0.1, 0.2, 0.3))
             assert np.allclose(compiled(values), list(one), rtol=0, atol=EXACT(256, self.rate**2))
 
     def test_whole_arrays_of_times_are_one_call(self) -> None:
         times = np.array([float(t) for t in self.times()])
-        own = [np.array([float(self.own_at(t)[i]) for t in self.times()]) for i in range(len(self.motion.own))]
+        own = [
+            np.array([float(self.support_coordinates_at(t)[i]) for t in self.times()])
+            for i in range(len(self.motion.coordinates))
+        ]
         p = Vector(0.3, -0.2, 0.1)
         many = np.broadcast_to(self.motion.at(times, *own).material_velocity(p).array(), (times.size, 3))
         for i, (t, u) in enumerate(zip(times, many, strict=True)):

@@ -84,7 +84,7 @@ class ShapeContract:
             Q = q.matrix()
             (rho, C), (rho_general, C_general) = self.shape.contact(Q, n), Shape.contact(self.shape, Q, n)
             assert size_of(rho - rho_general) <= EXACT(16, size_of(rho_general))
-            assert size_of(C.whole - C_general.whole) <= EXACT(16, size_of(C_general.whole))
+            assert size_of(C.dense - C_general.dense) <= EXACT(16, size_of(C_general.dense))
 
     def test_a_whole_array_of_contacts_is_one_call(self) -> None:
         qs, ns = [floats(q) for q in quaternions("many", 5)], [floats(n) for n in directions("many n", 5)]
@@ -95,4 +95,4 @@ class ShapeContract:
             assert np.allclose(rho.array()[i], rho_one.array(), rtol=0, atol=EXACT(16, float(size_of(rho_one))))
             for row, row_one in zip(C.rows, C_one.rows, strict=True):
                 shown = np.broadcast_to(row.array(), (5, 3))[i]
-                assert np.allclose(shown, row_one.array(), rtol=0, atol=EXACT(16, float(size_of(C_one.whole))))
+                assert np.allclose(shown, row_one.array(), rtol=0, atol=EXACT(16, float(size_of(C_one.dense))))

@@ -74,8 +74,8 @@ class SurfaceContract:
     def test_a_body_is_put_down_where_it_touches(self) -> None:
         offset = Vector(mpmath.mpf("0.1"), mpmath.mpf("-0.2"), mpmath.mpf("-0.3"))
         for p in self.points() if self.mapped else []:
-            u, v = self.surface.put_down_at(p, offset)
-            assert size_of(self.surface.under(u, v, offset) - p) <= EXACT(16, self.length)
+            u, v = self.surface.coordinates_from_contact(p, offset)
+            assert size_of(self.surface.contact_from_coordinates(u, v, offset) - p) <= EXACT(16, self.length)
 
     @precisely
     def test_its_own_formulas_are_those_of_its_level(self) -> None:
@@ -102,7 +102,7 @@ class SurfaceContract:
     @precisely
     def test_it_is_defined_where_it_is(self) -> None:
         for p in self.points():
-            room = self.surface.inside(p)
+            room = self.surface.domain_margin(p)
             assert room is None or room > 0
 
     @precisely

@@ -57,7 +57,7 @@ class TestSphereOnPlane(ClosedFormContract):
             on_plane(loads=(tr.Drag(1.0), tr.Drag(0.5))),
         ]
 
-    def outside(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
+    def violations(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
         inside, _ = on_plane(rate=3.5)
         body, support = inside.body, inside.support
         top = tr.State((0.0, 0.0, 0.525), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
@@ -122,7 +122,7 @@ class TestCylinderOnCylinder(ClosedFormContract):
             in_pipe(log, tilt="-90 deg"),
         ]
 
-    def outside(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
+    def violations(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
         inside, start = in_pipe(BALL)
         swung = replace(inside, support=replace(inside.support, motion=tr.UnevenSpin(1.0, 0.1, 2.0)))
         top = tr.State((0.0, 0.0, 0.525), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))

@@ -54,7 +54,7 @@ class TestBallInUprightCylinder(InCylinder):
             in_pipe(BALL, **upright, loads=(tr.Force((0.0, 0.0, 1.0)),), velocity=(1.0, 0.0)),
         ]
 
-    def outside(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
+    def violations(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
         inside, start = in_pipe(BALL, tilt=0.0)
         wall = replace(inside, support=replace(inside.support, motion=tr.UnevenSpin(1.0, 0.1, 2.0)))
         return [
@@ -67,8 +67,10 @@ class TestBallInUprightCylinder(InCylinder):
     def test_logs_and_a_pull_across_are_not_its_own(self) -> None:
         upright = in_pipe(BALL, tilt=0.0)[0]
         log = replace(upright, body=tr.Body.cylinder(0.025, 0.1))
-        assert BallInUprightCylinder.outside(log) == ["the body is no sphere with isotropic inertia about its centre"]
-        assert BallInUprightCylinder.outside(in_pipe(BALL)[0]) == [
+        assert BallInUprightCylinder.violations(log) == [
+            "the body is no sphere with isotropic inertia about its centre"
+        ]
+        assert BallInUprightCylinder.violations(in_pipe(BALL)[0]) == [
             "gravity or a force pulls across the cylinder's axis"
         ]
 
@@ -87,7 +89,7 @@ class TestBallInLeaningCylinder(InCylinder):
             in_pipe(BALL, loads=(tr.Force((0.1, -0.3, 0.2)),), velocity=(0.1, 0.0)),
         ]
 
-    def outside(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
+    def violations(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
         inside, start = in_pipe(BALL, tilt="60 deg")
         swung = replace(inside, support=replace(inside.support, motion=tr.UnevenSpin(1.0, 0.1, 2.0)))
         return [
@@ -109,7 +111,7 @@ class OnPlane(ClosedFormContract):
         """Return what acts, worked out by the loads from place and Ω, and N from the normal components."""
         r, Omega, t, R = self._now
         up = Vector(mpmath.mpf(0), mpmath.mpf(0), mpmath.mpf(1))
-        turning = system.support.motion.at(t, *system.support.motion.own_start()).angular_velocity
+        turning = system.support.motion.at(t, *system.support.motion.initial_coordinates()).angular_velocity
         motion = BodyMotion(t, system.body.mass, r, V, Quaternion(1.0, 0.0, 0.0, 0.0), Omega, up, turning)
         tilt, weight = mpmath.mpf(system.support.tilt), mpmath.mpf(system.body.mass) * system.gravity
         force = Vector(weight * mpmath.sin(tilt), mpmath.mpf(0), -weight * mpmath.cos(tilt))
@@ -142,7 +144,7 @@ class TestSphereInMovingAir(OnPlane):
             on_plane(loads=(tr.RollingCouple(1e-5), tr.Torque((1e-4, 2e-4, 1e-5)))),
         ]
 
-    def outside(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
+    def violations(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
         inside, start = on_plane(rate=3.5, loads=(tr.Drag(0.01, 3.5),))
         tumbling = replace(inside, support=replace(inside.support, motion=TUMBLE))
         return [
@@ -165,7 +167,7 @@ class TestSphereComingToRest(OnPlane):
             on_plane(loads=(tr.RollingResistance(1e-4), tr.Force((0.0, 0.0, -0.5))), velocity=(0.0, -0.6)),
         ]
 
-    def outside(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
+    def violations(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
         inside, start = on_plane(loads=(tr.RollingResistance(1e-4),))
         turning = on_plane(rate=1.0, loads=(tr.RollingResistance(1e-4),))
         return [
@@ -201,7 +203,7 @@ class TestSphereOnUnsteadyPlane(OnPlane):
             on_plane(rate=2.0, loads=(*varying, tr.Drag(2.0))),
         ]
 
-    def outside(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
+    def violations(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
         inside, start = self.cases()[0]
         others = [replace(inside, support=replace(inside.support, motion=m)) for m in (TUMBLE, tr.Wobble(2.0, 0.1))]
         return [

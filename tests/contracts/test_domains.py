@@ -63,9 +63,11 @@ def test_a_later_stage_is_asked_only_of_what_passes_the_earlier() -> None:
     start = pipe.place((0.5, 0.0), (0.2, 0.1))
     across = replace(pipe, support=tr.Support(tr.Cylinder(0.5), tilt="90 deg"), loads=())
     both = ["gravity or a force pulls along the cylinder's axis", "a torque acts on the body"]
-    assert CylinderOnCylinder.outside(pipe, start) == both
-    assert CylinderOnCylinder.outside(replace(pipe, support=replace(pipe.support, surface=tr.Plane())), start) == [
+    assert CylinderOnCylinder.violations(pipe, start) == both
+    assert CylinderOnCylinder.violations(replace(pipe, support=replace(pipe.support, surface=tr.Plane())), start) == [
         "the surface is a Plane, not a Cylinder"
     ]
-    assert CylinderOnCylinder.outside(across, start) == ["the start moves along the cylinder's axis or spins across it"]
-    assert CylinderOnCylinder.outside(across) == []
+    assert CylinderOnCylinder.violations(across, start) == [
+        "the start moves along the cylinder's axis or spins across it"
+    ]
+    assert CylinderOnCylinder.violations(across) == []

@@ -121,7 +121,7 @@ def test_it_refuses_with_its_domain_and_every_reason(form: type[ClosedForm]) -> 
     refused = refusals(form.phases[0], system, start)
     assert f"The closed form {form.equation} ({form.name}) covers {form.domain()}." in refused
     assert not re.search(r"  |, ,|\.\.| ,", form.domain())
-    reasons = form.outside(system, start)
+    reasons = form.violations(system, start)
     assert len(reasons) > 1
     assert all(reason in refused for reason in reasons)
     assert form_of_phase(form.phases[0], system, start, ()) is None

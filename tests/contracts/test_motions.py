@@ -82,14 +82,14 @@ class TestWobble(MotionContract):
 class TestSpinByARamp(MotionContract):
     motion = SpinBy("2 - 0.5*t")
 
-    def own_at(self, t: Any) -> tuple[Any, ...]:
+    def support_coordinates_at(self, t: Any) -> tuple[Any, ...]:
         return (2 * t - t * t / 4,)
 
 
 class TestSpinByAStartUp(MotionContract):
     motion = SpinBy("3.5*(1 - exp(-2*t)) + 0.25*sin(5*t)")
 
-    def own_at(self, t: Any) -> tuple[Any, ...]:
+    def support_coordinates_at(self, t: Any) -> tuple[Any, ...]:
         return (3.5 * (t + mpmath.expm1(-2 * t) / 2) + 0.05 * (1 - mpmath.cos(5 * t)),)
 
     @pytest.mark.parametrize("rate", ["2*x", "t.real", "3 m", "t**0.5", None, float("inf")])
@@ -113,7 +113,7 @@ class TestSpinByAStartUp(MotionContract):
 class TestFreeAxle(MotionContract):
     motion = FreeAxle(0.02, rate=1.5, motor_torque="0.1*sin(t)", bearing_drag=0.01, bearing_torque=0.003)
 
-    def own_at(self, t: Any) -> tuple[Any, ...]:
+    def support_coordinates_at(self, t: Any) -> tuple[Any, ...]:
         return (1.5 * t, mpmath.mpf(1.5))
 
     def test_bearings_brake_either_way_and_let_go_at_rest(self) -> None:
@@ -213,18 +213,18 @@ class TestEverythingAtOnce(MotionContract):
 class TestAnUnevenWobble(MotionContract):
     motion = Combined((SpinBy("2.5 + 0.3*cos(4*t)"), Tilt(0.2, axis=(1.0, 0.0, 0.0))))
 
-    def own_at(self, t: Any) -> tuple[Any, ...]:
+    def support_coordinates_at(self, t: Any) -> tuple[Any, ...]:
         return (2.5 * t + 0.3 / 4 * mpmath.sin(4 * t),)
 
 
 class TestTwoGivenSpins(MotionContract):
     motion = Combined((SpinBy("t"), Rock(0.3, 2.0), SpinBy("1 - t")))
 
-    def own_at(self, t: Any) -> tuple[Any, ...]:
+    def support_coordinates_at(self, t: Any) -> tuple[Any, ...]:
         return (t * t / 2, t - t * t / 2)
 
     def test_their_coordinates_have_names_of_their_own(self) -> None:
-        assert self.motion.own == ("angle", "angle_2")
+        assert self.motion.coordinates == ("angle", "angle_2")
 
 
 class TestSpinsThatAdd(MotionContract):
@@ -237,14 +237,14 @@ class TestSpinsThatAdd(MotionContract):
 class TestAShakenFreeTable(MotionContract):
     motion = Combined((Shake((0.02, -0.01, 0.03), 4.0), FreeAxle(0.02, rate=1.5, bearing_drag=0.01)))
 
-    def own_at(self, t: Any) -> tuple[Any, ...]:
+    def support_coordinates_at(self, t: Any) -> tuple[Any, ...]:
         return (1.5 * t, mpmath.mpf(1.5))
 
     def test_it_is_as_free_as_its_last_part(self) -> None:
         assert self.motion.free
         assert self.motion.inertia == 0.02
         assert self.motion.axle_torque(0.0, (0.0, 2.0)) == -0.02
-        assert self.motion.own_rates(0.0, (0.0, 2.0), 0.06) == (2.0, pytest.approx(2.0))
+        assert self.motion.coordinate_rates(0.0, (0.0, 2.0), 0.06) == (2.0, pytest.approx(2.0))
 
     @pytest.mark.parametrize(
         ("parts", "named"),

@@ -217,7 +217,7 @@ class UprightDisc(ClosedForm):
     def period(self):
         return math.inf
 
-    def pace(self, duration):
+    def max_rate(self, duration):
         return math.hypot(*self.velocity) / self.radius
 
     def motion_at(self, t):

@@ -209,17 +209,17 @@ def test_what_looks_the_same_all_round_says_so(shape: Shape, symmetric: bool) ->
 
 def test_where_a_shape_ends() -> None:
     down, level = Vector(0.0, 0.0, -1.0), Vector(0.0, 1.0, 0.0)
-    assert Sphere(1.0).covers(down) is None
+    assert Sphere(1.0).validity_margin(down) is None
     half = Hemisphere(1.0)
-    assert half.covers(down) == 1.0
-    assert half.covers(level) == 0.0
-    assert half.covers(-down) < 0
+    assert half.validity_margin(down) == 1.0
+    assert half.validity_margin(level) == 0.0
+    assert half.validity_margin(-down) < 0
     across_axis = HalfCylinder(1.0)
-    assert across_axis.covers(Vector(-1.0, 0.0, 0.0)) == 1.0
-    assert across_axis.covers(level) == 0.0
+    assert across_axis.validity_margin(Vector(-1.0, 0.0, 0.0)) == 1.0
+    assert across_axis.validity_margin(level) == 0.0
     for rim in (Disc(1.0), Torus(1.0, 0.1)):
-        assert rim.covers(level) == pytest.approx(1.0)
-        assert rim.covers(Vector(2e-6, 0.0, -1.0)) > 0 > rim.covers(Vector(5e-7, 0.0, -1.0))
+        assert rim.validity_margin(level) == pytest.approx(1.0)
+        assert rim.validity_margin(Vector(2e-6, 0.0, -1.0)) > 0 > rim.validity_margin(Vector(5e-7, 0.0, -1.0))
 
 
 def test_a_centre_may_have_units_and_be_a_list() -> None:

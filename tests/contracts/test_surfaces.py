@@ -110,8 +110,8 @@ class TestBowl(SurfaceContract):
     def test_it_ends_at_its_rim(self) -> None:
         edge = self.surface.point(mp("0.5"), mp(0))
         above = Vector(edge.x, edge.y, edge.z + self.side * mp("0.001"))
-        assert self.surface.inside(edge) == 0 > self.surface.inside(above)
-        assert type(self.surface)(0.5).inside(edge) is None
+        assert self.surface.domain_margin(edge) == 0 > self.surface.domain_margin(above)
+        assert type(self.surface)(0.5).domain_margin(edge) is None
 
 
 class TestDome(TestBowl):
@@ -152,7 +152,7 @@ class TestInsideOfCone(SurfaceContract):
     @precisely
     def test_it_ends_at_its_apex(self) -> None:
         for p in self.points():
-            assert self.surface.inside(p) > 0 > self.surface.inside(-p)
+            assert self.surface.domain_margin(p) > 0 > self.surface.domain_margin(-p)
 
 
 class TestOutsideOfCone(TestInsideOfCone):

@@ -115,7 +115,7 @@ def test_a_run_goes_on_as_it_went_from_where_nobody_nudged_it(name: str, loads: 
     at = {key: now[key].values.tolist() for key in ("position", "velocity", "angular_velocity", "contact")}
     at |= {
         "time": float(now.time),
-        "support": [float(now[f"support_{own}"]) for own in first.system().support.motion.own],
+        "support": [float(now[f"support_{own}"]) for own in first.system().support.motion.coordinates],
     }
     start = nudged(first, at | {"orientation": now.orientation.values.tolist()}, NO)
     assert ("time" in start) == (bool(loads) or name not in ("table", "bowl")), "a round surface lies where it was"

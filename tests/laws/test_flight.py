@@ -17,7 +17,7 @@ from tests.tolerances import EXACT, SOLVER
 
 import trundle as tr
 from trundle.mechanics.algebra import Quaternion, Vector
-from trundle.mechanics.contact import touch
+from trundle.mechanics.contact import contact_at
 from trundle.mechanics.shapes import Disc, Hemisphere, Sphere, Torus
 from trundle.mechanics.system import STANDARD_GRAVITY
 from trundle.solve.laws import FlightLaw
@@ -75,11 +75,11 @@ def aimed(system: tr.RollingSystem, seed: int, miss: float) -> tr.State:
     first, then = (Rotation.from_quat(one, scalar_first=True) for one in (q, turned))
     later = then.apply(then.inv().apply(first.apply(MOMENTS * first.inv().apply(Omega))) / MOMENTS)
     line, p = np.array([np.sin(HILL), 0.0, -np.cos(HILL)]), miss * np.array([np.sin(HILL), 0.0, -np.cos(HILL)])
-    there = touch(system, 0.0, Vector(*p.tolist()), Quaternion(*turned.tolist()))
+    there = contact_at(system, 0.0, Vector(*p.tolist()), Quaternion(*turned.tolist()))
     n, rho, C = (
         there.normal.array(),
         there.offset.array(),
-        np.array([tuple(row) for row in there.inverse_curvature.whole.rows]),
+        np.array([tuple(row) for row in there.inverse_curvature.dense.rows]),
     )
     V = np.array([0.0, draw.uniform(0.7, 1.5), 0.0])
     V = V - line * (line @ (V + np.cross(later, rho) + C @ np.cross(later, n)))  # p moves neither up nor down
@@ -231,7 +231,7 @@ def test_the_nearest_point_is_where_geometry_has_it(shape: str, surface: str, se
 def as_it_was_once(self: FlightLaw, system: tr.RollingSystem, time: Array, states: Array) -> Samples:
     """Record the centre of mass as p − ρ + g n, as flights did that did not carry it."""
     q = Quaternion.of(states[:, 3:7] / np.linalg.norm(states[:, 3:7], axis=1, keepdims=True))
-    contact = touch(system, time, Vector.of(states[:, :3]), q)
+    contact = contact_at(system, time, Vector.of(states[:, :3]), q)
     centre = contact.centre + contact.normal * states[:, 13]
     right = RECORD(self, system, time, states)
     return replace(right, position=np.broadcast_to(centre.array(), right.position.shape).copy())

@@ -10,7 +10,7 @@ from tests.tolerances import EXACT, SOLVER
 
 import trundle as tr
 from trundle.mechanics.algebra import Quaternion, Vector
-from trundle.mechanics.contact import touch
+from trundle.mechanics.contact import contact_at
 from trundle.mechanics.impact import Impact, land
 
 A, B, MASS, MOMENT, LEAN = 0.3, 0.1, 2.0, 0.05, 0.4
@@ -21,7 +21,7 @@ def landing(slip: tuple[float, float], friction: float | None, restitution: floa
     """Let an ellipsoid come down leaning in the plane of the first and third axis."""
     body = tr.Body(MASS, tr.Principal(0.04, MOMENT, 0.03), tr.Ellipsoid(A, 0.2, B))
     floor = tr.RollingSystem(body, tr.Support(tr.Plane(), friction=friction, restitution=restitution))
-    contact = touch(floor, 0.0, Vector(0.0, 0.0, 0.0), Q)
+    contact = contact_at(floor, 0.0, Vector(0.0, 0.0, 0.0), Q)
     return land(floor, contact, Q, Vector(slip[0], 0.0, slip[1])), contact.offset
 
 
@@ -88,7 +88,7 @@ def test_slip_that_turns_on_the_way(friction: float, slip: tuple[float, float, f
     principal = (0.04, MOMENT, 0.03)
     body = tr.Body(MASS, tr.Principal(*principal), tr.Ellipsoid(A, 0.2, B))
     floor = tr.RollingSystem(body, tr.Support(tr.Plane(), friction=friction))
-    contact = touch(floor, 0.0, Vector(0.0, 0.0, 0.0), turned)
+    contact = contact_at(floor, 0.0, Vector(0.0, 0.0, 0.0), turned)
     found = land(floor, contact, turned, Vector(*slip)).impulse
     with mpmath.workdps(25):
         Q = mpmath.matrix([[float(part) for part in row] for row in turned.matrix().rows])
@@ -118,7 +118,7 @@ def test_a_landing_in_which_slip_turns_does_not_depend_on_the_mass(
     def struck(times: float) -> Impact:
         body = tr.Body(MASS * times, tr.Principal(0.04 * times, 0.05 * times, 0.03 * times), tr.Ellipsoid(A, 0.2, B))
         floor = tr.RollingSystem(body, tr.Support(tr.Plane(), friction=0.4, restitution=0.8))
-        return land(floor, touch(floor, 0.0, Vector(0.0, 0.0, 0.0), Q), Q, Vector(*slip))
+        return land(floor, contact_at(floor, 0.0, Vector(0.0, 0.0, 0.0), Q), Q, Vector(*slip))
 
     found, one = struck(mass), struck(1.0)
     speed, turning = one.velocity_change.norm(), one.angular_velocity_change.norm()

@@ -45,9 +45,13 @@ def system_of(
 def start_of(system: tr.RollingSystem, **start: Any) -> tr.State:
     """A start on a support that turns as this one does at first; a free axle has its own coordinates besides."""
     motion = system.support.motion
-    still = replace(system, support=replace(system.support, motion=tr.Spin(motion.mean_rate))) if motion.own else system
+    still = (
+        replace(system, support=replace(system.support, motion=tr.Spin(motion.mean_rate)))
+        if motion.coordinates
+        else system
+    )
     given_ = {"position": (0.1, 0.03), "velocity": (0.05, 0.2), "spin": 2.0, "orientation": TILTED} | start
-    return replace(still.place(**given_), support=motion.own_start())
+    return replace(still.place(**given_), support=motion.initial_coordinates())
 
 
 def followed(law: Any, system: tr.RollingSystem, start: tr.State, duration: float) -> Samples:
@@ -75,7 +79,7 @@ def ran(system: tr.RollingSystem, duration: float = 2.0, **start: Any) -> Sample
 
 def drift(name: str, system: tr.RollingSystem, at: Samples) -> float:
     """How much an integral changes, beside its largest term."""
-    terms = NAMED[name].terms(system, Record(at.motion(system), Vector.of(at.contact), at.support_own))
+    terms = NAMED[name].terms(system, Record(at.motion(system), Vector.of(at.contact), at.support_columns))
     rows = [term.array() if isinstance(term, Vector) else np.asarray(term, dtype=float) for term in terms]
     size = max(float(np.abs(row).max()) for row in rows)
     total = sum(rows[1:], rows[0])
@@ -244,7 +248,7 @@ def test_free_tables(motion: Any, surface: Any, loads: Any, tilt: float, kept: s
     system = system_of(BALL, surface, motion, loads, tilt)
     assert named(system) == kept
     at = followed(RollingLaw(), system, start_of(system), 1.5)
-    assert np.ptp(at.own[:, 1]) > 1e-3  # the table does feel the ball
+    assert np.ptp(at.support_coordinates[:, 1]) > 1e-3  # the table does feel the ball
     for name in kept:
         assert drift(name, system, at) <= SOLVER(20 * turned(at), 1e-12), name
     free = system_of(BALL, surface, replace(motion, bearing_drag=0.0, motor_torque=0.0))
@@ -262,7 +266,7 @@ def drift_with(like: tr.RollingSystem, system: tr.RollingSystem, name: str, at: 
 
 
 def _record(system: tr.RollingSystem, at: Samples) -> Record:
-    return Record(at.motion(system), Vector.of(at.contact), at.support_own)
+    return Record(at.motion(system), Vector.of(at.contact), at.support_columns)
 
 
 # --- Routh's pair in closed form ------------------------------------------------------------------------

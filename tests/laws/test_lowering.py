@@ -53,14 +53,18 @@ def numbers_of(law: Law, system: tr.RollingSystem) -> list[float]:
 @pytest.mark.parametrize(("reference", "later"), [(0.0, 0.3), (2.75, 0.0), (2.75, 0.3)])
 def test_what_is_compiled_is_the_law(name: str, phase: str, reference: float, later: float) -> None:
     system, law = SYSTEMS[name], LAWS[phase]
-    state, extras = numbers_of(law, system), [0.7, 0.2, -0.4, 0.5][: law.extras]
+    state, event_parameters = numbers_of(law, system), [0.7, 0.2, -0.4, 0.5][: law.event_parameters]
     ready = lower(system, law)
-    found = ready.tape.function(ready.outputs)([later, *state, *ready.values([*numbers(system), *extras], reference)])
+    found = ready.tape.function(ready.outputs)(
+        [later, *state, *ready.values([*numbers(system), *event_parameters], reference)]
+    )
     time = reference + later
-    stops = law.stops(system, time, state, extras)
-    wanted = [*law.rates(system, time, state), *(stops[name] for name in ready.stops)]
-    other = law.stops(system, time + 0.7, [*state[:7], *(2 * part for part in state[7:])], extras)
-    assert all(other[name] == stops[name] for name in set(stops) - set(ready.stops))  # left out: what never changes
+    stops = law.event_functions(system, time, state, event_parameters)
+    wanted = [*law.rates(system, time, state), *(stops[name] for name in ready.event_functions)]
+    other = law.event_functions(system, time + 0.7, [*state[:7], *(2 * part for part in state[7:])], event_parameters)
+    assert all(
+        other[name] == stops[name] for name in set(stops) - set(ready.event_functions)
+    )  # left out: what never changes
     scale = max(abs(value) for value in wanted)
     assert np.abs(np.array(found) - wanted).max() <= EXACT(300, scale)
 
@@ -130,7 +134,7 @@ def test_a_bowl_that_has_turned_for_a_million_seconds_is_known_as_well_as_a_fres
 def test_tidying_puts_the_contact_on_the_support_and_leaves_the_rest(name: str, phase: str) -> None:
     system, law, time = SYSTEMS[name], LAWS[phase], 1.25
     ready, support = lower(system, law), system.support.motion.at(time)
-    parameters = ready.values([*numbers(system), *[0.0] * law.extras], time)
+    parameters = ready.values([*numbers(system), *[0.0] * law.event_parameters], time)
 
     def level(p: Any) -> float:
         return float(system.support.surface.level(support.rotation.transpose @ (Vector(*p) - support.origin)))

@@ -60,7 +60,7 @@ def test_a_free_table_and_its_ball_keep_angular_momentum_and_energy() -> None:
     now = roll(system, 0.0, p, UPRIGHT, Omega, own)
     V, moment = now.velocity, K * MASS * RADIUS**2
     V_rate = acceleration(now, Vector(0.0, 0.0, -G))
-    turn, growth = system.support.motion.own_rates(0.0, own, now.axle_moment)
+    turn, growth = system.support.motion.coordinate_rates(0.0, own, now.axle_moment)
     r = p + E_Z * RADIUS
     momentum = inertia * growth + MASS * r.cross(V_rate).z + moment * now.angular_acceleration.z
     energy = inertia * turn * growth + MASS * V.dot(V_rate) + moment * Omega.dot(now.angular_acceleration)
@@ -72,7 +72,7 @@ def test_a_free_table_and_its_ball_keep_angular_momentum_and_energy() -> None:
 def test_a_motor_turns_the_table_alone_under_a_ball_in_the_middle() -> None:
     system = on(tr.FreeAxle(0.004, motor_torque="0.02*cos(t)", bearing_drag=0.001))
     now = roll(system, 0.0, Vector(0.0, 0.0, 0.0), UPRIGHT, Vector(0.0, 0.0, 3.0), (0.0, 2.0))
-    _, growth = system.support.motion.own_rates(0.0, (0.0, 2.0), now.axle_moment)
+    _, growth = system.support.motion.coordinate_rates(0.0, (0.0, 2.0), now.axle_moment)
     assert growth == pytest.approx((0.02 - 0.001 * 2.0) / 0.004, rel=1e-14)
     assert now.angular_acceleration.norm() == 0.0  # touching at a point, it is not turned about the normal
 

@@ -69,10 +69,10 @@ class Driven(Motion):
     """A motion whose coordinates are known functions of the time: of a free axle, for ω̇ = 0."""
 
     motion: Motion
-    own_at: Any
+    support_coordinates_at: Any
 
     def at(self, time: Any) -> SupportState:
-        return self.motion.at(time, *self.own_at(time))
+        return self.motion.at(time, *self.support_coordinates_at(time))
 
 
 def applied(now: Any, n: Vector, omega: Vector, gravity: Vector) -> tuple[Vector, Vector, Vector, Vector]:
@@ -95,10 +95,12 @@ def applied(now: Any, n: Vector, omega: Vector, gravity: Vector) -> tuple[Vector
 @pytest.mark.parametrize(("body", "surface", "motion"), CASES, ids=[" ".join(case) for case in CASES])
 @precisely
 def test_the_law_is_that_of_the_multipliers(body: str, surface: str, motion: str) -> None:
-    moving, own_at = MOTIONS[motion]
+    moving, support_coordinates_at = MOTIONS[motion]
     seed, t, tilt = f"{body} {surface} {motion}", mpmath.mpf("0.625"), mpmath.mpf(0.25)
     system = tr.RollingSystem(BODIES[body], tr.Support(SURFACES[surface], motion=moving, tilt=0.25), LOADS)
-    known = tr.RollingSystem(BODIES[body], tr.Support(SURFACES[surface], motion=Driven(moving, own_at), tilt=0.25))
+    known = tr.RollingSystem(
+        BODIES[body], tr.Support(SURFACES[surface], motion=Driven(moving, support_coordinates_at), tilt=0.25)
+    )
     state = known.support.motion.at(t)
     there = vectors(seed, 1, size=0.3)[0]
     own = SURFACES[surface].point(there.x, there.y)
@@ -114,16 +116,18 @@ def test_the_law_is_that_of_the_multipliers(body: str, surface: str, motion: str
     weight = Vector(m * g * mpmath.sin(tilt), 0, -m * g * mpmath.cos(tilt))
     now = (t, case.point - rho, velocity, q, Omega)
     F, K, rubbing, couple = applied(now, n, state.angular_velocity, weight)
-    V_rate, Omega_rate, R, omega_rate = solved(case, velocity, rho, n, p_at, moving, own_at(t), (F, K, rubbing, couple))
+    V_rate, Omega_rate, R, omega_rate = solved(
+        case, velocity, rho, n, p_at, moving, support_coordinates_at(t), (F, K, rubbing, couple)
+    )
 
-    found = roll(system, t, case.point, q, Omega, own_at(t))
+    found = roll(system, t, case.point, q, Omega, support_coordinates_at(t))
     assert size_of(found.velocity - velocity) <= EXACT(64, 4)
     assert size_of(found.point_rate - slope(p_at)) <= EXACT(64, 4)
     assert size_of(found.angular_acceleration - Omega_rate) <= EXACT(2048, size_of(Omega_rate))
     assert size_of(found.reaction - R) <= EXACT(2048, size_of(R))
     assert size_of(found.reaction + F - V_rate * m) <= EXACT(2048, size_of(R))
     if moving.free:
-        rates = moving.own_rates(t, own_at(t), found.axle_moment)
+        rates = moving.coordinate_rates(t, support_coordinates_at(t), found.axle_moment)
         assert abs(rates[-1] - omega_rate) <= EXACT(2048, abs(omega_rate))
         assert abs(omega_rate) > 0.01
 

@@ -21,7 +21,7 @@ from tests.tolerances import EXACT
 
 import trundle as tr
 from trundle.mechanics.algebra import Matrix, Quaternion, Vector
-from trundle.mechanics.contact import roll, touch
+from trundle.mechanics.contact import contact_at, roll
 from trundle.mechanics.loads import BodyMotion
 from trundle.mechanics.shapes import Ellipsoid, Sphere, Torus
 
@@ -178,7 +178,7 @@ def test_the_law_is_that_of_the_multipliers(body: str, surface: str, motion: str
 def test_the_normal_leans_as_the_shape_operator_says(body: str, surface: str, motion: str) -> None:
     # ṅ = ω×n + S w, the step from which T1 is derived.
     case = case_of(body, surface, motion)
-    contact = touch(case.system, case.time, case.point, case.orientation)
+    contact = contact_at(case.system, case.time, case.point, case.orientation)
     velocity = contact.rolling_velocity(case.angular_velocity)
     p_at = contact_after(case, velocity)
     n_rate = slope(lambda h: normal_at(case, case.time + h, p_at(h)))
@@ -195,7 +195,7 @@ def test_the_normal_leans_as_the_shape_operator_says(body: str, surface: str, mo
 def test_slip_is_added_to_the_contact_kinematics() -> None:
     # (T1) with s: sliding without turning carries the contact along with the body over a plane.
     case = case_of("ellipsoid", "plane", "fixed")
-    contact = touch(case.system, case.time, case.point, case.orientation)
+    contact = contact_at(case.system, case.time, case.point, case.orientation)
     slip, zero = (
         Vector(mpmath.mpf(1), mpmath.mpf(2), mpmath.mpf(0)),
         Vector(mpmath.mpf(0), mpmath.mpf(0), mpmath.mpf(0)),

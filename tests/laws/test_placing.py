@@ -13,7 +13,7 @@ from tests.tolerances import EXACT, SOLVER
 
 import trundle as tr
 from trundle.mechanics.algebra import Quaternion, Vector
-from trundle.mechanics.nearest import settle
+from trundle.mechanics.nearest import closest_contact
 from trundle.mechanics.shapes import Disc, Ellipsoid, Hemisphere, Sphere, Torus
 from trundle.solve.samples import FLIGHT
 
@@ -152,7 +152,7 @@ def test_what_is_put_down_touches_where_it_was_asked_for_or_is_refused(shape: st
             start = system.place(place, orientation=tuple(draw.normal(size=4)))
         except tr.InvalidValueError:
             continue
-        contact = settle(system, 0.0, Vector(*start.position), Quaternion(*start.orientation))
+        contact = closest_contact(system, 0.0, Vector(*start.position), Quaternion(*start.orientation))
         assert np.abs(contact.point.array() - asked).max() <= SOLVER(10, 1e-13)
         assert abs(np.linalg.norm(contact.centre.array() - start.position)) <= SOLVER(10, 1e-13)
         begun += 1

@@ -15,7 +15,7 @@ from tests.tolerances import EXACT
 import trundle as tr
 from trundle.errors import InvalidValueError
 from trundle.mechanics.algebra import Quaternion, Vector
-from trundle.mechanics.contact import Contact, touch
+from trundle.mechanics.contact import Contact, contact_at
 from trundle.mechanics.fitting import check_curvature, check_place, check_start, fits, room, too_big
 from trundle.mechanics.overlap import depth
 from trundle.mechanics.shapes import Ellipsoid
@@ -30,7 +30,7 @@ def of_ball(radius: Any, surface: Surface) -> tr.RollingSystem:
 
 
 def at(system: tr.RollingSystem, u: Any, v: Any) -> Contact:
-    return touch(system, 0.0, system.support.surface.point(u, v), STILL)
+    return contact_at(system, 0.0, system.support.surface.point(u, v), STILL)
 
 
 # --- the curvature --------------------------------------------------------------------------------------------------
@@ -84,7 +84,7 @@ def test_it_can_be_an_event_of_arrays_and_of_symbols() -> None:
     sympy = pytest.importorskip("sympy")
     system = of_ball(0.25, tr.Paraboloid(0.5))
     x = np.array([0.0, 0.1, 0.2])
-    several = fits(touch(system, 0.0, system.support.surface.point(x, 0.0 * x), STILL))
+    several = fits(contact_at(system, 0.0, system.support.surface.point(x, 0.0 * x), STILL))
     one = [fits(at(system, float(u), 0.0)) for u in x]
     assert np.abs(several - one).max() <= EXACT(8, 1)
     u = sympy.Symbol("u", real=True)

@@ -17,7 +17,7 @@ from tests.tolerances import EXACT, SOLVER
 
 import trundle as tr
 from trundle.mechanics.algebra import Matrix, Quaternion, Vector
-from trundle.mechanics.contact import touch
+from trundle.mechanics.contact import contact_at
 from trundle.mechanics.impact import Impact, _Course, land
 from trundle.verify.course import Course
 
@@ -37,7 +37,7 @@ def sphere(k: float = 0.4) -> tr.Body:
 
 def bounced(system: tr.RollingSystem, V: tuple[float, ...], Omega: tuple[float, ...]) -> tuple[Array, Array]:
     """Return V and Ω of a ball after a landing."""
-    contact = touch(system, 0.0, Vector(0.0, 0.0, 0.0), STILL)
+    contact = contact_at(system, 0.0, Vector(0.0, 0.0, 0.0), STILL)
     struck = land(system, contact, STILL, contact.slip_velocity(Vector(*V), Vector(*Omega)))
     return (Vector(*V) + struck.velocity_change).array(), (Vector(*Omega) + struck.angular_velocity_change).array()
 
@@ -165,7 +165,7 @@ def bodies(rng: np.random.Generator) -> tuple[tr.Body, Quaternion]:
 def struck(body: tr.Body, q: Quaternion, slip: Array, e: float, e_t: float, mu: float | None) -> tuple[Impact, Array]:
     """Return what a landing does, and M, from the inertia tensor and ρ with NumPy."""
     system = floor(body, e, e_t, mu)
-    contact = touch(system, 0.0, Vector(0.0, 0.0, 0.0), q)
+    contact = contact_at(system, 0.0, Vector(0.0, 0.0, 0.0), q)
     x, y, z = contact.offset.array()
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     J = np.array([list(row) for row in body.inertia_in_space(q.matrix()).rows])

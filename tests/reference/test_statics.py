@@ -17,7 +17,7 @@ import trundle as tr
 from trundle.analysis.statics import rest
 from trundle.errors import InvalidValueError
 from trundle.mechanics.algebra import ZERO, Quaternion, Vector
-from trundle.mechanics.contact import roll, touch
+from trundle.mechanics.contact import contact_at, roll
 from trundle.mechanics.loads import BodyMotion, Load
 from trundle.solve.tracing import state_rates
 
@@ -422,7 +422,7 @@ def test_the_work_is_the_slope_of_the_energy() -> None:
     system = in_trough(WEIGHTED, loads=(tr.Force((0.3, 0.4, 0.0)),))
     start = system.place((0.4, 0.0), roll=0.3)
     q = Quaternion(*start.orientation)
-    p = touch(system, 0.0, Vector(0.5 * math.cos(0.4), 0.5 * math.sin(0.4), 0.0), q).point
+    p = contact_at(system, 0.0, Vector(0.5 * math.cos(0.4), 0.5 * math.sin(0.4), 0.0), q).point
     line = lay(system, 0.0, p, q, q.matrix() @ Vector(0.0, 0.0, 1.0), (3.0, 40.0))
     first = rest.potential(system, 0.0, p, q)
     for angle in np.linspace(line.low, line.high, 9):

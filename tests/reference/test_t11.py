@@ -52,7 +52,7 @@ class TestSlidingSphere(ClosedFormContract):
             on_cloth(tilt=0.2, loads=(tr.Force((0.3, 0.4, -1.0)),)),
         ]
 
-    def outside(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
+    def violations(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
         oblong = tr.Body(1.0, tr.Principal(1e-2, 2e-2, 2.5e-2), BALL.shape)
         pipe = tr.RollingSystem(BALL, tr.Support(tr.Cylinder(0.5), tilt="90 deg", friction=0.01))
         return [

@@ -46,7 +46,7 @@ class TestSphereOnSphere(ClosedFormContract):
             on_sphere(surface=bowl),  # on the bottom at rest
         ]
 
-    def outside(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
+    def violations(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
         inside, start = on_sphere(surface=tr.Bowl(0.9), position=(0.5, 0.0))
         turning = replace(inside, support=replace(inside.support, motion=tr.Spin(1.0)))
         return [
@@ -130,11 +130,11 @@ class TestFromAnyStart:
     def test_a_start_that_balances_is_the_one_with_nothing_aside(self) -> None:
         for aside in (0.0, 1e-12, 1e-30):
             system, start = on_sphere(surface=tr.Dome(1e9), position=(aside, 0.0))
-            assert bool(SphereOnSphere.outside(system, start)) == (aside == 0.0)
+            assert bool(SphereOnSphere.violations(system, start)) == (aside == 0.0)
 
     def test_beside_the_top_of_a_large_dome_a_way_aside_is_not_small(self) -> None:
         system, start = on_sphere(surface=tr.Dome(1e12), position=(0.002, 0.0), velocity=(0.0, 1e-6))
-        assert "out of the plane" in SphereOnSphere.outside(system, start)[0]
+        assert "out of the plane" in SphereOnSphere.violations(system, start)[0]
 
 
 def angle_from_the_top(event: Any, radius: float) -> float:

@@ -59,7 +59,7 @@ class TestSphereOnFreePlane(ClosedFormContract):
     def cases(self) -> list[tuple[tr.RollingSystem, tr.State]]:
         return list(CASES.values())
 
-    def outside(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
+    def violations(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
         return [
             (*on_table(tilt=0.1), "pushes along the plane"),
             (*on_table(bearing=0.1), "bearing torque"),
@@ -75,8 +75,10 @@ class TestSphereOnFreePlane(ClosedFormContract):
             for t in map(abs, numbers("instants", 3, self.span)):
                 r, _, _, R = motion.motion_at(t)
                 moment = -(r.x * R.y - r.y * R.x)
-                angle_rate, rate_rate = (slope(lambda t, i=i, motion=motion: motion.own_at(t)[i], t) for i in range(2))
-                rate = mpf(start.support[1]) + motion.own_at(t)[1]
+                angle_rate, rate_rate = (
+                    slope(lambda t, i=i, motion=motion: motion.support_coordinates_at(t)[i], t) for i in range(2)
+                )
+                rate = mpf(start.support[1]) + motion.support_coordinates_at(t)[1]
                 assert abs(angle_rate - rate) <= EXACT(32, abs(rate) + abs(mpf(start.support[1])))
                 assert abs(inertia * rate_rate - moment) <= EXACT(32, r.norm() * (abs(R.x) + abs(R.y)) + mpf("1e-30"))
 
@@ -88,7 +90,7 @@ def test_the_path_is_weckesser_s_conic(name: str) -> None:
     motion = SphereOnFreePlane.of(system, start)
     t = np.linspace(0.0, 20.0, 400)
     r, V, *_ = motion.motion_at(t)
-    omega = start.support[1] + motion.own_at(t)[1]
+    omega = start.support[1] + motion.support_coordinates_at(t)[1]
     m, inertia, share = (
         system.body.mass,
         system.support.motion.inertia,

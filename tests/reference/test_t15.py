@@ -81,7 +81,7 @@ class TestChaplyginBall(ClosedFormContract):
     def cases(self) -> list[Case]:
         return list(CASES.values())
 
-    def outside(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
+    def violations(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
         inside, start = CASES["long"]
         tilted = replace(inside, support=tr.Support(tr.Plane(), tilt=0.1))
         turntable = replace(inside, support=tr.Support(tr.Plane(), motion=tr.Spin(1.0)))
@@ -142,7 +142,7 @@ class TestSteadyChaplyginBall(TestChaplyginBall):
         leaning = turning((0.0, -4.8, 1.4), THREE, orientation=(0.8, 0.6, 0.0, 0.0))
         return [*STEADY.values(), leaning, turning((2.0, 0.0, 0.0), THREE), turning((0.0, 0.0, 0.0), THREE)]
 
-    def outside(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
+    def violations(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
         inside, _ = CASES["long"]
         tilted = replace(inside, support=tr.Support(tr.Plane(), tilt=0.1))
         return [
@@ -201,7 +201,7 @@ class TestUprightChaplyginBall(TestChaplyginBall):
     def cases(self) -> list[Case]:
         return list(TUMBLING.values())
 
-    def outside(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
+    def violations(self) -> list[tuple[tr.RollingSystem, tr.State, str]]:
         return [
             (*rolled(THREE), "momentum about the contact is not along"),
             (*turning((0.0, 2.0, 1.0), THREE, orientation=(0.5**0.5, 0.5**0.5, 0.0, 0.0)), "not along the normal"),
@@ -225,11 +225,13 @@ class TestUprightChaplyginBall(TestChaplyginBall):
         assert size_of(r_rate - V) <= EXACT(32, size_of(V))
         assert size_of(V + Omega.cross(rho)) <= EXACT(32, size_of(Omega) * rho.norm())
         assert size_of(V_rate * m - F - R) <= EXACT(32, push)
-        Q = form.stance(t).matrix()
+        Q = form.representative_orientation(t).matrix()
         J = system.body.inertia_in_space(Q)
         assert size_of(J @ Omega_rate + Omega.cross(J @ Omega) - rho.cross(R)) <= EXACT(200, push * rho.norm())
         for column, rate in zip(
-            Q.transpose.rows, slope(lambda t: form.stance(t).matrix(), t).transpose.rows, strict=True
+            Q.transpose.rows,
+            slope(lambda t: form.representative_orientation(t).matrix(), t).transpose.rows,
+            strict=True,
         ):
             assert size_of(rate - Omega.cross(column)) <= EXACT(200, size_of(Omega))
 
@@ -339,7 +341,7 @@ def test_the_upright_ball_is_where_it_was_after_a_million_rounds() -> None:
         turned = mpmath.expj((mpf(c.gain) + c.gain_rest) * many)
         wanted = mpmath.mpc(first[0], first[1]) * turned
         # The time of so many rounds, in floats, is off by its own last digit, and so is the angle.
-        assert abs(mpmath.mpc(last[0], last[1]) - wanted) < EXACT(8, many * T * form.pace(1.0) * abs(wanted))
+        assert abs(mpmath.mpc(last[0], last[1]) - wanted) < EXACT(8, many * T * form.max_rate(1.0) * abs(wanted))
 
 
 def test_a_plane_that_is_not_rough_enough_lets_it_slip_when_the_numerical_law_says() -> None:
@@ -380,4 +382,4 @@ def test_on_a_plane_that_is_rough_enough_it_never_slips() -> None:
     system, start = rolled(FLAT, friction=0.3)
     run = tr.simulate(system, start, 2.0, 0.1)
     assert (run.method, run.events) == ("exact", ())
-    assert "the same moment" in ChaplyginBall.outside(replace(system, body=BALL))[0]
+    assert "the same moment" in ChaplyginBall.violations(replace(system, body=BALL))[0]

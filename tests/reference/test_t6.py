@@ -152,7 +152,7 @@ class TestMotion:
         # 5e8 m wide, the wall is a slope of 60° for the first seconds: g sin 60°/(1 + k) t²/2, over a.
         drum = tr.RollingSystem(tr.Body.cylinder(0.025, 0.2), tr.Support(tr.Cylinder(5e8), tilt="90 deg"))
         form = CylinderOnCylinder.of(drum, drum.place(("60 deg", 0.0)))
-        turned = form.straight_turn(0.1)[1]
+        turned = form.fixed_axis_rotation(0.1)[1]
         assert abs(turned - G * math.sin(math.pi / 3) / 1.5 * 0.005 / 0.025) <= 1e-9 * abs(turned)
 
     @precisely

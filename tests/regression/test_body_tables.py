@@ -11,8 +11,8 @@ import trundle as tr
 from trundle.errors import ScenarioError
 from trundle.scenario import ScenarioFile
 from trundle.scenario.layout import layout
+from trundle.scenario.serialize import body_words
 from trundle.scenario.tables import KINDS
-from trundle.scenario.words import body_words
 
 REST: dict[str, Any] = {
     "support": {"kind": "plane"},

@@ -318,7 +318,7 @@ STILL_AXLES = {
 @pytest.mark.parametrize("kind", STILL_AXLES)
 def test_an_axle_that_only_rounding_turns_passes(kind: str) -> None:
     run = passes(**STILL_AXLES[kind])
-    assert np.abs(run.samples.own[:, -1]).max() <= 1e-14
+    assert np.abs(run.samples.support_coordinates[:, -1]).max() <= 1e-14
 
 
 def test_the_last_instant_before_a_singular_end_leaves_the_windows_wide() -> None:

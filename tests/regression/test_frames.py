@@ -38,13 +38,13 @@ class Given:
 
     @property
     def own(self) -> tuple[np.ndarray, ...]:
-        if "rate" in self.motion.own:
+        if "rate" in self.motion.coordinates:
             return 0.4 * self.time**2 + np.sin(self.time), 0.8 * self.time + np.cos(self.time)
-        return tuple((1 - np.cos(self.time)) * 7.0 for _ in self.motion.own)
+        return tuple((1 - np.cos(self.time)) * 7.0 for _ in self.motion.coordinates)
 
     @property
     def names(self) -> list[str]:
-        return [f"support_{name}" for name in self.motion.own]
+        return [f"support_{name}" for name in self.motion.coordinates]
 
     def data(self) -> xr.Dataset:
         t = self.time
@@ -82,20 +82,20 @@ def given(motion: Any) -> Given:
 
 def consistent(motion: Any) -> Given:
     """One whose own coordinates are those that the motion really runs through, so that rates may be compared."""
-    if "angle" not in motion.own:
+    if "angle" not in motion.coordinates:
         return Given(motion, np.arange(0.0, DURATION, STEP))
 
-    class Turned(Given):
+    class RotatedTensor(Given):
         @property
         def own(self) -> tuple[np.ndarray, ...]:
             t = self.time
-            if "rate" in self.motion.own:
+            if "rate" in self.motion.coordinates:
                 return 3.0 * t, np.full_like(t, 3.0)
             if isinstance(self.motion, tr.Combined):
                 return (t * t,)
             return (3.5 * (t + 2 * np.exp(-t / 2) - 2),)
 
-    return Turned(motion, np.arange(0.0, DURATION, STEP))
+    return RotatedTensor(motion, np.arange(0.0, DURATION, STEP))
 
 
 def vectors(data: xr.Dataset, name: str) -> np.ndarray:

@@ -34,8 +34,8 @@ from trundle.mechanics.motions import (
     Wobble,
 )
 from trundle.scenario import ScenarioFile
+from trundle.scenario.serialize import words_of
 from trundle.scenario.tables import KINDS
-from trundle.scenario.words import words_of
 
 HEAD = """
 [body]

@@ -14,8 +14,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 import trundle as tr
 from trundle.mechanics.algebra import Vector
 from trundle.views.plots import ground, path_figure, series_figure
+from trundle.views.plots.events import FLIGHT, ROLLING, SLIPPING, stretches_of
 from trundle.views.plots.facts import facts_of
-from trundle.views.plots.happenings import FLIGHT, ROLLING, SLIPPING, stretches_of
 from trundle.views.plots.words import key_numbers, title_of
 
 BALL = tr.Body.solid_sphere(radius=0.02, mass=0.05)

@@ -132,7 +132,7 @@ def test_every_motion_comes_back(motion: tr.Motion) -> None:
 
 def _own_later(motion: tr.Motion) -> list[Any]:
     """Coordinates of the motion's own that it does not start with."""
-    return [value + 0.3 * (i + 1) for i, value in enumerate(motion.own_start())]
+    return [value + 0.3 * (i + 1) for i, value in enumerate(motion.initial_coordinates())]
 
 
 @pytest.mark.parametrize("motion", MOTIONS, ids=lambda motion: type(motion).__name__)

@@ -11,7 +11,7 @@ import trundle as tr
 from trundle.errors import ScenarioError
 from trundle.mechanics.algebra import Vector
 from trundle.scenario import ScenarioFile
-from trundle.scenario.words import words_of
+from trundle.scenario.serialize import words_of
 
 SIDE = [-0.3, -0.1, 0.0, 0.1, 0.2, 0.4]
 SADDLE = [[x * y for y in SIDE] for x in SIDE]

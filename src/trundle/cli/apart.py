@@ -14,7 +14,7 @@ from typing import Any, Generic, TypeVar
 T = TypeVar("T")
 
 
-class Apart(Generic[T]):
+class ForkedCall(Generic[T]):
     """A call that runs in a copy of this process, where there is a processor free for it; else when asked for.
 
     The copy sees everything as it was, and only what the call returns comes back.
@@ -26,7 +26,7 @@ class Apart(Generic[T]):
 
     Examples
     --------
-    >>> Apart(lambda: 6 * 7).result()
+    >>> ForkedCall(lambda: 6 * 7).result()
     42
     """
 
@@ -48,7 +48,7 @@ class Apart(Generic[T]):
             os.close(read)
             _work(call, write)
 
-    def __enter__(self) -> Apart[T]:
+    def __enter__(self) -> ForkedCall[T]:
         return self
 
     def __exit__(self, *exception: object) -> None:

@@ -152,10 +152,10 @@ def run(
 
 def _finish(trajectory: Trajectory, folder: Path, names: tuple[str, ...]) -> tuple[Card, list[Path]]:
     """Make card, figures and file, on two processors where there are two, and let the files appear together."""
-    from .apart import Apart
+    from .apart import ForkedCall
     from .writing import write_together
 
-    with Apart(trajectory.card) as checked, ExitStack() as drawing:  # checking imports heyoka meanwhile
+    with ForkedCall(trajectory.card) as checked, ExitStack() as drawing:  # checking imports heyoka meanwhile
 
         def save(path: Path) -> None:
             trajectory.with_card(checked.result()).save(path)
@@ -167,10 +167,10 @@ def _finish(trajectory: Trajectory, folder: Path, names: tuple[str, ...]) -> tup
             def draw_series() -> None:
                 trajectory.plot("series").savefig(path.with_name("series.png"))
 
-            series.append(drawing.enter_context(Apart(draw_series)))
+            series.append(drawing.enter_context(ForkedCall(draw_series)))
             trajectory.plot("path").savefig(path)
 
-        series: list[Apart[None]] = []
+        series: list[ForkedCall[None]] = []
         writers = {"path.png": draw_path, "series.png": lambda _: series[0].result(), "run.nc": save}
         write_together(folder, {name: write for name, write in writers.items() if name in names})
         return checked.result(), [folder / name for name in names]

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..errors import ScenarioError
-from ..scenario.complaints import quoted
+from ..scenario.validation_errors import quoted
 
 
 def path_of(radius: Any, curve: Mapping[str, Any]) -> dict[str, Any]:

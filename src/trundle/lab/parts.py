@@ -102,7 +102,7 @@ def _start_of_body(body: Body) -> dict[str, Any]:
     """Return what of a start goes with a body: what could stand still leans and rocks, what would lie flat rolls."""
     if body.is_isotropic_sphere or body.shape.axis is not None:
         return {}
-    covered = body.shape.covers(-E_Z)
+    covered = body.shape.validity_margin(-E_Z)
     if covered is not None and not covered > 0:
         return {"attitude": [0, "80 deg", 0], "velocity": ["30 cm/s", 0]}
     return {"attitude": [0, "20 deg", 0], "velocity": [0, 0]}
@@ -125,7 +125,7 @@ def _place_on(surface: Surface) -> list[Any]:
     if surface.coordinates[0] == "angle":
         return ["30 deg", 0]
     for place in _FURTHEST:
-        left = surface.inside(surface.point(to_si(place, "length", "position"), 0.0))
+        left = surface.domain_margin(surface.point(to_si(place, "length", "position"), 0.0))
         if left is None or left > 0:
             return [place, 0]
     return [0, 0]

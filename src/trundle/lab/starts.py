@@ -40,7 +40,7 @@ class _Place:
                 "No run can start here: the surface overhangs, and a start says its place by coordinates that stand "
                 "for another place there. Go on from another instant."
             )
-        return _numbers(surface.put_down_at(self.contact, self.offset))
+        return _numbers(surface.coordinates_from_contact(self.contact, self.offset))
 
     def along(self, velocity: Vector, *, normal: bool = False) -> list[float]:
         """Return a velocity of the inertial frame along the surface, and along its normal if wanted."""
@@ -128,8 +128,8 @@ def nudged(scenario: Scenario, at: Mapping[str, Any], by: Sequence[float]) -> di
     """
     system, own = scenario.system(), at.get("support") or ()
     motion, clock = system.support.motion, not same_at_all_times(system)
-    if clock and len(own) != len(motion.own):
-        raise InvalidValueError("at.support", f"must hold {', '.join(motion.own) or 'nothing'}", own)
+    if clock and len(own) != len(motion.coordinates):
+        raise InvalidValueError("at.support", f"must hold {', '.join(motion.coordinates) or 'nothing'}", own)
     begin = motion.at(at["time"], *own) if clock else _begin(scenario)
     place, height, turning = _place(scenario, at, begin), at.get("height"), at["angular_velocity"]
     found: dict[str, Any] = {
@@ -151,13 +151,13 @@ def nudged(scenario: Scenario, at: Mapping[str, Any], by: Sequence[float]) -> di
 def _begin(scenario: Scenario) -> SupportState:
     """Return the support as it stands where the run begins."""
     motion, start = scenario.system().support.motion, scenario.start
-    own = motion.own_start() if start.support is None else tuple(map(float, start.support))
+    own = motion.initial_coordinates() if start.support is None else tuple(map(float, start.support))
     return motion.at(float(start.time), *own)
 
 
 def _place(scenario: Scenario, at: Mapping[str, Any], begin: SupportState) -> _Place:
     contact, centre = Vector(*at["contact"]), Vector(*at["position"])
-    return _Place(scenario, begin, begin.own_of(contact), begin.rotation.transpose @ (contact - centre))
+    return _Place(scenario, begin, begin.local(contact), begin.rotation.transpose @ (contact - centre))
 
 
 def _number(value: Any) -> float:

@@ -162,7 +162,7 @@ class Matrix:
         return self.a.dot(self.b.cross(self.c))
 
     @property
-    def whole(self) -> Matrix:
+    def dense(self) -> Matrix:
         """Itself: with its elements, as `Turned.whole`."""
         return self
 
@@ -174,7 +174,7 @@ class Matrix:
 
 
 @value()
-class Turned:
+class RotatedTensor:
     """A symmetric matrix known along other axes: Q M Qᵀ, applied without working out its elements.
 
     To apply it takes 27 products; to work out the elements, 45.
@@ -189,7 +189,7 @@ class Turned:
     Examples
     --------
     >>> quarter = Matrix(-E_Y, E_X, E_Z)  # about the third axis
-    >>> Turned(quarter, Matrix.diagonal(1.0, 2.0, 3.0)) @ E_X
+    >>> RotatedTensor(quarter, Matrix.diagonal(1.0, 2.0, 3.0)) @ E_X
     Vector(x=2.0, y=0.0, z=0.0)
     """
 
@@ -200,7 +200,7 @@ class Turned:
         return self.turn @ (self.own @ (self.turn.transpose @ v))
 
     @property
-    def whole(self) -> Matrix:
+    def dense(self) -> Matrix:
         """The matrix with its elements, of which six are worked out; a zero stays one."""
         if self.own.is_zero:
             return self.own
@@ -212,7 +212,7 @@ class Turned:
     @property
     def rows(self) -> tuple[Vector, Vector, Vector]:
         """The three rows."""
-        return self.whole.rows
+        return self.dense.rows
 
 
 def point_inertia(mass: Scalar, offset: Vector) -> Matrix:

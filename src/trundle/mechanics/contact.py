@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from .algebra import ZERO, Matrix, Quaternion, Turned, Vector, point_inertia
+from .algebra import ZERO, Matrix, Quaternion, RotatedTensor, Vector, point_inertia
 from .loads import Acting, BodyMotion
 from .motions import SupportState
 from .scalars import Scalar, is_zero
@@ -26,7 +26,7 @@ class Contact:
     point: Vector  # p, m
     normal: Vector  # n, from the support into the body
     offset: Vector  # ρ, from the centre of mass to p, m
-    inverse_curvature: Matrix | Turned  # C of the body, m
+    inverse_curvature: Matrix | RotatedTensor  # C of the body, m
     shape_operator: Matrix  # S of the support, 1/m
 
     @property
@@ -39,15 +39,15 @@ class Contact:
         """Whether the support is known not to bend: S = 0."""
         return self.shape_operator.is_zero
 
-    def across(self, gap: Scalar = 0.0) -> Matrix:
+    def relative_curvature(self, gap: Scalar = 0.0) -> Matrix:
         """Return 1 + (C + g)S: how the body's nearest point moves over the support when the support's does."""
-        reach = self.inverse_curvature.whole
+        reach = self.inverse_curvature.dense
         reach = reach if is_zero(gap) else reach + Matrix.identity() * gap
         return Matrix.identity() + reach @ self.shape_operator
 
-    def clearance(self, gap: Scalar = 0.0) -> Scalar:
+    def relative_curvature_determinant(self, gap: Scalar = 0.0) -> Scalar:
         """Return det(1 + (C + g)S), which falls to 0 where the support is as hollow as the body is round."""
-        return self.across(gap).determinant
+        return self.relative_curvature(gap).determinant
 
     def rates(
         self, slip: Vector, angular_velocity: Vector, velocity: Vector, gap: Scalar = 0.0
@@ -58,11 +58,11 @@ class Contact:
         (1 + (C + g)S) w = s − (s·n)n + C(Ω − ω)×n − g ω×n.
         """
         n, omega, flat = self.normal, self.support.angular_velocity, self.flat
-        C = self.inverse_curvature if flat else self.inverse_curvature.whole  # its elements are wanted anyway
+        C = self.inverse_curvature if flat else self.inverse_curvature.dense  # its elements are wanted anyway
         moved = slip + C @ (angular_velocity - omega).cross(n)
         if not is_zero(gap):
             moved = moved - n * slip.dot(n) - omega.cross(n) * gap
-        along = moved if flat else self.across(gap).solve(moved)
+        along = moved if flat else self.relative_curvature(gap).solve(moved)
         point_rate = self.support.material_velocity(self.point) + along
         if is_zero(gap):
             return point_rate, point_rate - velocity
@@ -99,19 +99,19 @@ class Rolling:
     axle_moment: Scalar  # of the body on the support, about the support's axle, N m
 
 
-def touch(
-    system: RollingSystem, time: Scalar, point: Vector, orientation: Quaternion, own: tuple[Scalar, ...] = ()
+def contact_at(
+    system: RollingSystem, time: Scalar, point: Vector, orientation: Quaternion, coordinates: tuple[Scalar, ...] = ()
 ) -> Contact:
     """Return the geometry of touch for a contact at a given point of the support."""
-    surface, support = system.support.surface, system.support.motion.at(time, *own)
-    turn, there = support.rotation, support.own_of(point)
+    surface, support = system.support.surface, system.support.motion.at(time, *coordinates)
+    turn, there = support.rotation, support.local(point)
     n = turn @ surface.normal(there)
-    S = Turned(turn, surface.shape_operator(there)).whole
+    S = RotatedTensor(turn, surface.shape_operator(there)).dense
     rho, C = system.body.shape.contact(orientation.matrix(), n)
     return Contact(support, point, n, rho, C, S)
 
 
-def normal_at(system: RollingSystem, time: Scalar, point: Vector, own: tuple[Scalar, ...] = ()) -> Vector:
+def normal_at(system: RollingSystem, time: Scalar, point: Vector, coordinates: tuple[Scalar, ...] = ()) -> Vector:
     """Return n at a point of the support, from the support into the body, in the inertial support frame.
 
     Examples
@@ -121,8 +121,8 @@ def normal_at(system: RollingSystem, time: Scalar, point: Vector, own: tuple[Sca
     >>> normal_at(level, 0.0, Vector(0.4, 0.0, 0.0))
     Vector(x=0.0, y=0.0, z=1.0)
     """
-    support = system.support.motion.at(time, *own)
-    return support.rotation @ system.support.surface.normal(support.own_of(point))
+    support = system.support.motion.at(time, *coordinates)
+    return support.rotation @ system.support.surface.normal(support.local(point))
 
 
 def roll(
@@ -131,7 +131,7 @@ def roll(
     point: Vector,
     orientation: Quaternion,
     angular_velocity: Vector,
-    own: tuple[Scalar, ...] = (),
+    coordinates: tuple[Scalar, ...] = (),
 ) -> Rolling:
     """Return the rates of (p, q, Ω) and the contact force of a body that rolls: T1, T2 and T3.
 
@@ -147,7 +147,7 @@ def roll(
     True
     """
     m, Omega = system.body.mass, angular_velocity
-    contact = touch(system, time, point, orientation, own)
+    contact = contact_at(system, time, point, orientation, coordinates)
     rho, n, support = contact.offset, contact.normal, contact.support
     V = contact.rolling_velocity(Omega)
     p_rate, rho_rate = contact.rates(ZERO, Omega, V)
@@ -171,7 +171,7 @@ def roll(
     if system.support.motion.free:
         turned = whole.solve(m * rho.cross(lever))
         couplings.append((turned, m * (lever - turned.cross(rho))))
-    amounts = _amounts(system, time, own, contact, acting, R, [reaction for _, reaction in couplings])
+    amounts = _amounts(system, time, coordinates, contact, acting, R, [reaction for _, reaction in couplings])
     for amount, (turned, reaction) in zip(amounts, couplings, strict=True):
         Omega_rate, R = Omega_rate + turned * amount, R + reaction * amount
     moment_on_axle = acting.moment_on_axle(support, n.dot(R)) - lever.dot(R)
@@ -181,7 +181,7 @@ def roll(
 def _amounts(
     system: RollingSystem,
     time: Scalar,
-    own: tuple[Scalar, ...],
+    coordinates: tuple[Scalar, ...],
     contact: Contact,
     acting: Acting,
     R: Vector,
@@ -194,7 +194,7 @@ def _amounts(
         rows.append([*(-n.dot(reaction) for reaction in reactions), n.dot(R)])
         rows[-1][0] = 1.0 + rows[-1][0]
     if system.support.motion.free:
-        applied = system.support.motion.axle_torque(time, own) + acting.moment_on_axle(contact.support, 0.0)
+        applied = system.support.motion.axle_torque(time, coordinates) + acting.moment_on_axle(contact.support, 0.0)
         rows.append([*(lever.dot(reaction) for reaction in reactions), applied - lever.dot(R)])
         rows[-1][-2] = system.support.motion.inertia + rows[-1][-2]
         if acting.has_couple:

@@ -84,7 +84,7 @@ def slip_rates(
     angular_velocity: Vector,
     first: Vector,
     slip_velocity: Vector,
-    own: tuple[Scalar, ...] = (),
+    coordinates: tuple[Scalar, ...] = (),
     *,
     held: bool = False,
 ) -> SlipRates:
@@ -97,17 +97,17 @@ def slip_rates(
     >>> import math
     >>> import trundle as tr
     >>> from trundle.mechanics.algebra import E_X, ZERO
-    >>> from trundle.mechanics.contact import touch
+    >>> from trundle.mechanics.contact import contact_at
     >>> slope = tr.Support(tr.Plane(), tilt=math.pi / 4, friction=1 / 7)
     >>> slope = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), slope, gravity=2**0.5)
     >>> still = Quaternion(1.0, 0.0, 0.0, 0.0)
-    >>> rates = slip_rates(slope, 0.0, touch(slope, 0.0, ZERO, still), still, ZERO, E_X, ZERO)
+    >>> rates = slip_rates(slope, 0.0, contact_at(slope, 0.0, ZERO, still), still, ZERO, E_X, ZERO)
     >>> round(rates.along(1.0, 0.0)[0], 15), round(rates.settled()[2], 15)  # g sin α − (7/2) μ g cos α
     (0.5, 1.0)
     """
     n = contact.normal
     Omega = unturned(contact, angular_velocity) if held else angular_velocity
-    free = unpushed(system, time, contact, orientation, Omega, slip_velocity, own, held=held)
+    free = unpushed(system, time, contact, orientation, Omega, slip_velocity, coordinates, held=held)
     axes = first, n.cross(first), n
 
     def parts(v: Vector) -> Vector:

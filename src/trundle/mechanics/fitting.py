@@ -32,13 +32,13 @@ def fits(contact: Contact) -> Scalar:
 
     >>> import trundle as tr
     >>> from trundle.mechanics.algebra import Quaternion
-    >>> from trundle.mechanics.contact import touch
+    >>> from trundle.mechanics.contact import contact_at
     >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.2, 1.0), tr.Support(tr.Bowl(0.5)))
-    >>> round(fits(touch(system, 0.0, Vector(0.0, 0.0, 0.0), Quaternion(1.0, 0.0, 0.0, 0.0))), 12)
+    >>> round(fits(contact_at(system, 0.0, Vector(0.0, 0.0, 0.0), Quaternion(1.0, 0.0, 0.0, 0.0))), 12)
     0.36
     """
     # On n it is 1, because S n = 0 and C maps to the tangent plane; so all of it is the tangential part.
-    return contact.clearance()
+    return contact.relative_curvature_determinant()
 
 
 def room(contact: Contact) -> tuple[float, Vector]:
@@ -48,9 +48,9 @@ def room(contact: Contact) -> tuple[float, Vector]:
     --------
     >>> import trundle as tr
     >>> from trundle.mechanics.algebra import Quaternion
-    >>> from trundle.mechanics.contact import touch
+    >>> from trundle.mechanics.contact import contact_at
     >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.2, 1.0), tr.Support(tr.Cylinder(0.5)))
-    >>> least, along = room(touch(system, 0.0, Vector(0.5, 0.0, 0.0), Quaternion(1.0, 0.0, 0.0, 0.0)))
+    >>> least, along = room(contact_at(system, 0.0, Vector(0.5, 0.0, 0.0), Quaternion(1.0, 0.0, 0.0, 0.0)))
     >>> round(least, 12), abs(round(along.y, 12))
     (0.6, 1.0)
     """
@@ -61,7 +61,7 @@ def room(contact: Contact) -> tuple[float, Vector]:
     first = n.cross(helper)
     first = first / first.norm()
     second = n.cross(first)
-    both = Matrix.identity() + contact.inverse_curvature.whole @ contact.shape_operator
+    both = Matrix.identity() + contact.inverse_curvature.dense @ contact.shape_operator
     tangential = np.array([[float(a.dot(both @ b)) for b in (first, second)] for a in (first, second)])
     values, ways = np.linalg.eig(tangential)  # C S is similar to the symmetric √C S √C: they are real
     least = int(np.argmin(values.real))
@@ -89,10 +89,10 @@ def check_place(surface: Surface, u: float, v: float, received: Any, key: str = 
         if isinstance(found, str):
             remedy = f"Its {name} is not finite there: {found}."
             raise InvalidValueError(key, "must be where the surface is smooth", received, remedy)
-    left = surface.inside(p)
+    left = surface.domain_margin(p)
     if left is not None and not left > 0:
         raise InvalidValueError(
-            key, "must be on the surface, where it is smooth", received, f"It is at or beyond {surface.end}."
+            key, "must be on the surface, where it is smooth", received, f"It is at or beyond {surface.domain_end}."
         )
 
 
@@ -103,9 +103,9 @@ def check_curvature(contact: Contact, received: Any, key: str = "position") -> N
     --------
     >>> import trundle as tr
     >>> from trundle.mechanics.algebra import Quaternion
-    >>> from trundle.mechanics.contact import touch
+    >>> from trundle.mechanics.contact import contact_at
     >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.6, 1.0), tr.Support(tr.Bowl(0.5)))
-    >>> check_curvature(touch(system, 0.0, Vector(0.0, 0.0, 0.0), Quaternion(1.0, 0.0, 0.0, 0.0)), (0, 0))
+    >>> check_curvature(contact_at(system, 0.0, Vector(0.0, 0.0, 0.0), Quaternion(1.0, 0.0, 0.0, 0.0)), (0, 0))
     Traceback (most recent call last):
     ...
     trundle.errors.InvalidValueError: `position` must be where the body fits the surface; got (0, 0). There the ...
@@ -115,7 +115,7 @@ def check_curvature(contact: Contact, received: Any, key: str = "position") -> N
             raise InvalidValueError(
                 key, "must be where the surface is smooth", received, f"Its {name} is not finite there."
             )
-    for name, own in (("contact", contact.offset), ("curvature", contact.inverse_curvature.whole)):
+    for name, own in (("contact", contact.offset), ("curvature", contact.inverse_curvature.dense)):
         if not _all_finite(own):
             remedy = f"Its {name} is not finite in this position: turn it a little."
             raise InvalidValueError("orientation", "must let the body touch in one point", received, remedy)
@@ -134,9 +134,9 @@ def too_big(contact: Contact) -> str:
     --------
     >>> import trundle as tr
     >>> from trundle.mechanics.algebra import Quaternion
-    >>> from trundle.mechanics.contact import touch
+    >>> from trundle.mechanics.contact import contact_at
     >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.6, 1.0), tr.Support(tr.Bowl(0.5)))
-    >>> too_big(touch(system, 0.0, Vector(0.0, 0.0, 0.0), Quaternion(1.0, 0.0, 0.0, 0.0)))[:68]
+    >>> too_big(contact_at(system, 0.0, Vector(0.0, 0.0, 0.0), Quaternion(1.0, 0.0, 0.0, 0.0)))[:68]
     'There the body bends with a radius of 0.6 m, the surface with 0.5 m:'
     """
     least, along = room(contact)
@@ -161,10 +161,10 @@ def check_start(
     --------
     >>> import trundle as tr
     >>> from trundle.mechanics.algebra import Quaternion
-    >>> from trundle.mechanics.contact import touch
+    >>> from trundle.mechanics.contact import contact_at
     >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.2, 1.0), tr.Support(tr.Bowl(0.5)))
     >>> q = Quaternion(1.0, 0.0, 0.0, 0.0)
-    >>> check_start(system, touch(system, 0.0, Vector(0.0, 0.0, 0.0), q), q, (0, 0))
+    >>> check_start(system, contact_at(system, 0.0, Vector(0.0, 0.0, 0.0), q), q, (0, 0))
     """
     check_curvature(contact, received, key)
     check_clear(system, contact, orientation, received, key)

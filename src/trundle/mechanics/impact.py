@@ -58,10 +58,10 @@ def land(system: RollingSystem, contact: Contact, orientation: Quaternion, slip:
     A solid ball dropped on a rough floor with sidewards speed 1 keeps 5/7 of it and rolls off:
 
     >>> import trundle as tr
-    >>> from trundle.mechanics.contact import touch
+    >>> from trundle.mechanics.contact import contact_at
     >>> floor = tr.RollingSystem(tr.Body.solid_sphere(0.1, 2.0), tr.Support(tr.Plane()))
     >>> still = Quaternion(1.0, 0.0, 0.0, 0.0)
-    >>> contact = touch(floor, 0.0, Vector(0.0, 0.0, 0.0), still)
+    >>> contact = contact_at(floor, 0.0, Vector(0.0, 0.0, 0.0), still)
     >>> struck = land(floor, contact, still, Vector(1.0, 0.0, -3.0))
     >>> round(1.0 + struck.velocity_change.x, 12) == round(5 / 7, 12), struck.velocity_change.z
     (True, 3.0)

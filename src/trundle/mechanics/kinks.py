@@ -89,7 +89,7 @@ def kinks_and_jolts(system: RollingSystem, begin: float, end: float) -> list[Kin
 
 def _jumps(motion: Motion, kink: Kink) -> bool:
     """Tell whether the velocity of a support jumps at a kink, by more than it changes in the time that is unclear."""
-    before, after = (motion.at(time, *(_ANY_TURN for _ in motion.own)) for time in (kink.before, kink.behind))
+    before, after = (motion.at(time, *(_ANY_TURN for _ in motion.coordinates)) for time in (kink.before, kink.behind))
     pairs = ("velocity", "acceleration"), ("angular_velocity", "angular_acceleration")
     for velocity, acceleration in pairs:
         v, w = getattr(before, velocity), getattr(after, velocity)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from ..errors import SolverError
 from .algebra import Quaternion, Vector
-from .contact import Contact, touch
+from .contact import Contact, contact_at
 from .scalars import Scalar
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def nearest(
     point: Vector,
     centre: Vector,
     orientation: Quaternion,
-    own: tuple[Scalar, ...] = (),
+    coordinates: tuple[Scalar, ...] = (),
 ) -> Contact:
     """Return the geometry at the support's point nearest to a body, from a point next to it, by one of Newton's steps.
 
@@ -43,13 +43,13 @@ def nearest(
     """
     import numpy as np
 
-    contact = touch(system, time, point, orientation, own)
+    contact = contact_at(system, time, point, orientation, coordinates)
     with np.errstate(all="ignore"):  # by the end of a formula
         _, aside, down = beside(system, contact, centre)
         step = aside + down
         small = step.norm() <= _NEXT_TO * (point.norm() + contact.offset.norm())
     moved = Vector(*(np.where(small, there + by, there)[()] for there, by in zip(point, step, strict=True)))
-    return touch(system, time, moved, orientation, own)
+    return contact_at(system, time, moved, orientation, coordinates)
 
 
 def beside(
@@ -60,13 +60,13 @@ def beside(
     apart = centre + contact.offset - contact.point
     gap = n.dot(apart)
     off = apart - n * gap
-    down = support.rotation @ system.support.surface.step_onto(support.own_of(contact.point))
+    down = support.rotation @ system.support.surface.step_onto(support.local(contact.point))
     # The normal leans by S along the support, and ρ follows it by C.
-    return off, contact.across(gap).solve(off) if bent and not contact.flat else off, down
+    return off, contact.relative_curvature(gap).solve(off) if bent and not contact.flat else off, down
 
 
-def settle(
-    system: RollingSystem, time: float, centre: Vector, orientation: Quaternion, own: tuple[Scalar, ...] = ()
+def closest_contact(
+    system: RollingSystem, time: float, centre: Vector, orientation: Quaternion, coordinates: tuple[Scalar, ...] = ()
 ) -> Contact:
     """Return the geometry of touch for a body whose centre of mass is known: the p nearest to the body.
 
@@ -76,14 +76,14 @@ def settle(
     --------
     >>> import trundle as tr
     >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Cylinder(0.5), tilt="90 deg"))
-    >>> settle(system, 0.0, Vector(0.4, 0.0, 0.0), Quaternion(1.0, 0.0, 0.0, 0.0)).point
+    >>> closest_contact(system, 0.0, Vector(0.4, 0.0, 0.0), Quaternion(1.0, 0.0, 0.0, 0.0)).point
     Vector(x=0.5, y=0.0, z=0.0)
     """
     # The normal at the centre is already that at the contact for a sphere over a surface of constant curvature.
-    found = _newton(system, time, centre, centre, orientation, own)
+    found = _newton(system, time, centre, centre, orientation, coordinates)
     if found is None or misplaced(system, found, centre, orientation) or _hollow_under(found, centre):
-        found = _searched(system, time, centre, orientation, own, found) or found
-    if found is None or _is_beyond(system.support.surface, found.support.own_of(found.point)):
+        found = _searched(system, time, centre, orientation, coordinates, found) or found
+    if found is None or _is_beyond(system.support.surface, found.support.local(found.point)):
         raise SolverError(
             f"At t = {float(time):.9g} s no point of the surface is nearest to the body, whose centre is at "
             f"({', '.join(f'{float(part):.4g}' for part in centre)}) m. Does the surface reach there, and smoothly?"
@@ -101,20 +101,20 @@ def misplaced(system: RollingSystem, contact: Contact, centre: Vector, orientati
     >>> import trundle as tr
     >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Bowl(0.5)))
     >>> still = Quaternion(1.0, 0.0, 0.0, 0.0)
-    >>> contact = touch(system, 0.0, Vector(0.0, 0.0, 0.0), still)
+    >>> contact = contact_at(system, 0.0, Vector(0.0, 0.0, 0.0), still)
     >>> misplaced(system, contact, Vector(0.0, 0.0, 0.3), still)
     ''
     >>> misplaced(system, contact, Vector(0.0, 0.0, 0.6), still)
     'There the support is so hollow, or the body so high over it, that other points of it are as near.'
     """
-    if _is_beyond(system.support.surface, contact.support.own_of(contact.point)):
+    if _is_beyond(system.support.surface, contact.support.local(contact.point)):
         return "There the support has ended."
-    covered = system.body.shape.covers(-(orientation.matrix().transpose @ contact.normal))
+    covered = system.body.shape.validity_margin(-(orientation.matrix().transpose @ contact.normal))
     if covered is not None and not covered > 0:
         return "There the body has a flat side or an edge towards the support, which its shape does not cover."
     if contact.flat:
         return ""
-    across = contact.across(_gap(contact, centre))
+    across = contact.relative_curvature(_gap(contact, centre))
     # Along n it is 1: the two others have the determinant as their product, and their sum is the trace less 1.
     around = sum(row[i] for i, row in enumerate(map(tuple, across.rows))) - 1.0
     if across.determinant > _SINGULAR and around > 0:
@@ -124,7 +124,7 @@ def misplaced(system: RollingSystem, contact: Contact, centre: Vector, orientati
 
 def _is_beyond(surface: Surface, there: Vector) -> bool:
     """Tell whether a point is beyond the surface's end: a table's spline goes on there, the surface does not."""
-    inside = surface.inside(there)
+    inside = surface.domain_margin(there)
     return inside is not None and bool(inside < 0)
 
 
@@ -134,18 +134,18 @@ def _newton(
     centre: Vector,
     point: Vector,
     orientation: Quaternion,
-    own: tuple[Scalar, ...],
+    coordinates: tuple[Scalar, ...],
 ) -> Contact | None:
     """Return the contact to which Newton's method leads from a first guess at p; None where it leads nowhere."""
     last = math.inf
     try:
-        contact = touch(system, time, point, orientation, own)
+        contact = contact_at(system, time, point, orientation, coordinates)
         for step in range(_MOST_STEPS):
             off, aside, down = beside(system, contact, centre, bent=step > 0)
             size = point.norm() + contact.offset.norm()
             left = max(off.norm(), down.norm()) / size
             point = point + aside + down
-            contact = touch(system, time, point, orientation, own)
+            contact = contact_at(system, time, point, orientation, coordinates)
             # What is left now is less by as much again; or it was rounding.
             if step > 0 and (left <= _ROUNDING or (left <= _CLOSE and left * left <= 0.1 * _ROUNDING * last)):
                 break
@@ -172,35 +172,35 @@ def _searched(
     time: float,
     centre: Vector,
     orientation: Quaternion,
-    own: tuple[Scalar, ...],
+    coordinates: tuple[Scalar, ...],
     known: Contact | None,
 ) -> Contact | None:
     """Return the nearest of the known contact and those to which Newton's method leads from other likely points."""
     try:
-        guesses = _guesses(system, time, centre, orientation, own)
+        guesses = _guesses(system, time, centre, orientation, coordinates)
     except (ArithmeticError, ValueError):  # outside a formula
         guesses = []
-    led_to = (_newton(system, time, centre, point, orientation, own) for point in guesses)
+    led_to = (_newton(system, time, centre, point, orientation, coordinates) for point in guesses)
     found = [one for one in (known, *led_to) if one is not None and not misplaced(system, one, centre, orientation)]
     return min(found, key=lambda contact: abs(_gap(contact, centre)), default=None)
 
 
 def _guesses(
-    system: RollingSystem, time: float, centre: Vector, orientation: Quaternion, own: tuple[Scalar, ...]
+    system: RollingSystem, time: float, centre: Vector, orientation: Quaternion, coordinates: tuple[Scalar, ...]
 ) -> list[Vector]:
     """Return r + ρ(n) for those n, of many all around, that are nearest to the surface's normal there."""
     import numpy as np
 
-    support, surface = system.support.motion.at(time, *own), system.support.surface
+    support, surface = system.support.motion.at(time, *coordinates), system.support.surface
     i = np.arange(_LOOKS)
     z, angle = 1.0 - (2 * i + 1) / _LOOKS, math.pi * (1.0 + math.sqrt(5.0)) * (i + 0.5)  # Fibonacci's lattice
     across = np.sqrt(1.0 - z * z)
     n = support.rotation @ Vector(across * np.cos(angle), across * np.sin(angle), z)
     with np.errstate(all="ignore"):
         points = centre + system.body.shape.contact(orientation.matrix(), n)[0]
-        there = support.own_of(points)
+        there = support.local(points)
         off = np.linalg.norm((support.rotation @ surface.normal(there)).array() - n.array(), axis=-1)
-        inside = surface.inside(there)
+        inside = surface.domain_margin(there)
         likely = np.isfinite(off) if inside is None else np.isfinite(off) & (np.asarray(inside) >= 0)
     normals, places = n.array(), points.array()
     kept: list[int] = []

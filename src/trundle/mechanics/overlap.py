@@ -30,10 +30,10 @@ def check_clear(
 
     >>> import trundle as tr
     >>> from trundle.mechanics.algebra import Quaternion
-    >>> from trundle.mechanics.contact import touch
+    >>> from trundle.mechanics.contact import contact_at
     >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.2, 1.0), tr.Support(tr.Paraboloid(0.1)))
     >>> q = Quaternion(1.0, 0.0, 0.0, 0.0)
-    >>> contact = touch(system, 0.0, tr.Paraboloid(0.1).point(0.15, 0.0), q)
+    >>> contact = contact_at(system, 0.0, tr.Paraboloid(0.1).point(0.15, 0.0), q)
     >>> check_clear(system, contact, q, (0.15, 0))
     Traceback (most recent call last):
     ...
@@ -60,10 +60,10 @@ def depth(system: RollingSystem, contact: Contact, orientation: Any) -> tuple[fl
     --------
     >>> import trundle as tr
     >>> from trundle.mechanics.algebra import Quaternion
-    >>> from trundle.mechanics.contact import touch
+    >>> from trundle.mechanics.contact import contact_at
     >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.2, 1.0), tr.Support(tr.Bowl(0.5)))
     >>> q = Quaternion(1.0, 0.0, 0.0, 0.0)
-    >>> below, where = depth(system, touch(system, 0.0, Vector(0.0, 0.0, 0.0), q), q)
+    >>> below, where = depth(system, contact_at(system, 0.0, Vector(0.0, 0.0, 0.0), q), q)
     >>> abs(below) < 1e-15, abs(where[2]) < 1e-15
     (True, True)
     """
@@ -95,12 +95,12 @@ def depth(system: RollingSystem, contact: Contact, orientation: Any) -> tuple[fl
 def _body_point(system: RollingSystem, contact: Contact, orientation: Any, nu: Vector) -> Vector:
     """Return X(ν) in the support's own frame, m."""
     ours = contact.centre + orientation.matrix() @ system.body.shape.support_map(nu)
-    return contact.support.own_of(ours)
+    return contact.support.local(ours)
 
 
 def _there(surface: Surface, p: Vector) -> Any:
     """Tell whether points have the surface under them, before its rim or end."""
-    there, left = p.x == p.x, surface.inside(p)
+    there, left = p.x == p.x, surface.domain_margin(p)
     if surface.rim is not None:
         there = there & (p.x * p.x + p.y * p.y < float(surface.rim) ** 2)
     return there if left is None else there & (left > 0)

@@ -8,13 +8,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InvalidValueError, did_you_mean
-from . import checks, fitting, straight
+from . import checks, fitting, line_contact
 from .algebra import Quaternion, Vector
 from .attitude import attitude
-from .contact import Contact, touch
+from .contact import Contact, contact_at
 from .finiteness import check_finite
 from .motions import SupportState
-from .nearest import misplaced, settle
+from .nearest import closest_contact, misplaced
 from .scalars import Scalar, is_zero
 
 if TYPE_CHECKING:
@@ -51,9 +51,9 @@ class Placing:
         from .system import State
 
         system, surface = self.system, self.system.support.surface
-        time, own = self._now, self._own
+        time, coordinates = self._now, self._own
         check_finite(system, time, time)
-        begin = system.support.motion.at(time, *own)
+        begin = system.support.motion.at(time, *coordinates)
         u, v = (
             checks.real(part, kind, f"position[{i}]")
             for i, (part, kind) in enumerate(zip(_pair(self.position, "position"), surface.coordinates, strict=True))
@@ -63,18 +63,18 @@ class Placing:
         q = self._orientation(begin, begin.carried(surface.point(u, v)))
         contact = self._contact(begin.carried(surface.point(u, v)), q)
         offset = begin.rotation.transpose @ contact.offset
-        contact = self._contact(begin.carried(surface.under(u, v, offset)), q)
+        contact = self._contact(begin.carried(surface.contact_from_coordinates(u, v, offset)), q)
         system.check_rim(contact, self.position)
         fitting.check_start(system, contact, q, self.position)
         turning = self._given_turning(contact, gap)
-        V = self._velocity(contact, begin.own_of(contact.point), gap, turning)
+        V = self._velocity(contact, begin.local(contact.point), gap, turning)
         Omega = self._following_turning(contact, V) if turning is None else turning
         self._check_no_slip(contact, V, Omega, gap)
         centre = contact.centre + contact.normal * gap
         if gap > 0:
             self._check_over(contact, centre, q)
-        start = State(_triple(centre), _triple(V), _triple(Omega), tuple(q), time, tuple(map(float, own)))
-        straight.check_start(system, start)
+        start = State(_triple(centre), _triple(V), _triple(Omega), tuple(q), time, tuple(map(float, coordinates)))
+        line_contact.check_start(system, start)
         return start
 
     @cached_property
@@ -86,19 +86,19 @@ class Placing:
         """Return the coordinates of the support's own motion, as given or as the motion itself starts."""
         motion = self.system.support.motion
         if self.support is None:
-            return motion.own_start()
+            return motion.initial_coordinates()
         given = None if isinstance(self.support, (str, bytes)) or not hasattr(self.support, "__len__") else self.support
-        if given is None or len(given) != len(motion.own):
-            asked = ", ".join(motion.own) or "nothing: this support's motion is a function of the time alone"
+        if given is None or len(given) != len(motion.coordinates):
+            asked = ", ".join(motion.coordinates) or "nothing: this support's motion is a function of the time alone"
             raise InvalidValueError("support", f"must hold {asked}", self.support, "Leave it out, or give each.")
-        kinds = zip(given, motion.own_kinds, strict=True)
+        kinds = zip(given, motion.coordinate_kinds, strict=True)
         return tuple(checks.real(part, kind, f"support[{i}]") for i, (part, kind) in enumerate(kinds))
 
     def _contact(self, point: Vector, q: Quaternion) -> Contact:
         """Return the contact there, or say that the body would touch on a side that its shape does not cover."""
         try:
-            contact = touch(self.system, self._now, point, q, self._own)
-            covered = self.system.body.shape.covers(-(q.matrix().transpose @ contact.normal))
+            contact = contact_at(self.system, self._now, point, q, self._own)
+            covered = self.system.body.shape.validity_margin(-(q.matrix().transpose @ contact.normal))
         except (ArithmeticError, ValueError):
             covered = 0.0
         if covered is None or covered > 0:
@@ -124,7 +124,7 @@ class Placing:
         surface = self.system.support.surface
         if self.attitude is not None:
             angles = checks.components(self.attitude, "angle", "attitude")
-            there = begin.own_of(point)
+            there = begin.local(point)
             first, n = surface.directions(there)[0], surface.normal(there)
             # Not the second direction but n × e₁: the two coordinates need not grow at right angles.
             axes = (begin.rotation @ first, begin.rotation @ n.cross(first), begin.rotation @ n)
@@ -133,8 +133,8 @@ class Placing:
         if not laid:
             return q
         turned = checks.real(self.roll, "angle", "roll")
-        return straight.facing(
-            touch(self.system, self._now, point, q, self._own), begin, surface, self.velocity, turned
+        return line_contact.facing(
+            contact_at(self.system, self._now, point, q, self._own), begin, surface, self.velocity, turned
         )
 
     def _velocity(self, contact: Contact, there: Vector, gap: float, turning: Vector | None) -> Vector:
@@ -208,7 +208,7 @@ class Placing:
         """Refuse a height at which the body is no longer nearest to the place over which it is asked for."""
         elsewhere = misplaced(self.system, contact, centre, q)
         if not elsewhere:
-            nearest = settle(self.system, self._now, centre, q, self._own)
+            nearest = closest_contact(self.system, self._now, centre, q, self._own)
             gap, here = ((centre + at.offset - at.point).dot(at.normal) for at in (nearest, contact))
             if gap < here - SLIP_TOLERANCE * contact.offset.norm():
                 shown = ", ".join(f"{part:.4g}" for part in nearest.point)

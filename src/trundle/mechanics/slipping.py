@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from .algebra import ZERO, Matrix, Quaternion, Vector
-from .contact import Contact, touch
+from .contact import Contact, contact_at
 from .loads import Acting, BodyMotion
 from .scalars import Scalar, namespace
 
@@ -40,12 +40,12 @@ class HeldInertia:
     """The inertia of a body that a couple keeps from turning over the support: it answers about the normal alone."""
 
     normal: Vector
-    whole: Matrix  # J, kg m²
+    tensor: Matrix  # J, kg m²
 
     def solve(self, torque: Vector) -> Vector:
         """Return Ω̇, rad/s², given a torque, N m."""
         n = self.normal
-        return n * (n.dot(torque) / n.dot(self.whole @ n))
+        return n * (n.dot(torque) / n.dot(self.tensor @ n))
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +100,7 @@ def slip(
     orientation: Quaternion,
     angular_velocity: Vector,
     slip_velocity: Vector,
-    own: tuple[Scalar, ...] = (),
+    coordinates: tuple[Scalar, ...] = (),
     direction: Vector | None = None,
     *,
     held: bool = False,
@@ -117,11 +117,11 @@ def slip(
     >>> round(now.reaction.x / 7.0, 12), round(now.slip_rate.x, 12)
     (-1.0, -3.5)
     """
-    contact = touch(system, time, point, orientation, own)
+    contact = contact_at(system, time, point, orientation, coordinates)
     n, support = contact.normal, contact.support
     Omega = unturned(contact, angular_velocity) if held else angular_velocity
     s = slip_velocity - n * n.dot(slip_velocity)  # rounding's part along n would grow where the support bends
-    free = unpushed(system, time, contact, orientation, Omega, s, own, held=held)
+    free = unpushed(system, time, contact, orientation, Omega, s, coordinates, held=held)
     acting = free.acting
     hat = slip_direction(s) if direction is None else direction
     d = n if hat is ZERO else n - hat * system.support.sliding_friction
@@ -130,7 +130,7 @@ def slip(
     N = -free.opening / opening_per_newton
     holding = free.holding
     if isinstance(free.inertia, HeldInertia):
-        asked = free.inertia.whole @ answer.angular_velocity - contact.offset.cross(d) - acting.couple
+        asked = free.inertia.tensor @ answer.angular_velocity - contact.offset.cross(d) - acting.couple
         holding = holding + asked * N
     return Slipping(
         contact,
@@ -154,7 +154,7 @@ def unturned(contact: Contact, angular_velocity: Vector) -> Vector:
     --------
     >>> import trundle as tr
     >>> floor = tr.RollingSystem(tr.Body.solid_sphere(0.1, 2.0), tr.Support(tr.Plane()))
-    >>> unturned(touch(floor, 0.0, ZERO, Quaternion(1.0, 0.0, 0.0, 0.0)), Vector(1.0, 2.0, 3.0)).array().tolist()
+    >>> unturned(contact_at(floor, 0.0, ZERO, Quaternion(1.0, 0.0, 0.0, 0.0)), Vector(1.0, 2.0, 3.0)).array().tolist()
     [0.0, 0.0, 3.0]
     """
     n, omega = contact.normal, contact.support.angular_velocity
@@ -174,7 +174,7 @@ def response(
     >>> floor = tr.RollingSystem(tr.Body.solid_sphere(0.1, 2.0), tr.Support(tr.Plane()))
     >>> still = Quaternion(1.0, 0.0, 0.0, 0.0)
     >>> J = floor.body.inertia_in_space(still.matrix())
-    >>> response(floor, touch(floor, 0.0, ZERO, still), J, Vector(2.0, 0.0, 0.0)).slip.x
+    >>> response(floor, contact_at(floor, 0.0, ZERO, still), J, Vector(2.0, 0.0, 0.0)).slip.x
     3.5
     """
     rho, motion = contact.offset, system.support.motion
@@ -195,7 +195,7 @@ def unpushed(
     orientation: Quaternion,
     angular_velocity: Vector,
     slip_velocity: Vector,
-    own: tuple[Scalar, ...] = (),
+    coordinates: tuple[Scalar, ...] = (),
     *,
     held: bool = False,
 ) -> Unpushed:
@@ -208,7 +208,7 @@ def unpushed(
     >>> import trundle as tr
     >>> floor = tr.RollingSystem(tr.Body.solid_sphere(0.1, 7.0), tr.Support(tr.Plane()), gravity=10.0)
     >>> still = Quaternion(1.0, 0.0, 0.0, 0.0)
-    >>> unpushed(floor, 0.0, touch(floor, 0.0, ZERO, still), still, ZERO, ZERO).opening
+    >>> unpushed(floor, 0.0, contact_at(floor, 0.0, ZERO, still), still, ZERO, ZERO).opening
     -10.0
     """
     m, Omega, s = system.body.mass, angular_velocity, slip_velocity
@@ -230,7 +230,7 @@ def unpushed(
         turning = J.solve(torque)
     s_rate = acting.force / m + turning.cross(contact.offset) + Omega.cross(rho_rate) - u_rate
     if system.support.motion.free:  # I ω̇ = τ − e·(p − X)×R, so that u̇ is affine in N
-        driven = system.support.motion.axle_torque(time, own) - support.axle.dot(acting.from_support)
+        driven = system.support.motion.axle_torque(time, coordinates) - support.axle.dot(acting.from_support)
         s_rate = s_rate - support.lever(point) * (driven / system.support.motion.inertia)
     return Unpushed(V, p_rate, acting, J, turning, s_rate, n.dot(s_rate) + n_rate.dot(s), holding)
 
@@ -244,7 +244,7 @@ def fly(
     orientation: Quaternion,
     angular_velocity: Vector,
     velocity: Vector,
-    own: tuple[Scalar, ...] = (),
+    coordinates: tuple[Scalar, ...] = (),
 ) -> Flying:
     """Return the rates of (p, g, q, Ω, V) of a body that touches nothing; that of r is V.
 
@@ -261,7 +261,7 @@ def fly(
     (-2.0, -10.0)
     """
     m, Omega, V = system.body.mass, angular_velocity, velocity
-    contact = touch(system, time, point, orientation, own)
+    contact = contact_at(system, time, point, orientation, coordinates)
     n = contact.normal
     s = contact.slip_velocity(V, Omega)
     p_rate, _ = contact.rates(s, Omega, V, gap)

@@ -116,8 +116,8 @@ def keeps_axis(motion: Motion) -> bool:
 
 
 def _upright(motion: Motion, time: float) -> bool:
-    own = tuple(0.613 + 0.29 * i for i in range(len(motion.own)))
-    now = motion.at(time, *own)
+    coordinates = tuple(0.613 + 0.29 * i for i in range(len(motion.coordinates)))
+    now = motion.at(time, *coordinates)
     axis, turning = now.rotation @ E_Z, (now.angular_velocity, now.angular_acceleration)
     parts = (axis.x, axis.y, axis.z - 1.0, *(part for rate in turning for part in (rate.x, rate.y)))
     return all(is_zero(part) for part in parts)
@@ -277,7 +277,7 @@ def free_axle(motion: Motion) -> Any:
     >>> free_axle(tr.Spin(2.0)) is None
     True
     """
-    if not motion.free or motion.own != ("angle", "rate"):
+    if not motion.free or motion.coordinates != ("angle", "rate"):
         return None
     try:
         idle = all(is_zero(motion.axle_torque(t, (0.613, rate))) for t in _INSTANTS for rate in (-1.7, 0.9))

@@ -292,7 +292,7 @@ class RollingSystem:
 
     def check_rim(self, contact: Contact, position: Any) -> None:
         """Refuse a contact point at or beyond the rim, naming the position as the user gave it."""
-        there = contact.support.own_of(contact.point)
+        there = contact.support.local(contact.point)
         rim, distance = self.support.surface.rim, math.hypot(there.x, there.y)
         if rim is not None and distance >= rim:
             raise InvalidValueError(

@@ -10,10 +10,10 @@ from ..errors import InvalidValueError, ScenarioError
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.attitude import attitude, attitude_of
 from ..mechanics.contact import Contact
-from ..mechanics.nearest import settle
+from ..mechanics.nearest import closest_contact
 from ..mechanics.placing import no_gap
 from ..mechanics.system import RollingSystem, State, Support
-from .words import Words, body_words, number_of, numbers_of, words_of
+from .serialize import Words, body_words, number_of, numbers_of, words_of
 
 _DIGITS = (None, 15, 14, 13)  # as computed; and as someone may have written them
 _ROUNDINGS = [(None, None), (15, 15), (15, None), (None, 15), (14, 14), (14, None), (13, 13)]  # of place, of motion
@@ -57,7 +57,7 @@ def _support(support: Support) -> Words:
 def _start(system: RollingSystem, start: State) -> Words:
     """Return the shortest words that put the body where it is, to the last digit where there are such."""
     q = Quaternion(*start.orientation)
-    contact = settle(system, start.time, Vector(*start.position), q, start.support)
+    contact = closest_contact(system, start.time, Vector(*start.position), q, start.support)
     best = _nearest(system, start, _Seen(system, start, contact))
     if best.refused is not None:
         error = best.refused
@@ -123,7 +123,7 @@ class _Seen:
         """Return where the body is, and when."""
         contact, turn = self.contact, self.contact.support.rotation
         there = turn.transpose @ (contact.point - contact.support.origin)
-        at = self.system.support.surface.put_down_at(there, turn.transpose @ contact.offset)
+        at = self.system.support.surface.coordinates_from_contact(there, turn.transpose @ contact.offset)
         words: Words = {"position": _rounded(numbers_of(at, "start.position"), digits)}
         gap = float((Vector(*self.start.position) + contact.offset - contact.point).dot(contact.normal))
         if gap > no_gap(contact, self.start.position):
@@ -136,7 +136,7 @@ class _Seen:
         words: Words = {}
         if self.start.time != 0:
             words["time"] = number_of(self.start.time, "start.time")
-        if tuple(self.start.support) != tuple(self.system.support.motion.own_start()):
+        if tuple(self.start.support) != tuple(self.system.support.motion.initial_coordinates()):
             words["support"] = numbers_of(self.start.support, "start.support")
         return words
 

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 from pydantic import Field, model_validator
 
 from ..errors import InvalidValueError, ScenarioError
-from .complaints import Kinds
+from .base import Document
 from .fields import Measure, written
 from .tables import KINDS, Bodies, Loads, Run, Start, Supports
 from .together import tell_all
-from .whole import Document
+from .validation_errors import Kinds
 
 if TYPE_CHECKING:
     from ..mechanics.system import RollingSystem, State
@@ -125,7 +125,7 @@ class ScenarioFile(Document):
 
     def _kinds_of_components(self) -> dict[str, tuple[str, ...]]:
         support = self.system().support
-        return {"start.position": support.surface.coordinates, "start.support": tuple(support.motion.own_kinds)}
+        return {"start.position": support.surface.coordinates, "start.support": tuple(support.motion.coordinate_kinds)}
 
     # --- what it describes -------------------------------------------------------------------------------
 

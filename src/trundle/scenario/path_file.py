@@ -10,11 +10,11 @@ from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, model_va
 from pydantic_core import CoreSchema, core_schema
 
 from ..errors import InvalidValueError
-from .complaints import Kinds, Nothing
+from .base import Document
 from .fields import Measure, Measures, Quantity, written
 from .tables import Place2, Radius, Table, Turn4
 from .together import each_checked
-from .whole import Document
+from .validation_errors import Kinds, Nothing
 
 
 @dataclass(frozen=True)

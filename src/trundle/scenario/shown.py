@@ -13,7 +13,7 @@ from .fields import Coordinate, Measure, Measures, written
 from .path_file import Several
 
 if TYPE_CHECKING:
-    from .whole import Document
+    from .base import Document
 
 _LONGEST = 12  # list; a longer one is only counted
 _SYMBOLS = str.maketrans("*", " ")

@@ -50,12 +50,14 @@ def facts(system: RollingSystem) -> dict[str, tuple[tuple[str, ...], dict[str, A
         "flag_values": np.array(list(PHASES), dtype=np.int8),
         "flag_meanings": " ".join(PHASES.values()),
     }
-    own = [_OWN[name.rstrip("_0123456789")] for name in system.support.motion.own]  # of two that turn: angle_2
+    coordinates = [
+        _OWN[name.rstrip("_0123456789")] for name in system.support.motion.coordinates
+    ]  # of two that turn: angle_2
     return {
         **{name: (("time", "axis"), _named(*said)) for name, said in _VECTORS.items()},
         "orientation": (("time", "quaternion"), turning),
         "phase": (("time",), phase),
-        **{name: (("time",), _named(*said)) for name, said in zip(own_names(system), own, strict=True)},
+        **{name: (("time",), _named(*said)) for name, said in zip(coordinate_names(system), coordinates, strict=True)},
     }
 
 
@@ -89,7 +91,7 @@ def columns(system: RollingSystem, samples: Samples) -> dict[str, Any]:
         "slip_velocity": _slip(system, samples),
         "orientation": samples.orientation,
         "phase": samples.phase.astype(np.int8, copy=False),
-        **dict(zip(own_names(system), samples.own.T, strict=True)),
+        **dict(zip(coordinate_names(system), samples.support_coordinates.T, strict=True)),
     }
 
 
@@ -135,16 +137,16 @@ def _slip(system: RollingSystem, samples: Samples) -> Any:
     return found
 
 
-def own_names(system: RollingSystem) -> list[str]:
+def coordinate_names(system: RollingSystem) -> list[str]:
     """Return the names of the variables that hold the coordinates of the support's own motion.
 
     Examples
     --------
     >>> import trundle as tr
-    >>> own_names(tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), tr.Support(tr.Plane())))
+    >>> coordinate_names(tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), tr.Support(tr.Plane())))
     []
     """
-    names = system.support.motion.own
+    names = system.support.motion.coordinates
     return [f"support_{name}" if names.count(name) == 1 else f"support_{name}_{i}" for i, name in enumerate(names)]
 
 

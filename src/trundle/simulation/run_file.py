@@ -268,11 +268,15 @@ def _check_numbers(arrays: dict[str, Any], check: Callable[[str, Any, str, objec
 def _check_start(start: State, data: xarray.Dataset, system: RollingSystem, source: str) -> None:
     """Check the state that the run is said to have started from."""
     numbers = [*start.position, *start.velocity, *start.angular_velocity, *start.orientation, *start.support]
-    own, first = system.support.motion.own, float(data.time.values[0])
+    coordinates, first = system.support.motion.coordinates, float(data.time.values[0])
     for holds, rule, received in (
         (np.isfinite([*numbers, start.time]).all(), "must hold finite numbers", numbers),
         (abs(np.linalg.norm(start.orientation) - 1) <= _UNIT, "must hold a quaternion of length 1", start.orientation),
-        (len(start.support) == len(own), f"must hold {', '.join(own) or 'nothing'} of the support", start.support),
+        (
+            len(start.support) == len(coordinates),
+            f"must hold {', '.join(coordinates) or 'nothing'} of the support",
+            start.support,
+        ),
         (start.time <= first, f"must not be after the first sample, {first:g} s", start.time),
     ):
         if not holds:

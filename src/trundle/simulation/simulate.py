@@ -7,11 +7,11 @@ from functools import partial
 from typing import Any
 
 from ..errors import InvalidValueError, ScenarioError
-from ..mechanics import straight
+from ..mechanics import line_contact
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import Contact
 from ..mechanics.finiteness import check_finite
-from ..mechanics.nearest import misplaced, settle
+from ..mechanics.nearest import closest_contact, misplaced
 from ..mechanics.placing import no_gap, slips
 from ..mechanics.system import RollingSystem, State
 from ..scenario import ScenarioFile
@@ -116,7 +116,7 @@ def _described(system: RollingSystem, start: State, times: Any, method: str, tit
 def _check_start(system: RollingSystem, start: State, until: float) -> None:
     """Refuse a hand-made start inside the support, or one that slips where nothing limits the friction."""
     q, centre = Quaternion(*start.orientation), Vector(*start.position)
-    contact = settle(system, start.time, centre, q, start.support)
+    contact = closest_contact(system, start.time, centre, q, start.support)
     point = centre + contact.offset
     gap = (point - contact.point).dot(contact.normal)
     if not gap >= -no_gap(contact, start.position):
@@ -132,7 +132,7 @@ def _check_start(system: RollingSystem, start: State, until: float) -> None:
     _check_loads(system, start, contact)
     if gap <= no_gap(contact, start.position):
         _check_slip(system, start, contact)
-    straight.check_start(system, start, until)
+    line_contact.check_start(system, start, until)
 
 
 def check_state(system: RollingSystem, start: State) -> None:
@@ -146,12 +146,12 @@ def check_state(system: RollingSystem, start: State) -> None:
     """
     if not isinstance(start, State):
         raise InvalidValueError("start", "must be a State, as system.place(...) makes it", start)
-    own, remedy = system.support.motion.own, "Let system.place(...) make the start."
-    wanted = {"position": 3, "velocity": 3, "angular_velocity": 3, "orientation": 4, "support": len(own)}
+    coordinates, remedy = system.support.motion.coordinates, "Let system.place(...) make the start."
+    wanted = {"position": 3, "velocity": 3, "angular_velocity": 3, "orientation": 4, "support": len(coordinates)}
     for name, count in wanted.items():
         given = getattr(start, name)
         if not _are_numbers(given, count):
-            rule = f"{count} finite numbers" if name != "support" else f"{', '.join(own) or 'nothing'}"
+            rule = f"{count} finite numbers" if name != "support" else f"{', '.join(coordinates) or 'nothing'}"
             raise InvalidValueError(f"start.{name}", f"must hold {rule}", given, remedy)
     if not _are_numbers((start.time,), 1):
         raise InvalidValueError("start.time", "must be a finite number, s", start.time, remedy)

@@ -104,9 +104,11 @@ class Trajectory(Viewable):
         """The arrays in the inertial support frame, as the methods and the card take them."""
         data = self.in_frame("support").data
         names = {part.name for part in fields(Samples)} & {"time", *labels.facts(self.system)}
-        own = [data[name].values for name in labels.own_names(self.system)]
+        coordinates = [data[name].values for name in labels.coordinate_names(self.system)]
         arrays = {name: data[name].values for name in names if name in data}
-        return Samples(**arrays, events=self.events, own=np.stack(own, axis=-1) if own else None)
+        return Samples(
+            **arrays, events=self.events, support_coordinates=np.stack(coordinates, axis=-1) if coordinates else None
+        )
 
     def in_frame(self, frame: str) -> Trajectory:
         """Return the same motion seen from another frame.
@@ -142,8 +144,8 @@ class Trajectory(Viewable):
             raise UnknownNameError("frame", str(frame), frames.FRAMES)
         if frame == self.frame:
             return self
-        own = labels.own_names(self.system)
-        data = frames.change(self.data, self.system.support, self.frame, frame, own)
+        coordinates = labels.coordinate_names(self.system)
+        data = frames.change(self.data, self.system.support, self.frame, frame, coordinates)
         seen = replace(self, data=data, _kept=dict(self._kept))
         seen._kept["view"] = self, seen._facts()
         return seen

@@ -11,19 +11,19 @@ import numpy as np
 
 from ..errors import OutOfDomainError, SolverError
 from ..mechanics.algebra import ZERO, Quaternion, Vector
-from ..mechanics.contact import Contact, touch
-from ..mechanics.nearest import settle
+from ..mechanics.contact import Contact, contact_at
+from ..mechanics.nearest import closest_contact
 from ..mechanics.scalars import is_number
 from ..mechanics.system import RollingSystem, State
 from . import phases
+from .contact_state import ContactState, floats
 from .exact import ClosedForm, form_of_phase, refusals
 from .first_stop import first_stop
-from .following import Next, Stop
 from .laws import Law
 from .orientation import orientation, periodic_orientation
-from .phases import Stretch, cut
+from .phases import Segment, cut
 from .samples import AT_ONCE, FLIGHT, RESTING, SLIPPING, Array, Progress, Samples
-from .touch import Touch, floats
+from .transitions import PhaseStart, ZeroCrossing
 
 _PHASE_A_STEP = 0.05  # rad of the motion's own phase between two looks at what may end it
 _SHORT = 1000  # samples of a stretch, up to which it is completed with those around it
@@ -49,14 +49,14 @@ def solve(
 
 def integrate(
     system: RollingSystem,
-    now: Next,
+    now: PhaseStart,
     times: Array,
     tolerance: float = 0.0,  # noqa: ARG001
     progress: Progress | None = None,
-) -> Iterator[Stretch]:
+) -> Iterator[Segment]:
     """Follow one law to its first stop by the closed form of its phase."""
     law, start = now.law, now.start
-    form = form_of_phase(law.code, system, start, now.numbers)
+    form = form_of_phase(law.code, system, start, now.state_vector)
     if form is None:
         raise OutOfDomainError(refusals(law.code, system, start))
     end = float(times[-1]) if times.size else now.time
@@ -69,48 +69,50 @@ def integrate(
         kept, _ = cut(times, reached)
         q = orientations(form, start, np.append(kept, reached))
         at = _place(system, law, form, start, found[0], q[-1])
-        stop, q = Stop(reached, found[1], np.array(law.numbers(at), dtype=float), at), q[:-1]
-    along = Along(law, form, start.time, start.support, together=kept.size <= _SHORT)
+        stop, q = ZeroCrossing(reached, found[1], np.array(law.state_vector(at), dtype=float), at), q[:-1]
+    along = ClosedFormSegment(law, form, start.time, start.support, together=kept.size <= _SHORT)
     last = max(kept.size - 1, 0) // AT_ONCE * AT_ONCE
     for first in range(0, last, AT_ONCE):
         block = slice(first, first + AT_ONCE)
-        yield Stretch(kept[block], q[block], None, along)
+        yield Segment(kept[block], q[block], None, along)
         if progress is not None:
             progress(float(kept[block][-1]))
-    yield Stretch(kept[last:], q[last:], stop, along)
+    yield Segment(kept[last:], q[last:], stop, along)
     if progress is not None:
         progress(end if stop is None else stop.time)
 
 
-def _place(system: RollingSystem, law: Law, form: ClosedForm, start: State, t: float, q: Array) -> Touch:
+def _place(system: RollingSystem, law: Law, form: ClosedForm, start: State, t: float, q: Array) -> ContactState:
     """Return the body where the form takes it in a time, with the orientation there."""
-    (r, V, Omega, _), grown = form.motion_and_own_at(t)
-    own = tuple(float(of_start + gone) for of_start, gone in zip(start.support, grown, strict=True))
+    (r, V, Omega, _), grown = form.motion_and_support_at(t)
+    coordinates = tuple(float(of_start + gone) for of_start, gone in zip(start.support, grown, strict=True))
     time, (w, x, y, z) = start.time + t, q.tolist()
-    state = State(floats(r), floats(V), floats(Omega), (w, x, y, z), time, own)
-    return Touch.of(system, state, _contact(system, law, time, Vector(*state.position), Quaternion(w, x, y, z), own))
+    state = State(floats(r), floats(V), floats(Omega), (w, x, y, z), time, coordinates)
+    return ContactState.of(
+        system, state, _contact(system, law, time, Vector(*state.position), Quaternion(w, x, y, z), coordinates)
+    )
 
 
 # What ends a stretch
 
 
-def _first_stop(system: RollingSystem, now: Next, form: ClosedForm, duration: float) -> tuple[float, str] | None:
+def _first_stop(system: RollingSystem, now: PhaseStart, form: ClosedForm, duration: float) -> tuple[float, str] | None:
     """Return when and by which of the law's stops the form's motion ends, if it does within the duration."""
-    names = now.law.stops(system, now.time, now.numbers, now.extras)
+    names = now.law.event_functions(system, now.time, now.state_vector, now.event_parameters)
     known = {name: t for name, t in form.ends_at.items() if name in names and 0 <= t <= duration}
     sooner = min(((t, name) for name, t in known.items()), default=None)
-    given = {*form.ends_at, *(f"near {name}" for name in form.ends_at), *form.never}
+    given = {*form.ends_at, *(f"near {name}" for name in form.ends_at), *form.impossible_events}
     asked = [name for name in names if name not in given]
     if not asked:
         return sooner
     upto = min(duration if sooner is None else sooner[0], 1.01 * max(form.repeats(name) for name in asked))
     values = _values(system, now, form, asked)
-    looks = [(t, _PHASE_A_STEP / pace if pace > 0 else math.inf) for t, pace in form.paces(upto)]
+    looks = [(t, _PHASE_A_STEP / pace if pace > 0 else math.inf) for t, pace in form.max_rates(upto)]
     found = first_stop(values, looks)
     return sooner if found is None else (found[0], asked[found[1]])
 
 
-def _values(system: RollingSystem, now: Next, form: ClosedForm, asked: list[str]) -> Callable[[Any], Any]:
+def _values(system: RollingSystem, now: PhaseStart, form: ClosedForm, asked: list[str]) -> Callable[[Any], Any]:
     """Return the stops asked for as functions of the time since the start.
 
     Where they depend on the orientation, the form says how the body stands; most are the same from all sides, or turn
@@ -120,10 +122,10 @@ def _values(system: RollingSystem, now: Next, form: ClosedForm, asked: list[str]
     at_start, only_bounds = Quaternion(*start.orientation), set(asked) <= _BOUNDS
 
     def at(t: Any) -> Any:
-        (r, V, Omega, _), grown = form.motion_and_own_at(t)
-        q = at_start if only_bounds else form.stance(t) or at_start
-        own = tuple(of_start + gone for of_start, gone in zip(start.support, grown, strict=True))
-        contact = touch(system, start.time + t, r, q, own)
+        (r, V, Omega, _), grown = form.motion_and_support_at(t)
+        q = at_start if only_bounds else form.representative_orientation(t) or at_start
+        coordinates = tuple(of_start + gone for of_start, gone in zip(start.support, grown, strict=True))
+        contact = contact_at(system, start.time + t, r, q, coordinates)
         contact = replace(contact, point=_point(system, law, contact, r))
         if only_bounds:
             found = law._bounds(system, contact, q, 0.0)
@@ -132,7 +134,9 @@ def _values(system: RollingSystem, now: Next, form: ClosedForm, asked: list[str]
             if law.code == SLIPPING:
                 s = contact.slip_velocity(V, Omega)
                 added = [*(s - contact.normal * s.dot(contact.normal))]
-            found = law.stops(system, start.time + t, [*contact.point, *q, *Omega, *added, *own], now.extras)
+            found = law.event_functions(
+                system, start.time + t, [*contact.point, *q, *Omega, *added, *coordinates], now.event_parameters
+            )
         if is_number(t):
             return [float(found[name]) for name in asked]
         return np.array([np.broadcast_to(found[name], np.shape(t)) for name in asked])
@@ -144,45 +148,55 @@ def _values(system: RollingSystem, now: Next, form: ClosedForm, asked: list[str]
 
 
 @dataclass(frozen=True)
-class Along:
+class ClosedFormSegment:
     """What completes the orientations at some times to samples: the closed form that the body follows from a start."""
 
     law: Law
     form: ClosedForm
     since: Any  # s; an array where the form's numbers are arrays
-    own: tuple[Any, ...]  # of the support's motion, then
+    support_coordinates: tuple[Any, ...]  # of the support's motion, then
     together: bool = True  # whether it is completed with others, which makes arrays of its numbers
 
-    def goes_on(self, other: Any) -> bool:
+    def joins(self, other: Any) -> bool:
         """Tell whether the next stretch has the same formula, so that arrays of its numbers give both."""
-        if not (isinstance(other, Along) and self.together and other.together and self.form.of_arrays):
+        if not (isinstance(other, ClosedFormSegment) and self.together and other.together and self.form.of_arrays):
             return False
         return type(other.form) is type(self.form) and other.law.code == self.law.code
 
-    def record(self, system: RollingSystem, stretches: Sequence[Stretch]) -> Samples:
+    def record(self, system: RollingSystem, stretches: Sequence[Segment]) -> Samples:
         """Return the samples of this stretch, and of those that go on from it."""
         stretches = [stretch for stretch in stretches if stretch.times.size] or stretches[:1]  # no array of nothing
         sizes = [stretch.times.size for stretch in stretches]
         each: list[Any] = [stretch.known for stretch in stretches]
-        form, since, own = (
-            _spread(values, sizes) for values in zip(*((one.form, one.since, one.own) for one in each), strict=True)
+        form, since, coordinates = (
+            _spread(values, sizes)
+            for values in zip(*((one.form, one.since, one.support_coordinates) for one in each), strict=True)
         )
-        together = Along(self.law, form, since, own)
+        together = ClosedFormSegment(self.law, form, since, coordinates)
         times = np.concatenate([stretch.times for stretch in stretches])
         samples = together.samples(system, times, np.concatenate([stretch.states for stretch in stretches]))
         return replace(samples, form=self.form)
 
     def samples(self, system: RollingSystem, times: Array, q: Array) -> Samples:
         """Return the samples at given times, at which the orientations are known."""
-        parts, grown = self.form.motion_and_own_at(times - self.since)
+        parts, grown = self.form.motion_and_support_at(times - self.since)
         position, velocity, turning, force = (np.broadcast_to(part.array(), (times.size, 3)) for part in parts)
-        own = np.empty((times.size, len(self.own)))
-        for i, (of_start, gone) in enumerate(zip(self.own, grown, strict=True)):
-            own[:, i] = of_start + gone
-        contact = _contact(system, self.law, times, Vector.of(position), Quaternion.of(q), tuple(own.T)).array()
+        coordinates = np.empty((times.size, len(self.support_coordinates)))
+        for i, (of_start, gone) in enumerate(zip(self.support_coordinates, grown, strict=True)):
+            coordinates[:, i] = of_start + gone
+        contact = _contact(system, self.law, times, Vector.of(position), Quaternion.of(q), tuple(coordinates.T)).array()
         phase: Any = np.full(times.size, self.law.code, dtype=np.int8)
         return Samples(
-            times, position, contact, velocity, turning, q, force + 0.0, phase=phase, own=own, form=self.form
+            times,
+            position,
+            contact,
+            velocity,
+            turning,
+            q,
+            force + 0.0,
+            phase=phase,
+            support_coordinates=coordinates,
+            form=self.form,
         )
 
 
@@ -202,21 +216,23 @@ def _alike(one: Any, other: Any) -> bool:
     return bool(one == other or (one != one and other != other))
 
 
-def _contact(system: RollingSystem, law: Law, time: Any, centre: Vector, q: Quaternion, own: tuple[Any, ...]) -> Vector:
+def _contact(
+    system: RollingSystem, law: Law, time: Any, centre: Vector, q: Quaternion, coordinates: tuple[Any, ...]
+) -> Vector:
     """Return the contact; in flight the point of the support nearest to the body."""
     if law.code == RESTING:  # any body, with another normal under its centre: once, as nothing moves
-        first = (np.ravel(part)[0] for part in (time, *centre, *q, *own))
+        first = (np.ravel(part)[0] for part in (time, *centre, *q, *coordinates))
         t, x, y, z, *rest = (float(part) for part in first)
-        place = settle(system, t, Vector(x, y, z), Quaternion(*rest[:4]), tuple(rest[4:])).point
+        place = closest_contact(system, t, Vector(x, y, z), Quaternion(*rest[:4]), tuple(rest[4:])).point
         return place + ZERO * time
-    return _point(system, law, touch(system, time, centre, q, own), centre)
+    return _point(system, law, contact_at(system, time, centre, q, coordinates), centre)
 
 
 def _point(system: RollingSystem, law: Law, contact: Contact, centre: Vector) -> Vector:
     """Return p of a body whose normal at the contact is known; in flight straight under the centre, on the support."""
     if law.code != FLIGHT:
         return centre + contact.offset
-    there = contact.support.own_of(centre)
+    there = contact.support.local(centre)
     return centre - contact.normal * system.support.surface.level(there)
 
 
@@ -233,7 +249,7 @@ def orientations(motion: ClosedForm, start: State, times: Array) -> Array:
     >>> orientations(closed_form(system, start), start, np.array([0.0]))[0].tolist()
     [1.0, 0.0, 0.0, 0.0]
     """
-    straight = motion.straight_turn(times - start.time)
+    straight = motion.fixed_axis_rotation(times - start.time)
     if straight is not None:
         axis, angle = straight
         half, q = np.broadcast_to(0.5 * np.asarray(angle), times.shape), Quaternion(*start.orientation)

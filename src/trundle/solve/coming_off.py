@@ -16,7 +16,7 @@ _UNASKED = 1e-7  # share of what friction can give when the body is pressed on a
 
 
 def lift_at_hand(
-    system: RollingSystem, law: Law, time: float, numbers: Sequence[float], name: str, extras: Sequence[float]
+    system: RollingSystem, law: Law, time: float, numbers: Sequence[float], name: str, event_parameters: Sequence[float]
 ) -> float | None:
     """Return when the body comes off in whose contact friction, or resistance to rolling, seems to give way.
 
@@ -30,20 +30,20 @@ def lift_at_hand(
     >>> shaken = tr.Support(tr.Plane(), motion=tr.Shake((0.0, 0.0, 0.01), 45.0), friction=0.3)
     >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.05, 1.0), shaken)
     >>> law = RollingLaw()
-    >>> numbers = law.pack(system, system.place(time=0.011234))
-    >>> round(lift_at_hand(system, law, 0.011234, numbers, "slip", ()), 9)  # asin(g/(Aω²))/ω
+    >>> state_vector = law.pack(system, system.place(time=0.011234))
+    >>> round(lift_at_hand(system, law, 0.011234, state_vector, "slip", ()), 9)  # asin(g/(Aω²))/ω
     0.011234198
     """
     from scipy.optimize import brentq
 
-    plain = python_law(system, law, (*extras, *[0.0] * corners.count(system)), time, numbers)
+    plain = python_law(system, law, (*event_parameters, *[0.0] * corners.count(system)), time, numbers)
     which = plain.names.index("lift"), plain.names.index(name)
 
     def look(wait: float) -> tuple[float, float]:
-        found = plain.stops(time + wait, law.advanced(system, time, numbers, wait, plain.rates))
+        found = plain.event_functions(time + wait, law.rk4_step(system, time, numbers, wait, plain.rates))
         return found[which[0]], found[which[1]]
 
-    at = law.meant(system, time, numbers)
+    at = law.unpack(system, time, numbers)
     moment = at.moment(system)
     now = look(0.0)[0]
     changes = abs(look(_AT_HAND * moment)[0] - now) / _AT_HAND  # in such a time, N

@@ -16,12 +16,12 @@ from ..errors import SolverError
 from ..mechanics.algebra import Vector
 from ..mechanics.scalars import Scalar
 from ..mechanics.system import RollingSystem
+from .contact_state import ContactState, floats
 from .laws import CORNER, Law
 from .samples import Array
-from .touch import Touch, floats
 
 if TYPE_CHECKING:
-    from .following import Next
+    from .transitions import PhaseStart
 
 _NUMBERS = 4  # of each corner: the direction that its vector has, and 1/W
 _CLOSE = 1e-2  # W as a share of the vector's length, or of how it changes in the time in which the motion changes
@@ -45,7 +45,7 @@ def count(system: RollingSystem) -> int:
     return _NUMBERS * len(system.corners)
 
 
-def all_stops(
+def all_event_functions(
     system: RollingSystem, law: Law, time: Scalar, state: Sequence[Scalar], given: Sequence[Scalar]
 ) -> dict[str, Scalar]:
     """Return what ends a stretch where it falls through zero: a law's own stops, and the corners of the loads.
@@ -54,7 +54,7 @@ def all_stops(
     one that only turns about has no such instant.
     """
     split = len(given) - count(system)
-    found, corners = law.stops(system, time, state, given[:split]), system.corners
+    found, corners = law.event_functions(system, time, state, given[:split]), system.corners
     if not corners:
         return found
     motion = law.motion(system, time, state)
@@ -65,7 +65,7 @@ def all_stops(
     return found
 
 
-def directions(system: RollingSystem, now: Next) -> tuple[float, ...]:
+def directions(system: RollingSystem, now: PhaseStart) -> tuple[float, ...]:
     """Return the numbers of the stops at corners, for a stretch that begins."""
     if not system.corners:
         return ()
@@ -78,7 +78,7 @@ def directions(system: RollingSystem, now: Next) -> tuple[float, ...]:
     return tuple(found)
 
 
-def beyond(system: RollingSystem, now: Next) -> Next:
+def beyond(system: RollingSystem, now: PhaseStart) -> PhaseStart:
     """Return what begins on a corner as it is just behind it, where no rounding decides on which side it is."""
     if not system.corners:
         return now
@@ -99,14 +99,14 @@ def beyond(system: RollingSystem, now: Next) -> Next:
     return now
 
 
-def advanced(system: RollingSystem, now: Next, wait: float) -> Next:
+def advanced(system: RollingSystem, now: PhaseStart, wait: float) -> PhaseStart:
     """Return the same a moment later, by its own law until then."""
-    numbers = now.law.advanced(system, now.time, now.numbers, wait)
-    at = now.law.meant(system, now.time + wait, numbers)
-    return replace(now, start=at.state, numbers=numbers, across=replace(now, events=()))
+    numbers = now.law.rk4_step(system, now.time, now.state_vector, wait)
+    at = now.law.unpack(system, now.time + wait, numbers)
+    return replace(now, start=at.state, state_vector=numbers, across=replace(now, events=()))
 
 
-def check_count(system: RollingSystem, times: Sequence[float], now: Next) -> None:
+def check_count(system: RollingSystem, times: Sequence[float], now: PhaseStart) -> None:
     """Refuse a motion that would pass through corners for ever."""
     many = times[-_MANY:]
     trapped = len(many) == _MANY and many[-1] - many[0] < _MANY_WITHIN * _moment(system, now)
@@ -119,20 +119,20 @@ def check_count(system: RollingSystem, times: Sequence[float], now: Next) -> Non
     )
 
 
-def _vectors(system: RollingSystem, now: Next, share: float) -> list[Array]:
+def _vectors(system: RollingSystem, now: PhaseStart, share: float) -> list[Array]:
     """Return what passes through zero at the corners, a share of the time later in which the motion changes."""
     wait = share * _moment(system, now) if share else 0.0
-    numbers = now.law.advanced(system, now.time, now.numbers, wait) if wait else now.numbers
+    numbers = now.law.rk4_step(system, now.time, now.state_vector, wait) if wait else now.state_vector
     motion = now.law.motion(system, now.time + wait, list(map(float, numbers)))
     return [np.array([float(part) for part in corner(motion)]) for corner in system.corners]
 
 
-def _aside(system: RollingSystem, now: Next) -> Next:
+def _aside(system: RollingSystem, now: PhaseStart) -> PhaseStart:
     """Return what begins a rounding further along the way of the body."""
-    at = now.law.meant(system, now.time, now.numbers)
+    at = now.law.unpack(system, now.time, now.state_vector)
     centre = Vector(*now.start.position) + at.V * (_ROUNDING * at.arm / max(at.speed, 1e-300))
-    at = Touch.of(system, replace(now.start, position=floats(centre)))
-    return replace(now, start=at.state, numbers=now.law.numbers(at))
+    at = ContactState.of(system, replace(now.start, position=floats(centre)))
+    return replace(now, start=at.state, state_vector=now.law.state_vector(at))
 
 
 def _is_on(w: Array, later: Array) -> bool:
@@ -140,6 +140,6 @@ def _is_on(w: Array, later: Array) -> bool:
     return bool(np.linalg.norm(w) <= _BEHIND / _AHEAD * np.linalg.norm(later - w))
 
 
-def _moment(system: RollingSystem, now: Next) -> float:
+def _moment(system: RollingSystem, now: PhaseStart) -> float:
     """Return a time in which the motion changes, s."""
-    return now.law.meant(system, now.time, now.numbers).moment(system)
+    return now.law.unpack(system, now.time, now.state_vector).moment(system)

@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import touch
+from ..mechanics.contact import contact_at
 from ..mechanics.creep import slip_rates
 from ..mechanics.scalars import Scalar
 from ..mechanics.slipping import Slipping, slip
 from ..mechanics.system import RollingSystem
 from . import corners
+from .contact_state import ContactState, floats
 from .laws import CONTACT, Numbers, SlippingLaw
-from .touch import Touch, floats
 from .tracing import python_law
 
 # How many times as fast as slip has grown, r, its direction must settle: with the first two terms, in 1/r and 1/r², of
@@ -73,12 +73,12 @@ class CreepingLaw(SlippingLaw):
 
     def _settled(self, system: RollingSystem, time: Scalar, state: Numbers) -> tuple[Vector, Vector, Scalar]:
         """Return the direction that slip keeps, the one across it, and how fast the first settles, times |s|."""
-        p, q, Omega, (speed, *_), own = self.split(state)
-        contact = touch(system, time, p, q, own)
+        p, q, Omega, (speed, *_), coordinates = self.split(state)
+        contact = contact_at(system, time, p, q, coordinates)
         n, near = contact.normal, Vector(self.near_x, self.near_y, self.near_z)
         first = near - n * n.dot(near)
         first = first / first.norm()
-        rates = slip_rates(system, time, contact, q, Omega, first, first * speed, own, held=self.held)
+        rates = slip_rates(system, time, contact, q, Omega, first, first * speed, coordinates, held=self.held)
         c, s, settling = rates.settled()
         return rates.direction(c, s), rates.direction(-s, c), settling
 
@@ -107,27 +107,29 @@ class CreepingLaw(SlippingLaw):
         return time + self.step, [number + rate * self.step for number, rate in zip(state, rates, strict=True)]
 
     def _now(self, system: RollingSystem, time: Scalar, state: Numbers, direction: Vector | None = None) -> Slipping:
-        p, q, Omega, (speed, *_), own = self.split(state)
+        p, q, Omega, (speed, *_), coordinates = self.split(state)
         hat = self._settled(system, time, state)[0] if direction is None else direction
-        return slip(system, time, p, q, Omega, hat * speed, own, hat, held=self.held)
+        return slip(system, time, p, q, Omega, hat * speed, coordinates, hat, held=self.held)
 
     def _rates(self, system: RollingSystem, time: Scalar, state: Numbers, hat: Vector) -> list[Scalar]:
         now = self._now(system, time, state, hat)
-        own = system.support.motion.own_rates(time, self.split(state)[4], now.axle_moment)
-        return [*now.point_rate, *now.orientation_rate, *now.angular_acceleration, now.slip_rate.dot(hat), *own]
+        coordinates = system.support.motion.coordinate_rates(time, self.split(state)[4], now.axle_moment)
+        return [*now.point_rate, *now.orientation_rate, *now.angular_acceleration, now.slip_rate.dot(hat), *coordinates]
 
     def rates(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:
         """Return ṗ, q̇, Ω̇ and the rate of |s|."""
         return self._rates(system, time, state, self._way(system, time, state)[0])
 
-    def stops(self, system: RollingSystem, time: Scalar, state: Numbers, extras: Numbers) -> dict[str, Scalar]:
+    def event_functions(
+        self, system: RollingSystem, time: Scalar, state: Numbers, event_parameters: Numbers
+    ) -> dict[str, Scalar]:
         """Return the normal force, its effect on the gap, the speed of slip, how its direction lags, and the bounds."""
         hat, settling, turning = self._way(system, time, state)
         now = self._now(system, time, state, hat)
         speed, since = state[10], time - self.since
         ratio = speed / (settling * since)  # 1/r
         return {
-            **self._pressing(system, now, extras),
+            **self._pressing(system, now, event_parameters),
             "held": speed,
             "settled": settling * since - SETTLES_FAST * speed,
             "lags": _LEFT_OUT**2 - (6 * turning * since * ratio**3) ** 2,
@@ -135,14 +137,14 @@ class CreepingLaw(SlippingLaw):
             **self._bounds(system, now.contact, Quaternion(*state[3:7]), 0.0),
         }
 
-    def settles(self, system: RollingSystem, at: Touch) -> bool:
+    def settles(self, system: RollingSystem, at: ContactState) -> bool:
         """Tell whether the direction of a body's slip settles so fast that it can be followed by this law."""
-        time, numbers = at.state.time, self.numbers(at)
-        law = python_law(system, self, (0.0,) * (self.extras + corners.count(system)), time, numbers)
-        stops = dict(zip(law.names, law.stops(time, numbers), strict=True))
+        time, numbers = at.state.time, self.state_vector(at)
+        law = python_law(system, self, (0.0,) * (self.event_parameters + corners.count(system)), time, numbers)
+        stops = dict(zip(law.names, law.event_functions(time, numbers), strict=True))
         return bool(min(stops["settled"], stops["lags"]) > 0)
 
-    def numbers(self, at: Touch) -> list[float]:
+    def state_vector(self, at: ContactState) -> list[float]:
         """Return p, q, Ω and |s| of the slip along the support."""
         return [*at.nearest, *at.orientation, *at.Omega, at.sliding.norm(), *at.state.support]
 

@@ -11,10 +11,10 @@ import numpy as np
 from ..mechanics.kinks import kinks_and_jolts
 from ..mechanics.system import RollingSystem, State
 from . import phases
-from .following import Next, Stop
 from .laws import Law
-from .phases import Integrate, Stretch, cut
+from .phases import Integrate, Segment, cut
 from .samples import Array, Progress, Samples
+from .transitions import PhaseStart, ZeroCrossing
 
 _MOST_STEPS = 100_000  # kept, of some two or three kilobytes each
 _MARKS = 1000  # states on the way through a stretch of more
@@ -35,7 +35,7 @@ class Leg:
     """
 
     states: Callable[[Array], Array]
-    stop: Stop | None
+    stop: ZeroCrossing | None
     steps: int
 
 
@@ -55,7 +55,7 @@ class TooMany:
     time: float
 
 
-Keep = Callable[[RollingSystem, Next, float, float, int], Leg | TooMany]
+Keep = Callable[[RollingSystem, PhaseStart, float, float, int], Leg | TooMany]
 
 
 class Dense:
@@ -92,7 +92,7 @@ class Dense:
         self.bends = kinks_and_jolts(system, start.time, end)
         self.legs: list[Leg] = []
         self.ends: list[float] = []  # of the legs, s
-        self.follows: dict[int, Next] = {}
+        self.follows: dict[int, PhaseStart] = {}
 
     def __call__(self, times: Array) -> Samples:
         """Return the samples at ascending instants, s, none before the start."""
@@ -118,8 +118,8 @@ class Dense:
         return float(first), float(last)
 
     def _through(
-        self, system: RollingSystem, now: Next, times: Array, tolerance: float, progress: Progress | None
-    ) -> Iterator[Stretch]:
+        self, system: RollingSystem, now: PhaseStart, times: Array, tolerance: float, progress: Progress | None
+    ) -> Iterator[Segment]:
         """Read a stretch off what is kept of it."""
         if self.passed == len(self.legs):
             leg = self._leg(system, now, times, tolerance, progress)
@@ -128,9 +128,11 @@ class Dense:
         leg, self.passed = self.legs[self.passed], self.passed + 1
         stop = leg.stop if times.size and leg.stop is not None and leg.stop.time <= times[-1] else None
         here = times if stop is None else cut(times, stop.time)[0]
-        yield Stretch(here, leg.states(here), stop)
+        yield Segment(here, leg.states(here), stop)
 
-    def _leg(self, system: RollingSystem, now: Next, times: Array, tolerance: float, progress: Progress | None) -> Leg:
+    def _leg(
+        self, system: RollingSystem, now: PhaseStart, times: Array, tolerance: float, progress: Progress | None
+    ) -> Leg:
         """Go through a stretch, and keep its steps, or where they are too many, some states on its way."""
         end = self._end_after(now)
         left = _MOST_STEPS - self.steps
@@ -144,11 +146,11 @@ class Dense:
         marks = _Marks(self.beside, system, now, tolerance, parts)
         return Leg(marks.states, stop, max(leg.steps, int(leg.steps / max(share, 1e-6))))
 
-    def _end_after(self, now: Next) -> float:
+    def _end_after(self, now: PhaseStart) -> float:
         """Return up to when a law may be followed: the next kink, or the end, s."""
         return next((kink.behind for kink in self.bends if kink.behind > now.time), self.end)
 
-    def _after(self, system: RollingSystem, law: Law, stop: Stop) -> Next:
+    def _after(self, system: RollingSystem, law: Law, stop: ZeroCrossing) -> PhaseStart:
         """Return what follows the stretch just passed."""
         if self.passed not in self.follows:
             self.follows[self.passed] = phases.following_stop(system, law, stop)
@@ -172,14 +174,14 @@ class _Marks:
         self,
         beside: Callable[[], Integrate],
         system: RollingSystem,
-        now: Next,
+        now: PhaseStart,
         tolerance: float,
-        parts: list[Stretch],
+        parts: list[Segment],
     ) -> None:
         self.beside, self.system, self.tolerance = beside, system, tolerance
         self.begin = now
         self.times = np.concatenate([[now.time], *(part.times for part in parts)])
-        self.known = np.vstack([np.asarray(now.numbers, dtype=float)[None], *(part.states for part in parts)])
+        self.known = np.vstack([np.asarray(now.state_vector, dtype=float)[None], *(part.states for part in parts)])
 
     def states(self, times: Array) -> Array:
         """Return the states at some instants before the stop, ascending, s."""
@@ -192,11 +194,11 @@ class _Marks:
             states = np.vstack([part.states for part in parts])
             found[rows[: len(states)]] = states
             if len(states) < rows.size and parts[-1].stop is not None:  # a rounding sooner
-                found[rows[len(states) :]] = parts[-1].stop.numbers
+                found[rows[len(states) :]] = parts[-1].stop.state_vector
         return found
 
-    def _from(self, mark: int) -> Next:
+    def _from(self, mark: int) -> PhaseStart:
         """Return the law as it goes on from an instant."""
         now, time, numbers = self.begin, float(self.times[mark]), self.known[mark]
-        at = now.law.meant(self.system, time, numbers)
-        return replace(now, start=at.state, numbers=numbers.tolist(), events=(), across=None)
+        at = now.law.unpack(self.system, time, numbers)
+        return replace(now, start=at.state, state_vector=numbers.tolist(), events=(), across=None)

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import Contact, touch
+from ..mechanics.contact import Contact, contact_at
 from ..mechanics.nearest import beside
 from ..mechanics.parameters import numbers, with_numbers
 from ..mechanics.placing import SLIP_TOLERANCE
@@ -89,13 +89,13 @@ def rolling_from(systems: Sequence[RollingSystem], starts: Sequence[State]) -> t
         be is the scalar engine's to find out.
     """
     system, time = together(systems), starts[0].time
-    r, V, Omega, q, own = (
+    r, V, Omega, q, coordinates = (
         np.array([getattr(start, name) for start in starts], dtype=float)
         for name in ("position", "velocity", "angular_velocity", "orientation", "support")
     )
     with np.errstate(all="ignore"):  # a start far from the support converges to nothing, and is left out
-        contact = _settled(system, time, Vector.of(r), Quaternion.of(q), tuple(own.T))
-        states = np.column_stack([contact.point.array(), q, Omega, own])
+        contact = _settled(system, time, Vector.of(r), Quaternion.of(q), tuple(coordinates.T))
+        states = np.column_stack([contact.point.array(), q, Omega, coordinates])
         arm = contact.offset.norm()
         touches = (contact.centre - Vector.of(r)).norm() <= SLIP_TOLERANCE * arm
         v, turning = Vector.of(V), Vector.of(Omega)
@@ -110,10 +110,10 @@ def _norm(v: Vector) -> Any:
     return np.sqrt(np.asarray(v.dot(v), dtype=float))
 
 
-def _settled(system: RollingSystem, time: float, r: Vector, q: Quaternion, own: tuple[Any, ...]) -> Contact:
+def _settled(system: RollingSystem, time: float, r: Vector, q: Quaternion, coordinates: tuple[Any, ...]) -> Contact:
     """Return the contacts nearest to many bodies: `mechanics.nearest.settle` on arrays."""
     point = r
-    contact = touch(system, time, point, q, own)
+    contact = contact_at(system, time, point, q, coordinates)
     for step in range(_MOST_STEPS):
         off, aside, down = beside(system, contact, r, bent=step > 0)
         moved = _norm(off) + _norm(down)
@@ -121,12 +121,12 @@ def _settled(system: RollingSystem, time: float, r: Vector, q: Quaternion, own: 
         if not np.any(going):
             break
         point = point + (aside + down) * going  # who has arrived stays, however far the others have to go
-        contact = touch(system, time, point, q, own)
+        contact = contact_at(system, time, point, q, coordinates)
     return contact
 
 
 def _held(system: RollingSystem, time: float, states: Array) -> Any:
-    stops = RollingLaw().stops(system, time, list(states.T), ())
+    stops = RollingLaw().event_functions(system, time, list(states.T), ())
     held = np.ones(len(states), dtype=bool)
     for name, value in stops.items():
         least = _PRESSED * system.body.mass * abs(system.gravity) if name == "lift" else 0.0

@@ -31,7 +31,9 @@ _STEP = 1.0  # rad: the support is followed in steps that turn it by less, so th
 _PIECE = 200_000  # steps followed at once
 
 
-def change(data: xarray.Dataset, support: Support, old: str, new: str, own: Sequence[str] = ()) -> xarray.Dataset:
+def change(
+    data: xarray.Dataset, support: Support, old: str, new: str, coordinates: Sequence[str] = ()
+) -> xarray.Dataset:
     """Return a dataset with its vectors in another frame.
 
     Examples
@@ -44,7 +46,7 @@ def change(data: xarray.Dataset, support: Support, old: str, new: str, own: Sequ
         elif frame == "corotating":
             rate = support.motion.steady_rate
             if rate is None:
-                data = _carried(data, support.motion, own, forwards)
+                data = _carried(data, support.motion, coordinates, forwards)
             else:
                 data = _turning(data, float(rate), forwards)
     return data.assign_attrs(frame=new)
@@ -85,12 +87,12 @@ def _turning(data: xarray.Dataset, rate: float, forwards: bool) -> xarray.Datase
 
 def _carried(data: xarray.Dataset, motion: Motion, names: Sequence[str], forwards: bool) -> xarray.Dataset:
     """Go to the frame that is fixed to a support that moves in any way, or back."""
-    own = _own(data, motion, names)
+    coordinates = _own(data, motion, names)
     time = np.asarray(data.time.values, dtype=float)
-    followed = _followed(motion, time, own)
+    followed = _followed(motion, time, coordinates)
 
     def seen(vectors: Vectors, where: slice) -> tuple[Vectors, Quaternion]:
-        state, half = motion.at(time[where], *(part[where] for part in own)), Quaternion.of(followed[where])
+        state, half = motion.at(time[where], *(part[where] for part in coordinates)), Quaternion.of(followed[where])
         turn = state.rotation
         if forwards:
             relative = {
@@ -114,7 +116,7 @@ _PLACES = ("position", "contact")  # what counts from the support's origin
 
 def _own(data: xarray.Dataset, motion: Motion, names: Sequence[str]) -> tuple[Array, ...]:
     """Return the coordinates of the support's own motion."""
-    if len(names) != len(motion.own) or any(name not in data for name in names):
+    if len(names) != len(motion.coordinates) or any(name not in data for name in names):
         raise OutOfDomainError(
             "A corotating frame is defined where the support's motion is known: this one turns by an angle that is "
             "part of the run, and the data do not hold it. Use the frame 'support' or 'world'."
@@ -122,14 +124,14 @@ def _own(data: xarray.Dataset, motion: Motion, names: Sequence[str]) -> tuple[Ar
     return tuple(np.asarray(data[name].values, dtype=float) for name in names)
 
 
-def _followed(motion: Motion, time: Array, own: tuple[Array, ...]) -> Array:
+def _followed(motion: Motion, time: Array, coordinates: tuple[Array, ...]) -> Array:
     """Return how the support has turned, (n, 4), with the sign that is continuous from the start of its motion on.
 
     The turn is a continuous function of the time and the support's own coordinates. Any way through these that joins
     the samples therefore gives the sign: straight from one to the next, in steps too small to miss half a turn.
     """
-    points = np.column_stack([time, *own])
-    points = np.vstack([[0.0, *(float(value) for value in motion.own_start())], points])
+    points = np.column_stack([time, *coordinates])
+    points = np.vstack([[0.0, *(float(value) for value in motion.initial_coordinates())], points])
     leaps = np.abs(np.diff(points, axis=0))
     fastest = motion.fastest_rate_within(float(np.min(points[:, 0])), float(np.max(points[:, 0])))
     parts = np.ceil((leaps[:, 0] * fastest + np.sum(leaps[:, 1:], axis=1)) / _STEP).astype(int)

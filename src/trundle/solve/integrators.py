@@ -45,7 +45,7 @@ def borrowed(lowered: Lowered, key: str, tolerance: float, level: int) -> Iterat
     """Lend a copy that nobody else uses, and keep it for the next stretch: to make one takes a millisecond."""
     idle = _memory().idle.setdefault((key, level), [])
     integrator = idle.pop() if idle else _copied(lowered, key, tolerance, level)
-    if lowered.stops:
+    if lowered.event_functions:
         integrator.reset_cooldowns()  # a stop just passed is not looked for again at once
     yield integrator
     idle.append(integrator)  # not where it broke down

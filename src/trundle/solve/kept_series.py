@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from .following import Next
 from .samples import Array
+from .transitions import PhaseStart
 
 
 class KeptSeries:
@@ -21,8 +21,8 @@ class KeptSeries:
         Where the stretch begins.
     """
 
-    def __init__(self, now: Next) -> None:
-        self.numbers, self.reference, self.reached = np.asarray(now.numbers, dtype=float), now.time, 0.0
+    def __init__(self, now: PhaseStart) -> None:
+        self.state_vector, self.reference, self.reached = np.asarray(now.state_vector, dtype=float), now.time, 0.0
         self.references: list[float] = []
         self.begins: list[float] = []
         self.series = array("d")  # of all steps, in one piece: to make one of many would take twice the memory
@@ -55,7 +55,7 @@ class KeptSeries:
     def at(self, times: Array) -> Array:
         """Return the states at some times."""
         if not self.begins:
-            return np.tile(self.numbers, (times.size, 1))
+            return np.tile(self.state_vector, (times.size, 1))
         references, begins, series = self._all
         which = np.maximum(np.searchsorted(references + begins, times, side="right") - 1, 0)
         since = (times - references[which] - begins[which])[:, None]

@@ -14,14 +14,14 @@ from typing import Any
 import numpy as np
 
 from ..mechanics.algebra import ZERO, Quaternion, Vector
-from ..mechanics.contact import Contact, Rolling, roll, touch
+from ..mechanics.contact import Contact, Rolling, contact_at, roll
 from ..mechanics.loads import BodyMotion
 from ..mechanics.nearest import nearest
 from ..mechanics.scalars import Scalar, is_zero
 from ..mechanics.slipping import Flying, Slipping, fly, slip, slip_direction, unturned
 from ..mechanics.system import RollingSystem, State
+from .contact_state import ContactState, floats
 from .samples import FLIGHT, RESTING, ROLLING, SLIPPING, Array, Samples
-from .touch import Touch, floats
 
 CONTACT = ("p_x", "p_y", "p_z", "q_w", "q_x", "q_y", "q_z", "Omega_x", "Omega_y", "Omega_z")
 Numbers = Sequence[Scalar]
@@ -67,28 +67,36 @@ class Law:
         return 4 * len(self.ends)
 
     @property
-    def extras(self) -> int:
+    def event_parameters(self) -> int:
         """How many numbers the stops take besides the system's."""
         return self.ending + self.weightless
 
-    def _floor(self, extras: Numbers) -> tuple[Scalar, Numbers]:
+    def _floor(self, event_parameters: Numbers) -> tuple[Scalar, Numbers]:
         """Return the pull that lifts nothing off, N, and the numbers that end slip or turning."""
-        return (extras[0], extras[1:]) if self.weightless else (0.0, extras)
+        return (event_parameters[0], event_parameters[1:]) if self.weightless else (0.0, event_parameters)
 
     def names(self, system: RollingSystem) -> tuple[str, ...]:
         """Return the names of all numbers of the state."""
-        return (*self.variables, *(f"support_{name}" for name in system.support.motion.own))
+        return (*self.variables, *(f"support_{name}" for name in system.support.motion.coordinates))
 
     def split(self, state: Numbers) -> tuple[Vector, Quaternion, Vector, Numbers, tuple[Scalar, ...]]:
         """Return p, q, Ω, the numbers that this phase adds, and those of the support's own motion."""
-        own = len(self.variables)
-        return Vector(*state[:3]), Quaternion(*state[3:7]), Vector(*state[7:10]), state[10:own], tuple(state[own:])
+        coordinates = len(self.variables)
+        return (
+            Vector(*state[:3]),
+            Quaternion(*state[3:7]),
+            Vector(*state[7:10]),
+            state[10:coordinates],
+            tuple(state[coordinates:]),
+        )
 
     def rates(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:
         """Return the rates of the state."""
         raise NotImplementedError
 
-    def stops(self, system: RollingSystem, time: Scalar, state: Numbers, extras: Numbers) -> dict[str, Scalar]:
+    def event_functions(
+        self, system: RollingSystem, time: Scalar, state: Numbers, event_parameters: Numbers
+    ) -> dict[str, Scalar]:
         """Return what ends the phase where it falls through zero, by name."""
         raise NotImplementedError
 
@@ -98,9 +106,9 @@ class Law:
 
     def pack(self, system: RollingSystem, state: State) -> list[float]:
         """Return the numbers of a state."""
-        return self.numbers(Touch.of(system, state))
+        return self.state_vector(ContactState.of(system, state))
 
-    def numbers(self, at: Touch) -> list[float]:
+    def state_vector(self, at: ContactState) -> list[float]:
         """Return the numbers of a body at its contact."""
         raise NotImplementedError
 
@@ -108,24 +116,25 @@ class Law:
         """Complete states (n, ...) to full samples."""
         raise NotImplementedError
 
-    def meant(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array) -> Touch:
+    def unpack(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array) -> ContactState:
         """Return the body that is meant by its numbers."""
         plain = [float(number) for number in numbers]
-        p, q, Omega, rest, own = self.split(plain)
+        p, q, Omega, rest, coordinates = self.split(plain)
         q = Quaternion(*(part / math.hypot(*q) for part in q))
-        contact = self._contact(system, time, p, q, rest, own)
+        contact = self._contact(system, time, p, q, rest, coordinates)
         Omega = self._turns(contact, Omega)
         centre, V = self._moves(contact, Omega, rest)
         s = self._slip(system, time, plain)
-        at = Touch.at(
-            State(floats(centre), floats(V if s is None else V + s), floats(Omega), tuple(q), time, own), contact
+        at = ContactState.at(
+            State(floats(centre), floats(V if s is None else V + s), floats(Omega), tuple(q), time, coordinates),
+            contact,
         )
         return at if s is None else replace(at, slip=s)
 
     def motion(self, system: RollingSystem, time: Scalar, state: Numbers) -> BodyMotion:
         """Return what loads may depend on."""
-        p, q, Omega, rest, own = self.split(state)
-        contact = touch(system, time, p, q, own)
+        p, q, Omega, rest, coordinates = self.split(state)
+        contact = contact_at(system, time, p, q, coordinates)
         Omega = self._turns(contact, Omega)
         V, s = self._moves(contact, Omega, rest)[1], self._slip(system, time, state)
         return contact.body_motion(system.body.mass, time, V if s is None else V + s, q, Omega)
@@ -137,10 +146,10 @@ class Law:
         p: Vector,
         q: Quaternion,
         rest: Numbers,  # noqa: ARG002
-        own: tuple[Scalar, ...],
+        coordinates: tuple[Scalar, ...],
     ) -> Contact:
         """Return the geometry of touch, or where the body is nearest to the support."""
-        return touch(system, time, p, q, own)
+        return contact_at(system, time, p, q, coordinates)
 
     def _moves(self, contact: Contact, Omega: Vector, rest: Numbers) -> tuple[Vector, Vector]:  # noqa: ARG002
         """Return the centre of mass and its velocity, slip apart, which rolling gives unless the phase adds to it."""
@@ -164,20 +173,22 @@ class Law:
 
     def shrinking(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array, stop: str) -> Vector:
         """Return what shrinks to nothing at a stop: the slip, m/s, or how the body turns over the support, rad/s."""
-        p, q, Omega, rest, own = self.split([float(number) for number in numbers])
-        return Vector(*rest[:3]) if stop == "grip" else state_turning(touch(system, time, p, q, own), Omega)
+        p, q, Omega, rest, coordinates = self.split([float(number) for number in numbers])
+        return (
+            Vector(*rest[:3]) if stop == "grip" else state_turning(contact_at(system, time, p, q, coordinates), Omega)
+        )
 
     def shrinking_rate(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array, stop: str) -> Array:
         """Return how fast that changes, m/s² or rad/s²; of Ω̇ only the part along the support."""
         plain = [float(number) for number in numbers]
         rate = Vector(*(float(part) for part in self.rates(system, time, plain)[_SHRINKS[stop]]))
         if stop == "stop":
-            p, q, _, _, own = self.split(plain)
-            n = touch(system, time, p, q, own).normal
+            p, q, _, _, coordinates = self.split(plain)
+            n = contact_at(system, time, p, q, coordinates).normal
             rate = rate - n * rate.dot(n)
         return rate.array()
 
-    def advanced(
+    def rk4_step(
         self, system: RollingSystem, time: float, state: Sequence[float], step: float, known: Rates | None = None
     ) -> list[float]:
         """Return the state after a step so short that one of the classical Runge-Kutta method is exact.
@@ -199,17 +210,17 @@ class Law:
     def _bounds(self, system: RollingSystem, contact: Contact, orientation: Quaternion, gap: Scalar) -> dict[str, Any]:
         """Return the stops of every phase: where the support ends, the body's shape, or what fits."""
         surface, support = system.support.surface, contact.support
-        there, found = support.own_of(contact.point), {}
+        there, found = support.local(contact.point), {}
         if surface.rim is not None:
             found["rim"] = surface.rim * surface.rim - (there.x * there.x + there.y * there.y)
-        ending = surface.inside(there)
+        ending = surface.domain_margin(there)
         if ending is not None:
             found["end"] = ending - _SHORT_OF_IT * contact.offset.norm()
-        covered = system.body.shape.covers(-(orientation.matrix().transpose @ contact.normal))
+        covered = system.body.shape.validity_margin(-(orientation.matrix().transpose @ contact.normal))
         if covered is not None:
             found["edge"] = covered
         if not contact.flat:
-            found["curved"] = contact.clearance(gap) - _SHORT_OF_IT
+            found["curved"] = contact.relative_curvature_determinant(gap) - _SHORT_OF_IT
         return found
 
 
@@ -219,34 +230,38 @@ class RollingLaw(Law):
     code = ROLLING
 
     def _now(self, system: RollingSystem, time: Scalar, state: Numbers) -> Rolling:
-        p, q, Omega, _, own = self.split(state)
-        return roll(system, time, p, q, Omega, own)
+        p, q, Omega, _, coordinates = self.split(state)
+        return roll(system, time, p, q, Omega, coordinates)
 
     def rates(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:
         """Return ṗ, q̇, Ω̇."""
         now = self._now(system, time, state)
-        own = system.support.motion.own_rates(time, self.split(state)[4], now.axle_moment)
-        return [*now.point_rate, *now.orientation_rate, *now.angular_acceleration, *own]
+        coordinates = system.support.motion.coordinate_rates(time, self.split(state)[4], now.axle_moment)
+        return [*now.point_rate, *now.orientation_rate, *now.angular_acceleration, *coordinates]
 
-    def stops(self, system: RollingSystem, time: Scalar, state: Numbers, extras: Numbers) -> dict[str, Scalar]:
+    def event_functions(
+        self, system: RollingSystem, time: Scalar, state: Numbers, event_parameters: Numbers
+    ) -> dict[str, Scalar]:
         """Return the normal force, the rest of the friction cone, and the bounds."""
-        now, (floor, ending) = self._now(system, time, state), self._floor(extras)
+        now, (floor, ending) = self._now(system, time, state), self._floor(event_parameters)
         found = cone(system, now.contact, now.reaction, floor)
         if ending:
             turning = state_turning(now.contact, Vector(*state[7:10]))
             found |= _ending("stop", turning, now.angular_acceleration, ending)
         return {**found, **self._bounds(system, now.contact, Quaternion(*state[3:7]), 0.0)}
 
-    def numbers(self, at: Touch) -> list[float]:
+    def state_vector(self, at: ContactState) -> list[float]:
         """Return p = r + ρ, q and Ω."""
         return [*at.nearest, *at.orientation, *at.Omega, *at.state.support]
 
     def record(self, system: RollingSystem, time: Array, states: Array) -> Samples:
         """Complete p, q and Ω by the rolling law."""
-        p, q, Omega, own = _columns(states, len(self.variables))
-        now = roll(system, time, Vector.of(p), Quaternion.of(q), Vector.of(Omega), tuple(own.T))
+        p, q, Omega, coordinates = _columns(states, len(self.variables))
+        now = roll(system, time, Vector.of(p), Quaternion.of(q), Vector.of(Omega), tuple(coordinates.T))
         centre, V, R = _arrays(p, now.contact.centre, now.velocity, now.reaction)
-        return Samples(time, centre, p, V, Omega, q, R + 0.0, phase=_phase(time, self.code), own=own)
+        return Samples(
+            time, centre, p, V, Omega, q, R + 0.0, phase=_phase(time, self.code), support_coordinates=coordinates
+        )
 
 
 class RollingWithResistance(RollingLaw):
@@ -297,19 +312,21 @@ class SlippingLaw(Law):
         return unturned(contact, Omega) if self.held else Omega
 
     def _now(self, system: RollingSystem, time: Scalar, state: Numbers, direction: Vector | None = None) -> Slipping:
-        p, q, Omega, s, own = self.split(state)
-        return slip(system, time, p, q, Omega, Vector(*s), own, direction, held=self.held)
+        p, q, Omega, s, coordinates = self.split(state)
+        return slip(system, time, p, q, Omega, Vector(*s), coordinates, direction, held=self.held)
 
     def rates(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:
         """Return ṗ, q̇, Ω̇, ṡ."""
         now = self._now(system, time, state)
-        own = system.support.motion.own_rates(time, self.split(state)[4], now.axle_moment)
-        return [*now.point_rate, *now.orientation_rate, *now.angular_acceleration, *now.slip_rate, *own]
+        coordinates = system.support.motion.coordinate_rates(time, self.split(state)[4], now.axle_moment)
+        return [*now.point_rate, *now.orientation_rate, *now.angular_acceleration, *now.slip_rate, *coordinates]
 
-    def stops(self, system: RollingSystem, time: Scalar, state: Numbers, extras: Numbers) -> dict[str, Scalar]:
+    def event_functions(
+        self, system: RollingSystem, time: Scalar, state: Numbers, event_parameters: Numbers
+    ) -> dict[str, Scalar]:
         """Return the normal force, its own effect on the gap, what is left of slip and turning, and the bounds."""
-        now, ending = self._now(system, time, state), self._floor(extras)[1]
-        found = self._pressing(system, now, extras)
+        now, ending = self._now(system, time, state), self._floor(event_parameters)[1]
+        found = self._pressing(system, now, event_parameters)
         for i, name in enumerate(self.ends if ending else ()):
             v, rate = Vector(*state[10:13]), now.slip_rate
             if name == "stop":
@@ -317,26 +334,28 @@ class SlippingLaw(Law):
             found |= _ending(name, v, rate, ending[4 * i : 4 * i + 4])
         return {**found, **self._bounds(system, now.contact, Quaternion(*state[3:7]), 0.0)}
 
-    def _pressing(self, system: RollingSystem, now: Slipping, extras: Numbers) -> dict[str, Scalar]:
+    def _pressing(self, system: RollingSystem, now: Slipping, event_parameters: Numbers) -> dict[str, Scalar]:
         """Return the normal force, and how it opens the contact where friction may turn that round."""
-        found = {"lift": now.normal_force + self._floor(extras)[0]}
+        found = {"lift": now.normal_force + self._floor(event_parameters)[0]}
         if self.held:
             found["start"] = left_of_resistance(system, found["lift"], now.holding)
         if not is_zero(system.support.friction):
             found["jam"] = now.opening_per_newton * system.body.mass - JAMS
         return found
 
-    def numbers(self, at: Touch) -> list[float]:
+    def state_vector(self, at: ContactState) -> list[float]:
         """Return p, q, Ω and the part of s along the support."""
         return [*at.nearest, *at.orientation, *at.Omega, *at.sliding, *at.state.support]
 
     def record(self, system: RollingSystem, time: Array, states: Array) -> Samples:
         """Complete p, q, Ω and s by the law of slipping."""
-        p, q, Omega, own = _columns(states, len(self.variables))
+        p, q, Omega, coordinates = _columns(states, len(self.variables))
         now = self._recorded(system, time, states)
         turning = self._turns(now.contact, Vector.of(Omega))
         centre, V, R, Omega = _arrays(p, now.contact.centre, now.velocity, now.reaction, turning)
-        return Samples(time, centre, p, V, Omega, q, R + 0.0, phase=_phase(time, self.code), own=own)
+        return Samples(
+            time, centre, p, V, Omega, q, R + 0.0, phase=_phase(time, self.code), support_coordinates=coordinates
+        )
 
     def _slip(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:  # noqa: ARG002
         return Vector(*state[10:13])
@@ -373,8 +392,8 @@ class SlidingFreely(SlippingLaw):
         state: Numbers,
         direction: Vector | None = ZERO,  # noqa: ARG002
     ) -> Slipping:
-        p, q, Omega, s, own = self.split(state)
-        return slip(system, time, p, q, Omega, Vector(*s), own, ZERO, held=self.held)
+        p, q, Omega, s, coordinates = self.split(state)
+        return slip(system, time, p, q, Omega, Vector(*s), coordinates, ZERO, held=self.held)
 
 
 class FlightLaw(Law):
@@ -388,32 +407,44 @@ class FlightLaw(Law):
     variables = (*CONTACT, "V_x", "V_y", "V_z", "g", "r_x", "r_y", "r_z")
 
     def _now(self, system: RollingSystem, time: Scalar, state: Numbers) -> Flying:
-        p, q, Omega, rest, own = self.split(state)
-        return fly(system, time, p, rest[3], Vector(*rest[4:]), q, Omega, Vector(*rest[:3]), own)
+        p, q, Omega, rest, coordinates = self.split(state)
+        return fly(system, time, p, rest[3], Vector(*rest[4:]), q, Omega, Vector(*rest[:3]), coordinates)
 
     def rates(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:
         """Return ṗ, q̇, Ω̇, V̇, ġ and ṙ = V."""
-        now, (*_, rest, own) = self._now(system, time, state), self.split(state)
-        own_rates = system.support.motion.own_rates(time, own, 0.0)
+        now, (*_, rest, coordinates) = self._now(system, time, state), self.split(state)
+        coordinate_rates = system.support.motion.coordinate_rates(time, coordinates, 0.0)
         turning = now.angular_acceleration
         moving = (*now.acceleration, now.gap_rate, *rest[:3])
-        return [*now.point_rate, *now.orientation_rate, *turning, *moving, *own_rates]
+        return [*now.point_rate, *now.orientation_rate, *turning, *moving, *coordinate_rates]
 
-    def stops(self, system: RollingSystem, time: Scalar, state: Numbers, extras: Numbers) -> dict[str, Scalar]:  # noqa: ARG002
+    def event_functions(
+        self,
+        system: RollingSystem,
+        time: Scalar,
+        state: Numbers,
+        event_parameters: Numbers,  # noqa: ARG002
+    ) -> dict[str, Scalar]:
         """Return the gap and the bounds."""
-        p, q, _, rest, own = self.split(state)
-        contact = touch(system, time, p, q, own)
+        p, q, _, rest, coordinates = self.split(state)
+        contact = contact_at(system, time, p, q, coordinates)
         return {"land": rest[3], **self._bounds(system, contact, q, rest[3])}
 
-    def numbers(self, at: Touch) -> list[float]:
+    def state_vector(self, at: ContactState) -> list[float]:
         """Return the nearest point, q, Ω, V, the gap and r."""
         return [*at.contact.point, *at.orientation, *at.Omega, *at.V, at.gap, *at.state.position, *at.state.support]
 
     def _contact(
-        self, system: RollingSystem, time: Scalar, p: Vector, q: Quaternion, rest: Numbers, own: tuple[Scalar, ...]
+        self,
+        system: RollingSystem,
+        time: Scalar,
+        p: Vector,
+        q: Quaternion,
+        rest: Numbers,
+        coordinates: tuple[Scalar, ...],
     ) -> Contact:
         """Return the geometry where the body that is at r is nearest: p is beside that by what it has lost."""
-        return nearest(system, time, p, Vector(*rest[4:]), q, own)
+        return nearest(system, time, p, Vector(*rest[4:]), q, coordinates)
 
     def _moves(self, contact: Contact, Omega: Vector, rest: Numbers) -> tuple[Vector, Vector]:  # noqa: ARG002
         return Vector(*rest[4:]), Vector(*rest[:3])
@@ -428,11 +459,21 @@ class FlightLaw(Law):
 
     def record(self, system: RollingSystem, time: Array, states: Array) -> Samples:
         """Complete the state of a flight; nothing pushes then."""
-        p, q, Omega, own = _columns(states, len(self.variables))
+        p, q, Omega, coordinates = _columns(states, len(self.variables))
         rest = states[:, 10 : len(self.variables)].copy()
-        contact = self._contact(system, time, Vector.of(p), Quaternion.of(q), list(rest.T), tuple(own.T))
+        contact = self._contact(system, time, Vector.of(p), Quaternion.of(q), list(rest.T), tuple(coordinates.T))
         (point,), phase = _arrays(p, contact.point), _phase(time, self.code)
-        return Samples(time, rest[:, 4:], point, rest[:, :3], Omega, q, np.zeros_like(p), phase=phase, own=own)
+        return Samples(
+            time,
+            rest[:, 4:],
+            point,
+            rest[:, :3],
+            Omega,
+            q,
+            np.zeros_like(p),
+            phase=phase,
+            support_coordinates=coordinates,
+        )
 
 
 class RestingLaw(Law):
@@ -442,16 +483,16 @@ class RestingLaw(Law):
 
     def rates(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:
         """Return the rates of a body that turns with the support."""
-        p, q, _, _, own = self.split(state)
-        support = system.support.motion.at(time, *own)
-        along = system.support.motion.own_rates(time, own, 0.0)
+        p, q, _, _, coordinates = self.split(state)
+        support = system.support.motion.at(time, *coordinates)
+        along = system.support.motion.coordinate_rates(time, coordinates, 0.0)
         turning = support.angular_velocity
         return [*support.material_velocity(p), *q.rate(turning), *support.angular_acceleration, *along]
 
     def held(self, system: RollingSystem, time: Scalar, state: Numbers) -> Held:
         """Return what holds the body: the contact force and the couple that rest takes."""
-        p, q, _, _, own = self.split(state)
-        m, contact = system.body.mass, touch(system, time, p, q, own)
+        p, q, _, _, coordinates = self.split(state)
+        m, contact = system.body.mass, contact_at(system, time, p, q, coordinates)
         support, Q = contact.support, q.matrix()
         turning = support.angular_velocity
         V = support.material_velocity(contact.centre)
@@ -462,30 +503,34 @@ class RestingLaw(Law):
         couple = J @ support.angular_acceleration + system.body.gyroscopic(Q, turning) - K - contact.offset.cross(R)
         return Held(contact, V, R, couple)
 
-    def stops(self, system: RollingSystem, time: Scalar, state: Numbers, extras: Numbers) -> dict[str, Scalar]:
+    def event_functions(
+        self, system: RollingSystem, time: Scalar, state: Numbers, event_parameters: Numbers
+    ) -> dict[str, Scalar]:
         """Return what is left of the resistance, of the friction cone and of the normal force."""
-        held, (floor, _) = self.held(system, time, state), self._floor(extras)
+        held, (floor, _) = self.held(system, time, state), self._floor(event_parameters)
         n = held.contact.normal
         over = held.couple - n * n.dot(held.couple)
         found = cone(system, held.contact, held.reaction, floor)
         found["start"] = left_of_resistance(system, n.dot(held.reaction) + floor, over)
         return {**found, **self._bounds(system, held.contact, Quaternion(*state[3:7]), 0.0)}
 
-    def numbers(self, at: Touch) -> list[float]:
+    def state_vector(self, at: ContactState) -> list[float]:
         """Return p, q and Ω."""
-        return RollingLaw().numbers(at)
+        return RollingLaw().state_vector(at)
 
     def _moves(self, contact: Contact, Omega: Vector, rest: Numbers) -> tuple[Vector, Vector]:  # noqa: ARG002
         return contact.centre, contact.support.material_velocity(contact.centre)
 
     def record(self, system: RollingSystem, time: Array, states: Array) -> Samples:
         """Complete the state of a body at rest on its support."""
-        p, q, Omega, own = _columns(states, len(self.variables))
+        p, q, Omega, coordinates = _columns(states, len(self.variables))
         columns = list(states.T)
         columns[3:7] = q.T
         held = self.held(system, time, columns)
         centre, V, R = _arrays(p, held.contact.centre, held.velocity, held.reaction)
-        return Samples(time, centre, p, V, Omega, q, R + 0.0, phase=_phase(time, self.code), own=own)
+        return Samples(
+            time, centre, p, V, Omega, q, R + 0.0, phase=_phase(time, self.code), support_coordinates=coordinates
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -527,13 +572,13 @@ def cone(system: RollingSystem, contact: Contact, reaction: Vector, floor: Scala
     return found
 
 
-def _ending(name: str, v: Vector, rate: Vector, extras: Numbers) -> dict[str, Scalar]:
+def _ending(name: str, v: Vector, rate: Vector, event_parameters: Numbers) -> dict[str, Scalar]:
     """Return two stops for a vector that shrinks to nothing.
 
     Where its direction stays, its part along the direction it had passes through zero with it. Where it turns, the law
     grows singular there, and the run stops just before; a quarter turn alone is no end.
     """
-    near, *before = extras
+    near, *before = event_parameters
     return {name: v.dot(Vector(*before)), f"near {name}": v.dot(v) - near - rate.dot(rate) * AN_INSTANT**2}
 
 

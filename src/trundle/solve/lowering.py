@@ -49,7 +49,7 @@ class Lowered:
     """
 
     names: tuple[str, ...]
-    stops: tuple[str, ...]
+    event_functions: tuple[str, ...]
     outputs: tuple[Any, ...]
     tape: Tape
     parameters: int
@@ -78,16 +78,16 @@ def lower(system: RollingSystem, law: Law) -> Lowered:
     >>> table = tr.Support(tr.Plane(), motion=tr.Spin(0.25))
     >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.5, 1.0), table)
     >>> ready = lower(system, RollingLaw())
-    >>> ready.stops, len(ready.outputs)
+    >>> ready.event_functions, len(ready.outputs)
     (('lift',), 11)
     """
     names, count = law.names(system), len(numbers(system))
     tape = Tape()
-    time, *rest = tape.inputs(1 + len(names) + count + law.extras + corners.count(system))
+    time, *rest = tape.inputs(1 + len(names) + count + law.event_parameters + corners.count(system))
     state, given = rest[: len(names)], rest[len(names) :]
     symbolic = with_numbers(system, given[:count])
     rates = law.rates(symbolic, time, state)
-    stops = corners.all_stops(symbolic, law, time, state, given[count:])
+    stops = corners.all_event_functions(symbolic, law, time, state, given[count:])
     tidied = _tidied(symbolic, law, time, state)
     lowering = _Lowering(tape, len(names), len(given))
     # A stop that never changes is passed at the start or never.
@@ -103,9 +103,9 @@ def _tidied(system: RollingSystem, law: Law, time: Scalar, state: Sequence[Scala
 
     What rounding leaves of both is so small that the step's own error is its square.
     """
-    p, q, _, _, own = law.split(state)
-    support = system.support.motion.at(time, *own)
-    p = p + support.rotation @ system.support.surface.step_onto(support.own_of(p))
+    p, q, _, _, coordinates = law.split(state)
+    support = system.support.motion.at(time, *coordinates)
+    p = p + support.rotation @ system.support.surface.step_onto(support.local(p))
     length = namespace(*q).sqrt(sum((part * part for part in q), 0.0))
     return [*p, *(part / length for part in q), *state[7:]]
 

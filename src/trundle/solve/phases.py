@@ -17,11 +17,11 @@ from ..mechanics.algebra import ZERO, Quaternion, Vector
 from ..mechanics.kinks import Kink, kinks_and_jolts
 from ..mechanics.slipping import slip
 from ..mechanics.system import RollingSystem, State
-from . import corners, following
-from .following import JOLT, Next, Stop
+from . import corners, transitions
+from .contact_state import ContactState
 from .laws import CORNER, Law, RollingLaw, SlippingLaw
 from .samples import AT_ONCE, FLIGHT, RESTING, ROLLING, SLIPPING, Array, Event, Progress, Recording, Samples
-from .touch import Touch
+from .transitions import JOLT, PhaseStart, ZeroCrossing
 
 _MOST_EVENTS = 10_000
 _AT_ONE_INSTANT = 20  # events: more means that no phase goes on
@@ -39,27 +39,27 @@ _BREAKS = ("lift", "slip", "start", "jam")  # stops that forces decide
 _CLOSE = 1e-14  # of an instant: a stop found so shortly before a kink is of the kink
 
 
-class Known(Protocol):
+class SegmentCompleter(Protocol):
     """What completes the states of a method that knows more than a law's numbers; of several stretches at once."""
 
-    def goes_on(self, other: Any) -> bool:
+    def joins(self, other: Any) -> bool:
         """Tell whether the stretch that follows can be completed with this one."""
 
-    def record(self, system: RollingSystem, stretches: list[Stretch]) -> Samples:
+    def record(self, system: RollingSystem, stretches: list[Segment]) -> Samples:
         """Return the samples of stretches of which each goes on with the next, this one's first."""
 
 
 @dataclass(frozen=True)
-class Stretch:
+class Segment:
     """One law's part of a run, or a piece of it: states at the times before its stop, if it came to one."""
 
     times: Array
     states: Array
-    stop: Stop | None
-    known: Known | None = None  # what completes the states, if not the law
+    stop: ZeroCrossing | None
+    known: SegmentCompleter | None = None  # what completes the states, if not the law
 
 
-Integrate = Callable[[RollingSystem, Next, Array, float, Progress | None], Iterator[Stretch]]
+Integrate = Callable[[RollingSystem, PhaseStart, Array, float, Progress | None], Iterator[Segment]]
 
 
 def solve(
@@ -71,7 +71,7 @@ def solve(
     progress: Progress | None = None,
     *,
     in_steps: bool = True,
-    after: Callable[[RollingSystem, Law, Stop], Next] | None = None,
+    after: Callable[[RollingSystem, Law, ZeroCrossing], PhaseStart] | None = None,
     bends: list[Kink] | None = None,
 ) -> Samples:
     """Follow a body through its phases and return its samples with all events.
@@ -111,15 +111,17 @@ def solve(
     events: list[Event] = []
     passed: list[float] = []  # corners
     record = _Record(system, times.size + 1)  # an event that ends a run is sampled, too
-    begin = corners.beyond if in_steps else following.slipping
+    begin = corners.beyond if in_steps else transitions.slipping
     if bends is None:
         bends = kinks_and_jolts(system, start.time, float(times[-1])) if times.size else []
-    now = _behind_it(system, begin(system, following.at_start(system, start)), bends)
+    now = _behind_it(system, begin(system, transitions.at_start(system, start)), bends)
     events += now.events
     left, told = times, _telling(progress, times)
     if now.time > start.time:  # it slips from rest: its first moment is behind it
         held = RollingLaw()
-        left = _across(system, held, Stop(start.time, "", np.array(held.pack(system, start))), now, left, record)
+        left = _across(
+            system, held, ZeroCrossing(start.time, "", np.array(held.pack(system, start))), now, left, record
+        )
     while True:
         law, stop, taken = now.law, None, 0
         for piece in _between_kinks(integrate, system, now, left, bends if in_steps else [], tolerance, told):
@@ -146,18 +148,18 @@ def solve(
 def _between_kinks(
     integrate: Integrate,
     system: RollingSystem,
-    now: Next,
+    now: PhaseStart,
     times: Array,
     bends: list[Kink],
     tolerance: float,
     progress: Progress | None,
-) -> Iterator[Stretch]:
+) -> Iterator[Segment]:
     """Follow one law to its first stop, and begin anew behind each kink on the way: no step is to lead across it."""
     for kink in bends:
         if not (now.time < kink.behind and kink.time <= times[-1:].max(initial=-np.inf)):
             continue
         here, times = cut(times, kink.behind)
-        before, there = cut(here, kink.time)[0].size, np.array(now.numbers)
+        before, there = cut(here, kink.time)[0].size, np.array(now.state_vector)
         for piece in integrate(system, now, np.append(here, kink.behind), tolerance, progress):
             if piece.stop is not None and not _is_of(kink, piece.stop):
                 yield piece
@@ -165,18 +167,20 @@ def _between_kinks(
             count = min(piece.times.size, before)
             yield replace(piece, times=piece.times[:count], states=piece.states[:count], stop=None)
             here, before = here[count:], before - count
-            there = piece.stop.numbers if piece.stop is not None else piece.states[-1] if piece.times.size else there
+            there = (
+                piece.stop.state_vector if piece.stop is not None else piece.states[-1] if piece.times.size else there
+            )
         stop = _at_kink(system, now, kink, there)
         rest = here if stop is None else cut(here, kink.time)[0]
-        yield Stretch(rest, np.broadcast_to(there, (rest.size, there.size)), stop)
+        yield Segment(rest, np.broadcast_to(there, (rest.size, there.size)), stop)
         if stop is not None:
             return
-        at = now.law.meant(system, kink.behind, there)
-        now = replace(now, start=at.state, numbers=there.tolist(), events=(), across=None)
+        at = now.law.unpack(system, kink.behind, there)
+        now = replace(now, start=at.state, state_vector=there.tolist(), events=(), across=None)
     yield from integrate(system, now, times, tolerance, progress)
 
 
-def _at_kink(system: RollingSystem, now: Next, kink: Kink, numbers: Array) -> Stop | None:
+def _at_kink(system: RollingSystem, now: PhaseStart, kink: Kink, numbers: Array) -> ZeroCrossing | None:
     """Return the stop of a law at a kink under a body that touches: the velocity of the support jumps, or forces do.
 
     Where the acceleration of the support jumps, forces do, and may break what the contact can bear.
@@ -184,28 +188,28 @@ def _at_kink(system: RollingSystem, now: Next, kink: Kink, numbers: Array) -> St
     if now.law.code == FLIGHT or kink.time <= now.time:
         return None
     if kink.jolts:
-        return Stop(kink.time, JOLT, numbers, following.jolted(system, now.law, kink, numbers))
-    stops = now.law.stops(system, kink.behind, numbers.tolist(), now.extras)
+        return ZeroCrossing(kink.time, JOLT, numbers, transitions.jolted(system, now.law, kink, numbers))
+    stops = now.law.event_functions(system, kink.behind, numbers.tolist(), now.event_parameters)
     broken = next((name for name, left in stops.items() if name in _BREAKS and left < 0), None)
-    return None if broken is None else Stop(kink.time, broken, numbers)
+    return None if broken is None else ZeroCrossing(kink.time, broken, numbers)
 
 
-def _is_of(kink: Kink, stop: Stop) -> bool:
+def _is_of(kink: Kink, stop: ZeroCrossing) -> bool:
     """Tell whether forces seem to have broken a contact just before a kink, as they have just behind it."""
     return stop.name in _BREAKS and kink.before - stop.time <= _CLOSE * abs(kink.time)
 
 
-def _on_kink(system: RollingSystem, law: Law, stop: Stop, bends: list[Kink]) -> Stop:
+def _on_kink(system: RollingSystem, law: Law, stop: ZeroCrossing, bends: list[Kink]) -> ZeroCrossing:
     """Return a stop by forces that jump at a kink, found a rounding before it, as it is on the kink."""
     kink = next((kink for kink in bends if stop.time < kink.time and _is_of(kink, stop)), None)
     if kink is None:
         return stop
     known = stop.at(system, law)
-    known = Touch.of(system, replace(known.state, time=kink.time), known.contact.point)
+    known = ContactState.of(system, replace(known.state, time=kink.time), known.contact.point)
     return replace(stop, time=kink.time, known=known)
 
 
-def _behind_it(system: RollingSystem, now: Next, bends: list[Kink]) -> Next:
+def _behind_it(system: RollingSystem, now: PhaseStart, bends: list[Kink]) -> PhaseStart:
     """Return what begins on a kink as it is just behind it, where every method evaluates its formulas alike."""
     wait = next((kink.behind - now.time for kink in bends if kink.time <= now.time < kink.behind), 0.0)
     return corners.advanced(system, now, wait) if wait else now
@@ -224,10 +228,10 @@ class _Record:
 
     def __init__(self, system: RollingSystem, most: int) -> None:
         self.system, self.recording, self.form = system, Recording(most), None
-        self.waiting: list[tuple[Law, Stretch]] = []
+        self.waiting: list[tuple[Law, Segment]] = []
         self.rows = 0  # of those that wait
 
-    def take(self, law: Law, piece: Stretch) -> None:
+    def take(self, law: Law, piece: Segment) -> None:
         """Take a piece of a stretch, to be completed now or with those that follow."""
         if not piece.times.size and piece.known is None and self.recording.most > 1:
             return  # to complete nothing takes as long as to complete a sample
@@ -246,12 +250,12 @@ class _Record:
         self._complete()
         return self.recording.samples(events, self.form)
 
-    def _goes_on(self, law: Law, piece: Stretch) -> bool:
+    def _goes_on(self, law: Law, piece: Segment) -> bool:
         """Tell whether a piece can be completed with those that wait."""
         before, last = self.waiting[-1]
         if self.rows + piece.times.size > AT_ONCE:
             return False
-        return law is before if last.known is None else last.known.goes_on(piece.known)
+        return law is before if last.known is None else last.known.joins(piece.known)
 
     def _complete(self) -> None:
         if not self.waiting:
@@ -270,11 +274,13 @@ class _Record:
         self.recording.add(samples)
 
 
-def _across(system: RollingSystem, law: Law, stop: Stop, follows: Next, left: Array, record: _Record) -> Array:
+def _across(
+    system: RollingSystem, law: Law, stop: ZeroCrossing, follows: PhaseStart, left: Array, record: _Record
+) -> Array:
     """Add the samples in the short step across an event, and return the times after it."""
     if follows.across is not None:  # something struck, or slip ended, before slip begins
         left = _across(system, law, stop, follows.across, left, record)
-        law, stop = follows.across.law, Stop(follows.across.time, "", np.array(follows.across.numbers))
+        law, stop = follows.across.law, ZeroCrossing(follows.across.time, "", np.array(follows.across.state_vector))
     early, left = cut(left, follows.time)
     if early.size:
         samples = law.record(system, early, _short_of_it(system, law, stop, early))
@@ -283,21 +289,21 @@ def _across(system: RollingSystem, law: Law, stop: Stop, follows: Next, left: Ar
     return left
 
 
-def _short_of_it(system: RollingSystem, law: Law, stop: Stop, times: Array) -> Array:
+def _short_of_it(system: RollingSystem, law: Law, stop: ZeroCrossing, times: Array) -> Array:
     """Return the states between a stop and its event: straight where slip or turning ends, for beyond no law holds."""
-    numbers = stop.numbers.tolist()
+    numbers = stop.state_vector.tolist()
     if stop.name.removeprefix("near ") in ("grip", "stop"):
         rates = np.array([float(rate) for rate in law.rates(system, stop.time, numbers)])
-        return stop.numbers + (times - stop.time)[:, None] * rates
-    return np.array([law.advanced(system, stop.time, numbers, t - stop.time) for t in times.tolist()])
+        return stop.state_vector + (times - stop.time)[:, None] * rates
+    return np.array([law.rk4_step(system, stop.time, numbers, t - stop.time) for t in times.tolist()])
 
 
-def _giving_way(system: RollingSystem, at: Samples, follows: Next) -> Samples:
+def _giving_way(system: RollingSystem, at: Samples, follows: PhaseStart) -> Samples:
     """Return samples in which slip has begun, all but zero: the contact force is that of slipping."""
     place = Vector.of(at.contact), Quaternion.of(at.orientation), Vector.of(at.angular_velocity)
-    direction = follows.law.direction(system, follows.time, follows.numbers)
+    direction = follows.law.direction(system, follows.time, follows.state_vector)
     held = isinstance(follows.law, SlippingLaw) and follows.law.held
-    R = slip(system, at.time, *place, ZERO, at.support_own, direction, held=held).reaction
+    R = slip(system, at.time, *place, ZERO, at.support_columns, direction, held=held).reaction
     force = np.broadcast_to(R.array(), at.position.shape).copy()
     return replace(at, contact_force=force, phase=np.full(at.time.size, SLIPPING, dtype=np.int8))
 
@@ -310,22 +316,24 @@ def _telling(progress: Progress | None, times: Array) -> Progress | None:
     return lambda t: progress(min(1.0, max(0.0, (t - first) / span)))
 
 
-def _spinning_on(system: RollingSystem, law: Law, stop: Stop) -> bool:
-    return law.code == ROLLING and stop.name.endswith("stop") and following.spins_on(system, law, stop)
+def _spinning_on(system: RollingSystem, law: Law, stop: ZeroCrossing) -> bool:
+    return law.code == ROLLING and stop.name.endswith("stop") and transitions.spins_on(system, law, stop)
 
 
-def _ended(system: RollingSystem, law: Law, stop: Stop) -> tuple[Samples, Event]:
-    samples = law.record(system, np.array([stop.time]), stop.numbers[None])
+def _ended(system: RollingSystem, law: Law, stop: ZeroCrossing) -> tuple[Samples, Event]:
+    samples = law.record(system, np.array([stop.time]), stop.state_vector[None])
     name = "spot" if stop.name.endswith("stop") else stop.name
     surface, state, contact = system.support.surface, samples.state(0), tuple(samples.contact[0].tolist())
-    said = _ENDS[name].format(rim=float(surface.rim or 0.0), end=surface.end, left=system.body.shape.left)
+    said = _ENDS[name].format(
+        rim=float(surface.rim or 0.0), end=surface.domain_end, left=system.body.shape.validity_end
+    )
     return samples, Event(state.time, name, f"{said} at t = {state.time:.9g} s", state, state, contact)
 
 
-def following_stop(system: RollingSystem, law: Law, stop: Stop) -> Next:
+def following_stop(system: RollingSystem, law: Law, stop: ZeroCrossing) -> PhaseStart:
     """Return what follows a stop, or say that nothing can be worked out there."""
     try:
-        return following.after(system, law, stop)
+        return transitions.after(system, law, stop)
     except (ArithmeticError, ValueError) as error:
         raise SolverError(
             f"What follows at t = {stop.time:.9g} s cannot be worked out ({error}): the contact is singular there."
@@ -350,7 +358,7 @@ def _check_count(system: RollingSystem, events: list[Event]) -> None:
     if len(many) < _MANY or many[-1].after is None:
         return
     span = many[-1].time - many[0].time
-    if span < _MANY_WITHIN * following.moment(system, many[-1].after, many[-1].contact):
+    if span < _MANY_WITHIN * transitions.moment(system, many[-1].after, many[-1].contact):
         kinds = ", ".join(dict.fromkeys(event.kind for event in many))
         raise SolverError(
             f"The contact chatters at t = {many[-1].time:.9g} s: {_MANY} events ({kinds}) within {span:.2g} s. Does a "

@@ -14,12 +14,12 @@ from ..errors import SolverError
 from ..mechanics.system import RollingSystem, State
 from . import corners, phases
 from .dense import Keep, Leg, TooMany
-from .following import Next, Stop
 from .patience import Patience
-from .phases import Integrate, Stretch, cut
+from .phases import Integrate, Segment, cut
 from .roots import root
 from .samples import AT_ONCE, Array, Progress, Samples
 from .tracing import python_law
+from .transitions import PhaseStart, ZeroCrossing
 
 TOLERANCE = 1e-12
 FINEST = 1e-13  # SciPy's own limit is 2e-14
@@ -53,19 +53,19 @@ def solve(
 
 
 def integrate(
-    system: RollingSystem, now: Next, times: Array, tolerance: float, progress: Progress | None = None
-) -> Iterator[Stretch]:
+    system: RollingSystem, now: PhaseStart, times: Array, tolerance: float, progress: Progress | None = None
+) -> Iterator[Segment]:
     """Follow one law to its first stop."""
     # It counts from where the law begins to hold: far from 0 no step would be short enough.
     end = float(times[-1]) - now.time if times.size else 0.0
-    for piece in _integrated(system, now, _Rows(times - now.time, len(now.numbers)), end, tolerance, progress):
+    for piece in _integrated(system, now, _Rows(times - now.time, len(now.state_vector)), end, tolerance, progress):
         here, times = times[: piece.times.size], times[piece.times.size :]
         if piece.stop is None:
             yield replace(piece, times=here)
             continue
         stop = replace(piece.stop, time=now.time + piece.stop.time)
         before, _ = cut(here, stop.time)
-        yield Stretch(before, piece.states[: before.size], stop)
+        yield Segment(before, piece.states[: before.size], stop)
 
 
 def keeping() -> tuple[Keep, Callable[[], Integrate]]:
@@ -73,9 +73,9 @@ def keeping() -> tuple[Keep, Callable[[], Integrate]]:
     return dense, lambda: integrate
 
 
-def dense(system: RollingSystem, now: Next, end: float, tolerance: float, most: int) -> Leg | TooMany:
+def dense(system: RollingSystem, now: PhaseStart, end: float, tolerance: float, most: int) -> Leg | TooMany:
     """Follow one law to its first stop, and keep the polynomial of each step."""
-    paths = _Paths(np.asarray(now.numbers, dtype=float), most)
+    paths = _Paths(np.asarray(now.state_vector, dtype=float), most)
     try:
         *_, last = _integrated(system, now, paths, end - now.time, tolerance, None)
     except _TooManyError:
@@ -85,14 +85,19 @@ def dense(system: RollingSystem, now: Next, end: float, tolerance: float, most: 
 
 
 def _integrated(
-    system: RollingSystem, now: Next, rows: _Rows | _Paths, end: float, tolerance: float, progress: Progress | None
-) -> Iterator[Stretch]:
+    system: RollingSystem,
+    now: PhaseStart,
+    rows: _Rows | _Paths,
+    end: float,
+    tolerance: float,
+    progress: Progress | None,
+) -> Iterator[Segment]:
     """Follow one law to its first stop; all times count from its beginning."""
     from scipy.integrate import DOP853, Radau
 
     law, begin = now.law, now.time
-    traced = python_law(system, law, (*now.extras, *corners.directions(system, now)), begin, now.numbers)
-    size, y0 = len(now.numbers), np.asarray(now.numbers, dtype=float)
+    traced = python_law(system, law, (*now.event_parameters, *corners.directions(system, now)), begin, now.state_vector)
+    size, y0 = len(now.state_vector), np.asarray(now.state_vector, dtype=float)
     end = max(end, float(np.spacing(begin)))  # some way to go
 
     def rates(since: float, y: Array) -> Array:
@@ -103,7 +108,7 @@ def _integrated(
 
     def stops(since: float, y: Array) -> Array:
         try:
-            return np.array(traced.stops(begin + since, y.tolist()))
+            return np.array(traced.event_functions(begin + since, y.tolist()))
         except (ArithmeticError, ValueError):
             return np.full(len(traced.names), np.nan)
 
@@ -111,7 +116,7 @@ def _integrated(
     patience = Patience(begin, begin + end, **_PATIENCE | ({"steps": _BRIEF, "spare": _BRIEF} if law.brief else {}))
     steps = partial(_steps, rows=rows, stops=stops, names=traced.names, begin=begin, patience=patience, progress=told)
     try:
-        at = law.meant(system, begin, y0)
+        at = law.unpack(system, begin, y0)
         scale = _scale(y0, at.arm, at.scale(system))
         given: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * scale}
         if not law.stiff(y0):
@@ -124,8 +129,8 @@ def _integrated(
             if stop is None or stop.name:
                 yield piece
                 continue
-            yield Stretch(piece.times, piece.states, None)
-            yield from steps(DOP853(rates, stop.time, stop.numbers, end, **given))
+            yield Segment(piece.times, piece.states, None)
+            yield from steps(DOP853(rates, stop.time, stop.state_vector, end, **given))
     except (ZeroDivisionError, ValueError, OverflowError) as error:
         raise SolverError(f"The Runge-Kutta method broke down on the way to t = {begin + end:g} s: {error}.") from None
 
@@ -155,7 +160,7 @@ def _steps(
     patience: Patience,
     progress: Progress | None,
     until: Callable[[Array], bool] = lambda _: False,
-) -> Iterator[Stretch]:
+) -> Iterator[Segment]:
     """Take steps to the end or the first stop; states are read off each step's own polynomial.
 
     Where `until` says so of a state, they end after the step, at a stop without a name.
@@ -170,17 +175,17 @@ def _steps(
             near = _singular(names, values, first)
             if near is None:
                 raise SolverError(_broken(stepper, begin, message))
-            yield rows.rest(Stop(float(stepper.t), near, stepper.y.copy()), before=stepper.t)
+            yield rows.rest(ZeroCrossing(float(stepper.t), near, stepper.y.copy()), before=stepper.t)
             return
         path = stepper.dense_output()
         found = _first_stop(path, stops, values)
         reach = stepper.t if found is None else found[0]
         yield from rows.take(reach, path, before=found is not None)
         if found is not None:
-            yield rows.rest(Stop(found[0], names[found[1]], path(found[0])))
+            yield rows.rest(ZeroCrossing(found[0], names[found[1]], path(found[0])))
             return
         if until(stepper.y) and stepper.status == "running":
-            yield rows.rest(Stop(float(stepper.t), "", stepper.y.copy()))
+            yield rows.rest(ZeroCrossing(float(stepper.t), "", stepper.y.copy()))
             return
         values = stops(stepper.t, stepper.y)
         if progress is not None:
@@ -195,7 +200,7 @@ class _Rows:
         self.times, self.begun, self.done = times, 0, 0
         self.states = np.empty((min(times.size, AT_ONCE), size))
 
-    def take(self, reach: float, path: Path, *, before: bool = False) -> Iterator[Stretch]:
+    def take(self, reach: float, path: Path, *, before: bool = False) -> Iterator[Segment]:
         """Fill in the states up to where a step ends, or before a stop in it, and yield each block that is full."""
         upto = int(np.searchsorted(self.times, reach, side="left" if before else "right"))
         while self.done < upto:
@@ -205,11 +210,11 @@ class _Rows:
             self.states[self.done - self.begun : some - self.begun] = path(self.times[self.done : some]).T
             self.done = some
 
-    def rest(self, stop: Stop | None, before: float = np.inf) -> Stretch:
+    def rest(self, stop: ZeroCrossing | None, before: float = np.inf) -> Segment:
         """Return what has not been given on: the last row is always in it."""
         times, _ = cut(self.times[self.begun : self.done], before)
         states, self.begun, self.states = self.states[: times.size], self.done, np.empty_like(self.states)
-        return Stretch(times, states, stop)
+        return Segment(times, states, stop)
 
 
 class _TooManyError(Exception):
@@ -224,7 +229,7 @@ class _Paths:
         self.begins: list[float] = []
         self.paths: list[Path] = []
 
-    def take(self, reach: float, path: Path, *, before: bool = False) -> Iterator[Stretch]:  # noqa: ARG002
+    def take(self, reach: float, path: Path, *, before: bool = False) -> Iterator[Segment]:  # noqa: ARG002
         """Keep one more."""
         if len(self.paths) == self.most:
             raise _TooManyError
@@ -232,9 +237,9 @@ class _Paths:
         self.paths.append(path)
         yield from ()
 
-    def rest(self, stop: Stop | None, before: float = np.inf) -> Stretch:  # noqa: ARG002
+    def rest(self, stop: ZeroCrossing | None, before: float = np.inf) -> Segment:  # noqa: ARG002
         """Return the stop alone."""
-        return Stretch(np.empty(0), np.empty((0, self.y0.size)), stop)
+        return Segment(np.empty(0), np.empty((0, self.y0.size)), stop)
 
     def at(self, times: Array) -> Array:
         """Return the states at some times."""

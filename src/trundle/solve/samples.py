@@ -94,7 +94,7 @@ class Samples:
     Examples
     --------
     >>> still = Samples(np.zeros(1), *[np.zeros((1, 3))] * 4, np.array([[1.0, 0, 0, 0]]), np.zeros((1, 3)))
-    >>> still.phase.tolist(), still.own.shape
+    >>> still.phase.tolist(), still.support_coordinates.shape
     ([0], (1, 0))
     """
 
@@ -107,20 +107,20 @@ class Samples:
     contact_force: Array
     events: tuple[Event, ...] = ()
     phase: Any = None  # (n,) int8: ROLLING, SLIPPING, FLIGHT or RESTING; absent: rolling
-    own: Any = None  # (n, k): the coordinates of the support's own motion; absent: none
+    support_coordinates: Any = None  # (n, k): the coordinates of the support's own motion; absent: none
     slip_velocity: Any = None  # (n, 3): as a dataset holds it; absent: what V, Ω and the support make of it
     form: Any = None  # the closed form of the phase in which they start, where they come from one
 
     def __post_init__(self) -> None:
         if self.phase is None:
             object.__setattr__(self, "phase", np.zeros(self.time.size, dtype=np.int8))
-        if self.own is None:
-            object.__setattr__(self, "own", np.zeros((self.time.size, 0)))
+        if self.support_coordinates is None:
+            object.__setattr__(self, "support_coordinates", np.zeros((self.time.size, 0)))
 
     @property
-    def support_own(self) -> tuple[Array, ...]:
+    def support_columns(self) -> tuple[Array, ...]:
         """The coordinates of the support's own motion, as `Motion.at` takes them."""
-        return tuple(self.own.T)
+        return tuple(self.support_coordinates.T)
 
     @staticmethod
     def joined(parts: Sequence[Samples], events: tuple[Event, ...] = ()) -> Samples:
@@ -144,7 +144,7 @@ class Samples:
 
     def support(self, system: RollingSystem) -> SupportState:
         """Return pose, twist and acceleration of the support at each instant."""
-        return system.support.motion.at(self.time, *self.support_own)
+        return system.support.motion.at(self.time, *self.support_columns)
 
     def speeds(self, system: RollingSystem) -> tuple[Vector, Vector, Vector]:
         """Return V, Ω×ρ and u, m/s, from the samples' own numbers; the slip is s = V + Ω×ρ − u."""
@@ -154,7 +154,7 @@ class Samples:
 
     def normals(self, system: RollingSystem) -> Array:
         """Return the support's unit normal at each contact (n, 3), from the support into the body."""
-        normal = normal_at(system, self.time, Vector.of(self.contact), self.support_own)
+        normal = normal_at(system, self.time, Vector.of(self.contact), self.support_columns)
         return np.broadcast_to(normal.array(), self.position.shape)
 
     def part(self, where: Any) -> Samples:
@@ -180,7 +180,7 @@ class Samples:
             row(self.angular_velocity),
             row(self.orientation),
             float(self.time[index]),
-            row(self.own),
+            row(self.support_coordinates),
         )
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..errors import InvalidValueError
 from ..mechanics import checks
 from ..mechanics.system import RollingSystem, State
-from .touch import moment
+from .contact_state import moment
 
 MOST_SAMPLES = 10_000_000  # 1.9 GB of results
 # How far apart two floats may be at the start of a run, as a share of the step, and of a time in which it changes.

@@ -17,13 +17,13 @@ from ..mechanics.parameters import numbers
 from ..mechanics.system import RollingSystem, State
 from . import corners, phases, runge_kutta
 from .dense import Keep, Leg, TooMany
-from .following import Next, Stop
 from .integrators import IN_HASTE, TOLERANCE, WITH_CARE, borrowed, ready
 from .kept_series import KeptSeries
 from .lowering import Lowered
 from .patience import Patience
-from .phases import Integrate, Stretch, cut
+from .phases import Integrate, Segment, cut
 from .samples import AT_ONCE, Array, Progress, Samples
+from .transitions import PhaseStart, ZeroCrossing
 
 _CHUNKS = 100  # of a run at most, between which progress is told and Ctrl-C is heard
 _LEAST_CHUNK = 60  # instants
@@ -70,12 +70,12 @@ def solve(
 
 def integrate(
     system: RollingSystem,
-    now: Next,
+    now: PhaseStart,
     times: Array,
     tolerance: float,
     progress: Progress | None = None,
     shared: Shared | None = None,
-) -> Iterator[Stretch]:
+) -> Iterator[Segment]:
     """Follow one law to its first stop."""
     if now.law.brief:
         yield from runge_kutta.integrate(system, now, times, runge_kutta.FINEST, progress)
@@ -85,11 +85,11 @@ def integrate(
         run.patience = shared.patience(now.time, float(times[-1]) if times.size else now.time)
         for chunk, states, reached in _propagate(run, times, progress):
             if reached is None:
-                yield Stretch(chunk, states, None)
+                yield Segment(chunk, states, None)
                 continue
             stop = run.stop(reached)
             kept, _ = cut(chunk, stop.time)
-            yield Stretch(kept, states[: kept.size], stop)
+            yield Segment(kept, states[: kept.size], stop)
 
 
 @dataclass
@@ -124,7 +124,7 @@ def keeping() -> tuple[Keep, Callable[[], Integrate]]:
 
 def dense(
     system: RollingSystem,
-    now: Next,
+    now: PhaseStart,
     end: float,
     tolerance: float,
     most: int,
@@ -151,7 +151,7 @@ def dense(
 
 
 @contextlib.contextmanager
-def _begun(system: RollingSystem, now: Next, tolerance: float, shared: Shared) -> Iterator[_Run]:
+def _begun(system: RollingSystem, now: PhaseStart, tolerance: float, shared: Shared) -> Iterator[_Run]:
     """Lend what integrates a law, at its beginning."""
     lowered, key = ready(system, now.law, tolerance)
     with contextlib.ExitStack() as lent:
@@ -160,28 +160,28 @@ def _begun(system: RollingSystem, now: Next, tolerance: float, shared: Shared) -
             return lent.enter_context(borrowed(lowered, key, tolerance, level))
 
         left = max(0, _HASTY_STEPS - shared.hasty.get(key, 0))
-        given = [*numbers(system), *now.extras, *corners.directions(system, now)]
-        run = _Run(borrow, left, lowered, given, now.time, now.numbers)
+        given = [*numbers(system), *now.event_parameters, *corners.directions(system, now)]
+        run = _Run(borrow, left, lowered, given, now.time, now.state_vector)
         run.lasted = _lasted(system, now)
         yield run
         shared.hasty[key] = _HASTY_STEPS - max(0, run.hasty_steps)
 
 
-def _lasted(system: RollingSystem, now: Next) -> float:
+def _lasted(system: RollingSystem, now: PhaseStart) -> float:
     """Return for how long slip or turning seems to have lasted that grows straight from all but nothing, s; else ∞.
 
     Where it goes straight its speed has no singularity, and only rounding in the series would say how near it came to
     nothing. By what of that is left, a step would be far too short, or, between two zeros, far too long.
     """
-    found, first = math.inf, len(now.extras) - now.law.ending
+    found, first = math.inf, len(now.event_parameters) - now.law.ending
     for i, stop in enumerate(now.law.ends):
-        found = min(found, _lasted_to(system, now, stop, now.extras[first + 4 * i]))
+        found = min(found, _lasted_to(system, now, stop, now.event_parameters[first + 4 * i]))
     return found
 
 
-def _lasted_to(system: RollingSystem, now: Next, stop: str, near: float) -> float:
+def _lasted_to(system: RollingSystem, now: PhaseStart, stop: str, near: float) -> float:
     """Return the same of slip or of turning, given the square of what is all but nothing."""
-    law, numbers_now = now.law, list(map(float, now.numbers))
+    law, numbers_now = now.law, list(map(float, now.state_vector))
     v = law.shrinking(system, now.time, numbers_now, stop).array()
     if v @ v > _GROWN * near:
         return math.inf
@@ -217,9 +217,9 @@ class _Run:
         """The time reached, s."""
         return self.reference + float(self.integrator.time)
 
-    def stop(self, reached: int) -> Stop:
+    def stop(self, reached: int) -> ZeroCrossing:
         """Return the stop that it has come to."""
-        return Stop(self.time, self.lowered.stops[reached], self.integrator.state.copy())
+        return ZeroCrossing(self.time, self.lowered.event_functions[reached], self.integrator.state.copy())
 
     def tidy(self, time: float) -> None:
         """Count from here on, and take rounding's share out of φ(p) = 0 and |q| = 1."""

@@ -36,7 +36,7 @@ class PythonLaw:
     """
 
     rates: Callable[[float, Sequence[float]], list[float]]
-    stops: Callable[[float, Sequence[float]], list[float]]
+    event_functions: Callable[[float, Sequence[float]], list[float]]
     names: tuple[str, ...]
     found: Callable[[float, Sequence[float]], list[float]]
 
@@ -68,7 +68,11 @@ def contact_state(system: RollingSystem, start: State) -> list[float]:
 
 
 def python_law(
-    system: RollingSystem, law: Law, extras: Sequence[float] = (), time: float = 0.0, state: Sequence[float] = ()
+    system: RollingSystem,
+    law: Law,
+    event_parameters: Sequence[float] = (),
+    time: float = 0.0,
+    state: Sequence[float] = (),
 ) -> PythonLaw:
     """Trace a law on a tape and return it as flat Python functions, some 20 times faster than the vectors.
 
@@ -81,9 +85,9 @@ def python_law(
     (2.0, ('lift',))
     """
     if not system.support.surface.analytic:
-        return _untraced(system, law, extras, time, state)
+        return _untraced(system, law, event_parameters, time, state)
     own = {name: value for name, value in vars(law).items() if isinstance(value, float)}
-    values = [*numbers(system), *own.values(), *extras]
+    values = [*numbers(system), *own.values(), *event_parameters]
     rates, stops, names, found = _known(system, law, tuple(own))
     return PythonLaw(
         lambda t, y: rates([t, *y, *values]),
@@ -122,28 +126,28 @@ def _traced(system: RollingSystem, law: Law, own: tuple[str, ...]) -> _Flat:
     """Trace a law with all numbers of the system, and those of the law, as inputs."""
     size, count = len(law.names(system)), len(numbers(system))
     tape = Tape()
-    time, *rest = tape.inputs(1 + size + count + len(own) + law.extras + corners.count(system))
+    time, *rest = tape.inputs(1 + size + count + len(own) + law.event_parameters + corners.count(system))
     state, parameters = rest[:size], rest[size:]
     symbolic, free = with_numbers(system, parameters[:count]), copy(law)
     vars(free).update(zip(own, parameters[count:], strict=False))
     rates = free.rates(symbolic, time, state)
-    stops = corners.all_stops(symbolic, free, time, state, parameters[count + len(own) :])
+    stops = corners.all_event_functions(symbolic, free, time, state, parameters[count + len(own) :])
     found = free.found(symbolic, time, state)
     return tape.function(rates), tape.function(list(stops.values())), tuple(stops), tape.function(found)
 
 
 def _untraced(
-    system: RollingSystem, law: Law, extras: Sequence[float], time: float, state: Sequence[float]
+    system: RollingSystem, law: Law, event_parameters: Sequence[float], time: float, state: Sequence[float]
 ) -> PythonLaw:
     def rates(t: float, y: Sequence[float]) -> list[float]:
         return [float(rate) for rate in law.rates(system, t, y)]
 
     def stops(t: float, y: Sequence[float]) -> list[float]:
-        return [float(value) for value in corners.all_stops(system, law, t, y, extras).values()]
+        return [float(value) for value in corners.all_event_functions(system, law, t, y, event_parameters).values()]
 
     def found(t: float, y: Sequence[float]) -> list[float]:
         return [float(part) for part in law.found(system, t, y)]
 
     # Which stops there are is read off a state in which the law holds: of any other it may know nothing.
-    names = tuple(corners.all_stops(system, law, time, state, extras)) if len(state) else ()
+    names = tuple(corners.all_event_functions(system, law, time, state, event_parameters)) if len(state) else ()
     return PythonLaw(rates, stops, names, found)

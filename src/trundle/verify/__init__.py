@@ -122,7 +122,7 @@ def _before(start: State, at: Samples) -> Samples:
     """Return the first sample as the run was started: it may have landed since, at the same instant."""
     names = ("position", "velocity", "angular_velocity", "orientation")
     given: dict[str, Any] = {name: np.array([getattr(start, name)], dtype=float) for name in names}
-    return replace(at, **given, own=np.array([start.support], dtype=float))
+    return replace(at, **given, support_coordinates=np.array([start.support], dtype=float))
 
 
 def _integrals(system: RollingSystem, at: Samples, method: Method) -> Iterator[CardFigure]:
@@ -132,7 +132,7 @@ def _integrals(system: RollingSystem, at: Samples, method: Method) -> Iterator[C
     bound, phases = bound_of(method, turned_in(at)), set()
     worst: dict[str, tuple[float, Any, set[str]]] = {}
     for part, phase in _runs_of_a_phase(at):
-        record = Record(part.motion(system), Vector.of(part.contact), part.support_own)
+        record = Record(part.motion(system), Vector.of(part.contact), part.support_columns)
         phases.add(phase)
         for integral in invariants_of(system, phases=(phase,)):
             terms, sizes = integral.sized_terms(system, record)

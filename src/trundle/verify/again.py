@@ -20,7 +20,7 @@ from .bounds import EXACT, SOLVER, Array
 from .card import CardFigure, checked
 from .events import instants_of
 from .law import Residuals, narrowed, residuals, roughness, slope_sizes
-from .stretches import Stretch, stretches
+from .stretches import SmoothSegment, stretches
 
 _RUN_AGAIN = 2000  # samples
 _MOST_STRETCHES = 200  # looked at
@@ -87,7 +87,7 @@ class Again:
         return self._run(np.unique([self.start.time, *times, self._end]))
 
     @cached_property
-    def stretches(self) -> list[Stretch]:
+    def stretches(self) -> list[SmoothSegment]:
         """What lies between its events, and between kinks of its formulas."""
         return stretches(self.system, self.start.time, self.itself)
 

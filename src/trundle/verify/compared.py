@@ -75,7 +75,7 @@ def cross_check(
     both = Compared(system, start, ours, theirs, finer, finer, sizes_of(system, ours), turned)
     over = f"over {ours.time[-1] - start.time:g} s, {ours.time.size} instants"
     yield both.figure(name, both.share, both.bound, f"position, velocity, Ω, force, events; {over}")
-    alone = "; exact from the place alone" if motion.straight_turn(0.0) is not None else ""
+    alone = "; exact from the place alone" if motion.fixed_axis_rotation(0.0) is not None else ""
     note = f"angle between the two, after {turned:.3g} rad{alone}"
     allowed = 100 * finer.tolerance * max(10.0, turned)  # the error of Ω added up over the turning
     yield both.figure(f"{name}, orientation", both.turns, allowed, note, "rad")
@@ -136,9 +136,11 @@ class Compared:
     @cached_property
     def turns(self) -> Array:
         """The largest of the angle between the orientations, rad, and the shares of the support's angle and rate."""
-        own = np.abs(self.ours.own - self.theirs.own)
-        own = own / np.maximum(np.abs(self.ours.own).max(axis=0, initial=0.0), self._own_least)
-        return np.maximum(self.angle, np.where(self.alike, own.max(axis=1, initial=0.0), 0.0))
+        coordinates = np.abs(self.ours.support_coordinates - self.theirs.support_coordinates)
+        coordinates = coordinates / np.maximum(
+            np.abs(self.ours.support_coordinates).max(axis=0, initial=0.0), self._own_least
+        )
+        return np.maximum(self.angle, np.where(self.alike, coordinates.max(axis=1, initial=0.0), 0.0))
 
     @property
     def _own_least(self) -> list[float]:
@@ -147,7 +149,7 @@ class Compared:
         A step's error is a share of the largest numbers of the state: |q| is 1, and Ω beside a rate.
         """
         least = {"angle": _SLOW, "angular velocity": max(_SLOW * self.sizes["angular_velocity"], 1e-300)}
-        return [least[kind] for kind in self.system.support.motion.own_kinds]
+        return [least[kind] for kind in self.system.support.motion.coordinate_kinds]
 
     @cached_property
     def angle(self) -> Array:

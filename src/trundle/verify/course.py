@@ -134,11 +134,11 @@ class Course:
         if self.mu is None or np.hypot(*stays[:2]) <= self.mu:
             self._end_at_once()  # what is left of it, if anything
             before = self.slip
-            goes_on = self._line(stays, holds=True)
+            joins = self._line(stays, holds=True)
             amount = float(np.linalg.solve(self.M, self.slip - before)[2])
             spare = np.inf if self.mu is None else self.mu - float(np.hypot(*stays[:2]))
             self.unused += spare * amount if amount > 0 else 0.0
-            return goes_on
+            return joins
         begins = _begins(self.M, self.mu)
         return begins is not None and self._line(begins)
 

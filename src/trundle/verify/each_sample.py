@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import Contact, touch
+from ..mechanics.contact import Contact, contact_at
 from ..mechanics.system import RollingSystem
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
 from .bounds import EXACT, Array, largest, speed_of
@@ -106,7 +106,7 @@ class EachSample:
     def _touch(self) -> Contact:
         """The geometry at each p."""
         at, q = self.at, Quaternion.of(self.at.orientation)
-        return touch(self.system, at.time, Vector.of(at.contact), q, at.support_own)
+        return contact_at(self.system, at.time, Vector.of(at.contact), q, at.support_columns)
 
     @cached_property
     def apart(self) -> tuple[Array, Array]:
@@ -156,7 +156,7 @@ class EachSample:
         if not self.flies.any() or self._touch.flat:
             return aside
         with np.errstate(all="ignore"):
-            moved = self._touch.across(np.where(self.flies, gap, 0.0)).solve(Vector.of(along))
+            moved = self._touch.relative_curvature(np.where(self.flies, gap, 0.0)).solve(Vector.of(along))
             off = np.linalg.norm(np.broadcast_to(moved.array(), along.shape), axis=1)
         return np.where(self.flies, np.fmin(aside, off), aside)
 
@@ -164,15 +164,15 @@ class EachSample:
         """Yield how far a body is beyond the rim, the surface's end, or what its shape covers."""
         system, surface = self.system, self.system.support.surface
         support = self.at.support(system)
-        there = support.own_of(Vector.of(self.at.contact))
+        there = support.local(Vector.of(self.at.contact))
         shape = self.at.time.shape
         if surface.rim is not None:
             beyond = np.hypot(there.x, there.y) - float(surface.rim)
             yield Shares("inside the rim", np.broadcast_to(beyond, shape) / size, self.bound)
         nu = Quaternion.of(self.at.orientation).matrix().transpose @ Vector.of(self.normals)
         for name, inside in (
-            ("before the end", surface.inside(there)),
-            ("on its shape", system.body.shape.covers(-nu)),
+            ("before the end", surface.domain_margin(there)),
+            ("on its shape", system.body.shape.validity_margin(-nu)),
         ):
             if inside is not None:
                 yield Shares(name, -np.broadcast_to(np.asarray(inside, dtype=float), shape), self.bound)

@@ -16,12 +16,12 @@ from typing import Any
 import numpy as np
 
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import roll, touch
+from ..mechanics.contact import contact_at, roll
 from ..mechanics.kinks import Kink
 from ..mechanics.slipping import slip
 from ..mechanics.system import RollingSystem, State
-from ..solve.following import JOLT
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Event, Samples
+from ..solve.transitions import JOLT
 from .acting import acting
 from .bounds import A_STEP, SOLVER, Array, largest, sizes_of
 from .card import CardFigure
@@ -121,7 +121,7 @@ class AtEvents:
     @cached_property
     def _own(self) -> float:
         """The largest of the support's own angle and rate."""
-        return float(np.abs(self.again.own).max(initial=0.0))
+        return float(np.abs(self.again.support_coordinates).max(initial=0.0))
 
     @cached_property
     def _arm(self) -> float:
@@ -252,7 +252,7 @@ class AtEvents:
             Vector(*at.contact[0]),
             Quaternion(*at.orientation[0]),
             Vector(*at.angular_velocity[0]),
-            at.own[0].tolist(),
+            at.support_coordinates[0].tolist(),
         )
         if int(at.phase[0]) == SLIPPING:
             s = Vector(*EachSample(self.system, at, self.bound).slip[0])
@@ -307,19 +307,24 @@ class AtEvents:
     def _ended(self, event: Event, at: Samples, each: EachSample) -> Iterator[tuple[Event, str, float, float]]:
         """Yield whether a run ended where it says."""
         surface, support = self.system.support.surface, at.support(self.system)
-        there = support.own_of(Vector.of(at.contact))
+        there = support.local(Vector.of(at.contact))
         q = Quaternion.of(at.orientation)
         if event.kind == "rim":
             off = np.hypot(_number(there.x), _number(there.y)) - _number(surface.rim)
             yield event, "at the rim", abs(float(off)) / self._sizes["position"], _GOES_ON * self.bound
         elif event.kind in ("end", "edge"):
             nu = -(q.matrix().transpose @ Vector.of(at.normals(self.system)))
-            inside = surface.inside(there) if event.kind == "end" else self.system.body.shape.covers(nu)
+            inside = surface.domain_margin(there) if event.kind == "end" else self.system.body.shape.validity_margin(nu)
             yield event, "at the end", abs(_number(inside)), _SHORT
         elif event.kind == "curved":
-            contact = touch(self.system, at.time, Vector.of(at.contact), q, at.support_own)
+            contact = contact_at(self.system, at.time, Vector.of(at.contact), q, at.support_columns)
             gap = float(each.apart[0][0] @ each.normals[0]) if each.flies[0] else 0.0
-            yield event, "1 + C S singular", abs(_number(contact.clearance(gap))), _SHORT + _GOES_ON * self.bound
+            yield (
+                event,
+                "1 + C S singular",
+                abs(_number(contact.relative_curvature_determinant(gap))),
+                _SHORT + _GOES_ON * self.bound,
+            )
         elif event.kind == "spot":
             yield (
                 event,

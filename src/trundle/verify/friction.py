@@ -8,10 +8,10 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import touch
+from ..mechanics.contact import contact_at
 from ..mechanics.system import RollingSystem
+from ..solve.contact_state import WEIGHTLESS
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
-from ..solve.touch import WEIGHTLESS
 from .acting import acting
 from .bounds import Array, largest, sizes_of
 from .card import CardFigure, checked
@@ -153,7 +153,7 @@ def holding(system: RollingSystem, held: Samples) -> tuple[Array, Array]:
 def _carried_along(system: RollingSystem, held: Samples) -> Array:
     """Return the rate of Ω along the support of a body that only spins about the normal over it, ω̇ + Ω_n ṅ."""
     q, Omega = Quaternion.of(held.orientation), Vector.of(held.angular_velocity)
-    contact = touch(system, held.time, Vector.of(held.contact), q, held.support_own)
+    contact = contact_at(system, held.time, Vector.of(held.contact), q, held.support_columns)
     V, turning, u = held.speeds(system)
     p_rate, _ = contact.rates(V + turning - u, Omega, V)
     support, n = contact.support, contact.normal

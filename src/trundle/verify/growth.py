@@ -20,10 +20,10 @@ from numpy.typing import NDArray
 from ..errors import SolverError
 from ..mechanics.algebra import Quaternion
 from ..mechanics.system import RollingSystem, State
+from ..solve.contact_state import moment
 from ..solve.dense import Dense
 from ..solve.methods import Method
 from ..solve.samples import FLIGHT, Event, Samples
-from ..solve.touch import moment
 from .bounds import A_STEP, SOLVER, Array, largest
 from .nudging import nudged
 
@@ -188,10 +188,13 @@ def _responses(
 
     turns = np.stack([_turned(*pair) for pair in pairs], axis=-1)
     fields = {field: apart(field) / max(size, 1e-300) for field, size in sizes.items()}
-    own = apart("own") / np.maximum(np.abs(pairs[0][0].own).max(axis=0, initial=0.0), 1e-300)[:, None]
+    coordinates = (
+        apart("support_coordinates")
+        / np.maximum(np.abs(pairs[0][0].support_coordinates).max(axis=0, initial=0.0), 1e-300)[:, None]
+    )
     moving = np.stack([_followed(system, other) - _followed(system, one) for one, other in pairs], axis=-1)
     followed = [fields["position"], moving / max(sizes["velocity"], 1e-300), fields["angular_velocity"]]
-    return np.concatenate([*followed, turns, own], axis=1), np.stack([*fields.values(), turns], axis=1)
+    return np.concatenate([*followed, turns, coordinates], axis=1), np.stack([*fields.values(), turns], axis=1)
 
 
 def _followed(system: RollingSystem, at: Samples) -> Array:

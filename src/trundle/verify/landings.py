@@ -15,11 +15,11 @@ from functools import cached_property, partial
 import numpy as np
 
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import normal_at, touch
+from ..mechanics.contact import contact_at, normal_at
 from ..mechanics.slipping import unpushed
 from ..mechanics.system import RollingSystem, State
-from ..solve.following import JOLT
 from ..solve.samples import Event
+from ..solve.transitions import JOLT
 from .acting import inertia_of
 from .bounds import EXACT, SOLVER, Array
 from .card import CardFigure
@@ -73,8 +73,8 @@ class Landing:
     @cached_property
     def n(self) -> Array:
         """The support's normal where it touches."""
-        own = self.before.support
-        return _row(normal_at(self.system, self.before.time, Vector(*self._point), own))
+        coordinates = self.before.support
+        return _row(normal_at(self.system, self.before.time, Vector(*self._point), coordinates))
 
     @property
     def _point(self) -> tuple[float, float, float]:
@@ -286,12 +286,12 @@ class Landing:
 
     def _rise(self) -> float:
         """Return how high the bounce would have risen that was cut, as a share of |ρ|."""
-        q, own = Quaternion(*self.before.orientation), self.after.support
-        contact = touch(self.system, self.before.time, Vector(*self._point), q, own)
+        q, coordinates = Quaternion(*self.before.orientation), self.after.support
+        contact = contact_at(self.system, self.before.time, Vector(*self._point), q, coordinates)
         slip = self.goes
         sliding = Vector(*(slip - self.n * (slip @ self.n)))
         Omega = Vector(*self.after.angular_velocity)
-        back = -float(unpushed(self.system, self.before.time, contact, q, Omega, sliding, own).opening)
+        back = -float(unpushed(self.system, self.before.time, contact, q, Omega, sliding, coordinates).opening)
         # Of a jolt the flight may be cut, and what friction without limit would make of it.
         left_behind = max(0.0, float(self.comes @ self.n))
         off = max(left_behind, self.off - left_behind)

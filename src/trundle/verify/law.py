@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import touch
+from ..mechanics.contact import contact_at
 from ..mechanics.system import RollingSystem
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
 from .acting import acting, exerted, rotated, unturning
@@ -192,7 +192,7 @@ class _Windows:
         """The support's radius, m: of what is worked out from its centre, the place is only as sharp as that."""
         at = self.middle
         q = Quaternion.of(at.orientation)
-        S = touch(self.system, at.time, Vector.of(at.contact), q, at.support_own).shape_operator
+        S = contact_at(self.system, at.time, Vector.of(at.contact), q, at.support_columns).shape_operator
         most = max(float(np.abs(row.array()).max()) for row in S.rows)
         return 1 / most if most > 0 else 0.0
 
@@ -222,7 +222,7 @@ class _Windows:
     def _support_points(self) -> Array:
         """Return the same of the support's point."""
         pose, nodes = self.middle.support(self.system), self.times.shape[1]
-        own = (pose.own_of(Vector.of(self.middle.contact))).array()
+        own = (pose.local(Vector.of(self.middle.contact))).array()
         own = np.repeat(np.broadcast_to(own, self.middle.contact.shape), nodes, axis=0)
         carried = self.all.support(self.system).carried(Vector.of(own)).array()
         return np.broadcast_to(carried, own.shape)
@@ -294,12 +294,12 @@ class _Windows:
             return 0.0
         pose, R = at.support(self.system), at.contact_force
         axle, arm = (np.broadcast_to(v.array(), R.shape) for v in (pose.axle, Vector.of(at.contact) - pose.origin))
-        own = tuple(at.own.T)
+        own = tuple(at.support_coordinates.T)
         parts = [np.broadcast_to(np.asarray(motion.axle_torque(at.time, own), dtype=float), at.time.shape)]
         if self.phase != FLIGHT:
             from_support = exerted(self.system, at)[2]
             parts += [-(axle * np.cross(arm, R)).sum(axis=1), -(axle * from_support).sum(axis=1)]
-        change, rate = self.slope(self.all.own), at.own[:, -1]
+        change, rate = self.slope(self.all.support_coordinates), at.support_coordinates[:, -1]
         # Of a force that presses on past the axle, and of a slope, no smaller moment is told from none.
         pressing = _PRODUCT * largest(arm) * largest(R) / self.bound
         sharp = motion.inertia * _ROUNDING * np.abs(rate).max() / self.half / self.bound
@@ -307,7 +307,7 @@ class _Windows:
         size = max(*(float(np.abs(part).max()) for part in parts), steady, pressing + sharp)
         law = np.abs(motion.inertia * change[:, -1] - sum(parts)).max() / max(size, 1e-300)
         # A step's error is a share of the largest number of the state, and |q| is 1.
-        angle = 1 + float(np.abs(at.own[:, -2]).max()) + np.abs(rate).max() * self._clock
+        angle = 1 + float(np.abs(at.support_coordinates[:, -2]).max()) + np.abs(rate).max() * self._clock
         turned = np.abs(change[:, -2] - rate).max()
         sharp = _ROUNDING * angle / self.half / self.bound
         return float(max(law, turned / max(np.abs(rate).max(), sharp, 1e-300)))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from ..mechanics.algebra import E_X, E_Z, Quaternion, Vector
 from ..mechanics.contact import Contact
-from ..mechanics.nearest import settle
+from ..mechanics.nearest import closest_contact
 from ..mechanics.placing import SLIP_TOLERANCE, no_gap
 from ..mechanics.system import RollingSystem, State
 
@@ -66,7 +66,9 @@ class _Start:
 
     @classmethod
     def of(cls, system: RollingSystem, state: State) -> _Start:
-        contact = settle(system, state.time, Vector(*state.position), Quaternion(*state.orientation), state.support)
+        contact = closest_contact(
+            system, state.time, Vector(*state.position), Quaternion(*state.orientation), state.support
+        )
         V, Omega, n = Vector(*state.velocity), Vector(*state.angular_velocity), contact.normal
         slip = contact.slip_velocity(V, Omega)
         over = float((Vector(*state.position) + contact.offset - contact.point).dot(n))
@@ -90,10 +92,10 @@ class _Start:
         by: float = 0.0,
     ) -> State:
         """Return a state changed in Ω, V, orientation, place or the support's own motion that keeps the phase."""
-        own = tuple(part + by * (i == support) for i, part in enumerate(self.state.support))
+        coordinates = tuple(part + by * (i == support) for i, part in enumerate(self.state.support))
         q = Quaternion(1.0, *(turn * 0.5)) * self.q
         q = Quaternion(*(part / math.hypot(*q) for part in q))
-        there = settle(self.system, self.state.time, Vector(*self.state.position) + move, q, own)
+        there = closest_contact(self.system, self.state.time, Vector(*self.state.position) + move, q, coordinates)
         n, Omega = there.normal, Vector(*self.state.angular_velocity) + turning
         rises = float(move.dot(n)) if self.over > 0 else 0.0
         centre = there.centre + n * (self.over + rises)
@@ -108,7 +110,7 @@ class _Start:
             velocity=_floats(V),
             angular_velocity=_floats(Omega),
             orientation=(float(q.w), float(q.x), float(q.y), float(q.z)),
-            support=own,
+            support=coordinates,
         )
 
 

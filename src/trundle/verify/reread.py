@@ -97,8 +97,10 @@ def _others(
     slips = ~near & ~strange & (ours.phase != FLIGHT)
     off = (slip - (V + carried - u).array())[slips]
     apart = largest(off) / max(speed_of(system, ours), 1e-300) if slips.any() else 0.0
-    own = np.abs(ours.own - theirs.own).max(axis=0, initial=0.0) / np.maximum(np.abs(theirs.own).max(axis=0), 1e-300)
-    share = float("inf") if strange.any() else max(apart, *late, *own.tolist(), 0.0)
+    coordinates = np.abs(ours.support_coordinates - theirs.support_coordinates).max(axis=0, initial=0.0) / np.maximum(
+        np.abs(theirs.support_coordinates).max(axis=0), 1e-300
+    )
+    share = float("inf") if strange.any() else max(apart, *late, *coordinates.tolist(), 0.0)
     note = "phases, slip, events and what the support does: as the method run again gives them"
     return checked(_OTHERS, share, bound, note)
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from ..mechanics.kinks import kinks
 from ..mechanics.system import RollingSystem
+from ..solve.contact_state import moment
 from ..solve.samples import SLIPPING, Samples
-from ..solve.touch import moment
 from .bounds import Array, pace_of
 from .law import WINDOWS, window_times
 
@@ -25,7 +25,7 @@ _ASIDE = 1e-6  # of a stretch, at its ends, over which the energy is not balance
 
 
 @dataclass(frozen=True)
-class Stretch:
+class SmoothSegment:
     """A part of a run in which one law holds, smooth in the time.
 
     Parameters
@@ -80,7 +80,7 @@ class Stretch:
         return self.length * self.pace / _PHASE_A_PANEL <= _MOST_PANELS
 
 
-def stretches(system: RollingSystem, begin: float, samples: Samples) -> list[Stretch]:
+def stretches(system: RollingSystem, begin: float, samples: Samples) -> list[SmoothSegment]:
     """Cut a run at its events, and where a formula in the time has a kink.
 
     Examples
@@ -100,7 +100,7 @@ def stretches(system: RollingSystem, begin: float, samples: Samples) -> list[Str
     smooth = before_a_singular_end(samples)
     happenings = [event.time for event in samples.events] + [kink.time for kink in kinks(system, begin, end)]
     edges = sorted({begin, *(time for time in happenings if begin < time < end), end})
-    found: list[Stretch] = []
+    found: list[SmoothSegment] = []
     first, settles = begin, settling.get(begin, 0.0)
     for last in edges[1:]:
         if last - first <= 1e-12 * (end - begin):  # one and the same instant
@@ -111,7 +111,7 @@ def stretches(system: RollingSystem, begin: float, samples: Samples) -> list[Str
         pace = pace_of(system, part) + 1 / (last - first)
         slips = bool((part.phase == SLIPPING).any())
         pace += _TURNS / (last - first) if slips else 0.0
-        found.append(Stretch(first, last, pace, slips, settles))
+        found.append(SmoothSegment(first, last, pace, slips, settles))
         first, settles = last, settling.get(last, 0.0)
     return found
 

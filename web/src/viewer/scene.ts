@@ -100,7 +100,7 @@ export interface Columns {
   support_position?: Float32Array
   support_orientation?: Float32Array
   /** The coordinates of the support's own motion, side by side: of a free axle its angle, rad, and rate, rad/s. */
-  support_own?: Float64Array
+  support_coordinates?: Float64Array
   guiding_centre?: Float32Array
   body_vertices?: Float32Array
   body_normals?: Float32Array

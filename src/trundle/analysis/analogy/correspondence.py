@@ -19,8 +19,8 @@ from ...mechanics.scalars import is_number
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import STANDARD_GRAVITY, RollingSystem, State, Support
 from ...solve.exact import SphereOnPlane
-from ...solve.following import at_start
 from ...solve.samples import ROLLING
+from ...solve.transitions import at_start
 from .particle import ELECTRON_MASS, ELEMENTARY_CHARGE, ChargedParticle
 
 if TYPE_CHECKING:
@@ -240,7 +240,7 @@ def twin(
 
 def _until_the_rim(system: RollingSystem, start: State, duration: float) -> float:
     """Return how long the ball is on the table: a charge knows no rim."""
-    if system.support.surface.rim is None or SphereOnPlane.outside(system):
+    if system.support.surface.rim is None or SphereOnPlane.violations(system):
         return duration
     from ...simulation.simulate import simulate
 
@@ -248,7 +248,7 @@ def _until_the_rim(system: RollingSystem, start: State, duration: float) -> floa
 
 
 def _ball(system: RollingSystem, start: State) -> SphereOnPlane:
-    outside = SphereOnPlane.outside(system)
+    outside = SphereOnPlane.violations(system)
     if outside:
         raise OutOfDomainError(
             "A charge in uniform crossed fields corresponds to an isotropic sphere on a plane that is fixed or turns "

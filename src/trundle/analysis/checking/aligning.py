@@ -13,7 +13,7 @@ from .case import Case
 from .examining import SLIP
 from .fitting import least_squares
 from .motion import first_orientation, motion_of, turned_to_space
-from .record import Array, Theirs
+from .record import Array, ExternalTrajectory
 
 _LITTLE = 1e-4  # of what rolls, that slips: no start is told more closely
 _FAR_BETTER = 0.5  # of the slip that the given start leaves: another must be so much better
@@ -75,7 +75,7 @@ class _Rolling:
     The support may be free to turn at another rate than is said, the mistake that is most often made beside this one.
     """
 
-    def __init__(self, case: Case, own: Theirs, *, rate_free: bool) -> None:
+    def __init__(self, case: Case, own: ExternalTrajectory, *, rate_free: bool) -> None:
         self._rate_free = rate_free
         at = motion_of(case.system, own, case.start, case.view.instants)
         self._bound = case.series[SLIP].bound[:, None]

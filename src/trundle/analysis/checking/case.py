@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ...mechanics.system import RollingSystem, State
 from .examining import View
 from .motion import Motion
-from .record import Theirs
+from .record import ExternalTrajectory
 from .series import Series
 
 
@@ -35,7 +35,7 @@ class Case:
     """
 
     system: RollingSystem
-    theirs: Theirs
+    theirs: ExternalTrajectory
     tolerance: float
     start: State | None
     view: View

@@ -11,7 +11,7 @@ from ...mechanics.algebra import Quaternion, Vector
 from ...mechanics.system import RollingSystem
 from .laws import Rates
 from .motion import Instants, Motion
-from .record import Array, Theirs
+from .record import Array, ExternalTrajectory
 from .slopes import Index
 
 PATH, TURN = "velocity is the slope of the path", "orientation turns as Ω"
@@ -117,7 +117,7 @@ class Comparison:
         return 2 * (Quaternion.of(mismatch) * Quaternion.of(q).conjugate).array()[:, 1:]
 
 
-def comparisons(theirs: Theirs) -> Iterator[Comparison]:
+def comparisons(theirs: ExternalTrajectory) -> Iterator[Comparison]:
     """Yield what can be compared of what they gave; where two have one name, the closer one is to be taken."""
     given = {name for name in ("velocity", "angular_velocity", "orientation") if getattr(theirs, name) is not None}
     given -= {"orientation"} & set(theirs.doubts)

@@ -17,7 +17,7 @@ from .laws import independent_law
 from .misread import misreadings
 from .mistakes import Suspect, law_of, mechanical, with_mistakes
 from .own_run import own_run
-from .record import Array, Theirs
+from .record import Array, ExternalTrajectory
 from .result import Mistake
 from .searching import Tried, explaining
 from .series import Series
@@ -54,7 +54,7 @@ class _Trials:
     case: Case
     base: Mapping[str, Series] = field(init=False)
     reacts: Sensitivity = field(init=False)
-    changed: dict[tuple[int, ...], Theirs | None] = field(default_factory=dict)
+    changed: dict[tuple[int, ...], ExternalTrajectory | None] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         case = self.case
@@ -65,9 +65,9 @@ class _Trials:
         )
         self.off = _off(self.base, ())
 
-    def theirs(self, suspects: tuple[Suspect, ...]) -> Theirs | None:
+    def theirs(self, suspects: tuple[Suspect, ...]) -> ExternalTrajectory | None:
         """Return their samples without some misreadings; it is worked out once."""
-        found: Theirs | None = self.case.theirs
+        found: ExternalTrajectory | None = self.case.theirs
         key: tuple[int, ...] = ()
         for suspect in suspects:
             if suspect.theirs is None or found is None:

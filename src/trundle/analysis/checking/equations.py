@@ -12,7 +12,7 @@ import numpy as np
 
 from ...errors import InvalidValueError, TrundleError
 from ...mechanics.algebra import Matrix, Quaternion, Vector
-from ...mechanics.contact import touch
+from ...mechanics.contact import contact_at
 from ...mechanics.system import RollingSystem
 from ...verify import CardFigure
 from .fitting import FAMILIES, fitted
@@ -42,7 +42,7 @@ class States:
 
     def instants(self, system: RollingSystem) -> Instants:
         """Return them with their contact with a support."""
-        contact = touch(system, self.time, Vector.of(self.point), Quaternion.of(self.orientation))
+        contact = contact_at(system, self.time, Vector.of(self.point), Quaternion.of(self.orientation))
         return Instants(self.time, self.position, self.velocity, self.angular_velocity, self.orientation, contact)
 
     def one(self, i: int) -> tuple[float, Array, Array, Array, Array]:
@@ -68,7 +68,7 @@ def states(system: RollingSystem, count: int, seed: int = 0) -> States:
     rim = system.support.surface.rim
     zero = Vector(0.0, 0.0, 0.0)
     somewhere = _on_surface(system, 0.0, Vector(1e-3, 2e-3, 3e-3))
-    arm = float(touch(system, 0.0, somewhere, Quaternion(1.0, *zero)).offset.norm())
+    arm = float(contact_at(system, 0.0, somewhere, Quaternion(1.0, *zero)).offset.norm())
     reach = 10 * arm if rim is None else 0.9 * float(rim)
     quick = math.sqrt(max(float(system.gravity), 1.0) / arm) + abs(float(system.support.motion.steady_rate or 0.0))
     time, rough = draw.uniform(0.0, 10.0, count), draw.uniform(-reach / 2**0.5, reach / 2**0.5, (count, 3))
@@ -80,7 +80,7 @@ def states(system: RollingSystem, count: int, seed: int = 0) -> States:
 
 def _placed(system: RollingSystem, time: float, rough: Array, q: Array, Omega: Array) -> tuple[list[float], ...]:
     point = _on_surface(system, time, Vector(*map(float, rough)))
-    contact = touch(system, time, point, Quaternion(*map(float, q)))
+    contact = contact_at(system, time, point, Quaternion(*map(float, q)))
     velocity = contact.rolling_velocity(Vector(*map(float, Omega)))
     return [*point], [*contact.centre], [*velocity]
 
@@ -88,7 +88,7 @@ def _placed(system: RollingSystem, time: float, rough: Array, q: Array, Omega: A
 def _on_surface(system: RollingSystem, time: float, rough: Vector) -> Vector:
     """Go down to the surface along its normals, from a point near it."""
     surface, now = system.support.surface, system.support.motion.at(time)
-    own = now.own_of(rough)
+    own = now.local(rough)
     for _ in range(60):
         n, level = surface.normal(own), float(surface.level(own))
         step = 1e-6 * max(abs(level), 1e-3)

@@ -28,7 +28,7 @@ from .comparisons import (
 from .laws import Law, Rates, independent_law
 from .looking import Open, left_open, seen, share_left
 from .motion import Instants, Motion, motion_of, rate_of
-from .record import Array, Theirs, gap_of
+from .record import Array, ExternalTrajectory, gap_of
 from .series import Series
 from .slopes import SIGMAS, Index
 from .windows import Plan, Weights, plans, spread_of, weights_of
@@ -60,7 +60,7 @@ class View:
     _known: dict[Any, Any] = field(default_factory=dict, compare=False, repr=False)
 
     def open(
-        self, one: Comparison, plan: Plan, theirs: Theirs, at: Motion, place: Index, reacts: Sensitivity
+        self, one: Comparison, plan: Plan, theirs: ExternalTrajectory, at: Motion, place: Index, reacts: Sensitivity
     ) -> tuple[Weights, Open]:
         """Return the weights of a comparison, and what it leaves open; neither asks for the law, once it reacts."""
         key = (one.name, id(theirs), id(reacts))
@@ -74,7 +74,7 @@ class View:
         some = np.unique(np.linspace(0, self.instants.size - 1, min(self.instants.size, 2 * count)).round().astype(int))
         return View(tuple((one, plan.thinned(count)) for one, plan in self.compared), self.instants[some])
 
-    def fitting(self, theirs: Theirs) -> View:
+    def fitting(self, theirs: ExternalTrajectory) -> View:
         """Return what of it can be looked at in changed samples, which may lack a part."""
         able = {(one.name, one.array) for one in comparisons(theirs)}
         return View(
@@ -82,7 +82,7 @@ class View:
         )
 
 
-def view_of(system: RollingSystem, theirs: Theirs, tolerance: float, start: State | None) -> View:
+def view_of(system: RollingSystem, theirs: ExternalTrajectory, tolerance: float, start: State | None) -> View:
     """Choose for each comparison the windows in which a wrong rate would show best."""
     n = theirs.time.size
     tried = {f"{i}": plan.thinned(_TRIAL) for i, plan in enumerate(plans(n))}
@@ -110,7 +110,7 @@ def view_of(system: RollingSystem, theirs: Theirs, tolerance: float, start: Stat
 
 def examine(
     system: RollingSystem,
-    theirs: Theirs,
+    theirs: ExternalTrajectory,
     tolerance: float,
     start: State | None,
     view: View,
@@ -138,7 +138,7 @@ def examine(
     return {series.name: series for series in found}, at
 
 
-def _span(theirs: Theirs, plan: Plan) -> str:
+def _span(theirs: ExternalTrajectory, plan: Plan) -> str:
     ends = theirs.time[plan.start + plan.width - 1] - theirs.time[plan.start]
     return f"{float(np.median(ends)):.3g} s"
 
@@ -147,7 +147,7 @@ def _times(name: str) -> float:
     return LAW_SHARE if name in (ACCELERATION, TURNING) else 1.0
 
 
-def sensitivity(system: RollingSystem, theirs: Theirs, start: State | None, law: Law) -> Sensitivity:
+def sensitivity(system: RollingSystem, theirs: ExternalTrajectory, start: State | None, law: Law) -> Sensitivity:
     """Return what errors of their states do to V̇, Ω̇, slip and gap."""
     n = theirs.time.size
     few = np.unique(np.linspace(0, n - 1, min(n, SHIFTED)).round().astype(int))
@@ -173,7 +173,7 @@ def _size(name: str, system: RollingSystem, at: Motion, slope: Array, rates: Rat
 
 
 def _contact(
-    system: RollingSystem, theirs: Theirs, at: Motion, some: Index, tolerance: float, reacts: Sensitivity
+    system: RollingSystem, theirs: ExternalTrajectory, at: Motion, some: Index, tolerance: float, reacts: Sensitivity
 ) -> Iterator[Series]:
     """Yield gap and slip at some instants."""
     speed = _largest(at.velocity, np.cross(at.angular_velocity, at.offset), at.carried)

@@ -15,14 +15,16 @@ from .chance import longest
 from .comparisons import sensitivity_of
 from .examining import LAW_SHARE
 from .motion import Instants, motion_of
-from .record import Array, Theirs
+from .record import Array, ExternalTrajectory
 from .series import Series
 from .windows import spread_of
 
 _INSTANTS = 48  # looked at
 
 
-def integrals(system: RollingSystem, theirs: Theirs, tolerance: float, start: State | None) -> Iterator[Series]:
+def integrals(
+    system: RollingSystem, theirs: ExternalTrajectory, tolerance: float, start: State | None
+) -> Iterator[Series]:
     """Compare each integral that the system has with its value at the first instant."""
     n = theirs.time.size
     at = motion_of(system, theirs, start, np.unique(np.linspace(0, n - 1, min(n, _INSTANTS)).round().astype(int)))

@@ -9,7 +9,7 @@ import numpy as np
 from .comparisons import Comparison, Sensitivity
 from .laws import Rates
 from .motion import Motion
-from .record import Theirs
+from .record import ExternalTrajectory
 from .slopes import Array, Index
 from .windows import Weights, spread_of
 
@@ -68,7 +68,7 @@ class Seen:
 
 
 def seen(
-    one: Comparison, weights: Weights, theirs: Theirs, at: Motion, place: Index, rates: Rates, open_: Open
+    one: Comparison, weights: Weights, theirs: ExternalTrajectory, at: Motion, place: Index, rates: Rates, open_: Open
 ) -> Seen:
     """Return the mismatch of a comparison."""
     f = one.rate(at, rates)[place]
@@ -81,7 +81,7 @@ def seen(
     return Seen(one.vectors(at, place, mismatch), mean, times * open_.spread, times * bias, open_.freedom)
 
 
-def _doubtful(name: str, theirs: Theirs, index: Index, f: Array) -> Array:
+def _doubtful(name: str, theirs: ExternalTrajectory, index: Index, f: Array) -> Array:
     """Return what is open of the mean rate of Ω where an orientation that was added up turned it."""
     length = np.linalg.norm(getattr(theirs, name), axis=1)
     span = theirs.time[index[:, -1]] - theirs.time[index[:, 0]]

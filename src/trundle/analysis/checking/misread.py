@@ -19,7 +19,7 @@ from .examining import GAP
 from .mistakes import Suspect
 from .motion import turned_to_space, turning_of, with_orientation
 from .reading import from_frame
-from .record import Array, Theirs
+from .record import Array, ExternalTrajectory
 from .series import Series
 from .slopes import SIGMAS
 
@@ -35,12 +35,12 @@ def misreadings(case: Case) -> Iterator[Suspect]:
         yield from some(case)
 
 
-def _times(theirs: Theirs, factors: dict[str, float]) -> Theirs:
+def _times(theirs: ExternalTrajectory, factors: dict[str, float]) -> ExternalTrajectory:
     changed = {name: getattr(theirs, name) for name in factors}
     return replace(theirs, **{name: array * factors[name] for name, array in changed.items() if array is not None})
 
 
-def _longer(theirs: Theirs, factor: float, names: tuple[str, ...]) -> Theirs:
+def _longer(theirs: ExternalTrajectory, factor: float, names: tuple[str, ...]) -> ExternalTrajectory:
     changed = _times(theirs, dict.fromkeys(names, factor))
     if theirs.height_given:
         return changed
@@ -86,11 +86,13 @@ def _places(case: Case) -> Iterator[Suspect]:
         yield Suspect("world-frame", says, _FRAME, theirs=partial(from_frame, system=system, frame="world"))
 
 
-def _moved(theirs: Theirs, by: Array) -> Theirs:
+def _moved(theirs: ExternalTrajectory, by: Array) -> ExternalTrajectory:
     return replace(theirs, position=theirs.position - by)
 
 
-def _only_places(theirs: Theirs, turned: Callable[[Theirs], Theirs]) -> Theirs:
+def _only_places(
+    theirs: ExternalTrajectory, turned: Callable[[ExternalTrajectory], ExternalTrajectory]
+) -> ExternalTrajectory:
     path = turned(replace(theirs, velocity=None, angular_velocity=None))
     return replace(theirs, position=path.position)
 
@@ -125,20 +127,20 @@ def _body_axes(case: Case) -> Iterator[Suspect]:
         yield Suspect(name, says, _AXES, theirs=undo, numbers=q0, named=False, textbook=True)
 
 
-def _spun(theirs: Theirs) -> Theirs:
+def _spun(theirs: ExternalTrajectory) -> ExternalTrajectory:
     assert theirs.orientation is not None  # noqa: S101  who yields it has looked
     Q = Quaternion.of(theirs.orientation).matrix()
     return replace(theirs, angular_velocity=(Q @ Vector.of(theirs.angular_velocity)).array())
 
 
-def _spun_by_itself(theirs: Theirs, at: Aligned, keep: bool) -> Theirs:
+def _spun_by_itself(theirs: ExternalTrajectory, at: Aligned, keep: bool) -> ExternalTrajectory:
     spun = turned_to_space(theirs, tuple(at.start))
     if not at.given:
         spun = replace(spun, doubts={name: one.fitted(spun.time, at.unsure) for name, one in spun.doubts.items()})
     return spun if keep else replace(spun, orientation=None)
 
 
-def _without_orientation(theirs: Theirs, system: RollingSystem, start: State | None) -> Theirs:
+def _without_orientation(theirs: ExternalTrajectory, system: RollingSystem, start: State | None) -> ExternalTrajectory:
     """Return what they gave without the orientation, unless the law needs one: then with that of their Ω."""
     return with_orientation(system, replace(theirs, orientation=None), start)
 
@@ -172,7 +174,7 @@ def _quaternions(case: Case) -> Iterator[Suspect]:
 _INVERSE = "The orientation is its inverse: it takes space components to those of the body"
 
 
-def _quaternion(theirs: Theirs, parts: list[int], signs: list[float]) -> Theirs:
+def _quaternion(theirs: ExternalTrajectory, parts: list[int], signs: list[float]) -> ExternalTrajectory:
     assert theirs.orientation is not None  # noqa: S101  who yields it has looked
     return replace(theirs, orientation=theirs.orientation[:, parts] * signs)
 

@@ -18,7 +18,7 @@ from ...mechanics.system import RollingSystem
 from . import laws
 from .examining import SLIP
 from .laws import Law
-from .record import Theirs
+from .record import ExternalTrajectory
 from .series import Series
 
 RATIOS = {2 / 5: "solid sphere", 2 / 3: "thin shell", 1 / 2: "solid cylinder", 1.0: "hoop"}
@@ -67,7 +67,7 @@ class Suspect:
     touches: frozenset[str]
     system: Callable[[RollingSystem], RollingSystem] | None = None
     law: Law | None = None
-    theirs: Callable[[Theirs], Theirs] | None = None
+    theirs: Callable[[ExternalTrajectory], ExternalTrajectory] | None = None
     excused: frozenset[str] = frozenset()
     begins: frozenset[str] = frozenset()
     further: Callable[[RollingSystem], tuple[Series, ...]] | None = None

@@ -12,7 +12,7 @@ from ...mechanics.contact import Contact
 from ...mechanics.system import RollingSystem, State
 from ...solve.samples import Samples
 from .doubts import Doubt, doubt_of
-from .record import Array, Theirs, contact_of, orientation_from
+from .record import Array, ExternalTrajectory, contact_of, orientation_from
 from .slopes import Estimate, Index
 
 _SPINNING = 400  # instants at which a spin that nothing tells is followed
@@ -106,7 +106,7 @@ def instants(system: RollingSystem, time: Array, parts: Mapping[str, Array], spi
     return Instants(time, parts["position"], parts["velocity"], Omega, parts["orientation"], contact)
 
 
-def motion_of(system: RollingSystem, theirs: Theirs, start: State | None, index: Index) -> Motion:
+def motion_of(system: RollingSystem, theirs: ExternalTrajectory, start: State | None, index: Index) -> Motion:
     """Work out what they did not give, at some of their samples."""
     estimates, sources = _estimates(theirs, index)
     time, parts = theirs.time[index], {name: estimate.values for name, estimate in estimates.items()}
@@ -139,7 +139,7 @@ def first_orientation(start: State | None) -> tuple[float, ...]:
     return start.orientation if start is not None else (1.0, 0.0, 0.0, 0.0)
 
 
-def _estimates(theirs: Theirs, index: Index) -> tuple[dict[str, Estimate], dict[str, str]]:
+def _estimates(theirs: ExternalTrajectory, index: Index) -> tuple[dict[str, Estimate], dict[str, str]]:
     """Return what their arrays tell of the state, and which array tells it."""
 
     def value(name: str, order: int = 0) -> Estimate:
@@ -163,7 +163,7 @@ def _estimates(theirs: Theirs, index: Index) -> tuple[dict[str, Estimate], dict[
     return found, sources
 
 
-def turning_of(theirs: Theirs, index: Index) -> Estimate:
+def turning_of(theirs: ExternalTrajectory, index: Index) -> Estimate:
     """Return Ω = 2 q̇ q* from their orientations."""
     rate, q = (theirs.slope("orientation", index, order, _AVERAGED) for order in (1, 0))
     Omega = 2 * (Quaternion.of(rate.values) * Quaternion.of(q.values).conjugate).array()[:, 1:]
@@ -178,7 +178,9 @@ def _doubtful(spin: Array, doubt: Array, like: Estimate) -> Estimate:
     return Estimate(spin[:, None], none, doubt, none, like.freedom, 1.0, nowhere.astype(int), nowhere)
 
 
-def spin_of(system: RollingSystem, theirs: Theirs, start: State | None, index: Index) -> tuple[Array, Array]:
+def spin_of(
+    system: RollingSystem, theirs: ExternalTrajectory, start: State | None, index: Index
+) -> tuple[Array, Array]:
     """Return Ω·n where nothing that was given tells it: as at the start, and as a ball's goes on from there.
 
     Parameters
@@ -229,11 +231,11 @@ def _turned_along(time: Array, normal: Array, across: Array, wanted: Array) -> A
     return np.asarray(rate.antiderivative()(wanted), dtype=float)
 
 
-def _velocity(theirs: Theirs, index: Index) -> Array:
+def _velocity(theirs: ExternalTrajectory, index: Index) -> Array:
     return theirs.velocity[index] if theirs.velocity is not None else theirs.slope("position", index, 1).values
 
 
-def with_orientation(system: RollingSystem, theirs: Theirs, start: State | None) -> Theirs:
+def with_orientation(system: RollingSystem, theirs: ExternalTrajectory, start: State | None) -> ExternalTrajectory:
     """Add up their Ω to an orientation where the law needs one and they gave none."""
     if system.body.is_isotropic_sphere or theirs.orientation is not None or theirs.angular_velocity is None:
         return theirs
@@ -241,14 +243,14 @@ def with_orientation(system: RollingSystem, theirs: Theirs, start: State | None)
     return replace(theirs, orientation=q, doubts={**theirs.doubts, "orientation": doubt})
 
 
-def added_up(theirs: Theirs, q0: tuple[float, ...]) -> tuple[Array, Doubt]:
+def added_up(theirs: ExternalTrajectory, q0: tuple[float, ...]) -> tuple[Array, Doubt]:
     """Return the orientation that their Ω adds up to, and the angle by which it may be off."""
     assert theirs.angular_velocity is not None  # noqa: S101  for the type checker; callers have looked
     q, gain = orientation_from(theirs.time, theirs.angular_velocity, q0)
     return q, doubt_of(theirs.time, theirs.angular_velocity, gain)
 
 
-def turned_to_space(theirs: Theirs, q0: tuple[float, ...]) -> Theirs:
+def turned_to_space(theirs: ExternalTrajectory, q0: tuple[float, ...]) -> ExternalTrajectory:
     """Take their Ω for one along the body's axes, add it up to an orientation, and turn it to those of the frame."""
     assert theirs.angular_velocity is not None  # noqa: S101  for the type checker; callers have looked
     q, gain = orientation_from(theirs.time, theirs.angular_velocity, q0, body_axes=True)

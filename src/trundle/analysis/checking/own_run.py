@@ -9,14 +9,14 @@ import numpy as np
 
 from ...errors import TrundleError
 from ...mechanics.algebra import Quaternion, Vector
-from ...mechanics.contact import touch
+from ...mechanics.contact import contact_at
 from ...mechanics.system import RollingSystem, State
 from ...solve import methods
 from ...solve.samples import Samples
 from .chance import longest
 from .examining import INSTANTS, LAW_SHARE
 from .motion import Motion, motion_of
-from .record import Array, Theirs
+from .record import Array, ExternalTrajectory
 from .series import Series
 from .slopes import SIGMAS
 
@@ -75,7 +75,7 @@ class _Start:
 
 
 def own_run(
-    system: RollingSystem, theirs: Theirs, tolerance: float, start: State | None
+    system: RollingSystem, theirs: ExternalTrajectory, tolerance: float, start: State | None
 ) -> tuple[Series | None, OwnRun]:
     """Run the system from their start, as it is or as near as its noise allows; follow how far theirs moves away."""
     n = theirs.time.size
@@ -105,7 +105,7 @@ def own_run(
     return Series(OWN_RUN, at.time[:count], distance, size, bound, float(asked[-1]), note), found
 
 
-def _apart(theirs: Theirs, at: Motion, ours: Samples, method: str, parts: slice) -> OwnRun:
+def _apart(theirs: ExternalTrajectory, at: Motion, ours: Samples, method: str, parts: slice) -> OwnRun:
     last = ours.time.size - 1
     sample = at.index[last]
     distance = float(np.linalg.norm((theirs.position[sample] - ours.position[last])[parts]))
@@ -120,7 +120,7 @@ def _extent(at: Motion) -> float:
     return float(np.ptp(at.position, axis=0).max())
 
 
-def _begin(system: RollingSystem, theirs: Theirs, at: Motion) -> _Start:
+def _begin(system: RollingSystem, theirs: ExternalTrajectory, at: Motion) -> _Start:
     """Return which numbers of the start their samples leave open, and by how much."""
     extent = max(_extent(at), at.arm)
     speed = max(float(np.linalg.norm(at.velocity, axis=1).max()), extent / float(at.time[-1] - at.time[0]))
@@ -206,7 +206,7 @@ def _axis(system: RollingSystem, at: Motion) -> Array | None:
 def _directions(system: RollingSystem, at: Motion) -> list[Array]:
     """Return the two directions along the surface at the first contact, in space."""
     now = system.support.motion.at(float(at.time[0]))
-    own = now.own_of(_first(at.contact.point))
+    own = now.local(_first(at.contact.point))
     return [np.array([*(now.rotation @ d)], dtype=float) for d in system.support.surface.directions(own)]
 
 
@@ -223,8 +223,8 @@ def _state(system: RollingSystem, at: Motion, numbers: Array) -> State:
     first, second = (Vector(*d) for d in _directions(system, at))
     surface, now = system.support.surface, system.support.motion.at(time)
     point = _first(at.contact.point) + first * numbers[0] + second * numbers[1]
-    own = surface.point(*surface.coordinates_of(now.own_of(point)))
-    contact = touch(system, time, now.origin + now.rotation @ own, q)
+    own = surface.point(*surface.coordinates_of(now.local(point)))
+    contact = contact_at(system, time, now.origin + now.rotation @ own, q)
     system.check_rim(contact, at.position[0].tolist())
     rho, n = contact.offset, contact.normal
     relative = Vector(*at.velocity[0]) + first * numbers[2] + second * numbers[3]

@@ -16,7 +16,7 @@ from ...mechanics.system import RollingSystem
 from ...solve import frames
 from . import names
 from .files import Table, open_file
-from .record import Array, Theirs
+from .record import Array, ExternalTrajectory
 from .rows import whole_rows
 
 AXES, ORDERS, DIRECTIONS = ("space", "body"), ("wxyz", "xyzw"), ("body-to-space", "space-to-body")
@@ -92,7 +92,7 @@ class Conventions:
         }.get(kind or "", "")
 
 
-def read(data: Any, system: RollingSystem, conventions: Conventions) -> Theirs:
+def read(data: Any, system: RollingSystem, conventions: Conventions) -> ExternalTrajectory:
     """Read a trajectory from whatever it comes in.
 
     Examples
@@ -192,7 +192,7 @@ def _numbered(table: dict[str, Array], conventions: Conventions) -> dict[str, Ar
 
 def _arrays(
     table: dict[str, Array], found: dict[str, tuple[str, str]], conventions: Conventions, headings: list[str]
-) -> Theirs:
+) -> ExternalTrajectory:
     columns = {}
     for column, (heading, unit) in found.items():
         kind = names.kind_of(column)
@@ -212,7 +212,7 @@ def _arrays(
     z = columns["z"] if height else np.zeros_like(columns["x"])
     if "vx" in columns and "vy" in columns and "vz" not in columns:
         columns["vz"] = np.zeros_like(columns["vx"])
-    return Theirs(
+    return ExternalTrajectory(
         columns["t"],
         np.column_stack([columns["x"], columns["y"], z]),
         _together(columns, ("vx", "vy", "vz")),
@@ -247,7 +247,7 @@ def _orientation(columns: dict[str, Array], conventions: Conventions) -> Array |
     return q
 
 
-def _in_space(theirs: Theirs, system: RollingSystem, conventions: Conventions) -> Theirs:
+def _in_space(theirs: ExternalTrajectory, system: RollingSystem, conventions: Conventions) -> ExternalTrajectory:
     if conventions.axes == "body" and theirs.angular_velocity is not None:
         if theirs.orientation is None:
             raise InvalidValueError(
@@ -263,7 +263,7 @@ def _in_space(theirs: Theirs, system: RollingSystem, conventions: Conventions) -
     return from_frame(theirs, system, conventions.frame)
 
 
-def from_frame(theirs: Theirs, system: RollingSystem, frame: str) -> Theirs:
+def from_frame(theirs: ExternalTrajectory, system: RollingSystem, frame: str) -> ExternalTrajectory:
     """Return the same motion in the support frame.
 
     Examples
@@ -271,7 +271,7 @@ def from_frame(theirs: Theirs, system: RollingSystem, frame: str) -> Theirs:
     >>> import trundle as tr
     >>> table = tr.Support(tr.Plane(), motion=tr.Spin(np.pi))
     >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.5, 1.0), table)
-    >>> still = Theirs(np.array([0.0, 1.0]), np.array([[1.0, 0.0, 0.5], [1.0, 0.0, 0.5]]))
+    >>> still = ExternalTrajectory(np.array([0.0, 1.0]), np.array([[1.0, 0.0, 0.5], [1.0, 0.0, 0.5]]))
     >>> np.round(from_frame(still, system, "corotating").position[1], 12).tolist()
     [-1.0, 0.0, 0.5]
     """

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from ...errors import InvalidValueError
 from ...mechanics.algebra import Quaternion, Vector
-from ...mechanics.contact import Contact, touch
-from ...mechanics.nearest import settle
+from ...mechanics.contact import Contact, contact_at
+from ...mechanics.nearest import closest_contact
 from ...mechanics.shapes import concentric_sphere
 from ...mechanics.system import RollingSystem
 from .doubts import Doubt
@@ -28,7 +28,7 @@ _SEARCH = 50  # steps at most to the place of contact; spheres on planes and cyl
 
 
 @dataclass(frozen=True)
-class Theirs:
+class ExternalTrajectory:
     """A trajectory to be checked, in the inertial support frame; what was not given is None.
 
     Parameters
@@ -57,7 +57,7 @@ class Theirs:
     Examples
     --------
     >>> t = np.linspace(0.0, 1.0, 20)
-    >>> Theirs(t, np.zeros((20, 3))).parts
+    >>> ExternalTrajectory(t, np.zeros((20, 3))).parts
     'position'
     """
 
@@ -102,7 +102,7 @@ class Theirs:
         return given[0] if len(given) == 1 else f"{', '.join(given[:-1])} and {given[-1]}"
 
 
-def checked(theirs: Theirs, system: RollingSystem) -> Theirs:
+def checked(theirs: ExternalTrajectory, system: RollingSystem) -> ExternalTrajectory:
     """Refuse what cannot be checked, and give quaternions unit length and a sign that is continuous in time.
 
     Examples
@@ -171,7 +171,7 @@ def check_covered(system: RollingSystem) -> None:
     ...
     trundle.errors.InvalidValueError: `support.motion` must say where the support is at each instant, for a check; ...
     """
-    own = system.support.motion.own
+    own = system.support.motion.coordinates
     if own:
         raise InvalidValueError(
             "support.motion",
@@ -194,11 +194,11 @@ def contact_of(system: RollingSystem, time: Array, centre: Array, orientation: A
     """
     q, r = Quaternion.of(orientation), Vector.of(centre)
     point, moved = r, np.inf
-    contact = touch(system, time, point, q)
+    contact = contact_at(system, time, point, q)
     size = max(float(np.max(contact.offset.norm())), 1e-300)
     for _ in range(_SEARCH):
         before, point = point, r + contact.offset
-        contact = touch(system, time, point, q)
+        contact = contact_at(system, time, point, q)
         moved = float(np.max((point - before).norm()))
         if moved <= 1e-14 * size:
             break
@@ -207,18 +207,18 @@ def contact_of(system: RollingSystem, time: Array, centre: Array, orientation: A
     points = [
         _settled(system, *row) for row in zip(time, centre, orientation, strict=True)
     ]  # one by one, as a run does
-    contact = touch(system, time, Vector.of(np.array(points)), q)
+    contact = contact_at(system, time, Vector.of(np.array(points)), q)
     return replace(contact, point=r + contact.offset)
 
 
 def _settled(system: RollingSystem, time: float, centre: Array, orientation: Array) -> list[float]:
     parts = Vector(*map(float, centre)), Quaternion(*map(float, orientation))
-    return [float(part) for part in settle(system, float(time), *parts).point]
+    return [float(part) for part in closest_contact(system, float(time), *parts).point]
 
 
 def gap_of(system: RollingSystem, contact: Contact) -> Array:
     """Return the signed distance of the body's lowest point from the support, to first order, m."""
-    own = contact.support.own_of(contact.point)
+    own = contact.support.local(contact.point)
     gap = np.asarray(system.support.surface.level(own), dtype=float)
     return np.broadcast_to(gap, np.shape(np.asarray(contact.point.x))).astype(float)
 

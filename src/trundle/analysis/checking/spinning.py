@@ -15,19 +15,19 @@ from .examining import View, examine, view_of
 from .laws import independent_law
 from .mistakes import Suspect
 from .motion import motion_of
-from .record import Theirs
+from .record import ExternalTrajectory
 
 _WINDOWS = 16
 
 
-def acts(system: RollingSystem, theirs: Theirs) -> bool:
+def acts(system: RollingSystem, theirs: ExternalTrajectory) -> bool:
     """Tell whether nothing that was given tells a spin that acts on the path."""
     known = theirs.angular_velocity is not None or theirs.orientation is not None
     return not known and not system.support.surface.flat
 
 
 def fitted_spin(
-    system: RollingSystem, theirs: Theirs, tolerance: float, start: State | None, view: View | None = None
+    system: RollingSystem, theirs: ExternalTrajectory, tolerance: float, start: State | None, view: View | None = None
 ) -> float | None:
     """Return the spin at the first sample that leaves least of the law."""
     view = (view_of(system, theirs, tolerance, start) if view is None else view).thinned(_WINDOWS)
@@ -53,5 +53,5 @@ def another_spin(case: Case) -> Iterator[Suspect]:
         yield Suspect("another-spin", says, frozenset({"spin"}), theirs=undo, numbers={"spin": spin}, named=False)
 
 
-def _spun(theirs: Theirs, spin: float) -> Theirs:
+def _spun(theirs: ExternalTrajectory, spin: float) -> ExternalTrajectory:
     return replace(theirs, spin=spin)

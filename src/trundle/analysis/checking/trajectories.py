@@ -24,7 +24,7 @@ from .integrals import integrals
 from .motion import Motion, motion_of, with_orientation
 from .own_run import OWN_RUN, OwnRun, own_run
 from .reading import Conventions, read
-from .record import Theirs, check_covered, checked
+from .record import ExternalTrajectory, check_covered, checked
 from .result import Check, Mistake
 from .series import Series
 from .spinning import acts, fitted_spin
@@ -166,7 +166,7 @@ def check(
     )
 
 
-def _check_smooth(system: RollingSystem, theirs: Theirs) -> None:
+def _check_smooth(system: RollingSystem, theirs: ExternalTrajectory) -> None:
     """Refuse data that lead across a jump of the support's velocity: a window across it has no slopes."""
     first, last = float(theirs.time[0]), float(theirs.time[-1])
     jolt = next((kink.time for kink in kinks_and_jolts(system, first, last) if kink.jolts and kink.time > first), None)
@@ -176,7 +176,9 @@ def _check_smooth(system: RollingSystem, theirs: Theirs) -> None:
         raise InvalidValueError("time", rule, f"{first:g} s to {last:g} s, with a jump at {jolt:.9g} s", remedy)
 
 
-def _with_spin(system: RollingSystem, theirs: Theirs, tolerance: float) -> tuple[Theirs, list[CardFigure]]:
+def _with_spin(
+    system: RollingSystem, theirs: ExternalTrajectory, tolerance: float
+) -> tuple[ExternalTrajectory, list[CardFigure]]:
     """Add the spin that the path tells, where neither data nor start do."""
     spin = fitted_spin(system, theirs, tolerance, None)
     if spin is None:
@@ -185,7 +187,9 @@ def _with_spin(system: RollingSystem, theirs: Theirs, tolerance: float) -> tuple
     return replace(theirs, spin=spin), [CardFigure("spin at the start", spin, "rad/s", note=note)]
 
 
-def _looked_at(system: RollingSystem, theirs: Theirs, tolerance: float, start: State | None) -> tuple[Case, OwnRun]:
+def _looked_at(
+    system: RollingSystem, theirs: ExternalTrajectory, tolerance: float, start: State | None
+) -> tuple[Case, OwnRun]:
     """Compare a motion with all there is to compare it with."""
     view = view_of(system, theirs, tolerance, start)
     series, at = examine(system, theirs, tolerance, start, view)
@@ -208,7 +212,7 @@ def _apart(ours: OwnRun) -> str:
     return f"{with_unit(ours.distance, 'length')}{turned} from our own run after {ours.after:.4g} s"
 
 
-def followed(theirs: Theirs, system: RollingSystem) -> tuple[Theirs, list[CardFigure]]:
+def followed(theirs: ExternalTrajectory, system: RollingSystem) -> tuple[ExternalTrajectory, list[CardFigure]]:
     """Leave the orientation out where the body turns so far between samples that nobody could tell how often."""
     if theirs.orientation is None:
         return theirs, []

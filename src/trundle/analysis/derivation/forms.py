@@ -50,6 +50,6 @@ def form_of(system: RollingSystem, start: State | None) -> tuple[Any, Any]:
     'T5'
     """
     for form in CLOSED_FORMS:
-        if find_spec(f".{form.__module__.rpartition('.')[2]}", __package__) and not form.outside(system, start):
+        if find_spec(f".{form.__module__.rpartition('.')[2]}", __package__) and not form.violations(system, start):
             return form, module_of(form)
     return None, None

@@ -8,7 +8,7 @@ from typing import Any
 import sympy as sp
 
 from ...mechanics.algebra import Matrix, Quaternion, Vector
-from ...mechanics.contact import roll, touch
+from ...mechanics.contact import contact_at, roll
 from ...mechanics.loads import BodyMotion
 from ...mechanics.system import RollingSystem
 from .steps import Proof
@@ -46,7 +46,7 @@ def at_one_instant(system: RollingSystem, point: Vector, here: Mapping[Any, Any]
     """
     chosen = dict(here or {})
     q, names = Quaternion(*QUATERNION), Vector(*OMEGA_XYZ)
-    anywhere = column(touch(system, TIME, point, q).rolling_velocity(names))
+    anywhere = column(contact_at(system, TIME, point, q).rolling_velocity(names))
     place, Omega = (Vector(*(sp.sympify(part).xreplace(chosen) for part in v)) for v in (point, names))
     now = roll(system, TIME, place, q, Omega)
     contact = now.contact

@@ -97,7 +97,7 @@ def special_steps(system: RollingSystem) -> Iterator[Step]:
     >>> [step.title for step in special_steps(ball)]
     ['This system', 'Its laws again', 'Its equations of motion']
     """
-    if not system.body.is_isotropic_sphere or not system.support.surface.flat or system.support.motion.own:
+    if not system.body.is_isotropic_sphere or not system.support.surface.flat or system.support.motion.coordinates:
         return
     own = with_symbols(system)
     tilted_axis = system.support.motion.at(0.0).rotation.c.z != 1

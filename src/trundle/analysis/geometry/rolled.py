@@ -16,7 +16,7 @@ from ...errors import InvalidValueError, UnknownNameError
 from ...mechanics.algebra import Quaternion
 from ...mechanics.checks import positive
 from . import bends
-from .laying import Laid, lay
+from .development import Laid, lay
 from .pieces import Piece
 from .rotation import Rotation
 from .stages import Stages

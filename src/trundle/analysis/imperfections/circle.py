@@ -244,7 +244,7 @@ def _check(system: RollingSystem) -> None:
     if not (system.body.is_isotropic_sphere and system.body.shape.axis is None and support.surface.flat):
         shown = f"{type(system.body.shape).__name__} on {type(support.surface).__name__}"
         raise InvalidValueError("scenario", "must be a ball on a plane", shown)
-    if support.motion.own:
+    if support.motion.coordinates:
         remedy = "Give it a `spin`, an `uneven-spin` or a `wobble`."
         raise InvalidValueError(
             "support.motion", "must turn the table steadily on the whole", type(support.motion).__name__, remedy

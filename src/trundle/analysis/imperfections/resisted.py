@@ -41,7 +41,7 @@ class ResistedCircle:
 
     rate: float
     kappa: float
-    pace: float
+    max_rate: float
     offset: float
     radius: float
 
@@ -54,8 +54,8 @@ class ResistedCircle:
         (0.2, 0.1)
         """
         if self.offset == 0:
-            return 0.0, self.radius + (self.pace * time if self.radius else 0.0)
-        if self.pace == 0:
+            return 0.0, self.radius + (self.max_rate * time if self.radius else 0.0)
+        if self.max_rate == 0:
             return self.offset, self.radius
         c, A = self._solution(time)
         return max(0.0, float(c)), float(A)
@@ -68,7 +68,7 @@ class ResistedCircle:
 
         def rates(_: float, state: Any) -> list[float]:
             P, Q = over * max(0.0, float(state[0])), past * max(0.0, float(state[1]))
-            return [-self.pace * _slope(P, Q), self.pace * _slope(Q, P)]
+            return [-self.max_rate * _slope(P, Q), self.max_rate * _slope(Q, P)]
 
         until = _ROUNDS * 2 * math.pi / abs(self.kappa)
         size = self.offset + self.radius

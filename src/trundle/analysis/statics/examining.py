@@ -74,7 +74,7 @@ def examine(
 
 def _modes(system: RollingSystem, time: float, place: Place, turns: list[Vector]) -> tuple[Mode, ...]:
     H, G, moves = rest.linear_law(system, time, place.p, place.q, turns)
-    rho = rest.touch(system, time, place.p, place.q).offset
+    rho = rest.contact_at(system, time, place.p, place.q).offset
     about = system.body.inertia_in_space(place.q.matrix()) + point_inertia(system.body.mass, rho)
     least = min(float(turn.dot(about @ turn)) for turn in turns)
     scale = rest.torque_scale(system, time, place.p, place.q) / least
@@ -93,7 +93,7 @@ def _coordinates(system: RollingSystem, centre: Vector, p: Vector, rho: Vector) 
     surface = system.support.surface
     for point in (centre, p):
         u, v = surface.coordinates_of(point)
-        if (surface.under(u, v, rho) - p).norm() <= 1e-9 * (p.norm() + rho.norm()):
+        if (surface.contact_from_coordinates(u, v, rho) - p).norm() <= 1e-9 * (p.norm() + rho.norm()):
             break
     return float(u) + 0.0, float(v) + 0.0
 

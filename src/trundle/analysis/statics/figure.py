@@ -230,12 +230,12 @@ def _support(ax: Axes, page: _Page, line: Line, angle: float) -> None:
     angles = angles[np.abs(line.distance(angles) - here) < 3.5 * near * page.size]
     p, _ = line.place(angles)
     path = page(p)
-    now = [rest.touch(line.system, line.time, *line.place(end)) for end in (angles[0], angles[-1])]
+    now = [rest.contact_at(line.system, line.time, *line.place(end)) for end in (angles[0], angles[-1])]
     if all(row.norm() == 0 for contact in now for row in contact.shape_operator.rows):  # straight on
         along = path[-1] - path[0]
         along = along / np.hypot(*along)
         path = np.vstack([path[0] - 6 * along, path, path[-1] + 6 * along])
-    into = -page.direction(rest.touch(line.system, line.time, *line.place(angle)).normal)
+    into = -page.direction(rest.contact_at(line.system, line.time, *line.place(angle)).normal)
     ax.fill(*np.vstack([path, (path + 4 * into)[::-1]]).T, color=TABLE, ec="none", zorder=0)
     ax.plot(*path.T, color=GREY, lw=1.6, zorder=1)
 

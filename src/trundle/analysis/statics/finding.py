@@ -10,7 +10,7 @@ from typing import Any
 from ...errors import InvalidValueError
 from ...mechanics import checks
 from ...mechanics.algebra import Quaternion, Vector
-from ...mechanics.nearest import settle
+from ...mechanics.nearest import closest_contact
 from ...mechanics.scalars import is_zero
 from ...mechanics.system import RollingSystem, State
 from ...scenario import ScenarioFile
@@ -82,7 +82,7 @@ def equilibria(system: Any, start: State | None = None, *, turns: Any = None, ti
 
 def _place(system: RollingSystem, start: State) -> Place:
     q = Quaternion(*start.orientation)
-    return Place(settle(system, start.time, Vector(*start.position), q).point, q)
+    return Place(closest_contact(system, start.time, Vector(*start.position), q).point, q)
 
 
 def _check_support(system: RollingSystem) -> None:
@@ -96,7 +96,7 @@ def _check_support(system: RollingSystem) -> None:
 
 
 def _check_steady(system: RollingSystem, time: float, place: Place) -> None:
-    contact = rest.touch(system, time, place.p, place.q)
+    contact = rest.contact_at(system, time, place.p, place.q)
     then = [system.loads_on(rest.still(system, time + dt, contact, place.q)) for dt in (0.0, 0.3718, 1.618, 27.18)]
     size = max(force.norm() + torque.norm() / contact.offset.norm() for force, torque in then)
     for force, torque in then[1:]:
@@ -196,7 +196,7 @@ def _why_none_on_line(line: Line) -> str:
 
 def _push(system: RollingSystem, time: float, p: Vector, q: Quaternion, torque: float) -> str:
     """Say what drives the body where it is driven least."""
-    contact = rest.touch(system, time, p, q)
+    contact = rest.contact_at(system, time, p, q)
     F, K = system.loads_on(rest.still(system, time, contact, q))
     along = (F - contact.normal * F.dot(contact.normal)).norm()
     words = f"The applied force along the support is {along:.4g} N"
@@ -275,7 +275,7 @@ def _section(
     else:
         place = Place(Vector(*lowest.contact), Quaternion(*lowest.state.orientation))
         torque = Vector(*max(lowest.modes, key=lambda mode: (math.hypot(*mode.moves) > 0, abs(mode.rate))).turn)
-    n = rest.touch(system, time, place.p, place.q).normal
+    n = rest.contact_at(system, time, place.p, place.q).normal
     axis = torque - n * torque.dot(n)
     if not axis.norm() > 1e-9 * torque.norm():
         return None, ()

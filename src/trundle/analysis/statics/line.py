@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ...errors import SolverError
 from ...mechanics.algebra import ZERO, Quaternion, Vector
-from ...mechanics.contact import Contact, roll, touch
+from ...mechanics.contact import Contact, contact_at, roll
 from ...mechanics.system import RollingSystem
 from ...solve.roots import root
 from . import rest
@@ -69,7 +69,7 @@ class Line:
     def work(self, angle: Any) -> Any:
         """Return the virtual work of the loads for each radian of rolling on, J/rad."""
         p, q = self.place(angle)
-        contact = touch(self.system, self.time, p, q)
+        contact = contact_at(self.system, self.time, p, q)
         return rest.virtual_work(self.system, self.time, contact, q, self.axis)
 
     def energy(self, angle: Any) -> Any:
@@ -97,7 +97,7 @@ class Line:
     def straight(self) -> bool:
         """Whether the support is a plane all along the line."""
         p, q = self.place(self.angles)
-        S = touch(self.system, self.time, p, q).shape_operator
+        S = contact_at(self.system, self.time, p, q).shape_operator
         return all(not np.any(row.norm()) for row in S.rows)
 
     @property
@@ -207,7 +207,7 @@ def _half(
             return [math.nan] * y.size
         now = _turned(axis, angle, q)
         try:
-            contact = touch(system, time, Vector(*y[:3]), now)
+            contact = contact_at(system, time, Vector(*y[:3]), now)
             moves, leans = _onward(contact, axis)
             onward = axis.cross(contact.normal)
             against = -rest.virtual_work(system, time, contact, now, axis)
@@ -218,7 +218,7 @@ def _half(
     ends: list[Any] = _ends(system, time, p, q, axis, sign, most, rates)
     for event in ends:
         event.terminal = True
-    size = touch(system, time, p, q).offset.norm() + p.norm()
+    size = contact_at(system, time, p, q).offset.norm() + p.norm()
     energy = rest.torque_scale(system, time, p, q)
     scales = np.array([size, size, size, size, 1.0, max(energy, 1e-300)])
     done = solve_ivp(
@@ -262,7 +262,7 @@ def _ends(
     def has_room(angle: float, y: Array) -> float:
         now = _turned(axis, angle, q)
         try:
-            return float(rest.room(system, touch(system, time, Vector(*y[:3]), now), now))
+            return float(rest.room(system, contact_at(system, time, Vector(*y[:3]), now), now))
         except (ArithmeticError, ValueError):
             return -1.0
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...mechanics.algebra import E_X, E_Y, E_Z, ZERO, Quaternion, Vector
-from ...mechanics.contact import Contact, roll, touch
+from ...mechanics.contact import Contact, contact_at, roll
 from ...mechanics.loads import BodyMotion
 from ...mechanics.scalars import Scalar
 from ...mechanics.system import RollingSystem
@@ -40,7 +40,7 @@ def virtual_work(system: RollingSystem, time: float, contact: Contact, q: Quater
     >>> import trundle as tr
     >>> slope = tr.RollingSystem(tr.Body.solid_sphere(0.1, 2.0), tr.Support(tr.Plane(), tilt=0.5), gravity=10.0)
     >>> q = Quaternion(1.0, 0.0, 0.0, 0.0)
-    >>> round(virtual_work(slope, 0.0, touch(slope, 0.0, ZERO, q), q, E_Y) / 0.479425538604203, 12)
+    >>> round(virtual_work(slope, 0.0, contact_at(slope, 0.0, ZERO, q), q, E_Y) / 0.479425538604203, 12)
     2.0
     """
     return work_of(contact, *system.loads_on(still(system, time, contact, q)))(turn)
@@ -53,28 +53,28 @@ def work_of(contact: Contact, force: Vector, torque: Vector) -> Callable[[Vector
 
 def torque_about_contact(system: RollingSystem, time: float, p: Vector, q: Quaternion) -> Vector:
     """Return the virtual work for turns about the three axes, which is the loads' torque about the contact, N m."""
-    contact = touch(system, time, p, q)
+    contact = contact_at(system, time, p, q)
     works = work_of(contact, *system.loads_on(still(system, time, contact, q)))
     return Vector(*(works(axis) for axis in (E_X, E_Y, E_Z)))
 
 
 def torque_scale(system: RollingSystem, time: float, p: Vector, q: Quaternion) -> float:
     """Return |F||ρ| + |K|, N m: what the torque about the contact is small against, or not."""
-    contact = touch(system, time, p, q)
+    contact = contact_at(system, time, p, q)
     force, torque = system.loads_on(still(system, time, contact, q))
     return float(force.norm() * contact.offset.norm() + torque.norm())
 
 
 def potential(system: RollingSystem, time: float, p: Vector, q: Quaternion) -> Scalar:
     """Return the potential energy of the loads that have one, J."""
-    motion = still(system, time, touch(system, time, p, q), q)
+    motion = still(system, time, contact_at(system, time, p, q), q)
     energies = [load.potential(motion) for load in system.all_loads]
     return sum((energy for energy in energies if energy is not None), 0.0)
 
 
 def has_energy(system: RollingSystem, time: float, p: Vector, q: Quaternion) -> bool:
     """Whether every load has a potential, or is one that a body at rest does not feel."""
-    motion = still(system, time, touch(system, time, p, q), q)
+    motion = still(system, time, contact_at(system, time, p, q), q)
 
     def counts(load: Any) -> bool:
         return load.potential(motion) is not None or load.linear_drag is not None
@@ -115,7 +115,7 @@ def linear_law(
     >>> [float(abs(part[0, 0])) for part in (H, G, moves)]
     [0.0, 0.0, 0.1]
     """
-    contact, along = touch(system, time, p, q), stacked(turns)
+    contact, along = contact_at(system, time, p, q), stacked(turns)
     moves = contact.rates(ZERO, along, contact.rolling_velocity(along))[0]
     place = moved(p, q, moves, q.rate(along), 1j * STEP)
     displaced = roll(system, time, *place, ZERO).angular_acceleration

@@ -78,7 +78,7 @@ class Search:
     def __init__(self, system: RollingSystem, time: float, start: Place) -> None:
         self.system, self.time, self.start = system, time, start
         self.oriented = not round_body(system.body)
-        self.size = float(rest.touch(system, time, start.p, start.q).offset.norm())
+        self.size = float(rest.contact_at(system, time, start.p, start.q).offset.norm())
         self.uniform = all(load.constant or load.linear_drag is not None for load in system.all_loads)
 
     def families(self) -> tuple[list[Family], Place, float]:
@@ -142,7 +142,7 @@ class Search:
         """Return at which places the body is on the support, and touches it with what its shape covers."""
         p, q = _columns(rows)
         with np.errstate(all="ignore"):  # a place beyond the end of a formula is not inside
-            room = rest.room(self.system, rest.touch(self.system, self.time, p, q), q)
+            room = rest.room(self.system, rest.contact_at(self.system, self.time, p, q), q)
         return np.broadcast_to(room > 0, (len(rows),))
 
     # --- Newton's method, least steps, all starts at once -------------------------------------------------

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .asking import steady_motions
+from .api import steady_motions
 from .modes import Mode
 from .periodic import PeriodicMotion, periodic_motion
 from .result import SteadyMotion, SteadyMotions

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...errors import InvalidValueError
 from ...mechanics.algebra import Quaternion, Vector
-from ...mechanics.nearest import settle
+from ...mechanics.nearest import closest_contact
 from ...mechanics.system import RollingSystem, State
 from .flow import Array, Flow, bears_complex_numbers, scale_of
 from .quantities import Held
@@ -57,7 +57,7 @@ def flow_of(system: RollingSystem, start: State) -> tuple[Flow, Array]:
     if system.support.friction is not None:
         system = replace(system, support=replace(system.support, friction=None))
     q = Quaternion(*start.orientation)
-    offset = settle(system, start.time, Vector(*start.position), q).offset
+    offset = closest_contact(system, start.time, Vector(*start.position), q).offset
     y = np.array([*(Vector(*start.position) + offset), *q, *start.angular_velocity], dtype=float)
     flow = Flow(system, start.time, 0.0, scale_of(system, y, start.time))
     if not _autonomous(flow, y):

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...mechanics.algebra import Quaternion, Vector
-from ...mechanics.contact import Rolling, normal_at, roll, touch
+from ...mechanics.contact import Rolling, contact_at, normal_at, roll
 from ...mechanics.system import RollingSystem, State
 from . import symmetry
 
@@ -102,14 +102,14 @@ class Flow:
         """Return φ(p), its slope along the normal, and the normal."""
         support = self.system.support
         pose, n = support.motion.at(self.time), normal_at(self.system, self.time, p)
-        own = pose.own_of(p)
+        own = pose.local(p)
         up = (pose.rotation.transpose @ n) * (1e-4 * self.length)
         level = support.surface.level
         return float(level(own)), float((level(own + up) - level(own - up)) / (2e-4 * self.length)), n
 
     def state(self, y: Array) -> State:
         """Return a start for `trundle.simulate`."""
-        contact = touch(self.system, self.time, Vector(*map(float, y[:3])), Quaternion(*map(float, y[3:7])))
+        contact = contact_at(self.system, self.time, Vector(*map(float, y[:3])), Quaternion(*map(float, y[3:7])))
         V = contact.rolling_velocity(Vector(*map(float, y[7:])))
         q = tuple(float(part) for part in y[3:7])
         return State(triple(contact.centre), triple(V), triple(Vector(*y[7:])), q, self.time)  # type: ignore[arg-type]
@@ -141,7 +141,7 @@ def bears_complex_numbers(flow: Flow, y: Array) -> bool:
 
 def scale_of(system: RollingSystem, y: Array, time: float) -> Array:
     """Return what is large of p, q and Ω: the body's size, 1, and the fastest of its rates."""
-    contact = touch(system, time, Vector(*y[:3]), Quaternion(*y[3:7]))
+    contact = contact_at(system, time, Vector(*y[:3]), Quaternion(*y[3:7]))
     length = float(contact.offset.norm())
     force = system.loads_on(_still(system, time, y))[0].norm() / system.body.mass
     turning = system.support.motion.mean_rate
@@ -153,7 +153,7 @@ def _still(system: RollingSystem, time: float, y: Array) -> Any:
     from ...mechanics.loads import BodyMotion
 
     zero = Vector(0.0, 0.0, 0.0)
-    contact = touch(system, time, Vector(*y[:3]), Quaternion(*y[3:7]))
+    contact = contact_at(system, time, Vector(*y[:3]), Quaternion(*y[3:7]))
     return BodyMotion(time, system.body.mass, contact.centre, zero, Quaternion(*y[3:7]), zero, contact.normal)
 
 

@@ -14,7 +14,7 @@ from ...display import Displayed, Headline, Markup, fold, joined, number, table
 from ...errors import InvalidValueError, SolverError
 from ...mechanics import checks
 from ...mechanics.motions import Spin
-from .asking import STEADY, check_name, described, held_from
+from .api import STEADY, check_name, described, held_from
 from .finding import Relative, nearest
 from .flow import Array
 from .modes import Mode

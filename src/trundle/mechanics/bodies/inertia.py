@@ -7,7 +7,7 @@ from typing import Any
 
 from ...errors import InvalidValueError
 from .. import checks
-from ..algebra import ZERO, Matrix, Turned, Vector
+from ..algebra import ZERO, Matrix, RotatedTensor, Vector
 from ..parts import POSITIVE, Number
 from ..scalars import Scalar, is_number, is_zero, namespace
 
@@ -164,7 +164,7 @@ class Principal:
 
     def in_space(self, Q: Matrix, body: Any) -> Matrix:  # noqa: ARG002
         """Return Q diag(x, y, z) Qᵀ, the inertia tensor in the support frame, kg m²."""
-        return Turned(Q, Matrix.diagonal(self.x, self.y, self.z)).whole
+        return RotatedTensor(Q, Matrix.diagonal(self.x, self.y, self.z)).dense
 
     def gyroscopic(self, Q: Matrix, Omega: Vector, body: Any) -> Vector:
         """Return Ω×JΩ in the support frame, N m."""
@@ -253,7 +253,7 @@ class Tensor:
 
     def in_space(self, Q: Matrix, body: Any) -> Matrix:  # noqa: ARG002
         """Return Q J Qᵀ, the inertia tensor in the support frame, kg m²."""
-        return Turned(Q, self.matrix).whole
+        return RotatedTensor(Q, self.matrix).dense
 
     def gyroscopic(self, Q: Matrix, Omega: Vector, body: Any) -> Vector:
         """Return Ω×JΩ in the support frame, N m."""

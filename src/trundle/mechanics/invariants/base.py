@@ -20,7 +20,7 @@ class Record:
 
     motion: BodyMotion
     contact: Vector  # p, m
-    own: tuple[Scalar, ...] = ()  # coordinates of the support's motion, as its `own` names them
+    support_coordinates: tuple[Scalar, ...] = ()  # coordinates of the support's motion, as its `coordinates` names them
 
     @property
     def offset(self) -> Vector:

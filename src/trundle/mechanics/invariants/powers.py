@@ -40,12 +40,12 @@ def _moving_energy(system: RollingSystem, at: Record) -> list[Scalar]:
 
 def _energy_with_table(system: RollingSystem, at: Record) -> list[Scalar]:
     inertia: Any = free_axle(system.support.motion)
-    return [*_energy(system, at), 0.5 * inertia * at.own[1] * at.own[1]]
+    return [*_energy(system, at), 0.5 * inertia * at.support_coordinates[1] * at.support_coordinates[1]]
 
 
 def _momentum_with_table(system: RollingSystem, at: Record) -> list[Scalar]:
     inertia: Any = free_axle(system.support.motion)
-    return [*_about_axis(system, at), inertia * at.own[1]]
+    return [*_about_axis(system, at), inertia * at.support_coordinates[1]]
 
 
 def _working(system: RollingSystem) -> tuple[str, ...]:

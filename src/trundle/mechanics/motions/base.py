@@ -47,12 +47,12 @@ class SupportState:
         """
         return self.axle.cross(p - self.origin)
 
-    def carried(self, own: Vector) -> Vector:
+    def carried(self, local: Vector) -> Vector:
         """Return where the point of the support with given own coordinates is, m.
 
         Parameters
         ----------
-        own : Vector
+        local : Vector
             Coordinates in the support's own frame, m.
 
         Returns
@@ -60,9 +60,9 @@ class SupportState:
         Vector
             Support frame.
         """
-        return self.origin + self.rotation @ own
+        return self.origin + self.rotation @ local
 
-    def own_of(self, p: Vector) -> Vector:
+    def local(self, p: Vector) -> Vector:
         """Return the support's own coordinates of a point, m.
 
         Parameters
@@ -128,7 +128,7 @@ class Motion(Part):
     ...     rate: Scalar
     ...     turns = False
     ...
-    ...     def at(self, time, *own):
+    ...     def at(self, time, *coordinates):
     ...         up = Vector(0.0, 0.0, 1.0) * self.rate
     ...         return SupportState(Matrix.identity(), up * time, up, ZERO, ZERO, ZERO)
     >>> Lift(0.5).at(2.0).origin.z
@@ -136,7 +136,7 @@ class Motion(Part):
     """
 
     way: str = "moving"  # what figures call a support that moves so
-    own: tuple[str, ...] = ()  # names of these coordinates: ("angle",) or, of a free axle, ("angle", "rate")
+    coordinates: tuple[str, ...] = ()  # names of these coordinates: ("angle",) or, of a free axle, ("angle", "rate")
 
     keeps_axis: bool | None = None  # whether it never leans the support's third axis; None: that is looked at
     turns: bool = True  # False: it only shifts the support
@@ -144,19 +144,19 @@ class Motion(Part):
     inertia: Scalar  # of a free axle, kg m²
 
     @property
-    def own_kinds(self) -> tuple[str, ...]:
+    def coordinate_kinds(self) -> tuple[str, ...]:
         """What kind of quantity each of these coordinates is: one of `trundle.units.UNITS`."""
-        return tuple("angular velocity" if name.startswith("rate") else "angle" for name in self.own)
+        return tuple("angular velocity" if name.startswith("rate") else "angle" for name in self.coordinates)
 
-    def axle_torque(self, time: Scalar, own: tuple[Scalar, ...]) -> Scalar:  # noqa: ARG002
+    def axle_torque(self, time: Scalar, coordinates: tuple[Scalar, ...]) -> Scalar:  # noqa: ARG002
         """Return what drives or brakes a free axle besides the body, N m.
 
         Parameters
         ----------
         time : Scalar
             s.
-        own : tuple of Scalar
-            Its own coordinates, as many as `own` names.
+        coordinates : tuple of Scalar
+            Its own coordinates, as many as `coordinates` names.
 
         Returns
         -------
@@ -165,15 +165,15 @@ class Motion(Part):
         """
         return 0.0
 
-    def at(self, time: Scalar, *own: Scalar) -> SupportState:
+    def at(self, time: Scalar, *coordinates: Scalar) -> SupportState:
         """Return pose, twist and acceleration at a time in s, the coordinates of its own having the given values.
 
         Parameters
         ----------
         time : Scalar
             s.
-        *own : Scalar
-            Its own coordinates, as many as `own` names.
+        *coordinates : Scalar
+            Its own coordinates, as many as `coordinates` names.
 
         Returns
         -------
@@ -182,43 +182,43 @@ class Motion(Part):
         """
         raise NotImplementedError
 
-    def own_start(self) -> tuple[Scalar, ...]:
+    def initial_coordinates(self) -> tuple[Scalar, ...]:
         """Return the coordinates of its own at the start of a run.
 
         Returns
         -------
         tuple of Scalar
-            As many as `own` names.
+            As many as `coordinates` names.
         """
         return ()
 
-    def own_rates(self, time: Scalar, own: tuple[Scalar, ...], moment: Scalar) -> tuple[Scalar, ...]:  # noqa: ARG002
+    def coordinate_rates(self, time: Scalar, coordinates: tuple[Scalar, ...], moment: Scalar) -> tuple[Scalar, ...]:  # noqa: ARG002
         """Return the rates of these coordinates under a moment about the axle that the body exerts, N m.
 
         Parameters
         ----------
         time : Scalar
             s.
-        own : tuple of Scalar
-            Its own coordinates, as many as `own` names.
+        coordinates : tuple of Scalar
+            Its own coordinates, as many as `coordinates` names.
         moment : Scalar
             Of the body, N m.
 
         Returns
         -------
         tuple of Scalar
-            As many as `own` names, each for a second.
+            As many as `coordinates` names, each for a second.
         """
         return ()
 
-    def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:  # noqa: ARG002
+    def key_numbers(self, ground: str, coordinates: tuple[float, ...]) -> list[str]:  # noqa: ARG002
         """Return what figures say of it, given a word for what moves and the coordinates of its own at the start.
 
         Parameters
         ----------
         ground : str
             The word for what moves: "table", "bowl".
-        own : tuple of float
+        coordinates : tuple of float
             Its own coordinates at the start.
 
         Returns

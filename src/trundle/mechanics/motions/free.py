@@ -39,7 +39,7 @@ class FreeAxle(Motion):
     Examples
     --------
     >>> table = FreeAxle("0.5 kg*m^2", rate=2.0, bearing_drag=0.25)
-    >>> table.own_rates(0.0, (0.0, 2.0), moment=1.0)
+    >>> table.coordinate_rates(0.0, (0.0, 2.0), moment=1.0)
     (2.0, 1.0)
     """
 
@@ -55,37 +55,37 @@ class FreeAxle(Motion):
     kind = "free-axle"
     label = "Turns freely"
     way = "freely turning"
-    own = ("angle", "rate")
+    coordinates = ("angle", "rate")
     keeps_axis = True
     free = True
 
-    def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:
+    def key_numbers(self, ground: str, coordinates: tuple[float, ...]) -> list[str]:
         """Return the inertia, and the rate at the start."""
         inertia = wording.short(float(self.inertia), 3)
-        return [f"free {ground} of {inertia} kg m², at first {wording.rate(own[-1])}"]
+        return [f"free {ground} of {inertia} kg m², at first {wording.rate(coordinates[-1])}"]
 
     @property
     def mean_rate(self) -> Scalar:
         """ω at the start, rad/s."""
         return self.rate
 
-    def own_start(self) -> tuple[Scalar, ...]:
+    def initial_coordinates(self) -> tuple[Scalar, ...]:
         """Return the angle 0 and the rate at the start."""
         return (0.0, self.rate)
 
-    def axle_torque(self, time: Scalar, own: tuple[Scalar, ...]) -> Scalar:
+    def axle_torque(self, time: Scalar, coordinates: tuple[Scalar, ...]) -> Scalar:
         """Return τ(t, ω), N m."""
-        _, rate = own
+        _, rate = coordinates
         xp = namespace(rate, self.below)
         dry = self.bearing_torque * rate / xp.sqrt(rate * rate + self.below * self.below)
         return now(self.motor_torque, time) - self.bearing_drag * rate - dry
 
-    def own_rates(self, time: Scalar, own: tuple[Scalar, ...], moment: Scalar) -> tuple[Scalar, ...]:
+    def coordinate_rates(self, time: Scalar, coordinates: tuple[Scalar, ...], moment: Scalar) -> tuple[Scalar, ...]:
         """Return ω and ω̇ = (τ + M)/I_t."""
-        _, rate = own
-        return (rate, (self.axle_torque(time, own) + moment) / self.inertia)
+        _, rate = coordinates
+        return (rate, (self.axle_torque(time, coordinates) + moment) / self.inertia)
 
-    def at(self, time: Scalar, *own: Scalar) -> SupportState:  # noqa: ARG002
+    def at(self, time: Scalar, *coordinates: Scalar) -> SupportState:  # noqa: ARG002
         """Return the support turned by its angle, for ω̇ = 0: the contact law adds its own."""
-        angle, rate = own
+        angle, rate = coordinates
         return SupportState(about_third_axis(angle), ZERO, ZERO, ZERO, E_Z * rate, ZERO)

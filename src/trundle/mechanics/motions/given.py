@@ -42,18 +42,18 @@ class SpinBy(Motion):
     kind = "spin-by"
     label = "Turns by a formula"
     way = "unevenly turning"
-    own = ("angle",)
+    coordinates = ("angle",)
     keeps_axis = True
 
-    def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:  # noqa: ARG002
+    def key_numbers(self, ground: str, coordinates: tuple[float, ...]) -> list[str]:  # noqa: ARG002
         """Return the formula."""
         return [f"{ground} {wording.formula(self.rate, 'ω', 'rad/s')}"]
 
-    def own_start(self) -> tuple[Scalar, ...]:
+    def initial_coordinates(self) -> tuple[Scalar, ...]:
         """Return the angle 0: not yet turned."""
         return (0.0,)
 
-    def own_rates(self, time: Scalar, own: tuple[Scalar, ...], moment: Scalar) -> tuple[Scalar, ...]:  # noqa: ARG002
+    def coordinate_rates(self, time: Scalar, coordinates: tuple[Scalar, ...], moment: Scalar) -> tuple[Scalar, ...]:  # noqa: ARG002
         """Return ω(t), whatever the body does."""
         return (now(self.rate, time),)
 
@@ -72,9 +72,9 @@ class SpinBy(Motion):
         sizes = largest(self.rate, start, end)
         return sizes.value + sizes.pace
 
-    def at(self, time: Scalar, *own: Scalar) -> SupportState:
+    def at(self, time: Scalar, *coordinates: Scalar) -> SupportState:
         """Return the support turned by the angle it has reached."""
-        (angle,) = own
+        (angle,) = coordinates
         rate, growth, _ = course(self.rate, time)
         return SupportState(about_third_axis(angle), ZERO, ZERO, ZERO, E_Z * rate, E_Z * growth)
 
@@ -103,7 +103,7 @@ class Tilt(Motion):
     label = "Tilts by a formula"
     way = "tilting"
 
-    def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:  # noqa: ARG002
+    def key_numbers(self, ground: str, coordinates: tuple[float, ...]) -> list[str]:  # noqa: ARG002
         """Return the formula."""
         return [f"{ground} tilts by {wording.formula(self.angle, 'θ', 'rad')}"]
 

@@ -65,7 +65,7 @@ class Spin(Motion):
         """Turning, unless its rate is 0."""
         return "turning" if self.rate else "fixed"
 
-    def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:  # noqa: ARG002
+    def key_numbers(self, ground: str, coordinates: tuple[float, ...]) -> list[str]:  # noqa: ARG002
         """Return its rate, unless that is 0."""
         return [f"{ground} {wording.rate(self.rate)}"] if self.rate else []
 

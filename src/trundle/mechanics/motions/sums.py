@@ -58,16 +58,16 @@ class Combined(Motion):
             return "turning" if rate else "fixed"
         return ", ".join(dict.fromkeys(part.way for part in self.parts if part.way != "fixed")) or "fixed"
 
-    def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:
+    def key_numbers(self, ground: str, coordinates: tuple[float, ...]) -> list[str]:
         """Return those of all parts."""
-        pairs = zip(self.parts, self._shares(own), strict=True)
+        pairs = zip(self.parts, self._shares(coordinates), strict=True)
         return [text for part, share in pairs for text in part.key_numbers(ground, share)]
 
     @property
-    def own(self) -> tuple[str, ...]:  # type: ignore[override]
+    def coordinates(self) -> tuple[str, ...]:  # type: ignore[override]
         """The coordinates of all parts, numbered where two have one name."""
         names: list[str] = []
-        for name in (name for part in self.parts for name in part.own):
+        for name in (name for part in self.parts for name in part.coordinates):
             taken = sum(have.partition("_")[0] == name for have in names)
             names.append(f"{name}_{taken + 1}" if taken else name)
         return tuple(names)
@@ -87,18 +87,18 @@ class Combined(Motion):
         """That of the free axle, kg m²."""
         return self.parts[-1].inertia
 
-    def axle_torque(self, time: Scalar, own: tuple[Scalar, ...]) -> Scalar:
+    def axle_torque(self, time: Scalar, coordinates: tuple[Scalar, ...]) -> Scalar:
         """Return that on the free axle, N m."""
-        return self.parts[-1].axle_torque(time, self._shares(own)[-1])
+        return self.parts[-1].axle_torque(time, self._shares(coordinates)[-1])
 
-    def own_start(self) -> tuple[Scalar, ...]:
+    def initial_coordinates(self) -> tuple[Scalar, ...]:
         """Return the coordinates of all parts at the start."""
-        return tuple(value for part in self.parts for value in part.own_start())
+        return tuple(value for part in self.parts for value in part.initial_coordinates())
 
-    def own_rates(self, time: Scalar, own: tuple[Scalar, ...], moment: Scalar) -> tuple[Scalar, ...]:
+    def coordinate_rates(self, time: Scalar, coordinates: tuple[Scalar, ...], moment: Scalar) -> tuple[Scalar, ...]:
         """Return the rates of the coordinates of all parts; the moment is that on the last."""
-        pairs = zip(self.parts, self._shares(own), strict=True)
-        return tuple(rate for part, share in pairs for rate in part.own_rates(time, share, moment))
+        pairs = zip(self.parts, self._shares(coordinates), strict=True)
+        return tuple(rate for part, share in pairs for rate in part.coordinate_rates(time, share, moment))
 
     @property
     def steady_rate(self) -> Scalar | None:
@@ -120,18 +120,18 @@ class Combined(Motion):
         """Return the sum of those of the parts, rad/s."""
         return sum(part.fastest_rate_within(start, end) for part in self.parts)
 
-    def at(self, time: Scalar, *own: Scalar) -> SupportState:
+    def at(self, time: Scalar, *coordinates: Scalar) -> SupportState:
         """Return the innermost part as the others carry it."""
-        pairs = zip(self.parts, self._shares(own), strict=True)
+        pairs = zip(self.parts, self._shares(coordinates), strict=True)
         outer, *inner = (part.at(time, *share) for part, share in pairs)
         for state in inner:
             outer = _carry(outer, state)
         return outer
 
-    def _shares(self, own: tuple[Scalar, ...]) -> list[tuple[Scalar, ...]]:
+    def _shares(self, coordinates: tuple[Scalar, ...]) -> list[tuple[Scalar, ...]]:
         """Deal out the coordinates to the parts."""
-        rest = iter(own)
-        return [tuple(next(rest) for _ in part.own) for part in self.parts]
+        rest = iter(coordinates)
+        return [tuple(next(rest) for _ in part.coordinates) for part in self.parts]
 
 
 def _carry(outer: SupportState, inner: SupportState) -> SupportState:

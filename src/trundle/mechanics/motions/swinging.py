@@ -44,7 +44,7 @@ class Rock(Motion):
     label = "Rocks"
     way = "rocking"
 
-    def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:  # noqa: ARG002
+    def key_numbers(self, ground: str, coordinates: tuple[float, ...]) -> list[str]:  # noqa: ARG002
         """Return amplitude and rate."""
         return [f"rocking by {wording.degrees(self.amplitude)} at {wording.short(float(self.rate), 4)} rad/s"]
 
@@ -85,7 +85,7 @@ class Shake(Motion):
     way = "shaken"
     turns = False
 
-    def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:  # noqa: ARG002
+    def key_numbers(self, ground: str, coordinates: tuple[float, ...]) -> list[str]:  # noqa: ARG002
         """Return amplitude and rate."""
         return [f"shaken by {wording.length(self.amplitude.norm())} at {wording.short(float(self.rate), 4)} rad/s"]
 
@@ -131,7 +131,7 @@ class PrecessingTilt(Motion):
     label = "Leans round about"
     way = "swirled"
 
-    def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:  # noqa: ARG002
+    def key_numbers(self, ground: str, coordinates: tuple[float, ...]) -> list[str]:  # noqa: ARG002
         """Return angle and rate."""
         return [f"swirled: leaning {wording.degrees(self.angle)}, round at {wording.short(float(self.rate), 4)} rad/s"]
 

@@ -42,7 +42,7 @@ class UnevenSpin(Motion):
     way = "unevenly turning"
     keeps_axis = True
 
-    def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:  # noqa: ARG002
+    def key_numbers(self, ground: str, coordinates: tuple[float, ...]) -> list[str]:  # noqa: ARG002
         """Return the rate and its variation."""
         return [f"{ground} {wording.rate(self.rate)}", f"uneven by {wording.short(100 * float(self.variation), 3)} %"]
 
@@ -93,7 +93,7 @@ class Wobble(Motion):
     label = "Turns askew on its axle"
     way = "turning"
 
-    def key_numbers(self, ground: str, own: tuple[float, ...]) -> list[str]:  # noqa: ARG002
+    def key_numbers(self, ground: str, coordinates: tuple[float, ...]) -> list[str]:  # noqa: ARG002
         """Return the rate and the angle."""
         return [f"{ground} {wording.rate(self.rate)}", f"askew by {wording.degrees(self.angle)}"]
 

@@ -6,7 +6,7 @@ from dataclasses import fields, is_dataclass
 from typing import Any, ClassVar
 
 from ... import wording
-from ..algebra import Matrix, Turned, Vector
+from ..algebra import Matrix, RotatedTensor, Vector
 from ..parts import POSITIVE, Number, Numbers, Part
 from ..scalars import Scalar, is_zero
 
@@ -17,7 +17,9 @@ class Shape(Part):
     noun: ClassVar[str] = "body"  # in titles and lists
     spherical: ClassVar[bool] = False  # a sphere where it touches
     axis: ClassVar[Vector | None] = None  # body frame; touching along a line, it rolls straight across
-    left: ClassVar[str] = "tipped onto the edge of its round side"  # what a body did that left what the shape covers
+    validity_end: ClassVar[str] = (
+        "tipped onto the edge of its round side"  # what a body did that left what the shape covers
+    )
 
     def support_map(self, nu: Vector) -> Vector:
         """Return X(ν), the body-frame point with outward unit normal ν, in m from the centre of mass.
@@ -49,7 +51,7 @@ class Shape(Part):
         """
         raise NotImplementedError
 
-    def covers(self, nu: Vector) -> Scalar | None:  # noqa: ARG002
+    def validity_margin(self, nu: Vector) -> Scalar | None:  # noqa: ARG002
         """Return what is positive where the formulas hold, as on the round side of a hemisphere; None: everywhere.
 
         Parameters
@@ -109,7 +111,7 @@ class Shape(Part):
         """Whether the surface looks the same after any turn about the body's third axis."""
         return False
 
-    def contact(self, Q: Matrix, n: Vector) -> tuple[Vector, Matrix | Turned]:
+    def contact(self, Q: Matrix, n: Vector) -> tuple[Vector, Matrix | RotatedTensor]:
         """Return ρ = Q X(−Qᵀn) and C = Q (∂X/∂ν) Qᵀ for a support with unit normal n into the body.
 
         Parameters
@@ -127,7 +129,7 @@ class Shape(Part):
             Inverse curvature at the contact, support frame, m.
         """
         nu = -(Q.transpose @ n)
-        return Q @ self.support_map(nu), Turned(Q, self.support_gradient(nu))
+        return Q @ self.support_map(nu), RotatedTensor(Q, self.support_gradient(nu))
 
 
 RADIUS = Number("length", POSITIVE)

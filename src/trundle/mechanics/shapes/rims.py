@@ -17,7 +17,7 @@ FLAT = 1e-6  # rad; a disc this near to lying flat touches on its face, which is
 class _Rim(Shape):
     """What disc and torus have in common: the circle of radius a across the third axis."""
 
-    left: ClassVar[str] = "came to lie flat on its face"
+    validity_end: ClassVar[str] = "came to lie flat on its face"
     radius: Scalar
     centre: Vector | None
 
@@ -26,7 +26,7 @@ class _Rim(Shape):
         """Whether its centre lies on the third axis."""
         return on_third_axis(self.centre)
 
-    def covers(self, nu: Vector) -> Scalar:
+    def validity_margin(self, nu: Vector) -> Scalar:
         """Return |ν_t|² less that of a disc within 1e-6 rad of lying flat; ν_t is the part of ν in its plane."""
         return nu.x * nu.x + nu.y * nu.y - FLAT * FLAT
 
@@ -47,7 +47,7 @@ class Disc(_Rim):
     """A thin disc or hoop on its sharp rim; its axis is the third of the body frame.
 
     It touches at one point of the rim while it is upright or leans. Lying flat it touches on its face, which is not in
-    the shape: a run ends where `covers` falls to zero.
+    the shape: a run ends where `validity_margin` falls to zero.
 
     Parameters
     ----------

@@ -57,7 +57,7 @@ class Hemisphere(Sphere):
     """Half a sphere, which rocks on its round side; the outward normal of its flat face is the third axis.
 
     It is a sphere as long as it touches on the round side. The motion on its edge, and on the flat face, is not in the
-    shape: a run ends where `covers` falls to zero.
+    shape: a run ends where `validity_margin` falls to zero.
 
     Parameters
     ----------
@@ -66,13 +66,13 @@ class Hemisphere(Sphere):
 
     Examples
     --------
-    >>> Hemisphere(0.1, Vector(0.0, 0.0, 0.0375)).covers(Vector(0.0, 0.0, -1.0))
+    >>> Hemisphere(0.1, Vector(0.0, 0.0, 0.0375)).validity_margin(Vector(0.0, 0.0, -1.0))
     1.0
     """
 
     noun = "half-ball"
 
-    def covers(self, nu: Vector) -> Scalar:
+    def validity_margin(self, nu: Vector) -> Scalar:
         """Return −ν_z: positive on the round side, zero at the edge."""
         return -nu.z
 
@@ -117,13 +117,13 @@ class HalfCylinder(Roller):
 
     Examples
     --------
-    >>> HalfCylinder(0.1, Vector(0.04244, 0.0, 0.0)).covers(Vector(-1.0, 0.0, 0.0))
+    >>> HalfCylinder(0.1, Vector(0.04244, 0.0, 0.0)).validity_margin(Vector(-1.0, 0.0, 0.0))
     1.0
     """
 
     noun = "half-cylinder"
 
-    def covers(self, nu: Vector) -> Scalar:
+    def validity_margin(self, nu: Vector) -> Scalar:
         """Return −ν_x: positive on the round side, zero at the edge."""
         return -nu.x
 

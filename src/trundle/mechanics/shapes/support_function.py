@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Annotated, Any
 
-from ..algebra import Matrix, Turned, Vector
+from ..algebra import Matrix, RotatedTensor, Vector
 from ..expressions import Expression
 from ..jets import Jet, jets
 from ..scalars import is_number, leaves, namespace
@@ -70,10 +70,10 @@ class SupportFunction(Shape):
         """Return ∇∇h."""
         return _matrix(support(self.formula, nu))
 
-    def contact(self, Q: Matrix, n: Vector) -> tuple[Vector, Turned]:
+    def contact(self, Q: Matrix, n: Vector) -> tuple[Vector, RotatedTensor]:
         """Return ρ and C, as for every shape, from one evaluation of h."""
         h = support(self.formula, -(Q.transpose @ n))
-        return Q @ moved(self.centre, Vector(*h.gradient)), Turned(Q, _matrix(h))
+        return Q @ moved(self.centre, Vector(*h.gradient)), RotatedTensor(Q, _matrix(h))
 
 
 def support(formula: Expression, nu: Vector) -> Jet:

@@ -41,7 +41,7 @@ class Surface(Part):
     flat = False  # a plane: one normal everywhere
     wall_radius: Scalar | None = None  # of a cylinder, which one sees along its axis, m
     analytic = True  # a formula: heyoka and SymPy can trace it; a table is evaluated on floats and arrays only
-    end = "the end of the surface"  # what the body comes to where `inside` falls to 0
+    domain_end = "the end of the surface"  # what the body comes to where `domain_margin` falls to 0
     coordinates: tuple[str, str] = ("length", "length")  # kinds of quantity, as in `trundle.units`
     coordinate_labels: tuple[str, str] = ("Position x", "Position y")  # at their controls
     tilt: ClassVar[Number] = Number("angle", said="Angle of the axis to the vertical; down the first axis.")
@@ -138,7 +138,7 @@ class Surface(Part):
         length = slope.norm()
         return tangential(bend, slope / length) * (1.0 / length)
 
-    def inside(self, p: Vector) -> Scalar | None:  # noqa: ARG002  most have no end
+    def domain_margin(self, p: Vector) -> Scalar | None:  # noqa: ARG002  most have no end
         """Return a number that falls through 0 where the surface ends or has a singular point; None where neither.
 
         Parameters
@@ -201,7 +201,7 @@ class Surface(Part):
         first = Vector(n.z / length, 0.0, -(n.x / length))
         return first, n.cross(first)
 
-    def under(self, u: Scalar, v: Scalar, offset: Vector) -> Vector:  # noqa: ARG002
+    def contact_from_coordinates(self, u: Scalar, v: Scalar, offset: Vector) -> Vector:  # noqa: ARG002
         """Return the contact of a body put down at coordinates (u, v); on a curved surface they are the contact's.
 
         Parameters
@@ -218,8 +218,8 @@ class Surface(Part):
         """
         return self.point(u, v)
 
-    def put_down_at(self, p: Vector, offset: Vector) -> tuple[Scalar, Scalar]:  # noqa: ARG002
-        """Return the coordinates at which a body is put down that touches at p: what `under` undoes.
+    def coordinates_from_contact(self, p: Vector, offset: Vector) -> tuple[Scalar, Scalar]:  # noqa: ARG002
+        """Return the coordinates at which a body is put down that touches at p: what `contact_from_coordinates` undoes.
 
         Parameters
         ----------

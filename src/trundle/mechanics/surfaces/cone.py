@@ -55,7 +55,7 @@ class Cone(Surface):
     label = "Funnel"
     noun, ground = "cone", "cone"
     axisymmetric = True
-    end = "the apex of the cone"
+    domain_end = "the apex of the cone"
 
     @property
     def where(self) -> str:  # type: ignore[override]
@@ -92,7 +92,7 @@ class Cone(Surface):
         around = Vector(-e.y, e.x, 0.0)
         return Matrix.outer(around, around) * (self.sign * self._angle()[0] / distance)
 
-    def inside(self, p: Vector) -> Scalar:
+    def domain_margin(self, p: Vector) -> Scalar:
         """Return the height over the apex inside, the depth below it outside, m."""
         return -self.sign * p.z
 

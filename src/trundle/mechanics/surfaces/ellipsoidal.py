@@ -43,7 +43,7 @@ class EllipsoidalBowl(Surface):
     kind = "ellipsoidal-bowl"
     label = "Elliptic bowl"
     where, noun, ground = "in", "elliptic bowl", "bowl"
-    end = "the edge of the bowl"
+    domain_end = "the edge of the bowl"
 
     def __post_init__(self) -> None:
         given = self.depth
@@ -89,7 +89,7 @@ class EllipsoidalBowl(Surface):
         length = slope.norm()
         return tangential(Matrix.diagonal(*self._bends()), slope / length) * (-1.0 / length)
 
-    def inside(self, p: Vector) -> Scalar | None:
+    def domain_margin(self, p: Vector) -> Scalar | None:
         """Return how far below the edge the point is, m; without an edge, None."""
         return None if self.depth is None else self.depth - p.z
 

@@ -50,7 +50,7 @@ class HeightField(OverPlane):
         }
     )
     axisymmetric = False
-    end = "where the surface's formula ends or has a crease"
+    domain_end = "where the surface's formula ends or has a crease"
 
     def key_numbers(self) -> list[str]:
         """Return its formula."""
@@ -85,7 +85,7 @@ class HeightField(OverPlane):
         """Return h, m."""
         return self.formula.at(x=x, y=y)
 
-    def inside(self, p: Vector) -> Scalar | None:
+    def domain_margin(self, p: Vector) -> Scalar | None:
         """Return about how far the nearest crease is, or the end of the formula, m; None where it has neither."""
         x, y = jets((p.x, p.y))
         return to_the_next(seams(self.formula.tree), x=x, y=y)

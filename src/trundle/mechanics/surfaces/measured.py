@@ -80,7 +80,7 @@ class RevolutionTable(OverPlane):
     Examples
     --------
     >>> dish = RevolutionTable(Profile([0.0, 0.1, 0.2, 0.3], [0.0, 0.01, 0.04, 0.09]))
-    >>> round(dish.point(0.15, 0.0).z, 12), dish.inside(dish.point(0.15, 0.0)) > 0
+    >>> round(dish.point(0.15, 0.0).z, 12), dish.domain_margin(dish.point(0.15, 0.0)) > 0
     (0.0225, True)
     """
 
@@ -89,7 +89,7 @@ class RevolutionTable(OverPlane):
     noun = "surface of revolution"
     analytic = False
     axisymmetric = True
-    end = "the end of the table"
+    domain_end = "the end of the table"
 
     def __post_init__(self) -> None:
         example = _THROUGH.format("Revolution.through(r, z)")
@@ -109,7 +109,7 @@ class RevolutionTable(OverPlane):
         square = x * x + y * y
         return around_axis(x, y, self.profile((square,), (1,)), self.profile((square,), (2,)))
 
-    def inside(self, p: Vector) -> Scalar:
+    def domain_margin(self, p: Vector) -> Scalar:
         """Return what falls through 0 at the ends of the table, m²."""
         square, (first, last) = p.x * p.x + p.y * p.y, (self.profile.r[0], self.profile.r[-1])
         room = last * last - square
@@ -137,7 +137,7 @@ class HeightTable(OverPlane):
     table_of = "height-field"
     analytic = False
     axisymmetric = False
-    end = "the end of the table"
+    domain_end = "the end of the table"
 
     def __post_init__(self) -> None:
         checks.instance(self.grid, Grid, "grid", _THROUGH.format("HeightField.through(x, y, z)"))
@@ -161,7 +161,7 @@ class HeightTable(OverPlane):
         """Return the first derivatives of the spline."""
         return self.grid((x, y), (1, 0)), self.grid((x, y), (0, 1))
 
-    def inside(self, p: Vector) -> Scalar:
+    def domain_margin(self, p: Vector) -> Scalar:
         """Return what falls through 0 at the edges of the grid: the product of the shares left on either side."""
         room = 1.0
         for value, axis in zip((p.x, p.y), self.grid.axes, strict=True):

@@ -58,11 +58,11 @@ class Plane(Surface):
         """Return the first two axes."""
         return E_X, E_Y
 
-    def under(self, u: Scalar, v: Scalar, offset: Vector) -> Vector:
+    def contact_from_coordinates(self, u: Scalar, v: Scalar, offset: Vector) -> Vector:
         """Return the contact of a body whose centre of mass is over (x, y)."""
         return Vector(u + offset.x, v + offset.y, 0.0)
 
-    def put_down_at(self, p: Vector, offset: Vector) -> tuple[Scalar, Scalar]:
+    def coordinates_from_contact(self, p: Vector, offset: Vector) -> tuple[Scalar, Scalar]:
         """Return x and y of the centre of mass."""
         return p.x - offset.x, p.y - offset.y
 

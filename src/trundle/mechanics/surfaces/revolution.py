@@ -57,7 +57,7 @@ class Revolution(OverPlane):
         }
     )
     axisymmetric = True
-    end = "where the surface's formula ends or has a crease or an apex"
+    domain_end = "where the surface's formula ends or has a crease or an apex"
 
     def key_numbers(self) -> list[str]:
         """Return its formula."""
@@ -110,7 +110,7 @@ class Revolution(OverPlane):
         bend = second - around
         return (first * e, first * f), (around + bend * (e * e), bend * (e * f), around + bend * (f * f))
 
-    def inside(self, p: Vector) -> Scalar | None:
+    def domain_margin(self, p: Vector) -> Scalar | None:
         """Return about how far a crease is, an apex or the end of the formula, m; None where it has none of them."""
         even = in_square(self.formula.tree)
         if even is not None:

@@ -24,7 +24,7 @@ class Spherical(Surface):
     ] = None
     sign: ClassVar[float] = 0.0  # +1 where the body is outside, −1 where it is inside
     axisymmetric = True
-    end = "the rim"
+    domain_end = "the rim"
 
     def __post_init__(self) -> None:
         given = self.rim
@@ -69,7 +69,7 @@ class Spherical(Surface):
         e = arm / distance
         return (Matrix.identity() - Matrix.outer(e, e)) * (self.sign / distance)
 
-    def inside(self, p: Vector) -> Scalar | None:
+    def domain_margin(self, p: Vector) -> Scalar | None:
         """Return how far below its rim a bowl has the point, how far above it a dome, m; without a rim, None."""
         return None if self.rim is None else self._depth(self.rim * self.rim) + self.sign * p.z
 

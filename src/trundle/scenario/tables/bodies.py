@@ -9,8 +9,8 @@ from pydantic import model_validator
 from ...errors import InvalidValueError
 from ...mechanics.bodies import Body
 from ...mechanics.parts import fields_of
-from ..complaints import Nothing
 from ..fields import written
+from ..validation_errors import Nothing
 from .of_parts import PartTable, one_of, table_of
 from .values import Table
 

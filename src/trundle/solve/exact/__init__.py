@@ -12,7 +12,7 @@ from collections.abc import Sequence
 # isort: skip_file
 from ...errors import SolverError
 from ...mechanics.system import RollingSystem, State
-from .. import following
+from .. import transitions
 from .base import ClosedForm
 from .sphere_on_plane import SphereOnPlane
 from .cylinder_on_cylinder import CylinderOnCylinder
@@ -49,17 +49,17 @@ def closed_form(system: RollingSystem, start: State) -> ClosedForm | None:
     'T5'
     """
     try:
-        now = following.slipping(system, following.at_start(system, start))
+        now = transitions.slipping(system, transitions.at_start(system, start))
     except SolverError:  # it cannot go on at all
         return None
-    return form_of_phase(now.law.code, system, now.start, now.numbers)
+    return form_of_phase(now.law.code, system, now.start, now.state_vector)
 
 
 def form_of_phase(phase: int, system: RollingSystem, start: State, numbers: Sequence[float]) -> ClosedForm | None:
     """Return the closed form that covers one phase of contact from a state on, if there is one."""
     for form in CLOSED_FORMS:
-        if phase in form.phases and not form.outside(system, start):
-            return form.of_numbers(system, start, numbers)
+        if phase in form.phases and not form.violations(system, start):
+            return form.from_state_vector(system, start, numbers)
     return None
 
 

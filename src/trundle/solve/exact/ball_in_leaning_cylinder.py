@@ -85,7 +85,7 @@ class BallInLeaningCylinder(ClosedForm):
     source = "Abramowitz and Stegun (1964), ch. 16, and one quadrature; Cross, Am. J. Phys. 89, 459 (2021); theory page"
     conditions = ON_CYLINDER
 
-    never = frozenset({"curved"})
+    impossible_events = frozenset({"curved"})
 
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> BallInLeaningCylinder:
@@ -155,9 +155,9 @@ class BallInLeaningCylinder(ClosedForm):
         across = self.climb == 0 and self.force[2] == 0 and (self.spin == 0 or self.angular_rate == 0 == self._pull)
         return float(self._pendulum.period) if across else math.inf
 
-    def pace(self, duration: float) -> float:
+    def max_rate(self, duration: float) -> float:
         """Return that of the pendulum, 1/s: what happens along the axis is slower."""
-        return self._pendulum.pace(duration)
+        return self._pendulum.max_rate(duration)
 
     def repeats(self, stop: str) -> float:
         """Return the pendulum's period for what the motion across the axis decides."""

@@ -84,7 +84,7 @@ class BallInUprightCylinder(ClosedForm):
         ),
     )
 
-    never = frozenset({"lift", "curved"})  # N is constant
+    impossible_events = frozenset({"lift", "curved"})  # N is constant
 
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> BallInUprightCylinder:
@@ -169,7 +169,7 @@ class BallInUprightCylinder(ClosedForm):
         level = self.climb == 0 and abs(self._push) <= 4 * 2.0**-52 * abs(self._fall)
         return 2 * math.pi / abs(self.angular_rate) if level else math.inf
 
-    def pace(self, duration: float) -> float:  # noqa: ARG002
+    def max_rate(self, duration: float) -> float:  # noqa: ARG002
         """Return θ̇, than which the bobbing is slower, 1/s."""
         return abs(float(self.angular_rate))
 

@@ -46,7 +46,7 @@ class ClosedForm:
     'any body at rest'
     >>> import trundle as tr
     >>> table = tr.Support(tr.Plane(), motion=tr.Spin(1.0))
-    >>> Still.outside(tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), table))
+    >>> Still.violations(tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), table))
     ['the support moves']
     """
 
@@ -56,7 +56,7 @@ class ClosedForm:
     conditions: ClassVar[tuple[Condition, ...]]  # of which the domain is put together
     phases: ClassVar[tuple[int, ...]] = (ROLLING,)  # of contact that it covers
     of_arrays: ClassVar[bool] = False  # whether its numbers may be arrays, one element for each time asked for
-    never: ClassVar[frozenset[str]] = frozenset()  # stops of the phase that cannot come
+    impossible_events: ClassVar[frozenset[str]] = frozenset()  # stops of the phase that cannot come
 
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> Self:
@@ -82,7 +82,7 @@ class ClosedForm:
         raise NotImplementedError
 
     @classmethod
-    def of_numbers(cls, system: RollingSystem, start: State, numbers: Sequence[float]) -> Self:  # noqa: ARG003
+    def from_state_vector(cls, system: RollingSystem, start: State, numbers: Sequence[float]) -> Self:  # noqa: ARG003
         """Do the same where the numbers of the phase's law say more than the state, such as a very small slip.
 
         Parameters
@@ -113,7 +113,7 @@ class ClosedForm:
         return "".join(condition.words for condition in cls.conditions)
 
     @classmethod
-    def outside(cls, system: RollingSystem, start: State | None = None) -> list[str]:
+    def violations(cls, system: RollingSystem, start: State | None = None) -> list[str]:
         """Name what of a system, and of a start where one is given, lies outside the domain.
 
         Parameters
@@ -148,7 +148,7 @@ class ClosedForm:
         str
             Empty where the system lies in the domain.
         """
-        outside = cls.outside(system, start)
+        outside = cls.violations(system, start)
         if not outside:
             return ""
         return f"The closed form {cls.equation} ({cls.name}) covers {cls.domain()}. Outside it: {'; '.join(outside)}."
@@ -186,7 +186,7 @@ class ClosedForm:
         """
         raise NotImplementedError
 
-    def own_at(self, t: Any) -> tuple[Any, ...]:
+    def support_coordinates_at(self, t: Any) -> tuple[Any, ...]:
         """Return by how much the coordinates of the support's own motion have grown.
 
         Parameters
@@ -202,8 +202,8 @@ class ClosedForm:
         del t
         return ()
 
-    def motion_and_own_at(self, t: Any) -> tuple[tuple[Vector, Vector, Vector, Vector], tuple[Any, ...]]:
-        """Return what `motion_at` and `own_at` do: override it where they share most of the work.
+    def motion_and_support_at(self, t: Any) -> tuple[tuple[Vector, Vector, Vector, Vector], tuple[Any, ...]]:
+        """Return what `motion_at` and `support_coordinates_at` do: override it where they share most of the work.
 
         Parameters
         ----------
@@ -213,16 +213,16 @@ class ClosedForm:
         Returns
         -------
         tuple
-            That of `motion_at`, and that of `own_at`.
+            That of `motion_at`, and that of `support_coordinates_at`.
         """
-        return self.motion_at(t), self.own_at(t)
+        return self.motion_at(t), self.support_coordinates_at(t)
 
     @property
     def period(self) -> Any:
         """Time after which the motion repeats, s; infinite where it does not."""
         raise NotImplementedError
 
-    def pace(self, duration: float) -> float:  # forms given in time ask how long
+    def max_rate(self, duration: float) -> float:  # forms given in time ask how long
         """Return the fastest rate in the motion: what a look at it must resolve.
 
         Parameters
@@ -237,7 +237,7 @@ class ClosedForm:
         """
         raise NotImplementedError
 
-    def paces(self, duration: float) -> list[tuple[float, float]]:
+    def max_rates(self, duration: float) -> list[tuple[float, float]]:
         """Return up to when which rate is the fastest: one for all of the time, unless the form knows more.
 
         Parameters
@@ -250,7 +250,7 @@ class ClosedForm:
         list of tuple
             Time since the start, s, and rate until then, 1/s.
         """
-        return [(duration, self.pace(duration))]
+        return [(duration, self.max_rate(duration))]
 
     @property
     def ends_at(self) -> dict[str, float]:
@@ -337,7 +337,7 @@ class ClosedForm:
         """The circle in which the body goes about a point that drifts steadily; None where it goes in none."""
         return None
 
-    def straight_turn(self, t: Any) -> tuple[Vector, Any] | None:
+    def fixed_axis_rotation(self, t: Any) -> tuple[Vector, Any] | None:
         """Return the fixed axis about which the body has turned and the angle, where the position gives them.
 
         Parameters
@@ -363,7 +363,7 @@ class ClosedForm:
         """
         return None
 
-    def stance(self, t: Any) -> Quaternion | None:
+    def representative_orientation(self, t: Any) -> Quaternion | None:
         """Return an orientation with which the law gives the forces of that time.
 
         Parameters

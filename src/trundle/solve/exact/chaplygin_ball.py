@@ -91,7 +91,7 @@ class ChaplyginBall(ClosedForm):
         *ON_LEVEL_PLANE,
         TURNS,
     )
-    never = frozenset({"lift", "curved"})  # N is constant
+    impossible_events = frozenset({"lift", "curved"})  # N is constant
 
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> ChaplyginBall:
@@ -156,7 +156,7 @@ class ChaplyginBall(ClosedForm):
         """Infinite: the ball drifts."""
         return math.inf
 
-    def pace(self, duration: float) -> float:  # noqa: ARG002
+    def max_rate(self, duration: float) -> float:  # noqa: ARG002
         """Return a bound of Ω by the energy M·Ω/2, rad/s."""
         twice = self.momentum.dot(Vector(*self.angular_velocity))
         return float(math.sqrt(max(twice, 0.0) / min(self.across, self.along)))
@@ -209,7 +209,7 @@ class ChaplyginBall(ClosedForm):
         c = self._numbers(t)
         return c.at(t).axis(c)
 
-    def stance(self, t: Any) -> Quaternion:
+    def representative_orientation(self, t: Any) -> Quaternion:
         """Return an orientation with which the axis is where it is: its turns about e do not change the forces."""
         return stance_of(Vector(*self.body_axis), self.axis_at(t))
 

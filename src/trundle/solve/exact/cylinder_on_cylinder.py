@@ -111,7 +111,7 @@ class CylinderOnCylinder(ClosedForm):
         Condition(", for a motion in the plane across it", _aside, START),
     )
 
-    never = frozenset({"curved"})
+    impossible_events = frozenset({"curved"})
 
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> CylinderOnCylinder:
@@ -188,7 +188,7 @@ class CylinderOnCylinder(ClosedForm):
             ("a small swing", f"{2 * math.pi * small:.6g} s"),
         ]
 
-    def pace(self, duration: float) -> float:  # noqa: ARG002
+    def max_rate(self, duration: float) -> float:  # noqa: ARG002
         """Return 2λ, of which θ̇ is no faster, 1/s."""
         return 2 * float(self._constants.scale)
 
@@ -314,7 +314,7 @@ class CylinderOnCylinder(ClosedForm):
         since = since + xp.where(flip, xp.where(less(ahead, 0), -tau, tau), 0.0)
         return 2 * since + rounds
 
-    def straight_turn(self, t: Any) -> tuple[Vector, Any]:
+    def fixed_axis_rotation(self, t: Any) -> tuple[Vector, Any]:
         """Return the axis and the angle by which the body has turned: from its place alone, as x = aφ on a plane."""
         gone = self.length * self.turned_at(t) - self.track_radius * self.rate * t
         return E_Z, gone * self.side / self.radius

@@ -56,7 +56,7 @@ class RestingBody(ClosedForm):
         STILL_AIR,
     )
     phases = (RESTING,)
-    never = frozenset({"lift", "start", "slip", "rim", "end", "edge", "curved"})
+    impossible_events = frozenset({"lift", "start", "slip", "rim", "end", "edge", "curved"})
 
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> RestingBody:
@@ -78,7 +78,7 @@ class RestingBody(ClosedForm):
         """Infinite: nothing moves."""
         return math.inf
 
-    def pace(self, duration: float) -> float:  # noqa: ARG002
+    def max_rate(self, duration: float) -> float:  # noqa: ARG002
         """Return 0, 1/s."""
         return 0.0
 
@@ -94,7 +94,7 @@ class RestingBody(ClosedForm):
         still = Vector(zero, zero, zero)
         return still + Vector(*self.position), still, still, still - Vector(*self.force)
 
-    def straight_turn(self, t: Any) -> tuple[Vector, Any]:
+    def fixed_axis_rotation(self, t: Any) -> tuple[Vector, Any]:
         """Return no turn at all."""
         return Vector(0.0, 0.0, 1.0), 0 * t
 

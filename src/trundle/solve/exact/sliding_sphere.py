@@ -92,7 +92,7 @@ class SlidingSphere(ClosedForm):
         PRESSED,
     )
     phases = (SLIPPING,)
-    never = frozenset({"lift", "jam"})  # N is constant
+    impossible_events = frozenset({"lift", "jam"})  # N is constant
 
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> SlidingSphere:
@@ -123,7 +123,7 @@ class SlidingSphere(ClosedForm):
         )
 
     @classmethod
-    def of_numbers(cls, system: RollingSystem, start: State, numbers: Sequence[float]) -> SlidingSphere:
+    def from_state_vector(cls, system: RollingSystem, start: State, numbers: Sequence[float]) -> SlidingSphere:
         """Take the slip from the law's own numbers: where slip begins, it is smaller than a rounding of V and Ω."""
         return replace(cls.of(system, start), slip=(float(numbers[10]), float(numbers[11])))
 
@@ -144,7 +144,7 @@ class SlidingSphere(ClosedForm):
         """Infinite: it never comes back."""
         return math.inf
 
-    def pace(self, duration: float) -> float:  # noqa: ARG002
+    def max_rate(self, duration: float) -> float:  # noqa: ARG002
         """Return 0: the path is a parabola, or smoother, 1/s."""
         return 0.0
 

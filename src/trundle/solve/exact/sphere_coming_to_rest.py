@@ -91,7 +91,7 @@ class SphereComingToRest(ClosedForm):
     )
 
     phases = (ROLLING, RESTING)
-    never = frozenset({"lift", "start"})  # N is constant, and nothing drives it
+    impossible_events = frozenset({"lift", "start"})  # N is constant, and nothing drives it
 
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> SphereComingToRest:
@@ -204,7 +204,7 @@ class SphereComingToRest(ClosedForm):
         """Infinite: it comes to rest."""
         return math.inf
 
-    def pace(self, duration: float) -> float:  # noqa: ARG002
+    def max_rate(self, duration: float) -> float:  # noqa: ARG002
         """Return how fast it slows down at first, 1/s."""
         v = float(self.speed)
         return float(self.gamma + self.eta * v + (self.deceleration / v if v else 0.0))
@@ -270,7 +270,7 @@ class SphereComingToRest(ClosedForm):
         size = np.where(v0 > 0, v0, 1.0)
         return np.where(v0 > 0, vx / size, 1.0)[()], (vy / size)[()]
 
-    def straight_turn(self, t: Any) -> tuple[Vector, Any] | None:
+    def fixed_axis_rotation(self, t: Any) -> tuple[Vector, Any] | None:
         """Return the axis and the angle x/a by which the ball has turned, where it does not spin besides."""
         if not is_zero(self.spin) or not all(map(is_number, self.velocity)):
             return None

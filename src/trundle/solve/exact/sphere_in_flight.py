@@ -79,7 +79,7 @@ class SphereInFlight(ClosedForm):
     conditions = (ROUND, on(Plane, Cylinder, Bowl, Dome), TURNING_SO_OR_SO, CONSTANT_LOADS)
     phases = (FLIGHT,)
     of_arrays = True
-    never = frozenset({"curved"})
+    impossible_events = frozenset({"curved"})
 
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> SphereInFlight:
@@ -123,7 +123,7 @@ class SphereInFlight(ClosedForm):
         """Infinite: it never comes back."""
         return math.inf
 
-    def pace(self, duration: float) -> float:
+    def max_rate(self, duration: float) -> float:
         """Return the rate at which the place changes over its distance, 1/s."""
         speeds = [abs(v) + abs(f) * duration / self.mass for v, f in zip(self.velocity, self.force, strict=True)]
         return max(speeds) / float(self.radius if self.distance is None else self.distance)
@@ -189,11 +189,11 @@ class SphereInFlight(ClosedForm):
             nothing,
         )
 
-    def own_at(self, t: Any) -> tuple[Any, ...]:
+    def support_coordinates_at(self, t: Any) -> tuple[Any, ...]:
         """Return by how much angle and rate of a free axle grow: nothing touches it."""
         return () if self.axle_rate is None else (self.axle_rate * t, 0 * t)
 
-    def straight_turn(self, t: Any) -> tuple[Vector, Any] | None:
+    def fixed_axis_rotation(self, t: Any) -> tuple[Vector, Any] | None:
         """Return the axis and the angle by which it has turned, where Ω keeps its direction."""
         parts = (*self.angular_velocity, *self.torque)
         if not all(map(is_number, parts)) or not all(is_zero(part) for part in self.torque):

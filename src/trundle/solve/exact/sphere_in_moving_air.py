@@ -89,7 +89,7 @@ class SphereInMovingAir(ClosedForm):
         ),
     )
 
-    never = frozenset({"lift"})  # N is constant
+    impossible_events = frozenset({"lift"})  # N is constant
 
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> SphereInMovingAir:
@@ -170,7 +170,7 @@ class SphereInMovingAir(ClosedForm):
         """Infinite: what brakes or drives the ball never brings it back."""
         return math.inf
 
-    def pace(self, duration: float) -> float:  # noqa: ARG002
+    def max_rate(self, duration: float) -> float:  # noqa: ARG002
         """Return the size of the larger s, 1/s."""
         return float(max(map(abs, self.exponents)))
 

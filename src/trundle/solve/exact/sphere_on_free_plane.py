@@ -67,7 +67,7 @@ class SphereOnFreePlane(ClosedForm):
     equation = "T13"
     source = "Weckesser, Am. J. Phys. 65, 736 (1997), for the conic; theory page, T13, for the time"
     conditions = (SPHERE, on(Plane), TURNING_FREELY, CONSTANT_LOADS, ALONG_NORMAL, PRESSED)
-    never = frozenset({"lift"})  # N is constant
+    impossible_events = frozenset({"lift"})  # N is constant
 
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> SphereOnFreePlane:
@@ -122,7 +122,7 @@ class SphereOnFreePlane(ClosedForm):
             return math.inf
         return float(_Orbit.of(self, float).period)
 
-    def pace(self, duration: float) -> float:  # noqa: ARG002
+    def max_rate(self, duration: float) -> float:  # noqa: ARG002
         """Return a bound of the rate at which it goes round, 1/s."""
         orbit = _Orbit.of(self, float)
         return float((math.sqrt(abs(orbit.square)) + abs(orbit.c)) / math.sqrt(self.axle_inertia))
@@ -138,13 +138,13 @@ class SphereOnFreePlane(ClosedForm):
         >>> [round(float(part), 12) for part in ball.motion_at(ball.period)[0]]
         [0.1, 0.0, 0.025]
         """
-        return self.motion_and_own_at(t)[0] if is_one(self) else one_by_one(self, t)
+        return self.motion_and_support_at(t)[0] if is_one(self) else one_by_one(self, t)
 
-    def own_at(self, t: Any) -> tuple[Any, Any]:
+    def support_coordinates_at(self, t: Any) -> tuple[Any, Any]:
         """Return the angle by which the table has turned, rad, and by how much its rate has grown, rad/s."""
-        return self.motion_and_own_at(t)[1]
+        return self.motion_and_support_at(t)[1]
 
-    def motion_and_own_at(self, t: Any) -> tuple[tuple[Vector, Vector, Vector, Vector], tuple[Any, ...]]:
+    def motion_and_support_at(self, t: Any) -> tuple[tuple[Vector, Vector, Vector, Vector], tuple[Any, ...]]:
         """Return what `motion_at` and `own_at` do, by going once from the time to τ."""
         number = _mpf if _is_mpmath(t) else float
         orbit = _Orbit.of(self, number)
@@ -172,8 +172,8 @@ class SphereOnFreePlane(ClosedForm):
 
     def findings(self, seen: Seen) -> Iterator[Finding]:
         """Compare the angular momentum of ball and table, and the conic."""
-        own, V = seen.at.own, seen.at.velocity
-        rate = own[:, 1] if own.shape[1] > 1 else np.full(seen.time.size, np.nan)
+        coordinates, V = seen.at.support_coordinates, seen.at.velocity
+        rate = coordinates[:, 1] if coordinates.shape[1] > 1 else np.full(seen.time.size, np.nan)
         x, y = seen.at.position[:, 0], seen.at.position[:, 1]
         momentum = float(self.axle_inertia) * rate + float(self.mass) * (x * V[:, 1] - y * V[:, 0])
         predicted = float(self.angular_momentum)

@@ -93,7 +93,7 @@ class SphereOnPlane(ManySamples, ClosedForm):
         ),
     )
 
-    never = frozenset({"lift"})  # N is constant
+    impossible_events = frozenset({"lift"})  # N is constant
 
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> SphereOnPlane:
@@ -181,7 +181,7 @@ class SphereOnPlane(ManySamples, ClosedForm):
             ]
         return rows
 
-    def pace(self, duration: float) -> float:  # noqa: ARG002
+    def max_rate(self, duration: float) -> float:  # noqa: ARG002
         """Return |λ|, 1/s."""
         return math.hypot(self.kappa, self.gamma)
 
@@ -287,7 +287,7 @@ class SphereOnPlane(ManySamples, ClosedForm):
             Vector(R.re, R.im, 0.0 if is_zero(fz) else -fz),
         )
 
-    def straight_turn(self, t: Any) -> tuple[Vector, Any] | None:
+    def fixed_axis_rotation(self, t: Any) -> tuple[Vector, Any] | None:
         """Return the axis and the angle x/a by which the ball has turned, where it rolls straight on a fixed plane."""
         (vx, vy), phi = self.velocity, self.phi
         fixed = is_zero(self.rate) and is_zero(self.spin) and is_zero(self.torque[2])

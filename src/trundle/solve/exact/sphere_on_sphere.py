@@ -102,7 +102,7 @@ class SphereOnSphere(ClosedForm):
         NO_TORQUE,
         Condition(", in the plane of a great circle that the force lies in, without spin out of it", _aside, START),
     )
-    never = frozenset({"curved"})
+    impossible_events = frozenset({"curved"})
 
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> SphereOnSphere:
@@ -165,9 +165,9 @@ class SphereOnSphere(ClosedForm):
         """Of the motion, s; infinite at rest and on the separatrix."""
         return self.pendulum.period
 
-    def pace(self, duration: float) -> float:
+    def max_rate(self, duration: float) -> float:
         """Return that of the pendulum, 1/s."""
-        return self.pendulum.pace(duration)
+        return self.pendulum.max_rate(duration)
 
     # The motion
 
@@ -200,9 +200,9 @@ class SphereOnSphere(ClosedForm):
         sine, cosine, _ = self.pendulum.gone_at(t)
         return (around * cosine - out * sine) * (2 * self.length * sine)
 
-    def straight_turn(self, t: Any) -> tuple[Vector, Any]:
+    def fixed_axis_rotation(self, t: Any) -> tuple[Vector, Any]:
         """Return the axis and the angle by which the ball has turned: from its place alone."""
-        return Vector(*self.first).cross(Vector(*self.second)), self.pendulum.straight_turn(t)[1]
+        return Vector(*self.first).cross(Vector(*self.second)), self.pendulum.fixed_axis_rotation(t)[1]
 
     # What is shown
 

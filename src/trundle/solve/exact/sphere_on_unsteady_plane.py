@@ -142,7 +142,7 @@ class SphereOnUnsteadyPlane(ClosedForm):
 
     def rates(self, t: Any) -> tuple[Any, Any]:
         """Return ω, rad/s, and ω̇, rad/s², of the plane at a time since the start."""
-        now = self.motion.at(self.start_time + t, *self.motion.own_start())
+        now = self.motion.at(self.start_time + t, *self.motion.initial_coordinates())
         return now.angular_velocity.z, now.angular_acceleration.z
 
     def pushes(self, t: Any) -> tuple[Any, Any, Any, Any]:
@@ -159,16 +159,16 @@ class SphereOnUnsteadyPlane(ClosedForm):
         return flat, force.z, driven, torque.z
 
     @property
-    def never(self) -> frozenset[str]:  # type: ignore[override]
+    def impossible_events(self) -> frozenset[str]:  # type: ignore[override]
         """It cannot lift off where nothing varies along the normal."""
         steady = all(load.constant or load.linear_drag is not None for load in self.loads)
         return frozenset({"lift"} if steady else ())
 
-    def pace(self, duration: float) -> float:
+    def max_rate(self, duration: float) -> float:
         """Return the fastest rate of the plane, of drag, and of what the pieces of the quadrature resolve, 1/s."""
-        return max((pace for _, pace in self.paces(duration)), default=0.0)
+        return max((pace for _, pace in self.max_rates(duration)), default=0.0)
 
-    def paces(self, duration: float) -> list[tuple[float, float]]:
+    def max_rates(self, duration: float) -> list[tuple[float, float]]:
         """Return the same for each piece: near a pole of a rate or load the last are far shorter than the first."""
         self._course.reach(duration)
         phase = 1 + 1 / float(self.share)  # rad by which the plane turns on a piece, at most, and what changes besides
@@ -205,9 +205,9 @@ class SphereOnUnsteadyPlane(ClosedForm):
             Vector(R.real, R.imag, zero - normal),
         )
 
-    def own_at(self, t: Any) -> tuple[Any, ...]:
+    def support_coordinates_at(self, t: Any) -> tuple[Any, ...]:
         """Return the coordinates of the plane's own motion: of `SpinBy` the angle turned through, rad."""
-        if not self.motion.own:
+        if not self.motion.coordinates:
             return ()
         self._course.reach(t)
         return (self._course.swept_at(t),)
@@ -240,7 +240,7 @@ class SphereOnUnsteadyPlane(ClosedForm):
         rate, share = seen.at.support(seen.system).angular_velocity.z, float(self.share)
         velocity = seen.at.velocity[:, 0] + 1j * seen.at.velocity[:, 1]
         kept = velocity - 1j * share * np.broadcast_to(rate, seen.time.shape) * seen.zeta
-        at_start = float(self.motion.at(float(self.start_time), *self.motion.own_start()).angular_velocity.z)
+        at_start = float(self.motion.at(float(self.start_time), *self.motion.initial_coordinates()).angular_velocity.z)
         predicted = abs(complex(*self.velocity) - 1j * share * at_start * complex(*self.position))
         worst = float(np.abs(kept)[np.argmax(np.abs(np.abs(kept) - predicted))])
         name, symbol = "Velocity less its share of the table's", r"|\dot\zeta - i\kappa\zeta|"

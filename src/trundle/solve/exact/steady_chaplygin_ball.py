@@ -71,7 +71,7 @@ class SteadyChaplyginBall(ClosedForm):
         *ON_LEVEL_PLANE,
         Condition(", turning about a principal axis that is not the middle one, or at rest", _wobbles, START),
     )
-    never = frozenset({"lift", "slip", "curved"})
+    impossible_events = frozenset({"lift", "slip", "curved"})
 
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> SteadyChaplyginBall:
@@ -94,7 +94,7 @@ class SteadyChaplyginBall(ClosedForm):
         """Infinite: it goes along a line, or nowhere."""
         return math.inf
 
-    def pace(self, duration: float) -> float:  # noqa: ARG002
+    def max_rate(self, duration: float) -> float:  # noqa: ARG002
         """Return Ω, rad/s."""
         return float(Vector(*self.angular_velocity).norm())
 
@@ -115,7 +115,7 @@ class SteadyChaplyginBall(ClosedForm):
             Vector(zero, zero, self.normal_force + zero),
         )
 
-    def straight_turn(self, t: Any) -> tuple[Vector, Any]:
+    def fixed_axis_rotation(self, t: Any) -> tuple[Vector, Any]:
         """Return the axis and the angle by which the ball has turned."""
         Omega = Vector(*self.angular_velocity)
         xp = namespace(Omega.x, Omega.y, Omega.z)

@@ -112,7 +112,7 @@ class UprightChaplyginBall(ClosedForm):
         TURNS,
         Condition(", with its momentum about the contact along the normal", _leaning, START),
     )
-    never = frozenset({"lift", "curved"})  # N is constant
+    impossible_events = frozenset({"lift", "curved"})  # N is constant
 
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> UprightChaplyginBall:
@@ -157,7 +157,7 @@ class UprightChaplyginBall(ClosedForm):
         """Infinite: the path is a rosette that does not close."""
         return math.inf
 
-    def pace(self, duration: float) -> float:  # noqa: ARG002
+    def max_rate(self, duration: float) -> float:  # noqa: ARG002
         """Return a bound of how fast Ω changes, rad/s."""
         c = self._floats
         return abs(self.momentum) / (min(self.moments) + self.mass * self.radius**2) + c.rate
@@ -258,7 +258,7 @@ class UprightChaplyginBall(ClosedForm):
             Vector(m * a * fy, -m * a * fx, c.normal_force + zero),
         )
 
-    def stance(self, t: Any) -> Quaternion:
+    def representative_orientation(self, t: Any) -> Quaternion:
         """Return the orientation, or the same with the other sign."""
         c, now, cosine, sine, _, _ = self._state(t)
         leaned = stance_of(E_Z, now.normal).conjugate  # takes n in the body to n; a turn about n is left

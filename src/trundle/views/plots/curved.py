@@ -13,9 +13,9 @@ from trundle.mechanics.algebra import Vector
 from trundle.wording import unit_for, with_unit
 
 from . import marks, solid
+from .events import FLIGHT, SLIPPING, part_in, with_events
 from .facts import Facts
 from .ground import Window, heights, meridians, sections, window_of
-from .happenings import FLIGHT, SLIPPING, part_in, with_events
 from .layout import FOOT, GAP, HEADER, KEY_LINE, LEFT, TITLE, Key, Place, Plan
 from .marks import STYLES, Ruler
 from .panels import Panel, at_home

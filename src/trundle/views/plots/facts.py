@@ -13,7 +13,7 @@ from trundle.mechanics.loads import at_rest
 from trundle.mechanics.shapes import concentric_sphere
 from trundle.solve.exact import closed_form
 
-from .happenings import FLIGHT, Happening, Stretch, happenings_of, stretches_of
+from .events import FLIGHT, EventMarks, PhaseInterval, happenings_of, stretches_of
 from .scales import Array
 from .words import key_numbers, title_of
 
@@ -48,8 +48,8 @@ class Facts:
     curved: bool  # whether it takes a picture of its surface
     off_centre: bool  # whether the contact does not follow the centre
     pushes: tuple[tuple[str, float, float], ...]  # name and direction, in the plane, of what acts on the body
-    stretches: tuple[Stretch, ...]
-    happenings: tuple[Happening, ...]
+    stretches: tuple[PhaseInterval, ...]
+    happenings: tuple[EventMarks, ...]
 
     @property
     def tilted(self) -> bool:
@@ -102,13 +102,13 @@ def facts_of(run: Trajectory) -> Facts:
 def support_states(run: Trajectory) -> SupportState:
     """Return pose and twist of the support at each sample."""
     motion = run.system.support.motion
-    own = [np.asarray(run.data[name].values, dtype=float) for name in own_variables(run)]
-    return motion.at(np.asarray(run.data["time"].values, dtype=float), *own)
+    coordinates = [np.asarray(run.data[name].values, dtype=float) for name in coordinate_variables(run)]
+    return motion.at(np.asarray(run.data["time"].values, dtype=float), *coordinates)
 
 
-def own_variables(run: Trajectory) -> list[str]:
+def coordinate_variables(run: Trajectory) -> list[str]:
     """Return the names of the variables that hold the coordinates of the support's own motion."""
-    return [f"support_{name}" for name in run.system.support.motion.own]
+    return [f"support_{name}" for name in run.system.support.motion.coordinates]
 
 
 def _size(run: Trajectory) -> float:
@@ -127,7 +127,7 @@ def _rate(run: Trajectory) -> float:
     largest = float(np.max(np.abs(rates)))
     both = float(np.min(rates)) < -0.01 * largest and float(np.max(rates)) > 0.01 * largest
     # A lean that goes round turns the axle a little, too: that is no turn of the table.
-    turned = getattr(motion, "turns", True) and (motion.own or float(motion.mean_rate) != 0.0)
+    turned = getattr(motion, "turns", True) and (motion.coordinates or float(motion.mean_rate) != 0.0)
     return 0.0 if both or not turned else float(np.mean(rates))
 
 

@@ -71,7 +71,7 @@ def levels_at(surface: Surface, x: Any, y: Any, z: Any) -> Array:
     p = Vector(x, y, z)
     with np.errstate(all="ignore"):
         level = np.array(np.broadcast_to(surface.level(p), x.shape), dtype=float)
-        inside = surface.inside(p)
+        inside = surface.domain_margin(p)
         if inside is not None:
             level[~(np.broadcast_to(inside, x.shape) >= 0)] = np.nan
         if surface.rim is not None:

@@ -10,8 +10,8 @@ import numpy as np
 
 from trundle.wording import with_unit
 
+from .events import FLIGHT, SLIPPING, part_in, with_events
 from .facts import NOTHING, Facts, guiding_centre, turns_in
-from .happenings import FLIGHT, SLIPPING, part_in, with_events
 from .marks import Page
 from .scales import LONG_LINE, Array, refined
 

@@ -12,8 +12,8 @@ from matplotlib.axes import Axes
 from trundle.wording import Unit, unit_for, with_unit
 
 from . import marks
+from .events import FLIGHT, SLIPPING
 from .facts import NOTHING, Facts, facts_of
-from .happenings import FLIGHT, SLIPPING
 from .layout import Place, Plan, arrange
 from .marks import STYLES, Ruler
 from .panels import MANY_TURNS, Panel, at_home, panels_of, phases_of, until_text

@@ -13,8 +13,8 @@ from trundle.mechanics.attitude import attitude_of
 from trundle.mechanics.contact import normal_at
 from trundle.wording import Unit, unit_for
 
-from .facts import NOTHING, Facts, guiding_centre, own_variables, support_states
-from .happenings import FLIGHT, SLIPPING, part_in
+from .events import FLIGHT, SLIPPING, part_in
+from .facts import NOTHING, Facts, coordinate_variables, guiding_centre, support_states
 from .scales import Array
 
 if TYPE_CHECKING:
@@ -84,8 +84,8 @@ def _array(data: Any, name: str) -> Array:
 
 def _forces(run: Trajectory, facts: Facts, time: Array, support: Any) -> list[Series]:
     R = _array(support, "contact_force")
-    own = tuple(_array(support, name) for name in own_variables(run))
-    normal = normal_at(run.system, time, Vector.of(_array(support, "contact")), own).array()
+    coordinates = tuple(_array(support, name) for name in coordinate_variables(run))
+    normal = normal_at(run.system, time, Vector.of(_array(support, "contact")), coordinates).array()
     normal = np.broadcast_to(normal, R.shape)
     N = np.einsum("ni,ni->n", R, normal)
     f = np.linalg.norm(R - N[:, None] * normal, axis=1)
@@ -138,7 +138,7 @@ def _lean(run: Trajectory, facts: Facts, support: Any) -> list[Series]:
     if shape.axis is not None or not facts.off_centre:
         return []
     state = support_states(run)
-    there = state.own_of(Vector.of(_array(support, "contact")))
+    there = state.local(Vector.of(_array(support, "contact")))
     first, second = run.system.support.surface.directions(there)
     n = run.system.support.surface.normal(there)
     turned = (state.rotation @ first, state.rotation @ second, state.rotation @ n)

@@ -15,8 +15,8 @@ from matplotlib.patches import Patch
 
 from trundle.wording import Unit, unit_for
 
+from .events import FLIGHT, RESTING, SLIPPING
 from .facts import Facts, facts_of, turns_in
-from .happenings import FLIGHT, RESTING, SLIPPING
 from .marks import STYLES
 from .quantities import Series, quantities_of
 from .scales import Array, thin_series

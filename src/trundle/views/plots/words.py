@@ -36,7 +36,7 @@ def title_of(system: RollingSystem) -> str:
     return f"{noun[0].upper()}{noun[1:]} {support.surface.where} {article} {words}"
 
 
-def key_numbers(system: RollingSystem, own: tuple[float, ...] | None = None) -> str:
+def key_numbers(system: RollingSystem, coordinates: tuple[float, ...] | None = None) -> str:
     """Write the line of key numbers: of the support's motion, its surface, the body, friction and the loads.
 
     Examples
@@ -49,7 +49,7 @@ def key_numbers(system: RollingSystem, own: tuple[float, ...] | None = None) -> 
     """
     support = system.support
     wall = support.surface.wall_radius is not None
-    first = tuple(map(float, support.motion.own_start())) if own is None else own
+    first = tuple(map(float, support.motion.initial_coordinates())) if coordinates is None else coordinates
     parts = support.motion.key_numbers(support.surface.ground, first) + support.surface.key_numbers()
     if support.tilt and not wall:
         parts.append(f"tilt {degrees(support.tilt)}")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .making import scene_of
+from .build import scene_of
 from .wire import Scene, pack, unpack
 
 __all__ = ["Scene", "pack", "scene_of", "unpack"]

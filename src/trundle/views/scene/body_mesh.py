@@ -18,7 +18,7 @@ from .mesh import Array, Mesh, grid_triangles, joined, oriented
 
 # Intervals of the grid from pole to pole, and round: the equator is a row of it, and each axis a column.
 _ROWS, _AROUND = 36, 56
-_COVERED = -1e-13  # `covers` at the edge itself, but for rounding
+_COVERED = -1e-13  # `validity_margin` at the edge itself, but for rounding
 _NEARLY = 1e-3  # rad from the pole
 _LENS = 0.02  # half the thickness in the middle of a sharp disc, over its radius
 _RING = 0.8  # moment about the axis over m a² from which on a rim is a ring, and a roller a pipe
@@ -69,7 +69,7 @@ def points(shape: Shape, nu: Array) -> Array:
     """Return X(ν), (n, 3), m; NaN where the shape has no single point with that normal."""
     with np.errstate(all="ignore"):
         found = np.broadcast_to(shape.support_map(Vector.of(nu)).array(), nu.shape).copy()
-        covered = shape.covers(Vector.of(nu))
+        covered = shape.validity_margin(Vector.of(nu))
     if covered is not None:
         found[~(np.broadcast_to(covered, len(nu)) >= _COVERED)] = np.nan
     return found

@@ -51,13 +51,17 @@ def moves(system: RollingSystem) -> bool:
 def pose_of(system: RollingSystem, at: Samples, state: SupportState) -> dict[str, NDArray[Any]]:
     """Return the columns of a moving support's pose."""
     n, rate = at.time.size, system.support.motion.steady_rate
-    own = {"support_own": np.asarray(at.own, dtype=np.float64)} if at.own.shape[1] else {}
+    coordinates = (
+        {"support_coordinates": np.asarray(at.support_coordinates, dtype=np.float64)}
+        if at.support_coordinates.shape[1]
+        else {}
+    )
     turned = _quaternions(rotations(state, n)) if rate is None else _about_third_axis(float(rate) * at.time)
     origin = np.broadcast_to(state.origin.array(), (n, 3))
     return {
         "support_position": origin.astype(np.float32),
         "support_orientation": continuous(turned).astype(np.float32),
-        **own,
+        **coordinates,
     }
 
 

@@ -62,7 +62,7 @@ def _integrals(system: RollingSystem, start: State, samples: Samples) -> Iterato
         return
     struck = any(event.kind in ("land", "settle", "jolt") for event in samples.events)
     some = samples.part(slice(None, None, max(1, samples.time.size // _LOOKED_AT)))
-    record = Record(some.motion(system), Vector.of(some.contact), some.support_own)
+    record = Record(some.motion(system), Vector.of(some.contact), some.support_columns)
     at_start = _record(system, start, samples)
     for integral in invariants_of(system, tuple(sorted(_NAMES[code] for code in phases))):
         if struck and not integral.through_changes:

@@ -72,7 +72,7 @@ def with_events(run: Trajectory, at: Samples) -> Samples:
         for name in ("position", "velocity", "angular_velocity", "orientation")
     }
     own = np.array([state.support for state in states], dtype=float).reshape(len(states), -1)
-    new = replace(behind, time=times, own=own, contact=np.array(contacts), **rows)
+    new = replace(behind, time=times, support_coordinates=own, contact=np.array(contacts), **rows)
     both = Samples.joined([at, new], at.events)
     return both.part(np.argsort(both.time, kind="stable"))
 

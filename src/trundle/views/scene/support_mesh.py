@@ -211,7 +211,7 @@ def _exists(surface: Surface, x: Array, y: Array) -> Array:
     with np.errstate(all="ignore"):
         p = surface.point(x, y)
         z = np.broadcast_to(np.asarray(p.z, dtype=float), x.shape)
-        inside = surface.inside(Vector(x, y, np.where(np.isfinite(z), z, 0.0)))
+        inside = surface.domain_margin(Vector(x, y, np.where(np.isfinite(z), z, 0.0)))
     there = np.isfinite(z)
     if inside is not None:
         there &= np.broadcast_to(inside, x.shape) >= 0

@@ -44,7 +44,7 @@ export function instantAt(scene: Scene, time: number): Instant {
     velocity: mixed(columns.velocity, 3) as Triple,
     angular_velocity: mixed(columns.angular_velocity, 3) as Triple,
     orientation: turn(columns.orientation),
-    support: mixed(columns.support_own, (columns.support_own?.length ?? 0) / columns.time.length),
+    support: mixed(columns.support_coordinates, (columns.support_coordinates?.length ?? 0) / columns.time.length),
   }
 }
 

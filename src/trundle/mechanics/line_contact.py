@@ -14,7 +14,7 @@ from . import checks
 from .algebra import Matrix, Quaternion, Vector
 from .contact import Contact, roll
 from .motions import SupportState
-from .nearest import settle
+from .nearest import closest_contact
 from .surfaces import Surface
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def facing(contact: Contact, begin: SupportState, surface: Surface, velocity: An
     >>> slope.place().orientation  # its axis is the second of the support frame
     (0.5, -0.5, -0.5, -0.5)
     """
-    own = begin.own_of(contact.point)
+    own = begin.local(contact.point)
     first, second = (begin.rotation @ e for e in surface.directions(own))
     along = (1.0, 0.0)
     if velocity is not None and not isinstance(velocity, str):
@@ -67,7 +67,7 @@ def check_start(system: RollingSystem, start: State, until: float | None = None)
         return
     q, Omega = Quaternion(*start.orientation), Vector(*start.angular_velocity)
     axis = q.matrix() @ system.body.shape.axis
-    contact = settle(system, start.time, Vector(*start.position), q, start.support)
+    contact = closest_contact(system, start.time, Vector(*start.position), q, start.support)
     if abs(axis.dot(contact.normal)) > TOLERANCE:
         remedy = "Leave `orientation` out and it is laid across its way."
         raise InvalidValueError(
@@ -106,7 +106,7 @@ def _check_aside(system: RollingSystem, start: State, contact: Contact, axis: Ve
     ]
     for time, side, turning in tried:
         try:
-            there = settle(system, time, Vector(*start.position) + way * side, q, start.support)
+            there = closest_contact(system, time, Vector(*start.position) + way * side, q, start.support)
             now = roll(system, time, there.point, q, turning, start.support)
         except (SolverError, ArithmeticError, ValueError):  # the surface does not reach there
             continue

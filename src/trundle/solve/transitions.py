@@ -17,6 +17,7 @@ from ..mechanics.placing import SLIP_TOLERANCE, no_gap
 from ..mechanics.slipping import response, slip, unpushed, unturned
 from ..mechanics.system import RollingSystem, State
 from .coming_off import lift_at_hand
+from .contact_state import WEIGHTLESS, ContactState, floats, moment
 from .creeping import CreepingLaw
 from .laws import (
     AN_INSTANT,
@@ -33,9 +34,8 @@ from .laws import (
     left_of_resistance,
     state_turning,
 )
-from .onset_of_slip import first_moment, jammed
 from .samples import Array, Event
-from .touch import WEIGHTLESS, Touch, floats, moment
+from .slip_onset import jammed, slip_onset
 
 _FLOOR = 1e-12  # share of the forces at hand by which the support seems to pull a weightless body: rounding
 _PULLED_BACK = 1e-8  # share of the accelerations at hand at which a body that lifts off would come straight down
@@ -46,34 +46,36 @@ JOLT = "jolt"  # the stop where the velocity of the support jumps under a body t
 
 
 @dataclass(frozen=True)
-class Stop:
+class ZeroCrossing:
     """Where a stretch ended: the instant, which of the law's stops, and the state's numbers."""
 
     time: float
     name: str
-    numbers: Array
-    known: Touch | None = None  # the same, where the method knows it better than by its numbers
+    state_vector: Array
+    known: ContactState | None = None  # the same, where the method knows it better than by its numbers
 
-    def at(self, system: RollingSystem, law: Law) -> Touch:
+    def at(self, system: RollingSystem, law: Law) -> ContactState:
         """Return the body where it was then."""
-        return law.meant(system, self.time, self.numbers) if self.known is None else self.known
+        return law.unpack(system, self.time, self.state_vector) if self.known is None else self.known
 
 
 @dataclass(frozen=True)
-class Next:
+class PhaseStart:
     """The law that holds from now on, where the body is, its numbers by that law, and what happened."""
 
     law: Law
     start: State
-    numbers: list[float]
-    extras: tuple[float, ...] = ()
+    state_vector: list[float]
+    event_parameters: tuple[float, ...] = ()
     events: tuple[Event, ...] = ()
-    across: Next | None = None  # by which the body moves until this begins, where something happened before
+    across: PhaseStart | None = None  # by which the body moves until this begins, where something happened before
 
     @staticmethod
-    def of(law: Law, at: Touch, extras: tuple[float, ...] = (), events: tuple[Event, ...] = ()) -> Next:
+    def of(
+        law: Law, at: ContactState, event_parameters: tuple[float, ...] = (), events: tuple[Event, ...] = ()
+    ) -> PhaseStart:
         """Return what begins where a body touches."""
-        return Next(law, at.state, law.numbers(at), extras, events)
+        return PhaseStart(law, at.state, law.state_vector(at), event_parameters, events)
 
     @property
     def time(self) -> float:
@@ -81,9 +83,9 @@ class Next:
         return self.start.time
 
 
-def at_start(system: RollingSystem, start: State) -> Next:
+def at_start(system: RollingSystem, start: State) -> PhaseStart:
     """Return the phase in which a start finds itself."""
-    at = Touch.of(system, start)
+    at = ContactState.of(system, start)
     if at.gap > no_gap(at.contact, start.position):
         return _fly(at)
     if at.approach < -SLIP_TOLERANCE * at.speed:
@@ -93,35 +95,35 @@ def at_start(system: RollingSystem, start: State) -> Next:
     return _touching(system, at)
 
 
-def after(system: RollingSystem, law: Law, stop: Stop) -> Next:
+def after(system: RollingSystem, law: Law, stop: ZeroCrossing) -> PhaseStart:
     """Return what follows one of a law's stops."""
     at, name = stop.at(system, law), stop.name.removeprefix("near ")
     if name in ("slip", "start"):
-        extras = _floor(system, law, at) + (0.0,) * law.ending
-        lift = lift_at_hand(system, law, stop.time, stop.numbers.tolist(), name, extras)
+        event_parameters = _floor(system, law, at) + (0.0,) * law.ending
+        lift = lift_at_hand(system, law, stop.time, stop.state_vector.tolist(), name, event_parameters)
         if lift is not None:
-            advanced = law.advanced(system, stop.time, stop.numbers.tolist(), lift - stop.time)
-            return _lifted(system, law.meant(system, lift, advanced))
+            advanced = law.rk4_step(system, stop.time, stop.state_vector.tolist(), lift - stop.time)
+            return _lifted(system, law.unpack(system, lift, advanced))
     if name.startswith(CORNER) or (name in ("grip", "stop") and _goes_on(system, law, at, stop)):
-        extras = (*_floor(system, law, at), *_extras(system, law, at, stop.numbers))
-        return Next(law, at.state, list(stop.numbers), extras)
+        event_parameters = (*_floor(system, law, at), *_extras(system, law, at, stop.state_vector))
+        return PhaseStart(law, at.state, list(stop.state_vector), event_parameters)
     if name == JOLT:
         return _jolted(system, law, at, stop)
     if name == "land":
         # The gap and r may differ by rounding. The gap has said when; r gives way, or each bounce would add its share.
         return _struck(system, at.over(0.0))
     if name in ("settled", "lags"):
-        return slipping(system, Next.of(law, at))
+        return slipping(system, PhaseStart.of(law, at))
     if isinstance(law, CreepingLaw) and name == "turned":
-        turned = law.turned(law.direction(system, stop.time, stop.numbers))
-        return Next(turned, at.state, stop.numbers.tolist(), _floor(system, law, at))
+        turned = law.turned(law.direction(system, stop.time, stop.state_vector))
+        return PhaseStart(turned, at.state, stop.state_vector.tolist(), _floor(system, law, at))
     if name == "jam":
         raise jammed(at.state.time, JAMS)
     if name == "lift":
         follows = _touching(system, at) if law.weightless else _lifted(system, at)
         return follows if isinstance(follows.law, FlightLaw) else replace(follows, events=())
     if name in ("grip", "stop"):
-        at = _come_to_it(system, law, at, stop.numbers, name)
+        at = _come_to_it(system, law, at, stop.state_vector, name)
     if name == "held":
         at = replace(at.moving(system, at.contact.rolling_velocity(at.Omega), at.Omega), slip=ZERO)
     follows = _touching(system, at, gave_way=name)
@@ -131,26 +133,26 @@ def after(system: RollingSystem, law: Law, stop: Stop) -> Next:
     return replace(follows, events=(*(_event(kind, text, at) for kind, text in said), *follows.events))
 
 
-def jolted(system: RollingSystem, law: Law, kink: Kink, numbers: Array) -> Touch:
+def jolted(system: RollingSystem, law: Law, kink: Kink, numbers: Array) -> ContactState:
     """Return a body as it moves before the velocity of the support jumps, on the support as it is after.
 
     The slip is that against the support as it moves then.
     """
-    before = law.meant(system, kink.before, numbers)
-    return Touch.of(system, replace(before.state, time=kink.time), before.contact.point)
+    before = law.unpack(system, kink.before, numbers)
+    return ContactState.of(system, replace(before.state, time=kink.time), before.contact.point)
 
 
-def _jolted(system: RollingSystem, law: Law, at: Touch, stop: Stop) -> Next:
+def _jolted(system: RollingSystem, law: Law, at: ContactState, stop: ZeroCrossing) -> PhaseStart:
     """Return what follows where the velocity of the support jumps.
 
     A support that comes towards the body strikes it as in a landing, and from one that goes away the body comes off.
     Along the support friction acts from now on; without limit it takes the body along at once.
     """
     limit = SLIP_TOLERANCE * at.speed
-    jump = (at.slip - law.meant(system, stop.time, stop.numbers).slip).norm()
+    jump = (at.slip - law.unpack(system, stop.time, stop.state_vector).slip).norm()
     if jump <= limit and isinstance(law, SlippingLaw) and not law.held:
-        extras = (*_floor(system, law, at), *_extras(system, law, at, stop.numbers))
-        return Next(law, at.state, list(stop.numbers), extras)
+        event_parameters = (*_floor(system, law, at), *_extras(system, law, at, stop.state_vector))
+        return PhaseStart(law, at.state, list(stop.state_vector), event_parameters)
     if at.approach < -limit:
         return _struck(system, at, f"the support struck the body at {-at.approach:.4g} m/s")
     if at.approach > limit:
@@ -165,7 +167,7 @@ def _jolted(system: RollingSystem, law: Law, at: Touch, stop: Stop) -> Next:
     return replace(follows, events=(_event(JOLT, said, at, after), *follows.events))
 
 
-def _left_behind(system: RollingSystem, at: Touch, limit: float) -> Next:
+def _left_behind(system: RollingSystem, at: ContactState, limit: float) -> PhaseStart:
     """Return the flight of a body from which the support jerks away; one as low as a bounce that is cut is cut."""
     said, pull = f"the support jerked away from the body at {at.approach:.4g} m/s", _pull(system, at)
     flies = _fly(at, max(at.gap, _first_gap(at, at.approach, pull)), (_event(JOLT, said, at),))
@@ -191,16 +193,16 @@ def _said(stop: str, before: int, after: int) -> tuple[tuple[str, str], ...]:
     return (_NAMES[RestingLaw.code], _BEGAN_TO_ROLL) if after == RollingLaw.code else (("slip", _SLIPS_ON[stop]),)
 
 
-def slipping(system: RollingSystem, now: Next) -> Next:
+def slipping(system: RollingSystem, now: PhaseStart) -> PhaseStart:
     """Return the same phase by the law of slipping where it is slip whose direction settles at once."""
     if not isinstance(now.law, CreepingLaw):
         return now
-    at = now.law.meant(system, now.time, now.numbers)
+    at = now.law.unpack(system, now.time, now.state_vector)
     follows = _slipping(system, at, SlippingLaw, at.sliding / at.sliding.norm())
     return replace(follows, events=now.events)
 
 
-def _event(kind: str, said: str, before: Touch, after: Touch | None = None) -> Event:
+def _event(kind: str, said: str, before: ContactState, after: ContactState | None = None) -> Event:
     """Return what happened to a body where it touches; absent after, nothing about its motion changed at once."""
     state = before.state
     now = state if after is None else after.state
@@ -221,38 +223,38 @@ _NAMES = {
 }
 
 
-def _goes_on(system: RollingSystem, law: Law, at: Touch, stop: Stop) -> bool:
+def _goes_on(system: RollingSystem, law: Law, at: ContactState, stop: ZeroCrossing) -> bool:
     """Tell whether slip or turning was only at its slowest, and did not end."""
     name = stop.name.removeprefix("near ")
-    left = float(law.shrinking(system, at.state.time, stop.numbers, name).norm())
+    left = float(law.shrinking(system, at.state.time, stop.state_vector, name).norm())
     if left <= 4 * _least(system, at, name):
         return False
     if not stop.name.startswith("near "):
         return True
-    rate = law.shrinking_rate(system, at.state.time, stop.numbers, name)
+    rate = law.shrinking_rate(system, at.state.time, stop.state_vector, name)
     return left > 4 * AN_INSTANT * float(np.linalg.norm(rate))
 
 
-def _least(system: RollingSystem, at: Touch, stop: str) -> float:
+def _least(system: RollingSystem, at: ContactState, stop: str) -> float:
     """Return the slip, m/s, or how the body turns, rad/s, below which it has all but ended."""
     return at.still(system) / (1.0 if stop == "grip" else at.arm)
 
 
-def _floor(system: RollingSystem, law: Law, at: Touch) -> tuple[float, ...]:
+def _floor(system: RollingSystem, law: Law, at: ContactState) -> tuple[float, ...]:
     """Return what the stops take where nothing presses the body on: the pull that is rounding."""
     return (_FLOOR * at.forces(system),) if law.weightless else ()
 
 
-def _extras(system: RollingSystem, law: Law, at: Touch, numbers: Any = None) -> tuple[float, ...]:
+def _extras(system: RollingSystem, law: Law, at: ContactState, numbers: Any = None) -> tuple[float, ...]:
     """Return what the stops take that end slip or turning: when it is all but nothing, and its direction."""
     found: list[float] = []
     for name in law.ends:
-        v = law.shrinking(system, at.state.time, law.numbers(at) if numbers is None else numbers, name)
+        v = law.shrinking(system, at.state.time, law.state_vector(at) if numbers is None else numbers, name)
         found += [_least(system, at, name) ** 2, *floats(v / v.norm())]
     return tuple(found)
 
 
-def spins_on(system: RollingSystem, law: Law, stop: Stop) -> bool:
+def spins_on(system: RollingSystem, law: Law, stop: ZeroCrossing) -> bool:
     """Tell whether a body has stopped rolling, and still spins about the normal."""
     at = stop.at(system, law)
     if _goes_on(system, law, at, stop):
@@ -261,11 +263,11 @@ def spins_on(system: RollingSystem, law: Law, stop: Stop) -> bool:
     return bool(abs(relative.dot(at.contact.normal)) * at.arm > 1e-9 * at.scale(system))
 
 
-def _fly(at: Touch, gap: float | None = None, events: tuple[Event, ...] = ()) -> Next:
-    return Next.of(FlightLaw(), at if gap is None else at.over(gap), (), events)
+def _fly(at: ContactState, gap: float | None = None, events: tuple[Event, ...] = ()) -> PhaseStart:
+    return PhaseStart.of(FlightLaw(), at if gap is None else at.over(gap), (), events)
 
 
-def _lifted(system: RollingSystem, at: Touch) -> Next:
+def _lifted(system: RollingSystem, at: ContactState) -> PhaseStart:
     state = at.state
     if system.support.friction is None and _pulled_back(system, at):
         raise SolverError(
@@ -275,7 +277,7 @@ def _lifted(system: RollingSystem, at: Touch) -> Next:
     return _fly(at, _TAKE_OFF * at.arm, (_event("lift", _NAMES[FlightLaw.code][1], at),))
 
 
-def _first_gap(at: Touch, off: float, pull: float) -> float:
+def _first_gap(at: ContactState, off: float, pull: float) -> float:
     """Return the gap with which a body begins to fly that comes off so fast, m: none, but for the sign.
 
     It is small beside the height of the flight: what is added again at each bounce would show in those to come.
@@ -284,28 +286,30 @@ def _first_gap(at: Touch, off: float, pull: float) -> float:
     return _TAKE_OFF * min(at.arm, height)
 
 
-def _is_low(at: Touch, off: float, pull: float) -> bool:
+def _is_low(at: ContactState, off: float, pull: float) -> bool:
     """Tell whether a body that comes off so fast, m/s, comes back before it is any height off, against a pull, m/s²."""
     return pull > 0 and off * off < 2 * pull * SETTLED * at.arm
 
 
-def _pulled_back(system: RollingSystem, at: Touch) -> bool:
+def _pulled_back(system: RollingSystem, at: ContactState) -> bool:
     """Tell whether friction alone keeps a body from coming straight down again."""
     pull, limit = _pull(system, at), _PULLED_BACK * at.scale(system) ** 2 / at.arm
-    n, own = at.contact.normal, at.state.support
-    R = roll(system, at.state.time, at.contact.point, at.orientation, at.Omega, own).reaction
+    n, coordinates = at.contact.normal, at.state.support
+    R = roll(system, at.state.time, at.contact.point, at.orientation, at.Omega, coordinates).reaction
     J = system.body.inertia_in_space(at.orientation.matrix())
     by_friction = pull - float(response(system, at.contact, J, n * n.dot(R)).slip.dot(n))
     return bool(min(pull, by_friction) > limit)
 
 
-def _pull(system: RollingSystem, at: Touch) -> float:
+def _pull(system: RollingSystem, at: ContactState) -> float:
     """Return how fast the body would come down on the support if it did not push, m/s²."""
-    own = at.state.support
-    return -float(unpushed(system, at.state.time, at.contact, at.orientation, at.Omega, at.sliding, own).opening)
+    coordinates = at.state.support
+    return -float(
+        unpushed(system, at.state.time, at.contact, at.orientation, at.Omega, at.sliding, coordinates).opening
+    )
 
 
-def _opens(system: RollingSystem, at: Touch) -> bool:
+def _opens(system: RollingSystem, at: ContactState) -> bool:
     """Tell whether a body on which nothing presses comes off at once: left alone, the gap opens faster and faster.
 
     What only seems to press or to pull on a weightless body, rounding, stays as small as it is.
@@ -315,23 +319,23 @@ def _opens(system: RollingSystem, at: Touch) -> bool:
     opening = 0.0
     for share in _LOOKS:
         time = alone.time + share * wait
-        numbers = alone.law.advanced(system, alone.time, alone.numbers, share * wait)
-        opening = -_pull(system, alone.law.meant(system, time, numbers))
+        numbers = alone.law.rk4_step(system, alone.time, alone.state_vector, share * wait)
+        opening = -_pull(system, alone.law.unpack(system, time, numbers))
         if opening < -floor:
             return False
     return opening > floor
 
 
-def _struck(system: RollingSystem, at: Touch, jolt: str = "", before: Touch | None = None) -> Next:
+def _struck(system: RollingSystem, at: ContactState, jolt: str = "", before: ContactState | None = None) -> PhaseStart:
     """Let the body strike the support, or be struck by it, of which is told; it bounces or stays."""
     begin = before or at
-    V, Omega, own, off, after = at.V, at.Omega, at.state.support, 0.0, at
+    V, Omega, coordinates, off, after = at.V, at.Omega, at.state.support, 0.0, at
     if at.approach < 0 or jolt:
         struck = land(system, at.contact, at.orientation, at.slip)
         V, Omega = V + struck.velocity_change, Omega + struck.angular_velocity_change
         if system.support.motion.free:
-            own = (*own[:-1], own[-1] + float(struck.axle_rate_change))
-        after = at.moving(system, V, Omega, own)
+            coordinates = (*coordinates[:-1], coordinates[-1] + float(struck.axle_rate_change))
+        after = at.moving(system, V, Omega, coordinates)
         off = after.approach  # a free axle that was struck carries the contact along
         sideways = at.approach >= -SLIP_TOLERANCE * at.speed
         if (sideways or system.support.restitution == 0) and off <= SLIP_TOLERANCE * at.speed:
@@ -353,14 +357,14 @@ def _struck(system: RollingSystem, at: Touch, jolt: str = "", before: Touch | No
     return replace(follows, events=(event, *follows.events))
 
 
-def _set_down(system: RollingSystem, at: Touch) -> Touch:
+def _set_down(system: RollingSystem, at: ContactState) -> ContactState:
     """Return a body that touches and stays: no velocity off the support, and none along it where that is rounding."""
     limit = SLIP_TOLERANCE * at.speed
     held = at.sliding.norm() <= limit and system.support.friction != 0
     return at.moving(system, at.contact.rolling_velocity(at.Omega) + (ZERO if held else at.sliding), at.Omega)
 
 
-def _come_to_it(system: RollingSystem, law: Law, at: Touch, numbers: Any, stop: str) -> Touch:
+def _come_to_it(system: RollingSystem, law: Law, at: ContactState, numbers: Any, stop: str) -> ContactState:
     """Go on straight from where slip or turning has all but ended to where it has ended."""
     y, time = np.asarray(numbers, dtype=float), at.state.time
     v = law.shrinking(system, time, numbers, stop).array()
@@ -369,13 +373,13 @@ def _come_to_it(system: RollingSystem, law: Law, at: Touch, numbers: Any, stop: 
         rates = np.array([float(rate) for rate in law.rates(system, time, y.tolist())])
         closing = float(-(v @ law.shrinking_rate(system, time, y, stop)) / length)
         wait = length / closing if closing > 0 else 0.0
-        at = law.meant(system, time + wait, y + wait * rates)
+        at = law.unpack(system, time + wait, y + wait * rates)
     Omega = at.Omega if stop == "grip" else unturned(at.contact, at.Omega)
     s = at.sliding if stop == "stop" and law.code == SlippingLaw.code else ZERO
     return at.moving(system, at.contact.rolling_velocity(Omega) + s, Omega)
 
 
-def _touching(system: RollingSystem, at: Touch, gave_way: str = "") -> Next:
+def _touching(system: RollingSystem, at: ContactState, gave_way: str = "") -> PhaseStart:
     """Return the phase of a body that touches and stays: slipping where it slips, else what its forces ask for.
 
     Where static friction or the resistance has just given way, "slip" or "start", rounding no longer decides it.
@@ -394,13 +398,13 @@ def _touching(system: RollingSystem, at: Touch, gave_way: str = "") -> Next:
 
 def _slipping(
     system: RollingSystem,
-    at: Touch,
+    at: ContactState,
     law: Callable[..., SlippingLaw],
     direction: Vector,
     ending: tuple[float, ...] | None = None,
     *,
     starts: bool = False,
-) -> Next:
+) -> PhaseStart:
     """Return slipping where the support pushes, else flight; what no law can follow is named.
 
     Where more has just been asked of resistance than it has, turning starts.
@@ -418,10 +422,10 @@ def _slipping(
         return _lifted(system, at)
     follows = law(weightless, turning=turning)
     ending = (*ending, *_extras(system, follows, at)[len(ending) :]) if ending else _extras(system, follows, at)
-    return Next.of(follows, at, (_FLOOR * forces, *ending) if weightless else ending)
+    return PhaseStart.of(follows, at, (_FLOOR * forces, *ending) if weightless else ending)
 
 
-def _resisted(system: RollingSystem, at: Touch, direction: Vector, *, starts: bool) -> tuple[Touch, str]:
+def _resisted(system: RollingSystem, at: ContactState, direction: Vector, *, starts: bool) -> tuple[ContactState, str]:
     """Return a body that slips against resistance to rolling, and how it turns: "resisted", "held" or only just."""
     if state_turning(at.contact, at.Omega).norm() * at.arm > SLIP_TOLERANCE * at.scale(system):
         return at, "resisted"
@@ -439,7 +443,7 @@ def _resisted(system: RollingSystem, at: Touch, direction: Vector, *, starts: bo
     return replace(_turned_off(system, at, now.holding, at.sliding), slip=at.slip), "resisted"
 
 
-def _rolling(system: RollingSystem, at: Touch, *, slips: bool = False) -> Next:
+def _rolling(system: RollingSystem, at: ContactState, *, slips: bool = False) -> PhaseStart:
     """Return rolling where the support can make it do so, else slipping or flight."""
     at = _turning_on(system, at) if system.resisted else at  # what friction is to give depends on the resistance
     state = at.state
@@ -463,30 +467,30 @@ def _rolling(system: RollingSystem, at: Touch, *, slips: bool = False) -> Next:
             "there, and what it would hold is not covered. Let it roll a little, or leave the resistance out."
         )
     ending = _extras(system, law, at)
-    return Next.of(law, at, (floor, *ending) if weightless else ending)
+    return PhaseStart.of(law, at, (floor, *ending) if weightless else ending)
 
 
-def _giving_way(system: RollingSystem, at: Touch, law: Law) -> Next:
+def _giving_way(system: RollingSystem, at: ContactState, law: Law) -> PhaseStart:
     """Return slipping that begins where friction cannot give what rolling, or rest, takes."""
-    begun = first_moment(system, at, law)
+    begun = slip_onset(system, at, law)
     if begun is None:
         if _pull(system, at) < 0:
             return _lifted(system, at)
         raise jammed(at.state.time)
-    if isinstance(begun, Touch):
+    if isinstance(begun, ContactState):
         return _rolling(system, begun) if law.code == RollingLaw.code else _touching(system, begun)
     follows = _slipping(system, begun.at, begun.law, begun.direction, begun.ending)
-    return replace(follows, across=Next.of(law, at))
+    return replace(follows, across=PhaseStart.of(law, at))
 
 
-def _turning_on(system: RollingSystem, at: Touch) -> Touch:
+def _turning_on(system: RollingSystem, at: ContactState) -> ContactState:
     """Return a body that rolls against a resistance; from rest, with a first little turn the way it is driven."""
     at_rest = RestingLaw()
-    couple = at_rest.held(system, at.state.time, at_rest.numbers(at)).couple
+    couple = at_rest.held(system, at.state.time, at_rest.state_vector(at)).couple
     return _turned_off(system, at, couple - at.contact.normal * couple.dot(at.contact.normal), ZERO)
 
 
-def _turned_off(system: RollingSystem, at: Touch, holding: Vector, slip: Vector) -> Touch:
+def _turned_off(system: RollingSystem, at: ContactState, holding: Vector, slip: Vector) -> ContactState:
     """Return a body that turns over the support; from none, with a first little turn against what would hold it."""
     still = at.still(system) / at.arm
     turning = state_turning(at.contact, at.Omega)
@@ -497,7 +501,7 @@ def _turned_off(system: RollingSystem, at: Touch, holding: Vector, slip: Vector)
     return at.moving(system, at.contact.rolling_velocity(Omega) + slip, Omega)
 
 
-def _resting(system: RollingSystem, at: Touch, *, slips: bool) -> Next | None:
+def _resting(system: RollingSystem, at: ContactState, *, slips: bool) -> PhaseStart | None:
     """Return rest where the body does not turn over the support and the resistance can hold it so; else None.
 
     Where friction gives way, it begins to slip as it is held.
@@ -505,11 +509,11 @@ def _resting(system: RollingSystem, at: Touch, *, slips: bool) -> Next | None:
     relative = at.Omega - at.contact.support.angular_velocity
     if relative.norm() * at.arm > SLIP_TOLERANCE * at.scale(system):
         return None
-    rest = Next.of(RestingLaw(), at)
-    stops = rest.law.stops(system, rest.time, rest.numbers, ())
+    rest = PhaseStart.of(RestingLaw(), at)
+    stops = rest.law.event_functions(system, rest.time, rest.state_vector, ())
     if system.support.motion.free or min(stops["lift"], stops["start"]) < 0:
         return None
     return _giving_way(system, at, rest.law) if slips or stops.get("slip", 0.0) < 0 else rest
 
 
-__all__ = ["SETTLED", "Next", "Stop", "after", "at_start", "moment", "spins_on"]
+__all__ = ["SETTLED", "PhaseStart", "ZeroCrossing", "after", "at_start", "moment", "spins_on"]

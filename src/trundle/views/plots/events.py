@@ -40,7 +40,7 @@ _AFTERWARDS = {"slip": SLIPPING, "grip": ROLLING, "lift": FLIGHT, "bounce": FLIG
 
 
 @dataclass(frozen=True)
-class Stretch:
+class PhaseInterval:
     """A time through which the phase of contact stayed the same."""
 
     start: float
@@ -49,7 +49,7 @@ class Stretch:
 
 
 @dataclass(frozen=True)
-class Happening:
+class EventMarks:
     """All events of one kind: when, which of them are marked, and the words for the legend."""
 
     kind: str
@@ -74,7 +74,7 @@ def kind_of(event: Any) -> str:
     return event.kind if event.kind in _SAID else "event"
 
 
-def happenings_of(run: Trajectory) -> list[Happening]:
+def happenings_of(run: Trajectory) -> list[EventMarks]:
     """Group the events of a run by kind."""
     first, last = (float(run.data["time"].values[i]) for i in (0, -1))
     events = [event for event in run.events if first <= event.time <= last]
@@ -92,24 +92,24 @@ def happenings_of(run: Trajectory) -> list[Happening]:
     return found
 
 
-def _grouped(kind: str, times: Array, said: str) -> Happening:
+def _grouped(kind: str, times: Array, said: str) -> EventMarks:
     if len(times) == 1:
-        return Happening(kind, times, times, f"{said}, {with_unit(float(times[0]), 'time')}")
+        return EventMarks(kind, times, times, f"{said}, {with_unit(float(times[0]), 'time')}")
     times_said = "twice" if len(times) == 2 else f"{len(times)} times"
     text = f"{said} {times_said}, up to {with_unit(float(times[-1]), 'time')}"
     if len(times) <= FEW:
-        return Happening(kind, times, times, text)
+        return EventMarks(kind, times, times, text)
     marked = np.append(times[: FEW - 2], times[-1])
-    return Happening(kind, times, marked, f"{text} ({FEW - 1} marked)")
+    return EventMarks(kind, times, marked, f"{text} ({FEW - 1} marked)")
 
 
-def stretches_of(run: Trajectory) -> list[Stretch]:
+def stretches_of(run: Trajectory) -> list[PhaseInterval]:
     """Return the phases of a run in order: from its samples, and between samples from its events."""
     time = np.asarray(run.data["time"].values, dtype=float)
     phase = np.asarray(run.data["phase"].values) if "phase" in run.data else np.zeros(len(time), dtype=int)
     events = [event for event in run.events if time[0] < event.time < time[-1] and kind_of(event) != "event"]
     edges = [float(time[0]), *(float(event.time) for event in events), float(time[-1])]
-    stretches: list[Stretch] = []
+    stretches: list[PhaseInterval] = []
     for i, (start, end) in enumerate(pairwise(edges)):
         if end <= start and len(edges) > 2:
             continue
@@ -119,18 +119,18 @@ def stretches_of(run: Trajectory) -> list[Stretch]:
         else:
             now = _AFTERWARDS.get(kind_of(events[i - 1]), int(phase[0])) if i else int(phase[0])
         if stretches and stretches[-1].phase == now:
-            stretches[-1] = Stretch(stretches[-1].start, end, now)
+            stretches[-1] = PhaseInterval(stretches[-1].start, end, now)
         else:
-            stretches.append(Stretch(start, end, now))
+            stretches.append(PhaseInterval(start, end, now))
     return stretches
 
 
-def part_in(stretches: Sequence[Stretch], phase: int, time: Array) -> np.ndarray[Any, np.dtype[np.bool_]]:
+def part_in(stretches: Sequence[PhaseInterval], phase: int, time: Array) -> np.ndarray[Any, np.dtype[np.bool_]]:
     """Tell which instants lie in stretches of a phase, their ends included.
 
     Examples
     --------
-    >>> part_in([Stretch(0.0, 1.0, 0), Stretch(1.0, 3.0, 2)], 2, np.array([0.5, 1.0, 2.0])).tolist()
+    >>> part_in([PhaseInterval(0.0, 1.0, 0), PhaseInterval(1.0, 3.0, 2)], 2, np.array([0.5, 1.0, 2.0])).tolist()
     [False, True, True]
     """
     chosen = np.zeros(len(time), dtype=bool)
@@ -165,7 +165,7 @@ def with_events(run: Trajectory) -> Trajectory:
             rows[name].values[...] = np.array([getattr(state, name) for _, state in states])
     if "contact" in rows:
         rows["contact"].values[...] = np.array([event.contact for event, _ in states])
-    for i, name in enumerate(run.system.support.motion.own):
+    for i, name in enumerate(run.system.support.motion.coordinates):
         if f"support_{name}" in rows:
             rows[f"support_{name}"].values[...] = np.array([state.support[i] for _, state in states])
     every = np.concatenate([time, at])

@@ -13,9 +13,9 @@ from pydantic import Field, ValidationError, field_validator
 from ..display import Displayed, Headline, Markup, paragraph
 from ..errors import InvalidValueError, ScenarioError
 from . import files
-from .complaints import Kinds, complain
 from .layout import layout
 from .tables import Table
+from .validation_errors import Kinds, complain
 
 _LONGEST_TITLE = 300  # characters; it heads figures
 

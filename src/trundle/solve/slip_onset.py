@@ -13,10 +13,10 @@ from ..mechanics.creep import SlipRates, slip_rates
 from ..mechanics.onset import onset
 from ..mechanics.slipping import HeldInertia, Response, response
 from ..mechanics.system import RollingSystem
+from .contact_state import WEIGHTLESS, ContactState, floats
 from .creeping import SETTLES_FAST, CreepingLaw
 from .laws import Held, Law, RestingLaw, RollingLaw, SlippingLaw
 from .samples import RESTING
-from .touch import WEIGHTLESS, Touch, floats
 from .tracing import python_law
 
 _FIRST = 1e-6  # share of |ρ| over its speed that the first moment of slip takes
@@ -26,13 +26,13 @@ _FIRST = 1e-6  # share of |ρ| over its speed that the first moment of slip take
 class Onset:
     """A body that has slipped for a moment: where it is, the law that it follows, what that law's stops take."""
 
-    at: Touch
+    at: ContactState
     law: Callable[..., SlippingLaw]  # as `SlippingLaw` is made
     direction: Vector
     ending: tuple[float, ...]
 
 
-def first_moment(system: RollingSystem, at: Touch, law: Law | None = None) -> Onset | Touch | None:
+def slip_onset(system: RollingSystem, at: ContactState, law: Law | None = None) -> Onset | ContactState | None:
     """Return a body that has slipped for a moment, in which it still rolled but for what friction could not give.
 
     What it cannot give grows from nothing, mostly, and so the slip is the integral of a slope. Where friction settles
@@ -43,17 +43,17 @@ def first_moment(system: RollingSystem, at: Touch, law: Law | None = None) -> On
     >>> import trundle as tr
     >>> slope = tr.Support(tr.Plane(), tilt=1.0, friction=0.1)
     >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), slope)
-    >>> begun = first_moment(system, Touch.of(system, system.place()))
+    >>> begun = slip_onset(system, ContactState.of(system, system.place()))
     >>> begun.at.state.time < 1e-6 and begun.at.V.x > 0
     True
     """
     law = RollingLaw() if law is None else law
-    time, numbers = at.state.time, law.numbers(at)
+    time, numbers = at.state.time, law.state_vector(at)
     moment, rates = _FIRST * at.arm / at.scale(system), python_law(system, law).rates
 
-    def later(wait: float) -> tuple[Touch, _Growth | None]:
-        moved = law.advanced(system, time, numbers, wait, rates)
-        then = law.meant(system, time + wait, moved)
+    def later(wait: float) -> tuple[ContactState, _Growth | None]:
+        moved = law.rk4_step(system, time, numbers, wait, rates)
+        then = law.unpack(system, time + wait, moved)
         return then, _growth(system, then, law)
 
     begun, (_, halfway), (then, grown) = _growth(system, at, law), later(0.5 * moment), later(moment)
@@ -96,7 +96,7 @@ class _Growth:
     settling: float  # of its direction, times |s|, m/s²
 
 
-def _growth(system: RollingSystem, at: Touch, law: Law) -> _Growth | None:
+def _growth(system: RollingSystem, at: ContactState, law: Law) -> _Growth | None:
     """Return how slip grows: where friction only just gives way, against the friction that rolling takes."""
     state, held, q = at.state, law.code == RESTING, at.orientation
     try:
@@ -119,13 +119,13 @@ def _rate(rates: SlipRates, c: float, s: float) -> float:
     return float(c * first + s * second)
 
 
-def _holds(system: RollingSystem, at: Touch, law: Law) -> bool:
+def _holds(system: RollingSystem, at: ContactState, law: Law) -> bool:
     """Tell whether friction gives what rolling takes."""
-    stops = law.stops(system, at.state.time, law.numbers(at), ())
+    stops = law.event_functions(system, at.state.time, law.state_vector(at), ())
     return bool(stops["slip"] >= 0 and stops["lift"] >= 0)
 
 
-def _pushed(system: RollingSystem, at: Touch, slip: Vector, law: Law) -> Touch:
+def _pushed(system: RollingSystem, at: ContactState, slip: Vector, law: Law) -> ContactState:
     """Return the body after the impulse at the contact that makes it slip so, with the couple that comes with N."""
     whole, state, contact = system.body.inertia_in_space(at.orientation.matrix()), at.state, at.contact
     J = HeldInertia(contact.normal, whole) if law.code == RESTING else whole
@@ -137,20 +137,20 @@ def _pushed(system: RollingSystem, at: Touch, slip: Vector, law: Law) -> Touch:
         return response(system, contact, J, push, couple * push.dot(contact.normal))
 
     P = Matrix(*(answer(e).slip for e in (E_X, E_Y, E_Z))).transpose.solve(slip)
-    own, motion, support = state.support, system.support.motion, contact.support
+    coordinates, motion, support = state.support, system.support.motion, contact.support
     if motion.free:
         moment = support.lever(contact.point).dot(P) + support.axle.dot(couple) * P.dot(contact.normal)
-        own = (*own[:-1], own[-1] - float(moment / motion.inertia))
-    moved = at.moving(system, at.V + P / system.body.mass, at.Omega + answer(P).angular_velocity, own)
+        coordinates = (*coordinates[:-1], coordinates[-1] - float(moment / motion.inertia))
+    moved = at.moving(system, at.V + P / system.body.mass, at.Omega + answer(P).angular_velocity, coordinates)
     return replace(moved, slip=slip)  # smaller than a rounding of V and Ω
 
 
-def _against(system: RollingSystem, at: Touch, *, held: bool) -> tuple[Contact, Vector]:
+def _against(system: RollingSystem, at: ContactState, *, held: bool) -> tuple[Contact, Vector]:
     """Return the contact, and −f/|f|, f being the friction that rolling takes, or rest that resistance holds."""
     state = at.state
     now: Rolling | Held
     if held:
-        now = RestingLaw().held(system, state.time, RestingLaw().numbers(at))
+        now = RestingLaw().held(system, state.time, RestingLaw().state_vector(at))
     else:
         now = roll(system, state.time, at.contact.point, at.orientation, at.Omega, state.support)
     n, R = now.contact.normal, now.reaction

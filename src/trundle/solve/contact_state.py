@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass, replace
 
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import Contact, touch
-from ..mechanics.nearest import settle
+from ..mechanics.contact import Contact, contact_at
+from ..mechanics.nearest import closest_contact
 from ..mechanics.system import RollingSystem, State
 
 WEIGHTLESS = 1e-13  # share of the forces at hand below which nothing presses the body on
@@ -15,7 +15,7 @@ _STILL = 1e-12  # share of the speeds at the contact at which slip or turning ha
 
 
 @dataclass(frozen=True)
-class Touch:
+class ContactState:
     """A body at its contact: the geometry, how it moves there, and against what that is small or not."""
 
     state: State
@@ -29,15 +29,17 @@ class Touch:
     speed: float  # m/s
 
     @staticmethod
-    def of(system: RollingSystem, state: State, point: Vector | None = None) -> Touch:
+    def of(system: RollingSystem, state: State, point: Vector | None = None) -> ContactState:
         """Return the contact of a state that touches the support, or is over it; it is searched for unless given."""
         q = Quaternion(*state.orientation)
         if point is None:
-            return Touch.at(state, settle(system, state.time, Vector(*state.position), q, state.support))
-        return Touch.at(state, touch(system, state.time, point, q, state.support))
+            return ContactState.at(
+                state, closest_contact(system, state.time, Vector(*state.position), q, state.support)
+            )
+        return ContactState.at(state, contact_at(system, state.time, point, q, state.support))
 
     @staticmethod
-    def at(state: State, contact: Contact) -> Touch:
+    def at(state: State, contact: Contact) -> ContactState:
         """Return the same for a contact that is known."""
         q, centre = Quaternion(*state.orientation), Vector(*state.position)
         V, Omega = Vector(*state.velocity), Vector(*state.angular_velocity)
@@ -45,7 +47,7 @@ class Touch:
         arm = contact.offset.norm()
         u, turning = contact.support.material_velocity(contact.point), contact.support.angular_velocity
         speed = max(V.norm(), Omega.norm() * arm, u.norm(), turning.norm() * arm)
-        return Touch(state, contact, q, V, Omega, contact.slip_velocity(V, Omega), float(gap), arm, float(speed))
+        return ContactState(state, contact, q, V, Omega, contact.slip_velocity(V, Omega), float(gap), arm, float(speed))
 
     @property
     def nearest(self) -> Vector:
@@ -64,15 +66,15 @@ class Touch:
 
     def moving(
         self, system: RollingSystem, V: Vector, Omega: Vector, support: tuple[float, ...] | None = None
-    ) -> Touch:
+    ) -> ContactState:
         """Return the body at the same place with other velocities, also of the support's own motion."""
-        own = self.state.support if support is None else support
-        state = replace(self.state, velocity=floats(V), angular_velocity=floats(Omega), support=own)
-        if own == self.state.support:  # which is all of the motion that the geometry of touch depends on
-            return Touch.at(state, self.contact)
-        return Touch.of(system, state, self.contact.point)
+        coordinates = self.state.support if support is None else support
+        state = replace(self.state, velocity=floats(V), angular_velocity=floats(Omega), support=coordinates)
+        if coordinates == self.state.support:  # which is all of the motion that the geometry of touch depends on
+            return ContactState.at(state, self.contact)
+        return ContactState.of(system, state, self.contact.point)
 
-    def over(self, gap: float) -> Touch:
+    def over(self, gap: float) -> ContactState:
         """Return the body moved along the normal until it is so far over the support, m."""
         centre = self.contact.centre + self.contact.normal * gap
         return replace(self, state=replace(self.state, position=floats(centre)), gap=gap)
@@ -109,7 +111,7 @@ def moment(system: RollingSystem, state: State, contact: tuple[float, float, flo
     >>> moment(table, table.place(velocity=(10.0, 0.0)))
     0.01
     """
-    return Touch.of(system, state, None if contact is None else Vector(*contact)).moment(system)
+    return ContactState.of(system, state, None if contact is None else Vector(*contact)).moment(system)
 
 
 def floats(v: Vector) -> tuple[float, float, float]:
