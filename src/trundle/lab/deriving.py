@@ -49,7 +49,7 @@ def rows_of(number: Number, symbol: str) -> list[dict[str, Any]]:
     Examples
     --------
     >>> from trundle.analysis.derivation.steps import Number
-    >>> from ..derivation.symbols import v_d
+    >>> from trundle.analysis.derivation.symbols import v_d
     >>> [row["name"] for row in rows_of(Number(v_d, 1.0 + 2.0j, "m/s"), "v_d")][0]
     'velocity at which the circle drifts, along the first axis'
     """
