@@ -142,7 +142,7 @@ def test_kinds_are_those_of_the_tables() -> None:
 
 ENDINGS = """
 import json, os, pathlib, sys, time, warnings
-from trundle import frames
+from trundle.solve import frames
 from tests.fuzz.running import Child
 
 def hangs(say):
@@ -205,7 +205,7 @@ def test_endings_are_told_apart(tmp_path: Path) -> None:
     }
     assert "hangs" in found["hangs"]["detail"]  # the stack says where
     assert found["breaks"]["cause"].startswith("KeyError in outside")
-    assert found["breaks inside"]["cause"].startswith("AttributeError in frames.py:change")
+    assert found["breaks inside"]["cause"].startswith("AttributeError in solve/frames.py:change")
     assert found["asks for too much"]["cause"].startswith("MemoryError")
     assert found["asks for too much"]["text"] == "large"
     assert "# things look odd" in found["warns"]["warned"]

@@ -108,6 +108,7 @@ SURFACES = {
     "elliptic dish": (tr.EllipsoidalBowl((0.5, 0.4, 0.25), depth=0.1), [(0.1, 0.2), (0.3, 0.0)]),
     "revolution": (tr.Revolution("r**2 - r**4", rim=0.7), [(0.1, 0.2), (0.3, 0.0)]),
     "vortex": (tr.Revolution("-0.02/r"), [(0.1, 0.2), (0.3, 0.0)]),
+    "wall like a dish": (tr.Revolution("1000*r**2"), [(0.06, 0.064), (0.0, 0.088)]),
     "table of heights over r": (
         tr.Revolution.through([0.0, 0.1, 0.2, 0.3, 0.4], [0.0, 0.01, 0.04, 0.09, 0.16]),
         [(0.1, 0.2), (0.3, 0.0)],

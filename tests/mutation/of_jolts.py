@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .planting import Mutant
 
-FOLLOWING = "solve.following"
+FOLLOWING = "solve.transitions"
 PHASES = "solve.phases"
 KINKS = "mechanics.kinks"
 
@@ -15,8 +15,8 @@ JOLTS = (
     Mutant(
         "jolt: V of a body that moves as the support does after",
         FOLLOWING,
-        "before = law.meant(system, kink.before, numbers)",
-        "before = law.meant(system, kink.behind, numbers)",
+        "before = law.unpack(system, kink.before, numbers)",
+        "before = law.unpack(system, kink.behind, numbers)",
         "egg_jerked",
     ),
     Mutant(

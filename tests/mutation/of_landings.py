@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .planting import Mutant
 
-FOLLOWING = "solve.following"
+FOLLOWING = "solve.transitions"
 RESPONSE = "mechanics.slipping"
 IMPACT = "mechanics.impact"
 BOUNCES = "egg_bounces"

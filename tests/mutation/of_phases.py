@@ -6,7 +6,7 @@ from .planting import Mutant
 
 SLIPPING = "mechanics.slipping"
 LAWS = "solve.laws"
-FOLLOWING = "solve.following"
+FOLLOWING = "solve.transitions"
 RK = "solve.runge_kutta"
 DOME = "egg_slips_off_dome"
 AIR = "egg_over_bowl"
@@ -16,14 +16,17 @@ EARLY = "    return (path.t_old + 0.99 * (min(found)[0] - path.t_old), min(found
 RECORDED = """now = self._recorded(system, time, states)
         turning = self._turns(now.contact, Vector.of(Omega))
         centre, V, R, Omega = _arrays(p, now.contact.centre, now.velocity, now.reaction, turning)
-        return Samples(time, centre, p, V, Omega, q, R + 0.0, phase=_phase(time, self.code), own=own)"""
-RECORDED_ROLLING = """phase=_phase(time, self.code), own=own)
+        return Samples(
+            time, centre, p, V, Omega, q, R + 0.0, phase=_phase(time, self.code), support_coordinates=coordinates
+"""
+RECORDED_ROLLING = """phase=_phase(time, self.code), support_coordinates=coordinates
+        )
 
 
 class RollingWithResistance"""
 CONE = "f, most = reaction - n * N, system.support.friction * (N + floor)"
 LIFT = 'found = {"lift": N + floor}'
-LIFT_OF_SLIP = 'found = {"lift": now.normal_force + self._floor(extras)[0]}'
+LIFT_OF_SLIP = 'found = {"lift": now.normal_force + self._floor(event_parameters)[0]}'
 
 PHASES = (
     Mutant(
@@ -183,8 +186,8 @@ PHASES = (
     Mutant(
         "flight recorded with a force",
         LAWS,
-        "Omega, q, np.zeros_like(p), phase=phase, own=own)",
-        "Omega, q, np.ones_like(p), phase=phase, own=own)",
+        "np.zeros_like(p),\n            phase=phase,",
+        "np.ones_like(p),\n            phase=phase,",
         "ball_bounces",
     ),
 )

@@ -30,7 +30,7 @@ KINEMATICS = (
     Mutant(
         "T1: 1 + C S taken for 1",
         CONTACT,
-        "along = moved if flat else self.across(gap).solve(moved)",
+        "along = moved if flat else self.relative_curvature(gap).solve(moved)",
         "along = moved",
         BOWL,
     ),
@@ -173,7 +173,7 @@ ROLLING = (
     Mutant(
         "free axle: its own torque left out of ω̇",
         "mechanics.motions.free",
-        "(rate, (self.axle_torque(time, own) + moment) / self.inertia)",
+        "(rate, (self.axle_torque(time, coordinates) + moment) / self.inertia)",
         "(rate, moment / self.inertia)",
         FREE,
     ),

@@ -161,8 +161,8 @@ GEOMETRY = (
     Mutant(
         "inertia: turned the wrong way",
         "mechanics.bodies.inertia",
-        "return Turned(Q, Matrix.diagonal(self.x, self.y, self.z)).whole",
-        "return Turned(Q.transpose, Matrix.diagonal(self.x, self.y, self.z)).whole",
+        "return RotatedTensor(Q, Matrix.diagonal(self.x, self.y, self.z)).dense",
+        "return RotatedTensor(Q.transpose, Matrix.diagonal(self.x, self.y, self.z)).dense",
         EGG,
     ),
 )

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...mechanics.algebra import Vector
 from ...mechanics.surfaces import Plane, Surface
@@ -17,6 +18,7 @@ _AROUND, _ALONG = 120, 48  # cells of a surface of revolution round its axis and
 _OF_STRAIGHT = np.array([0.0, 1 / 16, 1 / 8, 1 / 4, 1 / 2, 1.0])  # shares of a straight outline
 _SIDE = 64  # cells along a side of a field
 _FAR = 3.0  # times as far as a run comes, and an edge is not shown
+_CLOSER = 8  # looks, each closer, at a surface so steep that few of its points are in the window
 _PROJECTIONS = 4  # of Newton's steps that bring a vertex onto the surface
 
 
@@ -127,10 +129,14 @@ def _outlines(surface: Surface, window: Window, first: bool) -> list[Array]:
     if kinds == ("length", "length") and first:
         # Thicker at the end, where a bowl stands steep.
         r = window.reach * np.sin(np.linspace(0.0, 0.5 * np.pi, 4 * _ALONG + 1))
-        with np.errstate(all="ignore"):
-            z = np.broadcast_to(surface.point(r, np.zeros_like(r)).z, r.shape)
-        whole = np.isfinite(z) & (z >= window.low[2]) & (z <= window.high[2])
-        return [_thinned(np.column_stack([r, z])[whole])]
+        z, seen = _seen(surface, window, r)
+        for _ in range(_CLOSER):  # of what is very steep few points are in the window
+            if not 0 < np.count_nonzero(seen) < _ALONG:
+                break
+            places = np.flatnonzero(seen)
+            r = np.linspace(r[max(places[0] - 1, 0)], r[min(places[-1] + 1, r.size - 1)], r.size)
+            z, seen = _seen(surface, window, r)
+        return [_thinned(np.column_stack([r, z])[seen])]
     if kinds == ("angle", "length"):
         v = np.linspace(window.low[2], window.high[2], 2 * _ALONG)
     elif kinds == ("angle", "angle"):
@@ -139,6 +145,13 @@ def _outlines(surface: Surface, window: Window, first: bool) -> list[Array]:
         return [_thinned(line) for line in meridians(surface, window)]
     p = surface.point(np.zeros_like(v), v)
     return [_thinned(np.column_stack([np.broadcast_to(part, v.shape) for part in (p.x, p.z)]))]
+
+
+def _seen(surface: Surface, window: Window, r: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Return the heights at distances from the axis, and which of them are in the window."""
+    with np.errstate(all="ignore"):
+        z = np.broadcast_to(surface.point(r, np.zeros_like(r)).z, r.shape)
+    return z, np.isfinite(z) & (z >= window.low[2]) & (z <= window.high[2])
 
 
 def _thinned(line: Array) -> Array:
