@@ -247,7 +247,7 @@ def test_a_run_is_judged_as_its_user_would(monkeypatch: pytest.MonkeyPatch) -> N
     assert said["cause"] == "SolverError: At t = # s nothing goes on."
     from trundle import verify
 
-    monkeypatch.setattr(verify, "_events", lambda _: [verify.CardFigure("planted", 2.0, "", 1.0, False)])
+    monkeypatch.setattr(verify.figures, "_events", lambda _: [verify.CardFigure("planted", 2.0, "", 1.0, False)])
     run_as_a_user_does(SCENARIO.format(support="", start=""), said.update)
     assert said["outcome"] == "card failed"
     assert said["cause"] == "exact: planted"

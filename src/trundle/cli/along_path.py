@@ -23,7 +23,7 @@ def run(
     Examples
     --------
     >>> from trundle.scenario import files
-    >>> tables = files.parse(files.read("roll-x-then-y"), "roll-x-then-y")
+    >>> tables = files.tables_of("roll-x-then-y")
     >>> card, lines, written = run(tables, "roll-x-then-y", Path("out"), figure=False)
     >>> lines[-1]
     'stage 2  (3.927, 3.927) cm, north pole along +x'
@@ -64,18 +64,18 @@ def _stages(rolled: RolledPath) -> list[tuple[str, str]]:
     return [(name, f"{place}, north pole {pole}" if place else "") for name, place, pole in rolled.stages.told()]
 
 
-def expected(text: str, source: str) -> Callable[[], list[tuple[str, str]]]:
-    """Check the text of a scenario, and return what tells what to expect of it.
+def expected(tables: dict[str, Any], source: str) -> Callable[[], list[tuple[str, str]]]:
+    """Check the tables of a scenario, and return what tells what to expect of it.
 
     Examples
     --------
     >>> from trundle.scenario import files
-    >>> expected(files.read("roll-home-turned"), "roll-home-turned")()[-1]
+    >>> expected(files.tables_of("roll-home-turned"), "roll-home-turned")()[-1]
     ('came home turned by', '120 deg about (0.57735, 0.57735, -0.57735)')
     """
     from ..analysis.geometry import PathScenario
 
-    scenario = PathScenario.loads(text, source)
+    scenario = PathScenario.read(tables, source)
 
     def rows() -> list[tuple[str, str]]:
         rolled = scenario.run()

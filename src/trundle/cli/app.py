@@ -131,7 +131,7 @@ def run(
     from .writing import check_folder
 
     folder = Path(Path(scenario).stem) if output is None else output.expanduser()
-    tables = files.parse(files.read(scenario), scenario)
+    tables = files.tables_of(scenario)
     if files.rolls_along_path(tables):
         from . import along_path
 
@@ -141,7 +141,7 @@ def run(
         return _report(*told, quiet=quiet, as_json=as_json)
     names = FILES[:1] if no_figure else FILES
     check_tolerance(tolerance, "--tolerance")
-    loaded = load(scenario, duration=duration, every=every, method=method)
+    loaded = load(scenario, tables, duration=duration, every=every, method=method)
     check_folder(folder, names)
     with screen.ProgressBar(wanted=not quiet) as bar:
         trajectory = loaded.run(tolerance=tolerance, progress=bar)
@@ -198,12 +198,12 @@ def _report(card: Card, lines: list[str], written: list[Path], *, quiet: bool, a
 METHODS = ["auto", "exact", "taylor", "runge-kutta"]
 
 
-def load(scenario: str, **overrides: str | None) -> Any:
-    """Read a scenario, with some keys of its [run] table replaced by options of the command line."""
+def load(scenario: str, tables: dict[str, Any] | None = None, **overrides: str | None) -> Any:
+    """Read a scenario, or its tables, with some keys of its [run] table replaced by options of the command line."""
     from ..simulation.simulate import Scenario
 
     given = {key: value for key, value in overrides.items() if value is not None}
-    tables = files.parse(files.read(scenario), scenario)
+    tables = files.tables_of(scenario) if tables is None else dict(tables)
     if isinstance(tables.get("run", {}), dict):
         tables["run"] = {**tables.get("run", {}), **given}
     try:
@@ -220,16 +220,17 @@ def list_scenarios() -> None:
 def show(scenario: Name) -> None:
     """Print a scenario file as it is, to read or to copy; on a terminal also the numbers to expect of it."""
     text = files.read(scenario)
+    tables = files.parse(text, scenario)
     rows: Callable[[], list[tuple[str, str]]]
-    if files.rolls_along_path(files.parse(text, scenario)):
+    if files.rolls_along_path(tables):
         from . import along_path
 
-        rows = along_path.expected(text, scenario)
+        rows = along_path.expected(tables, scenario)
     else:
         from ..scenario import ScenarioFile
         from .expectations import expectations
 
-        rows = partial(expectations, ScenarioFile.loads(text, scenario))
+        rows = partial(expectations, ScenarioFile.read(tables, scenario))
     screen.show_source(text)
     if screen.on_terminal():
         screen.show_pairs("To expect", rows())

@@ -89,8 +89,8 @@ def _scenario(name: str) -> Any:
     from ..analysis.geometry import PathScenario
     from .app import load
 
-    tables = files.parse(files.read(name), name)
-    return PathScenario.read(tables, name) if files.rolls_along_path(tables) else load(name)
+    tables = files.tables_of(name)
+    return PathScenario.read(tables, name) if files.rolls_along_path(tables) else load(name, tables)
 
 
 def _motion(name: str, *, bar: bool) -> tuple[Any, Callable[..., Scene]]:

@@ -91,7 +91,7 @@ def _load(scenario: str) -> object:
     from ..scenario import files
     from ..simulation.simulate import Scenario
 
-    return Scenario.read(files.parse(files.read(scenario), scenario), scenario)
+    return Scenario.read(files.tables_of(scenario), scenario)
 
 
 def _show(table: Sensitivity) -> None:

@@ -58,7 +58,7 @@ def steady(
     from .writing import check_folder
 
     folder = Path(Path(scenario).stem) if output is None else output.expanduser()
-    tables = files.parse(files.read(scenario), scenario)
+    tables = files.tables_of(scenario)
     if files.rolls_along_path(tables):
         remedy = "A ball rolled along a path feels no forces; name a scenario with a body under gravity."
         raise ScenarioError("path", "has no steady motions", scenario, remedy)

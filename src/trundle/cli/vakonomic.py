@@ -45,7 +45,7 @@ def vakonomic(
     from .writing import check_folder, write_together
 
     folder = Path(Path(scenario).stem) if output is None else output.expanduser()
-    tables = files.parse(files.read(scenario), scenario)
+    tables = files.tables_of(scenario)
     if files.rolls_along_path(tables):
         remedy = "A ball rolled along a path feels no forces; name a scenario of a ball on a turntable."
         raise ScenarioError("path", "has no vakonomic counterpart", scenario, remedy)

@@ -51,7 +51,7 @@ def scenario_from(data: Any) -> Scenario:
 
     Examples
     --------
-    >>> scenario_from(files.parse(files.read("tilted-turntable"), "")).body.kind
+    >>> scenario_from(files.tables_of("tilted-turntable")).body.kind
     'solid-sphere'
     """
     from ..simulation.simulate import Scenario
@@ -75,7 +75,7 @@ def run_of(
 
     Examples
     --------
-    >>> run_of(scenario_from(files.parse(files.read("tilted-turntable"), "")), 5000)[0].method
+    >>> run_of(scenario_from(files.tables_of("tilted-turntable")), 5000)[0].method
     'exact'
     """
     duration, every = float(scenario.timing.duration), float(scenario.timing.every)
@@ -93,7 +93,7 @@ def simulate(
 
     Examples
     --------
-    >>> simulate(files.parse(files.read("tilted-turntable"), ""), samples=100).body[:8]
+    >>> simulate(files.tables_of("tilted-turntable"), samples=100).body[:8]
     b'TRUNDLE1'
     """
     from ..views.scene import pack, scene_of
@@ -112,7 +112,7 @@ def card(data: dict[str, Any]) -> Answer:
 
     Examples
     --------
-    >>> json.loads(card(files.parse(files.read("level-turntable-nudged"), "")).body)["passed"]
+    >>> json.loads(card(files.tables_of("level-turntable-nudged")).body)["passed"]
     True
     """
     if files.rolls_along_path(data):
@@ -127,7 +127,7 @@ def derivation(data: dict[str, Any]) -> Answer:
 
     Examples
     --------
-    >>> json.loads(derivation(files.parse(files.read("tilted-turntable"), "")).body)["steps"][0]["title"]
+    >>> json.loads(derivation(files.tables_of("tilted-turntable")).body)["steps"][0]["title"]
     "Newton's law"
     """
     from .deriving import derivation_of
@@ -141,7 +141,7 @@ def twin(data: dict[str, Any], samples: int | None = None) -> Answer:
 
     Examples
     --------
-    >>> twin(files.parse(files.read("tilted-turntable"), "")).body[:8]
+    >>> twin(files.tables_of("tilted-turntable")).body[:8]
     b'TRUNDLE1'
     """
     from ..views.scene import pack
@@ -184,7 +184,7 @@ def _entry(name: str) -> dict[str, Any]:
     from ..simulation.simulate import Scenario
     from ..solve.exact import closed_form
 
-    tables = files.parse(files.read(name), name)
+    tables = files.tables_of(name)
     notes = " ".join(str(tables.get("notes", "")).split())
     summary = notes[: notes.index(". ") + 1] if ". " in notes else notes
     told = {"name": name, "title": tables["title"], "summary": summary}
@@ -255,7 +255,7 @@ def start(
     Examples
     --------
     >>> at = {"position": [0.1, 0.0, 0.025], "contact": [0.1, 0.0, 0.0]}
-    >>> json.loads(start(files.parse(files.read("tilted-turntable"), ""), at).body)
+    >>> json.loads(start(files.tables_of("tilted-turntable"), at).body)
     {'position': [0.1, 0.0]}
     """
     from .starts import start_by_hand
@@ -268,7 +268,7 @@ def told(scenario: Scenario | PathScenario) -> dict[str, Any]:
 
     Examples
     --------
-    >>> told(scenario_from(files.parse(files.read("tilted-turntable"), "")))["scenario"]["body"]["radius"]
+    >>> told(scenario_from(files.tables_of("tilted-turntable")))["scenario"]["body"]["radius"]
     '25 mm'
     """
     text = scenario.to_toml()
@@ -282,7 +282,7 @@ def warm(name: str) -> None:
     --------
     >>> warm("tilted-turntable")
     """
-    simulate(files.parse(files.read(name), name), samples=50)
+    simulate(files.tables_of(name), samples=50)
 
 
 def _json(value: Any) -> Answer:

@@ -26,7 +26,7 @@ def export(data: dict[str, Any], kind: str, folder: str) -> Answer:
     --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     made = export(files.parse(files.read("tilted-turntable"), ""), "csv", folder)
+    ...     made = export(files.tables_of("tilted-turntable"), "csv", folder)
     >>> made.filename, made.body[:40]
     ('steel-ball-on-a-tilted-turntable.csv', b'time [s],position_x [m],position_y [m],p')
     """

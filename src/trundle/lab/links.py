@@ -26,7 +26,7 @@ def page_of(name_or_path: str) -> str:
 
     if name_or_path in files.names():
         return f"#/bench?name={name_or_path}"
-    tables = files.parse(files.read(name_or_path), name_or_path)
+    tables = files.tables_of(name_or_path)
     limits.check_size(tables)
     kind = PathFile if files.rolls_along_path(tables) else ScenarioFile
     code = encode(files.parse(kind.read(tables, name_or_path).to_toml(), name_or_path))

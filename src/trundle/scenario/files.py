@@ -45,7 +45,7 @@ def title_of(name: str) -> str:
     >>> title_of("tilted-turntable")
     'Steel ball on a tilted turntable'
     """
-    return str(parse(read(name), name)["title"])
+    return str(tables_of(name)["title"])
 
 
 def rolls_along_path(tables: Mapping[str, Any]) -> bool:
@@ -68,7 +68,7 @@ def is_shipped_path(name: str) -> bool:
     >>> is_shipped_path("tilted-turntable")
     False
     """
-    return rolls_along_path(parse(read(name), name))
+    return rolls_along_path(tables_of(name))
 
 
 def locate(name_or_path: str | os.PathLike[str]) -> Path:
@@ -137,6 +137,17 @@ def _no_such(shown: str) -> ScenarioError:
         hint = did_you_mean(stem, names())
     remedy = f"{hint.strip()} Those that ship with trundle: {known}.".strip()
     return ScenarioError("scenario", "must be a file or the name of a shipped scenario", shown, remedy)
+
+
+def tables_of(name_or_path: str | os.PathLike[str]) -> dict[str, Any]:
+    """Return the tables of a scenario that ships, or of a file.
+
+    Examples
+    --------
+    >>> tables_of("tilted-turntable")["body"]["kind"]
+    'solid-sphere'
+    """
+    return parse(read(name_or_path), os.fspath(name_or_path))
 
 
 def parse(text: str, source: str) -> dict[str, Any]:

@@ -21,15 +21,10 @@ def derivable() -> list[tuple[str, str]]:
     >>> derivable()[0]
     ('ball-on-plane', 'Ball on a level plane under a force and a torque')
     """
-    scenarios = [name for name in files.names() if name not in TOPICS and _rolls(name)]
+    scenarios = [name for name in files.names() if name not in TOPICS and not files.is_shipped_path(name)]
     return [(name, topic.title) for name, topic in TOPICS.items()] + [
         (name, files.title_of(name)) for name in scenarios
     ]
-
-
-def _rolls(name: str) -> bool:
-    """Whether forces act on the body of a shipped file, and it does not merely follow a path."""
-    return "path" not in files.parse(files.read(name), name)
 
 
 def derive(name_or_scenario: Any, *, with_numbers: bool = False) -> Derivation:
@@ -140,15 +135,16 @@ def _described(name_or_scenario: Any) -> tuple[RollingSystem, State | None, str,
         scenario, name = name_or_scenario, "scenario"
     else:
         name = str(name_or_scenario)
-        _check_name(name)
-        scenario = ScenarioFile.load(name)
+        scenario = ScenarioFile.read(_tables_of(name), name)
     return scenario.system(), scenario.start_state(), name, scenario.title
 
 
-def _check_name(name: str) -> None:
-    """Refuse a name that is no topic, no scenario and no file; and a file that has no forces."""
+def _tables_of(name: str) -> dict[str, Any]:
+    """Return the tables of a scenario; refuse a name that is none, and a file that has no forces."""
     if name not in files.names() and not files.locate(name).exists():
         raise UnknownNameError("derivation", name, [known for known, _ in derivable()])
-    if "path" in files.parse(files.read(name), name):
+    tables = files.tables_of(name)
+    if files.rolls_along_path(tables):
         remedy = "It rolls a ball along a given path: geometry, without Newton's law."
         raise ScenarioError("scenario", "must have a body that forces act on", name, remedy)
+    return tables
