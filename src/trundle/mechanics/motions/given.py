@@ -9,7 +9,7 @@ from ... import wording
 from ..algebra import E_Z, ZERO, Matrix, Vector
 from ..expressions import course, now
 from ..parts import Number, Numbers
-from ..scalars import Scalar
+from ..scalars import Scalar, is_zero
 from .base import Motion, SupportState
 from .pace import largest
 from .turning import about_third_axis, turned_about
@@ -148,6 +148,12 @@ class Move(Motion):
     kind = "move"
     label = "Moves by a formula"
     turns = False
+
+    def key_numbers(self, ground: str, coordinates: tuple[float, ...]) -> list[str]:  # noqa: ARG002
+        """Return the formula of each component that is not nothing."""
+        parts = zip(self.position, "xyz", strict=True)
+        said = [wording.formula(part, name, "m") for part, name in parts if not is_zero(part)]
+        return [f"{ground} at {', '.join(said)}"] if said else []
 
     @property
     def fastest_rate(self) -> Scalar:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Annotated, Any
 
+from ... import wording
 from ..algebra import Matrix, RotatedTensor, Vector
 from ..expressions import Expression
 from ..jets import Jet, jets
@@ -52,6 +53,10 @@ class SupportFunction(Shape):
         super().__post_init__()
         if _in_numbers(self.formula.tree):
             _check(self.formula)
+
+    def key_numbers(self) -> list[str]:
+        """Return the formula."""
+        return [f"body h = {wording.cut(self.formula.text)}"]
 
     def parameters(self) -> dict[str, Any]:
         """Return h and the centre."""
