@@ -516,3 +516,16 @@ def test_from_rest_friction_is_to_give_what_rolling_against_resistance_takes(
     assert set(run.samples.phase.tolist()) == {int(slips)}
     assert np.abs(run.samples.angular_velocity[:, 1] * np.sign(tilt) - (a * f - offset * N) / J * t).max() < 1e-9
     assert np.abs(run.samples.velocity[:, 0] * np.sign(tilt) - (down - f) / m * t).max() < 1e-11
+
+
+@pytest.mark.parametrize("spin", [90.0, 155.0, -155.0, 220.0])
+@pytest.mark.parametrize("friction", [3.0, 7.9345])
+def test_at_the_very_grip_the_force_of_a_rounding_is_none(spin: float, friction: float) -> None:
+    # At its grip a slip of 1e-14 m/s has the direction of its rounding, and so would have f = −μ N ŝ, and N by it.
+    moments = (2.994285714285714e-6, 2.994285714285714e-6, 3.93645e-6)
+    top = tr.Body.eccentric_sphere(0.02, 0.276328, moments, centre=(0.0, 0.0, 0.006))
+    system = tr.RollingSystem(top, tr.Support(tr.Plane(), friction=friction))
+    start = system.place(attitude=(0.0, 0.1, 0.0), angular_velocity=(0.0, 0.0, spin))
+    run = tr.simulate(system, start, duration=0.05, every=0.0005)
+    assert [event.kind for event in run.events] == ["grip"]
+    assert run.card()["normal force"].passed

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import contact_at
@@ -21,6 +22,7 @@ _SLACK = 1e-8  # by which rolling may pass the cone before it gives way: what `C
 _LOOKS, _FINER, _MOST_DIPS, _CLOSE = 3, 14, 100, 1e-9  # how often, how finely and at how many dips it looks closer
 _PULLS = 2e-12  # share of the forces at hand by which the support seems to pull: what docs/phases.md leaves to rounding
 _SLOWEST = 1e-9  # of the fastest: a slip that has all but not begun has no direction of its own
+_ROUNDING = 1e-12  # of the speeds at the contact: a slip that is no more has the direction of its rounding
 _FIRST = 1e-3  # how far the normal may turn in the first moment of slip
 _TOLD = 1e-2  # sharpness of a direction beyond which nothing is said of it
 
@@ -77,7 +79,7 @@ def contact_force(system: RollingSystem, *parts: Samples) -> Iterator[CardFigure
     size = 0.0
     for some in (some for part in parts for _, some in part.blocks()):
         size = max(size, sizes_of(system, some)["contact_force"])
-        touching = some.part(some.phase != FLIGHT)
+        touching = some.part((some.phase != FLIGHT) & _directed(system, some))
         if not touching.time.size:
             continue
         N, f = normal_and_friction(system, touching)
@@ -94,6 +96,21 @@ def contact_force(system: RollingSystem, *parts: Samples) -> Iterator[CardFigure
         yield _holding(system, *needed)
     if resisted[0] >= 0:
         yield _resistance(system, *resisted)
+
+
+def _slip(system: RollingSystem, at: Samples) -> tuple[Array, Array]:
+    """Return the slip, and the speeds that it is the small difference of, m/s."""
+    V, turning, u = (np.broadcast_to(v.array(), at.position.shape) for v in at.speeds(system))
+    # Ω×ρ is as sharp as |Ω||ρ|, also where Ω is along ρ and all three are rounding.
+    arm = np.linalg.norm(at.contact - at.position, axis=1)
+    turns = np.linalg.norm(at.angular_velocity, axis=1) * arm
+    return V + turning - u, np.linalg.norm(V, axis=1) + turns + np.linalg.norm(u, axis=1)
+
+
+def _directed(system: RollingSystem, at: Samples) -> NDArray[np.bool_]:
+    """Tell where a body that slips has a direction to slip in: at the very grip, the force is that of a rounding."""
+    s, at_contact = _slip(system, at)
+    return (at.phase != SLIPPING) | (np.linalg.norm(s, axis=1) > _ROUNDING * at_contact)
 
 
 def _at(samples: Samples, values: Array, index: int) -> tuple[float, float]:
@@ -170,13 +187,8 @@ def friction_law(system: RollingSystem, slipping: Samples, bound: float) -> Card
         return checked("friction while slipping", np.inf, bound, "nothing limits its friction: it cannot slip")
     mu = float(coefficient)
     N, f = normal_and_friction(system, slipping)
-    V, turning, u = (np.broadcast_to(v.array(), f.shape) for v in slipping.speeds(system))
-    s = V + turning - u
+    s, at_contact = _slip(system, slipping)
     speed, size = np.linalg.norm(s, axis=1), max(largest(slipping.contact_force), 1e-300)
-    # Ω×ρ is as sharp as |Ω||ρ|, also where Ω is along ρ and all three are rounding.
-    arm = np.linalg.norm(slipping.contact - slipping.position, axis=1)
-    turns = np.linalg.norm(slipping.angular_velocity, axis=1) * arm
-    at_contact = np.linalg.norm(V, axis=1) + turns + np.linalg.norm(u, axis=1)
     sharp = np.where(speed > _SLOWEST * at_contact.max(), bound * (1 + at_contact / np.maximum(speed, 1e-300)), np.inf)
     off = np.linalg.norm(f + mu * (N / np.maximum(speed, 1e-300))[:, None] * s, axis=1) / size
     conditions = [
