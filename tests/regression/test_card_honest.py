@@ -215,6 +215,23 @@ FLAT = {
         {"position": [0.1868, 0.1304], "spin": 1.597},
         [{"kind": "rolling-couple", "coefficient": 9.516e-05}, {"kind": "drag", "coefficient": 0.00389}],
     ),
+    "a thick ring that slips on a mound": (
+        {
+            "kind": "torus",
+            "radius": 0.0315268,
+            "rim_radius": 0.0245393,
+            "mass": 0.0670604,
+            "moments": [2.16758e-05, 2.89984e-05, 1.6901e-05],
+            "products": [1.60649e-06, 2.9112e-06, 2.60972e-06],
+        },
+        {"kind": "paraboloid", "radius": -0.154634, "friction": 0.0436124},
+        {
+            "position": [0.640445, -0.0151401],
+            "angular_velocity": [-0.397206, 6.92338, -2.46728],
+            "orientation": [-0.0360863, -0.0293762, -0.0290632, -0.529638],
+        },
+        [],
+    ),
 }
 
 

@@ -19,6 +19,7 @@ from ..solve.samples import Event, Samples
 from .bounds import EXACT, Array, bound_of, largest, sizes_of, turned_in
 from .card import CardFigure, checked
 from .growth import MOST, Growth, alike, at_the_same_times, growth, numerical, parted, same_events
+from .stretches import SINGULAR, before_a_singular_end
 
 _INSTANTS = 200
 _SLOW = 1e-3  # of a body's turning: what a support's own is held against at least
@@ -130,8 +131,10 @@ class Compared:
 
     @cached_property
     def share(self) -> Array:
-        """The difference at each sample, as a share."""
-        return np.where(self.alike, _difference(self.ours, self.theirs, self.sizes), 0.0)
+        """The difference at each sample, as a share; at a singular end only the orientation says something."""
+        known = self.alike.copy()
+        known[before_a_singular_end(self.ours).time.size :] = False
+        return np.where(known, _difference(self.ours, self.theirs, self.sizes), 0.0)
 
     @cached_property
     def turns(self) -> Array:
@@ -213,14 +216,16 @@ class Compared:
         """Return how far the states at an event differ, as a share."""
         pairs = [(mine.before, other.before), (mine.after, other.after)]
         moved = np.subtract(mine.contact or other.contact or 0.0, other.contact or mine.contact or 0.0)
-        sizes = {field: self.sizes[field] for field in ("position", "velocity", "angular_velocity")}
+        # At a singular end a rounding of the lean is more than one of the place and of V.
+        told = ("angular_velocity",) if mine.kind in SINGULAR else ("position", "velocity", "angular_velocity")
+        sizes = {field: self.sizes[field] for field in told}
         apart = [
             float(np.linalg.norm(np.subtract(getattr(one, field), getattr(its, field)))) / max(size, 1e-300)
             for one, its in pairs
             if one is not None and its is not None
             for field, size in {**sizes, "orientation": self.angle_bound / self.bound}.items()
         ]
-        return max(float(np.linalg.norm(moved)) / max(sizes["position"], 1e-300), *apart)
+        return max(float(np.linalg.norm(moved)) / max(self.sizes["position"], 1e-300), *apart)
 
     def figure(self, name: str, share: Array, bound: float, said: str, unit: str = "") -> CardFigure:
         """Return the figure of a difference: where a plain bound does not hold, with what the motion magnifies."""
