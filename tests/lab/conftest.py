@@ -6,6 +6,10 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+
+# It would be imported, and rewritten by pytest, when the first file is served: beside a thread that parses formulas,
+# which Python before 3.11.9 answers with a SystemError at times (its issue gh-106905).
+from anyio import open_file  # noqa: F401
 from starlette.testclient import TestClient
 
 from trundle.lab import Settings, create_app
