@@ -97,7 +97,7 @@ def _place(system: RollingSystem, law: Law, form: ClosedForm, start: State, t: f
 
 
 def _first_stop(system: RollingSystem, now: PhaseStart, form: ClosedForm, duration: float) -> tuple[float, str] | None:
-    """Return when and by which of the law's stops the form's motion ends, if it does within the duration."""
+    """Return when and by which of the law's events the form's motion ends, if it does within the duration."""
     names = now.law.event_functions(system, now.time, now.state_vector, now.event_parameters)
     known = {name: t for name, t in form.ends_at.items() if name in names and 0 <= t <= duration}
     sooner = min(((t, name) for name, t in known.items()), default=None)
@@ -113,7 +113,7 @@ def _first_stop(system: RollingSystem, now: PhaseStart, form: ClosedForm, durati
 
 
 def _values(system: RollingSystem, now: PhaseStart, form: ClosedForm, asked: list[str]) -> Callable[[Any], Any]:
-    """Return the stops asked for as functions of the time since the start.
+    """Return the event functions asked for, as functions of the time since the start.
 
     Where they depend on the orientation, the form says how the body stands; most are the same from all sides, or turn
     in their plane.

@@ -34,7 +34,7 @@ _MOST = 10_000
 
 
 def count(system: RollingSystem) -> int:
-    """Return how many numbers the stops at a system's corners take.
+    """Return how many numbers the event functions of a system's corners take.
 
     Examples
     --------
@@ -48,7 +48,7 @@ def count(system: RollingSystem) -> int:
 def all_event_functions(
     system: RollingSystem, law: Law, time: Scalar, state: Sequence[Scalar], given: Sequence[Scalar]
 ) -> dict[str, Scalar]:
-    """Return what ends a stretch where it falls through zero: a law's own stops, and the corners of the loads.
+    """Return what ends a stretch where it falls through zero: a law's event functions, and the corners of the loads.
 
     A vector w that had the direction ŵ passes close by zero where w·ŵ + w²/W falls through it, W being a small length:
     one that only turns about has no such instant.
@@ -66,7 +66,7 @@ def all_event_functions(
 
 
 def directions(system: RollingSystem, now: PhaseStart) -> tuple[float, ...]:
-    """Return the numbers of the stops at corners, for a stretch that begins."""
+    """Return the numbers of the event functions of corners, for a stretch that begins."""
     if not system.corners:
         return ()
     found: list[float] = []

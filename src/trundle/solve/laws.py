@@ -1,7 +1,7 @@
 """The laws of the phases of contact as the numerical methods take them: a state of numbers, its rates, what ends it.
 
-A phase ends where one of its stops falls through zero. Each law also packs a state into its numbers and completes
-these numbers to a full record; the mechanics itself is in `mechanics.contact` and `mechanics.slipping`.
+A phase ends where one of its event functions falls through zero: that is a stop. Each law also packs a state into its
+numbers and completes these to a full record; the mechanics itself is in `mechanics.contact` and `mechanics.slipping`.
 """
 
 from __future__ import annotations
@@ -38,14 +38,14 @@ class Law:
     variables : tuple of str
         Names of the state's numbers; those of the support's own motion come after them.
     ends : tuple of str
-        Which of its stops come where something shrinks to nothing: "grip", the slip; "stop", turning over the support.
+        Which of its events come where something shrinks to nothing: "grip", the slip; "stop", turning over the support.
     brief : bool
         Whether it holds for so short a time that to compile it would take longer than to follow it.
 
     Parameters
     ----------
     weightless : bool
-        Whether nothing presses the body on, as on a plane without gravity: its stops then take one number more, the
+        Whether nothing presses the body on, as on a plane without gravity: its event functions then take one more, the
         pull, N, that is rounding and lifts nothing off.
     """
 
@@ -58,17 +58,17 @@ class Law:
 
     @property
     def ends(self) -> tuple[str, ...]:
-        """Which of its stops come where something shrinks to nothing."""
+        """Which of its events come where something shrinks to nothing."""
         return ()
 
     @property
     def ending(self) -> int:
-        """How many numbers the stops take that end slip or turning: the square of what is all but nothing, and ŝ."""
+        """How many numbers end slip or turning for each such event: the square of what is all but nothing, and ŝ."""
         return 4 * len(self.ends)
 
     @property
     def event_parameters(self) -> int:
-        """How many numbers the stops take besides the system's."""
+        """How many numbers the event functions take besides the system's."""
         return self.ending + self.weightless
 
     def _floor(self, event_parameters: Numbers) -> tuple[Scalar, Numbers]:
@@ -208,7 +208,7 @@ class Law:
         return (y + step / 6 * (first + 2 * second + 2 * third + fourth)).tolist()
 
     def _bounds(self, system: RollingSystem, contact: Contact, orientation: Quaternion, gap: Scalar) -> dict[str, Any]:
-        """Return the stops of every phase: where the support ends, the body's shape, or what fits."""
+        """Return the event functions of every phase: where the support ends, the body's shape, or what fits."""
         surface, support = system.support.surface, contact.support
         there, found = support.local(contact.point), {}
         if surface.rim is not None:
@@ -550,7 +550,7 @@ CONE_SLACK = 1e-9
 # Friction all but jams a body where a newton of N opens the contact by so small a share of 1/m.
 JAMS = 1e-3
 AN_INSTANT = 3e-15  # s: what ends in less has ended, for the terms of its series are greater than any float
-CORNER = "corner"  # with which the names of stops begin at which the same law goes on
+CORNER = "corner"  # with which the names of events begin at which the same law goes on
 _SLOW_SLIP = 1e-8  # m/s for each rad/s of Ω
 _SHRINKS = {"grip": slice(10, 13), "stop": slice(7, 10)}  # the numbers that change as what shrinks to nothing there
 
@@ -573,7 +573,7 @@ def cone(system: RollingSystem, contact: Contact, reaction: Vector, floor: Scala
 
 
 def _ending(name: str, v: Vector, rate: Vector, event_parameters: Numbers) -> dict[str, Scalar]:
-    """Return two stops for a vector that shrinks to nothing.
+    """Return two event functions for a vector that shrinks to nothing.
 
     Where its direction stays, its part along the direction it had passes through zero with it. Where it turns, the law
     grows singular there, and the run stops just before; a quarter turn alone is no end.

@@ -35,9 +35,9 @@ class Lowered:
     names : tuple of str
         Of the state's numbers.
     stops : tuple of str
-        Of the stops.
+        Of the event functions.
     outputs : tuple
-        Rates and stops, on `tape`, whose inputs are the time since the reference, the state and the parameters.
+        Rates and event functions, on `tape`, of the time since the reference, the state and the parameters.
     tape : Tape
         Holds them.
     parameters : int
@@ -57,7 +57,7 @@ class Lowered:
     tidy: Callable[[Sequence[float]], list[float]]
 
     def heyoka(self) -> tuple[list[tuple[Any, Any]], list[Any]]:
-        """Return equations and stops as `heyoka.taylor_adaptive` takes them."""
+        """Return equations and event functions as `heyoka.taylor_adaptive` takes them."""
         import heyoka
 
         size = len(self.names)

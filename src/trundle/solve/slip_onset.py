@@ -24,7 +24,7 @@ _FIRST = 1e-6  # share of |ρ| over its speed that the first moment of slip take
 
 @dataclass(frozen=True)
 class Onset:
-    """A body that has slipped for a moment: where it is, the law that it follows, what that law's stops take."""
+    """A body that has slipped for a moment: where it is, the law that it follows, what its event functions take."""
 
     at: ContactState
     law: Callable[..., SlippingLaw]  # as `SlippingLaw` is made

@@ -30,7 +30,7 @@ class PythonLaw:
     stops : callable
         (t, state) -> the values of the law's stops.
     names : tuple of str
-        Of the stops.
+        Of the event functions.
     found : callable
         (t, state) -> what else of the state the law works out at some cost, as `Law.found` has it.
     """

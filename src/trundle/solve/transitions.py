@@ -47,7 +47,7 @@ JOLT = "jolt"  # the stop where the velocity of the support jumps under a body t
 
 @dataclass(frozen=True)
 class ZeroCrossing:
-    """Where a stretch ended: the instant, which of the law's stops, and the state's numbers."""
+    """Where a stretch ended, a stop: the instant, which of the law's event functions was zero, and the state vector."""
 
     time: float
     name: str
@@ -96,7 +96,7 @@ def at_start(system: RollingSystem, start: State) -> PhaseStart:
 
 
 def after(system: RollingSystem, law: Law, stop: ZeroCrossing) -> PhaseStart:
-    """Return what follows one of a law's stops."""
+    """Return what follows where one of a law's event functions falls through zero."""
     at, name = stop.at(system, law), stop.name.removeprefix("near ")
     if name in ("slip", "start"):
         event_parameters = _floor(system, law, at) + (0.0,) * law.ending
@@ -241,12 +241,12 @@ def _least(system: RollingSystem, at: ContactState, stop: str) -> float:
 
 
 def _floor(system: RollingSystem, law: Law, at: ContactState) -> tuple[float, ...]:
-    """Return what the stops take where nothing presses the body on: the pull that is rounding."""
+    """Return what the event functions take where nothing presses the body on: the pull that is rounding."""
     return (_FLOOR * at.forces(system),) if law.weightless else ()
 
 
 def _extras(system: RollingSystem, law: Law, at: ContactState, numbers: Any = None) -> tuple[float, ...]:
-    """Return what the stops take that end slip or turning: when it is all but nothing, and its direction."""
+    """Return what ends slip or turning: when it is all but nothing, and its direction."""
     found: list[float] = []
     for name in law.ends:
         v = law.shrinking(system, at.state.time, law.state_vector(at) if numbers is None else numbers, name)

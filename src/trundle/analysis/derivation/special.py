@@ -26,11 +26,6 @@ _NAMES = {
     "mass": "m", "ratio": "k", "moment": "I", "rate": "omega", "variation": "epsilon", "variation_rate": "nu",
     "angle": "epsilon", "tilt": "alpha", "gravity": "g", "coefficient": "c", "air": "omega_a", "friction": "mu",
 }  # fmt: skip
-_MEANT = {
-    "epsilon": "how far the support's motion is from steady",
-    "nu": "rate of that variation, in rad/s",
-    "omega_a": "rate at which the air turns, in rad/s",
-}
 
 
 def with_symbols(system: RollingSystem) -> RollingSystem:

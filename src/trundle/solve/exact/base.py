@@ -56,7 +56,7 @@ class ClosedForm:
     conditions: ClassVar[tuple[Condition, ...]]  # of which the domain is put together
     phases: ClassVar[tuple[int, ...]] = (ROLLING,)  # of contact that it covers
     of_arrays: ClassVar[bool] = False  # whether its numbers may be arrays, one element for each time asked for
-    impossible_events: ClassVar[frozenset[str]] = frozenset()  # stops of the phase that cannot come
+    impossible_events: ClassVar[frozenset[str]] = frozenset()  # events of the phase that cannot come
 
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> Self:
@@ -254,7 +254,7 @@ class ClosedForm:
 
     @property
     def ends_at(self) -> dict[str, float]:
-        """When the phase ends, s since the start, by those of its law's stops that the form knows; or never, inf."""
+        """When the phase ends, s since the start, by those of its law's events that the form knows; or never, inf."""
         return {}
 
     def expected(self, duration: float) -> list[tuple[str, str]]:
@@ -318,7 +318,7 @@ class ClosedForm:
         yield Finding(name, "d", float(gone.norm()), measured, "m", note, seen.way or None)
 
     def repeats(self, stop: str) -> float:  # noqa: ARG002
-        """Return after how long the course of one of the law's stops repeats.
+        """Return after how long the course of one of the law's event functions repeats.
 
         Parameters
         ----------
