@@ -8,7 +8,9 @@ from .errors import MissingExtraError
 
 MODULES = {  # what each brings, as it is imported
     "lab": ("fastapi", "uvicorn", "pebble", "pygltflib"),
+    "jax": ("jax",),
     "notebook": ("anywidget",),
+    "numba": ("numba",),
     "parquet": ("pyarrow",),
 }
 
