@@ -50,7 +50,7 @@ def simulate(
     every : float or quantity
         Step between samples, s; the end is always sampled.
     method : str
-        "exact": the closed form. "taylor": heyoka at 1e-15. "runge-kutta": SciPy's DOP853 at 1e-12. "auto": the closed
+        "exact": the closed form. "taylor": heyoka at 1e-15. "runge-kutta": DOP853 at 1e-12. "auto": the closed
         form where every phase of the run has one, else Taylor's method.
     tolerance : float, optional
         Of "taylor" and "runge-kutta", relative, for each step, 1e-15 to 1e-6; absent: as above. The run remembers it,

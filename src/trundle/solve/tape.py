@@ -49,19 +49,27 @@ class Tape:
 
     def function(self, outputs: Sequence[Any]) -> Callable[[Sequence[float]], list[float]]:
         """Return the function of the inputs that gives the outputs."""
+        lines, written = self._lines(outputs)
+        return defined("\n".join(["def traced(x):", *lines, f"    return [{', '.join(written)}]"]))
+
+    def filling(self, outputs: Sequence[Any]) -> str:
+        """Return the text of a function of the inputs and an array, `out`, that fills the outputs in."""
+        lines, written = self._lines(outputs)
+        filled = [f"    out[{i}] = {part}" for i, part in enumerate(written)]
+        return "\n".join(["def traced(x, out):", *lines, *filled, "    return", ""])
+
+    def _lines(self, outputs: Sequence[Any]) -> tuple[list[str], list[str]]:
+        """Return what is worked out first, and the outputs, as Python has them."""
         needed = self.needed(outputs)
         uses = [*outputs, *(part for i in needed for part in self.steps[i][1:])]
         used = Counter(part.index for part in uses if isinstance(part, Node))
-        lines, names = ["def traced(x):"], dict[int, str]()
+        lines, names = list[str](), dict[int, str]()
         for i in needed:
             names[i] = _written(self.steps[i], names)
             if used[i] > 1 or len(names[i]) > _LONGEST:  # what is used once stands where it is used: twice as fast
                 lines.append(f"    v{i} = {names[i]}")
                 names[i] = f"v{i}"
-        source = "\n".join([*lines, f"    return [{', '.join(_name(part, names) for part in outputs)}]"])
-        place: dict[str, Any] = dict(_PYTHON)
-        exec(source, place)  # noqa: S102  operators, numbers and the names of `_PYTHON`, nothing else
-        return place["traced"]
+        return lines, [_name(part, names) for part in outputs]
 
     def needed(self, outputs: Sequence[Any]) -> list[int]:
         """Return the steps that the outputs lean on, in order."""
@@ -208,6 +216,21 @@ _PYTHON: dict[str, Callable[..., Any]] = {
     "atan2": math.atan2,
     "where": _where,
 }
+
+
+def defined(text: str, file: str = "<tape>", **functions: Any) -> Callable[..., Any]:
+    r"""Return the function whose text a tape has written, with other names than Python's functions.
+
+    Examples
+    --------
+    >>> defined("def traced(x):\n    return [sqrt(x[0])]")([4.0])
+    [2.0]
+    """
+    place: dict[str, Any] = _PYTHON | functions
+    exec(compile(text, file, "exec"), place)  # noqa: S102  operators, numbers and the names of `place`, nothing else
+    return place["traced"]
+
+
 _Functions = type("_Functions", (), {name: _function(name) for name in _PYTHON})
 
 
