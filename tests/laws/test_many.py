@@ -12,7 +12,7 @@ import pytest
 from tests.tolerances import SOLVER
 
 import trundle as tr
-from trundle.analysis import many
+from trundle.analysis.many import running as many
 from trundle.solve import ensemble, integrator_cache, integrators, runge_kutta, taylor
 from trundle.solve.exact import SphereOnPlane
 

@@ -15,7 +15,7 @@ import pytest
 import xarray
 
 import trundle as tr
-from trundle.analysis import many
+from trundle.analysis.many import running as many
 from trundle.mechanics.algebra import Vector
 from trundle.mechanics.loads import Load
 from trundle.solve import ensemble

@@ -10,24 +10,24 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import InvalidValueError, TrundleError
-from ..mechanics.finiteness import check_finite, varies
-from ..mechanics.kinks import has_kinks
-from ..mechanics.parameters import structure_of
-from ..mechanics.system import RollingSystem, State
-from ..simulation import labels
-from ..simulation.memory import check_room
-from ..simulation.simulate import check_state, simulate
-from ..solve import taylor
-from ..solve.methods import Method
-from ..solve.samples import Progress
-from ..solve.sampling import MOST_SAMPLES, check_clock, sample_times
+from ...errors import InvalidValueError, TrundleError
+from ...mechanics.finiteness import check_finite, varies
+from ...mechanics.kinks import has_kinks
+from ...mechanics.parameters import structure_of
+from ...mechanics.system import RollingSystem, State
+from ...simulation import labels
+from ...simulation.memory import check_room
+from ...simulation.simulate import check_state, simulate
+from ...solve import taylor
+from ...solve.methods import Method
+from ...solve.samples import Progress
+from ...solve.sampling import MOST_SAMPLES, check_clock, sample_times
 
 if TYPE_CHECKING:
     import xarray
 
-    from ..simulation.trajectory import Trajectory
-    from ..solve.ensemble import Block
+    from ...simulation.trajectory import Trajectory
+    from ...solve.ensemble import Block
 
 ENDED = -1  # the phase of a member whose run is over
 
@@ -99,8 +99,8 @@ def simulate_many(
 
 def _members(systems: Any, starts: Any) -> tuple[list[RollingSystem], list[State]]:
     """Return as many systems as starts."""
-    many_systems = [systems] if isinstance(systems, RollingSystem) else _listed(systems, "systems", RollingSystem)
-    many_starts = [starts] if isinstance(starts, State) else _listed(starts, "starts", State)
+    many_systems = [systems] if isinstance(systems, RollingSystem) else listed(systems, "systems", RollingSystem)
+    many_starts = [starts] if isinstance(starts, State) else listed(starts, "starts", State)
     if len(many_systems) == 1:
         many_systems *= len(many_starts)
     if len(many_starts) == 1:
@@ -111,7 +111,8 @@ def _members(systems: Any, starts: Any) -> tuple[list[RollingSystem], list[State
     return many_systems, many_starts
 
 
-def _listed(values: Any, key: str, kind: type) -> list[Any]:
+def listed(values: Any, key: str, kind: type) -> list[Any]:
+    """Return a list of one or more things of one kind."""
     found = list(values) if isinstance(values, Iterable) else [values]
     for i, value in enumerate(found):
         if not isinstance(value, kind):
@@ -121,12 +122,17 @@ def _listed(values: Any, key: str, kind: type) -> list[Any]:
     return found
 
 
-def _check(systems: list[RollingSystem], starts: list[State], instants: int, every: Any, workers: int | None) -> None:
+def check_structures(systems: list[RollingSystem]) -> None:
+    """Refuse systems that are not made of the same parts."""
     first = structure_of(systems[0])
     for i, system in enumerate(systems):
         if system is not systems[0] and structure_of(system) != first:
             remedy = "Members differ in numbers only; run other bodies, supports or loads in another call."
             raise InvalidValueError(f"systems[{i}]", "must be made of the same parts as systems[0]", system, remedy)
+
+
+def _check(systems: list[RollingSystem], starts: list[State], instants: int, every: Any, workers: int | None) -> None:
+    check_structures(systems)
     if not (isinstance(starts[0].time, (int, float)) and math.isfinite(starts[0].time)):
         raise InvalidValueError("starts[0].time", "must be a finite number, s", starts[0].time)
     for i, start in enumerate(starts):
@@ -159,7 +165,7 @@ def _rolled(
     result: _Result, systems: list[RollingSystem], starts: list[State], times: Any, workers: int | None
 ) -> list[int]:
     """Run the members that roll, and return those that are left."""
-    from ..solve import ensemble
+    from ...solve import ensemble
 
     sound = np.flatnonzero(_sound(systems, starts, times))  # `simulate` says what is wrong with the others
     some = [systems[i] for i in sound]
