@@ -16,7 +16,7 @@ from ..solve.laws import CONTACT
 from ..units import UNITS
 from .backends import BACKENDS, Backend, Function
 from .inputs import GROUPS, inputs_of
-from .printers import c
+from .printers import c, symbolic
 from .resets import CODES
 from .routines import OUTPUTS, PhaseRoutines, Routine, check_analytic, phases_of
 
@@ -120,7 +120,7 @@ class VectorField:
     @property
     def input_units(self) -> tuple[str, ...]:
         """Their units."""
-        return tuple(UNITS[dimension][0] for _, dimension, _ in inputs_of(self.system, self.input_groups))
+        return tuple(unit for _, unit, _ in inputs_of(self.system, self.input_groups))
 
     @property
     def inputs(self) -> Any:
@@ -282,6 +282,67 @@ class VectorField:
         """
         return self if phase == self.phase else VectorField(self.system, self.backend, phase, self.input_groups)
 
+    @cached_property
+    def symbols(self) -> tuple[Any, list[Any], list[Any], list[Any]]:
+        """SymPy's symbols for t, y, p and u."""
+        import sympy
+
+        names = self.state_names, self.parameter_names, self.input_names
+        found = iter(symbolic.symbols([name for part in names for name in part]))
+        y, p, u = ([next(found) for _ in part] for part in names)
+        return sympy.Symbol("t", real=True), y, p, u
+
+    def equations(self, *, shared: bool = False) -> tuple[list[tuple[Any, Any]], list[Any]]:
+        """Return the rates as SymPy expressions of `symbols`, whatever the backend.
+
+        Parameters
+        ----------
+        shared : bool
+            Whether what comes more than once gets a name.
+
+        Returns
+        -------
+        list of (Symbol, Expr), list of Expr
+            What the names mean, in order, none unless `shared`; and the rates, simplified where they are short.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> table = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane(), motion=tr.Spin(2.0)))
+        >>> table.vector_field("sympy", inputs=()).equations()[1][7]
+        rate*(Omega_y*radius - p_y*rate)/(radius*(ratio + 1))
+        """
+        t, *parts = self.symbols
+        values = [t, *(symbol for part in parts for symbol in part)]
+        definitions: list[tuple[Any, Any]] | None = [] if shared else None
+        rates = symbolic.expressions(self._routines.rates(), values, definitions)
+        return (definitions or [], rates if shared else symbolic.simplified(rates))
+
+    def latex(self, *, shared: bool | None = None) -> str:
+        """Return the equations of motion of this phase in LaTeX.
+
+        Parameters
+        ----------
+        shared : bool, optional
+            Whether what comes more than once gets a name; absent: where the equations are too long without.
+
+        Returns
+        -------
+        str
+            An `align*`.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> level = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane()))
+        >>> print(level.vector_field("sympy", inputs=()).latex().splitlines()[1])
+            \\dot{p}_{x} &= \\Omega_{y} \\mathrm{radius} \\\\
+        """
+        _, y, p, u = self.symbols
+        shared = not symbolic.readable(self._routines.rates()) if shared is None else shared
+        definitions, rates = self.equations(shared=shared)
+        return symbolic.latex(y, rates, definitions, [*p, *u])
+
     def routines(self) -> list[Routine]:
         """Return the routines of all phases that the backend has, as they are printed.
 
@@ -315,6 +376,8 @@ class VectorField:
         """
         if not name.isidentifier() or not name.isascii():
             raise InvalidValueError("name", "must consist of letters, digits and underscores", name)
+        if not self._backend.phases:
+            return self.latex()
         return self._backend.source(self.routines(), name, self._said())
 
     def header(self, name: str = "field") -> str:
@@ -363,6 +426,8 @@ class VectorField:
 
 def _table(title: str, names: Sequence[str], units: Sequence[str], values: Any = None) -> list[str]:
     """List names with their places, units and values."""
+    if not names:
+        return []
     values = [None] * len(names) if values is None else values.tolist()
     rows = zip(names, units, values, strict=True)
     return [

@@ -21,10 +21,10 @@ _AXES = ("x", "y", "z")
 
 
 class Input(NamedTuple):
-    """One input: its name, the dimension as in `trundle.units.UNITS`, and the value that changes nothing."""
+    """One input: its name, its unit, and the value that changes nothing."""
 
     name: str
-    dimension: str
+    unit: str
     value: float = 0.0
 
 
@@ -44,22 +44,22 @@ def inputs_of(system: RollingSystem, groups: Sequence[str]) -> list[Input]:
     found: list[Input] = []
     for group in GROUPS:
         if group in groups:
-            found += _of_support(system) if group == "support" else _vector(group, group)
+            found += _of_support(system) if group == "support" else _vector(group, "N" if group == "force" else "N*m")
     return found
 
 
-def _vector(name: str, dimension: str) -> list[Input]:
-    return [Input(f"{name}_{axis}", dimension) for axis in _AXES]
+def _vector(name: str, unit: str) -> list[Input]:
+    return [Input(f"{name}_{axis}", unit) for axis in _AXES]
 
 
 def _of_support(system: RollingSystem) -> Iterator[Input]:
-    yield from _vector("support", "length")
-    yield from _vector("support_velocity", "velocity")
-    yield from _vector("support_acceleration", "acceleration")
+    yield from _vector("support", "m")
+    yield from _vector("support_velocity", "m/s")
+    yield from _vector("support_acceleration", "m/s^2")
     if not system.support.motion.free:  # an axle that turns freely may be shifted, not turned
-        yield from (Input(f"support_q_{part}", "number", float(part == "w")) for part in "wxyz")
-        yield from _vector("support_angular_velocity", "angular velocity")
-        yield from _vector("support_angular_acceleration", "angular acceleration")
+        yield from (Input(f"support_q_{part}", "", float(part == "w")) for part in "wxyz")
+        yield from _vector("support_angular_velocity", "rad/s")
+        yield from _vector("support_angular_acceleration", "rad/s^2")
 
 
 @dataclass(frozen=True)
