@@ -100,11 +100,11 @@ class C(Backend):
                 "No C compiler is found here (CC, cc, gcc, clang), so that the C cannot be called from Python; its "
                 "text is `source`, and compiles elsewhere."
             )
-        folder = tempfile.TemporaryDirectory(prefix="trundle-", ignore_cleanup_errors=True)
-        text, library = Path(folder.name) / "field.c", Path(folder.name) / "field.so"
-        text.write_text(c.source([routine], "field", routine.said), encoding="utf-8")
-        shared_library(command, [text], library)
-        compiled = getattr(ctypes.CDLL(str(library)), f"field_{routine.name}")
+        with tempfile.TemporaryDirectory(prefix="trundle-", ignore_cleanup_errors=True) as folder:
+            text, library = Path(folder) / "field.c", Path(folder) / "field.so"
+            text.write_text(c.source([routine], "field", routine.said), encoding="utf-8")
+            shared_library(command, [text], library)
+            compiled = getattr(ctypes.CDLL(str(library)), f"field_{routine.name}")  # stays when its file goes
         sizes = [size for _, size in routine.arguments]
 
         def found(*given: Any) -> Any:
@@ -113,7 +113,6 @@ class C(Backend):
             compiled(*(each if isinstance(each, ctypes.c_double) else _pointer(each) for each in kept), _pointer(result))
             return result
 
-        found.folder = folder  # type: ignore[attr-defined]  kept as long as the function is
         found.__doc__ = routine.said
         return found
 
