@@ -172,7 +172,13 @@ def test_every_number_has_one_name() -> None:
         assert len(set(field.input_names)) == len(field.inputs) == len(field.input_units)
         assert len(field.state_names) == len(field.state_units)
         units |= dict(zip(field.parameter_names, field.parameter_units, strict=True))
-    known = {"body.radius": "m", "body.mass": "kg", "gravity": "m/s^2", "support.tilt": "rad", "body.inertia.x": "kg*m^2"}
+    known = {
+        "body.radius": "m",
+        "body.mass": "kg",
+        "gravity": "m/s^2",
+        "support.tilt": "rad",
+        "body.inertia.x": "kg*m^2",
+    }
     assert units | known == units
     assert units["support.motion.rate"] == "rad/s"
     assert RollingLaw().names(tr.Scenario.load("free-turntable-ellipse").system())[-2:] == (

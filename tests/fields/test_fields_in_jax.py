@@ -56,6 +56,24 @@ def test_all_slopes_are_finite(name: str) -> None:
         assert all(np.isfinite(slope).all() for slope in slopes)
 
 
+BALL = tr.Body.solid_sphere(0.02, 0.1)
+AT_NOTHING = {
+    "drag that goes with the square, at rest": tr.RollingSystem(BALL, tr.Support(tr.Plane()), (tr.QuadraticDrag(0.1),)),
+    "resistance to rolling, at rest": tr.RollingSystem(BALL, tr.Support(tr.Plane()), (tr.RollingResistance(1e-4),)),
+    "the apex of a surface of revolution": tr.RollingSystem(BALL, tr.Support(tr.Revolution("0.5*r**2"))),
+    "a dry bearing": tr.RollingSystem(BALL, tr.Support(tr.Plane(), motion=tr.FreeAxle(0.1, bearing_torque=0.01))),
+}
+
+
+@pytest.mark.parametrize("name", AT_NOTHING)
+def test_slopes_are_finite_where_a_length_is_nothing(name: str) -> None:
+    field = AT_NOTHING[name].vector_field("jax")
+    given = 0.0, field.pack(AT_NOTHING[name].place()), field.parameters, field.inputs
+    for slopes in (jax.jacfwd, jax.jacrev):
+        found = slopes(field.rates, argnums=(0, 1, 2, 3))(*given)
+        assert all(np.isfinite(slope).all() for slope in found)
+
+
 @pytest.mark.parametrize("name", ["level-turntable-put-down", "ball-in-a-turning-bowl", "rattleback-with-losses"])
 def test_slopes_backwards_are_those_forwards(name: str) -> None:
     scenario = tr.Scenario.load(name)

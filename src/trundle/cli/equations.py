@@ -25,7 +25,10 @@ def equations(
         ),
     ],
     form: Annotated[
-        str, typer.Option("--as", metavar="FORM", help="c, python, javascript, latex or jax.", autocompletion=lambda: list(FORMS))
+        str,
+        typer.Option(
+            "--as", metavar="FORM", help="c, python, javascript, latex or jax.", autocompletion=lambda: list(FORMS)
+        ),
     ] = "python",
     phase: Annotated[
         str | None,
@@ -58,19 +61,20 @@ def equations(
         raise InvalidValueError("NAME", "must be a scenario with forces", name, "A path to roll along has no law.")
     if output is not None and output.expanduser().is_dir():
         raise InvalidValueError("--output", "must be a file", str(output), "That is a folder.")
-    system = load(name, tables).system()
-    groups = ("force", "torque", "support") if form != "latex" else ()
+    scenario = load(name, tables)
+    system, start = scenario.system(), scenario.start_state()
+    groups: tuple[str, ...] = ("force", "torque", "support") if form != "latex" else ()
     if inputs is not None:
         groups = tuple(part.strip() for part in inputs.split(",") if part.strip())
     if phase is None:
         phase = "slipping" if system.support.friction == 0 else "rolling"
     field = system.vector_field(FORMS[form], phase, groups)
     if output is None:
-        screen.out(field.source(), end="")
+        screen.out(field.source(start=start), end="")
         return
     target = output.expanduser()
     prefix = re.sub(r"\W|^(?=\d)", "_", target.stem, flags=re.ASCII)
-    texts = {target: field.source(prefix)}
+    texts = {target: field.source(prefix, start)}
     if form == "c":
         texts[target.with_suffix(".h")] = field.header(prefix)
     for path, text in texts.items():

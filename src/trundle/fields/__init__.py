@@ -1,4 +1,4 @@
-"""The law for other programs: vector fields with names and units, printed for NumPy, numba, JAX, SymPy, C, JavaScript."""
+"""The law for other programs: vector fields with names and units, printed for NumPy, numba, JAX, SymPy, C and more."""
 
 from __future__ import annotations
 

@@ -110,7 +110,9 @@ class C(Backend):
         def found(*given: Any) -> Any:
             kept = [_numbers(each, size) for each, size in zip(given, sizes, strict=True)]
             result = np.empty(len(routine.outputs))
-            compiled(*(each if isinstance(each, ctypes.c_double) else _pointer(each) for each in kept), _pointer(result))
+            compiled(
+                *(each if isinstance(each, ctypes.c_double) else _pointer(each) for each in kept), _pointer(result)
+            )
             return result
 
         found.__doc__ = routine.said
@@ -148,7 +150,9 @@ class Sympy(Backend):
         """Return a function of expressions."""
 
         def found(*given: Any) -> list[Any]:
-            values = [part for each, (_, size) in zip(given, routine.arguments, strict=True) for part in _each(each, size)]
+            values = [
+                part for each, (_, size) in zip(given, routine.arguments, strict=True) for part in _each(each, size)
+            ]
             return symbolic.expressions(routine, values)
 
         found.__doc__ = routine.said

@@ -18,7 +18,9 @@ def compiler() -> str | None:
     --------
     >>> found = compiler()
     """
-    return next((found for name in (os.environ.get("CC", ""), "cc", "gcc", "clang") if (found := shutil.which(name))), None)
+    return next(
+        (found for name in (os.environ.get("CC", ""), "cc", "gcc", "clang") if (found := shutil.which(name))), None
+    )
 
 
 def shared_library(command: str, sources: list[Path], target: Path, *options: str) -> None:

@@ -12,7 +12,6 @@ import numpy as np
 from ..errors import InvalidValueError, OutOfDomainError, UnknownNameError
 from ..mechanics.parameters import numbers, parameters
 from ..mechanics.system import RollingSystem, State
-from ..solve.laws import CONTACT
 from ..units import UNITS
 from .backends import BACKENDS, Backend, Function
 from .inputs import GROUPS, inputs_of
@@ -319,7 +318,7 @@ class VectorField:
         return (definitions or [], rates if shared else symbolic.simplified(rates))
 
     def latex(self, *, shared: bool | None = None) -> str:
-        """Return the equations of motion of this phase in LaTeX.
+        r"""Return the equations of motion of this phase in LaTeX.
 
         Parameters
         ----------
@@ -336,7 +335,7 @@ class VectorField:
         >>> import trundle as tr
         >>> level = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane()))
         >>> print(level.vector_field("sympy", inputs=()).latex().splitlines()[1])
-            \\dot{p}_{x} &= \\Omega_{y} \\mathrm{radius} \\\\
+            \dot{p}_{x} &= \Omega_{y} \mathrm{radius} \\
         """
         _, y, p, u = self.symbols
         shared = not symbolic.readable(self._routines.rates()) if shared is None else shared
@@ -354,13 +353,15 @@ class VectorField:
         others = [phase for phase in self.phases if phase != self.phase] if self._backend.phases else []
         return [each for phase in (self.phase, *others) for each in self.at(phase)._routines.all()]
 
-    def source(self, name: str = "field") -> str:
+    def source(self, name: str = "field", start: State | None = None) -> str:
         """Return the text of all functions, with what their arguments are.
 
         Parameters
         ----------
         name : str
             With which the functions of C begin, and its header: letters, digits and underscores.
+        start : State, optional
+            Its y is told with the names.
 
         Returns
         -------
@@ -378,7 +379,7 @@ class VectorField:
             raise InvalidValueError("name", "must consist of letters, digits and underscores", name)
         if not self._backend.phases:
             return self.latex()
-        return self._backend.source(self.routines(), name, self._said())
+        return self._backend.source(self.routines(), name, self._said(start))
 
     def header(self, name: str = "field") -> str:
         """Return the header that declares the functions of C.
@@ -402,12 +403,13 @@ class VectorField:
         """
         return c.header(self.routines(), name, self._said())
 
-    def _said(self) -> str:
+    def _said(self, start: State | None = None) -> str:
         """Say what the functions take, all in SI."""
         lines = ["The law of one rolling system, as trundle wrote it. All numbers are in SI.", "", "t: time (s)"]
         for phase in (self.phase, *(each for each in self.phases if self._backend.phases and each != self.phase)):
             there = self.at(phase)
-            lines += _table(f"y of {phase}", there.state_names, there.state_units)
+            begins = there.pack(start) if start is not None and phase == self.phase else None
+            lines += _table(f"y of {phase}", there.state_names, there.state_units, begins)
             if there.event_names:
                 lines.append(f"events of {phase}: " + ", ".join(there.event_names))
         lines += _table("p", self.parameter_names, self.parameter_units, self.parameters)

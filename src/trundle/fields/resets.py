@@ -67,9 +67,7 @@ def _speed(system: RollingSystem, law: Law, time: Scalar, state: Numbers) -> Sca
     return namespace(square).sqrt(square)
 
 
-def _lift(
-    system: RollingSystem, law: Law, time: Scalar, state: Numbers, n: Vector, plain: RollingSystem
-) -> Follows:  # noqa: ARG001
+def _lift(system: RollingSystem, law: Law, time: Scalar, state: Numbers, n: Vector, plain: RollingSystem) -> Follows:  # noqa: ARG001
     """Return flight as the body moves, a gap begun that rounding does not close."""
     p, q, Omega, _, coordinates = law.split(state)
     motion = law.motion(system, time, state)
@@ -78,9 +76,7 @@ def _lift(
     return Follows({"flight": [*p, *q, *Omega, *motion.velocity, gap, *r, *coordinates]})
 
 
-def _slip(
-    system: RollingSystem, law: Law, time: Scalar, state: Numbers, n: Vector, plain: RollingSystem
-) -> Follows:  # noqa: ARG001
+def _slip(system: RollingSystem, law: Law, time: Scalar, state: Numbers, n: Vector, plain: RollingSystem) -> Follows:  # noqa: ARG001
     """Return slip that begins against the friction that rolling, or rest, takes."""
     p, q, Omega, _, coordinates = law.split(state)
     R = law.reaction(system, time, state)
@@ -89,9 +85,7 @@ def _slip(
     return Follows({"slipping": [*p, *q, *Omega, *s, *coordinates]})
 
 
-def _grip(
-    system: RollingSystem, law: Law, time: Scalar, state: Numbers, n: Vector, plain: RollingSystem
-) -> Follows:  # noqa: ARG001
+def _grip(system: RollingSystem, law: Law, time: Scalar, state: Numbers, n: Vector, plain: RollingSystem) -> Follows:
     """Return rolling, or slip the other way where friction cannot hold the body."""
     rolling, coordinates = RollingLaw(), law.split(state)[4]
     rolls = [*state[: len(CONTACT)], *coordinates]
@@ -101,9 +95,7 @@ def _grip(
     return _either(holds, ("rolling", rolls), ("slipping", slips))
 
 
-def _stop(
-    system: RollingSystem, law: Law, time: Scalar, state: Numbers, n: Vector, plain: RollingSystem
-) -> Follows:  # noqa: ARG001
+def _stop(system: RollingSystem, law: Law, time: Scalar, state: Numbers, n: Vector, plain: RollingSystem) -> Follows:
     """Return rest, or rolling that begins anew where the resistance cannot hold the body."""
     p, q, _, _, coordinates = law.split(state)
     resting, rests = RestingLaw(), [*p, *q, *_at_rest(system, time, coordinates), *coordinates]
@@ -112,9 +104,7 @@ def _stop(
     return _either(holds, ("rest", rests), ("rolling", rolls))
 
 
-def _start(
-    system: RollingSystem, law: Law, time: Scalar, state: Numbers, n: Vector, plain: RollingSystem
-) -> Follows:  # noqa: ARG001
+def _start(system: RollingSystem, law: Law, time: Scalar, state: Numbers, n: Vector, plain: RollingSystem) -> Follows:  # noqa: ARG001
     """Return rolling with a first little turn against what the resistance would have to give."""
     p, q, _, _, coordinates = law.split(state)
     Omega = _at_rest(system, time, coordinates)
@@ -125,9 +115,7 @@ def _start(
     return Follows({"rolling": [*p, *q, *Omega, *coordinates]})
 
 
-def _land(
-    system: RollingSystem, law: Law, time: Scalar, state: Numbers, n: Vector, plain: RollingSystem
-) -> Follows:
+def _land(system: RollingSystem, law: Law, time: Scalar, state: Numbers, n: Vector, plain: RollingSystem) -> Follows:
     """Return flight where the body bounces, else slipping or rolling; a bounce as low as in a run is cut."""
     p, q, Omega, _, coordinates = law.split(state)
     motion, contact = law.motion(system, time, state), contact_at(system, time, p, q, coordinates)

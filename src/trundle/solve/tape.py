@@ -253,9 +253,7 @@ _PYTHON: dict[str, Callable[..., Any]] = {
     "atan2": math.atan2,
     "where": _where,
 }
-_Functions: Any = type(
-    "_Functions", (), {**{name: _function(name) for name in _PYTHON}, "hypot": staticmethod(_hypot)}
-)
+_Functions: Any = type("_Functions", (), {**{name: _function(name) for name in _PYTHON}, "hypot": staticmethod(_hypot)})
 
 
 def apply(tape: Tape, operation: str, *operands: Any) -> Any:

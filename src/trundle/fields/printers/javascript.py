@@ -7,9 +7,7 @@ from collections.abc import Iterable
 from ...solve.tape import Dialect
 from ..routines import Routine
 
-_FUNCTIONS = {
-    name: f"Math.{name}" for name in ("sqrt", "sin", "cos", "tan", "exp", "expm1", "log", "abs", "atan2")
-}
+_FUNCTIONS = {name: f"Math.{name}" for name in ("sqrt", "sin", "cos", "tan", "exp", "expm1", "log", "abs", "atan2")}
 
 
 def _dialect(variable: object) -> Dialect:
