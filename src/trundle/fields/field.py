@@ -60,7 +60,7 @@ class VectorField:
     >>> f = slope.vector_field("numpy")
     >>> y = f.pack(slope.place())
     >>> rates = f.rates(0.0, y, f.parameters, f.inputs)
-    >>> round(rates[f.state_names.index("Omega_y")] * 0.02 / (9.80665 * 0.09983341664682815), 12)  # 5/7
+    >>> print(round(rates[f.state_names.index("Omega_y")] * 0.02 / (9.80665 * 0.09983341664682815), 12))  # 5/7
     0.714285714286
     """
 
@@ -227,8 +227,8 @@ class VectorField:
         >>> f = system.vector_field("numpy", phase="flight")
         >>> y = f.pack(system.place(velocity=(0.0, 0.0, -2.0)))
         >>> bounced, y = f.after("land", 0.0, y, f.parameters, f.inputs)
-        >>> bounced.phase, round(y[f.state_names.index("V_z")], 12)
-        ('flight', 1.0)
+        >>> print(bounced.phase, round(y[f.state_names.index("V_z")], 12))
+        flight 1.0
         """
         self._need_phases()
         name = event.removeprefix("near ")

@@ -116,7 +116,7 @@ def straight_impulse(system: RollingSystem, contact: Contact, orientation: Quate
     >>> floor = tr.RollingSystem(tr.Body.solid_sphere(0.1, 2.0), tr.Support(tr.Plane(), friction=0.1))
     >>> still = Quaternion(1.0, 0.0, 0.0, 0.0)
     >>> contact = contact_at(floor, 0.0, Vector(0.0, 0.0, 0.0), still)
-    >>> P = straight_impulse(floor, contact, still, Vector(1.0, 0.0, -3.0))
+    >>> P = straight_impulse(floor, contact, still, Vector(3.0, 0.0, -3.0))
     >>> round(P.x, 12), round(P.z, 12)
     (-0.6, 6.0)
     """
