@@ -100,6 +100,10 @@ class Law:
         """Return what ends the phase where it falls through zero, by name."""
         raise NotImplementedError
 
+    def reaction(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:
+        """Return R, the contact force on the body, N."""
+        raise NotImplementedError
+
     def found(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:  # noqa: ARG002
         """Return what else of a state it takes some work to find; nothing, mostly."""
         return []
@@ -250,6 +254,10 @@ class RollingLaw(Law):
             found |= _ending("stop", turning, now.angular_acceleration, ending)
         return {**found, **self._bounds(system, now.contact, Quaternion(*state[3:7]), 0.0)}
 
+    def reaction(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:
+        """Return R of the law."""
+        return self._now(system, time, state).reaction
+
     def state_vector(self, at: ContactState) -> list[float]:
         """Return p = r + ρ, q and Ω."""
         return [*at.nearest, *at.orientation, *at.Omega, *at.state.support]
@@ -343,6 +351,10 @@ class SlippingLaw(Law):
             found["jam"] = now.opening_per_newton * system.body.mass - JAMS
         return found
 
+    def reaction(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:
+        """Return R of the law."""
+        return self._now(system, time, state).reaction
+
     def state_vector(self, at: ContactState) -> list[float]:
         """Return p, q, Ω and the part of s along the support."""
         return [*at.nearest, *at.orientation, *at.Omega, *at.sliding, *at.state.support]
@@ -430,6 +442,10 @@ class FlightLaw(Law):
         contact = contact_at(system, time, p, q, coordinates)
         return {"land": rest[3], **self._bounds(system, contact, q, rest[3])}
 
+    def reaction(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:  # noqa: ARG002
+        """Return 0: nothing touches."""
+        return ZERO
+
     def state_vector(self, at: ContactState) -> list[float]:
         """Return the nearest point, q, Ω, V, the gap and r."""
         return [*at.contact.point, *at.orientation, *at.Omega, *at.V, at.gap, *at.state.position, *at.state.support]
@@ -513,6 +529,10 @@ class RestingLaw(Law):
         found = cone(system, held.contact, held.reaction, floor)
         found["start"] = left_of_resistance(system, n.dot(held.reaction) + floor, over)
         return {**found, **self._bounds(system, held.contact, Quaternion(*state[3:7]), 0.0)}
+
+    def reaction(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:
+        """Return what carries the body."""
+        return self.held(system, time, state).reaction
 
     def state_vector(self, at: ContactState) -> list[float]:
         """Return p, q and Ω."""
