@@ -12,7 +12,7 @@ from typing import Any
 from ..mechanics.parameters import numbers, structure_of, with_numbers
 from ..mechanics.scalars import Scalar
 from ..mechanics.system import RollingSystem, State
-from . import corners
+from . import corner_events
 from .laws import Law, RollingLaw
 from .tape import Tape
 
@@ -33,12 +33,15 @@ class PythonLaw:
         Of the event functions.
     found : callable
         (t, state) -> what else of the state the law works out at some cost, as `Law.found` has it.
+    corners : callable
+        (t, state) -> the components of what passes through zero at each corner of the loads.
     """
 
     rates: Callable[[float, Sequence[float]], list[float]]
     event_functions: Callable[[float, Sequence[float]], list[float]]
     names: tuple[str, ...]
     found: Callable[[float, Sequence[float]], list[float]]
+    corners: Callable[[float, Sequence[float]], list[float]]
 
 
 def state_rates(system: RollingSystem, time: Scalar, state: Sequence[Scalar]) -> list[Scalar]:
@@ -88,17 +91,18 @@ def python_law(
         return _untraced(system, law, event_parameters, time, state)
     own = {name: value for name, value in vars(law).items() if isinstance(value, float)}
     values = [*numbers(system), *own.values(), *event_parameters]
-    rates, stops, names, found = _known(system, law, tuple(own))
+    rates, stops, names, found, vectors = _known(system, law, tuple(own))
     return PythonLaw(
         lambda t, y: rates([t, *y, *values]),
         lambda t, y: stops([t, *y, *values]),
         names,
         lambda t, y: found([t, *y, *values]),
+        lambda t, y: vectors([t, *y, *values]),
     )
 
 
 _Function = Callable[[Sequence[float]], list[float]]
-_Flat = tuple[_Function, _Function, tuple[str, ...], _Function]
+_Flat = tuple[_Function, _Function, tuple[str, ...], _Function, _Function]
 
 
 @cache
@@ -126,14 +130,16 @@ def _traced(system: RollingSystem, law: Law, own: tuple[str, ...]) -> _Flat:
     """Trace a law with all numbers of the system, and those of the law, as inputs."""
     size, count = len(law.names(system)), len(numbers(system))
     tape = Tape()
-    time, *rest = tape.inputs(1 + size + count + len(own) + law.event_parameters + corners.count(system))
+    time, *rest = tape.inputs(1 + size + count + len(own) + law.event_parameters + corner_events.count(system))
     state, parameters = rest[:size], rest[size:]
     symbolic, free = with_numbers(system, parameters[:count]), copy(law)
     vars(free).update(zip(own, parameters[count:], strict=False))
     rates = free.rates(symbolic, time, state)
-    stops = corners.all_event_functions(symbolic, free, time, state, parameters[count + len(own) :])
+    stops = corner_events.all_event_functions(symbolic, free, time, state, parameters[count + len(own) :])
     found = free.found(symbolic, time, state)
-    return tape.function(rates), tape.function(list(stops.values())), tuple(stops), tape.function(found)
+    vectors = [part for vector in corner_events.vectors(symbolic, free, time, state) for part in vector]
+    functions = [tape.function(outputs) for outputs in (rates, list(stops.values()), found, vectors)]
+    return functions[0], functions[1], tuple(stops), functions[2], functions[3]
 
 
 def _untraced(
@@ -143,11 +149,15 @@ def _untraced(
         return [float(rate) for rate in law.rates(system, t, y)]
 
     def stops(t: float, y: Sequence[float]) -> list[float]:
-        return [float(value) for value in corners.all_event_functions(system, law, t, y, event_parameters).values()]
+        found = corner_events.all_event_functions(system, law, t, y, event_parameters)
+        return [float(value) for value in found.values()]
 
     def found(t: float, y: Sequence[float]) -> list[float]:
         return [float(part) for part in law.found(system, t, y)]
 
+    def vectors(t: float, y: Sequence[float]) -> list[float]:
+        return [float(part) for vector in corner_events.vectors(system, law, t, y) for part in vector]
+
     # Which stops there are is read off a state in which the law holds: of any other it may know nothing.
-    names = tuple(corners.all_event_functions(system, law, time, state, event_parameters)) if len(state) else ()
-    return PythonLaw(rates, stops, names, found)
+    names = tuple(corner_events.all_event_functions(system, law, time, state, event_parameters)) if len(state) else ()
+    return PythonLaw(rates, stops, names, found, vectors)
