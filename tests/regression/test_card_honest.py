@@ -166,6 +166,21 @@ def test_a_run_that_ends_where_the_support_is_as_hollow_as_the_body_is_round(kin
     assert not altered.card().passed
 
 
+def test_a_flight_that_ends_where_no_point_of_the_support_is_nearest() -> None:
+    # Between the clock's last two instants 1 + C S changes by 2e-7 there, and no step is shorter than ten of these.
+    potential = {"kind": "potential", "formula": "1.48277*3*(z**2 + y**2) + -0.0237738*x**2"}
+    r = [0.0, 0.0334105, 0.133642, 0.300694, 0.534567, 0.835262]
+    run = passes(
+        loads=[potential, {"kind": "pivot-friction", "offset": 1.06208e-5}],
+        body={"kind": "sphere", "radius": 0.042949, "mass": 0.00745831, "inertia_ratio": 0.111937},
+        support={"kind": "revolution", "r": r, "z": [0.0, 0.036817, 0.147268, 0.331353, 0.589072, 0.920425]},
+        start={"position": [0.0419193, 0.140352]},
+        run={"duration": 2.0, "every": 0.0121108},
+    )
+    assert run.method == "runge-kutta"
+    assert [event.kind for event in run.events] == ["lift", "curved"]
+
+
 # --- what changes faster than the samples show --------------------------------------------------------------
 
 
