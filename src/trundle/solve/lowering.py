@@ -16,7 +16,7 @@ from typing import Any
 from ..mechanics.parameters import numbers, with_numbers
 from ..mechanics.scalars import Scalar, less, namespace
 from ..mechanics.system import RollingSystem
-from . import corners
+from . import corner_events
 from .laws import Law
 from .tape import Node, Tape, apply
 
@@ -83,11 +83,11 @@ def lower(system: RollingSystem, law: Law) -> Lowered:
     """
     names, count = law.names(system), len(numbers(system))
     tape = Tape()
-    time, *rest = tape.inputs(1 + len(names) + count + law.event_parameters + corners.count(system))
+    time, *rest = tape.inputs(1 + len(names) + count + law.event_parameters + corner_events.count(system))
     state, given = rest[: len(names)], rest[len(names) :]
     symbolic = with_numbers(system, given[:count])
     rates = law.rates(symbolic, time, state)
-    stops = corners.all_event_functions(symbolic, law, time, state, given[count:])
+    stops = corner_events.all_event_functions(symbolic, law, time, state, given[count:])
     tidied = _tidied(symbolic, law, time, state)
     lowering = _Lowering(tape, len(names), len(given))
     # A stop that never changes is passed at the start or never.
