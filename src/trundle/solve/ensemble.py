@@ -170,7 +170,8 @@ def integrate(
         Members that came to a stop of the law, or broke down.
     """
     law = RollingLaw()
-    lowered, key = integrators.ready(systems[0], law, tolerance)
+    zeros = np.all([np.equal(numbers(system), 0) for system in systems], axis=0)
+    lowered, key = integrators.ready(systems[0], law, tolerance, zeros=frozenset(np.flatnonzero(zeros).tolist()))
     integrator = integrators.kept(f"{LANES}-{key}", lambda: _compile(lowered, tolerance))
     blocks = [list(members[i : i + LANES]) for i in range(0, len(members), LANES)]
     halt = threading.Event()  # somebody pressed Ctrl-C, or another thread failed
