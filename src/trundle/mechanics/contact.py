@@ -116,6 +116,7 @@ class Rolling:
     orientation_rate: Quaternion  # 1/s
     angular_acceleration: Vector  # Ω̇, rad/s²
     reaction: Vector  # R, contact force on the body, N
+    normal_force: Scalar  # N = n·R, N
     axle_moment: Scalar  # of the body on the support, about the support's axle, N m
 
 
@@ -182,6 +183,7 @@ def roll(
     Omega_rate = whole.solve(moment)
     # T3
     R = m * (inertial - Omega_rate.cross(rho)) - F
+    N = m * (n.dot(inertial) - Omega_rate.dot(rho.cross(n))) - n.dot(F)  # ρ×n is 0 for a sphere, and F often along n
     lever = support.lever(point)
     # What grows with an unknown: Ω̇ and R for each newton of N, and for each rad/s² of a free axle.
     couplings = []
@@ -193,9 +195,9 @@ def roll(
         couplings.append((turned, m * (lever - turned.cross(rho))))
     amounts = _amounts(system, time, coordinates, contact, acting, R, [reaction for _, reaction in couplings])
     for amount, (turned, reaction) in zip(amounts, couplings, strict=True):
-        Omega_rate, R = Omega_rate + turned * amount, R + reaction * amount
-    moment_on_axle = acting.moment_on_axle(support, n.dot(R)) - lever.dot(R)
-    return Rolling(contact, V, p_rate, orientation.rate(Omega), Omega_rate, R, moment_on_axle)
+        Omega_rate, R, N = Omega_rate + turned * amount, R + reaction * amount, N + n.dot(reaction) * amount
+    moment_on_axle = acting.moment_on_axle(support, N) - lever.dot(R)
+    return Rolling(contact, V, p_rate, orientation.rate(Omega), Omega_rate, R, N, moment_on_axle)
 
 
 def _amounts(

@@ -9,9 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from typing import Any
 
+import numpy as np
+
 from ..mechanics.algebra import Matrix, Quaternion, Vector
+from ..mechanics.contact import normal_at
 from ..mechanics.loads import BodyMotion, Load
 from ..mechanics.motions import Motion, SupportState
 from ..mechanics.scalars import Scalar, namespace
@@ -23,6 +27,9 @@ from .samples import ROLLING
 
 CHART = "chart"  # the name of the event with which a chart ends
 _INSIDE, _EDGE = 0.15, 0.1  # of the sine of the angle between axis and normal: where the nodes' chart begins and ends
+# 2π to 60 digits
+TURN = Fraction("6.28318530717958647692528676655900576839433879875021164194988")
+_BLOCK = 100.0  # s in which the angle of a support may grow as a float
 _UPRIGHT = Quaternion(1.0, 0.0, 0.0, 0.0)
 Numbers = Sequence[Scalar]
 
@@ -37,12 +44,15 @@ class Traced:
         Of the chart's numbers.
     event_functions : dict of str to Scalar
         Those of the law, and where the chart ends.
+    normal : Vector
+        n, of length 1, along the chart's axes.
     positive : tuple of Scalar
         What is known to be positive.
     """
 
     rates: list[Scalar]
     event_functions: dict[str, Scalar]
+    normal: Vector
     positive: tuple[Scalar, ...] = ()
 
 
@@ -76,7 +86,8 @@ class Chart:
     ) -> Traced:
         """Return the rates of its numbers, and the event functions."""
         stops = corners.all_event_functions(system, law, time, state, event_parameters)
-        return Traced(law.rates(system, time, state), stops)
+        p, *_, coordinates = law.split(state)
+        return Traced(law.rates(system, time, state), stops, normal_at(system, time, p, coordinates))
 
     def tidied(self, system: RollingSystem, law: Law, time: Scalar, state: Numbers) -> list[Scalar]:
         """Return the state with p moved along the normal to φ(p) = 0, by one step of Newton's method, and q/|q|.
@@ -92,7 +103,7 @@ class Chart:
         """Return its numbers with whole turns taken out of the angles."""
         return list(numbers)
 
-    def of_law(self, state: Sequence[float]) -> list[float]:
+    def of_law(self, system: RollingSystem, time: float, state: Sequence[float]) -> list[float]:  # noqa: ARG002
         """Return its numbers, given the law's."""
         return list(state)
 
@@ -143,7 +154,8 @@ class BodyAxes(Chart):
         turned = q * Quaternion(0.0, *omega)
         moved = [*(axes @ Vector(*rates[:3]))][:k]
         stops = law.event_functions(seen, time, own, event_parameters)
-        return Traced([*moved, *(0.5 * part for part in turned), *rates[7:]], stops)
+        n = normal_at(seen, time, p, tuple(coordinates))
+        return Traced([*moved, *(0.5 * part for part in turned), *rates[7:]], stops, n)
 
     def tidied(self, system: RollingSystem, law: Law, time: Scalar, state: Numbers) -> list[Scalar]:
         """Return the state with p on the support, and q/|q|."""
@@ -153,7 +165,7 @@ class BodyAxes(Chart):
         p, tidied = place, super().tidied(system, law, time, [*place, *q, *omega, *coordinates])
         return [*(p if self.flat else tidied[:3])][:k] + tidied[3:]
 
-    def of_law(self, state: Sequence[float]) -> list[float]:
+    def of_law(self, system: RollingSystem, time: float, state: Sequence[float]) -> list[float]:  # noqa: ARG002
         """Return p, q and ω = Qᵀ Ω."""
         q = Quaternion(*state[3:7])
         omega = q.matrix().transpose @ Vector(*state[7:10])
@@ -165,6 +177,56 @@ class BodyAxes(Chart):
         q, coordinates = Quaternion(*numbers[k : k + 4]), numbers[k + 7 :]
         Omega = Quaternion(*_unit(q)).matrix() @ Vector(*numbers[k + 4 : k + 7])
         return [*self._place(system, time, numbers, coordinates), *q, *Omega, *coordinates]
+
+
+@dataclass(frozen=True)
+class SupportAxes(Chart):
+    """(p, q, Ω) of a support that turns steadily, along axes that turn with it: there its surface is at rest."""
+
+    def names(self, system: RollingSystem, law: Law) -> tuple[str, ...]:
+        """Return the names of p, q and Ω."""
+        return (*CONTACT[: self._along], *law.names(system)[3:])
+
+    def traced(
+        self,
+        system: RollingSystem,
+        law: Law,
+        time: Scalar,
+        state: Numbers,
+        event_parameters: Numbers,
+    ) -> Traced:
+        """Return the rates by the law along the axes of the support."""
+        k, motion = self._along, system.support.motion
+        now, half = motion.at(time), 0.5 * (motion.steady_rate * time)
+        xp = namespace(half)
+        q, Omega = Quaternion(*state[k : k + 4]), Vector(*state[k + 4 :])
+        p = self._place(system, time, state, ())
+        seen = along_axes(system, now.rotation, Quaternion(xp.cos(half), 0.0, 0.0, xp.sin(half)) * q)
+        seen = replace(seen, support=replace(seen.support, motion=replace(seen.support.motion, turns_with_it=True)))
+        own = [*p, *q, *Omega]
+        rates, turning = law.rates(seen, time, own), now.angular_velocity
+        moved = [*(Vector(*rates[:3]) - turning.cross(p))][:k]
+        turned = Vector(*rates[7:10]) - turning.cross(Omega)
+        stops = law.event_functions(seen, time, own, event_parameters)
+        return Traced([*moved, *q.rate(Omega - turning), *turned], stops, normal_at(seen, time, p))
+
+    def tidied(self, system: RollingSystem, law: Law, time: Scalar, state: Numbers) -> list[Scalar]:  # noqa: ARG002
+        """Return the state with p on the support, and q/|q|."""
+        k = self._along
+        p = self._place(system, time, state, ())
+        p = p + system.support.surface.step_onto(p)
+        return [*[*p][:k], *_unit(Quaternion(*state[k : k + 4])), *state[k + 4 :]]
+
+    def of_law(self, system: RollingSystem, time: float, state: Sequence[float]) -> list[float]:
+        """Return the numbers along the axes of the support."""
+        given = [np.array([float(part)]) for part in state]
+        (turned,) = np.stack(_turned(given, -_half_turn(system, np.array([time]))), axis=1)
+        return [*turned[: self._along].tolist(), *turned[3:].tolist()]
+
+    def to_law(self, system: RollingSystem, time: Any, numbers: Numbers) -> list[Any]:
+        """Return the numbers along the axes of the support frame."""
+        p = self._place(system, time, numbers, ())
+        return _turned([*p, *numbers[self._along :]], _half_turn(system, time))
 
 
 @dataclass(frozen=True)
@@ -217,7 +279,7 @@ class LineOfNodes(Chart):
         stops = law.event_functions(seen, time, own, event_parameters)
         stops[CHART] = s * s - _EDGE * _EDGE
         found = [moved.x, moved.y, w[0], heading, w[2] - heading * c, *turned, *rates[10:]]
-        return Traced(found, stops, (s,))
+        return Traced(found, stops, Vector(0.0, s, c), (s,))
 
     def tidied(self, system: RollingSystem, law: Law, time: Scalar, state: Numbers) -> list[Scalar]:  # noqa: ARG002
         """Return the state: nothing in it can be wrong."""
@@ -230,7 +292,7 @@ class LineOfNodes(Chart):
         x, y, theta, psi, phi, *rest = numbers
         return [x, y, theta, math.remainder(psi, 4 * math.pi), math.remainder(phi, 4 * math.pi), *rest]
 
-    def of_law(self, state: Sequence[float]) -> list[float]:
+    def of_law(self, system: RollingSystem, time: float, state: Sequence[float]) -> list[float]:  # noqa: ARG002
         """Return the angles by half their sum and half their difference, so that q keeps its sign."""
         import math
 
@@ -265,9 +327,13 @@ def charts(system: RollingSystem, law: Law) -> tuple[Chart, ...]:
     # Event functions that take directions take them along the support frame's axes.
     if law.code != ROLLING or law.ends or system.corners:
         return (LAWS_OWN,)
-    flat = on_plane(system)
-    nodes = (LineOfNodes(),) if flat and system.body.axisymmetric else ()
-    return (LAWS_OWN, BodyAxes(flat), *nodes)
+    flat, rate = on_plane(system), system.support.motion.steady_rate
+    found: list[Chart] = [LAWS_OWN, BodyAxes(flat)]
+    if rate is not None and rate != 0:
+        found.append(SupportAxes(flat))
+    if flat and system.body.axisymmetric:
+        found.append(LineOfNodes())
+    return tuple(found)
 
 
 def along_axes(system: RollingSystem, axes: Matrix, orientation: Quaternion) -> RollingSystem:
@@ -302,6 +368,7 @@ class _SeenMotion(Motion):
 
     motion: Motion
     axes: Matrix
+    turns_with_it: bool = False  # the axes are those of the support
     free: bool = field(init=False)
     coordinates: tuple[str, ...] = field(init=False)
     inertia: Any = field(init=False)
@@ -323,7 +390,8 @@ class _SeenMotion(Motion):
         """Return pose, twist and acceleration."""
         now, to = self.motion.at(time, *coordinates), self.axes.transpose
         vectors = (now.origin, now.velocity, now.acceleration, now.angular_velocity, now.angular_acceleration)
-        return SupportState(to @ now.rotation, *(to @ vector for vector in vectors))
+        rotation = Matrix.identity() if self.turns_with_it else to @ now.rotation
+        return SupportState(rotation, *(to @ vector for vector in vectors))
 
 
 @dataclass(frozen=True)
@@ -381,6 +449,30 @@ def _from_angles(theta: Scalar, psi: Scalar, phi: Scalar) -> Quaternion:
     lean, total, difference = 0.5 * theta, 0.5 * (psi + phi), 0.5 * (psi - phi)
     c, s = xp.cos(lean), xp.sin(lean)
     return Quaternion(c * xp.cos(total), s * xp.cos(difference), s * xp.sin(difference), c * xp.sin(total))
+
+
+def _half_turn(system: RollingSystem, times: Any) -> Any:
+    """Return half the angle by which a support has turned that turns steadily, rad, without whole turns.
+
+    From the first of some instants on it is a float; up to there a fraction, which a million turns leave exact.
+    """
+    rate, times = float(system.support.motion.steady_rate), np.asarray(times, dtype=float)
+    angles = np.empty(times.shape)
+    block = np.floor(times / _BLOCK)
+    for which in np.unique(block).tolist():
+        there = block == which
+        begin = float(times[there][0])
+        whole = float((Fraction(rate) * Fraction(begin) / 2) % TURN)
+        angles[there] = whole + 0.5 * rate * (times[there] - begin)
+    return angles
+
+
+def _turned(columns: Sequence[Any], half: Any) -> list[Any]:
+    """Return p, q and Ω turned about the third axis, given half the angle."""
+    px, py, pz, *q, Ox, Oy, Oz = columns
+    c, s = np.cos(2 * half), np.sin(2 * half)
+    turned = Quaternion(np.cos(half), 0.0, 0.0, np.sin(half)) * Quaternion(*q)
+    return [c * px - s * py, s * px + c * py, pz, *turned, c * Ox - s * Oy, s * Ox + c * Oy, Oz]
 
 
 def _unit(q: Quaternion) -> list[Scalar]:

@@ -12,19 +12,18 @@ from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 from ..mechanics.parameters import numbers, with_numbers
 from ..mechanics.scalars import less, namespace
 from ..mechanics.system import RollingSystem
 from . import corners
-from .charts import LAWS_OWN, Chart
+from .charts import LAWS_OWN, TURN, Chart
 from .laws import Law
 from .normal_form import NormalForm, Sum
 from .tape import Node, Tape
 
-# 2π to 60 digits
-_TURN = Fraction("6.28318530717958647692528676655900576839433879875021164194988")
 # Only the sign of a stop matters; made small, it leaves the size of the steps to the state.
 _SMALL = 2.0**-20
 
@@ -62,7 +61,7 @@ class Lowered:
     tidy: Callable[[Sequence[float]], list[float]]
     chart: Chart = LAWS_OWN
 
-    @property
+    @cached_property
     def cost(self) -> int:
         """About how long the outputs take: an operation whose series is a sum of products counts twice."""
         fixed: set[int] = set()
@@ -112,10 +111,11 @@ def lower(system: RollingSystem, law: Law, chart: Chart = LAWS_OWN, zeros: Colle
     traced = chart.traced(symbolic, law, time, state, given[count:])
     tidied = chart.tidied(symbolic, law, time, state)
     lowering = _Lowering(tape, len(names), len(given), traced.positive)
-    rates = [lowering.copy(rate) for rate in traced.rates]
-    # A stop that never changes is passed at the start or never.
-    copies = {name: lowering.copy(stop) for name, stop in traced.event_functions.items()}
-    stops = {name: stop for name, stop in copies.items() if lowering.varies(stop)}
+    lowering.take_for_unit(tuple(traced.normal))
+    needed = lowering.needed(traced.event_functions)
+    copies = lowering.copies([*traced.rates, *needed.values()])
+    rates, stops = copies[: len(names)], dict(zip(needed, copies[len(names) :], strict=True))
+    stops = {name: stop for name, stop in stops.items() if lowering.varies(stop)}
     outputs = (*rates, *stops.values())
     parameters = lowering.count_of(outputs)
     tidy = lowering.new.function([lowering.copy(part) for part in tidied])  # it may want some of its own
@@ -135,15 +135,55 @@ class _Lowering:
         self.sums: dict[int, Sum] = {}
         self.positive = {part.index for part in positive}
 
+    def copies(self, parts: Sequence[Any]) -> list[Any]:
+        """Return the copies of some steps; the simplest are written first, for the others to make use of."""
+        self._multiplied(parts)
+        sizes = [len(self.old.needed([part])) for part in parts]
+        order = sorted(range(len(parts)), key=sizes.__getitem__)
+        made = {i: self.copy(parts[i]) for i in order}
+        return [made[i] for i in range(len(parts))]
+
+    def _multiplied(self, parts: Sequence[Any]) -> None:
+        """Look up which inputs are multiplied as they are: there c·x is no factor of its own."""
+        for index in self.old.needed(parts):
+            operation, *operands = self.old.steps[index]
+            if operation in ("*", "/") and not any(self._is_fixed(part) for part in operands):
+                for part in operands:
+                    step = self.old.steps[part.index]
+                    if step[0] == "input" and step[1]:
+                        self.form.take_as_it_is(self.inputs[step[1]])
+
+    def needed(self, event_functions: dict[str, Any]) -> dict[str, Any]:
+        """Return event functions without those that only fall through zero after another has."""
+        for stop in event_functions.values():
+            self._bring(stop)
+        sums = {name: self._as_sum(stop) for name, stop in event_functions.items()}
+
+        def later(name: str) -> bool:
+            apart = (self.form.apply("-", sums[name], other) for other in sums.values())
+            return any(len(one) == 1 and isinstance(one.get(()), float) and one[()] > 0 for one in apart)
+
+        return {name: stop for name, stop in event_functions.items() if not later(name)}
+
     def copy(self, part: Any) -> Any:
         """Return a step's copy on the new tape, brought to normal form."""
+        self._bring(part)
+        return self.form.node(self._as_sum(part))
+
+    def _bring(self, part: Any) -> None:
+        """Bring a step, and what it leans on, to normal form."""
         if isinstance(part, Node):
             for index in self.old.needed([part]):
                 if index not in self.sums and not self.fixed[index]:
                     self.sums[index] = self._in_form(index)
                     if index in self.positive:
                         self.form.take_for_positive(self.sums[index])
-        return self.form.node(self._as_sum(part))
+
+    def take_for_unit(self, vector: Sequence[Any]) -> None:
+        """Know from now on that a vector has length 1."""
+        for part in vector:
+            self._bring(part)
+        self.form.take_for_unit([self._as_sum(part) for part in vector])
 
     def varies(self, part: Any) -> bool:
         """Tell whether a step of the new tape depends on time or state."""
@@ -252,7 +292,7 @@ def _value(kind: str, found: Iterator[float], reference: float) -> float:
         return next(found)
     slope, offset = next(found), next(found)
     # A float of slope × time would lose what a million turns leave; a fraction does not.
-    angle = float((Fraction(slope) * Fraction(reference) + Fraction(offset)) % _TURN)
+    angle = float((Fraction(slope) * Fraction(reference) + Fraction(offset)) % TURN)
     return math.cos(angle) if kind == "cos" else math.sin(angle)
 
 

@@ -35,6 +35,7 @@ class NormalForm:
         self.factors: list[Node] = []  # on the tape
         self.places: dict[int, int] = {}  # of the nodes among the factors
         self.positive: set[int] = set()
+        self.units: list[list[Monomial]] = []  # the squares that add up to 1
         self.made: dict[Any, Node] = {}
         # How products and sums came about: they are written so, where nothing simpler has come of them.
         self.splits: dict[Monomial, tuple[Monomial, Monomial, str]] = {}
@@ -46,6 +47,28 @@ class NormalForm:
         """Know from now on that a factor is positive."""
         (((place, _),),) = value
         self.positive.add(place)
+
+    def take_as_it_is(self, node: Node) -> None:
+        """Know from now on that a node is multiplied by others as it is."""
+        (((place, _),),) = self.factor(node)
+        self.wholes[place] = 1.0, None
+
+    def take_for_unit(self, vector: Iterable[Sum]) -> None:
+        """Know from now on that a vector has length 1."""
+        squares = [self._product(part, part, "*") for part in vector if part]
+        if len(squares) > 1 and all(len(square) == 1 and _is(*square.values(), 1.0) for square in squares):
+            self.units.append([monomial for square in squares for monomial in square])
+
+    def _with_units(self, value: Sum) -> Sum:
+        """Return a sum with x² + y² + z² = 1 where that is known."""
+        for first, *others in self.units:
+            for monomial, coefficient in list(value.items()):
+                rest = _times(monomial, _inverted(first))
+                terms = [monomial, *(_times(rest, other) for other in others)]
+                if all(term in value and _key(value[term]) == _key(coefficient) for term in terms):
+                    left = {term: own for term, own in value.items() if term not in terms}
+                    return self._with_units(_added(left, {rest: coefficient}))
+        return value
 
     def factor(self, node: Node) -> Sum:
         """Return a node of the tape as a factor."""
@@ -101,7 +124,8 @@ class NormalForm:
         return {tuple((p, n // share) for p, n in monomial): math.sqrt(coefficient) if share == 2 else coefficient}
 
     def _sum_of(self, a: Sum, b: Sum, operation: str) -> Sum:
-        found = _added(a, b if operation == "+" else _scaled(b, -1.0))
+        added = _added(a, b if operation == "+" else _scaled(b, -1.0))
+        found = self._with_units(added)
         key = _key_of(found)
         if len(found) < 2 or key in self.parts or key in self.scales:
             return found
@@ -109,7 +133,7 @@ class NormalForm:
         if not _is(size, 1.0) and (sizes := _size_of(a)) is not None and sizes == _size_of(b):
             self.scales[key] = rest, size
             a, b, key = _over(a, size), _over(b, size), _key_of(rest)
-        cancelled = len(found) < len(a.keys() | b.keys())
+        cancelled = len(found) < len(a.keys() | b.keys()) or found is not added
         if not cancelled and (len(found) == len(a) + len(b) or len(found) > _SHORT):
             self.parts.setdefault(key, (a, b, operation))
         return found
@@ -119,27 +143,28 @@ class NormalForm:
         if len(value) > 1:
             key = _key_of(found)
             if key not in self.parts and key not in self.scales:
-                original, before = self.scales.get(_key_of(value), (value, 1.0))
-                self.scales[key] = original, before * factor
+                self.scales[key] = value, factor
         return found
 
     def _product(self, a: Sum, b: Sum, operation: str) -> Sum:
         if operation == "/" or (len(a) > 1 and len(b) > 1):
             b = self._as_term(b)
+        if operation == "/" and not b:
+            return self._other("/", [self.node(a), 0.0])
         if not a or not b:
             return {}
         if len(b) > 1:
             a, b = b, a
-        if len(a) == 1 and _ONE not in a:
-            b = self._whole(b)
         ((monomial, coefficient),) = b.items()
-        by = _inverted(monomial) if operation == "/" else monomial
-        if len(a) > 1 and monomial and not any(_cancels(by, other) for other in a):
-            a = self._as_term(a)
         if not monomial:
             return self._times_constant(a, 1.0 / coefficient if operation == "/" else coefficient)
-        if len(a) == 1:
-            a = self._whole(a)
+        by = _inverted(monomial) if operation == "/" else monomial
+        if len(a) > 1 and not any(_cancels(by, other) for other in a):
+            a = self._as_term(a)
+        if len(a) == 1 and _ONE not in a:
+            a, b = self._whole(a), self._whole(b)
+            ((monomial, coefficient),) = b.items()
+            by = _inverted(monomial) if operation == "/" else monomial
         found: Sum = {}
         for other, factor in a.items():
             product = _times(other, by)
@@ -168,7 +193,7 @@ class NormalForm:
             return value
         scaled = self.scales.get(_key_of(value))
         if scaled is not None:
-            return _scaled(self._as_term(scaled[0]), scaled[1])
+            return _scaled(self._whole(self._as_term(scaled[0])), scaled[1])
         coefficient, rest = _shared(value)
         if _key_of(_scaled(rest, -1.0)) in self.made:
             coefficient, rest = -coefficient, _scaled(rest, -1.0)
@@ -182,8 +207,10 @@ class NormalForm:
             if _key_of(value) in self.parts:
                 a, b, operation = self.parts[_key_of(value)]
                 return apply(self.tape, operation, self.node(a), self.node(b))
-            scaled = self.scales.get(_key_of(value))
+            scaled = self._origin(value)
             if scaled is not None:
+                if _is(scaled[1], -1.0) and self._turns(scaled[0]):
+                    return self._turned(scaled[0])
                 return apply(self.tape, "*", self.node(scaled[0]), self.constant(scaled[1]))
             return self._sum(value)
         ((monomial, coefficient),) = value.items()
@@ -192,6 +219,28 @@ class NormalForm:
         if _is(coefficient, 1.0):
             return self._monomial(monomial)
         return apply(self.tape, "*", self.node({monomial: 1.0}), self.constant(coefficient))
+
+    def _origin(self, value: Sum) -> tuple[Sum, Any] | None:
+        """Return the sum, there already or not a multiple itself, of which another is a multiple, and the factor."""
+        origin, factor = self.scales.get(_key_of(value), ({}, 1.0))
+        while _key_of(origin) in self.scales and _key_of(origin) not in self.made:
+            origin, own = self.scales[_key_of(origin)]
+            factor = factor * own
+        return (origin, factor) if origin else None
+
+    def _turns(self, value: Sum) -> bool:
+        """Tell whether a sum that is not there yet can be written with the other sign at the same price."""
+        a, b, operation = self.parts.get(_key_of(value), ({}, {}, ""))
+        there = _key_of(value) in self.made
+        return not there and (operation == "-" or (operation == "+" and (self._turns(a) or self._turns(b))))
+
+    def _turned(self, value: Sum) -> Any:
+        """Write a sum with the other sign."""
+        a, b, operation = self.parts[_key_of(value)]
+        if operation == "-":
+            return apply(self.tape, "-", self.node(b), self.node(a))
+        a, b = (a, b) if self._turns(a) else (b, a)
+        return apply(self.tape, "-", self.node(_scaled(a, -1.0)), self.node(b))
 
     def _sum(self, value: Sum) -> Any:
         """Write a sum, in which terms with one coefficient are added up before they are multiplied by it."""
@@ -226,15 +275,16 @@ class NormalForm:
         """Write a product, by way of one that is there already, if there is one."""
         if len(monomial) == 1 and monomial[0][1] == 1:
             return self.factors[monomial[0][0]]
-        if monomial in self.splits:
-            a, b, operation = self.splits[monomial]
+        split = self.splits.get(monomial)
+        rest, place, up = min(self._ways(monomial), key=lambda way: (not self._is_there(way[0]), not way[2]))
+        if split is not None and (not self._is_there(rest) or all(map(self._is_there, split[:2]))):
+            a, b, operation = split
             if operation == "*" and all(count < 0 for _, count in b) and not self._is_there(b):
                 b, operation = _inverted(b), "/"
             return apply(self.tape, operation, self.node({a: 1.0}), self.node({b: 1.0}))
         if all(count % 2 == 0 for _, count in monomial):
             half = self.node({tuple((place, count // 2) for place, count in monomial): 1.0})
             return apply(self.tape, "*", half, half)
-        rest, place, up = min(self._ways(monomial), key=lambda way: (not self._is_there(way[0]), not way[2]))
         before = self.node({rest: 1.0})
         return apply(self.tape, "*" if up else "/", before, self.factors[place])
 

@@ -27,12 +27,14 @@ from .samples import AT_ONCE, Array, Progress, Samples
 from .transitions import PhaseStart, ZeroCrossing
 
 _CHUNKS = 100  # of a run at most, between which progress is told and Ctrl-C is heard
-_LEAST_CHUNK = 60  # instants
+_LEAST_CHUNK = 150  # instants
 _AT_ONCE = 10_000  # steps, between which Ctrl-C is heard too
-# A law's first steps in a run are made by code that is compiled in haste: it takes two or three times as long for a
-# step, and a tenth of a second to compile where what is made with care takes seconds. Most runs need no other. The
-# steps are counted anew in each run, so that it has the same digits whatever is compiled already.
-_HASTY_STEPS, _CARES = 1000, -1
+# A law's first steps in a run are made by code that is compiled in haste: it takes three or four times as long for a
+# step, and a twentieth of a second to compile where what is made with care takes half a second or more. Many runs need
+# no other. The steps are counted anew in each run, so that it has the same digits whatever is compiled already. A short
+# law is compiled with care at once.
+_HASTY_STEPS, _CARES = 200, -1
+_SHORT_LAW = 100  # by `Lowered.cost`
 _PATIENCE: dict[str, Any] = {"steps": 3e6, "spare": 5e4, "name": "Taylor's method"}  # a minute, and some seconds
 _STRAIGHT, _YOUNG, _GROWN = 1e-9, 8, 1e12  # sine of an angle; steps at a time, of slip until it has grown so much
 _LONGEST = 100.0  # s without a new reference of time, at most
@@ -201,7 +203,8 @@ def _begun(system: RollingSystem, now: PhaseStart, tolerance: float, shared: Sha
         def borrow(level: int) -> Any:
             return lent.enter_context(borrowed(lowered, key, tolerance, level))
 
-        left = max(0, _HASTY_STEPS - shared.hasty.get(key, 0))
+        most = _HASTY_STEPS if lowered.cost > _SHORT_LAW else 0
+        left = max(0, most - shared.hasty.get(key, 0))
         given = [*numbers(system), *now.event_parameters, *corners.directions(system, now)]
         run = _Run(borrow, left, system, lowered, given, now.time, now.state_vector)
         run.lasted = _lasted(system, now)
@@ -253,7 +256,7 @@ class _Run:
         self.patience: Patience
         self.kept: KeptSeries | None = None  # where the polynomials of its steps are kept
         self.lasted, self.begun = math.inf, begin
-        self.integrator.state[:] = lowered.chart.of_law(state)
+        self.integrator.state[:] = lowered.chart.of_law(system, begin, state)
         self._refer_to(begin)
 
     @property
