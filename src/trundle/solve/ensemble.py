@@ -170,7 +170,8 @@ def integrate(
         Members that came to a stop of the law, or broke down.
     """
     law = RollingLaw()
-    lowered, key = integrators.ready(systems[0], law, tolerance)
+    zeros = np.all([np.equal(numbers(system), 0) for system in systems], axis=0)
+    lowered, key = integrators.ready(systems[0], law, tolerance, zeros=frozenset(np.flatnonzero(zeros).tolist()))
     integrator = integrators.kept(f"{LANES}-{key}", lambda: _compile(lowered, tolerance))
     blocks = [list(members[i : i + LANES]) for i in range(0, len(members), LANES)]
     halt = threading.Event()  # somebody pressed Ctrl-C, or another thread failed
@@ -269,7 +270,8 @@ class _Lanes:
     def _begin(self, time: float) -> set[int]:
         """Set states and parameters at a new reference of time, and return the lanes for which these are no numbers."""
         self.integrator.set_time(0.0)
-        self.integrator.reset_cooldowns()
+        if self.lowered.event_functions:
+            self.integrator.reset_cooldowns()
         failed = set()
         for i in range(LANES):
             try:

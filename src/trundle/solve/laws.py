@@ -248,7 +248,7 @@ class RollingLaw(Law):
     ) -> dict[str, Scalar]:
         """Return the normal force, the rest of the friction cone, and the bounds."""
         now, (floor, ending) = self._now(system, time, state), self._floor(event_parameters)
-        found = cone(system, now.contact, now.reaction, floor)
+        found = cone(system, now.contact, now.reaction, now.normal_force, floor)
         if ending:
             turning = state_turning(now.contact, Vector(*state[7:10]))
             found |= _ending("stop", turning, now.angular_acceleration, ending)
@@ -526,7 +526,7 @@ class RestingLaw(Law):
         held, (floor, _) = self.held(system, time, state), self._floor(event_parameters)
         n = held.contact.normal
         over = held.couple - n * n.dot(held.couple)
-        found = cone(system, held.contact, held.reaction, floor)
+        found = cone(system, held.contact, held.reaction, n.dot(held.reaction), floor)
         found["start"] = left_of_resistance(system, n.dot(held.reaction) + floor, over)
         return {**found, **self._bounds(system, held.contact, Quaternion(*state[3:7]), 0.0)}
 
@@ -581,10 +581,11 @@ def left_of_resistance(system: RollingSystem, normal_force: Scalar, holding: Vec
     return most * most * (1 + CONE_SLACK) - holding.dot(holding)
 
 
-def cone(system: RollingSystem, contact: Contact, reaction: Vector, floor: Scalar = 0.0) -> dict[str, Scalar]:
+def cone(
+    system: RollingSystem, contact: Contact, reaction: Vector, N: Scalar, floor: Scalar = 0.0
+) -> dict[str, Scalar]:
     """Return the normal force, and what is left of the friction cone where friction has a limit."""
     n = contact.normal
-    N = n.dot(reaction)
     found = {"lift": N + floor}
     if system.support.friction is not None:
         f, most = reaction - n * N, system.support.friction * (N + floor)
