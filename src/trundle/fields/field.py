@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -18,6 +18,7 @@ from .inputs import GROUPS, inputs_of
 from .printers import c, symbolic
 from .resets import CODES
 from .routines import OUTPUTS, PhaseRoutines, Routine, check_analytic, phases_of
+from .telling import table
 
 _UNIT_OF = {"p": "m", "q": "", "Omega": "rad/s", "s": "m/s", "V": "m/s", "g": "m", "r": "m"}  # of the state's symbols
 
@@ -409,12 +410,12 @@ class VectorField:
         for phase in (self.phase, *(each for each in self.phases if self._backend.phases and each != self.phase)):
             there = self.at(phase)
             begins = there.pack(start) if start is not None and phase == self.phase else None
-            lines += _table(f"y of {phase}", there.state_names, there.state_units, begins)
+            lines += table(f"y of {phase}", there.state_names, there.state_units, begins)
             if there.event_names:
                 lines.append(f"events of {phase}: " + ", ".join(there.event_names))
-        lines += _table("p", self.parameter_names, self.parameter_units, self.parameters)
-        lines += _table("u", self.input_names, self.input_units, self.inputs)
-        lines += _table("outputs", self.output_names, self.output_units)
+        lines += table("p", self.parameter_names, self.parameter_units, self.parameters)
+        lines += table("u", self.input_names, self.input_units, self.inputs)
+        lines += table("outputs", self.output_names, self.output_units)
         return "\n".join(lines)
 
     @cached_property
@@ -424,21 +425,6 @@ class VectorField:
     @property
     def _backend(self) -> Backend:
         return BACKENDS[self.backend]
-
-
-def _table(title: str, names: Sequence[str], units: Sequence[str], values: Any = None) -> list[str]:
-    """List names with their places, units and values."""
-    if not names:
-        return []
-    values = [None] * len(names) if values is None else values.tolist()
-    rows = zip(names, units, values, strict=True)
-    return [
-        f"{title}:",
-        *(
-            f"    [{i}] {name}{f' ({unit})' if unit else ''}{'' if value is None else f' = {value!r}'}"
-            for i, (name, unit, value) in enumerate(rows)
-        ),
-    ]
 
 
 __all__ = ["FieldReset", "VectorField"]
