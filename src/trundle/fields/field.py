@@ -77,10 +77,11 @@ class VectorField:
         if self.phase not in CODES:
             raise UnknownNameError("phase", str(self.phase), CODES)
         if self.phase not in self.phases:
-            raise OutOfDomainError(
-                f"This system has no {self.phase}: it has {', '.join(self.phases)}. Slipping takes a `friction` of the "
-                "support, rolling one that is not 0, and rest a resistance to rolling."
+            rule = f"must be one that the system may have: {', '.join(self.phases)}"
+            remedy = (
+                "Slipping takes a `friction` of the support, rolling one that is not 0, rest a resistance to rolling."
             )
+            raise InvalidValueError("phase", rule, self.phase, remedy)
         inputs_of(self.system, self.input_groups)
 
     # Names, units and values
@@ -343,16 +344,23 @@ class VectorField:
         definitions, rates = self.equations(shared=shared)
         return symbolic.latex(y, rates, definitions, [*p, *u])
 
-    def routines(self) -> list[Routine]:
+    def routines(self, *, alone: bool = False) -> list[Routine]:
         """Return the routines of all phases that the backend has, as they are printed.
+
+        Parameters
+        ----------
+        alone : bool
+            Whether to leave out the other phases, and what follows an event.
 
         Returns
         -------
         list of Routine
             Those of this phase first.
         """
-        others = [phase for phase in self.phases if phase != self.phase] if self._backend.phases else []
-        return [each for phase in (self.phase, *others) for each in self.at(phase)._routines.all()]
+        if alone or not self._backend.phases:
+            return list(self._routines.motion())
+        phases = (self.phase, *(phase for phase in self.phases if phase != self.phase))
+        return [each for phase in phases for each in self.at(phase)._routines.all()]
 
     def source(self, name: str = "field", start: State | None = None) -> str:
         """Return the text of all functions, with what their arguments are.

@@ -117,13 +117,17 @@ class PhaseRoutines:
 
     def all(self) -> Iterator[Routine]:
         """Return every routine of the phase."""
+        yield from self.motion()
+        for event in self.resets():
+            yield from self.after(event)
+
+    def motion(self) -> Iterator[Routine]:
+        """Return those of the phase by itself."""
         yield self.rates()
         yield self.events()[1]
         if self.law.event_parameters:
             yield self.event_parameters()
         yield self.outputs()
-        for event in self.resets():
-            yield from self.after(event)
 
     def rates(self) -> Routine:
         """Return the right-hand side."""
