@@ -2,27 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from ..errors import OutOfDomainError, UnknownNameError
-from ..mechanics.parameters import numbers, parameters, with_numbers
+from ..errors import OutOfDomainError
+from ..mechanics.parameters import numbers, with_numbers
+from ..mechanics.system import State
 from ..solve.exact import ClosedForm
 from ..solve.tape import Tape
-from ..units import UNITS
-from .backends import BACKENDS, Backend, Function
-from .printers import c
+from .backends import Function
+from .printed import Listed, Printed
 from .routines import Routine, plain
-from .telling import table
 
-_OUTPUTS = {"position": "m", "velocity": "m/s", "angular_velocity": "rad/s", "contact_force": "N"}
+_QUANTITIES = {"position": "m", "velocity": "m/s", "angular_velocity": "rad/s", "contact_force": "N"}
 
 
-@dataclass(frozen=True)
-class MotionFormula:
+@dataclass(frozen=True, repr=False)
+class MotionFormula(Printed):
     """A motion that a closed form knows, as a function of the time and of every number in it.
 
     Parameters
@@ -49,85 +49,26 @@ class MotionFormula:
 
     form: ClosedForm
     backend: str = "numpy"
+    _outputs = tuple((f"{name}_{axis}", unit) for name, unit in _QUANTITIES.items() for axis in "xyz")
 
     def __post_init__(self) -> None:
-        if self.backend not in BACKENDS:
-            raise UnknownNameError("backend", str(self.backend), BACKENDS)
+        self._check_backend()
         _ = self._routine
-
-    @property
-    def parameter_names(self) -> tuple[str, ...]:
-        """The names of the numbers of p."""
-        return tuple(name for name, _ in parameters(self.form))
-
-    @property
-    def parameter_units(self) -> tuple[str, ...]:
-        """Their units."""
-        return tuple(UNITS[dimension][0] for _, dimension in parameters(self.form))
-
-    @property
-    def parameters(self) -> Any:
-        """P of the closed form, an array."""
-        return np.array(numbers(self.form))
-
-    @property
-    def output_names(self) -> tuple[str, ...]:
-        """The names of what `motion` returns."""
-        return tuple(f"{name}_{axis}" for name in _OUTPUTS for axis in "xyz")
-
-    @property
-    def output_units(self) -> tuple[str, ...]:
-        """Their units."""
-        return tuple(unit for unit in _OUTPUTS.values() for _ in "xyz")
 
     @cached_property
     def motion(self) -> Function:
         """F(t, p): place and velocity of the centre, Ω and contact force, t s after the start."""
-        return self._backend.function(self._routine)
+        return self._language.function(self._routine)
 
-    def source(self, name: str = "formula") -> str:
-        """Return the text of the function.
-
-        Parameters
-        ----------
-        name : str
-            With which the function begins in C.
+    def routines(self) -> list[Routine]:
+        """Return the one function.
 
         Returns
         -------
-        str
-            In the language of the backend.
-
-        Examples
-        --------
-        >>> from trundle.solve.exact import SphereOnPlane
-        >>> form = SphereOnPlane(0.025, 0.065, 0.4, 3.5, (0.1, 0.2))
-        >>> "export function motion(t, p)" in MotionFormula(form, "javascript").source()
-        True
+        list of Routine
+            Of one.
         """
-        return self._backend.source([self._routine], name, self._said())
-
-    def header(self, name: str = "formula") -> str:
-        """Return the header that declares the function of C.
-
-        Parameters
-        ----------
-        name : str
-            As of `source`.
-
-        Returns
-        -------
-        str
-            C.
-
-        Examples
-        --------
-        >>> from trundle.solve.exact import SphereOnPlane
-        >>> form = SphereOnPlane(0.025, 0.065, 0.4, 3.5, (0.1, 0.2))
-        >>> "void ball_motion(double t, const double *p, double *found);" in MotionFormula(form, "c").header("ball")
-        True
-        """
-        return c.header([self._routine], name, self._said())
+        return [self._routine]
 
     @cached_property
     def _routine(self) -> Routine:
@@ -153,15 +94,14 @@ class MotionFormula:
         if not np.allclose(traced, known, rtol=1e-9, atol=1e-12, equal_nan=True):
             raise TypeError("it is another motion when traced")
 
-    def _said(self) -> str:
-        lines = [
-            f"The closed form {self.form.equation}, as trundle wrote it. All numbers are in SI.",
-            "",
-            "t: time (s)",
-        ]
-        lines += table("p", self.parameter_names, self.parameter_units, self.parameters)
-        return "\n".join([*lines, *table("motion", self.output_names, self.output_units)])
+    @property
+    def _numbered(self) -> Any:
+        return self.form
 
     @property
-    def _backend(self) -> Backend:
-        return BACKENDS[self.backend]
+    def _title(self) -> str:
+        return f"The closed form {self.form.equation}"
+
+    def _listed(self, start: State | None = None) -> Iterator[Listed]:  # noqa: ARG002  its start is in its numbers
+        yield "p", self.parameter_names, self.parameter_units, self.parameters
+        yield "outputs", self.output_names, self.output_units, None
