@@ -26,6 +26,7 @@ if TYPE_CHECKING:
         TrundleError,
         UnknownNameError,
     )
+    from .fields import MotionFormula, VectorField
     from .mechanics.bodies import Body, Isotropic, Principal, RatioInertia, Tensor
     from .mechanics.loads import (
         Drag,
@@ -101,6 +102,7 @@ _HOMES = {
     "analysis.holonomy": ("PfaffianSystem", "ConstraintAnalysis"),
     "analysis.imperfections": ("sensitivity", "Sensitivity", "air_drag"),
     "analysis.many": ("place_many", "simulate_many"),
+    "fields": ("VectorField", "MotionFormula"),
     "mechanics.bodies": ("Body", "Isotropic", "Principal", "RatioInertia", "Tensor"),
     "mechanics.shapes": (
         "Disc",
@@ -201,6 +203,7 @@ __all__ = [
     "MissingExtraError",
     "Mistake",
     "Motion",
+    "MotionFormula",
     "Motor",
     "Move",
     "OutOfDomainError",
@@ -251,6 +254,7 @@ __all__ = [
     "UnknownNameError",
     "VakonomicComparison",
     "VakonomicPath",
+    "VectorField",
     "Wobble",
     "__version__",
     "air_drag",
