@@ -9,6 +9,7 @@ confusion, since duals leave arithmetic with jets to the jets.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import fields, is_dataclass
 from typing import Any
 
 from .scalars import Scalar, is_number, is_zero, less, namespace
@@ -222,6 +223,36 @@ def value_of(x: Any) -> Any:
     return x.value if isinstance(x, Dual) else x
 
 
+def values_of(thing: Any) -> Any:
+    """Return a structure in duals with their values.
+
+    Examples
+    --------
+    >>> values_of((Dual(1.0, (2.0,)), 3.0))
+    (1.0, 3.0)
+    """
+    if is_dataclass(thing) and not isinstance(thing, type):
+        return type(thing)(**{field.name: values_of(getattr(thing, field.name)) for field in fields(thing)})
+    if isinstance(thing, tuple):
+        return tuple(map(values_of, thing))
+    return value_of(thing)
+
+
+def has_duals(thing: Any) -> bool:
+    """Tell whether any number of a structure is a dual.
+
+    Examples
+    --------
+    >>> has_duals((1.0, 2.0)), has_duals((1.0, Dual(2.0, (1.0,))))
+    (False, True)
+    """
+    if isinstance(thing, tuple):
+        return any(map(has_duals, thing))
+    if is_dataclass(thing) and not isinstance(thing, type):
+        return any(has_duals(getattr(thing, field.name)) for field in fields(thing))
+    return isinstance(thing, Dual)
+
+
 def slopes_of(x: Any, count: int) -> tuple[Any, ...]:
     """Return the slopes of a dual; of any other scalar none.
 
@@ -231,6 +262,29 @@ def slopes_of(x: Any, count: int) -> tuple[Any, ...]:
     (0.0, 0.0)
     """
     return x.slopes if isinstance(x, Dual) else (0.0,) * count
+
+
+def stacked(several: Sequence[Any], count: int) -> list[Any]:
+    """Return duals as plain scalars: their values, then their slopes by the first parameter, and so on.
+
+    Examples
+    --------
+    >>> stacked([Dual(1.0, (2.0, 3.0)), 4.0], 2)
+    [1.0, 4.0, 2.0, 0.0, 3.0, 0.0]
+    """
+    slopes = [slopes_of(one, count) for one in several]
+    return [*map(value_of, several), *(row[j] for j in range(count) for row in slopes)]
+
+
+def unstacked(scalars: Sequence[Any], size: int) -> list[Dual]:
+    """Return as many duals again.
+
+    Examples
+    --------
+    >>> unstacked([1.0, 4.0, 2.0, 0.0, 3.0, 0.0], 2)
+    [Dual(1.0, (2.0, 3.0)), Dual(4.0, (0.0, 0.0))]
+    """
+    return [Dual(scalars[i], tuple(scalars[i + size :: size])) for i in range(size)]
 
 
 def _of(x: Any, name: str, slope: Callable[[Any, Any, Any], Any]) -> Any:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..errors import SolverError
 from .algebra import Quaternion, Vector
 from .contact import Contact, contact_at
-from .scalars import Scalar
+from .scalars import Scalar, namespace
 
 if TYPE_CHECKING:
     from .surfaces import Surface
@@ -48,8 +48,14 @@ def nearest(
         _, aside, down = beside(system, contact, centre)
         step = aside + down
         small = step.norm() <= _NEXT_TO * (point.norm() + contact.offset.norm())
-    moved = Vector(*(np.where(small, there + by, there)[()] for there, by in zip(point, step, strict=True)))
+    moved = Vector(*(_either(small, there + by, there) for there, by in zip(point, step, strict=True)))
     return contact_at(system, time, moved, orientation, coordinates)
+
+
+def _either(condition: Any, yes: Scalar, no: Scalar) -> Scalar:
+    if isinstance(condition, bool):
+        return yes if condition else no
+    return namespace(condition, yes, no).where(condition, yes, no)
 
 
 def beside(

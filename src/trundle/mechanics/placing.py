@@ -15,7 +15,7 @@ from .contact import Contact, contact_at
 from .finiteness import check_finite
 from .motions import SupportState
 from .nearest import closest_contact, misplaced
-from .scalars import Scalar, as_float, is_number, is_zero, namespace
+from .scalars import Scalar, as_float, is_number, is_zero
 
 if TYPE_CHECKING:
     from .system import RollingSystem, State
@@ -270,13 +270,12 @@ def _pair(value: Any, key: str) -> tuple[Any, Any]:
 
 def _unit_quaternion(orientation: Any) -> Quaternion:
     parts = checks.components(orientation, "number", "orientation", 4)
-    known = all(map(is_number, parts))
-    length = math.hypot(*parts) if known else namespace(parts).sqrt(sum(part * part for part in parts))
+    length = math.hypot(*parts)
     if not 0 < length < math.inf:
         raise InvalidValueError("orientation", "must be a quaternion other than zero", orientation)
-    if is_number(length) and abs(length - 1) < 4e-16:  # it is one already: keep it to the last digit
+    if all(map(is_number, parts)) and abs(length - 1) < 4e-16:  # it is one already: keep it to the last digit
         return Quaternion(*parts)
-    return Quaternion(*(part / length for part in parts))
+    return Quaternion(*parts).unit
 
 
 def _rolling_rate(relative: Vector, rho: Vector, n: Vector, spin: Scalar) -> Vector:

@@ -6,7 +6,6 @@ numbers and completes these to a full record; the mechanics itself is in `mechan
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -17,7 +16,7 @@ from ..mechanics.algebra import ZERO, Quaternion, Vector
 from ..mechanics.contact import Contact, Rolling, contact_at, roll
 from ..mechanics.loads import BodyMotion
 from ..mechanics.nearest import nearest
-from ..mechanics.scalars import Scalar, is_zero
+from ..mechanics.scalars import Scalar, as_float, is_zero
 from ..mechanics.slipping import Flying, Slipping, fly, slip, slip_direction, unturned
 from ..mechanics.system import RollingSystem, State
 from .contact_state import ContactState, floats
@@ -100,6 +99,10 @@ class Law:
         """Return what ends the phase where it falls through zero, by name."""
         raise NotImplementedError
 
+    def contact_force(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:
+        """Return R, the force of the support on the body, N."""
+        raise NotImplementedError
+
     def found(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:  # noqa: ARG002
         """Return what else of a state it takes some work to find; nothing, mostly."""
         return []
@@ -118,9 +121,9 @@ class Law:
 
     def unpack(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array) -> ContactState:
         """Return the body that is meant by its numbers."""
-        plain = [float(number) for number in numbers]
+        plain = [as_float(number) for number in numbers]
         p, q, Omega, rest, coordinates = self.split(plain)
-        q = Quaternion(*(part / math.hypot(*q) for part in q))
+        q = q.unit
         contact = self._contact(system, time, p, q, rest, coordinates)
         Omega = self._turns(contact, Omega)
         centre, V = self._moves(contact, Omega, rest)
@@ -173,20 +176,20 @@ class Law:
 
     def shrinking(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array, stop: str) -> Vector:
         """Return what shrinks to nothing at a stop: the slip, m/s, or how the body turns over the support, rad/s."""
-        p, q, Omega, rest, coordinates = self.split([float(number) for number in numbers])
+        p, q, Omega, rest, coordinates = self.split([as_float(number) for number in numbers])
         return (
             Vector(*rest[:3]) if stop == "grip" else state_turning(contact_at(system, time, p, q, coordinates), Omega)
         )
 
-    def shrinking_rate(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array, stop: str) -> Array:
+    def shrinking_rate(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array, stop: str) -> Vector:
         """Return how fast that changes, m/s² or rad/s²; of Ω̇ only the part along the support."""
-        plain = [float(number) for number in numbers]
-        rate = Vector(*(float(part) for part in self.rates(system, time, plain)[_SHRINKS[stop]]))
+        plain = [as_float(number) for number in numbers]
+        rate = Vector(*(as_float(part) for part in self.rates(system, time, plain)[_SHRINKS[stop]]))
         if stop == "stop":
             p, q, _, _, coordinates = self.split(plain)
             n = contact_at(system, time, p, q, coordinates).normal
             rate = rate - n * rate.dot(n)
-        return rate.array()
+        return rate
 
     def rk4_step(
         self, system: RollingSystem, time: float, state: Sequence[float], step: float, known: Rates | None = None
@@ -195,17 +198,20 @@ class Law:
 
         Its rates may be known as a function of time and state.
         """
-        y = np.asarray(state, dtype=float)
+        y = [as_float(number) for number in state]
 
-        def rates(t: float, at: Array) -> Array:
-            found = self.rates(system, t, at.tolist()) if known is None else known(t, at.tolist())
-            return np.array([float(rate) for rate in found])
+        def after(wait: float, slopes: Sequence[Scalar]) -> list[Scalar]:
+            at = [number + wait * slope for number, slope in zip(y, slopes, strict=True)]
+            return [
+                as_float(rate) for rate in (known(time + wait, at) if known else self.rates(system, time + wait, at))
+            ]
 
-        first = rates(time, y)
-        second = rates(time + step / 2, y + step / 2 * first)
-        third = rates(time + step / 2, y + step / 2 * second)
-        fourth = rates(time + step, y + step * third)
-        return (y + step / 6 * (first + 2 * second + 2 * third + fourth)).tolist()
+        first = after(0.0, [0.0] * len(y))
+        second = after(step / 2, first)
+        third = after(step / 2, second)
+        fourth = after(step, third)
+        slopes = [a + 2 * b + 2 * c + d for a, b, c, d in zip(first, second, third, fourth, strict=True)]
+        return [number + step / 6 * slope for number, slope in zip(y, slopes, strict=True)]
 
     def _bounds(self, system: RollingSystem, contact: Contact, orientation: Quaternion, gap: Scalar) -> dict[str, Any]:
         """Return the event functions of every phase: where the support ends, the body's shape, or what fits."""
@@ -238,6 +244,10 @@ class RollingLaw(Law):
         now = self._now(system, time, state)
         coordinates = system.support.motion.coordinate_rates(time, self.split(state)[4], now.axle_moment)
         return [*now.point_rate, *now.orientation_rate, *now.angular_acceleration, *coordinates]
+
+    def contact_force(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:
+        """Return R of rolling."""
+        return self._now(system, time, state).reaction
 
     def event_functions(
         self, system: RollingSystem, time: Scalar, state: Numbers, event_parameters: Numbers
@@ -320,6 +330,10 @@ class SlippingLaw(Law):
         now = self._now(system, time, state)
         coordinates = system.support.motion.coordinate_rates(time, self.split(state)[4], now.axle_moment)
         return [*now.point_rate, *now.orientation_rate, *now.angular_acceleration, *now.slip_rate, *coordinates]
+
+    def contact_force(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:
+        """Return R of slipping."""
+        return self._now(system, time, state).reaction
 
     def event_functions(
         self, system: RollingSystem, time: Scalar, state: Numbers, event_parameters: Numbers
@@ -418,6 +432,10 @@ class FlightLaw(Law):
         moving = (*now.acceleration, now.gap_rate, *rest[:3])
         return [*now.point_rate, *now.orientation_rate, *turning, *moving, *coordinate_rates]
 
+    def contact_force(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:  # noqa: ARG002
+        """Return nothing: nothing touches."""
+        return ZERO
+
     def event_functions(
         self,
         system: RollingSystem,
@@ -502,6 +520,10 @@ class RestingLaw(Law):
         J = system.body.inertia_in_space(Q)
         couple = J @ support.angular_acceleration + system.body.gyroscopic(Q, turning) - K - contact.offset.cross(R)
         return Held(contact, V, R, couple)
+
+    def contact_force(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:
+        """Return R of rest."""
+        return self.held(system, time, state).reaction
 
     def event_functions(
         self, system: RollingSystem, time: Scalar, state: Numbers, event_parameters: Numbers

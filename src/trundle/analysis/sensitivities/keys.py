@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, get_args
 
-from ...errors import InvalidValueError, UnknownNameError, did_you_mean
+from ...errors import InvalidValueError, UnknownNameError
 from ...mechanics.duals import Dual
 from ...mechanics.placing import Placing
 from ...mechanics.scalars import is_number
@@ -48,7 +48,9 @@ def keys(scenario: ScenarioFile) -> list[Key]:
     >>> [key.name for key in keys(tr.Scenario.load("tilted-turntable"))][:4]
     ['gravity', 'body.radius', 'body.mass', 'support.rim']
     """
-    kinds = {f"{key}[{i}]": kind for key, all_ in scenario._kinds_of_components().items() for i, kind in enumerate(all_)}
+    kinds = {
+        f"{key}[{i}]": kind for key, all_ in scenario._kinds_of_components().items() for i, kind in enumerate(all_)
+    }
     units = {name: UNITS[kind][0] for name, kind in kinds.items()}
     leaves = ((name, value, units.get(name, unit)) for name, value, unit in _leaves(scenario))
     return [Key(name, float(value), unit) for name, value, unit in leaves if is_number(value)]
@@ -66,7 +68,11 @@ def chosen(scenario: ScenarioFile, names: Sequence[str]) -> list[Key]:
     known = keys(scenario)
     found: dict[str, Key] = {}
     for name in names:
-        own = [key for key in known if key.name == name or key.name.startswith(f"{name}[") and "." not in key.name[len(name) :]]
+        own = [
+            key
+            for key in known
+            if key.name == name or (key.name.startswith(f"{name}[") and "." not in key.name[len(name) :])
+        ]
         if not own:
             raise _refusal(scenario, name, known)
         found |= {key.name: key for key in own}
@@ -77,11 +83,15 @@ def _refusal(scenario: ScenarioFile, name: str, known: list[Key]) -> Exception:
     """Say why there is no derivative by what a name stands for."""
     names = [key.name for key in known]
     if not isinstance(name, str):
-        return InvalidValueError("wrt", "must hold names of numbers of the scenario", name, f"It has {', '.join(names)}.")
+        return InvalidValueError(
+            "wrt", "must hold names of numbers of the scenario", name, f"It has {', '.join(names)}."
+        )
     given = {key: value for key, value, _ in _leaves(scenario)}
     if given.get(name, 0.0) is None:
         rule = "must name numbers that the scenario gives"
-        return InvalidValueError("wrt", rule, name, f"Write `{name}` into the scenario first, with the value that it has.")
+        return InvalidValueError(
+            "wrt", rule, name, f"Write `{name}` into the scenario first, with the value that it has."
+        )
     if isinstance(given.get(name), str):
         rule = "must name numbers: a motion has no derivative by a text"
         return InvalidValueError("wrt", rule, f"{name} = {given[name]!r}", "Give the number instead, or leave it out.")
