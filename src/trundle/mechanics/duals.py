@@ -99,6 +99,9 @@ class Dual:
     def __float__(self) -> float:
         return float(self.value)  # what is decided by a number is decided by its value
 
+    def __format__(self, spec: str) -> str:
+        return format(float(self), spec)
+
     def __bool__(self) -> bool:
         return bool(self.value)
 
@@ -175,10 +178,11 @@ class DualFunctions:
 
     @staticmethod
     def hypot(x: Any, y: Any) -> Any:
-        """Return √(x² + y²)."""
+        """Return √(x² + y²); at 0, where it has no slope, that is not a number."""
         a, b = value_of(x), value_of(y)
         f = namespace(a, b).hypot(a, b)
-        return Dual(f, tuple(_over(_plus(_times(p, a), _times(q, b)), f) for p, q in _pairs(x, y)))
+        f_or_none = float("nan") if is_zero(f) else f
+        return Dual(f, tuple(_over(_plus(_times(p, a), _times(q, b)), f_or_none) for p, q in _pairs(x, y)))
 
     @staticmethod
     def atan2(y: Any, x: Any) -> Any:

@@ -20,7 +20,7 @@ from .algebra import E_X, E_Z, ZERO, Matrix, Quaternion, Vector
 from .contact import Contact
 from .duals import Dual, stacked, unstacked
 from .onset import onset
-from .scalars import as_float, namespace
+from .scalars import as_float, is_zero, namespace
 from .slipping import response
 
 if TYPE_CHECKING:
@@ -152,7 +152,7 @@ class _Course:
             if self.mu and sigma > 2 * _SLOW * size:
                 total = total + self._slide(size)
                 continue
-            if self._holds and sigma:  # how it ends makes a difference of the order of σ² only
+            if self._holds and not is_zero(sigma):  # how it ends makes a difference of the order of σ² only
                 total = total + self._end_at_once()
             total = total + self._straight(self._held)
         raise SolverError("A landing does not end: friction and the body's shape jam it. Use less friction.")

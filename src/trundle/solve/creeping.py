@@ -9,7 +9,7 @@ import numpy as np
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import contact_at
 from ..mechanics.creep import slip_rates
-from ..mechanics.scalars import Scalar
+from ..mechanics.scalars import Scalar, as_float
 from ..mechanics.slipping import Slipping, slip
 from ..mechanics.system import RollingSystem
 from . import corners
@@ -154,7 +154,7 @@ class CreepingLaw(SlippingLaw):
 
     def direction(self, system: RollingSystem, time: float, numbers: Any) -> Vector:
         """Return ŝ."""
-        return Vector(*python_law(system, self).found(time, list(map(float, numbers))))
+        return Vector(*python_law(system, self).found(time, list(map(as_float, numbers))))
 
     def found(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:
         """Return ŝ."""

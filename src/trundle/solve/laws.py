@@ -40,6 +40,8 @@ class Law:
         Which of its events come where something shrinks to nothing: "grip", the slip; "stop", turning over the support.
     brief : bool
         Whether it holds for so short a time that to compile it would take longer than to follow it.
+    unwatched : int
+        How many of the last numbers have no say in how long a step is.
 
     Parameters
     ----------
@@ -51,6 +53,7 @@ class Law:
     code: int
     variables: tuple[str, ...] = CONTACT
     brief: bool = False
+    unwatched: int = 0
 
     def __init__(self, weightless: bool = False) -> None:
         self.weightless = weightless
@@ -376,7 +379,7 @@ class SlippingLaw(Law):
 
     def direction(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array) -> Vector:  # noqa: ARG002
         """Return ŝ, the direction of the slip."""
-        return slip_direction(Vector(*map(float, numbers[10:13])))
+        return slip_direction(Vector(*map(as_float, numbers[10:13])))
 
     def stiff(self, numbers: Array) -> bool:
         """Tell whether it slips so slowly that the direction of its slip settles far faster than all else changes."""

@@ -118,6 +118,7 @@ def _integrated(
     try:
         at = law.unpack(system, begin, y0)
         scale = _scale(y0, at.arm, at.scale(system))
+        scale[size - law.unwatched :] = np.inf
         given: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * scale}
         if not law.stiff(y0):
             yield from steps(DOP853(rates, 0.0, y0, end, **given))
@@ -142,7 +143,7 @@ def _scale(y0: Array, arm: float, speed: float) -> Array:
     """
     place, turning = max(_size(y0[:3]), arm), max(_size(y0[7:10]), 0.1 * speed / arm)
     rest = max(1e-3 * _size(y0[10:]), 1e-4 * speed)
-    least = [*[1e-3 * place] * 3, *[1.0] * 4, *[1e-3 * turning] * 3, *[rest] * 99]
+    least = [*[1e-3 * place] * 3, *[1.0] * 4, *[1e-3 * turning] * 3, *[rest] * y0.size]
     return np.maximum(np.abs(y0), least[: y0.size])
 
 

@@ -359,7 +359,7 @@ def _struck(system: RollingSystem, at: ContactState, jolt: str = "", before: Con
 def _set_down(system: RollingSystem, at: ContactState) -> ContactState:
     """Return a body that touches and stays: no velocity off the support, and none along it where that is rounding."""
     limit = SLIP_TOLERANCE * at.speed
-    held = at.sliding.norm() <= limit and system.support.friction != 0
+    held = bool(at.sliding.norm() <= limit and system.support.friction != 0)
     return at.moving(system, at.contact.rolling_velocity(at.Omega) + (ZERO if held else at.sliding), at.Omega)
 
 

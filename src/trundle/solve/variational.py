@@ -77,11 +77,15 @@ class VariedSystem(RollingSystem):
 
     def in_duals(self) -> RollingSystem:
         """Return the system in duals."""
-        scalars = []
+        return with_numbers(self.template.system, self.scalars())
+
+    def scalars(self) -> list[Any]:
+        """Return its numbers in duals, those that depend on a parameter."""
+        found: list[Any] = []
         for number, row in zip(_scalars(self, self.template.system), self.slopes, strict=True):
             known = tuple(0.0 if slope is None else slope for slope in row)
-            scalars.append(number if all(slope is None for slope in row) else Dual(number, known))
-        return with_numbers(self.template.system, scalars)
+            found.append(number if all(slope is None for slope in row) else Dual(number, known))
+        return found
 
 
 def _scalars(thing: Any, template: Any) -> Iterator[Any]:
@@ -132,6 +136,11 @@ class VariationalLaw(Law):
     def brief(self) -> bool:  # type: ignore[override]
         """Whether it holds for a short time only."""
         return self.kind.brief
+
+    @property
+    def unwatched(self) -> int:  # type: ignore[override]
+        """All derivatives of a brief law: it takes differences over a short step, whose rounding is theirs."""
+        return self.size * self.count if self.brief else 0
 
     @property
     def ends(self) -> tuple[str, ...]:
