@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from .analysis.holonomy import ConstraintAnalysis, PfaffianSystem
     from .analysis.imperfections import Sensitivity, air_drag, sensitivity
     from .analysis.many import simulate_many
+    from .analysis.sensitivities import Sensitivities, sensitivities
     from .analysis.statics import Equilibria, Equilibrium, equilibria
     from .analysis.steady import PeriodicMotion, SteadyMotion, SteadyMotions, periodic_motion, steady_motions
     from .analysis.vakonomic import VakonomicComparison, VakonomicPath, compare_vakonomic, vakonomic_path
@@ -158,6 +159,7 @@ _HOMES = {
     "solve.exact": ("ClosedForm",),
     "analysis.derivation": ("derive",),
     "simulation.simulate": ("simulate", "Scenario"),
+    "analysis.sensitivities": ("sensitivities", "Sensitivities"),
     "analysis.statics": ("equilibria", "Equilibria", "Equilibrium"),
     "analysis.steady": ("steady_motions", "SteadyMotions", "SteadyMotion", "periodic_motion", "PeriodicMotion"),
     "simulation.trajectory": ("Trajectory", "Event"),
@@ -225,6 +227,7 @@ __all__ = [
     "Rotation",
     "Scenario",
     "ScenarioError",
+    "Sensitivities",
     "Sensitivity",
     "Shake",
     "Shape",
@@ -261,6 +264,7 @@ __all__ = [
     "equilibria",
     "periodic_motion",
     "roll_along",
+    "sensitivities",
     "sensitivity",
     "simulate",
     "simulate_many",

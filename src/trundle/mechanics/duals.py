@@ -2,8 +2,10 @@
 
 A dual is a value with its slopes in some parameters. The parts may be any scalars: floats, arrays of samples, or steps
 on a tape, so that what comes of duals on a tape is the variational equations (Griewank and Walther 2008, chapter 3).
-A slope that is 0 stays the number 0 and costs nothing. Jets have their own variables: a jet of duals is neither's
-confusion, since duals leave arithmetic with jets to the jets.
+A slope that is 0 stays the number 0 and costs nothing.
+
+Jets differentiate a formula of a surface or a body by its own variables. A jet may hold duals; duals leave arithmetic
+with jets to the jets, so that the two kinds of slope are never mixed up.
 """
 
 from __future__ import annotations

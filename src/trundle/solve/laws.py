@@ -195,8 +195,8 @@ class Law:
         return rate
 
     def rk4_step(
-        self, system: RollingSystem, time: float, state: Sequence[float], step: float, known: Rates | None = None
-    ) -> list[float]:
+        self, system: RollingSystem, time: Scalar, state: Numbers, step: Scalar, known: Rates | None = None
+    ) -> list[Any]:
         """Return the state after a step so short that one of the classical Runge-Kutta method is exact.
 
         Its rates may be known as a function of time and state.

@@ -188,7 +188,7 @@ class VariationalLaw(Law):
         """Return what the law does."""
         return self.law.shrinking(system, time, numbers[: self.size], stop)
 
-    def shrinking_rate(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array, stop: str) -> Array:
+    def shrinking_rate(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array, stop: str) -> Vector:
         """Return what the law does."""
         return self.law.shrinking_rate(system, time, numbers[: self.size], stop)
 

@@ -29,6 +29,7 @@ from ...solve.transitions import JOLT, PhaseStart, ZeroCrossing
 from ...solve.variational import VariationalLaw, VariedSystem
 from .outputs import Slopes, slopes_of_samples
 
+_BRINK = 1e-7  # share of all friction that may be left for a contact to be taken as on the brink of slipping
 _BEFORE = 1e-4  # share of the time in which the motion changes, at which one looks how an event function falls
 _GRAZES = 1e-2  # share of that fall by which it falls on at its zero: less is grazing
 _SLIPS = 1e-9  # share of a velocity's slope by which a start may begin to slip
@@ -44,10 +45,13 @@ class Followed:
         Of the run.
     slopes : dict of array
         Of each quantity, (n, components, parameters).
+    instants : array (events, parameters)
+        Of when each event comes.
     """
 
     samples: Samples
     slopes: Slopes
+    instants: Array
 
 
 def follow(
@@ -84,7 +88,7 @@ def follow(
     given: Any = {"after": run.after, "bends": run.bends}
     tolerance = method.TOLERANCE if tolerance is None else tolerance
     samples = phases.solve(run.integrate, system, start, times, tolerance, progress, **given)
-    return Followed(samples, run.slopes(samples))
+    return Followed(samples, run.slopes(samples), run.instants(samples))
 
 
 class _Run:
@@ -106,11 +110,12 @@ class _Run:
         self.pieces: list[tuple[Array, Slopes]] = []
         begins = transitions.at_start(self.duals, first)
         self._check_start(begins, first)
+        self.events = list(begins.events)
         self.begins: PhaseStart | None = begins  # in duals, where an event was
-        self.here: tuple[Law, float, list[Dual]]  # where the derivatives are known, and by which law they go on
+        self.here: tuple[Law, float, list[Any]]  # where the derivatives are known, and by which law they go on
         before = begins.across or begins
         state = np.array(stacked(before.state_vector, self.count), dtype=float)
-        # The start, and where phases ended: with the law before, the state stacked with its derivatives, and what follows.
+        # The start, and where phases ended: the law before, the state stacked with its derivatives, and what follows.
         self.stops: list[tuple[Law, float, Array, PhaseStart | None]] = [(before.law, start.time, state, begins)]
 
     def _check_start(self, begins: PhaseStart, first: State) -> None:
@@ -147,6 +152,7 @@ class _Run:
             if stop is not None:
                 self.here = now.law, stop.time, unstacked(stop.state_vector.tolist(), size)
                 self.stops.append((now.law, stop.time, stop.state_vector, None))
+                self.ending = stop.name
                 stop = ZeroCrossing(stop.time, stop.name, stop.state_vector[:size])
             yield Segment(piece.times, piece.states[:, :size], stop)
 
@@ -155,6 +161,7 @@ class _Run:
         if not stop.name.startswith(CORNER):  # there the same goes on
             self.begins = phases.following_stop(self.duals, law, self._crossing(law, stop))
             self.stops[-1] = (*self.stops[-1][:3], self.begins)
+            self.events += self.begins.events
         return phases.following_stop(system, law, stop)
 
     # Derivatives at an instant
@@ -170,9 +177,19 @@ class _Run:
         if type(law) is not type(now.law) or len(state) != len(now.state_vector):
             raise self._none(now.time, "what follows there hangs on a rounding")
         slopes = [slopes_of(part, self.count) for part in state]
+        self._check_brink(now)
         if not np.isfinite(np.array(slopes, dtype=float)).all():
             raise self._none(now.time, "what follows has no slope there")
         return [Dual(float(number), row) for number, row in zip(now.state_vector, slopes, strict=True)]
+
+    def _check_brink(self, now: PhaseStart) -> None:
+        """Refuse a body that holds on the brink of slipping: a little less friction, and it moves another way."""
+        if now.law.code not in (ROLLING, RESTING) or self.system.support.friction is None:
+            return
+        stops = now.law.event_functions(self.system, now.time, now.state_vector, now.event_parameters)
+        most = float(self.system.support.friction) * float(stops["lift"])
+        if abs(float(stops["slip"])) <= _BRINK * most**2 and most > 0:
+            raise self._none(now.time, "friction holds the body with nothing to spare")
 
     def _at_fixed_time(self, now: PhaseStart, begins: PhaseStart) -> list[Dual]:
         """Return a state that is known where an event comes, as it changes at a fixed instant."""
@@ -198,7 +215,9 @@ class _Run:
         rates = [float(rate) for rate in law.rates(self.system, stop.time, [one.value for one in state])]
         moved = self._moved(law, stop, state, rates)
         pairs = zip(state, rates, strict=True)
-        there = [Dual(one.value, tuple(s + rate * m for s, m in zip(one.slopes, moved, strict=True))) for one, rate in pairs]
+        there = [
+            Dual(one.value, tuple(s + rate * m for s, m in zip(one.slopes, moved, strict=True))) for one, rate in pairs
+        ]
         return ZeroCrossing(Dual(stop.time, moved), stop.name, np.array(there, dtype=object))  # type: ignore[arg-type]
 
     def _moved(self, law: Law, stop: ZeroCrossing, state: list[Dual], rates: list[float]) -> tuple[float, ...]:
@@ -213,7 +232,7 @@ class _Run:
         return tuple(-slope / falls for slope in slopes)
 
     def _check_crossing(self, law: Law, stop: ZeroCrossing, falls: float) -> None:
-        """Refuse an event that is only just reached: whether it comes hangs on the parameters, and has no derivative."""
+        """Refuse an event that is only just reached: with other numbers it may not come at all."""
         if stop.name.startswith("near "):  # a square, of what is all but nothing
             return
         numbers = stop.state_vector.tolist()
@@ -225,10 +244,21 @@ class _Run:
 
     def _none(self, time: float, why: str) -> SolverError:
         return SolverError(
-            f"At t = {time:.9g} s the motion has no derivative: {why}. Ask for a shorter run, or move a number a little."
+            f"At t = {time:.9g} s the motion has no derivative: {why}. Ask for a shorter run, or change a number a little."
         )
 
     # Derivatives of the samples
+
+    def instants(self, samples: Samples) -> Array:
+        """Return how the instant of each event changes with the parameters."""
+        times = [event.time for event in self.events]
+        if samples.events and samples.events[-1].final:
+            law, time, numbers, _ = self.stops[-1]
+            state = unstacked(numbers.tolist(), numbers.size // (1 + self.count))
+            times.append(
+                self._crossing(law, ZeroCrossing(time, self.ending, np.array([one.value for one in state]))).time
+            )
+        return np.array([slopes_of(time, self.count) for time in times], dtype=float).reshape(-1, self.count)
 
     def slopes(self, samples: Samples) -> Slopes:
         """Return the derivatives at each sample."""
@@ -257,6 +287,3 @@ class _Run:
             held = isinstance(follows.law, SlippingLaw) and follows.law.held
             R = slip(self.duals, time, p, q, Omega, ZERO, coordinates, hat, held=held).reaction
             columns["contact_force"][i] = [slopes_of(part, self.count) for part in R]
-
-
-

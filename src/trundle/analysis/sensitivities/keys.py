@@ -18,6 +18,12 @@ from ...scenario.tables.values import Table
 from ...units import UNITS
 
 _APART = {"title", "notes", "timing"}  # what says nothing of the motion
+# At 0 these say that there is nothing of the kind, and a start is where the clock of the derivatives begins.
+_AT_ZERO = {
+    "start.height": "a body that touches its support cannot be a little lower",
+    "start.roll": "the body is not laid across its way",
+}
+_NEVER = {"start.time": "the samples are counted from it"}
 
 
 @dataclass(frozen=True)
@@ -53,7 +59,12 @@ def keys(scenario: ScenarioFile) -> list[Key]:
     }
     units = {name: UNITS[kind][0] for name, kind in kinds.items()}
     leaves = ((name, value, units.get(name, unit)) for name, value, unit in _leaves(scenario))
-    return [Key(name, float(value), unit) for name, value, unit in leaves if is_number(value)]
+    return [Key(*one) for one in leaves if is_number(one[1]) and not _without(*one[:2])]
+
+
+def _without(name: str, value: Any) -> str:
+    """Say why there is no derivative by a number; empty where there is one."""
+    return _NEVER.get(name, "") or (_AT_ZERO.get(name, "") if value == 0 else "")
 
 
 def chosen(scenario: ScenarioFile, names: Sequence[str]) -> list[Key]:
@@ -92,6 +103,8 @@ def _refusal(scenario: ScenarioFile, name: str, known: list[Key]) -> Exception:
         return InvalidValueError(
             "wrt", rule, name, f"Write `{name}` into the scenario first, with the value that it has."
         )
+    if why := _without(name, given.get(name)):
+        return InvalidValueError("wrt", f"must not name `{name}` here: {why}", f"{name} = {given[name]:g}")
     if isinstance(given.get(name), str):
         rule = "must name numbers: a motion has no derivative by a text"
         return InvalidValueError("wrt", rule, f"{name} = {given[name]!r}", "Give the number instead, or leave it out.")
