@@ -174,6 +174,12 @@ class DualFunctions:
         return _of(x, "log", lambda _xp, v, _f: 1.0 / v)
 
     @staticmethod
+    def round(x: Any) -> Any:
+        """Return the nearest whole number, which has no slope."""
+        value = value_of(x)
+        return namespace(value).round(value)
+
+    @staticmethod
     def abs(x: Any) -> Any:
         """Return |x|; its slope at 0 is that to the right."""
         return _of(x, "abs", lambda xp, v, _f: xp.where(less(v, 0.0), -1.0, 1.0))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...errors import InvalidValueError
+from ...errors import InvalidValueError, UnknownNameError
 from ...mechanics.system import RollingSystem
 from ...scenario import ScenarioFile
 from ...simulation import labels
@@ -18,6 +18,7 @@ from ...simulation.trajectory import Trajectory
 from ...solve import runge_kutta, taylor
 from ...solve.samples import Array, Progress
 from ...solve.sampling import longer_step, sample_times
+from .by_formula import follow_formula
 from .comparing import Agreement, compare
 from .following import Followed, follow
 from .keys import Key, chosen, varied
@@ -27,12 +28,16 @@ if TYPE_CHECKING:
     import xarray
 
 
+METHODS = ("auto", "variational")
+
+
 def sensitivities(
     run_or_scenario: Any,
     wrt: str | Sequence[str],
     *,
     duration: Any = None,
     every: Any = None,
+    method: str = "auto",
     compared: bool = True,
     progress: Progress | None = None,
 ) -> Sensitivities:
@@ -52,6 +57,9 @@ def sensitivities(
         ``"start.velocity[1]"``.
     duration, every : float or quantity, optional
         Instead of the scenario's, s. A run has its own.
+    method : str
+        "auto": by the formula where one closed form covers all of the run and can be differentiated, else by the
+        variational equations. "variational": by these.
     compared : bool
         Whether to compare them with differences of four runs.
     progress : callable, optional
@@ -82,6 +90,8 @@ def sensitivities(
     >>> round(float(slope), 9) == round(float(np.sin(rate) / rate), 9)
     True
     """
+    if method not in METHODS:
+        raise UnknownNameError("method of derivatives", str(method), METHODS)
     scenario, times = _read(run_or_scenario, duration, every)
     wanted = chosen(scenario, [wrt] if isinstance(wrt, str) else list(wrt))
     if not wanted:
@@ -89,13 +99,18 @@ def sensitivities(
     system, start = scenario.system(), scenario.start_state()
     in_duals = varied(scenario, wanted)
     check_room(times.size, labels.size_of(system) * len(wanted), "every", every, partial(longer_step, times))
-    method, tolerance = "variational", _tolerance(run_or_scenario)
-    followed = follow(system, start, times, in_duals, [key.name for key in wanted], tolerance, progress)
+    names, tolerance = [key.name for key in wanted], _tolerance(run_or_scenario)
+    followed = None
+    if method != "variational":
+        followed = follow_formula(system, start, times, in_duals, len(wanted))
+    way = "variational" if followed is None else "exact"
+    if followed is None:
+        followed = follow(system, start, times, in_duals, names, tolerance, progress)
     agreement = Agreement(np.nan, np.nan, 0)
     if compared:
         solve = taylor.solve if taylor.available() else runge_kutta.solve
         agreement = compare(scenario, wanted, followed, times, solve)
-    return Sensitivities(scenario.title, _dataset(system, wanted, followed, method), method, agreement)
+    return Sensitivities(scenario.title, _dataset(system, wanted, followed, way), way, agreement)
 
 
 def _read(given: Any, duration: Any, every: Any) -> tuple[ScenarioFile, Array]:

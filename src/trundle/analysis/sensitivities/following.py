@@ -244,7 +244,7 @@ class _Run:
 
     def _none(self, time: float, why: str) -> SolverError:
         return SolverError(
-            f"At t = {time:.9g} s the motion has no derivative: {why}. Ask for a shorter run, or change a number a little."
+            f"At t = {time:.9g} s the motion has no derivative: {why}. Ask for a shorter run, or change a number."
         )
 
     # Derivatives of the samples

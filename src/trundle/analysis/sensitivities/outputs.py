@@ -40,23 +40,43 @@ def slopes_of_samples(system: RollingSystem, law: Law, time: Array, states: Arra
     state: Any = unstacked(list(states.T), size)
     state[3:7] = Quaternion(*state[3:7]).unit
     with np.errstate(all="ignore"):  # a slope that there is not is no number
-        found = _quantities(system, law, time, state)
-        return {name: _array(parts, time.size, count) for name, parts in found.items()}
+        return stacked_slopes(_quantities(system, law, time, state), time.size, count)
+
+
+def stacked_slopes(found: dict[str, Any], samples: int, count: int) -> Slopes:
+    """Return the slopes of each quantity as an array."""
+    return {name: _array(parts, samples, count) for name, parts in found.items()}
 
 
 def _quantities(system: RollingSystem, law: Law, time: Any, state: Any) -> dict[str, Any]:
-    """Return what is sampled, in duals."""
+    """Return what is sampled, in duals, from a state."""
     p, q, _, rest, coordinates = law.split(state)
     motion = law.motion(system, time, state)
     contact = law._contact(system, time, p, q, rest, coordinates)
     r, V, Omega, point = motion.position, motion.velocity, motion.angular_velocity, contact.point
-    slip = V + Omega.cross(point - r) - contact.support.material_velocity(point)
+    u, R = contact.support.material_velocity(point), law.contact_force(system, time, state)
+    return sampled(law, r, V, Omega, R, q, point, u, coordinates)
+
+
+def sampled(
+    law: Law,
+    r: Vector,
+    V: Vector,
+    Omega: Vector,
+    R: Vector,
+    q: Quaternion,
+    point: Vector,
+    u: Vector,
+    coordinates: tuple[Any, ...],
+) -> dict[str, Any]:
+    """Return what is sampled by its names, with the slip V + Ω×ρ − u where it touches."""
+    slip = V + Omega.cross(point - r) - u
     return {
         "position": r,
         "contact": point,
         "velocity": V,
         "angular_velocity": Omega,
-        "contact_force": law.contact_force(system, time, state),
+        "contact_force": R,
         "slip_velocity": slip * np.nan if law.code == FLIGHT else slip,
         "orientation": q,
         "support": coordinates,
