@@ -55,7 +55,9 @@ def changed(tables: dict[str, Any], key: str, by: float) -> dict[str, Any]:
 
 def _samples(tables: dict[str, Any], times: Any) -> Any:
     scenario = tr.Scenario.read(tables)
-    run = tr.simulate(scenario.system(), scenario.start_state(), float(times[-1]) + 1e-3, 1e-3 + float(times[-1]), "taylor")
+    run = tr.simulate(
+        scenario.system(), scenario.start_state(), float(times[-1]) + 1e-3, 1e-3 + float(times[-1]), "taylor"
+    )
     samples = run.at(times).samples
     assert samples.time.size == len(times)
     return samples

@@ -81,7 +81,13 @@ EVENTS: dict[str, tuple[dict[str, Any], tuple[str, ...], tuple[str, ...], tuple[
     "a ball bounces and holds": (
         {
             "body": BALL,
-            "support": {"kind": "plane", "tilt": 0.02, "restitution": 0.7, "tangential_restitution": 0.4, "motion": TURNING},
+            "support": {
+                "kind": "plane",
+                "tilt": 0.02,
+                "restitution": 0.7,
+                "tangential_restitution": 0.4,
+                "motion": TURNING,
+            },
             "start": DROP,
         },
         ("support.restitution", "support.tangential_restitution", "support.tilt", "support.motion.rate", "body.mass"),
@@ -196,7 +202,7 @@ def test_a_run_through_events_has_the_derivatives_of_its_runs(name: str) -> None
 
 @pytest.mark.parametrize("name", [name for name, (*_, kinds, _) in EVENTS.items() if kinds])
 def test_when_an_event_comes_has_its_derivative(name: str) -> None:
-    tables, keys, kinds, times = tables_of(name)
+    tables, keys, kinds, _ = tables_of(name)
     key = keys[0]
     found = tr.sensitivities(tr.Scenario.read(tables), [key], compared=False)
     step = 1e-4 * max(abs(float(found.data.value[0])), 0.01)

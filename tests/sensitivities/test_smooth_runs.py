@@ -1,4 +1,4 @@
-"""Derivatives of runs without events, against fifty digits where there is a formula, else against differences of runs."""
+"""Derivatives of runs without events: against fifty digits where there is a formula, else against differences."""
 
 from __future__ import annotations
 

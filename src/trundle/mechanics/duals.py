@@ -189,8 +189,9 @@ class DualFunctions:
         """Return √(x² + y²); at 0, where it has no slope, that is not a number."""
         a, b = value_of(x), value_of(y)
         f = namespace(a, b).hypot(a, b)
-        f_or_none = float("nan") if is_zero(f) else f
-        return Dual(f, tuple(_over(_plus(_times(p, a), _times(q, b)), f_or_none) for p, q in _pairs(x, y)))
+        if is_zero(f):
+            return Dual(f, tuple(0.0 if is_zero(p) and is_zero(q) else float("nan") for p, q in _pairs(x, y)))
+        return Dual(f, tuple(_over(_plus(_times(p, a), _times(q, b)), f) for p, q in _pairs(x, y)))
 
     @staticmethod
     def atan2(y: Any, x: Any) -> Any:

@@ -12,7 +12,7 @@ from ...mechanics.system import RollingSystem, State
 from ...solve import closed_form, transitions
 from ...solve.exact import ClosedForm, form_of_phase
 from ...solve.samples import Array
-from .following import Followed
+from .following import Followed, check_brink
 from .outputs import sampled, stacked_slopes
 
 _NODES, _MOST_NODES = 16, 4_000_000  # of Gauss's rule, for each radian of the fastest rate; of a run
@@ -31,6 +31,7 @@ def follow_formula(
     nodes = _nodes(times, max(form.max_rate(float(times[-1] - times[0])), _fastest(samples.angular_velocity)))
     if samples.events or nodes is None:
         return None
+    check_brink(system, now)
     duals, first = in_duals
     begins = transitions.at_start(duals, first)
     varied = type(form).from_state_vector(duals, begins.start, begins.state_vector)

@@ -30,7 +30,7 @@ from ...solve.variational import VariationalLaw, VariedSystem
 from .outputs import Slopes, slopes_of_samples
 
 _BRINK = 1e-7  # share of all friction that may be left for a contact to be taken as on the brink of slipping
-_BEFORE = 1e-4  # share of the time in which the motion changes, at which one looks how an event function falls
+_BEFORE = 1e-2  # share of the time in which the motion changes, at which one looks how an event function falls
 _GRAZES = 1e-2  # share of that fall by which it falls on at its zero: less is grazing
 _SLIPS = 1e-9  # share of a velocity's slope by which a start may begin to slip
 
@@ -89,6 +89,23 @@ def follow(
     tolerance = method.TOLERANCE if tolerance is None else tolerance
     samples = phases.solve(run.integrate, system, start, times, tolerance, progress, **given)
     return Followed(samples, run.slopes(samples), run.instants(samples))
+
+
+def check_brink(system: RollingSystem, now: PhaseStart) -> None:
+    """Refuse a body that holds on the brink of slipping: with a little less friction it moves another way."""
+    if now.law.code not in (ROLLING, RESTING) or system.support.friction is None:
+        return
+    stops = now.law.event_functions(system, now.time, now.state_vector, now.event_parameters)
+    most = float(system.support.friction) * float(stops["lift"])
+    if abs(float(stops["slip"])) <= _BRINK * most**2 and most > 0:
+        raise no_derivative(now.time, "friction holds the body with nothing to spare")
+
+
+def no_derivative(time: float, why: str) -> SolverError:
+    """Return the refusal of a motion at an instant."""
+    return SolverError(
+        f"At t = {time:.9g} s the motion has no derivative: {why}. Ask for a shorter run, or change a number."
+    )
 
 
 class _Run:
@@ -175,21 +192,12 @@ class _Run:
         if now.time > time:
             state = law.rk4_step(self.duals, time, state, now.time - time)
         if type(law) is not type(now.law) or len(state) != len(now.state_vector):
-            raise self._none(now.time, "what follows there hangs on a rounding")
+            raise no_derivative(now.time, "what follows there hangs on a rounding")
         slopes = [slopes_of(part, self.count) for part in state]
-        self._check_brink(now)
+        check_brink(self.system, now)
         if not np.isfinite(np.array(slopes, dtype=float)).all():
-            raise self._none(now.time, "what follows has no slope there")
+            raise no_derivative(now.time, "what follows has no slope there")
         return [Dual(float(number), row) for number, row in zip(now.state_vector, slopes, strict=True)]
-
-    def _check_brink(self, now: PhaseStart) -> None:
-        """Refuse a body that holds on the brink of slipping: a little less friction, and it moves another way."""
-        if now.law.code not in (ROLLING, RESTING) or self.system.support.friction is None:
-            return
-        stops = now.law.event_functions(self.system, now.time, now.state_vector, now.event_parameters)
-        most = float(self.system.support.friction) * float(stops["lift"])
-        if abs(float(stops["slip"])) <= _BRINK * most**2 and most > 0:
-            raise self._none(now.time, "friction holds the body with nothing to spare")
 
     def _at_fixed_time(self, now: PhaseStart, begins: PhaseStart) -> list[Dual]:
         """Return a state that is known where an event comes, as it changes at a fixed instant."""
@@ -240,12 +248,7 @@ class _Run:
         before = law.rk4_step(self.system, stop.time, numbers, -wait)
         stops = corners.all_event_functions(self.system, law, stop.time - wait, before, self.event_parameters)
         if not abs(falls) * wait > _GRAZES * abs(float(stops[stop.name])):
-            raise self._none(stop.time, f"the event there ({stop.name}) is only just reached")
-
-    def _none(self, time: float, why: str) -> SolverError:
-        return SolverError(
-            f"At t = {time:.9g} s the motion has no derivative: {why}. Ask for a shorter run, or change a number."
-        )
+            raise no_derivative(stop.time, f"the event there ({stop.name}) is only just reached")
 
     # Derivatives of the samples
 
