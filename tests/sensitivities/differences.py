@@ -1,4 +1,4 @@
-"""Derivatives that owe nothing to duals: differences of whole runs, taken to zero step by Richardson's extrapolation."""
+"""Derivatives that owe nothing to duals: differences of whole runs, taken to zero step by Richardson."""
 
 from __future__ import annotations
 
