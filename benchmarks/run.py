@@ -21,6 +21,7 @@ NAMES = (
     "path",
     "trajectory",
     "bodies",
+    "compiled_steps",
     "ensembles",
     "reuse",
     "long_run",

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from .analysis.geometry import Arc, Curve, PathScenario, RolledPath, Rotation, Straight, roll_along
     from .analysis.holonomy import ConstraintAnalysis, PfaffianSystem
     from .analysis.imperfections import Sensitivity, air_drag, sensitivity
-    from .analysis.many import simulate_many
+    from .analysis.many import place_many, simulate_many
     from .analysis.sensitivities import Sensitivities, sensitivities
     from .analysis.statics import Equilibria, Equilibrium, equilibria
     from .analysis.steady import PeriodicMotion, SteadyMotion, SteadyMotions, periodic_motion, steady_motions
@@ -101,7 +101,7 @@ _HOMES = {
     "analysis.geometry": ("roll_along", "Straight", "Arc", "Curve", "RolledPath", "Rotation", "PathScenario"),
     "analysis.holonomy": ("PfaffianSystem", "ConstraintAnalysis"),
     "analysis.imperfections": ("sensitivity", "Sensitivity", "air_drag"),
-    "analysis.many": ("simulate_many",),
+    "analysis.many": ("place_many", "simulate_many"),
     "mechanics.bodies": ("Body", "Isotropic", "Principal", "RatioInertia", "Tensor"),
     "mechanics.shapes": (
         "Disc",
@@ -263,6 +263,7 @@ __all__ = [
     "derive",
     "equilibria",
     "periodic_motion",
+    "place_many",
     "roll_along",
     "sensitivities",
     "sensitivity",

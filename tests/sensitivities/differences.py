@@ -11,7 +11,7 @@ import numpy as np
 
 import trundle as tr
 
-QUANTITIES = ("position", "velocity", "angular_velocity", "orientation", "contact_force")
+QUANTITIES = ("position", "velocity", "angular_velocity", "orientation", "contact", "contact_force")
 _LEVELS = 3
 
 

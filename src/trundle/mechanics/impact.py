@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import SolverError
-from .algebra import E_X, E_Z, ZERO, Matrix, Quaternion, Vector
+from .algebra import E_X, E_Y, E_Z, ZERO, Matrix, Quaternion, Vector
 from .contact import Contact
 from .duals import Dual, stacked, unstacked
 from .onset import onset
-from .scalars import as_float, is_zero, namespace
+from .scalars import as_float, is_zero, less, namespace
 from .slipping import response
 
 if TYPE_CHECKING:
@@ -87,6 +87,59 @@ def land(system: RollingSystem, contact: Contact, orientation: Quaternion, slip:
     motion = system.support.motion
     axle = -contact.support.lever(contact.point).dot(P) / motion.inertia if motion.free else 0.0
     return Impact(P, P / system.body.mass, J.solve(contact.offset.cross(P)), axle)
+
+
+def keeps_direction(system: RollingSystem) -> bool:
+    """Tell whether the slip of a body that lands keeps to one line, and gives nothing back: `straight_impulse` holds.
+
+    It does without friction, or with as much as it takes; else where a push along the support answers alike all round.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> floor, egg = tr.Support(tr.Plane(), friction=0.2), tr.Body.ellipsoid((0.3, 0.2, 0.1), mass=1.0)
+    >>> ball = tr.Body.solid_sphere(0.1, 1.0)
+    >>> keeps_direction(tr.RollingSystem(ball, floor)), keeps_direction(tr.RollingSystem(egg, floor))
+    (True, False)
+    """
+    support = system.support
+    alike = system.body.is_isotropic_sphere and not support.motion.free
+    return support.tangential_restitution == 0 and (alike or support.friction in (None, 0))
+
+
+def straight_impulse(system: RollingSystem, contact: Contact, orientation: Quaternion, slip: Vector) -> Vector:
+    """Return the impulse of a landing in which slip keeps to one line, N s, for any scalar; `land` is for any landing.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> from trundle.mechanics.contact import contact_at
+    >>> floor = tr.RollingSystem(tr.Body.solid_sphere(0.1, 2.0), tr.Support(tr.Plane(), friction=0.1))
+    >>> still = Quaternion(1.0, 0.0, 0.0, 0.0)
+    >>> contact = contact_at(floor, 0.0, Vector(0.0, 0.0, 0.0), still)
+    >>> P = straight_impulse(floor, contact, still, Vector(3.0, 0.0, -3.0))
+    >>> round(P.x, 12), round(P.z, 12)
+    (-0.6, 6.0)
+    """
+    n, support = contact.normal, system.support
+    J = system.body.inertia_in_space(orientation.matrix())
+    M = Matrix(*(response(system, contact, J, e).slip for e in (E_X, E_Y, E_Z))).transpose
+    normal = Matrix.outer(n, n)
+    along = Matrix.identity() - normal
+    s = slip.dot(n)
+    xp = namespace(s, *n)
+    ending = (along @ M @ along + normal).solve(-(along @ slip))  # what ends the slip, along the support
+    if support.friction is None:
+        holding = M.solve(n)
+        closing = s + n.dot(M @ ending)
+        closing = xp.where(less(closing, 0.0), -closing, 0.0)
+        return ending + holding * ((1.0 + support.restitution) * closing)
+    closing = xp.where(less(s, 0.0), -s, 0.0)
+    N = (1.0 + support.restitution) * closing / n.dot(M @ n)
+    size, most = ending.norm(), support.sliding_friction * N
+    enough = less(most, size)
+    share = xp.where(enough, most / xp.where(enough, size, 1.0), 1.0)
+    return ending * share + n * N
 
 
 def _basis(n: Vector) -> tuple[Vector, Vector, Vector]:

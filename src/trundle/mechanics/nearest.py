@@ -104,12 +104,16 @@ def closest_contact(
 def _with_slopes(
     system: RollingSystem, time: Scalar, centre: Vector, orientation: Quaternion, coordinates: tuple[Scalar, ...]
 ) -> Contact:
-    """Return the contact in duals: found for their values, and its slopes by one more of Newton's steps."""
+    """Return the contact in duals: found for their values, and its slopes by two more of Newton's steps.
+
+    The first leads onto the surface, as it is with other numbers, and only the second has its normal there.
+    """
     point = closest_contact(*values_of((system, time, centre, orientation, coordinates))).point
-    contact = contact_at(system, time, point, orientation, coordinates)
-    _, aside, down = beside(system, contact, centre)
-    step = aside + down
-    point = Vector(*(there + (by - value_of(by)) for there, by in zip(point, step, strict=True)))
+    for _ in range(2):
+        contact = contact_at(system, time, point, orientation, coordinates)
+        _, aside, down = beside(system, contact, centre)
+        step = aside + down
+        point = Vector(*(there + (by - value_of(by)) for there, by in zip(point, step, strict=True)))
     return contact_at(system, time, point, orientation, coordinates)
 
 

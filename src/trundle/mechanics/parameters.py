@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
+from .expressions import Expression
+from .parts import Field, Number, Numbers, fields_of
 from .scalars import Scalar, is_number
 
 T = TypeVar("T")
@@ -32,6 +34,52 @@ def _walk(thing: Any) -> Iterator[Any]:
             yield from _walk(part)
     elif is_number(thing) and not isinstance(thing, bool):
         yield thing
+
+
+class Parameter(NamedTuple):
+    """What one number of a system is called, and its dimension, one of `trundle.units.UNITS`."""
+
+    name: str
+    dimension: str
+
+
+def parameters(thing: Any) -> list[Parameter]:
+    """Tell of each number that a system is made of, in the order of `numbers`.
+
+    It is named by the way to it, as in a file: "body.radius", "support.tilt", "loads[0].value.x". The numbers in a
+    formula are counted as they stand in it; what unit each of them has, SI, only the formula tells.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> [name for name, _ in parameters(tr.Support(tr.Plane(rim=0.5), motion=tr.SpinBy("2*t + 1"), tilt=0.05))][:4]
+    ['rim', 'motion.rate[0]', 'motion.rate[1]', 'tilt']
+    """
+    return [Parameter(name.removeprefix("."), dimension) for name, dimension in _told(thing, "", "number")]
+
+
+_OF_THE_WHOLE = ("shape", "surface")  # what these are made of is said of the body and of the support
+
+
+def _told(thing: Any, path: str, dimension: str) -> Iterator[tuple[str, str]]:
+    if isinstance(thing, Expression):
+        yield from ((f"{path}[{i}]", "number") for i, _ in enumerate(_walk(thing)))
+    elif is_dataclass(thing):
+        says = fields_of(type(thing))
+        for each in fields(thing):
+            way = path if each.name in _OF_THE_WHOLE else f"{path}.{each.name}"
+            yield from _told(getattr(thing, each.name), way, _dimension(says.get(each.name), dimension))
+    elif isinstance(thing, tuple):
+        for i, part in enumerate(thing):
+            yield from _told(part, f"{path}[{i}]", dimension)
+    elif is_number(thing) and not isinstance(thing, bool):
+        yield path, dimension
+
+
+def _dimension(note: Field | None, otherwise: str) -> str:
+    """Return the dimension that a field says; a component has that of its vector."""
+    note = note.each if isinstance(note, Numbers) else note
+    return note.dimension if isinstance(note, Number) else otherwise
 
 
 def structure_of(thing: Any) -> Any:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InvalidValueError, did_you_mean
 from . import checks, fitting, line_contact
-from .algebra import Quaternion, Vector
+from .algebra import ZERO, Quaternion, Vector
 from .attitude import attitude
 from .contact import Contact, contact_at
 from .finiteness import check_finite
@@ -20,7 +20,7 @@ from .scalars import Scalar, as_float, is_number, is_zero
 if TYPE_CHECKING:
     from .system import RollingSystem, State
 
-_IN_PROPORTION = 100.0  # times what is asked of a start: more must not follow from it
+IN_PROPORTION = 100.0  # times what is asked of a start: more must not follow from it
 _ROUNDING = 4 * 2.0**-52
 SLIP_TOLERANCE = 1e-9  # of the largest speed at the contact: beyond it a start slips
 
@@ -162,11 +162,11 @@ class Placing:
             return V + n * along[2]
         if gap > 0:
             return V
-        rolling = V + n * ((u - V).dot(rho) / n.dot(rho))  # what Ω can match: V·ρ = u·ρ
+        rolling = rolling_along(V, u, rho, n)
         self._check_proportion(rolling, V, u)
         if turning is None or slips(contact, rolling, turning) is None:
             return rolling
-        return V + n * (u - V - turning.cross(rho)).dot(n)  # nothing opens or closes: n·(V + Ω×ρ − u) = 0
+        return not_opening(V, u, turning, rho, n)
 
     def _given_turning(self, contact: Contact, gap: float) -> Vector | None:
         """Return Ω where it is given, or where nothing else could say it."""
@@ -188,15 +188,15 @@ class Placing:
         about_normal = turning if self.spin is None else checks.real(self.spin, "angular velocity", "spin")
         relative = V - u
         if not isinstance(self.velocity, str) and self.velocity is not None and _length(self.velocity) == 3:
-            relative = relative - n * (relative.dot(rho) / n.dot(rho))
-        Omega = _rolling_rate(relative, rho, n, about_normal)
+            relative = rolling_along(relative, ZERO, rho, n)
+        Omega = rolling_rate(relative, rho, n, about_normal)
         self._check_proportion(Omega * rho.norm(), V, u, n * (about_normal * rho.norm()))
         return Omega
 
     def _check_proportion(self, follows: Vector, *given: Vector) -> None:
         """Refuse what follows from rolling where it is out of all proportion: the body all but lies on its side."""
         most = max(float(v.norm()) for v in given)
-        if float(follows.norm()) <= _IN_PROPORTION * most:
+        if float(follows.norm()) <= IN_PROPORTION * most:
             return
         key = "orientation" if self.attitude is None else "attitude"
         value = (1.0, 0.0, 0.0, 0.0) if self.orientation is None else self.orientation
@@ -278,7 +278,17 @@ def _unit_quaternion(orientation: Any) -> Quaternion:
     return Quaternion(*parts).unit
 
 
-def _rolling_rate(relative: Vector, rho: Vector, n: Vector, spin: Scalar) -> Vector:
+def rolling_along(V: Vector, u: Vector, rho: Vector, n: Vector) -> Vector:
+    """Return V with another component along n, so that some Ω can match it: V·ρ = u·ρ."""
+    return V + n * ((u - V).dot(rho) / n.dot(rho))
+
+
+def not_opening(V: Vector, u: Vector, Omega: Vector, rho: Vector, n: Vector) -> Vector:
+    """Return V with another component along n, so that nothing opens or closes: n·(V + Ω×ρ − u) = 0."""
+    return V + n * (u - V - Omega.cross(rho)).dot(n)
+
+
+def rolling_rate(relative: Vector, rho: Vector, n: Vector, spin: Scalar) -> Vector:
     """Solve ρ×Ω = V − u for the Ω with Ω·n = spin."""
     across = relative.cross(rho) / rho.dot(rho)
     return across + rho * ((spin - across.dot(n)) / rho.dot(n))

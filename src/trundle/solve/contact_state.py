@@ -12,7 +12,7 @@ from ..mechanics.scalars import as_float
 from ..mechanics.system import RollingSystem, State
 
 WEIGHTLESS = 1e-13  # share of the forces at hand below which nothing presses the body on
-_STILL = 1e-12  # share of the speeds at the contact at which slip or turning has all but ended
+STILL = 1e-12  # share of the speeds at the contact at which slip or turning has all but ended
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ class ContactState:
 
     def still(self, system: RollingSystem) -> float:
         """Return the speed at which slip has all but ended, m/s."""
-        return _STILL * self.scale(system)
+        return STILL * self.scale(system)
 
 
 def moment(system: RollingSystem, state: State, contact: tuple[float, float, float] | None = None) -> float:

@@ -120,7 +120,7 @@ class CreepingLaw(SlippingLaw):
         """Return ṗ, q̇, Ω̇ and the rate of |s|."""
         return self._rates(system, time, state, self._way(system, time, state)[0])
 
-    def contact_force(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:
+    def reaction(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:
         """Return R of slipping along the direction that friction keeps."""
         return self._now(system, time, state, self._way(system, time, state)[0]).reaction
 

@@ -102,8 +102,8 @@ class Law:
         """Return what ends the phase where it falls through zero, by name."""
         raise NotImplementedError
 
-    def contact_force(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:
-        """Return R, the force of the support on the body, N."""
+    def reaction(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:
+        """Return R, the contact force on the body, N."""
         raise NotImplementedError
 
     def found(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:  # noqa: ARG002
@@ -248,10 +248,6 @@ class RollingLaw(Law):
         coordinates = system.support.motion.coordinate_rates(time, self.split(state)[4], now.axle_moment)
         return [*now.point_rate, *now.orientation_rate, *now.angular_acceleration, *coordinates]
 
-    def contact_force(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:
-        """Return R of rolling."""
-        return self._now(system, time, state).reaction
-
     def event_functions(
         self, system: RollingSystem, time: Scalar, state: Numbers, event_parameters: Numbers
     ) -> dict[str, Scalar]:
@@ -262,6 +258,10 @@ class RollingLaw(Law):
             turning = state_turning(now.contact, Vector(*state[7:10]))
             found |= _ending("stop", turning, now.angular_acceleration, ending)
         return {**found, **self._bounds(system, now.contact, Quaternion(*state[3:7]), 0.0)}
+
+    def reaction(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:
+        """Return R of the law."""
+        return self._now(system, time, state).reaction
 
     def state_vector(self, at: ContactState) -> list[float]:
         """Return p = r + ρ, q and Ω."""
@@ -334,10 +334,6 @@ class SlippingLaw(Law):
         coordinates = system.support.motion.coordinate_rates(time, self.split(state)[4], now.axle_moment)
         return [*now.point_rate, *now.orientation_rate, *now.angular_acceleration, *now.slip_rate, *coordinates]
 
-    def contact_force(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:
-        """Return R of slipping."""
-        return self._now(system, time, state).reaction
-
     def event_functions(
         self, system: RollingSystem, time: Scalar, state: Numbers, event_parameters: Numbers
     ) -> dict[str, Scalar]:
@@ -359,6 +355,10 @@ class SlippingLaw(Law):
         if not is_zero(system.support.friction):
             found["jam"] = now.opening_per_newton * system.body.mass - JAMS
         return found
+
+    def reaction(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:
+        """Return R of the law."""
+        return self._now(system, time, state).reaction
 
     def state_vector(self, at: ContactState) -> list[float]:
         """Return p, q, Ω and the part of s along the support."""
@@ -435,10 +435,6 @@ class FlightLaw(Law):
         moving = (*now.acceleration, now.gap_rate, *rest[:3])
         return [*now.point_rate, *now.orientation_rate, *turning, *moving, *coordinate_rates]
 
-    def contact_force(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:  # noqa: ARG002
-        """Return nothing: nothing touches."""
-        return ZERO
-
     def event_functions(
         self,
         system: RollingSystem,
@@ -450,6 +446,10 @@ class FlightLaw(Law):
         p, q, _, rest, coordinates = self.split(state)
         contact = contact_at(system, time, p, q, coordinates)
         return {"land": rest[3], **self._bounds(system, contact, q, rest[3])}
+
+    def reaction(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:  # noqa: ARG002
+        """Return 0: nothing touches."""
+        return ZERO
 
     def state_vector(self, at: ContactState) -> list[float]:
         """Return the nearest point, q, Ω, V, the gap and r."""
@@ -524,10 +524,6 @@ class RestingLaw(Law):
         couple = J @ support.angular_acceleration + system.body.gyroscopic(Q, turning) - K - contact.offset.cross(R)
         return Held(contact, V, R, couple)
 
-    def contact_force(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:
-        """Return R of rest."""
-        return self.held(system, time, state).reaction
-
     def event_functions(
         self, system: RollingSystem, time: Scalar, state: Numbers, event_parameters: Numbers
     ) -> dict[str, Scalar]:
@@ -538,6 +534,10 @@ class RestingLaw(Law):
         found = cone(system, held.contact, held.reaction, floor)
         found["start"] = left_of_resistance(system, n.dot(held.reaction) + floor, over)
         return {**found, **self._bounds(system, held.contact, Quaternion(*state[3:7]), 0.0)}
+
+    def reaction(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:
+        """Return what carries the body."""
+        return self.held(system, time, state).reaction
 
     def state_vector(self, at: ContactState) -> list[float]:
         """Return p, q and Ω."""

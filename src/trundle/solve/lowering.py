@@ -233,8 +233,6 @@ def _as_heyoka(tape: Tape, outputs: Sequence[Any], inputs: Sequence[Any]) -> lis
         operation, *operands = tape.steps[index]
         if operation == "input":
             made[index] = inputs[operands[0]]
-        elif operation == "**":
-            made[index] = operand(operands[0]) ** int(operands[1])
         else:
             made[index] = _HEYOKA[operation](xp, *(operand(part) for part in operands))
     return [operand(part) for part in outputs]
@@ -254,6 +252,6 @@ _HEYOKA: dict[str, Callable[..., Any]] = {
     ">": lambda _, a, b: less(b, a),
     **{
         name: (lambda xp, *parts, name=name: getattr(xp, name)(*parts))
-        for name in ("sqrt", "sin", "cos", "tan", "exp", "expm1", "log", "abs", "hypot", "atan2", "where")
+        for name in ("sqrt", "sin", "cos", "tan", "exp", "expm1", "log", "abs", "atan2", "where")
     },
 }

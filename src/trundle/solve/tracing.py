@@ -6,7 +6,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from typing import Any
 
 from ..mechanics.duals import has_duals
@@ -18,6 +18,16 @@ from .laws import Law, RollingLaw
 from .tape import Tape
 
 _MOST_TRACED = 64  # kept
+
+
+@dataclass(frozen=True)
+class CompiledLaw:
+    """A law as `compiled_loop` takes it: functions of [t, *state, *values] that fill in an array."""
+
+    rates: Any
+    event_functions: Any
+    count: int  # of the event functions
+    values: tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -34,12 +44,15 @@ class PythonLaw:
         Of the event functions.
     found : callable
         (t, state) -> what else of the state the law works out at some cost, as `Law.found` has it.
+    compiled : callable, optional
+        () -> the same for numba's loop, which takes a second to compile; absent: it cannot be traced.
     """
 
     rates: Callable[[float, Sequence[float]], list[float]]
     event_functions: Callable[[float, Sequence[float]], list[float]]
     names: tuple[str, ...]
     found: Callable[[float, Sequence[float]], list[float]]
+    compiled: Callable[[], CompiledLaw] | None = None
 
 
 def state_rates(system: RollingSystem, time: Scalar, state: Sequence[Scalar]) -> list[Scalar]:
@@ -89,17 +102,33 @@ def python_law(
         return _untraced(system, law, event_parameters, time, state)
     own = {name: value for name, value in vars(law).items() if isinstance(value, float)}
     values = [*numbers(system), *own.values(), *event_parameters]
-    rates, stops, names, found = _known(system, law, tuple(own))
+    flat = _known(system, law, tuple(own))
     return PythonLaw(
-        lambda t, y: rates([t, *y, *values]),
-        lambda t, y: stops([t, *y, *values]),
-        names,
-        lambda t, y: found([t, *y, *values]),
+        lambda t, y: flat.rates([t, *y, *values]),
+        lambda t, y: flat.event_functions([t, *y, *values]),
+        flat.names,
+        lambda t, y: flat.found([t, *y, *values]),
+        lambda: CompiledLaw(*flat.compiled, len(flat.names), tuple(map(float, values))),
     )
 
 
 _Function = Callable[[Sequence[float]], list[float]]
-_Flat = tuple[_Function, _Function, tuple[str, ...], _Function]
+
+
+@dataclass(frozen=True)
+class _Flat:
+    """A law on its tape, as functions of [t, *state, *numbers]."""
+
+    rates: _Function
+    event_functions: _Function
+    names: tuple[str, ...]
+    found: _Function
+    filling: Callable[[], tuple[Any, Any]]
+
+    @cached_property
+    def compiled(self) -> tuple[Any, Any]:
+        """Rates and event functions, compiled."""
+        return self.filling()
 
 
 @cache
@@ -134,7 +163,13 @@ def _traced(system: RollingSystem, law: Law, own: tuple[str, ...]) -> _Flat:
     rates = free.rates(symbolic, time, state)
     stops = corners.all_event_functions(symbolic, free, time, state, parameters[count + len(own) :])
     found = free.found(symbolic, time, state)
-    return tape.function(rates), tape.function(list(stops.values())), tuple(stops), tape.function(found)
+
+    def filling() -> tuple[Any, Any]:
+        from .compiled_loop import compiled
+
+        return compiled(tape, rates), compiled(tape, list(stops.values()))
+
+    return _Flat(tape.function(rates), tape.function(list(stops.values())), tuple(stops), tape.function(found), filling)
 
 
 def _untraced(

@@ -39,7 +39,7 @@ from .slip_onset import jammed, slip_onset
 _FLOOR = 1e-12  # share of the forces at hand by which the support seems to pull a weightless body: rounding
 _PULLED_BACK = 1e-8  # share of the accelerations at hand at which a body that lifts off would come straight down
 _LOOKS = (1e-6, 1e-5, 1e-4, 1e-3)  # shares of the time in which the motion changes: what comes at once
-_TAKE_OFF = 1e-15  # gap, as a share of the least length at hand, with which a flight begins: it must not end there
+TAKE_OFF = 1e-15  # gap, as a share of the least length at hand, with which a flight begins: it must not end there
 SETTLED = 1e-6  # height, as a share of |ρ|, below which a bounce is cut
 JOLT = "jolt"  # the stop where the velocity of the support jumps under a body that touches it
 
@@ -273,7 +273,7 @@ def _lifted(system: RollingSystem, at: ContactState) -> PhaseStart:
             f"At t = {state.time:.9g} s friction without limit would have to hold the body down, which no support "
             "does. Give the support a `friction`, so that the body slips before that."
         )
-    return _fly(at, _TAKE_OFF * at.arm, (_event("lift", _NAMES[FlightLaw.code][1], at),))
+    return _fly(at, TAKE_OFF * at.arm, (_event("lift", _NAMES[FlightLaw.code][1], at),))
 
 
 def _first_gap(at: ContactState, off: float, pull: float) -> float:
@@ -282,7 +282,7 @@ def _first_gap(at: ContactState, off: float, pull: float) -> float:
     It is small beside the height of the flight: what is added again at each bounce would show in those to come.
     """
     height = off * off / (2 * pull) if pull > 0 else at.arm
-    return _TAKE_OFF * min(at.arm, height)
+    return TAKE_OFF * min(at.arm, height)
 
 
 def _is_low(at: ContactState, off: float, pull: float) -> bool:

@@ -50,7 +50,7 @@ def _fastest(angular_velocity: Array) -> float:
     return float(np.linalg.norm(angular_velocity, axis=1).max())
 
 
-def _nodes(times: Array, rate: float) -> tuple[Array, Array, Array] | None:
+def _nodes(times: Array, rate: float) -> tuple[Array, Array, Any] | None:
     """Return the instants and weights of Gauss's rule between each two samples, and in which interval each is."""
     gaps = np.diff(times)
     panels = np.maximum(1, np.ceil(gaps * rate / _PHASE)).astype(int)
@@ -71,7 +71,7 @@ def _turned(
     start: State,
     first: State,
     times: Array,
-    nodes: tuple[Array, Array, Array],
+    nodes: tuple[Array, Array, Any],
     count: int,
 ) -> Quaternion:
     """Return the orientation in duals.

@@ -54,7 +54,7 @@ def _quantities(system: RollingSystem, law: Law, time: Any, state: Any) -> dict[
     motion = law.motion(system, time, state)
     contact = law._contact(system, time, p, q, rest, coordinates)
     r, V, Omega, point = motion.position, motion.velocity, motion.angular_velocity, contact.point
-    u, R = contact.support.material_velocity(point), law.contact_force(system, time, state)
+    u, R = contact.support.material_velocity(point), law.reaction(system, time, state)
     return sampled(law, r, V, Omega, R, q, point, u, coordinates)
 
 
