@@ -181,7 +181,7 @@ def test_instants_at_any_distance() -> None:
         for i, member in enumerate(block.members.tolist()):
             found.setdefault(member, []).append((block.rows, block.samples.part(slice(i, None, block.members.size))))
 
-    assert ensemble.integrate(systems, states, range(len(systems)), times, done, workers=2) == []
+    assert ensemble.integrate(systems, states, range(len(systems)), times, done, workers=2) == ([], {})
     for member in (0, 7, 10):
         rows = np.concatenate([np.arange(times.size)[rows] for rows, _ in found[member]])
         assert np.array_equal(rows, np.arange(times.size))
@@ -224,7 +224,7 @@ def test_members_that_run_off_the_rim_end_there(alone: list[int]) -> None:
     starts = [system.place((0.1, 0.0), (0.0, speed)) for speed in (0.0, 0.1, 1.0, 0.05, 2.0, 0.15, 0.0, 0.1, 3.0, 0.2)]
     runs = tr.simulate_many(system, starts, duration=2.0, every=0.1)
     fast = [2, 4, 8]
-    assert alone == fast
+    assert alone == []
     assert runs.ending.values.tolist() == ["rim" if i in fast else "" for i in range(10)]
     for member in range(10):
         single = tr.simulate(system, starts[member], 2.0, 0.1, method="exact")

@@ -106,7 +106,7 @@ def test_each_member_is_what_it_is_alone(made: Any, duration: float, every: floa
         if data is None:
             assert np.isnan(mine.end)
             continue
-        assert float(mine.end) == data.time.values[-1]
+        assert abs(float(mine.end) - data.time.values[-1]) <= 1e-13  # together it has other roundings
         assert np.array_equal(mine.phase.values[kept], data.phase.values[: kept.sum()])
         assert np.abs(mine.position.values[kept] - data.position.values[: kept.sum()]).max() <= 1e-12
     assert set(runs.ending.values) == {"", "rim", "refused", *(["failed"] if made is company else [])}
@@ -277,8 +277,46 @@ def test_a_lane_whose_numbers_are_none_is_left_out() -> None:
     states, _ = ensemble.rolling_from([system] * 5, starts)
     states[2] = np.nan
     found: list[int] = []
-    left = ensemble.integrate(
+    left, _ = ensemble.integrate(
         [system] * 5, states, range(5), np.linspace(0.0, 1.0, 11), lambda block: found.extend(block.members.tolist())
     )
     assert left == [2]
     assert found == [0, 1, 3, 4]
+
+
+@pytest.mark.parametrize("every", [2.0, 0.1, 0.0003])
+def test_who_ends_for_good_ends_in_company(every: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Off the rim at all times, clockwise and not, some at once, two in one register, on one instant with others."""
+    systems = [
+        tr.RollingSystem(BALL, tr.Support(tr.Plane(rim=rim), motion=tr.Spin(w)))
+        for w in (2.0, -2.0)
+        for rim in (0.2, 0.3, 0.4, 0.45, 10.0, 0.100001)
+    ]
+    starts = [system.place((0.1, 0.0), (0.2, 0.1)) for system in systems]
+    monkeypatch.setattr(many._Result, "put_alone", None)
+    runs = tr.simulate_many(systems, starts, 2.0, every)
+    for i, (system, start) in enumerate(zip(systems, starts, strict=True)):
+        exact, mine = tr.simulate(system, start, 2.0, every, method="exact"), runs.isel(member=i)
+        assert str(mine.ending.values) == ("rim" if exact.events else "")
+        assert int(mine.events) == len(exact.events)
+        end = exact.events[0].time if exact.events else 2.0
+        assert float(mine.end) == pytest.approx(end, abs=1e-13)
+        assert str(mine.reason.values) == (exact.events[0].text if exact.events else "")
+        kept = runs.time.values < end if exact.events else np.ones(runs.time.size, dtype=bool)
+        assert np.array_equal(np.isfinite(mine.position.values[:, 0]), kept)
+        assert np.array_equal(mine.phase.values == -1, ~kept)
+        assert np.abs(mine.position.values[kept] - exact.data.position.values[: kept.sum()]).max(initial=0.0) < 1e-12
+
+
+def test_off_the_end_of_a_bowl_and_the_edge_of_a_half_ball() -> None:
+    bowl = tr.RollingSystem(BALL, tr.Support(tr.Bowl(0.5, rim=0.3), motion=tr.Spin(-1.0)))
+    half = tr.RollingSystem(tr.Body.hemisphere(0.1, 1.0), tr.Support(tr.Plane()))
+    thrown = [bowl.place((0.1, 0.0), (v, 0.3)) for v in (0.1, 3.0, 0.2, 2.5)]
+    tipped = [half.place((0.0, 0.0), velocity=(0.0, v)) for v in (0.05, 1.5, -1.5)]
+    for system, starts, kind in ((bowl, thrown, "end"), (half, tipped, "edge")):
+        runs = tr.simulate_many(system, starts, 1.0, 0.05)
+        assert set(runs.ending.values) == {"", kind}
+        for i, start in enumerate(starts):
+            alone, mine = tr.simulate(system, start, 1.0, 0.05, method="taylor"), runs.isel(member=i)
+            assert str(mine.reason.values) == (alone.events[-1].text if alone.events else "")
+            assert float(mine.end) == pytest.approx(float(alone.data.time[-1]), abs=1e-12)

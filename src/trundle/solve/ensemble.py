@@ -143,7 +143,7 @@ def integrate(
     *,
     tolerance: float = taylor.TOLERANCE,
     workers: int = 1,
-) -> list[int]:
+) -> tuple[list[int], dict[int, Stop]]:
     """Follow members that roll, for as long as they do.
 
     Parameters
@@ -157,8 +157,8 @@ def integrate(
     times : array (n,)
         Ascending, s, the first that of the starts.
     done : callable
-        Given each part of a block as it is done, from any thread. What it was given of members that are returned is to
-        be forgotten.
+        Given each part of a block as it is done, from any thread. What it was given of members that broke down is to be
+        forgotten.
     tolerance : float
         Of each step, relative.
     workers : int
@@ -166,39 +166,44 @@ def integrate(
 
     Returns
     -------
-    list of int
-        Members that came to a stop of the law, or broke down.
+    broken : list of int
+        Members that broke down.
+    stops : dict of int to Stop
+        Of each member that came to a stop of the law, where that was.
     """
     law = RollingLaw()
     zeros = np.all([np.equal(numbers(system), 0) for system in systems], axis=0)
     lowered, key = integrators.ready(systems[0], law, tolerance, zeros=frozenset(np.flatnonzero(zeros).tolist()))
-    integrator = integrators.kept(f"{LANES}-{key}", lambda: _compile(lowered, tolerance))
+    integrator = integrators.kept(f"{LANES}-passing-{key}", lambda: _compile(lowered, tolerance))
     blocks = [list(members[i : i + LANES]) for i in range(0, len(members), LANES)]
     halt = threading.Event()  # somebody pressed Ctrl-C, or another thread failed
 
-    def work(which: int) -> list[int]:
+    def work(which: int) -> tuple[list[int], dict[int, Stop]]:
         mine = copy.copy(integrator)
-        stopped: list[int] = []
+        broken: list[int] = []
+        stops: dict[int, Stop] = {}
         try:
             for block in blocks[which::workers]:
                 run = _Lanes(mine, lowered, [systems[i] for i in block], states[block])
                 for rows, lanes, path in run.follow(times):
                     done(completed(law, systems, [block[lane] for lane in lanes], times, rows, path))
                     if halt.is_set():
-                        return stopped
-                stopped += [block[lane] for lane in sorted(run.left)]
+                        return broken, stops
+                broken += [block[lane] for lane in sorted(run.left)]
+                stops |= {block[lane]: stop for lane, stop in run.stops.items()}
         except BaseException:
             halt.set()
             raise
-        return stopped
+        return broken, stops
 
     if workers == 1:
-        return sorted(work(0))
+        return work(0)
     with ThreadPoolExecutor(workers) as pool:
         try:
-            return sorted(member for part in pool.map(work, range(workers)) for member in part)
+            parts = list(pool.map(work, range(workers)))
         finally:
             halt.set()
+    return [member for broken, _ in parts for member in broken], {k: v for _, stops in parts for k, v in stops.items()}
 
 
 def cores() -> int:
@@ -222,10 +227,29 @@ def completed(
     return Block(np.array(members), rows, samples, system)
 
 
+@dataclass(frozen=True)
+class Stop:
+    """Where a member came to a stop of the law: when, s, and by which of its event functions."""
+
+    time: float
+    name: str
+
+
+class _FirstFall:
+    """What heyoka calls where an event function falls through zero: it keeps the first time of each lane."""
+
+    def __init__(self) -> None:
+        self.times: dict[int, float] = {}
+
+    def __call__(self, integrator: Any, time: float, sign: int, lane: int) -> None:  # noqa: ARG002
+        self.times.setdefault(lane, time)
+
+
 class _Lanes:
     """Members on their way, one in each lane of an integrator.
 
-    Where a lane stops, all go back to where the leg began, and another's state takes its place.
+    Nobody is held up by another's stop: who comes to one goes on to the end of the leg, and what is behind the stop is
+    left out. Where a lane breaks down, all go back to where the leg began. Another's state takes the place of both.
     """
 
     def __init__(self, integrator: Any, lowered: Lowered, systems: list[RollingSystem], states: Array) -> None:
@@ -233,45 +257,63 @@ class _Lanes:
         self.lane = [min(i, self.count - 1) for i in range(LANES)]  # a short block repeats its last member
         self.given = [numbers(systems[i]) for i in self.lane]
         self.state, self.left = states[self.lane].T.copy(), set[int]()
+        self.stops: dict[int, Stop] = {}
 
     def follow(self, times: Array) -> Iterator[tuple[slice, list[int], Array]]:
         """Yield rows, the lanes that came so far, and their states (rows, size, lanes), leg by leg."""
         place = 0
         for begin, instants, end in _legs(times):
+            before = set(self.stops)
             path = self._leg(begin, instants, end)
             if path is None:
                 return
-            rows, place = slice(place, place + instants.size), place + instants.size
-            if instants.size:
-                kept = [lane for lane in range(self.count) if lane not in self.left]
-                yield rows, kept, path[:, :, kept]
+            kept = [lane for lane in range(self.count) if lane not in self.left and lane not in self.stops]
+            if instants.size and kept:
+                yield slice(place, place + instants.size), kept, path[:, :, kept]
+            for lane in sorted(set(self.stops) - before):
+                count = int(np.searchsorted(instants, self.stops[lane].time))
+                if count:
+                    yield slice(place, place + count), [lane], path[:count, :, [lane]]
+            place += instants.size
 
     def _leg(self, begin: float, instants: Array, end: float) -> Array | None:
         """Return the states (instants, size, LANES) of those that come through; None where nobody does."""
         grid = np.concatenate([[0.0], (instants if instants.size else np.array([end])) - begin])
         first = 0 if instants.size and instants[0] == begin else 1  # heyoka's grid begins where the integrator is
         grid = np.repeat(grid[1 - first :, None], LANES, axis=1)
-        while len(self.left) < self.count:
-            alive = next(i for i in range(self.count) if i not in self.left)
+        while alive := [i for i in range(self.count) if i not in self.left and i not in self.stops]:
             for i in range(LANES):
-                if self.lane[i] in self.left:
-                    self.state[:, i], self.given[i] = self.state[:, alive], self.given[alive]
+                if self.lane[i] not in alive:
+                    self.state[:, i], self.given[i] = self.state[:, alive[0]], self.given[alive[0]]
             failed = self._begin(begin)
             if not failed:
                 path = self.integrator.propagate_grid(grid)[-1]
                 ended = [_ended(result[0]) for result in self.integrator.propagate_res]
-                failed = {self.lane[i] for i in range(LANES) if self.lane[i] not in self.left and ended[i]}
+                failed = {self.lane[i] for i in range(LANES) if self.lane[i] in alive and ended[i]}
             if not failed:
                 self.state = path[-1].copy()
+                self._take_stops(begin, alive)
                 return path[first : first + instants.size]
             self.left |= failed
         return None
 
+    def _take_stops(self, begin: float, alive: list[int]) -> None:
+        """Keep the first stop of each member in the leg just done."""
+        for name, event in zip(self.lowered.event_functions, self._events, strict=True):
+            for lane, time in event.callback.times.items():
+                known = self.stops.get(lane)
+                if lane in alive and (known is None or begin + time < known.time):
+                    self.stops[lane] = Stop(begin + time, name)
+
+    @property
+    def _events(self) -> list[Any]:
+        return self.integrator.nt_events if self.lowered.event_functions else []
+
     def _begin(self, time: float) -> set[int]:
         """Set states and parameters at a new reference of time, and return the lanes for which these are no numbers."""
         self.integrator.set_time(0.0)
-        if self.lowered.event_functions:
-            self.integrator.reset_cooldowns()
+        for event in self._events:
+            event.callback.times.clear()
         failed = set()
         for i in range(LANES):
             try:
@@ -285,7 +327,7 @@ class _Lanes:
 
 
 def _ended(outcome: Any) -> bool:
-    """Tell whether a lane came to a stop or broke down; one that was cut short by another lane's stop has not."""
+    """Tell whether a lane broke down; one that was cut short because another did has not."""
     import heyoka
 
     return int(outcome) >= -1000 or outcome == heyoka.taylor_outcome.err_nf_state
@@ -312,5 +354,7 @@ def _compile(lowered: Lowered, tolerance: float) -> Any:
         pars=np.zeros((lowered.parameters, LANES)),
         tol=tolerance,
         compact_mode=True,
-        t_events=[heyoka.t_event_batch(stop, direction=heyoka.event_direction.negative) for stop in stops],
+        nt_events=[
+            heyoka.nt_event_batch(stop, _FirstFall(), direction=heyoka.event_direction.negative) for stop in stops
+        ],
     )

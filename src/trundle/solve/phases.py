@@ -27,7 +27,7 @@ from .transitions import JOLT, PhaseStart, ZeroCrossing
 _MOST_EVENTS = 10_000
 _AT_ONE_INSTANT = 20  # events: more means that no phase goes on
 _MANY, _MANY_WITHIN = 50, 1e-3  # events, and the share of the time in which the motion changes: no bounces are so close
-_ENDS = {
+ENDS = {
     "rim": "ran off the rim ({rim:g} m from the axis)",
     "end": "came to {end}",
     "edge": "{left}, which its shape does not cover",
@@ -135,7 +135,7 @@ def solve(
         if stop is None:
             break
         stop = _on_kink(system, law, stop, bends)
-        if stop.name in _ENDS or _spinning_on(system, law, stop):
+        if stop.name in ENDS or _spinning_on(system, law, stop):
             samples, event = _ended(system, law, stop)
             record.put(samples)
             events.append(event)
@@ -328,11 +328,18 @@ def _spinning_on(system: RollingSystem, law: Law, stop: ZeroCrossing) -> bool:
 def _ended(system: RollingSystem, law: Law, stop: ZeroCrossing) -> tuple[Samples, Event]:
     samples = law.record(system, np.array([stop.time]), stop.state_vector[None])
     name = "spot" if stop.name.endswith("stop") else stop.name
-    surface, state, contact = system.support.surface, samples.state(0), tuple(samples.contact[0].tolist())
-    said = _ENDS[name].format(
-        rim=float(surface.rim or 0.0), end=surface.domain_end, left=system.body.shape.validity_end
+    state, contact = samples.state(0), tuple(samples.contact[0].tolist())
+    return samples, Event(state.time, name, ended_in_words(system, name, state.time), state, state, contact)
+
+
+def ended_in_words(system: RollingSystem, name: str, time: float) -> str:
+    """Return what happened where an event of a name ended a run."""
+    said = ENDS[name].format(
+        rim=float(system.support.surface.rim or 0.0),
+        end=system.support.surface.domain_end,
+        left=system.body.shape.validity_end,
     )
-    return samples, Event(state.time, name, f"{said} at t = {state.time:.9g} s", state, state, contact)
+    return f"{said} at t = {time:.9g} s"
 
 
 def following_stop(system: RollingSystem, law: Law, stop: ZeroCrossing) -> PhaseStart:

@@ -21,6 +21,7 @@ from ...simulation.memory import check_room
 from ...simulation.simulate import check_state, described, simulate
 from ...solve import taylor
 from ...solve.methods import Method
+from ...solve.phases import ENDS, ended_in_words
 from ...solve.samples import Progress
 from ...solve.sampling import MOST_SAMPLES, check_clock, sample_times
 from ...units import UNITS
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     import xarray
 
     from ...simulation.trajectory import Trajectory
-    from ...solve.ensemble import Block
+    from ...solve.ensemble import Block, Stop
 
 ENDED = -1  # the phase of a member whose run is over
 
@@ -262,13 +263,19 @@ def _rolled(
         result.put(replace(block, members=sound[block.members]))
 
     stopped: list[int] = []
+    stops: dict[int, ensemble.Stop] = {}
     if members and device is not None:
         stopped, errors = OnDevice(some, states, times, device).follow(members, done)
         result.error = np.full(len(systems), np.nan)
         result.error[sound[members]] = errors
         result.error[sound[stopped]] = np.nan
     elif members:
-        stopped = ensemble.integrate(some, states, members, times, done, workers=count)
+        stopped, stops = ensemble.integrate(some, states, members, times, done, workers=count)
+    for member, stop in stops.items():
+        if stop.name in ENDS:
+            result.put_end(int(sound[member]), some[member], stop)
+        else:
+            stopped.append(member)
     rolled = np.zeros(len(systems), dtype=bool)
     rolled[sound[members]] = True
     rolled[sound[stopped]] = False
@@ -320,6 +327,12 @@ class _Result:
             shaped = values.reshape(-1, block.members.size, *values.shape[1:]).swapaxes(0, 1)
             self.arrays[name][block.members, block.rows] = shaped
         self._tell(block.members, block.rows.stop / self.times.size)
+
+    def put_end(self, member: int, system: RollingSystem, stop: Stop) -> None:
+        """Take where a member's run ended for good."""
+        self.end[member], self.events[member], self.ending[member] = stop.time, 1, stop.name
+        self.reason[member] = ended_in_words(system, stop.name, stop.time)
+        self._tell(member, 1.0)
 
     def put_alone(self, member: int, system: RollingSystem, start: State, duration: Any, every: Any) -> None:
         """Run one member by itself, through all its phases; what `simulate` has against it becomes its ending."""
