@@ -41,6 +41,7 @@ class NormalForm:
         self.splits: dict[Monomial, tuple[Monomial, Monomial, str]] = {}
         self.parts: dict[Any, tuple[Sum, Sum, str]] = {}
         self.scales: dict[Any, tuple[Sum, Any]] = {}
+        self.seen: set[Any] = set()  # sums: each is written by such as came up before it, so that none leans on itself
         self.wholes: dict[int, tuple[Any, Any]] = {}
 
     def take_for_positive(self, value: Sum) -> None:
@@ -56,8 +57,9 @@ class NormalForm:
     def take_for_unit(self, vector: Iterable[Sum]) -> None:
         """Know from now on that a vector has length 1."""
         squares = [self._product(part, part, "*") for part in vector if part]
-        if len(squares) > 1 and all(len(square) == 1 and _is(*square.values(), 1.0) for square in squares):
-            self.units.append([monomial for square in squares for monomial in square])
+        terms = [term for square in squares for term in square.items()]
+        if len(squares) > 1 and len(terms) == len(squares) and all(_is(coefficient, 1.0) for _, coefficient in terms):
+            self.units.append([monomial for monomial, _ in terms])
 
     def _with_units(self, value: Sum) -> Sum:
         """Return a sum with x² + y² + z² = 1 where that is known."""
@@ -127,12 +129,16 @@ class NormalForm:
         added = _added(a, b if operation == "+" else _scaled(b, -1.0))
         found = self._with_units(added)
         key = _key_of(found)
-        if len(found) < 2 or key in self.parts or key in self.scales:
+        if len(found) < 2 or self._came_up(found):
             return found
         size, rest = _shared(found)
         if not _is(size, 1.0) and (sizes := _size_of(a)) is not None and sizes == _size_of(b):
             self.scales[key] = rest, size
             a, b, key = _over(a, size), _over(b, size), _key_of(rest)
+            for each in (a, b):
+                self._came_up(each)
+            if self._came_up(rest):
+                return found
         cancelled = len(found) < len(a.keys() | b.keys()) or found is not added
         if not cancelled and (len(found) == len(a) + len(b) or len(found) > _SHORT):
             self.parts.setdefault(key, (a, b, operation))
@@ -141,9 +147,8 @@ class NormalForm:
     def _times_constant(self, value: Sum, factor: Any) -> Sum:
         found = _scaled(value, factor)
         if len(value) > 1:
-            key = _key_of(found)
-            if key not in self.parts and key not in self.scales:
-                self.scales[key] = value, factor
+            if not self._came_up(found):
+                self.scales[_key_of(found)] = value, factor
         return found
 
     def _product(self, a: Sum, b: Sum, operation: str) -> Sum:
@@ -171,7 +176,15 @@ class NormalForm:
             if other and by and not _cancels(other, by):
                 self.splits.setdefault(product, (other, monomial, operation))
             found[product] = factor / coefficient if operation == "/" else factor * coefficient
+        self._came_up(found)
         return found
+
+    def _came_up(self, value: Sum) -> bool:
+        """Tell whether a sum came up before; from now on it has."""
+        key = _key_of(value)
+        known = key in self.seen
+        self.seen.add(key)
+        return known
 
     def _whole(self, term: Sum) -> Sum:
         """Return c·x as a factor of its own where x has come up in no other way so far: so c is multiplied once."""
