@@ -269,7 +269,8 @@ class _Lanes:
     def _begin(self, time: float) -> set[int]:
         """Set states and parameters at a new reference of time, and return the lanes for which these are no numbers."""
         self.integrator.set_time(0.0)
-        self.integrator.reset_cooldowns()
+        if self.lowered.event_functions:
+            self.integrator.reset_cooldowns()
         failed = set()
         for i in range(LANES):
             try:

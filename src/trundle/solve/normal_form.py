@@ -16,7 +16,7 @@ from .tape import Node, Tape, apply
 Monomial = tuple[tuple[int, int], ...]  # (factor, exponent) of each factor, in ascending order
 Sum = dict[Monomial, Any]  # to each product its coefficient: a float, or what is fixed
 _ONE: Monomial = ()
-_SHORT = 2  # terms of a sum in which some have met: it is written anew
+_SHORT, _LONG = 2, 50  # terms of a sum: in which some have met, then it is written anew; that is a factor by itself
 
 
 class NormalForm:
@@ -94,7 +94,7 @@ class NormalForm:
         return self._other(operation, [self.node(part) for part in operands])
 
     def power(self, base: Sum, exponent: int) -> Sum:
-        """Return an integer power."""
+        """Return an integer power, not the zeroth."""
         if not base:
             return {}
         if len(base) != 1:
@@ -142,13 +142,12 @@ class NormalForm:
         cancelled = len(found) < len(a.keys() | b.keys()) or found is not added
         if not cancelled and (len(found) == len(a) + len(b) or len(found) > _SHORT):
             self.parts.setdefault(key, (a, b, operation))
-        return found
+        return found if len(found) < _LONG else self.factor(self.node(found))
 
     def _times_constant(self, value: Sum, factor: Any) -> Sum:
         found = _scaled(value, factor)
-        if len(value) > 1:
-            if not self._came_up(found):
-                self.scales[_key_of(found)] = value, factor
+        if len(value) > 1 and not self._came_up(found):
+            self.scales[_key_of(found)] = value, factor
         return found
 
     def _product(self, a: Sum, b: Sum, operation: str) -> Sum:
