@@ -42,6 +42,7 @@ class NormalForm:
         self.parts: dict[Any, tuple[Sum, Sum, str]] = {}
         self.scales: dict[Any, tuple[Sum, Any]] = {}
         self.seen: set[Any] = set()  # sums: each is written by such as came up before it, so that none leans on itself
+        self.depths: dict[Any, int] = {}
         self.wholes: dict[int, tuple[Any, Any]] = {}
 
     def take_for_positive(self, value: Sum) -> None:
@@ -142,12 +143,21 @@ class NormalForm:
         cancelled = len(found) < len(a.keys() | b.keys()) or found is not added
         if not cancelled and (len(found) == len(a) + len(b) or len(found) > _SHORT):
             self.parts.setdefault(key, (a, b, operation))
+        self._leans_on(found, a, b)
         return found if len(found) < _LONG else self.factor(self.node(found))
+
+    def _leans_on(self, value: Sum, *parts: Sum) -> None:
+        """Write a sum at once that is made of sums made of sums, and so on: to write it later would go too deep."""
+        depth = 1 + max(self.depths.get(_key_of(part), 0) for part in parts)
+        if depth == _LONG:
+            self.node(value)
+        self.depths[_key_of(value)] = depth % _LONG
 
     def _times_constant(self, value: Sum, factor: Any) -> Sum:
         found = _scaled(value, factor)
         if len(value) > 1 and not self._came_up(found):
             self.scales[_key_of(found)] = value, factor
+            self._leans_on(found, value)
         return found
 
     def _product(self, a: Sum, b: Sum, operation: str) -> Sum:
