@@ -329,7 +329,8 @@ def charts(system: RollingSystem, law: Law) -> tuple[Chart, ...]:
         return (LAWS_OWN,)
     flat, rate = on_plane(system), system.support.motion.steady_rate
     found: list[Chart] = [LAWS_OWN, BodyAxes(flat)]
-    if rate is not None and rate != 0:
+    # A surface of revolution is at rest along the axes of the support frame, too, where nothing turns as fast.
+    if rate is not None and rate != 0 and not system.support.surface.axisymmetric:
         found.append(SupportAxes(flat))
     if flat and system.body.axisymmetric:
         found.append(LineOfNodes())
