@@ -1,4 +1,6 @@
-"""Rattleback, coin and ball in a spinning elliptic bowl, against SciPy's DOP853 on equations written for each by hand.
+"""Rattleback, coin and ball in a spinning elliptic bowl, against equations written for each by hand.
+
+These are given to SciPy's DOP853, to one whose loop is compiled, and to heyoka.
 
 Achieved error: the largest of |p − reference| / largest |p| and of |q − reference| over all samples, q up to its sign.
 The reference integrates the hand-written equations with 80-bit numbers, by Taylor series at 1e-19. Each side runs at
@@ -19,8 +21,8 @@ from numpy.typing import NDArray
 import by_hand
 import trundle as tr
 from measure import Row, best_times, check, seconds
-from peers import attempts, fairest, run, scipy_peers
-from trundle.solve import taylor
+from peers import COMPILED, IN_PYTHON, attempts, compiled_peer, fairest, run, scipy_peers
+from trundle.solve import integrators, taylor
 from trundle.solve.laws import RollingLaw
 
 TITLE = "Taylor on the general law: rattleback 20 s, coin 60 s, ball in a spinning elliptic bowl 1000 s, ten samples/s"
@@ -40,6 +42,8 @@ class Case:
     start: tr.State
     duration: float
     by_hand: by_hand.Problem
+    of_hand: float  # at most so many times heyoka's time on them
+    of_ode: float  # at least so many times faster than SciPy's compiled `ode`
 
     @property
     def times(self) -> Array:
@@ -67,6 +71,8 @@ def cases() -> list[Case]:
             spun.place(attitude=(0.0, 0.02, 0.01), spin=-5.0),
             20.0,
             by_hand.rattleback(1.0, moments, product, axes, rise),
+            of_hand=1.3,
+            of_ode=2.5,
         ),
         Case(
             "coin",
@@ -74,6 +80,8 @@ def cases() -> list[Case]:
             rolled.place(attitude=(0.0, "80 deg", 0.0), velocity=(0.5, 0.0), spin=1.0),
             60.0,
             by_hand.coin(0.012, 0.0075, across, about),
+            of_hand=2.0,
+            of_ode=5.0,
         ),
         bowl(1000.0),
     ]
@@ -87,7 +95,8 @@ def bowl(duration: float, size: float = 1.0) -> Case:
     )
     speed = size**0.5
     start = system.place((0.1 * size, 0.05 * size), (0.1 * speed, 0.2 * speed), spin=1.0 / speed)
-    return Case("spinning bowl", system, start, duration, by_hand.ball_in_bowl(radius, 0.4, axes, rate))
+    problem = by_hand.ball_in_bowl(radius, 0.4, axes, rate)
+    return Case("spinning bowl", system, start, duration, problem, of_hand=2.0, of_ode=5.0)
 
 
 def rows() -> Iterator[Row]:
@@ -123,22 +132,35 @@ def _rows(case: Case) -> Iterator[Row]:
     default = reached[taylor.TOLERANCE]
     check(default < 1e-8, f"the {case.name} must agree with the equations by hand; they are {default:.1e} apart")
 
-    peers = scipy_peers(by_hand.for_numba(problem), times)
+    compiled = by_hand.for_numba(problem)
+    peers = scipy_peers(compiled, times) | {COMPILED: compiled_peer(compiled, times)}
     tried = {name: attempts(solver, [begin], peer_error) for name, solver in peers.items()}
     chosen = {name: fairest(those, default) for name, those in tried.items()}
     equal = {
         name: max((t for t, e in reached.items() if e <= attempt.error), default=taylor.TOLERANCE)
         for name, attempt in chosen.items()
     }
-    candidates: dict[str, Callable[[], Any]] = {"ours": ours}
+    heyoka = by_hand.for_heyoka(problem, begin)
+
+    def by_heyoka() -> Any:
+        heyoka.time, heyoka.state[:] = 0.0, begin
+        return heyoka.propagate_grid(times)
+
+    candidates: dict[str, Callable[[], Any]] = {"ours": ours, "heyoka": by_heyoka}
     candidates |= {f"ours, {t}": partial(ours, t) for t in set(equal.values())}
     for name, solver in peers.items():
         candidates[name] = run(solver, [begin], chosen[name].tolerance)
         candidates[f"{name}, loose"] = run(solver, [begin], tried[name][0].tolerance)
     best = best_times(candidates, ROUNDS)
+    raw = f"{seconds(best['ours'])} / {seconds(best['heyoka'])}"
+    yield Row(
+        f"{case.name}: ours / heyoka on equations by hand", best["ours"] / best["heyoka"], most=case.of_hand, raw=raw
+    )
+    law = integrators.ready(case.system, RollingLaw(), taylor.TOLERANCE, case.state.tolist())[0]
+    counts = law.operations, len(heyoka.decomposition) - 2 * problem.size
+    yield Row("  operations: ours / by hand", counts[0] / counts[1], most=2, raw="{} / {}".format(*counts))
     for name, attempt in chosen.items():
-        # solve_ivp is SciPy's DOP853; the older, compiled `ode` is shown beside it.
-        least = 8 if "solve_ivp" in name else None
+        least = {IN_PYTHON: 8.0, COMPILED: None}.get(name, case.of_ode)
         mine = best[f"ours, {equal[name]}"]
         raw = f"{seconds(best[name])} at {attempt.tolerance:.1e} / {seconds(mine)} at {equal[name]:.0e}"
         yield Row(f"{case.name}: {name} / ours", best[name] / mine, least=least, raw=raw)

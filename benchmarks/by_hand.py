@@ -250,15 +250,19 @@ def for_numba(problem: Problem) -> Callable[[float, Array], Array]:
 
 def reference(problem: Problem, begin: Array, times: Array) -> Array:
     """Integrate the equations with 80-bit numbers, by Taylor series at 1e-19."""
+    wide = np.longdouble
+    return for_heyoka(problem, begin, wide, 1e-19).propagate_grid(times.astype(wide))[-1]
+
+
+def for_heyoka(problem: Problem, begin: Array, number: Any = float, tolerance: float = 1e-15) -> Any:
+    """Return heyoka's integrator of the equations, in compact mode, as ours."""
     import heyoka
 
-    wide = np.longdouble
     functions = SimpleNamespace(
-        sqrt=heyoka.sqrt, sin=heyoka.sin, cos=heyoka.cos, number=lambda value: heyoka.expression(wide(value))
+        sqrt=heyoka.sqrt, sin=heyoka.sin, cos=heyoka.cos, number=lambda value: heyoka.expression(number(value))
     )
     variables = heyoka.make_vars(*(f"y{j}" for j in range(problem.size)))
-    rates = problem.rates(functions)(*variables)
-    integrator = heyoka.taylor_adaptive(
-        list(zip(variables, rates, strict=True)), begin.astype(wide), fp_type=wide, tol=wide(1e-19), compact_mode=True
+    equations = list(zip(variables, problem.rates(functions)(*variables), strict=True))
+    return heyoka.taylor_adaptive(
+        equations, begin.astype(number), fp_type=number, tol=number(tolerance), compact_mode=True
     )
-    return integrator.propagate_grid(times.astype(wide))[-1]

@@ -130,7 +130,14 @@ ROLLING = (
         "(inertial - Omega_rate.cross(rho)) - F",
         "(inertial - Omega_rate.cross(rho))",
         EGG,
-        refused="hold the body down",
+    ),
+    Mutant(
+        "T3: F left out of N",
+        CONTACT,
+        "(rho.cross(n))) - n.dot(F)",
+        "(rho.cross(n)))",
+        EGG,
+        refused="contact chatters",
     ),
     Mutant(
         "couples that follow N: 1 % too large in T2",
@@ -159,8 +166,8 @@ ROLLING = (
     Mutant(
         "free axle: the moment of R with the other sign",
         CONTACT,
-        "n.dot(R)) - lever.dot(R)",
-        "n.dot(R)) + lever.dot(R)",
+        "(support, N) - lever.dot(R)",
+        "(support, N) + lever.dot(R)",
         FREE,
     ),
     Mutant(

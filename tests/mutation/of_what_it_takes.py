@@ -91,8 +91,8 @@ GEOMETRY = (
     Mutant(
         "bowl: S 1 % too large",
         "mechanics.surfaces.spherical",
-        "(self.sign / distance)",
-        "(1.01 * self.sign / distance)",
+        "RoundTensor.of(self.sign / distance, e)",
+        "RoundTensor.of(1.01 * self.sign / distance, e)",
         BOWL,
     ),
     Mutant(

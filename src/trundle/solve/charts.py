@@ -201,7 +201,7 @@ class SupportAxes(Chart):
         q, Omega = Quaternion(*state[k : k + 4]), Vector(*state[k + 4 :])
         p = self._place(system, time, state, ())
         seen = along_axes(system, now.rotation, Quaternion(xp.cos(half), 0.0, 0.0, xp.sin(half)) * q)
-        seen = replace(seen, support=replace(seen.support, motion=replace(seen.support.motion, turns_with_it=True)))
+        seen = replace(seen, support=replace(seen.support, motion=_SeenMotion(motion, now.rotation, True)))
         own = [*p, *q, *Omega]
         rates, turning = law.rates(seen, time, own), now.angular_velocity
         moved = [*(Vector(*rates[:3]) - turning.cross(p))][:k]
@@ -328,7 +328,8 @@ def charts(system: RollingSystem, law: Law) -> tuple[Chart, ...]:
         return (LAWS_OWN,)
     flat, rate = on_plane(system), system.support.motion.steady_rate
     found: list[Chart] = [LAWS_OWN, BodyAxes(flat)]
-    if rate is not None and rate != 0:
+    # A surface of revolution is at rest along the axes of the support frame, too, where nothing turns as fast.
+    if rate is not None and rate != 0 and not system.support.surface.axisymmetric:
         found.append(SupportAxes(flat))
     if flat and system.body.axisymmetric:
         found.append(LineOfNodes())
@@ -455,7 +456,7 @@ def _half_turn(system: RollingSystem, times: Any) -> Any:
 
     From the first of some instants on it is a float; up to there a fraction, which a million turns leave exact.
     """
-    rate, times = float(system.support.motion.steady_rate), np.asarray(times, dtype=float)
+    rate, times = float(system.support.motion.mean_rate), np.asarray(times, dtype=float)
     angles = np.empty(times.shape)
     block = np.floor(times / _BLOCK)
     for which in np.unique(block).tolist():

@@ -61,11 +61,20 @@ class Lowered:
     tidy: Callable[[Sequence[float]], list[float]]
     chart: Chart = LAWS_OWN
 
-    @cached_property
+    @property
+    def operations(self) -> int:
+        """How many operations depend on time or state."""
+        return len(self._weights)
+
+    @property
     def cost(self) -> int:
         """About how long the outputs take: an operation whose series is a sum of products counts twice."""
+        return sum(self._weights)
+
+    @cached_property
+    def _weights(self) -> list[int]:
         fixed: set[int] = set()
-        total = 0
+        weights = []
         for index in self.tape.needed(self.outputs):
             operation, *operands = self.tape.steps[index]
             nodes = [part.index for part in operands if isinstance(part, Node)]
@@ -73,8 +82,8 @@ class Lowered:
                 fixed.add(index)
             elif operation != "input":
                 linear = operation in _SUMS or (operation in "*/" and sum(one not in fixed for one in nodes) == 1)
-                total += 1 if linear and (operation != "/" or nodes[0] not in fixed) else 2
-        return total
+                weights.append(1 if linear and (operation != "/" or nodes[0] not in fixed) else 2)
+        return weights
 
     def heyoka(self) -> tuple[list[tuple[Any, Any]], list[Any]]:
         """Return equations and event functions as `heyoka.taylor_adaptive` takes them."""
@@ -99,9 +108,9 @@ def lower(system: RollingSystem, law: Law, chart: Chart = LAWS_OWN, zeros: Colle
     >>> from trundle.solve.laws import RollingLaw
     >>> table = tr.Support(tr.Plane(), motion=tr.Spin(0.25))
     >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.5, 1.0), table)
-    >>> ready = lower(system, RollingLaw())
+    >>> ready = lower(system, RollingLaw())  # its weight alone presses the ball on, so it never lifts off
     >>> ready.event_functions, len(ready.outputs)
-    (('lift',), 11)
+    ((), 10)
     """
     names, count = chart.names(system, law), len(numbers(system))
     tape = Tape()

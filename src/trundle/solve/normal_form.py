@@ -16,7 +16,7 @@ from .tape import Node, Tape, apply
 Monomial = tuple[tuple[int, int], ...]  # (factor, exponent) of each factor, in ascending order
 Sum = dict[Monomial, Any]  # to each product its coefficient: a float, or what is fixed
 _ONE: Monomial = ()
-_SHORT = 2  # terms of a sum in which some have met: it is written anew
+_SHORT, _LONG = 2, 50  # terms of a sum: in which some have met, then it is written anew; that is a factor by itself
 
 
 class NormalForm:
@@ -41,6 +41,8 @@ class NormalForm:
         self.splits: dict[Monomial, tuple[Monomial, Monomial, str]] = {}
         self.parts: dict[Any, tuple[Sum, Sum, str]] = {}
         self.scales: dict[Any, tuple[Sum, Any]] = {}
+        self.seen: set[Any] = set()  # sums: each is written by such as came up before it, so that none leans on itself
+        self.depths: dict[Any, int] = {}
         self.wholes: dict[int, tuple[Any, Any]] = {}
 
     def take_for_positive(self, value: Sum) -> None:
@@ -56,8 +58,9 @@ class NormalForm:
     def take_for_unit(self, vector: Iterable[Sum]) -> None:
         """Know from now on that a vector has length 1."""
         squares = [self._product(part, part, "*") for part in vector if part]
-        if len(squares) > 1 and all(len(square) == 1 and _is(*square.values(), 1.0) for square in squares):
-            self.units.append([monomial for square in squares for monomial in square])
+        terms = [term for square in squares for term in square.items()]
+        if len(squares) > 1 and len(terms) == len(squares) and all(_is(coefficient, 1.0) for _, coefficient in terms):
+            self.units.append([monomial for monomial, _ in terms])
 
     def _with_units(self, value: Sum) -> Sum:
         """Return a sum with x² + y² + z² = 1 where that is known."""
@@ -92,7 +95,7 @@ class NormalForm:
         return self._other(operation, [self.node(part) for part in operands])
 
     def power(self, base: Sum, exponent: int) -> Sum:
-        """Return an integer power."""
+        """Return an integer power, not the zeroth."""
         if not base:
             return {}
         if len(base) != 1:
@@ -127,23 +130,34 @@ class NormalForm:
         added = _added(a, b if operation == "+" else _scaled(b, -1.0))
         found = self._with_units(added)
         key = _key_of(found)
-        if len(found) < 2 or key in self.parts or key in self.scales:
+        if len(found) < 2 or self._came_up(found):
             return found
         size, rest = _shared(found)
         if not _is(size, 1.0) and (sizes := _size_of(a)) is not None and sizes == _size_of(b):
             self.scales[key] = rest, size
             a, b, key = _over(a, size), _over(b, size), _key_of(rest)
+            for each in (a, b):
+                self._came_up(each)
+            if self._came_up(rest):
+                return found
         cancelled = len(found) < len(a.keys() | b.keys()) or found is not added
         if not cancelled and (len(found) == len(a) + len(b) or len(found) > _SHORT):
             self.parts.setdefault(key, (a, b, operation))
-        return found
+        self._leans_on(found, a, b)
+        return found if len(found) < _LONG else self.factor(self.node(found))
+
+    def _leans_on(self, value: Sum, *parts: Sum) -> None:
+        """Write a sum at once that is made of sums made of sums, and so on: to write it later would go too deep."""
+        depth = 1 + max(self.depths.get(_key_of(part), 0) for part in parts)
+        if depth == _LONG:
+            self.node(value)
+        self.depths[_key_of(value)] = depth % _LONG
 
     def _times_constant(self, value: Sum, factor: Any) -> Sum:
         found = _scaled(value, factor)
-        if len(value) > 1:
-            key = _key_of(found)
-            if key not in self.parts and key not in self.scales:
-                self.scales[key] = value, factor
+        if len(value) > 1 and not self._came_up(found):
+            self.scales[_key_of(found)] = value, factor
+            self._leans_on(found, value)
         return found
 
     def _product(self, a: Sum, b: Sum, operation: str) -> Sum:
@@ -171,7 +185,15 @@ class NormalForm:
             if other and by and not _cancels(other, by):
                 self.splits.setdefault(product, (other, monomial, operation))
             found[product] = factor / coefficient if operation == "/" else factor * coefficient
+        self._came_up(found)
         return found
+
+    def _came_up(self, value: Sum) -> bool:
+        """Tell whether a sum came up before; from now on it has."""
+        key = _key_of(value)
+        known = key in self.seen
+        self.seen.add(key)
+        return known
 
     def _whole(self, term: Sum) -> Sum:
         """Return c·x as a factor of its own where x has come up in no other way so far: so c is multiplied once."""

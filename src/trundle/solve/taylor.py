@@ -341,7 +341,10 @@ def _to_law(chart: Chart, system: RollingSystem, times: Array, states: Array) ->
     if chart == LAWS_OWN:
         return states
     columns = chart.to_law(system, times, tuple(states.T))
-    return np.stack([np.broadcast_to(column, times.shape) for column in columns], axis=1)
+    found = np.empty((times.size, len(columns)))
+    for i, column in enumerate(columns):
+        found[:, i] = column
+    return found
 
 
 def _propagate(run: _Run, times: Array, progress: Progress | None) -> Iterator[tuple[Array, Array, int | None]]:
