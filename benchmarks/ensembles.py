@@ -54,6 +54,27 @@ def rows() -> Iterator[Row]:
         yield Row(f"{name}, one by one / simulate_many, a member", each[name] / each["together"], least=least, raw=raw)
     yield Row("all 10,000 in one call, a member", took / MEMBERS, raw=f"{seconds(took)} in all", kind="time")
     yield Row("largest difference from the runs alone", worst, kind="error")
+    yield from _placing()
+
+
+def _placing() -> Iterator[Row]:
+    """Time starts put down in one call, and one by one."""
+    random = np.random.default_rng(1)
+    for name, surface in (("table", tr.Plane()), ("elliptic bowl", tr.EllipsoidalBowl((0.5, 0.4, 0.3)))):
+        system = tr.RollingSystem(tr.Body.solid_sphere(0.025, 0.065), tr.Support(surface, motion=tr.Spin(1.5)))
+        places, speeds = random.uniform(-0.1, 0.1, (MEMBERS, 2)), random.normal(0, 0.1, (MEMBERS, 2))
+
+        def together(system: Any = system, places: Any = places, speeds: Any = speeds) -> Any:
+            return tr.place_many(system, places, velocity=speeds)
+
+        def alone(system: Any = system, places: Any = places, speeds: Any = speeds) -> Any:
+            return [system.place(*pair) for pair in zip(places[:ALONE], speeds[:ALONE], strict=True)]
+
+        check(alone() == together()[:ALONE], "starts must be the same in one call and one by one")
+        best = best_times({"together": together, "alone": alone}, ROUNDS)
+        each, one = best["together"] / MEMBERS, best["alone"] / ALONE
+        raw = f"{seconds(one)} / {seconds(each)} each"
+        yield Row(f"place, one by one / place_many, on a {name}", one / each, least=15, raw=raw)
 
 
 def _pairs(systems: list[Any], starts: list[Any]) -> list[tuple[Any, Any]]:

@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from .analysis.geometry import Arc, Curve, PathScenario, RolledPath, Rotation, Straight, roll_along
     from .analysis.holonomy import ConstraintAnalysis, PfaffianSystem
     from .analysis.imperfections import Sensitivity, air_drag, sensitivity
-    from .analysis.many import simulate_many
+    from .analysis.many import place_many, simulate_many
+    from .analysis.sensitivities import Sensitivities, sensitivities
     from .analysis.statics import Equilibria, Equilibrium, equilibria
     from .analysis.steady import PeriodicMotion, SteadyMotion, SteadyMotions, periodic_motion, steady_motions
     from .analysis.vakonomic import VakonomicComparison, VakonomicPath, compare_vakonomic, vakonomic_path
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
         TrundleError,
         UnknownNameError,
     )
+    from .fields import MotionFormula, VectorField
     from .mechanics.bodies import Body, Isotropic, Principal, RatioInertia, Tensor
     from .mechanics.loads import (
         Drag,
@@ -100,7 +102,8 @@ _HOMES = {
     "analysis.geometry": ("roll_along", "Straight", "Arc", "Curve", "RolledPath", "Rotation", "PathScenario"),
     "analysis.holonomy": ("PfaffianSystem", "ConstraintAnalysis"),
     "analysis.imperfections": ("sensitivity", "Sensitivity", "air_drag"),
-    "analysis.many": ("simulate_many",),
+    "analysis.many": ("place_many", "simulate_many"),
+    "fields": ("VectorField", "MotionFormula"),
     "mechanics.bodies": ("Body", "Isotropic", "Principal", "RatioInertia", "Tensor"),
     "mechanics.shapes": (
         "Disc",
@@ -158,6 +161,7 @@ _HOMES = {
     "solve.exact": ("ClosedForm",),
     "analysis.derivation": ("derive",),
     "simulation.simulate": ("simulate", "Scenario"),
+    "analysis.sensitivities": ("sensitivities", "Sensitivities"),
     "analysis.statics": ("equilibria", "Equilibria", "Equilibrium"),
     "analysis.steady": ("steady_motions", "SteadyMotions", "SteadyMotion", "periodic_motion", "PeriodicMotion"),
     "simulation.trajectory": ("Trajectory", "Event"),
@@ -201,6 +205,7 @@ __all__ = [
     "MissingExtraError",
     "Mistake",
     "Motion",
+    "MotionFormula",
     "Motor",
     "Move",
     "OutOfDomainError",
@@ -225,6 +230,7 @@ __all__ = [
     "Rotation",
     "Scenario",
     "ScenarioError",
+    "Sensitivities",
     "Sensitivity",
     "Shake",
     "Shape",
@@ -251,6 +257,7 @@ __all__ = [
     "UnknownNameError",
     "VakonomicComparison",
     "VakonomicPath",
+    "VectorField",
     "Wobble",
     "__version__",
     "air_drag",
@@ -260,7 +267,9 @@ __all__ = [
     "derive",
     "equilibria",
     "periodic_motion",
+    "place_many",
     "roll_along",
+    "sensitivities",
     "sensitivity",
     "simulate",
     "simulate_many",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ import pytest
 from tests.tolerances import SOLVER
 
 import trundle as tr
-from trundle.analysis import many
+from trundle.analysis.many import running as many
 from trundle.solve import ensemble, integrator_cache, integrators, runge_kutta, taylor
 from trundle.solve.exact import SphereOnPlane
 
@@ -321,3 +322,49 @@ def test_progress_is_told_to_the_end() -> None:
     tr.simulate_many(systems, starts, 0.5, 0.25, progress=told.append)
     assert told == sorted(told)
     assert told[-1] == 1.0
+
+
+def test_it_says_what_was_varied_and_from_where(tmp_path: Path) -> None:
+    import xarray
+
+    drawn = np.random.default_rng(3)
+    radii, tilts = drawn.uniform(0.02, 0.03, 4), np.array([0.01, -0.01, 0.0, 0.02])
+    systems = [
+        tr.RollingSystem(tr.Body.solid_sphere(a, 0.065), tr.Support(tr.Plane(rim=0.5), motion=tr.Spin(2.0), tilt=tilt))
+        for a, tilt in zip(radii, tilts, strict=True)
+    ]
+    starts = [system.place((0.1, 0.0), (0.0, v)) for system, v in zip(systems, (0.1, 0.2, -0.1, 3.0), strict=True)]
+    runs = tr.simulate_many(systems, starts, 1.0, 0.5, known={"seed": [7, 8, 9, 10]}, title="Four balls")
+    runs.to_netcdf(tmp_path / "runs.nc", engine="h5netcdf")
+    for found in (runs, xarray.open_dataset(tmp_path / "runs.nc", engine="h5netcdf")):
+        assert found["body.radius"].values.tolist() == radii.tolist()
+        assert found["support.tilt"].values.tolist() == tilts.tolist()
+        assert found["body.radius"].units == "m"
+        assert "body.mass" not in found.coords
+        assert found.seed.values.tolist() == [7, 8, 9, 10]
+        assert found["start.velocity"].sel(axis="y").values.tolist() == [0.1, 0.2, -0.1, 3.0]
+        assert np.array_equal(found["start.position"].values, [start.position for start in starts])
+        assert found.title == "Four balls"
+        (tmp_path / "first.toml").write_text(found.scenario)
+        first = tr.Scenario.load(tmp_path / "first.toml")
+        assert first.start_state() == starts[0]
+    picked = runs.isel(member=np.flatnonzero(runs["support.tilt"].values > 0))
+    assert picked.seed.values.tolist() == [7, 10]
+
+
+def test_members_alike_vary_in_nothing() -> None:
+    system = tr.RollingSystem(tr.Body.solid_sphere(0.02, 0.1), tr.Support(tr.Plane()))
+    runs = tr.simulate_many(system, [system.place((x, 0.0)) for x in (0.1, 0.2)], 1.0, 0.5)
+    assert {name for name in runs.coords if "." in str(name)} == {
+        "start.position",
+        "start.velocity",
+        "start.angular_velocity",
+        "start.orientation",
+    }
+
+
+@pytest.mark.parametrize("seeds", [[1], [1, 2, 3], 5, [[1, 2], [3, 4]]])
+def test_what_is_known_has_a_value_for_each_member(seeds: Any) -> None:
+    system = tr.RollingSystem(tr.Body.solid_sphere(0.02, 0.1), tr.Support(tr.Plane()))
+    with pytest.raises(tr.InvalidValueError, match="a value for each of the 2 members"):
+        tr.simulate_many(system, [system.place((x, 0.0)) for x in (0.1, 0.2)], 1.0, 0.5, known={"seed": seeds})

@@ -83,7 +83,7 @@ PHASES = (
     Mutant(
         "dips between two looks are not looked for",
         RK,
-        "if np.nanmin(inside, initial=np.inf) < _LOW * np.ptp(values) and",
+        "if np.nanmin(inside, initial=np.inf) < LOW * np.ptp(values) and",
         "if False and",
         "ball_over_a_crest",
     ),

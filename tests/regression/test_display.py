@@ -28,7 +28,7 @@ from trundle.verify import CardFigure
 TITLE = "<script>alert('½ & \"two\"')</script>"
 NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 # What only the classes below it are: nobody gets one.
-INNER = {"Viewable", "Document", "ScenarioFile", "PathFile"}
+INNER = {"Viewable", "Document", "ScenarioFile", "PathFile", "Printed"}
 
 
 @cache
@@ -90,6 +90,11 @@ def comparison() -> tr.VakonomicComparison:
 
 
 @cache
+def derivatives() -> tr.Sensitivities:
+    return tr.sensitivities(scenario("level-turntable-nudged"), "start.velocity", duration=1.0)
+
+
+@cache
 def equilibria() -> tr.Equilibria:
     return tr.equilibria(scenario("weighted-cylinder-on-incline"))
 
@@ -125,6 +130,7 @@ RESULTS: tuple[Callable[[], Displayed], ...] = (
     lambda: tr.PfaffianSystem(sp.symbols("<b> y"), [[1, 0]]).analyse(),
     sensitivity,
     lambda: sensitivity().rows[0],
+    derivatives,
     derivation,
     lambda: derivation().steps[0],
     lambda: derivation().steps[0].equations[0],
@@ -135,6 +141,8 @@ RESULTS: tuple[Callable[[], Displayed], ...] = (
     lambda: rolled().rotation,
     lambda: rolled().stages,
     lambda: rolled().sampled(1e-3),
+    lambda: scenario("free-turntable-ellipse").system().vector_field("c"),
+    lambda: tr.MotionFormula(run().closed_form),
 )
 
 

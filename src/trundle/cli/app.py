@@ -16,6 +16,7 @@ from ..scenario import files
 from . import CARD_FAILED, constraints, screen, signals
 from .check import check
 from .derive import derive
+from .equations import equations
 from .equilibria import equilibria
 from .export import export
 from .lab import lab
@@ -50,6 +51,7 @@ def command() -> Any:
     app.command("sensitivity", short_help="Rank the shortcomings of a turntable by what they do.")(sensitivity)
     app.command("equilibria", short_help="Where a body stays, put down at rest.")(equilibria)
     app.command("vakonomic", short_help="A negative control: the wrong path of stationary action.")(vakonomic)
+    app.command("equations", short_help="Print the law as C, Python, JavaScript, LaTeX or JAX.")(equations)
     app.command("export", short_help="Write a run as a page, a model, a picture, a table.")(export)
     app.command("lab", short_help="Open the lab: the ball in a browser.")(lab)
     app.command("steady", short_help="Steady motions, and whether they are stable.")(steady)

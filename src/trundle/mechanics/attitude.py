@@ -62,7 +62,8 @@ def attitude(
     half, apart = 0.5 * (psi + phi), 0.5 * (psi - phi)
     own = Quaternion(c * xp.cos(half), s * xp.cos(apart), s * xp.sin(apart), c * xp.sin(half))
     q = Quaternion.of_matrix(Matrix(first, second, normal).transpose) * own
-    return Quaternion(*(-part for part in q)) if q.w < 0 else q
+    turned = less(q.w, 0.0)
+    return Quaternion(*(xp.where(turned, -part, part) for part in q))
 
 
 def attitude_of(first: Vector, second: Vector, normal: Vector, orientation: Quaternion) -> Attitude:

@@ -20,7 +20,8 @@ from .surfaces import Surface
 if TYPE_CHECKING:
     from .system import RollingSystem
 
-_SHARPEST = 1e9  # bends in a body's size beyond which a surface is no longer smooth there
+LEAST_ROOM = 1e-12  # of the eigenvalues of 1 + C S
+SHARPEST = 1e9  # bends in a body's size beyond which a surface is no longer smooth there
 
 
 def fits(contact: Contact) -> Scalar:
@@ -119,7 +120,7 @@ def check_curvature(contact: Contact, received: Any, key: str = "position") -> N
         if not _all_finite(own):
             remedy = f"Its {name} is not finite in this position: turn it a little."
             raise InvalidValueError("orientation", "must let the body touch in one point", received, remedy)
-    if _size(contact.shape_operator.dense) * contact.offset.norm() > _SHARPEST:
+    if _size(contact.shape_operator.dense) * contact.offset.norm() > SHARPEST:
         remedy = "Its curvature grows beyond all bounds there: it has an edge or an apex."
         raise InvalidValueError(key, "must be where the surface is smooth", received, remedy)
     misfit = too_big(contact)
@@ -140,7 +141,7 @@ def too_big(contact: Contact) -> str:
     'There the body bends with a radius of 0.6 m, the surface with 0.5 m:'
     """
     least, along = room(contact)
-    if least > 1e-12:
+    if least > LEAST_ROOM:
         return ""
     # Where they do not fit C t = (1 − least)/(−κ) t with κ the surface's curvature along the way, or nearly so.
     bend = float(along.dot(contact.shape_operator @ along))

@@ -39,6 +39,8 @@ def check_clear(
     ...
     trundle.errors.InvalidValueError: `position` must keep the whole body clear of the surface; got (0.15, 0). ...
     """
+    if fits_anywhere(system):
+        return
     deepest = depth(system, contact, orientation)
     if deepest is None:
         return
@@ -51,6 +53,22 @@ def check_clear(
             received,
             f"A part of it lies {below:.3g} m below the surface, at ({shown}) m in the support's own frame.",
         )
+
+
+def fits_anywhere(system: RollingSystem) -> bool:
+    """Tell whether a body is known to lie below the surface nowhere, wherever it touches.
+
+    A ball of the body's largest radius of curvature, through the contact, holds the body; the surface crosses none that
+    is no larger than its `free_radius` (W. Blaschke, Kreis und Kugel, Veit, Leipzig, 1916, section 24).
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> [fits_anywhere(tr.RollingSystem(tr.Body.solid_sphere(a, 1.0), tr.Support(tr.Bowl(0.5)))) for a in (0.2, 0.6)]
+    [True, False]
+    """
+    bends, free = system.body.shape.largest_radius, system.support.surface.free_radius
+    return bends is not None and free is not None and bool(bends <= free)
 
 
 def depth(system: RollingSystem, contact: Contact, orientation: Any) -> tuple[float, tuple[float, ...]] | None:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass
-from typing import Any, TypeVar
+from functools import cache
+from typing import Any, NamedTuple, TypeVar
 
+from .expressions import Expression
+from .parts import Field, Number, Numbers, fields_of
 from .scalars import Scalar, is_number
 
 T = TypeVar("T")
@@ -23,15 +26,68 @@ def numbers(thing: Any) -> list[float]:
     return [float(value) for value in _walk(thing)]
 
 
+@cache
+def _fields(kind: type) -> tuple[tuple[str, bool], ...] | None:
+    """Return the names of a dataclass's fields, and whether they are compared; None for what is no dataclass."""
+    return tuple((field.name, field.compare) for field in fields(kind)) if is_dataclass(kind) else None
+
+
 def _walk(thing: Any) -> Iterator[Any]:
-    if is_dataclass(thing):
-        for field in fields(thing):
-            yield from _walk(getattr(thing, field.name))
+    known = _fields(thing.__class__)
+    if known is not None:
+        for name, _ in known:
+            yield from _walk(getattr(thing, name))
     elif isinstance(thing, tuple):
         for part in thing:
             yield from _walk(part)
     elif is_number(thing) and not isinstance(thing, bool):
         yield thing
+
+
+class Parameter(NamedTuple):
+    """What one number of a system is called, and its dimension, one of `trundle.units.UNITS`."""
+
+    name: str
+    dimension: str
+
+
+def parameters(thing: Any) -> list[Parameter]:
+    """Tell of each number that a system is made of, in the order of `numbers`.
+
+    It is named by the way to it, as in a file: "body.radius", "support.tilt", "loads[0].value.x". The numbers in a
+    formula are counted as they stand in it; what unit each of them has, SI, only the formula tells.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> [name for name, _ in parameters(tr.Support(tr.Plane(rim=0.5), motion=tr.SpinBy("2*t + 1"), tilt=0.05))][:4]
+    ['rim', 'motion.rate[0]', 'motion.rate[1]', 'tilt']
+    """
+    return [Parameter(name.removeprefix("."), dimension) for name, dimension in _told(thing, "", "number")]
+
+
+_OF_THE_WHOLE = ("shape", "surface")  # what these are made of is said of the body and of the support
+
+
+def _told(thing: Any, path: str, dimension: str) -> Iterator[tuple[str, str]]:
+    if isinstance(thing, Expression):
+        yield from ((f"{path}[{i}]", "number") for i, _ in enumerate(_walk(thing)))
+    elif is_dataclass(thing):
+        says = fields_of(type(thing))
+        for each in fields(thing):
+            way = path if each.name in _OF_THE_WHOLE else f"{path}.{each.name}"
+            yield from _told(getattr(thing, each.name), way, _dimension(says.get(each.name), dimension))
+    elif isinstance(thing, tuple):
+        for i, part in enumerate(thing):
+            yield from _told(part, f"{path}[{i}]", dimension)
+    elif is_number(thing) and not isinstance(thing, bool):
+        yield path, dimension
+
+
+def _dimension(note: Field | None, otherwise: str) -> str:
+    """Return the dimension that a field says; a component has that of its vector."""
+    note = note.each if isinstance(note, Numbers) else note
+    return note.dimension if isinstance(note, Number) else otherwise
 
 
 def structure_of(thing: Any) -> Any:
@@ -44,10 +100,11 @@ def structure_of(thing: Any) -> Any:
     >>> structure_of(small) == structure_of(large), structure_of(small) == structure_of(plain)
     (True, False)
     """
-    if is_dataclass(thing) and not isinstance(thing, type):
-        return type(thing), tuple(structure_of(getattr(thing, field.name)) for field in fields(thing) if field.compare)
+    known = _fields(thing.__class__)
+    if known is not None:
+        return type(thing), tuple([structure_of(getattr(thing, name)) for name, compared in known if compared])
     if isinstance(thing, tuple):
-        return tuple(structure_of(part) for part in thing)
+        return tuple([structure_of(part) for part in thing])
     return float if is_number(thing) and not isinstance(thing, bool) else thing
 
 
@@ -65,8 +122,9 @@ def with_numbers(thing: T, values: Sequence[Scalar]) -> T:
 
 
 def _rebuild(thing: Any, values: Iterator[Scalar]) -> Any:
-    if is_dataclass(thing) and not isinstance(thing, type):
-        return type(thing)(**{field.name: _rebuild(getattr(thing, field.name), values) for field in fields(thing)})
+    known = _fields(thing.__class__)
+    if known is not None:
+        return type(thing)(**{name: _rebuild(getattr(thing, name), values) for name, _ in known})
     if isinstance(thing, tuple):
         return tuple(_rebuild(part, values) for part in thing)
     if is_number(thing) and not isinstance(thing, bool):

@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InvalidValueError, did_you_mean
 from . import checks, fitting, line_contact
-from .algebra import Quaternion, Vector
+from .algebra import ZERO, Quaternion, Vector
 from .attitude import attitude
 from .contact import Contact, contact_at
 from .finiteness import check_finite
 from .motions import SupportState
 from .nearest import closest_contact, misplaced
-from .scalars import Scalar, is_zero
+from .scalars import Scalar, as_float, is_number, is_zero
 
 if TYPE_CHECKING:
     from .system import RollingSystem, State
 
-_IN_PROPORTION = 100.0  # times what is asked of a start: more must not follow from it
+IN_PROPORTION = 100.0  # times what is asked of a start: more must not follow from it
 _ROUNDING = 4 * 2.0**-52
 SLIP_TOLERANCE = 1e-9  # of the largest speed at the contact: beyond it a start slips
 
@@ -46,35 +46,39 @@ class Placing:
     time: Any
     support: Any
 
-    def state(self) -> State:
-        """Return the start, checked."""
+    def state(self, *, checked: bool = True) -> State:
+        """Return the start, checked; or as its numbers have it, where those of a start like it were checked before."""
         from .system import State
 
         system, surface = self.system, self.system.support.surface
         time, coordinates = self._now, self._own
-        check_finite(system, time, time)
+        if checked:
+            check_finite(system, time, time)
         begin = system.support.motion.at(time, *coordinates)
         u, v = (
             checks.real(part, kind, f"position[{i}]")
             for i, (part, kind) in enumerate(zip(_pair(self.position, "position"), surface.coordinates, strict=True))
         )
         gap = checks.non_negative(self.height, "length", "height")
-        fitting.check_place(surface, u, v, self.position)
+        if checked:
+            fitting.check_place(surface, u, v, self.position)
         q = self._orientation(begin, begin.carried(surface.point(u, v)))
         contact = self._contact(begin.carried(surface.point(u, v)), q)
         offset = begin.rotation.transpose @ contact.offset
         contact = self._contact(begin.carried(surface.contact_from_coordinates(u, v, offset)), q)
-        system.check_rim(contact, self.position)
-        fitting.check_start(system, contact, q, self.position)
+        if checked:
+            system.check_rim(contact, self.position)
+            fitting.check_start(system, contact, q, self.position)
         turning = self._given_turning(contact, gap)
         V = self._velocity(contact, begin.local(contact.point), gap, turning)
         Omega = self._following_turning(contact, V) if turning is None else turning
-        self._check_no_slip(contact, V, Omega, gap)
         centre = contact.centre + contact.normal * gap
-        if gap > 0:
-            self._check_over(contact, centre, q)
-        start = State(_triple(centre), _triple(V), _triple(Omega), tuple(q), time, tuple(map(float, coordinates)))
-        line_contact.check_start(system, start)
+        if checked:
+            self._check_no_slip(contact, V, Omega, gap)
+            self._check_over(contact, centre, q, gap)
+        start = State(_triple(centre), _triple(V), _triple(Omega), tuple(q), time, tuple(map(as_float, coordinates)))
+        if checked:
+            line_contact.check_start(system, start)
         return start
 
     @cached_property
@@ -158,11 +162,11 @@ class Placing:
             return V + n * along[2]
         if gap > 0:
             return V
-        rolling = V + n * ((u - V).dot(rho) / n.dot(rho))  # what Ω can match: V·ρ = u·ρ
+        rolling = rolling_along(V, u, rho, n)
         self._check_proportion(rolling, V, u)
         if turning is None or slips(contact, rolling, turning) is None:
             return rolling
-        return V + n * (u - V - turning.cross(rho)).dot(n)  # nothing opens or closes: n·(V + Ω×ρ − u) = 0
+        return not_opening(V, u, turning, rho, n)
 
     def _given_turning(self, contact: Contact, gap: float) -> Vector | None:
         """Return Ω where it is given, or where nothing else could say it."""
@@ -184,15 +188,15 @@ class Placing:
         about_normal = turning if self.spin is None else checks.real(self.spin, "angular velocity", "spin")
         relative = V - u
         if not isinstance(self.velocity, str) and self.velocity is not None and _length(self.velocity) == 3:
-            relative = relative - n * (relative.dot(rho) / n.dot(rho))
-        Omega = _rolling_rate(relative, rho, n, about_normal)
+            relative = rolling_along(relative, ZERO, rho, n)
+        Omega = rolling_rate(relative, rho, n, about_normal)
         self._check_proportion(Omega * rho.norm(), V, u, n * (about_normal * rho.norm()))
         return Omega
 
     def _check_proportion(self, follows: Vector, *given: Vector) -> None:
         """Refuse what follows from rolling where it is out of all proportion: the body all but lies on its side."""
         most = max(float(v.norm()) for v in given)
-        if float(follows.norm()) <= _IN_PROPORTION * most:
+        if float(follows.norm()) <= IN_PROPORTION * most:
             return
         key = "orientation" if self.attitude is None else "attitude"
         value = (1.0, 0.0, 0.0, 0.0) if self.orientation is None else self.orientation
@@ -204,8 +208,10 @@ class Placing:
             "it stand up more, or give all three components of `velocity`, and `angular_velocity`.",
         )
 
-    def _check_over(self, contact: Contact, centre: Vector, q: Quaternion) -> None:
+    def _check_over(self, contact: Contact, centre: Vector, q: Quaternion, gap: float) -> None:
         """Refuse a height at which the body is no longer nearest to the place over which it is asked for."""
+        if not gap > 0:
+            return
         elsewhere = misplaced(self.system, contact, centre, q)
         if not elsewhere:
             nearest = closest_contact(self.system, self._now, centre, q, self._own)
@@ -267,12 +273,22 @@ def _unit_quaternion(orientation: Any) -> Quaternion:
     length = math.hypot(*parts)
     if not 0 < length < math.inf:
         raise InvalidValueError("orientation", "must be a quaternion other than zero", orientation)
-    if abs(length - 1) < 4e-16:  # it is one already: keep it to the last digit
+    if all(map(is_number, parts)) and abs(length - 1) < 4e-16:  # it is one already: keep it to the last digit
         return Quaternion(*parts)
-    return Quaternion(*(part / length for part in parts))
+    return Quaternion(*parts).unit
 
 
-def _rolling_rate(relative: Vector, rho: Vector, n: Vector, spin: Scalar) -> Vector:
+def rolling_along(V: Vector, u: Vector, rho: Vector, n: Vector) -> Vector:
+    """Return V with another component along n, so that some Ω can match it: V·ρ = u·ρ."""
+    return V + n * ((u - V).dot(rho) / n.dot(rho))
+
+
+def not_opening(V: Vector, u: Vector, Omega: Vector, rho: Vector, n: Vector) -> Vector:
+    """Return V with another component along n, so that nothing opens or closes: n·(V + Ω×ρ − u) = 0."""
+    return V + n * (u - V - Omega.cross(rho)).dot(n)
+
+
+def rolling_rate(relative: Vector, rho: Vector, n: Vector, spin: Scalar) -> Vector:
     """Solve ρ×Ω = V − u for the Ω with Ω·n = spin."""
     across = relative.cross(rho) / rho.dot(rho)
     return across + rho * ((spin - across.dot(n)) / rho.dot(n))

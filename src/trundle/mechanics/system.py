@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from ..display import Displayed, Markup, number, numbers, pairs
 from ..errors import InvalidValueError
@@ -15,8 +15,12 @@ from .bodies import Body
 from .contact import Contact
 from .loads import Acting, BodyMotion, Gravity, Load
 from .motions import Fixed, Motion
+from .parts import Number
 from .scalars import Scalar, is_number, namespace
 from .surfaces import Surface
+
+if TYPE_CHECKING:
+    from ..fields import VectorField
 
 STANDARD_GRAVITY = 9.80665  # m/s², exact by definition (3rd CGPM, 1901)
 
@@ -52,7 +56,7 @@ class Support:
 
     surface: Surface
     motion: Motion = field(default_factory=Fixed)
-    tilt: Scalar = 0.0
+    tilt: Annotated[Scalar, Number("angle")] = 0.0
     friction: Scalar | None = None
     kinetic_friction: Scalar | None = None
     restitution: Scalar = 0.0
@@ -164,7 +168,7 @@ class RollingSystem:
     body: Body
     support: Support
     loads: tuple[Load, ...] = ()
-    gravity: Scalar = STANDARD_GRAVITY
+    gravity: Annotated[Scalar, Number("acceleration")] = STANDARD_GRAVITY
 
     def __post_init__(self) -> None:
         checks.instance(self.body, Body, "body", "Give for instance tr.Body.solid_sphere(radius=0.025, mass=0.065).")
@@ -289,6 +293,48 @@ class RollingSystem:
             self, position, velocity, spin, angular_velocity, orientation, roll, attitude, height, time, support
         )
         return placing.state()
+
+    def vector_field(
+        self, backend: str = "numpy", phase: str = "rolling", inputs: Sequence[str] = ("force", "torque", "support")
+    ) -> VectorField:
+        """Return the right-hand side dy/dt = f(t, y, p, u) of this system's law, for a program of your own.
+
+        Parameters
+        ----------
+        backend : str
+            "numpy", "numba", "jax", "sympy", "c" or "javascript".
+        phase : str
+            "rolling", "slipping", "flight" or "rest".
+        inputs : sequence of str
+            What u holds: a "force" and a "torque" on the body, the motion of a platform that carries the "support".
+
+        Returns
+        -------
+        VectorField
+            Functions of the state y, the parameters p and the inputs u, with the names and units of each.
+
+        Raises
+        ------
+        UnknownNameError
+            If there is no such backend, phase or input.
+        InvalidValueError
+            If the system never has that phase.
+        OutOfDomainError
+            If its surface is known by a table only.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> table = tr.Support(tr.Plane(), motion=tr.Spin(2.0))
+        >>> system = tr.RollingSystem(tr.Body.solid_sphere(radius=0.5, mass=1.0), table)
+        >>> f = system.vector_field("numpy")
+        >>> y = f.pack(system.place(position=(1.0, 0.0), velocity="co-rotating"))
+        >>> f.rates(0.0, y, f.parameters, f.inputs)[:3].tolist()
+        [0.0, 2.0, 0.0]
+        """
+        from ..fields import VectorField
+
+        return VectorField(self, backend, phase, tuple(inputs))
 
     def check_rim(self, contact: Contact, position: Any) -> None:
         """Refuse a contact point at or beyond the rim, naming the position as the user gave it."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..mechanics.system import RollingSystem
+from ..solve.compiled_steps import available
 from ..solve.methods import Method
 from ..solve.samples import FLIGHT, Samples
 
@@ -158,14 +159,15 @@ def attributes(title: str, method: Method) -> dict[str, Any]:
     >>> attributes("A ball", Method("taylor", 1e-9))["tolerance"]
     1e-09
     """
-    packages = ["trundle", "numpy", *{"taylor": ["heyoka"], "runge-kutta": ["scipy"]}.get(method.name, [])]
+    compiler = ["numba"] if available() else []
+    packages = {"taylor": ["heyoka"], "runge-kutta": ["scipy", *compiler]}.get(method.name, [])
     return {
         "Conventions": "CF-1.11",
         "title": title,
         "method": method.name,
         "tolerance": method.tolerance,
         "frame": "support",
-        "source": ", ".join(f"{package} {_version(package)}" for package in packages),
+        "source": ", ".join(f"{package} {_version(package)}" for package in ("trundle", "numpy", *packages)),
     }
 
 

@@ -50,7 +50,7 @@ def simulate(
     every : float or quantity
         Step between samples, s; the end is always sampled.
     method : str
-        "exact": the closed form. "taylor": heyoka at 1e-15. "runge-kutta": SciPy's DOP853 at 1e-12. "auto": the closed
+        "exact": the closed form. "taylor": heyoka at 1e-15. "runge-kutta": DOP853 at 1e-12. "auto": the closed
         form where every phase of the run has one, else Taylor's method.
     tolerance : float, optional
         Of "taylor" and "runge-kutta", relative, for each step, 1e-15 to 1e-6; absent: as above. The run remembers it,
@@ -96,13 +96,13 @@ def simulate(
     check_clock(system, start, float(since[1]))
     chosen, samples = methods.run(method, system, start, times, progress, tolerance)
     if scenario is None:
-        title, scenario = _described(system, start, times, method, title)
+        title, scenario = described(system, start, times, method, title)
     data = labels.dataset(system, samples, labels.attributes(title, chosen))
     known = {} if samples.form is None else {"form": samples.form}
     return Trajectory(data, system, start, chosen.name, samples.events, scenario, known)
 
 
-def _described(system: RollingSystem, start: State, times: Any, method: str, title: str) -> tuple[str, str]:
+def described(system: RollingSystem, start: State, times: Any, method: str, title: str) -> tuple[str, str]:
     """Return title and TOML text of a system; no text where the scenario format has no words for a part of it."""
     length = float(times[-1] - start.time)
     step = float(times[1] - times[0]) if times.size > 2 else length

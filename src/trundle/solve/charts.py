@@ -21,9 +21,8 @@ from ..mechanics.motions import Motion, SupportState
 from ..mechanics.scalars import Scalar, namespace
 from ..mechanics.symmetry import on_plane
 from ..mechanics.system import RollingSystem
-from . import corners
+from . import corner_events
 from .laws import CONTACT, Law
-from .samples import ROLLING
 
 CHART = "chart"  # the name of the event with which a chart ends
 _INSIDE, _EDGE = 0.15, 0.1  # of the sine of the angle between axis and normal: where the nodes' chart begins and ends
@@ -85,7 +84,7 @@ class Chart:
         self, system: RollingSystem, law: Law, time: Scalar, state: Numbers, event_parameters: Numbers
     ) -> Traced:
         """Return the rates of its numbers, and the event functions."""
-        stops = corners.all_event_functions(system, law, time, state, event_parameters)
+        stops = corner_events.all_event_functions(system, law, time, state, event_parameters)
         p, *_, coordinates = law.split(state)
         return Traced(law.rates(system, time, state), stops, normal_at(system, time, p, coordinates))
 
@@ -325,7 +324,7 @@ def charts(system: RollingSystem, law: Law) -> tuple[Chart, ...]:
     ['Chart', 'BodyAxes', 'LineOfNodes']
     """
     # Event functions that take directions take them along the support frame's axes.
-    if law.code != ROLLING or law.ends or system.corners:
+    if not law.in_charts or law.ends or system.corners:
         return (LAWS_OWN,)
     flat, rate = on_plane(system), system.support.motion.steady_rate
     found: list[Chart] = [LAWS_OWN, BodyAxes(flat)]

@@ -183,7 +183,7 @@ def integrate(
             for block in blocks[which::workers]:
                 run = _Lanes(mine, lowered, [systems[i] for i in block], states[block])
                 for rows, lanes, path in run.follow(times):
-                    done(_block(law, systems, [block[lane] for lane in lanes], times, rows, path))
+                    done(completed(law, systems, [block[lane] for lane in lanes], times, rows, path))
                     if halt.is_set():
                         return stopped
                 stopped += [block[lane] for lane in sorted(run.left)]
@@ -212,9 +212,10 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _block(
+def completed(
     law: Law, systems: Sequence[RollingSystem], members: list[int], times: Array, rows: slice, path: Array
 ) -> Block:
+    """Complete the states (rows, size, members) of some members at some of the instants."""
     system = together([systems[i] for i in members], len(path))
     flat = path.transpose(0, 2, 1).reshape(-1, path.shape[1])
     samples = law.record(system, np.repeat(times[rows], len(members)), flat)

@@ -1,9 +1,13 @@
-"""Compiled integrators in the user's cache: the least recently used go, so that it does not grow without end."""
+"""What was compiled, in the user's cache: the least recently used goes, so that it does not grow without end.
+
+An integrator is a file of ours. A law that numba compiles is a text of ours, beside which numba keeps what comes of it.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import hashlib
+import itertools
 import os
 import pickle
 import stat
@@ -15,6 +19,7 @@ from ..files import written_whole
 
 MOST_BYTES = 512 * 2**20  # some four hundred integrators
 MOST_DAYS = 90.0  # not used for longer
+_OURS = ("taylor-*.pickle", "law-*.py", "__pycache__/law-*.nb?")
 _ROOM = 0.8  # share of the most that is left, so that not each new one asks for room
 
 
@@ -43,10 +48,8 @@ def load(key: str) -> Any:
     """
     path = _path(key)
     try:
-        for place in (path.parent, path):
-            facts = place.stat()
-            if facts.st_uid != os.getuid() or facts.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
-                return None
+        if not (_trusted(path.parent) and _trusted(path)):
+            return None
         digest, _, body = path.read_bytes().partition(b"\n")
         if hashlib.sha256(body).hexdigest().encode() != digest:
             return None
@@ -74,6 +77,59 @@ def store(key: str, integrator: Any) -> None:
         prune(folder)
 
 
+def kept_text(text: str) -> Path | None:
+    """Write a program's text into the cache, and return its file; None where numba is to keep nothing beside it.
+
+    Examples
+    --------
+    >>> kept_text("x = 1") == kept_text("x = 1")
+    True
+    """
+    path = cache_folder() / f"law-{hashlib.sha256(text.encode()).hexdigest()[:32]}.py"
+    beside = path.parent / "__pycache__"
+    with contextlib.suppress(Exception):
+        for folder in (path.parent, beside):
+            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        if not path.exists():  # numba asks when it was written
+            with written_whole(path) as temporary:
+                temporary.touch(mode=0o600)
+                temporary.write_text(text, encoding="utf-8")
+            prune(path.parent)
+        kept = _beside(path)
+        for file in kept:
+            os.utime(file)  # used now
+        if all(map(_trusted, (path.parent, beside, path, *kept))) and path.read_text(encoding="utf-8") == text:
+            return path
+    return None
+
+
+def forget(path: Path) -> None:
+    """Remove what numba has kept beside a text, which could not be read.
+
+    Examples
+    --------
+    >>> forget(Path("no-such.py"))
+    """
+    with contextlib.suppress(OSError):
+        for file in _beside(path):
+            file.unlink()
+
+
+def _beside(path: Path) -> list[Path]:
+    return list((path.parent / "__pycache__").glob(f"{path.stem}.*"))
+
+
+def _trusted(place: Path) -> bool:
+    """Tell whether a file or folder belongs to this user, and nobody else may write it.
+
+    Windows has no such owners and modes; there the folder of the user's cache is nobody else's.
+    """
+    if not hasattr(os, "getuid"):
+        return True
+    facts = place.stat()
+    return facts.st_uid == os.getuid() and not facts.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+
+
 def prune(folder: Path) -> None:
     """Remove what was not used for long, and the least recently used of what is too much.
 
@@ -89,7 +145,7 @@ def prune(folder: Path) -> None:
     1
     """
     found = []
-    for path in folder.glob("taylor-*.pickle"):
+    for path in itertools.chain.from_iterable(map(folder.glob, _OURS)):
         with contextlib.suppress(OSError):
             facts = path.lstat()
             found.append((facts.st_mtime, facts.st_size, path))

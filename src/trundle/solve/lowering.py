@@ -18,7 +18,7 @@ from typing import Any
 from ..mechanics.parameters import numbers, with_numbers
 from ..mechanics.scalars import less, namespace
 from ..mechanics.system import RollingSystem
-from . import corners
+from . import corner_events
 from .charts import LAWS_OWN, TURN, Chart
 from .laws import Law
 from .normal_form import NormalForm, Sum
@@ -114,7 +114,7 @@ def lower(system: RollingSystem, law: Law, chart: Chart = LAWS_OWN, zeros: Colle
     """
     names, count = chart.names(system, law), len(numbers(system))
     tape = Tape()
-    time, *rest = tape.inputs(1 + len(names) + count + law.event_parameters + corners.count(system))
+    time, *rest = tape.inputs(1 + len(names) + count + law.event_parameters + corner_events.count(system))
     state, given = rest[: len(names)], rest[len(names) :]
     symbolic = with_numbers(system, [0.0 if i in zeros else node for i, node in enumerate(given[:count])])
     traced = chart.traced(symbolic, law, time, state, given[count:])
@@ -221,8 +221,6 @@ class _Lowering:
             if operation == "sin":
                 return form.apply("+", form.apply("*", sine, c), form.apply("*", cosine, s))
             return form.apply("-", form.apply("*", cosine, c), form.apply("*", sine, s))
-        if operation == "**":
-            return form.power(self._as_sum(operands[0]), int(operands[1]))
         return form.apply(operation, *(self._as_sum(part) for part in operands))
 
     def _as_sum(self, part: Any) -> Sum:
@@ -325,8 +323,6 @@ def _as_heyoka(tape: Tape, outputs: Sequence[Any], inputs: Sequence[Any]) -> lis
             made[index] = inputs[operands[0]]
         elif operation in _SUMS:
             made[index] = _long_sum([(operand(part), sign) for part, sign in _terms(tape, index, inner)])
-        elif operation == "**":
-            made[index] = operand(operands[0]) ** int(operands[1])
         else:
             made[index] = _HEYOKA[operation](xp, *(operand(part) for part in operands))
     return [operand(part) for part in outputs]
@@ -372,6 +368,6 @@ _HEYOKA: dict[str, Callable[..., Any]] = {
     ">": lambda _, a, b: less(b, a),
     **{
         name: (lambda xp, *parts, name=name: getattr(xp, name)(*parts))
-        for name in ("sqrt", "sin", "cos", "tan", "exp", "expm1", "log", "abs", "hypot", "atan2", "where")
+        for name in ("sqrt", "sin", "cos", "tan", "exp", "expm1", "log", "abs", "atan2", "where")
     },
 }

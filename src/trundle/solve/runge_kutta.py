@@ -1,39 +1,80 @@
-"""Dormand and Prince's Runge-Kutta method of order 8, by SciPy: every platform, and the check on Taylor's method."""
+"""Dormand and Prince's Runge-Kutta method of order 8: every platform, and the check on Taylor's method.
+
+SciPy takes the steps; where there are many, and numba is installed, a compiled loop goes on with them.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
-from dataclasses import replace
-from functools import partial
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
 
 import numpy as np
 
 from ..errors import SolverError
 from ..mechanics.system import RollingSystem, State
 from . import corners, phases
+from .compiled_steps import LOOKS, LOW, CompiledDOP853, StuckError, available, places
 from .dense import Keep, Leg, TooMany
+from .laws import Law
 from .patience import Patience
 from .phases import Integrate, Segment, cut
 from .roots import root
 from .samples import AT_ONCE, Array, Progress, Samples
-from .tracing import python_law
+from .tracing import PythonLaw, python_law
 from .transitions import PhaseStart, ZeroCrossing
 
 TOLERANCE = 1e-12
 FINEST = 1e-13  # SciPy's own limit is 2e-14
 _ASIDE = 1e-12  # s
-_LOOKS = 8  # at the stops in each step
-_LOW = 0.5  # share of how much its looks differ: where all are higher, a stop is nowhere near zero between them
+_SERIES = np.linalg.inv(np.polynomial.chebyshev.chebvander(2 * places() - 1, LOOKS - 1))  # of what goes through them
+_SURELY = 10.0  # times its last two coefficients that the polynomial is off at most
 _BLUR = 0.05  # share of a step within which a polynomial through these finds where a stop is lowest
 _SINGULAR = ("curved", "edge", "end", "jam")  # stops at which a law is singular
 _ALL_BUT = 1e-3  # share of what was left of such a stop at first
 _PATIENCE: dict[str, Any] = {"steps": 1e7, "spare": 5e3, "name": "The Runge-Kutta method"}  # an hour, and seconds
 _BRIEF = 3e3  # steps of a law that holds for an instant only
 _FIRST_STEP = 1e-12  # s
+_BEGINNING = 20  # steps, after which one sees how many there will be
+_WORTH_COMPILING = 500  # steps: for so many SciPy takes as long as a law takes to be compiled
 
-Path = Callable[[Array], Array]  # of a step: its state at some times, (variables, n)
+
+class Path(Protocol):
+    """Steps, and the polynomials through them."""
+
+    @property
+    def t_old(self) -> float:
+        """When they begin."""
+
+    @property
+    def t(self) -> float:
+        """When they end."""
+
+    @property
+    def count(self) -> int:
+        """How many they are."""
+
+    @property
+    def plain(self) -> bool:
+        """Whether it is known that no event function comes near zero in them."""
+
+    def __call__(self, times: Any) -> Array:
+        """Return the states at an instant, (variables,), or some, (variables, n)."""
+
+
+@dataclass(frozen=True)
+class _OneStep:
+    """A step of SciPy's, or none, where a run begins."""
+
+    t_old: float
+    t: float
+    polynomial: Callable[[Any], Array]
+    count: int = 1
+    plain: bool = False
+
+    def __call__(self, times: Any) -> Array:
+        return self.polynomial(times)
 
 
 def solve(
@@ -79,9 +120,9 @@ def dense(system: RollingSystem, now: PhaseStart, end: float, tolerance: float, 
     try:
         *_, last = _integrated(system, now, paths, end - now.time, tolerance, None)
     except _TooManyError:
-        return TooMany(len(paths.paths), now.time + paths.begins[-1])
+        return TooMany(paths.count, now.time + paths.begins[-1])
     stop = None if last.stop is None else replace(last.stop, time=now.time + last.stop.time)
-    return Leg(lambda times: paths.at(times - now.time), stop, len(paths.paths))
+    return Leg(lambda times: paths.at(times - now.time), stop, paths.count)
 
 
 def _integrated(
@@ -93,18 +134,10 @@ def _integrated(
     progress: Progress | None,
 ) -> Iterator[Segment]:
     """Follow one law to its first stop; all times count from its beginning."""
-    from scipy.integrate import DOP853, Radau
-
     law, begin = now.law, now.time
     traced = python_law(system, law, (*now.event_parameters, *corners.directions(system, now)), begin, now.state_vector)
-    size, y0 = len(now.state_vector), np.asarray(now.state_vector, dtype=float)
+    y0 = np.asarray(now.state_vector, dtype=float)
     end = max(end, float(np.spacing(begin)))  # some way to go
-
-    def rates(since: float, y: Array) -> Array:
-        try:
-            return np.array(traced.rates(begin + since, y.tolist()))
-        except (ArithmeticError, ValueError):  # a trial beyond the end of a formula: a shorter step stays before it
-            return np.full(size, np.nan)
 
     def stops(since: float, y: Array) -> Array:
         try:
@@ -112,27 +145,80 @@ def _integrated(
         except (ArithmeticError, ValueError):
             return np.full(len(traced.names), np.nan)
 
-    told = None if progress is None else lambda since: progress(begin + since)
     patience = Patience(begin, begin + end, **_PATIENCE | ({"steps": _BRIEF, "spare": _BRIEF} if law.brief else {}))
-    steps = partial(_steps, rows=rows, stops=stops, names=traced.names, begin=begin, patience=patience, progress=told)
     try:
         at = law.unpack(system, begin, y0)
-        scale = _scale(y0, at.arm, at.scale(system))
-        given: dict[str, Any] = {"rtol": tolerance, "atol": tolerance * scale}
-        if not law.stiff(y0):
-            yield from steps(DOP853(rates, 0.0, y0, end, **given))
-            return
-        # Its first steps must be as short as the law is stiff: across a jump of direction there are other solutions.
-        first = Radau(rates, 0.0, y0, end, first_step=min(_FIRST_STEP, end), **given)
-        for piece in steps(first, until=lambda y: not law.stiff(y)):
-            stop = piece.stop
-            if stop is None or stop.name:
-                yield piece
-                continue
-            yield Segment(piece.times, piece.states, None)
-            yield from steps(DOP853(rates, stop.time, stop.state_vector, end, **given))
+        least = tolerance * _scale(y0, at.arm, at.scale(system))
+        least[y0.size - law.unwatched :] = np.inf
+        paths = _paths(law, traced, begin, y0, end, tolerance, least)
+        yield from _follow(_watched(paths, patience, progress, begin), y0, rows, stops, traced.names)
+    except StuckError as stuck:
+        raise SolverError(_broken(stuck, begin)) from None
     except (ZeroDivisionError, ValueError, OverflowError) as error:
         raise SolverError(f"The Runge-Kutta method broke down on the way to t = {begin + end:g} s: {error}.") from None
+
+
+def _watched(paths: Iterable[Path], patience: Patience, progress: Progress | None, begin: float) -> Iterator[Path]:
+    """Give steps on as long as patience lasts, and tell how far they have led."""
+    for path in paths:
+        patience.after(path.count, begin + path.t)
+        yield path
+        if progress is not None:
+            progress(begin + path.t)
+
+
+def _paths(
+    law: Law, traced: PythonLaw, begin: float, y0: Array, end: float, tolerance: float, least: Array
+) -> Iterator[Path]:
+    """Take steps to the end; those of a law that is stiff, and the first of any other, one by one."""
+    from scipy.integrate import DOP853, Radau
+
+    given: dict[str, Any] = {"rtol": tolerance, "atol": least}
+
+    def rates(since: float, y: Array) -> Array:
+        try:
+            return np.array(traced.rates(begin + since, y.tolist()))
+        except (ArithmeticError, ValueError):  # a trial beyond the end of a formula: a shorter step stays before it
+            return np.full(y0.size, np.nan)
+
+    t, y = 0.0, y0
+    if law.stiff(y0):
+        # Its first steps must be as short as the law is stiff: across a jump of direction there are other solutions.
+        stiff = Radau(rates, 0.0, y0, end, first_step=min(_FIRST_STEP, end), **given)
+        yield from _one_by_one(stiff, lambda: not law.stiff(stiff.y))
+        t, y = float(stiff.t), stiff.y
+    if t < end:
+        stepper = DOP853(rates, t, y, end, **given)
+        compiles = traced.compiled is not None and not law.brief and available()
+        yield from _one_by_one(stepper, _many_to_come(stepper) if compiles else lambda: False)
+        if stepper.status == "running" and traced.compiled is not None:
+            yield from CompiledDOP853(traced.compiled(), stepper, begin, tolerance, least)
+
+
+def _one_by_one(stepper: Any, until: Callable[[], bool]) -> Iterator[Path]:
+    """Take steps of SciPy's to the end, or to where it is said after one that they are enough."""
+    while stepper.status == "running":
+        message = stepper.step()
+        if stepper.status == "failed" or not np.isfinite(stepper.y).all():
+            raise StuckError(float(stepper.t), stepper.y.copy(), message or "The rates are no longer finite.")
+        yield _OneStep(float(stepper.t_old), float(stepper.t), stepper.dense_output())
+        if until():
+            return
+
+
+def _many_to_come(stepper: Any) -> Callable[[], bool]:
+    """Return what tells after a step whether so many more are to come that they are better compiled."""
+    since, taken = float(stepper.t), 0
+
+    def many() -> bool:
+        nonlocal since, taken
+        taken += 1
+        if taken % _BEGINNING:
+            return False
+        mean, since = (stepper.t - since) / _BEGINNING, stepper.t
+        return stepper.t_bound - stepper.t > _WORTH_COMPILING * mean
+
+    return many
 
 
 def _scale(y0: Array, arm: float, speed: float) -> Array:
@@ -142,7 +228,7 @@ def _scale(y0: Array, arm: float, speed: float) -> Array:
     """
     place, turning = max(_size(y0[:3]), arm), max(_size(y0[7:10]), 0.1 * speed / arm)
     rest = max(1e-3 * _size(y0[10:]), 1e-4 * speed)
-    least = [*[1e-3 * place] * 3, *[1.0] * 4, *[1e-3 * turning] * 3, *[rest] * 99]
+    least = [*[1e-3 * place] * 3, *[1.0] * 4, *[1e-3 * turning] * 3, *[rest] * y0.size]
     return np.maximum(np.abs(y0), least[: y0.size])
 
 
@@ -150,46 +236,25 @@ def _size(part: Array) -> float:
     return float(np.abs(part).max(initial=0.0))
 
 
-def _steps(
-    stepper: Any,
-    *,
-    rows: _Rows | _Paths,
-    stops: Any,
-    names: tuple[str, ...],
-    begin: float,
-    patience: Patience,
-    progress: Progress | None,
-    until: Callable[[Array], bool] = lambda _: False,
+def _follow(
+    paths: Iterable[Path], y0: Array, rows: _Rows | _Paths, stops: Any, names: tuple[str, ...]
 ) -> Iterator[Segment]:
-    """Take steps to the end or the first stop; states are read off each step's own polynomial.
-
-    Where `until` says so of a state, they end after the step, at a stop without a name.
-    """
-    y = stepper.y
-    yield from rows.take(stepper.t, lambda t: np.tile(y[:, None], t.size))
-    first = values = stops(stepper.t, stepper.y)
-    while stepper.status == "running":
-        message = stepper.step()
-        patience.after(1, begin + float(stepper.t))
-        if stepper.status == "failed" or not np.isfinite(stepper.y).all():
-            near = _singular(names, values, first)
-            if near is None:
-                raise SolverError(_broken(stepper, begin, message))
-            yield rows.rest(ZeroCrossing(float(stepper.t), near, stepper.y.copy()), before=stepper.t)
-            return
-        path = stepper.dense_output()
-        found = _first_stop(path, stops, values)
-        reach = stepper.t if found is None else found[0]
-        yield from rows.take(reach, path, before=found is not None)
-        if found is not None:
-            yield rows.rest(ZeroCrossing(found[0], names[found[1]], path(found[0])))
-            return
-        if until(stepper.y) and stepper.status == "running":
-            yield rows.rest(ZeroCrossing(float(stepper.t), "", stepper.y.copy()))
-            return
-        values = stops(stepper.t, stepper.y)
-        if progress is not None:
-            progress(float(stepper.t))
+    """Go along steps to the end or the first stop; states are read off the steps' own polynomials."""
+    yield from rows.take(_OneStep(0.0, 0.0, lambda t: np.tile(y0[:, None], t.size)))
+    first = stops(0.0, y0)
+    try:
+        for path in paths:
+            found = None if path.plain else _first_stop(path, stops)
+            yield from rows.take(path, before=None if found is None else found[0])
+            if found is not None:
+                yield rows.rest(ZeroCrossing(found[0], names[found[1]], path(found[0])))
+                return
+    except StuckError as stuck:
+        near = _singular(names, stops(stuck.t, stuck.y), first)
+        if near is None:
+            raise
+        yield rows.rest(ZeroCrossing(stuck.t, near, stuck.y), before=stuck.t)
+        return
     yield rows.rest(None)
 
 
@@ -200,9 +265,10 @@ class _Rows:
         self.times, self.begun, self.done = times, 0, 0
         self.states = np.empty((min(times.size, AT_ONCE), size))
 
-    def take(self, reach: float, path: Path, *, before: bool = False) -> Iterator[Segment]:
-        """Fill in the states up to where a step ends, or before a stop in it, and yield each block that is full."""
-        upto = int(np.searchsorted(self.times, reach, side="left" if before else "right"))
+    def take(self, path: Path, before: float | None = None) -> Iterator[Segment]:
+        """Fill in the states up to where steps end, or before a stop in them, and yield each block that is full."""
+        right = np.searchsorted(self.times, path.t, side="right")
+        upto = int(right if before is None else np.searchsorted(self.times, before, side="left"))
         while self.done < upto:
             if self.done - self.begun == len(self.states):
                 yield self.rest(None)
@@ -225,15 +291,16 @@ class _Paths:
     """The polynomials of all steps, in place of states at some times."""
 
     def __init__(self, y0: Array, most: int) -> None:
-        self.y0, self.most = y0, most
+        self.y0, self.most, self.count = y0, most, 0
         self.begins: list[float] = []
         self.paths: list[Path] = []
 
-    def take(self, reach: float, path: Path, *, before: bool = False) -> Iterator[Segment]:  # noqa: ARG002
-        """Keep one more."""
-        if len(self.paths) == self.most:
+    def take(self, path: Path, before: float | None = None) -> Iterator[Segment]:  # noqa: ARG002
+        """Keep some more."""
+        self.count += path.count
+        if self.count > self.most:
             raise _TooManyError
-        self.begins.append(getattr(path, "t_old", reach))
+        self.begins.append(path.t_old)
         self.paths.append(path)
         yield from ()
 
@@ -261,27 +328,27 @@ def _singular(names: tuple[str, ...], values: Array, first: Array) -> str | None
     return nearest if nearest is not None and shares[nearest] < _ALL_BUT else None
 
 
-def _broken(stepper: Any, begin: float, message: str | None) -> str:
+def _broken(stuck: StuckError, begin: float) -> str:
     """Say when and where the method broke down."""
-    near = ", ".join(f"{part:.6g}" for part in stepper.y[:3])
-    why = str(message or "The rates are no longer finite.").rstrip(".")
+    near = ", ".join(f"{part:.6g}" for part in stuck.y[:3])
+    why = stuck.why.rstrip(".")
     return (
-        f"The Runge-Kutta method broke down at t = {begin + stepper.t:.9g} s, near ({near}) m on the support: {why}. "
+        f"The Runge-Kutta method broke down at t = {begin + stuck.t:.9g} s, near ({near}) m on the support: {why}. "
         "Look for a surface, a body or a load that is not smooth there."
     )
 
 
-def _first_stop(path: Any, stops: Any, begin: Array) -> tuple[float, int] | None:
+def _first_stop(path: Path, stops: Any) -> tuple[float, int] | None:
     """Return the first instant in a step at which a stop falls through zero, also where it rises again at once."""
-    if not begin.size:
+    looks = path.t_old + (path.t - path.t_old) * places()
+    looks[-1] = path.t
+    values = np.array([stops(t, y) for t, y in zip(looks, path(looks).T, strict=True)])
+    if not values.size:
         return None
-    looks = 0.5 * (path.t_old + path.t) - 0.5 * (path.t - path.t_old) * np.cos(np.pi * np.arange(_LOOKS) / (_LOOKS - 1))
-    looks[[0, -1]] = path.t_old, path.t
-    between = path(looks[1:]).T
-    values = np.array([begin, *(stops(t, y) for t, y in zip(looks[1:], between, strict=True))])
-    found: list[tuple[float, int]] = []
-    falls, low = ((values[:-1] >= 0) & (values[1:] < 0)).any(axis=0), np.fmin.reduce(values) < _LOW * np.ptp(values, 0)
-    for which in np.flatnonzero(falls | low).tolist():
+    falls, low = ((values[:-1] >= 0) & (values[1:] < 0)).any(axis=0), np.fmin.reduce(values) < LOW * np.ptp(values, 0)
+    found: tuple[float, int] | None = None
+    # Those that seem to come first are looked for first: of what comes later no more is asked.
+    for which in sorted(np.flatnonzero(falls | low).tolist(), key=lambda which: _about(looks, values[:, which])):
 
         def at(t: float, which: int = which) -> float:
             value, aside = float(stops(t, path(t))[which]), 0.0
@@ -290,42 +357,61 @@ def _first_stop(path: Any, stops: Any, begin: Array) -> tuple[float, int] | None
                 value = float(stops(t + aside, path(t + aside))[which])
             return value
 
-        fall = _fall(at, looks, values[:, which])
+        fall = _fall(at, looks, values[:, which], np.inf if found is None else found[0])
         if fall is not None:
-            found.append((fall, which))
-    return min(found) if found else None
+            found = fall, which
+    return found
 
 
-def _fall(function: Callable[[float], float], looks: Array, values: Array) -> float | None:
-    """Return where a function first falls through zero, given its values at Chebyshev's points of a step."""
+def _about(looks: Array, values: Array) -> float:
+    """Return about when a function falls through zero: on the line between two looks; infinite where it does not."""
+    first = int(np.argmax((values[:-1] >= 0) & (values[1:] < 0)))
+    high, fell = values[first], values[first + 1]
+    return float(np.interp(0.0, [fell, high], [looks[first + 1], looks[first]])) if high >= 0 > fell else np.inf
+
+
+def _fall(function: Callable[[float], float], looks: Array, values: Array, before: float) -> float | None:
+    """Return where a function first falls through zero before an instant, given it at Chebyshev's points of a step."""
     falls = np.flatnonzero((values[:-1] >= 0) & (values[1:] < 0))
     inside = values[: falls[0] + 1] if falls.size else values
     # What lies between the looks is hardly lower than the lowest of them, beside how much they differ.
-    if np.nanmin(inside, initial=np.inf) < _LOW * np.ptp(values) and (inside >= 0).all():
-        for low in _minima(function, looks, values):
-            if (not falls.size or low < looks[falls[0]]) and function(low) < 0:
-                before = looks[: np.searchsorted(looks, low)][-1]
-                return root(function, before, low)
+    if np.nanmin(inside, initial=np.inf) < LOW * np.ptp(values) and (inside >= 0).all():
+        upto = min(before, looks[falls[0]]) if falls.size else before
+        for low in _minima(function, looks, values, upto):
+            if function(low) < 0:
+                return _sooner(function, looks[np.searchsorted(looks, low) - 1], low, before)
     if not falls.size:
         return None
     first = int(falls[0])
-    return root(function, looks[first], looks[first + 1])
+    return _sooner(function, looks[first], looks[first + 1], before)
 
 
-def _minima(function: Callable[[float], float], looks: Array, values: Array) -> list[float]:
-    """Return where a function is lowest between its looks, in order, near where the polynomial through them is."""
+def _sooner(function: Callable[[float], float], begin: float, end: float, before: float) -> float | None:
+    """Return where a function falls through zero between two instants, if it is before a third."""
+    if begin >= before or (end > before and function(before) >= 0):
+        return None
+    return root(function, begin, min(end, before))
+
+
+def _minima(function: Callable[[float], float], looks: Array, values: Array, before: float) -> list[float]:
+    """Return where a function may be below zero between its looks, in order: where the polynomial through them is low.
+
+    It is as far from the function as its last coefficients are large, about: these become smaller by about one factor.
+    """
     from numpy.polynomial import chebyshev
     from scipy.optimize import minimize_scalar
 
-    x = -np.cos(np.pi * np.arange(_LOOKS) / (_LOOKS - 1))
-    slope = chebyshev.chebder(chebyshev.chebfit(x, values, _LOOKS - 1))
+    series = _SERIES @ values
+    slope = chebyshev.chebder(series)
     roots = chebyshev.chebroots(np.trim_zeros(slope, "b")) if slope.any() else np.empty(0)
     level = np.sort(roots.real[(np.abs(roots.imag) < _BLUR) & (np.abs(roots.real) < 1)])
+    clear = chebyshev.chebval(level, series) > _SURELY * np.abs(series[-2:]).sum()
     rises = chebyshev.chebval(level, chebyshev.chebder(slope)) > 0
     begin, end = looks[0], looks[-1]
     found = []
-    for middle in 0.5 * (begin + end) + 0.5 * (end - begin) * level[rises]:
+    for middle in 0.5 * (begin + end) + 0.5 * (end - begin) * level[rises & ~clear]:
         bounds = max(begin, middle - _BLUR * (end - begin)), min(end, middle + _BLUR * (end - begin))
         options = {"xatol": 1e-9 * (end - begin)}
-        found.append(float(minimize_scalar(function, bounds=bounds, method="bounded", options=options).x))
-    return found
+        if bounds[0] < before:
+            found.append(float(minimize_scalar(function, bounds=bounds, method="bounded", options=options).x))
+    return [low for low in found if low < before]

@@ -1,17 +1,41 @@
-"""A recorder of arithmetic: run a law once on recorders, and get it back as one flat Python function.
+"""A recorder of arithmetic: run a law once on recorders, and get it back as flat text, of Python or another language.
 
-Equal operations on equal operands are recorded once, so the function is as long as the law has different steps,
-whatever the body and the support.
+Equal operations on equal operands are recorded once, so the text is as long as the law has different steps, whatever
+the body and the support. A power is recorded as products and a hypotenuse as a square root: these are the same to the
+last bit in every language, and the functions of a library are not.
 """
 
 from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 _LONGEST = 300  # characters of an expression: Python reads no more than 200 brackets in each other
+
+
+@dataclass(frozen=True)
+class Dialect:
+    """How a language writes what a tape holds.
+
+    Parameters
+    ----------
+    variable : callable
+        The name of an input, by its place.
+    functions : mapping
+        What the functions are called whose name in the language is not that on the tape.
+    choice : str
+        One of two values, with places for the condition and the two.
+    number : callable
+        A number as it is written.
+    """
+
+    variable: Callable[[int], str] = "x[{}]".format
+    functions: Mapping[str, str] = field(default_factory=dict)
+    choice: str = "where({}, {}, {})"
+    number: Callable[[float], str] = repr
 
 
 class Tape:
@@ -49,19 +73,37 @@ class Tape:
 
     def function(self, outputs: Sequence[Any]) -> Callable[[Sequence[float]], list[float]]:
         """Return the function of the inputs that gives the outputs."""
+        lines, results = self.written(outputs, Dialect())
+        worked_out = [f"    {name} = {text}" for name, text in lines]
+        return defined("\n".join(["def traced(x):", *worked_out, f"    return [{', '.join(results)}]"]))
+
+    def filling(self, outputs: Sequence[Any]) -> str:
+        """Return the text of a function of the inputs and an array, `out`, that fills the outputs in."""
+        lines, results = self.written(outputs, Dialect())
+        worked_out = [f"    {name} = {text}" for name, text in lines]
+        filled = [f"    out[{i}] = {part}" for i, part in enumerate(results)]
+        return "\n".join(["def traced(x, out):", *worked_out, *filled, "    return", ""])
+
+    def written(self, outputs: Sequence[Any], dialect: Dialect) -> tuple[list[tuple[str, str]], list[str]]:
+        """Return the steps that lead to the outputs, each a name and its text, and then the texts of the outputs.
+
+        Examples
+        --------
+        >>> tape = Tape()
+        >>> x, y = tape.inputs(2)
+        >>> tape.written([x * y + 1.0, x * y], Dialect("xy".__getitem__))
+        ([('v2', '(x * y)')], ['(v2 + 1.0)', 'v2'])
+        """
         needed = self.needed(outputs)
         uses = [*outputs, *(part for i in needed for part in self.steps[i][1:])]
         used = Counter(part.index for part in uses if isinstance(part, Node))
-        lines, names = ["def traced(x):"], dict[int, str]()
+        lines, names = list[tuple[str, str]](), dict[int, str]()
         for i in needed:
-            names[i] = _written(self.steps[i], names)
+            names[i] = _written(self.steps[i], names, dialect)
             if used[i] > 1 or len(names[i]) > _LONGEST:  # what is used once stands where it is used: twice as fast
-                lines.append(f"    v{i} = {names[i]}")
+                lines.append((f"v{i}", names[i]))
                 names[i] = f"v{i}"
-        source = "\n".join([*lines, f"    return [{', '.join(_name(part, names) for part in outputs)}]"])
-        place: dict[str, Any] = dict(_PYTHON)
-        exec(source, place)  # noqa: S102  operators, numbers and the names of `_PYTHON`, nothing else
-        return place["traced"]
+        return lines, [_name(part, names, dialect) for part in outputs]
 
     def needed(self, outputs: Sequence[Any]) -> list[int]:
         """Return the steps that the outputs lean on, in order."""
@@ -124,7 +166,10 @@ class Node:
         return operation(self.tape, a, b) if known else NotImplemented
 
     def __neg__(self) -> Any:
-        return self.minus or self.tape.record("neg", self)
+        return self.tape.record("neg", self) if self.minus is None else self.minus
+
+    def __bool__(self) -> bool:
+        raise TypeError("What is recorded has no value to decide by: choose by `where` of `scalars.namespace`.")
 
     @property
     def minus(self) -> Any:
@@ -133,16 +178,19 @@ class Node:
         return operands[0] if operation == "neg" else None
 
     def __pow__(self, power: int) -> Any:
-        return self if power == 1 else self.tape.record("**", self, power)
+        if power < 0:
+            return 1.0 / self**-power
+        half = self ** (power // 2) if power > 1 else 1.0
+        return half * half * self if power % 2 else half * half
 
     def __abs__(self) -> Any:
         return self.tape.record("abs", self)
 
     def __lt__(self, other: Any) -> Any:
-        return self.tape.record("<", self, other)
+        return self._with(lambda tape, a, b: tape.record("<", a, b), self, other)
 
     def __gt__(self, other: Any) -> Any:
-        return self.tape.record(">", self, other)
+        return self._with(lambda tape, a, b: tape.record(">", a, b), self, other)
 
 
 # One form for what is the same to the last bit: factors and summands in the order in which they came up, signs outside.
@@ -190,6 +238,10 @@ def _function(name: str) -> Callable[..., Any]:
     return staticmethod(recorded)
 
 
+def _hypot(x: Any, y: Any) -> Any:
+    return _Functions.sqrt(x * x + y * y)
+
+
 def _where(condition: Any, yes: Any, no: Any) -> Any:
     """Return one of two values; each is worked out, so neither may fail where the other is meant."""
     return yes if condition else no
@@ -204,11 +256,25 @@ _PYTHON: dict[str, Callable[..., Any]] = {
     "expm1": math.expm1,
     "log": math.log,
     "abs": abs,
-    "hypot": math.hypot,
     "atan2": math.atan2,
     "where": _where,
 }
-_Functions = type("_Functions", (), {name: _function(name) for name in _PYTHON})
+
+
+def defined(text: str, file: str = "<tape>", **functions: Any) -> Callable[..., Any]:
+    r"""Return the function whose text a tape has written, with other names than Python's functions.
+
+    Examples
+    --------
+    >>> defined("def traced(x):\n    return [sqrt(x[0])]")([4.0])
+    [2.0]
+    """
+    place: dict[str, Any] = _PYTHON | functions
+    exec(compile(text, file, "exec"), place)  # noqa: S102  operators, numbers and the names of `place`, nothing else
+    return place["traced"]
+
+
+_Functions: Any = type("_Functions", (), {**{name: _function(name) for name in _PYTHON}, "hypot": staticmethod(_hypot)})
 
 
 def apply(tape: Tape, operation: str, *operands: Any) -> Any:
@@ -237,17 +303,19 @@ def _is(value: Any, number: float) -> bool:
     return isinstance(value, (int, float)) and value == number
 
 
-def _name(part: Any, names: dict[int, str]) -> str:
-    return names[part.index] if isinstance(part, Node) else repr(float(part))
+def _name(part: Any, names: dict[int, str], dialect: Dialect) -> str:
+    return names[part.index] if isinstance(part, Node) else dialect.number(float(part))
 
 
-def _written(step: tuple[Any, ...], names: dict[int, str]) -> str:
+def _written(step: tuple[Any, ...], names: dict[int, str], dialect: Dialect) -> str:
     operation, *operands = step
     if operation == "input":
-        return f"x[{operands[0]}]"
+        return dialect.variable(operands[0])
+    written = [_name(part, names, dialect) for part in operands]
     if operation == "neg":
-        return f"(-{_name(operands[0], names)})"
-    if operation == "**":
-        return f"({_name(operands[0], names)} ** {int(operands[1])})"
-    written = [_name(part, names) for part in operands]
-    return f"{operation}({', '.join(written)})" if operation in _PYTHON else f"({f' {operation} '.join(written)})"
+        return f"(-{written[0]})"
+    if operation == "where":
+        return dialect.choice.format(*written)
+    if operation in _PYTHON:
+        return f"{dialect.functions.get(operation, operation)}({', '.join(written)})"
+    return f"({f' {operation} '.join(written)})"

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..errors import OutOfDomainError
 from ..mechanics.system import RollingSystem, State
+from ..solve.compiled_steps import available
 from ..solve.dense import Dense
 from ..solve.exact import ClosedForm
 from ..solve.methods import Method
@@ -25,6 +26,7 @@ _INSTANTS = 200
 _SLOW = 1e-3  # of a body's turning: what a support's own is held against at least
 _EVENTS_BEFORE, _EVENTS_AFTER = 3, 5  # the first by which two runs differ, over which a small change is followed
 _STEPS_FOLLOWED = {"exact": 60_000, "taylor": 60_000, "runge-kutta": 10_000}  # in all of a dozen runs
+_FEW_STEPS, _COMPILED = 2_000, 20  # once more, and how many times faster a compiled law takes them
 _RUNS = 12  # about: the run itself, and one for each way in which its state can change
 _MOST_RADIANS = 50_000.0  # of turning that a cross-check follows
 
@@ -46,6 +48,19 @@ def same_again(
     other = int(((ours.phase != theirs.phase) & both.alike).sum())
     if ours.events or other or (ours.phase != ours.phase[0]).any():
         yield checked("phase", other, 0, "samples in another phase than the method run again has")
+
+
+def finer(system: RollingSystem, start: State, at: Samples, method: Method, kept: Dense | None) -> Iterator[CardFigure]:
+    """Compare a Runge-Kutta run with one of a smaller tolerance: how exact it is, its tolerance alone does not say."""
+    pace = _COMPILED if available() and system.support.surface.analytic else 1
+    if method.name != "runge-kutta" or method.tolerance <= FINEST or kept is None or kept.steps > _FEW_STEPS * pace:
+        return
+    with_more = replace(method, tolerance=max(FINEST, method.tolerance / 10))
+    some = at.part(slice(None, None, max(1, at.time.size // _INSTANTS)))
+    ours, theirs = at_the_same_times(some, with_more.solve(system, start, some.time))
+    both = Compared(system, start, ours, theirs, method, with_more, sizes_of(system, ours), turned_in(at))
+    said = f"beside a run of tolerance {with_more.tolerance:g}, at {ours.time.size} instants"
+    yield both.figure("accuracy reached", both.share, both.bound, said)
 
 
 def cross_check(
@@ -118,6 +133,11 @@ class Compared:
     def bound(self) -> float:
         """The share that the method may be off; more than a hundredth says nothing."""
         return min(bound_of(self.method, self.turned), MOST)
+
+    @property
+    def _steps(self) -> float:
+        """About how many steps it took, each with an error of its own: one a radian, or as many as were counted."""
+        return max(self.turned, 0.0 if self.kept is None else self.kept.steps)
 
     @property
     def angle_bound(self) -> float:
@@ -234,13 +254,13 @@ class Compared:
         if plain <= bound and parts == np.inf:
             return checked(name, plain, bound, said, unit)
         grown = self.growth
-        until = grown.told_until(bound, self.turned)
+        until = grown.told_until(bound, self._steps)
         events = np.array([event.time for event in self.ours.events[: self._shifts.size]])
-        allowed = grown.widened(bound, self.turned, grown.at(self.ours.time))
+        allowed = grown.widened(bound, self._steps, grown.at(self.ours.time))
         told = (self.ours.time <= until) & ((allowed < MOST) | (allowed <= bound))
         later = np.pad(grown.shifted, (grown.skipped, max(0, events.size - grown.skipped - grown.shifted.size)))
         later = np.maximum(later[: events.size], grown.at(events))  # of the times and of the states
-        allowed_then = grown.widened(bound, self.turned, later)
+        allowed_then = grown.widened(bound, self._steps, later)
         known = (events <= until) & ((allowed_then < MOST) | (allowed_then <= bound))
         values = np.concatenate(
             [share[told], self._shifts[known] * bound / self.bound, [np.inf] if parts <= until else []]
@@ -271,4 +291,4 @@ def _difference(ours: Samples, theirs: Samples, sizes: dict[str, float]) -> Arra
     return np.max(shares, axis=0)
 
 
-__all__ = ["cross_check", "same_again"]
+__all__ = ["cross_check", "finer", "same_again"]

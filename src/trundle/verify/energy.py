@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..mechanics.algebra import ZERO, Vector
+from ..mechanics.invariants.powers import energies
 from ..mechanics.loads import BodyMotion, Load
 from ..mechanics.system import RollingSystem
 from ..solve.samples import FLIGHT, Samples
@@ -41,12 +42,8 @@ def energy(system: RollingSystem, at: Samples) -> Array:
 
 def _energies(system: RollingSystem, at: Samples) -> Array:
     """Return the kinetic energy and each potential energy (kinds, n): their sum may be the small difference of two."""
-    motion = at.motion(system)
-    V, Omega = motion.velocity, motion.angular_velocity
-    J = system.body.inertia_in_space(motion.orientation.matrix())
-    kinetic = 0.5 * system.body.mass * V.dot(V) + 0.5 * Omega.dot(J @ Omega)
-    kept = [load.potential(motion) for load in system.all_loads if _keeps(load, motion)]
-    return np.stack([np.broadcast_to(np.asarray(part, dtype=float), at.time.shape) for part in (kinetic, *kept)])
+    parts = energies(system, at.motion(system))
+    return np.stack([np.broadcast_to(np.asarray(part, dtype=float), at.time.shape) for part in parts])
 
 
 def _keeps(load: Load, motion: BodyMotion) -> bool:

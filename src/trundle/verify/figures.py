@@ -17,7 +17,7 @@ from .again import Again
 from .bounds import bound_of, turned_in
 from .card import Card, CardFigure
 from .circle import guiding_centre, measured_circle
-from .compared import cross_check, same_again
+from .compared import cross_check, finer, same_again
 from .each_sample import EachSample
 from .energy import balance
 from .events import AtEvents
@@ -61,6 +61,7 @@ def card(system: RollingSystem, start: State, samples: Samples, method: Method, 
         *drifts(system, some, method),
         *(guiding_centre(circle, start, some, method) if circle is not None else ()),
         *(same_again(system, start, again.sampled, again.samples, method, again.kept) if followed else ()),
+        *(finer(system, start, again.itself, method, again.kept) if followed else ()),
         *cross_check(system, start, some, method, motion),
         *(measured_circle(system, circle, start, samples, method) if circle is not None else ()),
         *(contact_force(system, samples, looked_into(system, again.samples, again.follow)) if followed else ()),
@@ -84,7 +85,7 @@ def _events(samples: Samples) -> Iterator[CardFigure]:
 def _described(method: Method, motion: ClosedForm | None) -> str:
     if method.name == "exact" and motion is not None:
         return f"closed form {motion.equation}, {motion.name} ({motion.source})"
-    name = {"taylor": "Taylor series (heyoka)", "runge-kutta": "Runge-Kutta DOP853 (SciPy)"}[method.name]
+    name = {"taylor": "Taylor series (heyoka)", "runge-kutta": "Runge-Kutta DOP853"}[method.name]
     return f"{name}, tolerance {method.tolerance:g}"
 
 

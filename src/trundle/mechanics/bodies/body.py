@@ -67,7 +67,7 @@ class Body:
     0.4
     """
 
-    mass: Scalar
+    mass: Annotated[Scalar, Number("mass")]
     inertia: Isotropic | RatioInertia | Principal | Tensor
     shape: Shape
 

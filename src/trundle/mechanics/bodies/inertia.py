@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 from ...errors import InvalidValueError
 from .. import checks
 from ..algebra import ZERO, Matrix, RotatedTensor, Vector
 from ..parts import POSITIVE, Number
 from ..scalars import Scalar, is_number, is_zero, namespace
+
+MOMENT = Number("inertia")
 
 _SLACK = 1e-12  # of a moment: the rounding that a rule is not held against
 
@@ -60,7 +62,7 @@ class Isotropic:
     Vector(x=2.0, y=0.0, z=0.0)
     """
 
-    moment: Scalar
+    moment: Annotated[Scalar, MOMENT]
     axisymmetric = True
 
     def __post_init__(self) -> None:
@@ -150,9 +152,9 @@ class Principal:
     Vector(x=0.0, y=2.0, z=0.0)
     """
 
-    x: Scalar
-    y: Scalar
-    z: Scalar
+    x: Annotated[Scalar, MOMENT]
+    y: Annotated[Scalar, MOMENT]
+    z: Annotated[Scalar, MOMENT]
 
     def __post_init__(self) -> None:
         moments = [checks.positive(getattr(self, name), "inertia", f"inertia.{name}") for name in "xyz"]
@@ -210,12 +212,12 @@ class Tensor:
     0.014282
     """
 
-    xx: Scalar
-    yy: Scalar
-    zz: Scalar
-    xy: Scalar = 0.0
-    xz: Scalar = 0.0
-    yz: Scalar = 0.0
+    xx: Annotated[Scalar, MOMENT]
+    yy: Annotated[Scalar, MOMENT]
+    zz: Annotated[Scalar, MOMENT]
+    xy: Annotated[Scalar, MOMENT] = 0.0
+    xz: Annotated[Scalar, MOMENT] = 0.0
+    yz: Annotated[Scalar, MOMENT] = 0.0
 
     def __post_init__(self) -> None:
         for i, name in enumerate(("xx", "yy", "zz")):

@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..algebra import Vector
+from ..loads import BodyMotion
 from ..scalars import Scalar
 from ..symmetry import conservative, fixed, free_axle, frictionless, symmetric_potential
 from ..system import RollingSystem
@@ -21,10 +22,26 @@ def spin_momentum(system: RollingSystem, at: Record) -> Vector:
     return system.body.inertia_in_space(at.motion.orientation.matrix()) @ at.motion.angular_velocity
 
 
+def energies(system: RollingSystem, motion: BodyMotion) -> list[Scalar]:
+    """Return the kinetic energy, of the orbit and of the turning, and the potential energy of each load that has one.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> from trundle.mechanics.loads.base import at_rest
+    >>> system = tr.RollingSystem(tr.Body.solid_sphere(0.1, 2.0), tr.Support(tr.Plane()), gravity=0.0)
+    >>> [float(abs(part)) for part in energies(system, at_rest(2.0))]
+    [0.0, 0.0, 0.0]
+    """
+    V, Omega = motion.velocity, motion.angular_velocity
+    J = system.body.inertia_in_space(motion.orientation.matrix())
+    kinetic = [0.5 * system.body.mass * V.dot(V), 0.5 * Omega.dot(J @ Omega)]
+    potential = (load.potential(motion) for load in system.all_loads if not load.at_contact)
+    return [*kinetic, *(part for part in potential if part is not None)]
+
+
 def _energy(system: RollingSystem, at: Record) -> list[Scalar]:
-    V, Omega = at.motion.velocity, at.motion.angular_velocity
-    kinetic = [0.5 * system.body.mass * V.dot(V), 0.5 * Omega.dot(spin_momentum(system, at))]
-    return [*kinetic, *(load.potential(at.motion) for load in system.all_loads if not load.at_contact)]
+    return energies(system, at.motion)
 
 
 def _about_axis(system: RollingSystem, at: Record) -> list[Scalar]:

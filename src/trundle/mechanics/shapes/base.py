@@ -96,6 +96,11 @@ class Shape(Part):
         """Half its largest width, m; None where only its support map tells."""
         return getattr(self, "radius", None)
 
+    @property
+    def largest_radius(self) -> Scalar | None:
+        """Largest radius of curvature, m: a ball of it through any contact holds the body; None: not known."""
+        return None
+
     def parameters(self) -> dict[str, Any]:
         """Return the numbers of the shape by the names that builders of bodies give them; the fields of a dataclass.
 

@@ -55,6 +55,11 @@ class Ellipsoid(Shape):
         """The longest semi-axis."""
         return max(self.a, self.b, self.c)
 
+    @property
+    def largest_radius(self) -> Scalar:
+        """At the ends of the shortest axis: the square of the longest over it."""
+        return max(self.a, self.b, self.c) ** 2 / min(self.a, self.b, self.c)
+
     def key_numbers(self) -> list[str]:
         """Return its semi-axes."""
         return [f"body {wording.length(self.a, self.b, self.c)}"]

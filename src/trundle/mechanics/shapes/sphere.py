@@ -34,6 +34,11 @@ class Sphere(Shape):
     centre: Annotated[Any, CENTRE] = None  # a Vector or None once it is made
 
     @property
+    def largest_radius(self) -> Scalar:
+        """Its radius."""
+        return self.radius
+
+    @property
     def axisymmetric(self) -> bool:
         """Whether its centre lies on the third axis."""
         return on_third_axis(self.centre)

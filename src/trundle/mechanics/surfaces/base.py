@@ -67,6 +67,15 @@ class Surface(Part):
         return () if self.rim is None else (self.rim,)
 
     @property
+    def free_radius(self) -> Scalar | None:
+        """Radius of the largest ball that may touch it anywhere and lies below it nowhere, m; None: not known.
+
+        Infinite where the body's side is outside something convex. Inside something convex it is the least radius of
+        curvature, by Blaschke's rolling theorem.
+        """
+        return None
+
+    @property
     def axisymmetric(self) -> bool:
         """Whether a turn about the third axis leaves the surface as it is."""
         raise NotImplementedError

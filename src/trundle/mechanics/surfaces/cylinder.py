@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -67,6 +68,11 @@ class Cylinder(Surface):
     def sign(self) -> float:
         """+1 where the body is outside, −1 where it is inside."""
         return 1.0 if self.side == "outside" else -1.0
+
+    @property
+    def free_radius(self) -> Scalar:
+        """Its own inside, infinite outside."""
+        return math.inf if self.sign > 0 else self.radius
 
     def level(self, p: Vector) -> Scalar:
         """Return the distance from the wall, m."""

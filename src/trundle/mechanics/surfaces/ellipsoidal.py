@@ -64,6 +64,11 @@ class EllipsoidalBowl(Surface):
         a, b, _ = self.semi_axes
         return is_number(a) and is_number(b) and bool(a == b)
 
+    @property
+    def free_radius(self) -> Scalar:
+        """The least radius of curvature, at the ends of the longest axis: the square of the shortest over it."""
+        return min(self.semi_axes) ** 2 / max(self.semi_axes)
+
     def _bends(self) -> tuple[Scalar, Scalar, Scalar]:
         """Return C/A², C/B² and 1/C, 1/m: the second derivatives of −φ."""
         a, b, c = self.semi_axes

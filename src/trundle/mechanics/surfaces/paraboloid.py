@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -65,6 +66,11 @@ class Paraboloid(OverPlane):
     def ground(self) -> str:  # type: ignore[override]
         """As its noun."""
         return self.noun
+
+    @property
+    def free_radius(self) -> Scalar:
+        """That of its vertex in a bowl, infinite on a mound."""
+        return self.radius if self.radius > 0 else math.inf
 
     def key_numbers(self) -> list[str]:
         """Return the radius of curvature at the vertex."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -33,6 +34,11 @@ class Plane(Surface):
     noun, ground = "plane", "table"
     axisymmetric = True
     tilt = Number("angle", said="Angle of the plane's normal to the vertical; down the first axis.")
+
+    @property
+    def free_radius(self) -> Scalar:
+        """Infinite."""
+        return math.inf
 
     def level(self, p: Vector) -> Scalar:
         """Return the height over the plane, m."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
@@ -41,6 +42,11 @@ class Spherical(Surface):
     def key_numbers(self) -> list[str]:
         """Return its radius."""
         return [f"{self.ground} of radius {wording.length(self.radius)}"]
+
+    @property
+    def free_radius(self) -> Scalar:
+        """Its own inside, infinite outside."""
+        return math.inf if self.sign > 0 else self.radius
 
     def _arm(self, p: Vector) -> Vector:
         """Return p from the sphere's centre, which lies b over the lowest point or under the top."""

@@ -4,30 +4,33 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import InvalidValueError, TrundleError
-from ..mechanics.finiteness import check_finite, varies
-from ..mechanics.kinks import has_kinks
-from ..mechanics.parameters import structure_of
-from ..mechanics.system import RollingSystem, State
-from ..simulation import labels
-from ..simulation.memory import check_room
-from ..simulation.simulate import check_state, simulate
-from ..solve import taylor
-from ..solve.methods import Method
-from ..solve.samples import Progress
-from ..solve.sampling import MOST_SAMPLES, check_clock, sample_times
+from ...errors import InvalidValueError, TrundleError
+from ...mechanics.finiteness import check_finite, varies
+from ...mechanics.kinks import has_kinks
+from ...mechanics.parameters import numbers, parameters, structure_of
+from ...mechanics.system import RollingSystem, State
+from ...simulation import labels
+from ...simulation.memory import check_room
+from ...simulation.simulate import check_state, described, simulate
+from ...solve import taylor
+from ...solve.methods import Method
+from ...solve.samples import Progress
+from ...solve.sampling import MOST_SAMPLES, check_clock, sample_times
+from ...units import UNITS
+from .on_device import ERROR, OnDevice, check_device
 
 if TYPE_CHECKING:
     import xarray
 
-    from ..simulation.trajectory import Trajectory
-    from ..solve.ensemble import Block
+    from ...simulation.trajectory import Trajectory
+    from ...solve.ensemble import Block
 
 ENDED = -1  # the phase of a member whose run is over
 
@@ -40,6 +43,9 @@ def simulate_many(
     *,
     workers: int | None = 1,
     progress: Progress | None = None,
+    known: Mapping[str, Any] | None = None,
+    title: str = "",
+    device: str | None = None,
 ) -> xarray.Dataset:
     """Run many members of one system and return them as one dataset over member and time.
 
@@ -60,11 +66,20 @@ def simulate_many(
         Threads; None: as many as there are processors.
     progress : callable, optional
         Told the fraction done, 0 to 1.
+    known : mapping of str to sequence, optional
+        What else you know of the members, one value for each, such as the seeds that they were drawn with.
+    title : str
+        For figures and files.
+    device : str, optional
+        "gpu" or "cpu": members that roll all the way go through DOP853 in JAX there, thousands at a time, and each has
+        an `error`; absent: Taylor's method.
 
     Returns
     -------
     xarray.Dataset
-        The variables of `Trajectory.data` over `member` and `time`, and for each member `end`, the time its run
+        The variables of `Trajectory.data` over `member` and `time`. Coordinates over `member` are every number in which
+        the systems differ, as "body.radius" with its unit, the starts, as "start.position", and what is `known`; the
+        attribute `scenario` is the first member as a scenario file. For each member there are `end`, the time its run
         reached, `events`, how many there were, `ending`, what ended it early, or nothing, and `reason`, the same in
         words. After its end a member is NaN, its phase −1. Its events and its card are those of `simulate` for that
         member alone. Where `simulate` would refuse a member, its ending is "refused", and where it would break down,
@@ -90,17 +105,85 @@ def simulate_many(
     _check(systems, starts, instants.size, every, workers)
     check_clock(systems[0], starts[0], float(instants[1]))
     times = starts[0].time + instants
+    told = {**varied(systems), **_of_starts(systems[0], starts), **_checked(known or {}, len(systems))}
     result = _Result(systems[0], len(systems), times, progress)
-    rest = _rolled(result, systems, starts, times, workers) if _batched(systems[0]) else range(len(systems))
+    where = None if device is None else check_device(device)
+    rest: Iterable[int] = range(len(systems))
+    if _batched(systems[0], where):
+        rest = _rolled(result, systems, starts, times, workers, where)
     for member in rest:
         result.put_alone(member, systems[member], starts[member], duration, every)
-    return result.dataset()
+    title, scenario = _described(systems[0], starts[0], times, title)
+    method = Method.of("taylor") if where is None else Method("runge-kutta", ERROR)
+    return result.dataset(told, labels.attributes(title, method) | {"scenario": scenario})
+
+
+def varied(systems: Sequence[RollingSystem]) -> dict[str, Any]:
+    """Return the numbers in which systems of one structure differ, each a labelled coordinate over the members.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> table = tr.Support(tr.Plane())
+    >>> balls = [tr.RollingSystem(tr.Body.solid_sphere(a, 0.1), table) for a in (0.1, 0.2)]
+    >>> [(name, values.tolist()) for name, (_, values, _) in varied(balls).items()]
+    [('body.radius', [0.1, 0.2])]
+    """
+    if all(system is systems[0] for system in systems):
+        return {}
+    values = np.array([numbers(system) for system in systems])
+    return {
+        name: (("member",), column, {"units": UNITS[dimension][0] or "1"})
+        for (name, dimension), column in zip(parameters(systems[0]), values.T, strict=True)
+        if not (column == column[0]).all()
+    }
+
+
+def _of_starts(system: RollingSystem, starts: list[State]) -> dict[str, Any]:
+    """Return the starts as labelled coordinates over the members."""
+    found: dict[str, Any] = {}
+    for name, size, unit in _START:
+        dims = ("member", "axis" if size == 3 else "quaternion")
+        found[f"start.{name}"] = (dims, _column([getattr(start, name) for start in starts], size), {"units": unit})
+    names, kinds = labels.coordinate_names(system), system.support.motion.coordinate_kinds
+    coordinates = _column([start.support for start in starts], len(names))
+    for name, kind, column in zip(names, kinds, coordinates.T, strict=True):
+        found[f"start.{name}"] = (("member",), column, {"units": UNITS[kind][0]})
+    return found
+
+
+def _column(rows: list[Any], size: int) -> Any:
+    """Return an array of as many numbers for each member; not a number where a start has others."""
+    with suppress(TypeError, ValueError):
+        array = np.array(rows, dtype=float)
+        if array.shape == (len(rows), size):
+            return array
+    return np.full((len(rows), size), np.nan) if len(rows) == 1 else np.vstack([_column([row], size) for row in rows])
+
+
+_START = (("position", 3, "m"), ("velocity", 3, "m s-1"), ("angular_velocity", 3, "rad s-1"), ("orientation", 4, "1"))
+
+
+def _checked(known: Mapping[str, Any], members: int) -> dict[str, Any]:
+    """Return what else is known of the members as coordinates."""
+    for name, values in known.items():
+        if np.ndim(values) != 1 or len(values) != members:
+            raise InvalidValueError(f"known[{name!r}]", f"must have a value for each of the {members} members", values)
+    return {name: (("member",), np.asarray(values)) for name, values in known.items()}
+
+
+def _described(system: RollingSystem, start: State, times: Any, title: str) -> tuple[str, str]:
+    """Return title and TOML text of a member, if it can be put down at all."""
+    try:
+        return described(system, start, times, "auto", title)
+    except InvalidValueError:
+        return title, ""
 
 
 def _members(systems: Any, starts: Any) -> tuple[list[RollingSystem], list[State]]:
     """Return as many systems as starts."""
-    many_systems = [systems] if isinstance(systems, RollingSystem) else _listed(systems, "systems", RollingSystem)
-    many_starts = [starts] if isinstance(starts, State) else _listed(starts, "starts", State)
+    many_systems = [systems] if isinstance(systems, RollingSystem) else listed(systems, "systems", RollingSystem)
+    many_starts = [starts] if isinstance(starts, State) else listed(starts, "starts", State)
     if len(many_systems) == 1:
         many_systems *= len(many_starts)
     if len(many_starts) == 1:
@@ -111,7 +194,8 @@ def _members(systems: Any, starts: Any) -> tuple[list[RollingSystem], list[State
     return many_systems, many_starts
 
 
-def _listed(values: Any, key: str, kind: type) -> list[Any]:
+def listed(values: Any, key: str, kind: type) -> list[Any]:
+    """Return a list of one or more things of one kind."""
     found = list(values) if isinstance(values, Iterable) else [values]
     for i, value in enumerate(found):
         if not isinstance(value, kind):
@@ -121,12 +205,17 @@ def _listed(values: Any, key: str, kind: type) -> list[Any]:
     return found
 
 
-def _check(systems: list[RollingSystem], starts: list[State], instants: int, every: Any, workers: int | None) -> None:
+def check_structures(systems: list[RollingSystem]) -> None:
+    """Refuse systems that are not made of the same parts."""
     first = structure_of(systems[0])
     for i, system in enumerate(systems):
         if system is not systems[0] and structure_of(system) != first:
             remedy = "Members differ in numbers only; run other bodies, supports or loads in another call."
             raise InvalidValueError(f"systems[{i}]", "must be made of the same parts as systems[0]", system, remedy)
+
+
+def _check(systems: list[RollingSystem], starts: list[State], instants: int, every: Any, workers: int | None) -> None:
+    check_structures(systems)
     if not (isinstance(starts[0].time, (int, float)) and math.isfinite(starts[0].time)):
         raise InvalidValueError("starts[0].time", "must be a finite number, s", starts[0].time)
     for i, start in enumerate(starts):
@@ -145,21 +234,21 @@ def _check(systems: list[RollingSystem], starts: list[State], instants: int, eve
         raise InvalidValueError("workers", "must be a whole number, 1 or more, or None", workers)
 
 
-def _batched(system: RollingSystem) -> bool:
-    """Tell whether heyoka can take members of such a system eight at a time.
+def _batched(system: RollingSystem, device: Any) -> bool:
+    """Tell whether members of such a system can be taken many at a time, by heyoka or on a device.
 
     Resistances that bring a body to rest make nearly every run an event; a straight roller is checked one by one; each
     member comes to a kink of its own formulas, or to a corner of its loads, at an instant of its own.
     """
     alone = system.resisted or system.body.shape.axis is not None or system.corners or has_kinks(system)
-    return taylor.available() and system.support.surface.analytic and not alone
+    return (device is not None or taylor.available()) and system.support.surface.analytic and not alone
 
 
 def _rolled(
-    result: _Result, systems: list[RollingSystem], starts: list[State], times: Any, workers: int | None
+    result: _Result, systems: list[RollingSystem], starts: list[State], times: Any, workers: int | None, device: Any
 ) -> list[int]:
     """Run the members that roll, and return those that are left."""
-    from ..solve import ensemble
+    from ...solve import ensemble
 
     sound = np.flatnonzero(_sound(systems, starts, times))  # `simulate` says what is wrong with the others
     some = [systems[i] for i in sound]
@@ -172,7 +261,14 @@ def _rolled(
     def done(block: Block) -> None:
         result.put(replace(block, members=sound[block.members]))
 
-    stopped = ensemble.integrate(some, states, members, times, done, workers=count) if members else []
+    stopped: list[int] = []
+    if members and device is not None:
+        stopped, errors = OnDevice(some, states, times, device).follow(members, done)
+        result.error = np.full(len(systems), np.nan)
+        result.error[sound[members]] = errors
+        result.error[sound[stopped]] = np.nan
+    elif members:
+        stopped = ensemble.integrate(some, states, members, times, done, workers=count)
     rolled = np.zeros(len(systems), dtype=bool)
     rolled[sound[members]] = True
     rolled[sound[stopped]] = False
@@ -215,6 +311,7 @@ class _Result:
         self.end = np.full(members, float(times[-1]))
         self.events = np.zeros(members, dtype=np.int32)
         self.ending, self.reason = (np.full(members, "", dtype=object) for _ in range(2))
+        self.error: Any = None
         self.done, self.told, self.lock = np.zeros(members), 0.0, threading.Lock()
 
     def put(self, block: Block) -> None:
@@ -263,8 +360,8 @@ class _Result:
             if self.progress is not None:
                 self.progress(self.told)
 
-    def dataset(self) -> xarray.Dataset:
-        """Return all members as one dataset."""
+    def dataset(self, told: dict[str, Any], attributes: dict[str, Any]) -> xarray.Dataset:
+        """Return all members as one dataset, with what is told of them."""
         import pandas as pd
         import xarray
 
@@ -278,8 +375,10 @@ class _Result:
             "ending": (("member",), self.ending, {"long_name": "what ended the run early"}),
             "reason": (("member",), self.reason, {"long_name": "what ended the run early, in words"}),
         }
-        coordinates = {**labels.coordinates(self.times), "member": pd.RangeIndex(self.end.size)}
-        attributes = labels.attributes("", Method.of("taylor"))
+        if self.error is not None:
+            said = "error, as a share of the largest of a kind; NaN: run by itself, by Taylor's method"
+            about["error"] = (("member",), self.error, {"long_name": said, "units": "1"})
+        coordinates = {**labels.coordinates(self.times), "member": pd.RangeIndex(self.end.size), **told}
         return xarray.Dataset({**variables, **about}, coords=coordinates, attrs=attributes)
 
 

@@ -1,0 +1,83 @@
+"""The command `trundle equations`: a system's law as a program, or as formulas."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..errors import InvalidValueError, UnknownNameError
+from ..scenario import files
+from . import screen
+
+FORMS = {"c": "c", "python": "numpy", "javascript": "javascript", "latex": "sympy", "jax": "jax"}  # and their backends
+
+
+def equations(
+    name: Annotated[
+        str,
+        typer.Argument(
+            metavar="NAME",
+            help="A shipped scenario or a TOML file.",
+            autocompletion=lambda incomplete: [name for name in files.names() if name.startswith(incomplete)],
+        ),
+    ],
+    form: Annotated[
+        str,
+        typer.Option(
+            "--as", metavar="FORM", help="c, python, javascript, latex or jax.", autocompletion=lambda: list(FORMS)
+        ),
+    ] = "python",
+    phase: Annotated[
+        str | None,
+        typer.Option(metavar="PHASE", help="rolling, slipping, flight or rest. Default: rolling, where it may roll."),
+    ] = None,
+    inputs: Annotated[
+        str | None,
+        typer.Option(
+            metavar="LIST", help="Of force, torque and support; '' for none. Default: all, and none in LaTeX."
+        ),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", metavar="FILE", help="Write to a file; for C, its header beside it."),
+    ] = None,
+) -> None:
+    """Print the right-hand side of a system's law, for a program of your own or to read.
+
+    A program has every phase of the system, its events and what follows them; LaTeX has one phase.
+
+    Exit status: 0, all is well; 2, bad input; 130, interrupted; 1, all else.
+    """
+    from ..files import written_whole
+    from .app import load
+
+    if form not in FORMS:
+        raise UnknownNameError("form", form, FORMS)
+    tables = files.tables_of(name)
+    if files.rolls_along_path(tables):
+        raise InvalidValueError("NAME", "must be a scenario with forces", name, "A path to roll along has no law.")
+    if output is not None and output.expanduser().is_dir():
+        raise InvalidValueError("--output", "must be a file", str(output), "That is a folder.")
+    scenario = load(name, tables)
+    system, start = scenario.system(), scenario.start_state()
+    groups: tuple[str, ...] = ("force", "torque", "support") if form != "latex" else ()
+    if inputs is not None:
+        groups = tuple(part.strip() for part in inputs.split(",") if part.strip())
+    if phase is None:
+        phase = "slipping" if system.support.friction == 0 else "rolling"
+    field = system.vector_field(FORMS[form], phase, groups)
+    if output is None:
+        screen.out(field.source(start=start), end="")
+        return
+    target = output.expanduser()
+    prefix = re.sub(r"\W|^(?=\d)", "_", target.stem, flags=re.ASCII)
+    texts = {target: field.source(prefix, start)}
+    if form == "c":
+        texts[target.with_suffix(".h")] = field.header(prefix)
+    for path, text in texts.items():
+        with written_whole(path) as temporary:
+            temporary.write_text(text, encoding="utf-8")
+    screen.out(f"Wrote {', '.join(map(str, texts))}")

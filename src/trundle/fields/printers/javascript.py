@@ -1,0 +1,36 @@
+"""JavaScript: one ES module, of plain numbers and arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from ...solve.tape import Dialect
+from ..routines import Routine
+
+_FUNCTIONS = {name: f"Math.{name}" for name in ("sqrt", "sin", "cos", "tan", "exp", "expm1", "log", "abs", "atan2")}
+
+
+def _dialect(variable: object) -> Dialect:
+    return Dialect(variable, _FUNCTIONS, "({} ? {} : {})")  # type: ignore[arg-type]
+
+
+def function(routine: Routine) -> str:
+    """Print a function that returns an array.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> from trundle.fields.routines import PhaseRoutines
+    >>> level = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane()))
+    >>> print(function(PhaseRoutines(level, "rolling", ()).rates()).splitlines()[1])
+    export function rolling_rates(t, y, p, u) {
+    """
+    lines, results = routine.written(_dialect, "{}[{}]")
+    steps = [f"  const {name} = {text};" for name, text in lines]
+    head = f"export function {routine.name}({', '.join(name for name, _ in routine.arguments)}) {{"
+    return "\n".join([f"/** {routine.said} */", head, *steps, f"  return [{', '.join(results)}];", "}"]) + "\n"
+
+
+def module(routines: Iterable[Routine], said: str) -> str:
+    """Print an ES module."""
+    return "\n".join([f"/*\n{said}\n*/\n", *map(function, routines)])

@@ -1,0 +1,195 @@
+"""The functions of a system's phases, each traced on a tape: what the printers print."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ..errors import OutOfDomainError
+from ..mechanics.contact import contact_at
+from ..mechanics.invariants.powers import energies
+from ..mechanics.parameters import parameters, with_numbers
+from ..mechanics.scalars import Scalar, is_number
+from ..mechanics.system import RollingSystem
+from ..solve.laws import FlightLaw, Law, RestingLaw, RollingLaw, RollingWithResistance, SlidingFreely, SlippingLaw
+from ..solve.tape import Dialect, Node, Tape
+from .inputs import inputs_of, with_inputs
+from .resets import RESETS, Follows, event_parameters
+
+OUTPUTS = (
+    *((f"{name}_{axis}", unit) for name, unit in (("position", "m"), ("velocity", "m/s")) for axis in "xyz"),
+    *((f"contact_force_{axis}", "N") for axis in "xyz"),
+    ("energy", "J"),
+)
+
+
+@dataclass(frozen=True)
+class Routine:
+    """One function on a tape.
+
+    Parameters
+    ----------
+    name : str
+        What it is called.
+    said : str
+        What it returns, as a sentence.
+    arguments : tuple of (str, int or None)
+        Its arguments in the order of the tape's inputs: how many numbers each has; None, a number.
+    outputs : tuple of (Node or number)
+        What it returns.
+    tape : Tape
+        Holds them.
+    """
+
+    name: str
+    said: str
+    arguments: tuple[tuple[str, int | None], ...]
+    outputs: tuple[Any, ...]
+    tape: Tape
+
+    def written(self, dialect: Callable[[Callable[[int], str]], Dialect], element: str) -> Any:
+        """Return the steps and the results as `Tape.written`, the elements of an argument as the language has them."""
+        names = [
+            part
+            for name, size in self.arguments
+            for part in ([name] if size is None else [element.format(name, i) for i in range(size)])
+        ]
+        return self.tape.written(self.outputs, dialect(names.__getitem__))
+
+
+def phases_of(system: RollingSystem) -> dict[str, Law]:
+    """Return the phases that a system may have, by name, each with its law.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> list(phases_of(tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane(), friction=0.2))))
+    ['rolling', 'slipping', 'flight']
+    """
+    friction, found = system.support.friction, dict[str, Law]()
+    none = friction is not None and is_number(friction) and friction == 0
+    if not none:
+        found["rolling"] = RollingWithResistance() if system.resisted else RollingLaw()
+    if friction is not None:
+        found["slipping"] = SlidingFreely() if none else SlippingLaw()
+    found["flight"] = FlightLaw()
+    if system.resisted and not none and not system.support.motion.free:
+        found["rest"] = RestingLaw()
+    return found
+
+
+def check_analytic(system: RollingSystem) -> None:
+    """Refuse a surface that is known by a table only."""
+    if not system.support.surface.analytic:
+        raise OutOfDomainError(
+            "The law of a body on a surface given by a table cannot be written out as formulas. Give the surface by a "
+            "formula, or use trundle.simulate."
+        )
+
+
+class PhaseRoutines:
+    """The routines of one phase of a system: rates, event functions, outputs and what follows each event.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Its numbers are read for what is decided once: which resets there are.
+    phase : str
+        One of `phases_of`.
+    groups : sequence of str
+        Of inputs.
+    """
+
+    def __init__(self, system: RollingSystem, phase: str, groups: Sequence[str]) -> None:
+        self.phase, self.law = phase, phases_of(system)[phase]
+        self._tape = Tape()
+        self._sizes = {
+            "y": len(self.law.names(system)),
+            "p": len(parameters(system)),
+            "u": len(inputs_of(system, groups)),
+            "e": self.law.event_parameters,
+        }
+        self._time, *rest = self._tape.inputs(1 + sum(self._sizes.values()))
+        parts = iter(rest)
+        self._state, p, u, self._given = ([next(parts) for _ in range(n)] for n in self._sizes.values())
+        self.system, self._plain = with_inputs(with_numbers(system, p), groups, u), system
+
+    def all(self) -> Iterator[Routine]:
+        """Return every routine of the phase."""
+        yield from self.motion()
+        for event in self.resets():
+            yield from self.after(event)
+
+    def motion(self) -> Iterator[Routine]:
+        """Return those of the phase by itself."""
+        yield self.rates()
+        yield self.events()[1]
+        if self.law.event_parameters:
+            yield self.event_parameters()
+        yield self.outputs()
+
+    def rates(self) -> Routine:
+        """Return the right-hand side."""
+        return self._routine("rates", "Rates of the state.", self.law.rates(self.system, self._time, self._state))
+
+    def events(self) -> tuple[tuple[str, ...], Routine]:
+        """Return the names of the event functions, and these."""
+        found = self.law.event_functions(self.system, self._time, self._state, self._given)
+        said = "What ends the phase where it falls through zero: " + ", ".join(found) + "."
+        given = self.law.event_parameters > 0
+        return tuple(found), self._routine("events", said, found.values(), given=given)
+
+    def event_parameters(self) -> Routine:
+        """Return what the event functions take besides, of the state in which the phase begins."""
+        found = event_parameters(self.system, self.law, self._time, self._state)
+        return self._routine("event_parameters", "What `events` takes as e: of the state as the phase begins.", found)
+
+    def outputs(self) -> Routine:
+        """Return position, velocity, contact force and energy."""
+        motion = self.law.motion(self.system, self._time, self._state)
+        R = self.law.reaction(self.system, self._time, self._state)
+        energy = sum(energies(self.system, motion), 0.0)
+        said = "Position, velocity, contact force and energy."
+        return self._routine("outputs", said, [*motion.position, *motion.velocity, *R, energy])
+
+    def resets(self) -> list[str]:
+        """Return the events after which another phase follows."""
+        names = (name for name in self.events()[0] if not name.startswith("near "))
+        known = ((name, RESETS.get((self.phase, name))) for name in names)
+        return [name for name, reset in known if reset is not None and reset.covers(self._plain)]
+
+    def after(self, event: str) -> Iterator[Routine]:
+        """Return which phase follows an event, if it depends, and the state with which each that may follow begins."""
+        follows = self.follows(event)
+        if follows.phase is not None:
+            codes = ", ".join(f"{code} {name}" for name, code in follows.codes())
+            said = f"The phase that follows the event `{event}`: {codes}."
+            yield self._routine(f"phase_after_{event}", said, [follows.phase])
+        for name, state in follows.states.items():
+            said = f"The state of {name} that follows the event `{event}`."
+            yield self._routine(f"{name}_after_{event}", said, state)
+
+    def follows(self, event: str) -> Follows:
+        """Return what follows an event, on the tape."""
+        n = contact_at(self.system, self._time, *self._place()).normal
+        return RESETS[self.phase, event].follows(self.system, self.law, self._time, self._state, n, self._plain)
+
+    def _place(self) -> Any:
+        p, q, _, _, coordinates = self.law.split(self._state)
+        return p, q, coordinates
+
+    def _routine(self, name: str, said: str, outputs: Any, *, given: bool = False) -> Routine:
+        arguments = [("t", None), *((name, self._sizes[name]) for name in ("y", "p", "u", *("e" * given)))]
+        return Routine(f"{self.phase}_{name}", said, tuple(arguments), tuple(map(plain, outputs)), self._tape)
+
+
+def plain(value: Scalar) -> Any:
+    """Return what a tape recorded, or a number as a float.
+
+    Examples
+    --------
+    >>> plain(1)
+    1.0
+    """
+    return value if isinstance(value, Node) else float(value)

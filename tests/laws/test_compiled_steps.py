@@ -1,0 +1,295 @@
+"""DOP853 in one compiled loop: the same method as SciPy's, on exact solutions, at events, and where numba is not."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import trundle as tr
+from trundle.errors import SolverError
+from trundle.solve import compiled_steps, integrator_cache, runge_kutta
+from trundle.solve.tape import Tape
+from trundle.solve.tracing import CompiledLaw
+
+pytest.importorskip("numba")
+
+BALL = tr.Body.solid_sphere(radius=0.025, mass=0.065)
+
+
+@pytest.fixture
+def compiling(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Compile every law after its first steps, and count the calls of the loop."""
+    monkeypatch.setattr(runge_kutta, "_WORTH_COMPILING", 0)
+    calls: list[int] = []
+    loop = compiled_steps._loop
+
+    def counted() -> Any:
+        calls.append(1)
+        return loop()
+
+    monkeypatch.setattr(compiled_steps, "_loop", counted)
+    return calls
+
+
+@pytest.fixture
+def without_numba(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runge_kutta, "available", lambda: False)
+
+
+def followed(rates: Any, events: Any, y0: list[float], end: float, tolerance: float = 1e-12) -> list[Any]:
+    """Follow y' = f(t, y), given on a tape, by the loop alone after SciPy's first step."""
+    from scipy.integrate import DOP853
+
+    from trundle.solve.compiled_loop import compiled
+
+    tape = Tape()
+    t, *y = tape.inputs(1 + len(y0))
+    law = CompiledLaw(compiled(tape, rates(t, y)), compiled(tape, events(t, y)), len(events(t, y)), ())
+    plain = tape.function(rates(t, y))
+    begun = DOP853(lambda t, y: np.array(plain([t, *y])), 0.0, np.array(y0), end, rtol=tolerance, atol=tolerance)
+    begun.step()
+    return list(compiled_steps.CompiledDOP853(law, begun, 0.0, tolerance, np.full(len(y0), tolerance)))
+
+
+def oscillator(t: Any, y: Any) -> list[Any]:  # noqa: ARG001
+    return [y[1], -y[0]]
+
+
+def nothing(t: Any, y: Any) -> list[Any]:  # noqa: ARG001
+    return []
+
+
+@pytest.mark.parametrize("end", [0.9, 40.0, 2000.0])
+def test_an_oscillator_to_its_tolerance(end: float) -> None:
+    parts = followed(oscillator, nothing, [1.0, 0.0], end)
+    assert parts[-1].t == end
+    assert all(first.t == second.t_old for first, second in itertools.pairwise(parts))
+    for part in parts:
+        times = np.linspace(part.t_old, part.t, 777)
+        error = np.abs(part(times) - [np.cos(times), -np.sin(times)]).max()
+        assert error < 1e-12 * (3 + end)
+
+
+def test_it_takes_the_steps_that_scipy_takes() -> None:
+    from scipy.integrate import solve_ivp
+
+    parts = followed(oscillator, nothing, [1.0, 0.0], 200.0)
+    theirs = solve_ivp(oscillator, (0.0, 200.0), [1.0, 0.0], "DOP853", rtol=1e-12, atol=1e-12)
+    ours = np.concatenate([part.times[:-1] for part in parts] + [[parts[-1].t]])
+    assert abs(ours.size - (theirs.t.size - 1)) <= 1
+    np.testing.assert_allclose(ours[:100], theirs.t[1:101], rtol=1e-6)
+
+
+def test_a_step_is_rejected_where_the_rates_jump() -> None:
+    def jump(t: Any, y: Any) -> list[Any]:
+        from trundle.mechanics.scalars import namespace
+
+        return [namespace(t).where(t < 1.0, y[0] * 0.0 + 1.0, y[0] * 0.0 - 2.0)]
+
+    parts = followed(jump, nothing, [0.0], 3.0)
+    assert float(parts[-1](3.0)[0]) == pytest.approx(1.0 - 4.0, abs=1e-10)
+
+
+def test_it_is_stuck_before_a_pole() -> None:
+    with pytest.raises(compiled_steps.StuckError) as stuck:
+        followed(lambda t, y: [y[0] * y[0]], nothing, [1.0], 2.0)  # noqa: ARG005
+    assert stuck.value.t == pytest.approx(1.0, abs=1e-6)
+
+
+def test_the_root_of_a_negative_number_is_no_step() -> None:
+    def root(t: Any, y: Any) -> list[Any]:  # noqa: ARG001
+        from trundle.mechanics.scalars import namespace
+
+        return [-namespace(y[0]).sqrt(y[0])]  # y = (1 - t/2)², then nothing
+
+    with pytest.raises(compiled_steps.StuckError) as stuck:
+        followed(root, nothing, [1.0], 5.0)
+    assert stuck.value.t == pytest.approx(2.0, abs=1e-3)
+
+
+@pytest.mark.parametrize("depth", [1e-3, 1e-6, 1e-8])
+def test_no_dip_between_the_looks_is_passed_over(depth: float) -> None:
+    """An event function that falls below zero by little and rises again at once: each dip is in a step that is told."""
+    parts = followed(oscillator, lambda t, y: [y[0] + (1.0 - depth)], [1.0, 0.0], 400.0)  # noqa: ARG005
+    dips = np.pi * np.arange(1, 128, 2)
+    dips = dips[dips < 400.0]
+    told = [(part.t_old, part.t) for part in parts if not part.plain]
+    assert all(part.count == 1 for part in parts if not part.plain)
+    assert all(any(begin <= dip <= end for begin, end in told) for dip in dips)
+    assert len(told) < 8 * len(dips)
+
+
+@pytest.mark.parametrize("rate", [3.5, -3.5])
+@pytest.mark.parametrize("tilt", [0.0, 0.02])
+def test_it_agrees_with_the_closed_form(rate: float, tilt: float, compiling: list[int]) -> None:
+    system = tr.RollingSystem(BALL, tr.Support(tr.Plane(), motion=tr.Spin(rate), tilt=tilt))
+    start, times = system.place((0.1, 0.0), (0.0, 0.2)), np.linspace(0.0, 200.0, 4001)
+    ours, exact = (tr.simulate(system, start, 200.0, 0.05, method=method).data for method in ("runge-kutta", "exact"))
+    assert compiling
+    assert ours.time.size == times.size
+    assert np.abs(ours.position - exact.position).max() < 1e-9 * np.abs(exact.position).max()
+    assert np.abs(ours.velocity - exact.velocity).max() < 1e-9 * np.abs(exact.velocity).max()
+
+
+@pytest.mark.parametrize("samples", [1, 2, 3, 499, 500, 501, 12345])
+def test_any_number_of_samples(samples: int, compiling: list[int]) -> None:
+    system = tr.RollingSystem(BALL, tr.Support(tr.Bowl(0.5), motion=tr.Spin(2.0)))
+    start, times = system.place((0.1, 0.0), (0.0, 0.3)), np.linspace(0.0, 30.0, samples)
+    ours = runge_kutta.solve(system, start, times)
+    whole = runge_kutta.solve(system, start, np.linspace(0.0, 30.0, 3))
+    assert ours.time.size == samples
+    assert samples == 1 or compiling
+    if samples > 1:
+        np.testing.assert_allclose(ours.position[-1], whole.position[-1], atol=1e-15, rtol=0)
+
+
+def test_an_event_after_many_steps(compiling: list[int]) -> None:
+    """A ball on a tilted table drifts over the rim: when, the closed form says."""
+    system = tr.RollingSystem(BALL, tr.Support(tr.Plane(rim=0.5), motion=tr.Spin(-3.49), tilt=0.005))
+    start = system.place((0.1, 0.0), (0.0, 0.1))
+    ours, exact = (tr.simulate(system, start, 300.0, 0.5, method=method) for method in ("runge-kutta", "exact"))
+    assert compiling
+    assert [event.kind for event in ours.events] == [event.kind for event in exact.events] == ["rim"]
+    assert ours.events[0].time == pytest.approx(exact.events[0].time, rel=1e-10)
+    assert ours.card().passed
+
+
+def test_a_ball_that_slips_before_it_rolls(compiling: list[int]) -> None:
+    """Grip at 2 v / (7 μ g), after as many steps as one likes."""
+    system = tr.RollingSystem(BALL, tr.Support(tr.Plane(), friction=1e-3))
+    start = system.place(velocity=(1.0, 0.0), angular_velocity=(0.0, 0.0, 0.0))
+    run = tr.simulate(system, start, 40.0, 0.1, method="runge-kutta", tolerance=1e-13)
+    assert [event.kind for event in run.events] == ["grip"]
+    assert run.events[0].time == pytest.approx(2.0 / (7 * 1e-3 * 9.80665), rel=1e-10)
+    assert run.card().passed
+    del compiling
+
+
+def test_with_and_without_numba_it_is_the_same_motion(without_numba: None) -> None:
+    scenario = tr.Scenario.load("rattleback")
+    system, start, times = scenario.system(), scenario.start_state(), np.linspace(0.0, 3.0, 31)
+    alone = runge_kutta.solve(system, start, times, 1e-13)
+    del without_numba
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(runge_kutta, "available", lambda: True)
+        both = runge_kutta.solve(system, start, times, 1e-13)
+    assert not np.array_equal(alone.position, both.position)  # the compiled loop has had a part in it
+    np.testing.assert_allclose(both.position, alone.position, atol=1e-11, rtol=0)
+    np.testing.assert_allclose(both.contact_force, alone.contact_force, rtol=1e-9)
+
+
+def test_the_same_run_twice_is_the_same_to_the_last_bit() -> None:
+    system = tr.RollingSystem(BALL, tr.Support(tr.Bowl(0.5), motion=tr.Spin(2.0)))
+    start, times = system.place((0.1, 0.0), (0.0, 0.3)), np.linspace(0.0, 30.0, 301)
+    first, second = (runge_kutta.solve(system, start, times) for _ in range(2))
+    assert np.array_equal(first.position, second.position)
+    assert np.array_equal(first.orientation, second.orientation)
+
+
+@pytest.mark.parametrize("compile_at", [0, 10**9])
+def test_a_pole_of_a_formula_is_told_in_the_same_words(compile_at: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runge_kutta, "_WORTH_COMPILING", compile_at)
+    push = tr.Force(("0.01 / (20 - t)**2", 0.0, 0.0))
+    system = tr.RollingSystem(BALL, tr.Support(tr.Plane()), loads=[push])
+    with pytest.raises(SolverError, match=r"hardly gets on at t = 19\.99"):
+        runge_kutta.solve(system, system.place(), np.linspace(0.0, 30.0, 3))
+
+
+HIDDEN = """
+import sys
+sys.modules["heyoka"] = None
+import importlib.util
+found = importlib.util.find_spec
+importlib.util.find_spec = lambda name, *more: None if name == "heyoka" else found(name, *more)
+import warnings
+import trundle as tr
+with warnings.catch_warnings(record=True) as said:
+    warnings.simplefilter("always")
+    run = tr.Scenario.load(sys.argv[1]).run()
+    card = run.card()
+assert "heyoka" in str(said[0].message), [str(one.message) for one in said]
+print(run.method, card.passed, card)
+"""
+
+
+@pytest.mark.parametrize("name", ["rattleback", "coin-in-a-circle", "ball-in-a-turning-bowl", "tippe-top"])
+def test_without_heyoka_every_scenario_passes_its_card(name: str, tmp_path: Path) -> None:
+    (tmp_path / "hidden.py").write_text(HIDDEN)
+    done = subprocess.run(  # noqa: S603
+        [sys.executable, tmp_path / "hidden.py", name], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("runge-kutta True"), done.stdout
+    assert "DOP853" in done.stdout
+
+
+def kept(folder: Path) -> list[Path]:
+    return sorted((folder / "__pycache__").glob("law-*.nb?"))
+
+
+def compiled_in(folder: Path, monkeypatch: pytest.MonkeyPatch) -> bool:
+    """Compile x y in a cache; tell whether it was read from there."""
+    from trundle.solve.compiled_loop import compiled
+
+    monkeypatch.setattr(integrator_cache, "cache_folder", lambda: folder)
+    tape = Tape()
+    x, y = tape.inputs(2)
+    function, found = compiled(tape, [x * y]), np.empty(1)
+    function(np.array([3.0, 2.0]), found)
+    assert found[0] == 6.0
+    return bool(function.stats.cache_hits)
+
+
+def test_a_law_is_compiled_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert [compiled_in(tmp_path / "cache", monkeypatch) for _ in range(3)] == [False, True, True]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="permissions")
+@pytest.mark.parametrize("of", ["folder", "beside", "text", "compiled"])
+def test_what_others_may_write_is_not_read(of: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / "cache"
+    compiled_in(folder, monkeypatch)
+    (text,) = folder.glob("law-*.py")
+    place = {"folder": folder, "beside": folder / "__pycache__", "text": text, "compiled": kept(folder)[0]}[of]
+    place.chmod(place.stat().st_mode | 0o022)
+    assert not compiled_in(folder, monkeypatch)
+
+
+@pytest.mark.parametrize("damage", [b"", b"nothing", None])
+def test_a_damaged_cache_is_no_reason_to_fail(
+    damage: bytes | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "cache"
+    compiled_in(folder, monkeypatch)
+    for path in kept(folder):
+        path.write_bytes(path.read_bytes()[:-7] if damage is None else damage)
+    assert not compiled_in(folder, monkeypatch)
+    compiled_in(folder, monkeypatch)
+    assert compiled_in(folder, monkeypatch)  # kept anew
+
+
+def test_a_text_that_another_has_changed_is_not_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / "cache"
+    compiled_in(folder, monkeypatch)
+    (text,) = folder.glob("law-*.py")
+    text.write_text("raise SystemExit")
+    assert not compiled_in(folder, monkeypatch)
+
+
+def test_where_there_are_no_owners_the_cache_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As on Windows, where every file seems to be anybody's to write."""
+    folder = tmp_path / "cache"
+    monkeypatch.delattr(os, "getuid", raising=False)
+    monkeypatch.setattr(integrator_cache, "cache_folder", lambda: folder)
+    integrator_cache.store("a", {"some": "thing"})
+    for path in (folder, *folder.iterdir()):
+        path.chmod(0o777)
+    assert integrator_cache.load("a") == {"some": "thing"}
+    assert [compiled_in(folder, monkeypatch) for _ in range(2)] == [False, True]
