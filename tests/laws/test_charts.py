@@ -14,7 +14,7 @@ from tests.tolerances import EXACT, SOLVER
 import trundle as tr
 from trundle.mechanics.algebra import Quaternion, Vector
 from trundle.mechanics.parameters import numbers
-from trundle.solve import corners, integrators, taylor
+from trundle.solve import corner_events, integrators, taylor
 from trundle.solve.charts import CHART, LAWS_OWN, BodyAxes, Chart, LineOfNodes, SupportAxes, charts
 from trundle.solve.dense import Dense
 from trundle.solve.laws import CORNER, RollingLaw
@@ -50,7 +50,7 @@ def rates_and_events(
     """Return a law's rates and event functions as they come out of a chart."""
     chart = ready.chart
     own = chart.of_law(system, time, state)
-    given_numbers = [*numbers(system), *[0.0] * corners.count(system)]
+    given_numbers = [*numbers(system), *[0.0] * corner_events.count(system)]
     outputs = ready.tape.function(ready.outputs)([0.0, *own, *ready.values(given_numbers, time)])
     rates, step = outputs[: len(own)], 1e-30
     moved = [np.array([complex(value, step * rate)]) for value, rate in zip(own, rates, strict=True)]

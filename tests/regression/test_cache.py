@@ -83,6 +83,7 @@ def test_a_second_process_does_not_compile(machine: Machine) -> None:
 
 def test_a_long_run_is_compiled_with_care_and_has_its_digits_whatever_is_known(machine: Machine) -> None:
     start, times = SYSTEM.place((0.1, 0.0), (0.0, 0.2)), np.linspace(0.0, 60.0, 121)
+    machine.patch.setattr(taylor, "_SHORT_LAW", 0)
 
     def path() -> Any:
         return taylor.solve(SYSTEM, start, times).position
@@ -95,6 +96,12 @@ def test_a_long_run_is_compiled_with_care_and_has_its_digits_whatever_is_known(m
     assert machine.compiled == 2
     wanted = tr.simulate(SYSTEM, start, 60.0, 0.5, method="exact").samples.position
     assert np.abs(first - wanted).max() <= SOLVER(1000, taylor.TOLERANCE, np.abs(wanted).max())
+
+
+def test_a_short_law_is_compiled_with_care_at_once(machine: Machine) -> None:
+    machine.run()
+    assert machine.file.name.endswith(f"-{integrators.WITH_CARE}.pickle")
+    assert machine.compiled == 1
 
 
 def test_all_numbers_are_parameters(machine: Machine) -> None:

@@ -221,8 +221,6 @@ class _Lowering:
             if operation == "sin":
                 return form.apply("+", form.apply("*", sine, c), form.apply("*", cosine, s))
             return form.apply("-", form.apply("*", cosine, c), form.apply("*", sine, s))
-        if operation == "**":
-            return form.power(self._as_sum(operands[0]), int(operands[1]))
         return form.apply(operation, *(self._as_sum(part) for part in operands))
 
     def _as_sum(self, part: Any) -> Sum:

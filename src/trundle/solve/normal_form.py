@@ -94,15 +94,6 @@ class NormalForm:
                 return root
         return self._other(operation, [self.node(part) for part in operands])
 
-    def power(self, base: Sum, exponent: int) -> Sum:
-        """Return an integer power, not the zeroth."""
-        if not base:
-            return {}
-        if len(base) != 1:
-            base = self._as_term(base)
-        ((monomial, coefficient),) = base.items()
-        return {tuple((place, count * exponent) for place, count in monomial): coefficient**exponent}
-
     def node(self, value: Sum) -> Any:
         """Return a value as a node of the tape, or as a number."""
         if not value:
