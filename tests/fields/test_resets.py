@@ -48,6 +48,13 @@ RUNS = {
         {"height": 0.3, "velocity": (0.5, 0.0, 0.0), "orientation": (0.9, 0.2, 0.1, 0.3)},
         0.8,
     ),
+    "ball on a turntable that turns freely": (
+        tr.RollingSystem(
+            tr.Body.solid_sphere(0.1, 2.0), tr.Support(tr.Plane(), motion=tr.FreeAxle(0.5, rate=3.0), restitution=0.6)
+        ),
+        {"position": (0.3, 0.0), "height": 0.3, "velocity": (0.4, 1.0, 0.0)},
+        1.2,
+    ),
     "ball that swerves": (
         tr.RollingSystem(tr.Body.solid_sphere(0.03, 0.17), tr.Support(tr.Plane(), friction=0.2)),
         {"velocity": (1.0, 0.5), "angular_velocity": (10.0, -30.0, 4.0)},
@@ -88,16 +95,15 @@ def test_what_follows_an_event_is_what_follows_it_in_a_run(name: str) -> None:
     run = tr.simulate(system, start, duration=duration, every=1e-3)
     seen = set()
     for before, after, event in followed(run):
-        if event.kind == "settle" or ((before, after) == ("flight", "flight") and event.kind != "land"):
-            continue
+        kind = "land" if event.kind == "settle" else event.kind  # a landing after which the bounce is cut
         field = system.vector_field("numpy", before, ())
-        if event.kind not in field.resets:
+        if kind not in field.resets:
             continue
         y = field.pack(event.before)
         if before == "slipping" and event.kind == "grip":
             y[10:13] = 0.0
             y[10] = 1e-14  # all but ended
-        found, state = field.after(event.kind, event.time, y, field.parameters, field.inputs)
+        found, state = field.after(kind, event.time, y, field.parameters, field.inputs)
         assert event.after is not None
         reference = found.pack(event.after)
         size = np.abs(reference).max()
@@ -108,7 +114,7 @@ def test_what_follows_an_event_is_what_follows_it_in_a_run(name: str) -> None:
             assert 0 < np.abs(little).max() <= 1e-4 * np.abs(later).max()
             assert little @ later >= 0.99 * np.linalg.norm(little) * np.linalg.norm(later)
             state[begins] = reference[begins] = 0.0
-        assert (before, after) == (before, found.phase) or event.kind == "land"
+        assert found.phase == ("flight" if "bounced" in event.text else after)  # perhaps for less than a sample
         assert np.abs(state - reference).max() <= 1e-8 * size, event.text
         seen.add((before, event.kind, found.phase))
     assert seen
