@@ -48,6 +48,19 @@ RUNS = {
         {"height": 0.3, "velocity": (0.5, 0.0, 0.0), "orientation": (0.9, 0.2, 0.1, 0.3)},
         0.8,
     ),
+    "egg on a rough floor": (
+        tr.RollingSystem(tr.Body.ellipsoid((0.2, 0.15, 0.12), mass=1.0), ROUGH),
+        {"height": 0.3, "velocity": (0.5, 0.0, 0.0), "orientation": (0.9, 0.2, 0.1, 0.3)},
+        0.6,
+    ),
+    "superball": (
+        tr.RollingSystem(
+            tr.Body.solid_sphere(0.1, 2.0),
+            tr.Support(tr.Plane(), friction=0.5, restitution=0.9, tangential_restitution=0.8),
+        ),
+        {"height": 0.3, "velocity": (0.5, 0.0, 0.0)},
+        1.0,
+    ),
     "ball on a turntable that turns freely": (
         tr.RollingSystem(
             tr.Body.solid_sphere(0.1, 2.0), tr.Support(tr.Plane(), motion=tr.FreeAxle(0.5, rate=3.0), restitution=0.6)
@@ -97,7 +110,7 @@ def test_what_follows_an_event_is_what_follows_it_in_a_run(name: str) -> None:
     for before, after, event in followed(run):
         kind = "land" if event.kind == "settle" else event.kind  # a landing after which the bounce is cut
         field = system.vector_field("numpy", before, ())
-        if kind not in field.resets:
+        if kind not in field.resets and kind != "land":
             continue
         y = field.pack(event.before)
         if before == "slipping" and event.kind == "grip":
@@ -169,7 +182,7 @@ def test_slip_begins_against_friction_and_ends_in_rolling(backend: str) -> None:
 
 def test_what_is_not_written_out_is_said() -> None:
     egg = tr.RollingSystem(tr.Body.ellipsoid((0.2, 0.15, 0.12), mass=1.0), ROUGH)
-    field = egg.vector_field("numpy", "flight")
+    field = egg.vector_field("c", "flight")
     given = (0.0, field.pack(egg.place(height=0.1)), field.parameters, field.inputs)
     with pytest.raises(OutOfDomainError, match="turns the slip on the way"):
         field.after("land", *given)
