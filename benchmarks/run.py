@@ -23,6 +23,7 @@ NAMES = (
     "bodies",
     "compiled_steps",
     "ensembles",
+    "sensitivities",
     "reuse",
     "long_run",
     "orientation",

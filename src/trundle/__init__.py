@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from .analysis.holonomy import ConstraintAnalysis, PfaffianSystem
     from .analysis.imperfections import Sensitivity, air_drag, sensitivity
     from .analysis.many import place_many, simulate_many
+    from .analysis.sensitivities import Sensitivities, sensitivities
     from .analysis.statics import Equilibria, Equilibrium, equilibria
     from .analysis.steady import PeriodicMotion, SteadyMotion, SteadyMotions, periodic_motion, steady_motions
     from .analysis.vakonomic import VakonomicComparison, VakonomicPath, compare_vakonomic, vakonomic_path
@@ -160,6 +161,7 @@ _HOMES = {
     "solve.exact": ("ClosedForm",),
     "analysis.derivation": ("derive",),
     "simulation.simulate": ("simulate", "Scenario"),
+    "analysis.sensitivities": ("sensitivities", "Sensitivities"),
     "analysis.statics": ("equilibria", "Equilibria", "Equilibrium"),
     "analysis.steady": ("steady_motions", "SteadyMotions", "SteadyMotion", "periodic_motion", "PeriodicMotion"),
     "simulation.trajectory": ("Trajectory", "Event"),
@@ -228,6 +230,7 @@ __all__ = [
     "Rotation",
     "Scenario",
     "ScenarioError",
+    "Sensitivities",
     "Sensitivity",
     "Shake",
     "Shape",
@@ -266,6 +269,7 @@ __all__ = [
     "periodic_motion",
     "place_many",
     "roll_along",
+    "sensitivities",
     "sensitivity",
     "simulate",
     "simulate_many",

@@ -90,6 +90,11 @@ def comparison() -> tr.VakonomicComparison:
 
 
 @cache
+def derivatives() -> tr.Sensitivities:
+    return tr.sensitivities(scenario("level-turntable-nudged"), "start.velocity", duration=1.0)
+
+
+@cache
 def equilibria() -> tr.Equilibria:
     return tr.equilibria(scenario("weighted-cylinder-on-incline"))
 
@@ -125,6 +130,7 @@ RESULTS: tuple[Callable[[], Displayed], ...] = (
     lambda: tr.PfaffianSystem(sp.symbols("<b> y"), [[1, 0]]).analyse(),
     sensitivity,
     lambda: sensitivity().rows[0],
+    derivatives,
     derivation,
     lambda: derivation().steps[0],
     lambda: derivation().steps[0].equations[0],

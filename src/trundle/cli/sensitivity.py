@@ -1,4 +1,4 @@
-"""`trundle sensitivity`: which shortcoming of a turntable demonstration matters most."""
+"""`trundle sensitivity`: which shortcoming of a turntable matters most; or derivatives by any numbers."""
 
 from __future__ import annotations
 
@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from ..analysis.imperfections import Sensitivity
 
 FILE = "sensitivity.png"
+FILES = ("sensitivities.nc", "sensitivities.png")
+HORIZON = "1 h"
 OPTIONS = {  # where they differ from Python's names
     "rolling_resistance": "--rolling-resistance",
     "variation": "--uneven",
@@ -43,7 +45,16 @@ def sensitivity(
     uneven_rate: Annotated[
         str | None, typer.Option(metavar="RATE", help="At which it varies, such as '33.3 rpm'; else once a turn.")
     ] = None,
-    horizon: Annotated[str, typer.Option(metavar="TIME", help="How long to wait for the ball.")] = "1 h",
+    horizon: Annotated[
+        str | None,
+        typer.Option(metavar="TIME", help=f"How long to wait for the ball; default {HORIZON}. With --by: of the run."),
+    ] = None,
+    by: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KEY", help="A number to differentiate the run by, such as support.tilt; repeat for more."
+        ),
+    ] = None,
     no_figure: Annotated[bool, typer.Option("--no-figure", help="Draw no figure.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the table as JSON, and nothing else.")] = False,
@@ -53,14 +64,14 @@ def sensitivity(
     A size that is not given is the scenario's own where it has that shortcoming; else 0.1 deg of tilt, 0.1 deg of
     wobble, a rate uneven by 1 % once a turn, the drag of room air on the ball, and a resistance to rolling of a
     ten-thousandth of the weight.
+
+    With --by it takes any scenario, and returns the exact first derivatives of its run by the numbers named, in
+    sensitivities.nc, with a figure.
     """
     from ..analysis.imperfections import sensitivity as vary
     from .writing import check_folder, write_together
 
     folder = Path(Path(scenario).stem) if output is None else output.expanduser()
-    names = () if no_figure else (FILE,)
-    check_folder(folder, names)
-    loaded = _load(scenario)
     sizes: dict[str, Any] = {
         "tilt": tilt,
         "drag": drag,
@@ -69,9 +80,16 @@ def sensitivity(
         "variation": uneven,
         "variation_rate": uneven_rate,
     }
+    if by:
+        _refuse(sizes)
+        _differentiate(scenario, by, horizon, folder, figure=not no_figure, quiet=quiet, as_json=as_json)
+        return
+    names = () if no_figure else (FILE,)
+    check_folder(folder, names)
+    loaded = _load(scenario)
     try:
         with screen.ProgressBar(wanted=not quiet) as bar:
-            table = vary(loaded, **sizes, horizon=horizon, progress=bar)
+            table = vary(loaded, **sizes, horizon=HORIZON if horizon is None else horizon, progress=bar)
     except InvalidValueError as error:
         option = OPTIONS.get(error.key, f"--{error.key}")
         if error.key in sizes or error.key == "horizon":
@@ -85,6 +103,49 @@ def sensitivity(
         _show(table)
         if written:
             screen.out(f"Wrote {', '.join(str(path) for path in written)}")
+
+
+def _refuse(sizes: dict[str, Any]) -> None:
+    """Refuse sizes of shortcomings beside numbers to differentiate by."""
+    for name, size in sizes.items():
+        if size is not None:
+            option = OPTIONS.get(name, f"--{name}")
+            remedy = "Write it into the scenario, and name its key."
+            raise InvalidValueError(option, "must not stand beside --by", size, remedy)
+
+
+def _differentiate(
+    scenario: str, by: list[str], horizon: str | None, folder: Path, *, figure: bool, quiet: bool, as_json: bool
+) -> None:
+    """Show the derivatives of a run by some numbers, and write them."""
+    import json
+
+    from ..analysis.sensitivities import sensitivities
+    from ..simulation.netcdf import write_dataset
+    from .app import CARD_FAILED
+    from .writing import check_folder, write_together
+
+    data, picture = FILES
+    check_folder(folder, FILES if figure else (data,))
+    loaded = _load(scenario)
+    try:
+        with screen.ProgressBar(wanted=not quiet) as bar:
+            found = sensitivities(loaded, by, duration=horizon, progress=bar)
+    except InvalidValueError as error:
+        option = {"wrt": "--by", "duration": "--horizon"}.get(error.key, error.key)
+        raise InvalidValueError(option, error.rule, error.received, error.remedy) from None
+    signals.check()
+    files = {data: lambda path: write_dataset(found.data, path)}
+    if figure:
+        files[picture] = lambda path: found.plot().savefig(path)
+    written = write_together(folder, files)
+    if as_json:
+        screen.out(json.dumps(found.as_dict(), indent=2, ensure_ascii=False))
+    elif not quiet:
+        screen.out(str(found))
+        screen.out(f"Wrote {', '.join(str(path) for path in written)}")
+    if found.passed is False:
+        raise typer.Exit(CARD_FAILED)
 
 
 def _load(scenario: str) -> object:

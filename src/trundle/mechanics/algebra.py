@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from .scalars import Scalar, is_zero, namespace
+from .scalars import Scalar, is_number, is_zero, namespace
 from .values import value
 
 
@@ -468,6 +468,13 @@ class Quaternion:
             a * y - b * z + c * w + d * x,
             a * z + b * y - c * x + d * w,
         )
+
+    @property
+    def unit(self) -> Quaternion:
+        """The same turned to length 1."""
+        known = all(map(is_number, self))
+        length = math.hypot(*self) if known else namespace(*self).sqrt(sum(part * part for part in self))
+        return Quaternion(self.w / length, self.x / length, self.y / length, self.z / length)
 
     @property
     def conjugate(self) -> Quaternion:

@@ -52,13 +52,13 @@ class SlipRates:
         """Return ŝ."""
         return self.axes[0] * c + self.axes[1] * s
 
-    def settled(self) -> tuple[Scalar, Scalar, Scalar]:
-        """Return cos β and sin β of the direction near e₁ that slip keeps, and |s| times the rate at which it settles.
+    def settled(self, c: Scalar = 1.0, s: Scalar = 0.0) -> tuple[Scalar, Scalar, Scalar]:
+        """Return cos β and sin β of the direction that slip keeps, and |s| times the rate at which it settles.
 
-        Newton's method on t̂·ṡ = 0, t̂ = n×ŝ; the last, m/s², is −d(t̂·ṡ)/dβ.
+        Newton's method on t̂·ṡ = 0, t̂ = n×ŝ, from near a direction, e₁ if none is given; the last, m/s², is
+        −d(t̂·ṡ)/dβ.
         """
-        beta: Scalar = 0.0
-        c, s = 1.0, 0.0
+        beta: Scalar = namespace(c, s).atan2(s, c) if s else 0.0
         for step in range(_STEPS + 1):
             first, second = self.along(c, s)
             answer, N = self.answer(c, s), self.normal_force(c, s)

@@ -18,8 +18,9 @@ import numpy as np
 from ..errors import SolverError
 from .algebra import E_X, E_Y, E_Z, ZERO, Matrix, Quaternion, Vector
 from .contact import Contact
+from .duals import Dual, stacked, unstacked
 from .onset import onset
-from .scalars import less, namespace
+from .scalars import as_float, is_zero, less, namespace
 from .slipping import response
 
 if TYPE_CHECKING:
@@ -77,10 +78,10 @@ def land(system: RollingSystem, contact: Contact, orientation: Quaternion, slip:
     J = system.body.inertia_in_space(orientation.matrix())
     basis = _basis(contact.normal)
     answers = [response(system, contact, J, e).slip for e in basis]
-    M = Matrix(*(Vector(*(float(answer.dot(d)) for answer in answers)) for d in basis))
-    mu = math.inf if system.support.friction is None else float(system.support.sliding_friction)
-    begin = Vector(*(float(slip.dot(d)) for d in basis))
-    shares = float(system.support.restitution), float(system.support.tangential_restitution)
+    M = Matrix(*(Vector(*(as_float(answer.dot(d)) for answer in answers)) for d in basis))
+    mu = math.inf if system.support.friction is None else as_float(system.support.sliding_friction)
+    begin = Vector(*(as_float(slip.dot(d)) for d in basis))
+    shares = as_float(system.support.restitution), as_float(system.support.tangential_restitution)
     parts = _Course(M, mu, *shares, begin).impulse()
     P = sum((d * part for d, part in zip(basis, parts, strict=True)), start=ZERO)
     motion = system.support.motion
@@ -148,6 +149,15 @@ def _basis(n: Vector) -> tuple[Vector, Vector, Vector]:
     return first, n.cross(first), n
 
 
+def _length(v: Vector) -> Any:
+    """Return the length of the part of a vector along the support."""
+    return namespace(v.x, v.y).hypot(v.x, v.y)
+
+
+def _root(square: Any) -> Any:
+    return namespace(square).sqrt(square)
+
+
 @dataclass
 class _Course:
     """The course of s over the normal impulse, along two tangents and n."""
@@ -191,11 +201,11 @@ class _Course:
                 self.aim = (1 - self.restitution**2) * self.work
             if self.aim is not None and self.work >= self.aim:
                 return total
-            sigma = math.hypot(self.slip.x, self.slip.y)
+            sigma = _length(self.slip)
             if self.mu and sigma > 2 * _SLOW * size:
                 total = total + self._slide(size)
                 continue
-            if self._holds and sigma:  # how it ends makes a difference of the order of σ² only
+            if self._holds and not is_zero(sigma):  # how it ends makes a difference of the order of σ² only
                 total = total + self._end_at_once()
             total = total + self._straight(self._held)
         raise SolverError("A landing does not end: friction and the body's shape jam it. Use less friction.")
@@ -212,8 +222,8 @@ class _Course:
         while True:
             change = self.M @ direction
             gain = direction.x * change.x + direction.y * change.y
-            size = math.hypot(direction.x, direction.y) - (self.mu * direction.z if direction.z else 0.0)
-            root = math.sqrt(turned**2 + 2 * gain * left)
+            size = _length(direction) - (self.mu * direction.z if direction.z else 0.0)
+            root = _root(turned**2 + 2 * gain * left)
             amount = min(2 * left / (turned + root) if root else 0.0, self.unused / size if size > 0 else math.inf)
             if amount <= free:
                 return given + direction * amount
@@ -230,7 +240,7 @@ class _Course:
     @cached_property
     def _holds(self) -> bool:
         """Whether friction can keep a contact from slipping."""
-        return self.mu > 0 and math.hypot(self._holding.x, self._holding.y) <= self.mu
+        return self.mu > 0 and _length(self._holding) <= self.mu
 
     @cached_property
     def _held(self) -> Vector:
@@ -270,13 +280,13 @@ class _Course:
         elif self.aim is None:
             upto = -s.z / change.z
         else:  # the work s_n P + ½ c P² still to be done
-            upto = (-s.z + math.sqrt(s.z * s.z + 2 * change.z * (self.aim - self.work))) / change.z
+            upto = (-s.z + _root(s.z * s.z + 2 * change.z * (self.aim - self.work))) / change.z
         amount = min(upto, still)
         self.work += s.z * amount + 0.5 * change.z * amount**2
         x, y, z = s + change * amount
         if direction is self._holding:  # nothing slips: of what rounding says of it e_t would give back the root
             x = y = 0.0
-            self.unused += (self.mu - math.hypot(direction.x, direction.y)) * amount if amount else 0.0
+            self.unused += (self.mu - _length(direction)) * amount if amount else 0.0
         self.taken -= 0.5 * amount * (direction.x * (s.x + x) + direction.y * (s.y + y))
         if still <= upto:
             x = y = 0.0
@@ -289,7 +299,7 @@ class _Course:
 
     def _slide(self, size: float) -> Vector:
         """Go on slipping until slip or compression ends, or the impact: along a line where friction keeps to one."""
-        sigma = math.hypot(self.slip.x, self.slip.y)
+        sigma = _length(self.slip)
         c, s = self.slip.x / sigma, self.slip.y / sigma
         direction = Vector(-self.mu * c, -self.mu * s, 1.0)
         change = self.M @ direction
@@ -309,41 +319,50 @@ class _Course:
         unit = self.M.c.z
         (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = (row / unit for row in self.M.rows)
         first, second, up = self.slip / size
-        begin, joule = math.hypot(first, second), size * size / unit
+        begin, joule = _length(self.slip / size), size * size / unit
+        xp = namespace(unit, first, begin, *self.M.a, *self.M.b, self.mu)
 
-        def rates(_: float, y: Any) -> list[float]:
-            sigma, c, s = begin * math.exp(y[0]), math.cos(y[1]), math.sin(y[1])
+        def rates(y: Any) -> list[Any]:
+            sigma, c, s = begin * xp.exp(y[0]), xp.cos(y[1]), xp.sin(y[1])
             f, g = -self.mu * c, -self.mu * s
             a, b = xx * f + xy * g + xz, yx * f + yy * g + yz
             rising = (zx * f + zy * g + zz) * sigma
             return [c * a + s * b, c * b - s * a, rising, y[2] * sigma, self.mu * sigma * sigma]
 
-        # It ends where slip does, where compression or the impact does, or never.
-        ends = [lambda _, y: y[0] - math.log(_SLOW / begin)]
+        y0 = [0.0, xp.atan2(second, first), up, self.work / joule, self.taken / joule]
+        count = max((len(part.slopes) for part in (*y0, unit, begin, self.mu) if isinstance(part, Dual)), default=0)
         aim = 0.0 if self.aim is None else self.aim / joule
-        ends.append((lambda _, y: y[2]) if self.aim is None else (lambda _, y: y[3] - aim))
+        slowest = xp.log(_SLOW / begin)
+
+        def stacked_rates(_: float, y: Any) -> list[float]:
+            return stacked(rates(unstacked(y, 5)), count) if count else rates(y)
+
+        # It ends where slip does, where compression or the impact does, or never.
+        ends = [lambda _, y: y[0] - float(slowest)]
+        ends.append((lambda _, y: y[2]) if self.aim is None else (lambda _, y: y[3] - float(aim)))
         ends.append(lambda _, y: y[0] - _JAMMED)
         for end, direction in zip(ends, (-1, 1, 1), strict=True):
             end.terminal, end.direction = True, direction  # type: ignore[attr-defined]
-        y0 = [0.0, math.atan2(second, first), up, self.work / joule, self.taken / joule]
-        least = 1e-14 * np.array([1.0, 1.0, 1.0, 1.0, begin**2])
-        found = solve_ivp(rates, (0.0, _FAR), y0, method="DOP853", rtol=1e-12, atol=least, events=ends)
+        least = 1e-14 * np.resize([1.0, 1.0, 1.0, 1.0, float(begin) ** 2], 5 * (1 + count))
+        given: dict[str, Any] = {"method": "DOP853", "rtol": 1e-12, "atol": least}
+        found = solve_ivp(stacked_rates, (0.0, _FAR), stacked(y0, count), events=ends, **given)
         stopped = found.t_events[0].size > 0
         if not stopped and not found.t_events[1].size:
             raise SolverError("A landing does not end: friction and the body's shape jam it. Use less friction.")
         # What SciPy reads off a step has fewer digits than its end.
-        last = solve_ivp(rates, found.t[-2:], found.y[:, -2], method="DOP853", rtol=1e-12, atol=least)
-        y = last.y[:, -1]
-        rate = np.array(rates(0.0, y))
-        if stopped:
-            y = y - rate / rate[0]  # straight on to σ = 0
+        last = solve_ivp(stacked_rates, found.t[-2:], found.y[:, -2], **given).y[:, -1]
+        y = unstacked(last, 5) if count else last.tolist()
+        rate = rates(y)
+        if stopped:  # straight on to σ = 0
+            y = [part - slope / rate[0] for part, slope in zip(y, rate, strict=True)]
         else:
-            y = y - rate * (y[2] / rate[2] if self.aim is None else (y[3] - aim) / rate[3])
-        _, beta, up, work, taken = y.tolist()
-        left = 0.0 if stopped else begin * math.exp(y[0])
+            on = y[2] / rate[2] if self.aim is None else (y[3] - aim) / rate[3]
+            y = [part - slope * on for part, slope in zip(y, rate, strict=True)]
+        _, beta, up, work, taken = y
+        left = 0.0 if stopped else begin * xp.exp(y[0])
         before, self.taken, self.work = self.slip, taken * joule, work * joule
         ended = self.aim is None and not stopped
-        self.slip = Vector(left * math.cos(beta), left * math.sin(beta), 0.0 if ended else up) * size
+        self.slip = Vector(left * xp.cos(beta), left * xp.sin(beta), 0.0 if ended else up) * size
         if self.aim is not None and not stopped:
             self.work = self.aim
         return self.M.solve(self.slip - before)  # added up it would have fewer digits: ŝ turns fast where slip ends

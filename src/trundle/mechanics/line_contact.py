@@ -15,6 +15,7 @@ from .algebra import Matrix, Quaternion, Vector
 from .contact import Contact, roll
 from .motions import SupportState
 from .nearest import closest_contact
+from .scalars import namespace
 from .surfaces import Surface
 
 if TYPE_CHECKING:
@@ -41,12 +42,13 @@ def facing(contact: Contact, begin: SupportState, surface: Surface, velocity: An
     if velocity is not None and not isinstance(velocity, str):
         count = 3 if hasattr(velocity, "__len__") and len(velocity) == 3 else 2  # the third is along the normal
         vx, vy, *_ = checks.components(velocity, "velocity", "velocity", count)
-        speed = math.hypot(vx, vy)
+        speed = namespace(vx, vy).hypot(vx, vy)
         # The way is not reversed by rolling backwards along the first coordinate.
-        if speed > 0 and vy != 0:
-            along = (vx / speed, vy / speed)
+        if speed > 0:
+            along = (vx / speed, vy / speed) if vy != 0 else (1.0, vy / vx)
     d, n = first * along[0] + second * along[1], contact.normal
-    c, s = math.cos(turned), math.sin(turned)
+    xp = namespace(turned)
+    c, s = xp.cos(turned), xp.sin(turned)
     up, forward = n * c + d * s, d * c - n * s
     return Quaternion.of_matrix(Matrix(up, forward, n.cross(d)).transpose)
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..errors import SolverError
 from .algebra import Quaternion, Vector
 from .contact import Contact, contact_at
-from .scalars import Scalar
+from .duals import has_duals, value_of, values_of
+from .scalars import Scalar, namespace
 
 if TYPE_CHECKING:
     from .surfaces import Surface
@@ -48,8 +49,14 @@ def nearest(
         _, aside, down = beside(system, contact, centre)
         step = aside + down
         small = step.norm() <= _NEXT_TO * (point.norm() + contact.offset.norm())
-    moved = Vector(*(np.where(small, there + by, there)[()] for there, by in zip(point, step, strict=True)))
+    moved = Vector(*(_either(small, there + by, there) for there, by in zip(point, step, strict=True)))
     return contact_at(system, time, moved, orientation, coordinates)
+
+
+def _either(condition: Any, yes: Scalar, no: Scalar) -> Scalar:
+    if isinstance(condition, bool):
+        return yes if condition else no
+    return namespace(condition, yes, no).where(condition, yes, no)
 
 
 def beside(
@@ -79,6 +86,9 @@ def closest_contact(
     >>> closest_contact(system, 0.0, Vector(0.4, 0.0, 0.0), Quaternion(1.0, 0.0, 0.0, 0.0)).point
     Vector(x=0.5, y=0.0, z=0.0)
     """
+    given = system, time, centre, orientation, coordinates
+    if has_duals(given):
+        return _with_slopes(*given)
     # The normal at the centre is already that at the contact for a sphere over a surface of constant curvature.
     found = _newton(system, time, centre, centre, orientation, coordinates)
     if found is None or misplaced(system, found, centre, orientation) or _hollow_under(found, centre):
@@ -89,6 +99,22 @@ def closest_contact(
             f"({', '.join(f'{float(part):.4g}' for part in centre)}) m. Does the surface reach there, and smoothly?"
         )
     return found
+
+
+def _with_slopes(
+    system: RollingSystem, time: Scalar, centre: Vector, orientation: Quaternion, coordinates: tuple[Scalar, ...]
+) -> Contact:
+    """Return the contact in duals: found for their values, and its slopes by two more of Newton's steps.
+
+    The first leads onto the surface, as it is with other numbers, and only the second has its normal there.
+    """
+    point = closest_contact(*values_of((system, time, centre, orientation, coordinates))).point
+    for _ in range(2):
+        contact = contact_at(system, time, point, orientation, coordinates)
+        _, aside, down = beside(system, contact, centre)
+        step = aside + down
+        point = Vector(*(there + (by - value_of(by)) for there, by in zip(point, step, strict=True)))
+    return contact_at(system, time, point, orientation, coordinates)
 
 
 def misplaced(system: RollingSystem, contact: Contact, centre: Vector, orientation: Quaternion) -> str:

@@ -15,7 +15,7 @@ from .contact import Contact, contact_at
 from .finiteness import check_finite
 from .motions import SupportState
 from .nearest import closest_contact, misplaced
-from .scalars import Scalar, is_zero
+from .scalars import Scalar, as_float, is_number, is_zero
 
 if TYPE_CHECKING:
     from .system import RollingSystem, State
@@ -46,35 +46,39 @@ class Placing:
     time: Any
     support: Any
 
-    def state(self) -> State:
-        """Return the start, checked."""
+    def state(self, *, checked: bool = True) -> State:
+        """Return the start, checked; or as its numbers have it, where those of a start like it were checked before."""
         from .system import State
 
         system, surface = self.system, self.system.support.surface
         time, coordinates = self._now, self._own
-        check_finite(system, time, time)
+        if checked:
+            check_finite(system, time, time)
         begin = system.support.motion.at(time, *coordinates)
         u, v = (
             checks.real(part, kind, f"position[{i}]")
             for i, (part, kind) in enumerate(zip(_pair(self.position, "position"), surface.coordinates, strict=True))
         )
         gap = checks.non_negative(self.height, "length", "height")
-        fitting.check_place(surface, u, v, self.position)
+        if checked:
+            fitting.check_place(surface, u, v, self.position)
         q = self._orientation(begin, begin.carried(surface.point(u, v)))
         contact = self._contact(begin.carried(surface.point(u, v)), q)
         offset = begin.rotation.transpose @ contact.offset
         contact = self._contact(begin.carried(surface.contact_from_coordinates(u, v, offset)), q)
-        system.check_rim(contact, self.position)
-        fitting.check_start(system, contact, q, self.position)
+        if checked:
+            system.check_rim(contact, self.position)
+            fitting.check_start(system, contact, q, self.position)
         turning = self._given_turning(contact, gap)
         V = self._velocity(contact, begin.local(contact.point), gap, turning)
         Omega = self._following_turning(contact, V) if turning is None else turning
-        self._check_no_slip(contact, V, Omega, gap)
         centre = contact.centre + contact.normal * gap
-        if gap > 0:
-            self._check_over(contact, centre, q)
-        start = State(_triple(centre), _triple(V), _triple(Omega), tuple(q), time, tuple(map(float, coordinates)))
-        line_contact.check_start(system, start)
+        if checked:
+            self._check_no_slip(contact, V, Omega, gap)
+            self._check_over(contact, centre, q, gap)
+        start = State(_triple(centre), _triple(V), _triple(Omega), tuple(q), time, tuple(map(as_float, coordinates)))
+        if checked:
+            line_contact.check_start(system, start)
         return start
 
     @cached_property
@@ -204,8 +208,10 @@ class Placing:
             "it stand up more, or give all three components of `velocity`, and `angular_velocity`.",
         )
 
-    def _check_over(self, contact: Contact, centre: Vector, q: Quaternion) -> None:
+    def _check_over(self, contact: Contact, centre: Vector, q: Quaternion, gap: float) -> None:
         """Refuse a height at which the body is no longer nearest to the place over which it is asked for."""
+        if not gap > 0:
+            return
         elsewhere = misplaced(self.system, contact, centre, q)
         if not elsewhere:
             nearest = closest_contact(self.system, self._now, centre, q, self._own)
@@ -267,9 +273,9 @@ def _unit_quaternion(orientation: Any) -> Quaternion:
     length = math.hypot(*parts)
     if not 0 < length < math.inf:
         raise InvalidValueError("orientation", "must be a quaternion other than zero", orientation)
-    if abs(length - 1) < 4e-16:  # it is one already: keep it to the last digit
+    if all(map(is_number, parts)) and abs(length - 1) < 4e-16:  # it is one already: keep it to the last digit
         return Quaternion(*parts)
-    return Quaternion(*(part / length for part in parts))
+    return Quaternion(*parts).unit
 
 
 def rolling_along(V: Vector, u: Vector, rho: Vector, n: Vector) -> Vector:

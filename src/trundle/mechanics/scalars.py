@@ -40,6 +40,17 @@ def is_zero(value: Any) -> bool:
     return is_number(value) and bool(value == 0)
 
 
+def as_float(value: Any) -> Any:
+    """Return a plain number as Python's float, and any other scalar as it is.
+
+    Examples
+    --------
+    >>> as_float(2), as_float("x")
+    (2.0, 'x')
+    """
+    return float(value) if is_number(value) else value
+
+
 def leaves(values: tuple[Any, ...]) -> Iterator[Any]:
     """Go through nested tuples and yield what is in them.
 
@@ -158,10 +169,15 @@ def namespace(*values: Any) -> Any:
     2.0
     """
     others = [value for value in leaves(values) if not is_number(value)]
-    if any(type(value).__name__ == "Jet" for value in others):
+    kinds = {type(value).__name__ for value in others}
+    if "Jet" in kinds:
         from .jets import JetFunctions
 
-        return JetFunctions(namespace(*(getattr(value, "value", value) for value in others)))
+        return JetFunctions(namespace(*(value.value if type(value).__name__ == "Jet" else value for value in others)))
+    if "Dual" in kinds:
+        from .duals import DualFunctions
+
+        return DualFunctions
     if any(getattr(getattr(value, "dtype", None), "kind", "") == "c" for value in others):
         return _ComplexStep(sys.modules["numpy"])
     for value in others:

@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 
 from ..errors import InvalidValueError, ScenarioError
 from .base import Document
-from .fields import Measure, written
+from .fields import Measure, bare, written
 from .tables import KINDS, Bodies, Loads, Run, Start, Supports
 from .together import tell_all
 from .validation_errors import Kinds
@@ -180,7 +180,7 @@ class ScenarioFile(Document):
         with _named_in(""):
             body, support = self.body.build(), self.support.build()
             loads = tuple(tell_all(*(load.build for load in self.applied_loads)))
-            return RollingSystem(body, support, loads, float(self.gravity))
+            return RollingSystem(body, support, loads, bare(self.gravity))
 
     @cached_property
     def _start(self) -> State:

@@ -68,6 +68,19 @@ def written(value: Any) -> Any:
     return value.written if isinstance(value, Quantity) else value
 
 
+def bare(value: Any) -> Any:
+    """Return numbers without the texts that they were written as, and anything else as it is.
+
+    Examples
+    --------
+    >>> bare((Quantity(0.025, "25 mm"), "co-rotating", None))
+    (0.025, 'co-rotating', None)
+    """
+    if isinstance(value, tuple):
+        return tuple(map(bare, value))
+    return float(value) if isinstance(value, Quantity) else value
+
+
 @dataclass(frozen=True)
 class Diameter:
     """What a user wrote for a diameter, on its way to the radius of the same table.

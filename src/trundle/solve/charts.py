@@ -23,7 +23,6 @@ from ..mechanics.symmetry import on_plane
 from ..mechanics.system import RollingSystem
 from . import corner_events
 from .laws import CONTACT, Law
-from .samples import ROLLING
 
 CHART = "chart"  # the name of the event with which a chart ends
 _INSIDE, _EDGE = 0.15, 0.1  # of the sine of the angle between axis and normal: where the nodes' chart begins and ends
@@ -325,7 +324,7 @@ def charts(system: RollingSystem, law: Law) -> tuple[Chart, ...]:
     ['Chart', 'BodyAxes', 'LineOfNodes']
     """
     # Event functions that take directions take them along the support frame's axes.
-    if law.code != ROLLING or law.ends or system.corners:
+    if not law.in_charts or law.ends or system.corners:
         return (LAWS_OWN,)
     flat, rate = on_plane(system), system.support.motion.steady_rate
     found: list[Chart] = [LAWS_OWN, BodyAxes(flat)]

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import Contact, contact_at
 from ..mechanics.nearest import closest_contact
+from ..mechanics.scalars import as_float
 from ..mechanics.system import RollingSystem, State
 
 WEIGHTLESS = 1e-13  # share of the forces at hand below which nothing presses the body on
@@ -47,7 +48,9 @@ class ContactState:
         arm = contact.offset.norm()
         u, turning = contact.support.material_velocity(contact.point), contact.support.angular_velocity
         speed = max(V.norm(), Omega.norm() * arm, u.norm(), turning.norm() * arm)
-        return ContactState(state, contact, q, V, Omega, contact.slip_velocity(V, Omega), float(gap), arm, float(speed))
+        return ContactState(
+            state, contact, q, V, Omega, contact.slip_velocity(V, Omega), as_float(gap), arm, float(speed)
+        )
 
     @property
     def nearest(self) -> Vector:
@@ -57,7 +60,7 @@ class ContactState:
     @property
     def approach(self) -> float:
         """How fast it comes off the support, m/s; negative: how fast it comes down."""
-        return float(self.slip.dot(self.contact.normal))
+        return as_float(self.slip.dot(self.contact.normal))
 
     @property
     def sliding(self) -> Vector:
@@ -115,11 +118,11 @@ def moment(system: RollingSystem, state: State, contact: tuple[float, float, flo
 
 
 def floats(v: Vector) -> tuple[float, float, float]:
-    """Return a vector's components.
+    """Return a vector's components, as Python's floats where they are numbers.
 
     Examples
     --------
     >>> floats(Vector(1, 2, 3))
     (1.0, 2.0, 3.0)
     """
-    return float(v.x), float(v.y), float(v.z)
+    return as_float(v.x), as_float(v.y), as_float(v.z)

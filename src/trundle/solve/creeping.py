@@ -9,7 +9,7 @@ import numpy as np
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import contact_at
 from ..mechanics.creep import slip_rates
-from ..mechanics.scalars import Scalar
+from ..mechanics.scalars import Scalar, as_float
 from ..mechanics.slipping import Slipping, slip
 from ..mechanics.system import RollingSystem
 from . import corner_events
@@ -120,6 +120,10 @@ class CreepingLaw(SlippingLaw):
         """Return ṗ, q̇, Ω̇ and the rate of |s|."""
         return self._rates(system, time, state, self._way(system, time, state)[0])
 
+    def reaction(self, system: RollingSystem, time: Scalar, state: Numbers) -> Vector:
+        """Return R of slipping along the direction that friction keeps."""
+        return self._now(system, time, state, self._way(system, time, state)[0]).reaction
+
     def event_functions(
         self, system: RollingSystem, time: Scalar, state: Numbers, event_parameters: Numbers
     ) -> dict[str, Scalar]:
@@ -150,7 +154,7 @@ class CreepingLaw(SlippingLaw):
 
     def direction(self, system: RollingSystem, time: float, numbers: Any) -> Vector:
         """Return ŝ."""
-        return Vector(*python_law(system, self).found(time, list(map(float, numbers))))
+        return Vector(*python_law(system, self).found(time, list(map(as_float, numbers))))
 
     def found(self, system: RollingSystem, time: Scalar, state: Numbers) -> list[Scalar]:
         """Return ŝ."""

@@ -149,7 +149,7 @@ class Dense:
         """Return up to when a law may be followed: the next kink, or the end, s."""
         return next((kink.behind for kink in self.bends if kink.behind > now.time), self.end)
 
-    def _remember(self, follows: Callable[[], PhaseStart]) -> PhaseStart:
+    def _remember(self, follows: Callable[[], PhaseStart], *_: Any) -> PhaseStart:
         """Return what follows the stretch just passed."""
         if self.passed not in self.follows:
             self.follows[self.passed] = follows()

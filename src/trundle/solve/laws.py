@@ -6,7 +6,6 @@ numbers and completes these to a full record; the mechanics itself is in `mechan
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -17,7 +16,7 @@ from ..mechanics.algebra import ZERO, Quaternion, Vector
 from ..mechanics.contact import Contact, Rolling, contact_at, roll
 from ..mechanics.loads import BodyMotion
 from ..mechanics.nearest import nearest
-from ..mechanics.scalars import Scalar, is_zero
+from ..mechanics.scalars import Scalar, as_float, is_zero
 from ..mechanics.slipping import Flying, Slipping, fly, slip, slip_direction, unturned
 from ..mechanics.system import RollingSystem, State
 from .contact_state import ContactState, floats
@@ -41,6 +40,10 @@ class Law:
         Which of its events come where something shrinks to nothing: "grip", the slip; "stop", turning over the support.
     brief : bool
         Whether it holds for so short a time that to compile it would take longer than to follow it.
+    in_charts : bool
+        Whether its state is no more than place, turning and the support's own motion, which charts know.
+    unwatched : int
+        How many of the last numbers have no say in how long a step is.
 
     Parameters
     ----------
@@ -52,6 +55,8 @@ class Law:
     code: int
     variables: tuple[str, ...] = CONTACT
     brief: bool = False
+    in_charts: bool = False
+    unwatched: int = 0
 
     def __init__(self, weightless: bool = False) -> None:
         self.weightless = weightless
@@ -122,9 +127,9 @@ class Law:
 
     def unpack(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array) -> ContactState:
         """Return the body that is meant by its numbers."""
-        plain = [float(number) for number in numbers]
+        plain = [as_float(number) for number in numbers]
         p, q, Omega, rest, coordinates = self.split(plain)
-        q = Quaternion(*(part / math.hypot(*q) for part in q))
+        q = q.unit
         contact = self._contact(system, time, p, q, rest, coordinates)
         Omega = self._turns(contact, Omega)
         centre, V = self._moves(contact, Omega, rest)
@@ -177,39 +182,42 @@ class Law:
 
     def shrinking(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array, stop: str) -> Vector:
         """Return what shrinks to nothing at a stop: the slip, m/s, or how the body turns over the support, rad/s."""
-        p, q, Omega, rest, coordinates = self.split([float(number) for number in numbers])
+        p, q, Omega, rest, coordinates = self.split([as_float(number) for number in numbers])
         return (
             Vector(*rest[:3]) if stop == "grip" else state_turning(contact_at(system, time, p, q, coordinates), Omega)
         )
 
-    def shrinking_rate(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array, stop: str) -> Array:
+    def shrinking_rate(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array, stop: str) -> Vector:
         """Return how fast that changes, m/s² or rad/s²; of Ω̇ only the part along the support."""
-        plain = [float(number) for number in numbers]
-        rate = Vector(*(float(part) for part in self.rates(system, time, plain)[_SHRINKS[stop]]))
+        plain = [as_float(number) for number in numbers]
+        rate = Vector(*(as_float(part) for part in self.rates(system, time, plain)[_SHRINKS[stop]]))
         if stop == "stop":
             p, q, _, _, coordinates = self.split(plain)
             n = contact_at(system, time, p, q, coordinates).normal
             rate = rate - n * rate.dot(n)
-        return rate.array()
+        return rate
 
     def rk4_step(
-        self, system: RollingSystem, time: float, state: Sequence[float], step: float, known: Rates | None = None
-    ) -> list[float]:
+        self, system: RollingSystem, time: Scalar, state: Numbers, step: Scalar, known: Rates | None = None
+    ) -> list[Any]:
         """Return the state after a step so short that one of the classical Runge-Kutta method is exact.
 
         Its rates may be known as a function of time and state.
         """
-        y = np.asarray(state, dtype=float)
+        y = [as_float(number) for number in state]
 
-        def rates(t: float, at: Array) -> Array:
-            found = self.rates(system, t, at.tolist()) if known is None else known(t, at.tolist())
-            return np.array([float(rate) for rate in found])
+        def after(wait: float, slopes: Sequence[Scalar]) -> list[Scalar]:
+            at = [number + wait * slope for number, slope in zip(y, slopes, strict=True)]
+            return [
+                as_float(rate) for rate in (known(time + wait, at) if known else self.rates(system, time + wait, at))
+            ]
 
-        first = rates(time, y)
-        second = rates(time + step / 2, y + step / 2 * first)
-        third = rates(time + step / 2, y + step / 2 * second)
-        fourth = rates(time + step, y + step * third)
-        return (y + step / 6 * (first + 2 * second + 2 * third + fourth)).tolist()
+        first = after(0.0, [0.0] * len(y))
+        second = after(step / 2, first)
+        third = after(step / 2, second)
+        fourth = after(step, third)
+        slopes = [a + 2 * b + 2 * c + d for a, b, c, d in zip(first, second, third, fourth, strict=True)]
+        return [number + step / 6 * slope for number, slope in zip(y, slopes, strict=True)]
 
     def _bounds(self, system: RollingSystem, contact: Contact, orientation: Quaternion, gap: Scalar) -> dict[str, Any]:
         """Return the event functions of every phase: where the support ends, the body's shape, or what fits."""
@@ -232,6 +240,7 @@ class RollingLaw(Law):
     """No slip: the state is (p, q, Ω)."""
 
     code = ROLLING
+    in_charts = True
 
     def _now(self, system: RollingSystem, time: Scalar, state: Numbers) -> Rolling:
         p, q, Omega, _, coordinates = self.split(state)
@@ -374,7 +383,7 @@ class SlippingLaw(Law):
 
     def direction(self, system: RollingSystem, time: float, numbers: Sequence[float] | Array) -> Vector:  # noqa: ARG002
         """Return ŝ, the direction of the slip."""
-        return slip_direction(Vector(*map(float, numbers[10:13])))
+        return slip_direction(Vector(*map(as_float, numbers[10:13])))
 
     def stiff(self, numbers: Array) -> bool:
         """Tell whether it slips so slowly that the direction of its slip settles far faster than all else changes."""

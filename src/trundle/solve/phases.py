@@ -72,7 +72,7 @@ def solve(
     progress: Progress | None = None,
     *,
     in_steps: bool = True,
-    remember: Callable[[Callable[[], PhaseStart]], PhaseStart] = lambda follows: follows(),
+    remember: Callable[[Callable[[], PhaseStart], Law, ZeroCrossing], PhaseStart] = lambda follows, *_: follows(),
     bends: list[Kink] | None = None,
 ) -> Samples:
     """Follow a body through its phases and return its samples with all events.
@@ -95,7 +95,7 @@ def solve(
         Whether the method takes steps: none may then lead across a kink of a formula in the time, and slip whose
         direction settles at once is a phase of its own; to a closed form it is slip.
     remember : callable, optional
-        Takes what works out what follows a stop, and returns that, or the same if it is known already.
+        Takes what works out what follows a stop, the law and the stop; returns that, or the same if it is known.
     bends : list of Kink, optional
         The kinks of its formulas, if they are known already.
 
@@ -140,7 +140,7 @@ def solve(
             record.put(samples)
             events.append(event)
             break
-        now = remember(partial(lambda *ended: behind(_following(system, *ended)), law, stop))
+        now = remember(partial(lambda *ended: behind(following_stop(system, *ended)), law, stop), law, stop)
         events += now.events
         _check_count(system, events)
         if stop.name.startswith(CORNER):
@@ -335,7 +335,7 @@ def _ended(system: RollingSystem, law: Law, stop: ZeroCrossing) -> tuple[Samples
     return samples, Event(state.time, name, f"{said} at t = {state.time:.9g} s", state, state, contact)
 
 
-def _following(system: RollingSystem, law: Law, stop: ZeroCrossing) -> PhaseStart:
+def following_stop(system: RollingSystem, law: Law, stop: ZeroCrossing) -> PhaseStart:
     """Return what follows a stop, or say that nothing can be worked out there."""
     try:
         return transitions.after(system, law, stop)

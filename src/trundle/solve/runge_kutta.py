@@ -149,6 +149,7 @@ def _integrated(
     try:
         at = law.unpack(system, begin, y0)
         least = tolerance * _scale(y0, at.arm, at.scale(system))
+        least[y0.size - law.unwatched :] = np.inf
         paths = _paths(law, traced, begin, y0, end, tolerance, least)
         yield from _follow(_watched(paths, patience, progress, begin), y0, rows, stops, traced.names)
     except StuckError as stuck:
@@ -227,7 +228,7 @@ def _scale(y0: Array, arm: float, speed: float) -> Array:
     """
     place, turning = max(_size(y0[:3]), arm), max(_size(y0[7:10]), 0.1 * speed / arm)
     rest = max(1e-3 * _size(y0[10:]), 1e-4 * speed)
-    least = [*[1e-3 * place] * 3, *[1.0] * 4, *[1e-3 * turning] * 3, *[rest] * 99]
+    least = [*[1e-3 * place] * 3, *[1.0] * 4, *[1e-3 * turning] * 3, *[rest] * y0.size]
     return np.maximum(np.abs(y0), least[: y0.size])
 
 

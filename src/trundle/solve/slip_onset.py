@@ -10,7 +10,9 @@ from ..errors import SolverError
 from ..mechanics.algebra import E_X, E_Y, E_Z, ZERO, Matrix, Vector
 from ..mechanics.contact import Contact, Rolling, roll
 from ..mechanics.creep import SlipRates, slip_rates
+from ..mechanics.duals import has_duals, values_of
 from ..mechanics.onset import onset
+from ..mechanics.scalars import as_float
 from ..mechanics.slipping import HeldInertia, Response, response
 from ..mechanics.system import RollingSystem
 from .contact_state import WEIGHTLESS, ContactState, floats
@@ -108,15 +110,18 @@ def _growth(system: RollingSystem, at: ContactState, law: Law) -> _Growth | None
     c, s, settling = rates.settled()
     if c > 0 and settling > 0 and _rate(rates, c, s) > 0 and rates.normal_force(c, s) > least:
         return _Growth(rates.direction(c, s), _rate(rates, c, s), settling)
-    for rate, (c, s) in onset(rates.along):
+    for rate, (c, s) in onset(values_of(rates).along):
         if rates.normal_force(c, s) > least:
+            if has_duals(rates):  # a root that was searched for has no slopes: those of Newton's method from there
+                c, s, _ = rates.settled(c, s)
+                rate = _rate(rates, c, s)
             return _Growth(rates.direction(c, s), rate, 0.0)
     return None
 
 
 def _rate(rates: SlipRates, c: float, s: float) -> float:
     first, second = rates.along(c, s)
-    return float(c * first + s * second)
+    return as_float(c * first + s * second)
 
 
 def _holds(system: RollingSystem, at: ContactState, law: Law) -> bool:
@@ -140,7 +145,7 @@ def _pushed(system: RollingSystem, at: ContactState, slip: Vector, law: Law) -> 
     coordinates, motion, support = state.support, system.support.motion, contact.support
     if motion.free:
         moment = support.lever(contact.point).dot(P) + support.axle.dot(couple) * P.dot(contact.normal)
-        coordinates = (*coordinates[:-1], coordinates[-1] - float(moment / motion.inertia))
+        coordinates = (*coordinates[:-1], coordinates[-1] - as_float(moment / motion.inertia))
     moved = at.moving(system, at.V + P / system.body.mass, at.Omega + answer(P).angular_velocity, coordinates)
     return replace(moved, slip=slip)  # smaller than a rounding of V and Ω
 

@@ -187,10 +187,10 @@ class Node:
         return self.tape.record("abs", self)
 
     def __lt__(self, other: Any) -> Any:
-        return self.tape.record("<", self, other)
+        return self._with(lambda tape, a, b: tape.record("<", a, b), self, other)
 
     def __gt__(self, other: Any) -> Any:
-        return self.tape.record(">", self, other)
+        return self._with(lambda tape, a, b: tape.record(">", a, b), self, other)
 
 
 # One form for what is the same to the last bit: factors and summands in the order in which they came up, signs outside.

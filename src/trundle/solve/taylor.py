@@ -230,7 +230,7 @@ def _lasted_to(system: RollingSystem, now: PhaseStart, stop: str, near: float) -
     v = law.shrinking(system, now.time, numbers_now, stop).array()
     if v @ v > _GROWN * near:
         return math.inf
-    rate = law.shrinking_rate(system, now.time, numbers_now, stop)
+    rate = law.shrinking_rate(system, now.time, numbers_now, stop).array()
     length, change = float(np.linalg.norm(v)), float(np.linalg.norm(rate))
     straight = float(np.linalg.norm(np.cross(v, rate))) <= _STRAIGHT * length * change and v @ rate > 0
     return length / change if straight else math.inf

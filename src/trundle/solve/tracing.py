@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import Any
 
+from ..mechanics.duals import has_duals
 from ..mechanics.parameters import numbers, structure_of, with_numbers
-from ..mechanics.scalars import Scalar
+from ..mechanics.scalars import Scalar, as_float
 from ..mechanics.system import RollingSystem, State
 from . import corner_events
 from .laws import Law, RollingLaw
@@ -100,7 +101,7 @@ def python_law(
     >>> law.rates(0.0, [0, 0, 0, 1, 0, 0, 0, 0.0, 2.0, 0.0])[0], law.names
     (2.0, ('lift',))
     """
-    if not system.support.surface.analytic:
+    if not system.support.surface.analytic or has_duals(system):
         return _untraced(system, law, event_parameters, time, state)
     own = {name: value for name, value in vars(law).items() if isinstance(value, float)}
     values = [*numbers(system), *own.values(), *event_parameters]
@@ -182,17 +183,17 @@ def _untraced(
     system: RollingSystem, law: Law, event_parameters: Sequence[float], time: float, state: Sequence[float]
 ) -> PythonLaw:
     def rates(t: float, y: Sequence[float]) -> list[float]:
-        return [float(rate) for rate in law.rates(system, t, y)]
+        return [as_float(rate) for rate in law.rates(system, t, y)]
 
     def stops(t: float, y: Sequence[float]) -> list[float]:
         found = corner_events.all_event_functions(system, law, t, y, event_parameters)
-        return [float(value) for value in found.values()]
+        return [as_float(value) for value in found.values()]
 
     def found(t: float, y: Sequence[float]) -> list[float]:
-        return [float(part) for part in law.found(system, t, y)]
+        return [as_float(part) for part in law.found(system, t, y)]
 
     def vectors(t: float, y: Sequence[float]) -> list[float]:
-        return [float(part) for vector in corner_events.vectors(system, law, t, y) for part in vector]
+        return [as_float(part) for vector in corner_events.vectors(system, law, t, y) for part in vector]
 
     # Which stops there are is read off a state in which the law holds: of any other it may know nothing.
     names = tuple(corner_events.all_event_functions(system, law, time, state, event_parameters)) if len(state) else ()

@@ -6,14 +6,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
 from ..errors import SolverError
 from ..mechanics.algebra import ZERO, Vector
 from ..mechanics.contact import roll
 from ..mechanics.impact import land
 from ..mechanics.kinks import Kink
 from ..mechanics.placing import SLIP_TOLERANCE, no_gap
+from ..mechanics.scalars import as_float
 from ..mechanics.slipping import response, slip, unpushed, unturned
 from ..mechanics.system import RollingSystem, State
 from .coming_off import lift_at_hand
@@ -232,7 +231,7 @@ def _goes_on(system: RollingSystem, law: Law, at: ContactState, stop: ZeroCrossi
     if not stop.name.startswith("near "):
         return True
     rate = law.shrinking_rate(system, at.state.time, stop.state_vector, name)
-    return left > 4 * AN_INSTANT * float(np.linalg.norm(rate))
+    return left > 4 * AN_INSTANT * float(rate.norm())
 
 
 def _least(system: RollingSystem, at: ContactState, stop: str) -> float:
@@ -334,7 +333,7 @@ def _struck(system: RollingSystem, at: ContactState, jolt: str = "", before: Con
         struck = land(system, at.contact, at.orientation, at.slip)
         V, Omega = V + struck.velocity_change, Omega + struck.angular_velocity_change
         if system.support.motion.free:
-            coordinates = (*coordinates[:-1], coordinates[-1] + float(struck.axle_rate_change))
+            coordinates = (*coordinates[:-1], coordinates[-1] + as_float(struck.axle_rate_change))
         after = at.moving(system, V, Omega, coordinates)
         off = after.approach  # a free axle that was struck carries the contact along
         sideways = at.approach >= -SLIP_TOLERANCE * at.speed
@@ -360,20 +359,20 @@ def _struck(system: RollingSystem, at: ContactState, jolt: str = "", before: Con
 def _set_down(system: RollingSystem, at: ContactState) -> ContactState:
     """Return a body that touches and stays: no velocity off the support, and none along it where that is rounding."""
     limit = SLIP_TOLERANCE * at.speed
-    held = at.sliding.norm() <= limit and system.support.friction != 0
+    held = bool(at.sliding.norm() <= limit and system.support.friction != 0)
     return at.moving(system, at.contact.rolling_velocity(at.Omega) + (ZERO if held else at.sliding), at.Omega)
 
 
 def _come_to_it(system: RollingSystem, law: Law, at: ContactState, numbers: Any, stop: str) -> ContactState:
     """Go on straight from where slip or turning has all but ended to where it has ended."""
-    y, time = np.asarray(numbers, dtype=float), at.state.time
-    v = law.shrinking(system, time, numbers, stop).array()
-    length = float(np.linalg.norm(v))
+    y, time = [as_float(number) for number in numbers], at.state.time
+    v = law.shrinking(system, time, numbers, stop)
+    length = v.norm()
     if length > 1e-3 * _least(system, at, stop):
-        rates = np.array([float(rate) for rate in law.rates(system, time, y.tolist())])
-        closing = float(-(v @ law.shrinking_rate(system, time, y, stop)) / length)
+        closing = -v.dot(law.shrinking_rate(system, time, y, stop)) / length
         wait = length / closing if closing > 0 else 0.0
-        at = law.unpack(system, time + wait, y + wait * rates)
+        rates = law.rates(system, time, y)
+        at = law.unpack(system, time + wait, [number + wait * rate for number, rate in zip(y, rates, strict=True)])
     Omega = at.Omega if stop == "grip" else unturned(at.contact, at.Omega)
     s = at.sliding if stop == "stop" and law.code == SlippingLaw.code else ZERO
     return at.moving(system, at.contact.rolling_velocity(Omega) + s, Omega)

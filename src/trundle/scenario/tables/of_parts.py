@@ -26,7 +26,7 @@ from ...mechanics.parts import (
     fields_of,
     sentence_of,
 )
-from ..fields import Measure, Measures, Quantity, Varying
+from ..fields import Measure, Measures, Varying, bare
 from ..together import each_checked
 from .values import Table
 
@@ -173,7 +173,7 @@ def _value(value: Any) -> Any:
         return value.build()  # type: ignore[attr-defined]
     if isinstance(value, tuple):
         return tuple(map(_value, value))
-    return float(value) if isinstance(value, Quantity) else value
+    return bare(value)
 
 
 def table_of(

@@ -8,7 +8,7 @@ from typing import Any, Literal
 from pydantic import Field, model_validator
 
 from ...errors import InvalidValueError
-from ..fields import written
+from ..fields import bare, written
 from ..together import tell_all
 from .values import Angle, Angle3, Duration, Height, Instant, Own, Place2, Rate, Rate3, Step, Table, Turn4, Velocity
 
@@ -69,14 +69,7 @@ class Start(Table):
 
     def arguments(self) -> dict[str, Any]:
         """Return what `RollingSystem.place` takes."""
-        return {name: _plain(getattr(self, name)) for name in Start.model_fields}
-
-
-def _plain(value: Any) -> Any:
-    """Return numbers without the texts that they were written as."""
-    if value is None or isinstance(value, str):
-        return value
-    return tuple(map(float, value)) if isinstance(value, tuple) else float(value)
+        return {name: bare(getattr(self, name)) for name in Start.model_fields}
 
 
 class Run(Table):

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from ...errors import InvalidValueError
 from ...mechanics.parts import fields_of, kinds_of
 from ...mechanics.surfaces import Surface
-from ..fields import Measure, Quantity, written
+from ..fields import Measure, Quantity, bare, written
 from .motions import MOTIONS, Motions
 from .of_parts import PartTable, one_of, table_of
 from .values import Friction, Restitution, Table
@@ -69,15 +69,14 @@ class OnSurface(PartTable):
         """Return the support."""
         from ...mechanics.system import Support
 
-        kinetic = None if self.kinetic_friction is None else float(self.kinetic_friction)
         return Support(
             self.surface(),
             motion=self.motion.build(),
             tilt=_as_given(self.tilt),
-            friction=None if self.friction is None else float(self.friction),
-            kinetic_friction=kinetic,
-            restitution=float(self.restitution),
-            tangential_restitution=float(self.tangential_restitution),
+            friction=bare(self.friction),
+            kinetic_friction=bare(self.kinetic_friction),
+            restitution=bare(self.restitution),
+            tangential_restitution=bare(self.tangential_restitution),
         )
 
 

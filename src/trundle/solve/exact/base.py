@@ -56,6 +56,7 @@ class ClosedForm:
     conditions: ClassVar[tuple[Condition, ...]]  # of which the domain is put together
     phases: ClassVar[tuple[int, ...]] = (ROLLING,)  # of contact that it covers
     of_arrays: ClassVar[bool] = False  # whether its numbers may be arrays, one element for each time asked for
+    differentiable: ClassVar[bool] = False  # whether its numbers may be duals, and all of its motion follows from them
     impossible_events: ClassVar[frozenset[str]] = frozenset()  # events of the phase that cannot come
 
     @classmethod

@@ -94,6 +94,7 @@ class SphereOnPlane(ManySamples, ClosedForm):
         ),
     )
 
+    differentiable = True
     impossible_events = frozenset({"lift"})  # N is constant
 
     @classmethod

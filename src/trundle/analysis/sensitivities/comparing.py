@@ -1,0 +1,128 @@
+"""Derivatives against differences of runs: the same question asked of the plain laws, with other numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...errors import TrundleError
+from ...mechanics.system import RollingSystem, State
+from ...scenario import ScenarioFile
+from ...solve.samples import Array, Samples
+from .following import Followed
+from .keys import Key, moved
+
+_STEPS = (1e-4, 1e-6)  # shares of each number by which it is changed; the second where the first is too coarse
+_ALONE = 1e-2  # in SI, a number that is 0 where no other has its unit
+_ENOUGH = 1e-6  # share of a derivative by which a difference of runs may be off
+_SURE = 10.0  # times how far two differences with other steps are apart
+_VAGUE = 1e-2  # share of a derivative from which on a difference tells nothing
+_QUANTITIES = ("position", "velocity", "angular_velocity")
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """How far the derivatives are from differences of runs in which all numbers are changed at once.
+
+    Parameters
+    ----------
+    apart : float
+        The largest difference, as a share of the largest derivative of its quantity; not a number where nothing could
+        be compared.
+    sure : float
+        How well the differences themselves are known, as such a share.
+    samples : int
+        At how many samples they were compared: those in the same phase in all runs.
+    left_out : tuple of str
+        The numbers that could not be changed both ways, such as a drag of 0.
+    """
+
+    apart: float
+    sure: float
+    samples: int
+    left_out: tuple[str, ...] = ()
+
+    @property
+    def passed(self) -> bool | None:
+        """Whether they agree as well as the differences are known; None where these tell nothing."""
+        told = self.samples and self.sure <= _VAGUE
+        return bool(self.apart <= max(_ENOUGH, _SURE * self.sure)) if told else None
+
+    def __str__(self) -> str:
+        if not self.samples:
+            return "not compared with differences of runs"
+        if self.passed is None:
+            return "differences of runs tell nothing here: the motion parts too fast"
+        if self.passed:
+            rest = f", {', '.join(self.left_out)} apart" if self.left_out else ""
+            return f"agrees with differences of runs to {self.apart:.1g}{rest}"
+        return f"differs from differences of runs by {self.apart:.2g} of its size; these are known to {self.sure:.1g}"
+
+
+Solve = Callable[[RollingSystem, State, Array], Samples]
+
+
+def compare(scenario: ScenarioFile, wanted: Sequence[Key], followed: Followed, times: Array, solve: Solve) -> Agreement:
+    """Change all numbers at once, a little up and down, and compare what the runs differ by with the derivatives."""
+    best: Agreement | None = None
+    for share in _STEPS:
+        found = _compared(scenario, wanted, followed, times, solve, share)
+        best = found if best is None or found.sure < best.sure else best
+        if best.sure <= _ENOUGH / _SURE or not best.samples:
+            break
+    return best or Agreement(np.nan, np.nan, 0)
+
+
+def _compared(
+    scenario: ScenarioFile, wanted: Sequence[Key], followed: Followed, times: Array, solve: Solve, share: float
+) -> Agreement:
+    steps = [share * _size(key, wanted) * (-1) ** j for j, key in enumerate(wanted)]
+    usable = [j for j, key in enumerate(wanted) if _may_change(scenario, key, steps[j])]
+    left_out = tuple(key.name for j, key in enumerate(wanted) if j not in usable)
+    none = Agreement(np.nan, np.nan, 0, left_out)
+    if not usable:
+        return none
+
+    def run(part: float) -> Samples:
+        values = {wanted[j].name: wanted[j].value + part * steps[j] for j in usable}
+        return solve(*moved(scenario, values), times)
+
+    try:
+        far, near = ((run(part), run(-part)) for part in (1.0, 0.5))
+    except TrundleError:  # with these numbers all at once the body cannot start so
+        return none
+    runs, here = (*far, *near), followed.samples
+    size = min(one.time.size for one in (*runs, here))
+    alike = [(one.phase[:size] == here.phase[:size]) & (one.time[:size] == here.time[:size]) for one in runs]
+    everywhere = np.all(alike, axis=0)
+    if not everywhere.any():
+        return none
+    apart, sure = 0.0, 0.0
+    for name in _QUANTITIES:
+        wide, narrow = (
+            (getattr(up, name)[:size] - getattr(down, name)[:size])[everywhere] / (2 * part)
+            for (up, down), part in ((far, 1.0), (near, 0.5))
+        )
+        found = followed.slopes[name][:size][everywhere][:, :, usable] @ np.array([steps[j] for j in usable])
+        values = float(np.abs(getattr(here, name)).max())
+        largest = max(float(np.abs(found).max()), 1e-3 * share * values, 1e-300)
+        apart = max(apart, float(np.abs(found - (4 * narrow - wide) / 3).max()) / largest)
+        sure = max(sure, float(np.abs(wide - narrow).max()) / 3 / largest)
+    return Agreement(apart, sure, int(everywhere.sum()), left_out)
+
+
+def _size(key: Key, wanted: Sequence[Key]) -> float:
+    """Return of what size a number is: where it is 0, the largest other of its unit."""
+    others = max((abs(other.value) for other in wanted if other.unit == key.unit), default=0.0)
+    return abs(key.value) or others or _ALONE
+
+
+def _may_change(scenario: ScenarioFile, key: Key, step: float) -> bool:
+    try:
+        for way in (1, -1):
+            moved(scenario, {key.name: key.value + way * step})
+    except TrundleError:
+        return False
+    return True

@@ -1,0 +1,292 @@
+"""A run with its derivatives: the variational equations of each phase, and across each event its own law in duals.
+
+At an event the instant itself depends on the parameters: g(t*, y, θ) = 0 gives dt*/dθ = −(∂g/∂y Y + ∂g/∂θ)/ġ. There the
+state is a dual, and what follows from it is worked out by the same functions as in any run. Back at a fixed instant the
+derivatives are less by the new rates times dt*/dθ: together, the saltation matrix (Leine and Nijmeijer 2004).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from ...errors import InvalidValueError, SolverError
+from ...mechanics.algebra import ZERO
+from ...mechanics.duals import Dual, slopes_of, stacked, unstacked, value_of
+from ...mechanics.kinks import kinks_and_jolts
+from ...mechanics.parameters import with_numbers
+from ...mechanics.slipping import slip
+from ...mechanics.system import RollingSystem, State
+from ...solve import corner_events, corners, phases, runge_kutta, taylor, transitions
+from ...solve.laws import CORNER, Law, SlippingLaw
+from ...solve.phases import Integrate, Segment
+from ...solve.samples import RESTING, ROLLING, SLIPPING, Array, Progress, Samples
+from ...solve.transitions import JOLT, PhaseStart, ZeroCrossing
+from ...solve.variational import VariationalLaw, VariedSystem
+from .outputs import Slopes, slopes_of_samples
+
+_BRINK = 1e-7  # share of all friction that may be left for a contact to be taken as on the brink of slipping
+_BEFORE = 1e-2  # share of the time in which the motion changes, at which one looks how an event function falls
+_GRAZES = 1e-2  # share of that fall by which it falls on at its zero: less is grazing
+_SLIPS = 1e-9  # share of a velocity's slope by which a start may begin to slip
+
+
+@dataclass(frozen=True)
+class Followed:
+    """A run and its derivatives.
+
+    Parameters
+    ----------
+    samples : Samples
+        Of the run.
+    slopes : dict of array
+        Of each quantity, (n, components, parameters).
+    instants : array (events, parameters)
+        Of when each event comes.
+    """
+
+    samples: Samples
+    slopes: Slopes
+    instants: Array
+
+
+def follow(
+    system: RollingSystem,
+    start: State,
+    times: Array,
+    in_duals: tuple[RollingSystem, State],
+    names: Sequence[str],
+    tolerance: float | None = None,
+    progress: Progress | None = None,
+) -> Followed:
+    """Follow a body through its phases with the derivatives by some parameters.
+
+    Parameters
+    ----------
+    system, start : RollingSystem, State
+        In numbers.
+    times : array (n,)
+        Ascending, s.
+    in_duals : tuple of RollingSystem, State
+        The same in duals.
+    names : sequence of str
+        Of the parameters.
+    tolerance : float, optional
+        Of the method, Taylor's where it can be had; absent: its own.
+    progress : callable, optional
+        Told the fraction done.
+    """
+    method: Any = taylor if taylor.available() else runge_kutta
+    integrate: Integrate = (
+        partial(taylor.integrate, shared=taylor.Shared()) if method is taylor else runge_kutta.integrate
+    )
+    run = _Run(integrate, system, start, times, in_duals, names)
+    given: Any = {"remember": run.remember, "bends": run.bends}
+    tolerance = method.TOLERANCE if tolerance is None else tolerance
+    samples = phases.solve(run.integrate, system, start, times, tolerance, progress, **given)
+    return Followed(samples, run.slopes(samples), run.instants(samples))
+
+
+def check_brink(system: RollingSystem, now: PhaseStart) -> None:
+    """Refuse a body that holds on the brink of slipping: with a little less friction it moves another way."""
+    if now.law.code not in (ROLLING, RESTING) or system.support.friction is None:
+        return
+    stops = now.law.event_functions(system, now.time, now.state_vector, now.event_parameters)
+    most = float(system.support.friction) * float(stops["lift"])
+    if abs(float(stops["slip"])) <= _BRINK * most**2 and most > 0:
+        raise no_derivative(now.time, "friction holds the body with nothing to spare")
+
+
+def no_derivative(time: float, why: str) -> SolverError:
+    """Return the refusal of a motion at an instant."""
+    return SolverError(
+        f"At t = {time:.9g} s the motion has no derivative: {why}. Ask for a shorter run, or change a number."
+    )
+
+
+class _Run:
+    """What is known of the derivatives on the way through a run."""
+
+    def __init__(
+        self,
+        method: Integrate,
+        system: RollingSystem,
+        start: State,
+        times: Array,
+        in_duals: tuple[RollingSystem, State],
+        names: Sequence[str],
+    ) -> None:
+        self.method, self.system, (self.duals, first) = method, system, in_duals
+        self.names, self.count = names, len(names)
+        self.varied = VariedSystem.of(self.duals)
+        self.bends = kinks_and_jolts(system, start.time, float(times[-1]))
+        self.pieces: list[tuple[Array, Slopes]] = []
+        begins = transitions.at_start(self.duals, first)
+        self._check_start(begins, first)
+        self.events = list(begins.events)
+        self.begins: PhaseStart | None = begins  # in duals, where an event was
+        self.here: tuple[Law, float, list[Any]]  # where the derivatives are known, and by which law they go on
+        before = begins.across or begins
+        state = np.array(stacked(before.state_vector, self.count), dtype=float)
+        # The start, and where phases ended: the law before, the state stacked with its derivatives, and what follows.
+        self.stops: list[tuple[Law, float, Array, PhaseStart | None]] = [(before.law, start.time, state, begins)]
+
+    def _check_start(self, begins: PhaseStart, first: State) -> None:
+        """Refuse numbers of a start that rolls or rests which alone would make it slip."""
+        if begins.law.code not in (ROLLING, RESTING):
+            return
+        at = begins.law.unpack(self.duals, value_of(first.time), begins.state_vector)
+        apart = [slopes_of(a - b, self.count) for a, b in zip(first.velocity, at.V, strict=True)]
+        sizes = [slopes_of(part, self.count) for part in (*first.velocity, *first.angular_velocity)]
+        for j, name in enumerate(self.names):
+            if max(abs(row[j]) for row in apart) > _SLIPS * max(1e-6, *(abs(row[j]) for row in sizes)):
+                rule = "must name numbers that change alone without making a body slip that rolls at the start"
+                remedy = "Velocity and angular velocity are both given: give `spin` instead, so that the rest follows."
+                raise InvalidValueError("wrt", rule, name, remedy)
+
+    # What `phases.solve` asks for
+
+    def integrate(
+        self, system: RollingSystem, now: PhaseStart, times: Array, tolerance: float, progress: Progress | None
+    ) -> Iterator[Segment]:
+        """Follow one law to its first stop, with its variational equations."""
+        size = len(now.state_vector)
+        law = VariationalLaw(now.law, size, self.count)
+        state = self._state(now)
+        begin = PhaseStart(law, now.start, stacked(state, self.count), now.event_parameters)
+        self.here = now.law, now.time, state
+        self.event_parameters = (*now.event_parameters, *corners.directions(system, now))
+        for piece in self.method(self.varied, begin, times, tolerance, progress):
+            if piece.times.size:
+                slopes = slopes_of_samples(self.duals, now.law, piece.times, piece.states, self.count)
+                self.pieces.append((piece.times, slopes))
+                self.here = now.law, float(piece.times[-1]), unstacked(piece.states[-1].tolist(), size)
+            stop = piece.stop
+            if stop is not None:
+                self.here = now.law, stop.time, unstacked(stop.state_vector.tolist(), size)
+                self.stops.append((now.law, stop.time, stop.state_vector, None))
+                self.ending = stop.name
+                stop = ZeroCrossing(stop.time, stop.name, stop.state_vector[:size])
+            yield Segment(piece.times, piece.states[:, :size], stop)
+
+    def remember(self, follows: Callable[[], PhaseStart], law: Law, stop: ZeroCrossing) -> PhaseStart:
+        """Return what follows a stop, and keep the same in duals."""
+        if not stop.name.startswith(CORNER):  # there the same goes on
+            self.begins = phases.following_stop(self.duals, law, self._crossing(law, stop))
+            self.stops[-1] = (*self.stops[-1][:3], self.begins)
+            self.events += self.begins.events
+        return follows()
+
+    # Derivatives at an instant
+
+    def _state(self, now: PhaseStart) -> list[Dual]:
+        """Return the state in duals at which a phase begins, for a fixed instant."""
+        if self.begins is not None:
+            begins, self.begins = self.begins, None
+            self.here = begins.law, float(begins.time), self._at_fixed_time(now, begins)
+        law, time, state = self.here
+        if now.time > time:
+            state = law.rk4_step(self.duals, time, state, now.time - time)
+        if type(law) is not type(now.law) or len(state) != len(now.state_vector):
+            raise no_derivative(now.time, "what follows there hangs on a rounding")
+        slopes = [slopes_of(part, self.count) for part in state]
+        check_brink(self.system, now)
+        if not np.isfinite(np.array(slopes, dtype=float)).all():
+            raise no_derivative(now.time, "what follows has no slope there")
+        return [Dual(float(number), row) for number, row in zip(now.state_vector, slopes, strict=True)]
+
+    def _at_fixed_time(self, now: PhaseStart, begins: PhaseStart) -> list[Dual]:
+        """Return a state that is known where an event comes, as it changes at a fixed instant."""
+        moved = slopes_of(begins.time, self.count)
+        numbers = [float(value_of(number)) for number in begins.state_vector]
+        rates = [0.0] * len(numbers)
+        if any(moved):
+            rates = [float(rate) for rate in now.law.rates(self.system, float(begins.time), numbers)]
+        found = []
+        for number, rate, part in zip(numbers, rates, begins.state_vector, strict=True):
+            pairs = zip(slopes_of(part, self.count), moved, strict=True)
+            found.append(Dual(number, tuple(float(slope) - rate * shift for slope, shift in pairs)))
+        return found
+
+    def _crossing(self, law: Law, stop: ZeroCrossing) -> ZeroCrossing:
+        """Return a stop in duals: when it comes, and the state then."""
+        _, _, state = self.here
+        kink = next((kink for kink in self.bends if kink.time == stop.time), None)
+        if kink is not None:  # a kink is where it is, whatever the parameters
+            numbers: Any = np.array(state, dtype=object)
+            known = transitions.jolted(self.duals, law, kink, numbers) if stop.name == JOLT else None
+            return ZeroCrossing(stop.time, stop.name, numbers, known)
+        rates = [float(rate) for rate in law.rates(self.system, stop.time, [one.value for one in state])]
+        moved = self._moved(law, stop, state, rates)
+        pairs = zip(state, rates, strict=True)
+        there = [
+            Dual(one.value, tuple(s + rate * m for s, m in zip(one.slopes, moved, strict=True))) for one, rate in pairs
+        ]
+        return ZeroCrossing(Dual(stop.time, moved), stop.name, np.array(there, dtype=object))  # type: ignore[arg-type]
+
+    def _moved(self, law: Law, stop: ZeroCrossing, state: list[Dual], rates: list[float]) -> tuple[float, ...]:
+        """Return how the instant of a stop changes with the parameters."""
+        ahead = [Dual(one.value, (*one.slopes, rate)) for one, rate in zip(state, rates, strict=True)]
+        time = Dual(stop.time, (*(0.0,) * self.count, 1.0))
+        numbers = [Dual(value_of(one), (*slopes_of(one, self.count), 0.0)) for one in self.varied.scalars()]
+        system = with_numbers(self.system, numbers)
+        found = corner_events.all_event_functions(system, law, time, ahead, self.event_parameters)
+        *slopes, falls = (float(slope) for slope in slopes_of(found[stop.name], self.count + 1))
+        self._check_crossing(law, stop, falls)
+        return tuple(-slope / falls for slope in slopes)
+
+    def _check_crossing(self, law: Law, stop: ZeroCrossing, falls: float) -> None:
+        """Refuse an event that is only just reached: with other numbers it may not come at all."""
+        if stop.name.startswith("near "):  # a square, of what is all but nothing
+            return
+        numbers = stop.state_vector.tolist()
+        wait = _BEFORE * law.unpack(self.system, stop.time, numbers).moment(self.system)
+        before = law.rk4_step(self.system, stop.time, numbers, -wait)
+        stops = corner_events.all_event_functions(self.system, law, stop.time - wait, before, self.event_parameters)
+        if not abs(falls) * wait > _GRAZES * abs(float(stops[stop.name])):
+            raise no_derivative(stop.time, f"the event there ({stop.name}) is only just reached")
+
+    # Derivatives of the samples
+
+    def instants(self, samples: Samples) -> Array:
+        """Return how the instant of each event changes with the parameters."""
+        times = [event.time for event in self.events]
+        if samples.events and samples.events[-1].final:
+            law, time, numbers, _ = self.stops[-1]
+            state = unstacked(numbers.tolist(), numbers.size // (1 + self.count))
+            times.append(
+                self._crossing(law, ZeroCrossing(time, self.ending, np.array([one.value for one in state]))).time
+            )
+        return np.array([slopes_of(time, self.count) for time in times], dtype=float).reshape(-1, self.count)
+
+    def slopes(self, samples: Samples) -> Slopes:
+        """Return the derivatives at each sample."""
+        known = np.concatenate([times for times, _ in self.pieces]) if self.pieces else np.empty(0)
+        names = self.pieces[0][1] if self.pieces else {}
+        columns = {name: np.concatenate([slopes[name] for _, slopes in self.pieces]) for name in names}
+        order = np.argsort(known, kind="stable")
+        places = np.searchsorted(known[order], samples.time)
+        found = np.minimum(places, max(known.size - 1, 0))
+        columns = {name: column[order[found]] for name, column in columns.items()}
+        for i in np.flatnonzero(known[order[found]] != samples.time).tolist():
+            self._fill(columns, i, float(samples.time[i]), int(samples.phase[i]))
+        return columns
+
+    def _fill(self, columns: Slopes, i: int, time: float, phase: int) -> None:
+        """Work out the derivatives at a sample on an event, or in the short step across one, by the law before it."""
+        law, since, state, follows = next(stop for stop in reversed(self.stops) if stop[1] <= time)
+        size = state.size // (1 + self.count)
+        moved = law.rk4_step(self.duals, since, unstacked(state.tolist(), size), time - since)
+        row = np.array([stacked(moved, self.count)], dtype=float)
+        for name, slopes in slopes_of_samples(self.duals, law, np.array([time]), row, self.count).items():
+            columns[name][i] = slopes[0]
+        if phase == SLIPPING != law.code and follows is not None and follows.law.code == SLIPPING:  # all but zero
+            p, q, Omega, _, coordinates = law.split(moved)
+            hat = follows.law.direction(self.duals, follows.time, follows.state_vector)
+            held = isinstance(follows.law, SlippingLaw) and follows.law.held
+            R = slip(self.duals, time, p, q, Omega, ZERO, coordinates, hat, held=held).reaction
+            columns["contact_force"][i] = [slopes_of(part, self.count) for part in R]

@@ -1,0 +1,193 @@
+"""The numbers of a scenario by name, and the scenario with duals in their places."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, get_args
+
+from ...errors import InvalidValueError, UnknownNameError
+from ...mechanics.duals import Dual
+from ...mechanics.placing import Placing
+from ...mechanics.scalars import is_number
+from ...mechanics.system import RollingSystem, State
+from ...scenario import ScenarioFile
+from ...scenario.fields import Measure, Measures
+from ...scenario.tables.of_parts import ListOfLengths
+from ...scenario.tables.values import Table
+from ...units import UNITS
+
+_APART = {"title", "notes", "timing"}  # what says nothing of the motion
+# At 0 these say that there is nothing of the kind, and a start is where the clock of the derivatives begins.
+_AT_ZERO = {
+    "start.height": "a body that touches its support cannot be a little lower",
+    "start.roll": "the body is not laid across its way",
+}
+_NEVER = {"start.time": "the samples are counted from it"}
+
+
+@dataclass(frozen=True)
+class Key:
+    """A number of a scenario.
+
+    Parameters
+    ----------
+    name : str
+        Such as "body.radius" or "start.velocity[0]".
+    value : float
+        In SI.
+    unit : str
+        Its SI unit; empty where it has none.
+    """
+
+    name: str
+    value: float
+    unit: str
+
+
+def keys(scenario: ScenarioFile) -> list[Key]:
+    """Return all numbers of a scenario that a motion may be differentiated by.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> [key.name for key in keys(tr.Scenario.load("tilted-turntable"))][:4]
+    ['gravity', 'body.radius', 'body.mass', 'support.rim']
+    """
+    kinds = {
+        f"{key}[{i}]": kind for key, all_ in scenario._kinds_of_components().items() for i, kind in enumerate(all_)
+    }
+    units = {name: UNITS[kind][0] for name, kind in kinds.items()}
+    leaves = ((name, value, units.get(name, unit)) for name, value, unit in _leaves(scenario))
+    return [Key(*one) for one in leaves if is_number(one[1]) and not _without(*one[:2])]
+
+
+def _without(name: str, value: Any) -> str:
+    """Say why there is no derivative by a number; empty where there is one."""
+    return _NEVER.get(name, "") or (_AT_ZERO.get(name, "") if value == 0 else "")
+
+
+def chosen(scenario: ScenarioFile, names: Sequence[str]) -> list[Key]:
+    """Return the numbers of some names; the name of a list stands for each of its components.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> [key.name for key in chosen(tr.Scenario.load("tilted-turntable"), ["start.velocity"])]
+    ['start.velocity[0]', 'start.velocity[1]']
+    """
+    known = keys(scenario)
+    found: dict[str, Key] = {}
+    for name in names:
+        own = [
+            key
+            for key in known
+            if key.name == name or (key.name.startswith(f"{name}[") and "." not in key.name[len(name) :])
+        ]
+        if not own:
+            raise _refusal(scenario, name, known)
+        found |= {key.name: key for key in own}
+    return list(found.values())
+
+
+def _refusal(scenario: ScenarioFile, name: str, known: list[Key]) -> Exception:
+    """Say why there is no derivative by what a name stands for."""
+    names = [key.name for key in known]
+    if not isinstance(name, str):
+        return InvalidValueError(
+            "wrt", "must hold names of numbers of the scenario", name, f"It has {', '.join(names)}."
+        )
+    given = {key: value for key, value, _ in _leaves(scenario)}
+    if given.get(name, 0.0) is None:
+        rule = "must name numbers that the scenario gives"
+        return InvalidValueError(
+            "wrt", rule, name, f"Write `{name}` into the scenario first, with the value that it has."
+        )
+    if why := _without(name, given.get(name)):
+        return InvalidValueError("wrt", f"must not name `{name}` here: {why}", f"{name} = {given[name]:g}")
+    if isinstance(given.get(name), str):
+        rule = "must name numbers: a motion has no derivative by a text"
+        return InvalidValueError("wrt", rule, f"{name} = {given[name]!r}", "Give the number instead, or leave it out.")
+    return UnknownNameError("number of the scenario", name, names)
+
+
+def varied(scenario: ScenarioFile, wanted: Sequence[Key]) -> tuple[RollingSystem, State]:
+    """Return the system and the start of a scenario in duals: each with its slopes by the numbers wanted.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> scenario = tr.Scenario.load("tilted-turntable")
+    >>> system, start = varied(scenario, chosen(scenario, ["body.radius"]))
+    >>> system.body.radius.slopes, start.position[2].slopes
+    ((1.0,), (1.0,))
+    """
+    duals = {
+        key.name: Dual(key.value, tuple(float(i == j) for j in range(len(wanted)))) for i, key in enumerate(wanted)
+    }
+    model: Any = _replaced(scenario, "", lambda name, value: duals.get(name, value))
+    system: RollingSystem = model.system()
+    return system, Placing(system, **model.start.arguments()).state(checked=False)
+
+
+def moved(scenario: ScenarioFile, values: dict[str, float]) -> tuple[RollingSystem, State]:
+    """Return the system and the start of a scenario with other numbers."""
+    model: Any = _replaced(scenario, "", lambda name, value: values.get(name, value))
+    return model.system(), model.start_state()
+
+
+def _fields(table: Any) -> Iterator[tuple[str, str, str]]:
+    """Yield the name of each field of a table, that in the file, and the SI unit of its numbers."""
+    for name, field in type(table).model_fields.items():
+        if name not in _APART and name != "kind":
+            kind = next((kind for note in (*field.metadata, field.annotation) for kind in _kinds(note)), "number")
+            yield name, field.alias or name, UNITS[kind][0]
+
+
+def _kinds(note: Any) -> Iterator[str]:
+    """Yield the kinds of quantity that the annotation of a field speaks of."""
+    if isinstance(note, Measure):
+        yield note.kind
+    elif isinstance(note, Measures):
+        yield note.each.kind
+    elif isinstance(note, ListOfLengths):
+        yield "length"
+    else:
+        for part in (*getattr(note, "__metadata__", ()), *get_args(note)):
+            yield from _kinds(part)
+
+
+def _leaves(table: Any, before: str = "") -> Iterator[tuple[str, Any, str]]:
+    """Yield each value of a table with its name and unit, and of the tables within."""
+    for name, alias, unit in _fields(table):
+        yield from _within(getattr(table, name), f"{before}{alias}", unit)
+
+
+def _within(value: Any, name: str, unit: str) -> Iterator[tuple[str, Any, str]]:
+    if isinstance(value, Table):
+        yield from _leaves(value, f"{name}.")
+    elif isinstance(value, tuple):
+        for i, part in enumerate(value):
+            yield from _within(part, f"{name}[{i}]", unit)
+    else:
+        yield name, value, unit
+
+
+def _replaced(table: Any, before: str, other: Callable[[str, Any], Any]) -> Any:
+    """Return a table with other values; they are not checked again."""
+    update = {}
+    for name, alias, _ in _fields(table):
+        value = getattr(table, name)
+        now = _other(value, f"{before}{alias}", other)
+        if now is not value:
+            update[name] = now
+    return table.model_copy(update=update) if update else table
+
+
+def _other(value: Any, name: str, other: Callable[[str, Any], Any]) -> Any:
+    if isinstance(value, Table):
+        return _replaced(value, f"{name}.", other)
+    if isinstance(value, tuple):
+        parts = tuple(_other(part, f"{name}[{i}]", other) for i, part in enumerate(value))
+        return value if all(a is b for a, b in zip(parts, value, strict=True)) else parts
+    return other(name, value)

@@ -1,0 +1,234 @@
+"""Derivatives across events, each kind of event by itself and several in a row, against differences of whole runs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from tests.sensitivities.differences import changed, check
+
+import trundle as tr
+from trundle.analysis.sensitivities import following
+from trundle.analysis.sensitivities.keys import chosen
+from trundle.mechanics.duals import Dual, slopes_of, value_of
+
+BALL = {"kind": "solid-sphere", "radius": 0.03, "mass": 0.2}
+ELLIPSOID = {"kind": "ellipsoid", "semi_axes": [0.1, 0.07, 0.05], "mass": 0.4}
+TURNING = {"kind": "spin", "rate": -2.0}  # clockwise
+JERK = {"kind": "move", "position": ["0.25*abs(t - 0.2)", 0, 0]}
+DROP = {"position": [0.1, 0.0], "velocity": [1.0, 0.2, -0.5], "angular_velocity": [1.0, -20.0, 3.0], "height": 0.05}
+LEANING = {**DROP, "attitude": [0.4, 0.5, 0.3], "angular_velocity": [1.0, -2.0, 3.0], "velocity": [0.4, 0.1, -0.5]}
+
+# Tables, the numbers to differentiate by, the events that come, and the times at which to compare.
+EVENTS: dict[str, tuple[dict[str, Any], tuple[str, ...], tuple[str, ...], tuple[float, ...]]] = {
+    "a ball grips": (
+        {
+            "body": BALL,
+            "support": {"kind": "plane", "friction": 0.2, "tilt": 0.02},
+            "start": {"position": [0, 0], "velocity": [1.0, 0.0], "angular_velocity": [0, 0, 0]},
+        },
+        ("support.friction", "support.tilt", "start.velocity[0]", "body.radius", "gravity"),
+        ("grip",),
+        (0.05, 0.14, 0.2, 0.4),
+    ),
+    "a ball that swerves grips on a clockwise table": (
+        {
+            "body": BALL,
+            "support": {"kind": "plane", "friction": 0.2, "tilt": -0.02, "motion": TURNING},
+            "start": {"position": [0.1, 0], "velocity": [0.5, 0.3], "angular_velocity": [-20.0, 5.0, 3.0]},
+        },
+        ("support.friction", "support.tilt", "support.motion.rate", "start.velocity[1]", "start.angular_velocity[0]"),
+        ("grip",),
+        (0.05, 0.2, 0.4, 0.6),
+    ),
+    "a ball begins to slip on a dome, and comes off": (
+        {
+            "body": BALL,
+            "support": {"kind": "dome", "radius": 0.5, "friction": 0.5},
+            "start": {"position": [0.1, 0.02], "velocity": [0.8, 0.1]},
+        },
+        ("support.friction", "support.radius", "body.radius", "start.velocity[0]", "start.position[1]", "gravity"),
+        ("slip", "lift"),
+        (0.1, 0.2, 0.25, 0.3),
+    ),
+    "a ball begins to slip with less friction than it held by": (
+        {
+            "body": BALL,
+            "support": {"kind": "dome", "radius": 0.5, "friction": 0.5, "kinetic_friction": 0.4},
+            "start": {"position": [0.1, 0.02], "velocity": [0.8, 0.1]},
+        },
+        ("support.friction", "support.kinetic_friction", "start.velocity[0]"),
+        ("slip", "lift"),
+        (0.1, 0.2, 0.25, 0.3),
+    ),
+    "a ball slips from rest": (
+        {
+            "body": BALL,
+            "support": {"kind": "plane", "friction": 0.1, "tilt": 0.6},
+            "start": {"position": [0, 0], "velocity": [0, 0]},
+        },
+        ("support.friction", "support.tilt", "gravity", "body.radius"),
+        (),
+        (0.1, 0.3),
+    ),
+    "a ball bounces and slips": (
+        {"body": BALL, "support": {"kind": "plane", "tilt": 0.0, "friction": 0.15, "restitution": 0.6}, "start": DROP},
+        ("support.friction", "support.restitution", "support.tilt", "start.height", "start.velocity", "body.radius"),
+        ("land", "land", "land"),
+        (0.03, 0.1, 0.2, 0.28),
+    ),
+    "a ball bounces and holds": (
+        {
+            "body": BALL,
+            "support": {
+                "kind": "plane",
+                "tilt": 0.02,
+                "restitution": 0.7,
+                "tangential_restitution": 0.4,
+                "motion": TURNING,
+            },
+            "start": DROP,
+        },
+        ("support.restitution", "support.tangential_restitution", "support.tilt", "support.motion.rate", "body.mass"),
+        ("land", "land"),
+        (0.03, 0.1, 0.2, 0.3),
+    ),
+    "a ball that comes straight down bounces on what is level": (
+        {
+            "body": BALL,
+            "support": {"kind": "plane", "friction": 0.3, "restitution": 0.6, "tilt": 0.0},
+            "start": {"position": [0.1, 0.0], "velocity": [0, 0], "height": 0.05},
+        },
+        ("start.height", "support.restitution"),
+        ("land", "land", "land"),
+        (0.05, 0.15, 0.3),
+    ),
+    "a ball lands in a bowl, slips and grips": (
+        {
+            "body": BALL,
+            "support": {"kind": "bowl", "radius": 0.4, "friction": 0.2, "restitution": 0.0},
+            "start": {
+                "position": [0.05, 0.02],
+                "velocity": [0.3, 0.1, -0.4],
+                "angular_velocity": [0, -40, 5],
+                "height": 0.03,
+            },
+        },
+        ("support.friction", "support.radius", "start.height", "start.velocity[0]", "body.radius"),
+        ("land", "grip"),
+        (0.02, 0.06, 0.1, 0.3),
+    ),
+    "an ellipsoid lands, its slip turning on the way": (
+        {"body": ELLIPSOID, "support": {"kind": "plane", "friction": 0.2, "restitution": 0.5}, "start": LEANING},
+        ("support.friction", "support.restitution", "body.semi_axes[0]", "start.attitude[1]", "start.velocity[1]"),
+        ("land", "land"),
+        (0.02, 0.08, 0.12),
+    ),
+    "an ellipsoid lands and sticks": (
+        {"body": ELLIPSOID, "support": {"kind": "plane", "restitution": 0.5}, "start": LEANING},
+        ("support.restitution", "body.semi_axes[0]", "start.attitude[1]", "start.velocity[1]", "start.height"),
+        ("land", "land"),
+        (0.02, 0.08, 0.12),
+    ),
+    "a table jerks under a ball, which holds": (
+        {
+            "body": BALL,
+            "support": {"kind": "plane", "tilt": 0.02, "motion": JERK},
+            "start": {"position": [0, 0], "velocity": [0.1, 0.2]},
+        },
+        ("body.radius", "support.tilt", "start.velocity[1]", "gravity"),
+        ("jolt",),
+        (0.1, 0.19, 0.21, 0.4),
+    ),
+    "a table jerks under a ball, which slips and grips": (
+        {
+            "body": BALL,
+            "support": {"kind": "plane", "tilt": 0.02, "friction": 0.3, "motion": JERK},
+            "start": {"position": [0, 0], "velocity": [0.1, 0.2]},
+        },
+        ("body.radius", "support.tilt", "support.friction", "start.velocity[1]", "gravity"),
+        ("jolt", "grip"),
+        (0.1, 0.19, 0.21, 0.4),
+    ),
+    "a ball runs off a clockwise table": (
+        {
+            "body": BALL,
+            "support": {"kind": "plane", "rim": 0.4, "tilt": 0.05, "motion": TURNING},
+            "start": {"position": [0.1, 0], "velocity": [0.4, 0.2]},
+        },
+        ("support.rim", "support.tilt", "support.motion.rate", "start.velocity[0]"),
+        ("rim",),
+        (0.1, 0.3),
+    ),
+    "a ball comes to rest": (
+        {
+            "body": BALL,
+            "support": {"kind": "plane"},
+            "loads": [{"kind": "rolling-resistance", "offset": 0.002}],
+            "start": {"position": [0, 0], "velocity": [0.2, 0.1]},
+        },
+        ("loads[0].offset", "start.velocity", "gravity", "body.radius"),
+        ("stop",),
+        (0.1, 0.3, 0.6, 0.8),
+    ),
+    "a ball turns back in quadratic drag": (
+        {
+            "body": BALL,
+            "support": {"kind": "plane", "tilt": 0.1},
+            "loads": [{"kind": "quadratic-drag", "coefficient": 0.3}],
+            "start": {"position": [0, 0], "velocity": [-0.3, 0.0]},
+        },
+        ("loads[0].coefficient", "support.tilt", "start.velocity[0]", "body.mass"),
+        (),
+        (0.2, 0.5, 0.8),
+    ),
+}
+
+
+def tables_of(name: str) -> tuple[dict[str, Any], tuple[str, ...], tuple[str, ...], tuple[float, ...]]:
+    tables, keys, kinds, times = EVENTS[name]
+    end = 2.0 if "rim" in kinds else times[-1]
+    return {"gravity": 9.8, **tables, "run": {"duration": end, "every": 0.01}}, keys, kinds, times
+
+
+@pytest.mark.parametrize("name", EVENTS)
+def test_a_run_through_events_has_the_derivatives_of_its_runs(name: str) -> None:
+    tables, keys, kinds, times = tables_of(name)
+    scenario = tr.Scenario.read(tables)
+    found = check(tables, [key.name for key in chosen(scenario, keys)], np.array(times))
+    assert tuple(found.data.kind.values) == kinds
+
+
+@pytest.mark.parametrize("name", [name for name, (*_, kinds, _) in EVENTS.items() if kinds])
+def test_when_an_event_comes_has_its_derivative(name: str) -> None:
+    tables, keys, kinds, _ = tables_of(name)
+    key = keys[0]
+    found = tr.sensitivities(tr.Scenario.read(tables), [key], compared=False)
+    step = 1e-4 * max(abs(float(found.data.value[0])), 0.01)
+
+    def instants(by: float) -> Any:
+        scenario = tr.Scenario.read(changed(tables, key, by))
+        run = scenario.run("taylor")
+        return np.array([event.time for event in run.events])
+
+    wide, narrow = ((instants(h) - instants(-h)) / (2 * h) for h in (step, step / 2))
+    assert np.allclose(found.event_time.values[:, 0], (4 * narrow - wide) / 3, rtol=1e-7, atol=1e-8)
+    assert len(kinds) == len(found.data.kind)
+
+
+# Where rolling ends as friction just fails, or at rest, the rates do not jump, and when that is does not matter.
+@pytest.mark.parametrize("name", [name for name, (*_, kinds, _) in EVENTS.items() if {"land", "grip"} & set(kinds)])
+def test_without_the_saltation_the_derivatives_are_wrong(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    tables, keys, _, times = tables_of(name)
+    scenario = tr.Scenario.read(tables)
+    right = tr.sensitivities(scenario, keys, compared=False)
+
+    def as_if_at_one_instant(run: Any, now: Any, begins: Any) -> list[Any]:  # noqa: ARG001
+        return [Dual(value_of(part), slopes_of(part, run.count)) for part in begins.state_vector]
+
+    monkeypatch.setattr(following._Run, "_at_fixed_time", as_if_at_one_instant)
+    wrong = tr.sensitivities(scenario, keys)
+    apart = abs(wrong.velocity - right.velocity).sel(time=times[-1]).max()
+    assert float(apart) > 1e-3 * float(abs(right.velocity).max())
+    assert wrong.passed is False

@@ -1,0 +1,105 @@
+"""What has no derivative is refused in words that say why, and what there is instead."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+from tests.additions import Ball
+
+import trundle as tr
+
+
+def refusal(wrt: Any, scenario: Any = "tilted-turntable", **given: Any) -> str:
+    """Return the words with which derivatives are refused."""
+    with pytest.raises(tr.TrundleError) as raised:
+        tr.sensitivities(scenario, wrt, **given)
+    return str(raised.value)
+
+
+def level(**changed: Any) -> dict[str, Any]:
+    """Return a scenario of a ball on a level table with some tables changed."""
+    tables = {
+        "body": {"kind": "solid-sphere", "radius": 0.025, "mass": 0.065},
+        "support": {"kind": "plane", "motion": {"kind": "spin", "rate": 3.5}},
+        "start": {"position": [0.1, 0.0], "velocity": [0.0, 0.2]},
+        "run": {"duration": 4.0, "every": 0.1},
+    }
+    return {**tables, **changed}
+
+
+def test_an_unknown_key_is_refused_with_those_that_there_are() -> None:
+    said = refusal("support.tild")
+    assert "Did you mean 'support.tilt'?" in said
+    assert "body.radius" in said
+
+
+def test_a_part_of_a_key_is_no_key() -> None:
+    assert "There are:" in refusal("support")
+    assert "There are:" in refusal("start.vel")
+
+
+def test_nothing_to_differentiate_by_is_refused() -> None:
+    assert "must name a number" in refusal([])
+    assert "got 3" in refusal([3])
+
+
+@pytest.mark.parametrize(
+    ("wrt", "why"),
+    [
+        ("start.spin", "Write `start.spin` into the scenario first"),
+        ("start.height", "cannot be a little lower"),
+        ("start.time", "counted from it"),
+        ("support.kind", "There are:"),
+    ],
+)
+def test_a_number_that_is_not_there_is_refused(wrt: str, why: str) -> None:
+    assert why in refusal(wrt)
+
+
+def test_a_formula_has_no_derivative() -> None:
+    said = refusal("support.motion.rate", "turntable-starting-up")
+    assert "a motion has no derivative by a text" in said
+
+
+def test_a_word_has_no_derivative() -> None:
+    assert 'start.velocity = "co-rotating"'.replace('"', "'") in refusal("start.velocity", "level-turntable-corotating")
+
+
+def test_an_angular_velocity_that_must_agree_with_rolling_cannot_change_alone() -> None:
+    said = refusal("start.angular_velocity", "rattleback")
+    assert "without making a body slip" in said
+    assert "Give `spin`" in said or "give `spin`" in said
+
+
+def test_friction_with_nothing_to_spare_is_on_the_brink() -> None:
+    alpha = 0.3
+    exactly = 2 / 7 * math.tan(alpha)  # what a solid ball takes to roll down
+    support = {"kind": "plane", "tilt": alpha, "friction": exactly}
+    said = refusal("support.tilt", tr.Scenario.read(level(support=support, start={"position": [0, 0]})))
+    assert "nothing to spare" in said
+
+
+def test_an_event_that_is_only_just_reached_is_named() -> None:
+    scenario = tr.Scenario.read(level())
+    form = tr.simulate(scenario.system(), scenario.start_state(), 1.0, 0.5).closed_form
+    x, y = form.guiding_centre(0.0)
+    farthest = math.hypot(x, y) + form.circle_radius
+    support = {"kind": "plane", "rim": farthest * (1 - 1e-13), "motion": {"kind": "spin", "rate": 3.5}}
+    grazing = tr.Scenario.read(level(support=support, run={"duration": 20.0, "every": 0.1}))
+    assert grazing.run("taylor").events
+    assert "only just reached" in refusal("start.velocity", grazing, method="variational")
+
+
+def test_a_run_has_its_own_samples() -> None:
+    run = tr.Scenario.read(level()).run()
+    assert "a run has its own samples" in refusal("body.mass", run, duration=1.0)
+
+
+def test_a_run_of_a_part_of_ones_own_has_no_keys() -> None:
+    support = tr.Support(Ball(0.5, -1.0))
+    system = tr.RollingSystem(tr.Body.solid_sphere(radius=0.02, mass=0.1), support)
+    start = tr.State((0.0, 0.0, -0.48), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    run = tr.simulate(system, start, duration=0.1, every=0.05)
+    assert "its numbers have no keys" in refusal("body.mass", run)
