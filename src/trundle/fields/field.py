@@ -396,6 +396,3 @@ class VectorField(Printed):
     @cached_property
     def _routines(self) -> PhaseRoutines:
         return PhaseRoutines(self.system, self.phase, self.input_groups)
-
-
-__all__ = ["FieldReset", "VectorField"]
