@@ -123,7 +123,8 @@ def _in_javascript(field: VectorField, start: tr.State) -> float:
             'import { rolling_rates } from "./field.mjs";\n'
             f"const y = {y.tolist()}, p = {field.parameters.tolist()}; let best = 1e9, sum = 0;\n"
             f"for (let k = 0; k < 50; k++) {{ const begun = performance.now();\n"
-            f"  for (let i = 0; i < {MANY}; i++) {{ y[7] += 1e-13; for (const x of rolling_rates(0.1, y, p, [])) sum += x; }}\n"
+            f"  for (let i = 0; i < {MANY}; i++) {{\n"
+            "    y[7] += 1e-13; for (const x of rolling_rates(0.1, y, p, [])) sum += x; }\n"
             "  best = Math.min(best, performance.now() - begun); }\n"
             "console.log(best, sum);\n"
         )
