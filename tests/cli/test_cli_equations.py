@@ -47,7 +47,10 @@ def test_c_comes_with_its_header(here: Command) -> None:
     [
         (("tilted-tuntable",), "Did you mean 'tilted-turntable'?"),
         (("tilted-turntable", "--as", "fortran"), "There are: c, python, javascript, latex, jax"),
-        (("tilted-turntable", "--phase", "rest"), "may have: rolling, flight; got 'rest'"),
+        (
+            ("tilted-turntable", "--phase", "rest"),
+            "`--phase` must be one that the system may have: rolling, flight; got 'rest'",
+        ),
         (("tilted-turntable", "--phase", "sinking"), "There are: rolling, slipping, flight, rest"),
         (("tilted-turntable", "--inputs", "wind"), "There are: force, torque, support"),
         (("roll-home-turned",), "A path to roll along has no law."),

@@ -14,6 +14,7 @@ from tests.fields.systems import DYNAMIC, FEW, arguments, node, shipped
 from tests.tolerances import EXACT
 
 import trundle as tr
+from trundle.errors import OutOfDomainError
 from trundle.fields.compiler import compiler
 from trundle.fields.printers.c import FLAGS
 from trundle.solve.laws import Law, RollingLaw
@@ -175,3 +176,19 @@ def test_every_number_has_one_name() -> None:
         "support_angle",
         "support_rate",
     )
+
+
+@pytest.mark.parametrize("extra", ["jax", "numba"])
+def test_without_its_extra_a_backend_names_it(extra: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("trundle.extras.find_spec", lambda _: None)
+    field = tr.Scenario.load("tilted-turntable").system().vector_field(extra)
+    assert "def rolling_rates" in field.source()  # which needs nothing
+    with pytest.raises(tr.MissingExtraError, match=rf"pip install 'trundle\[{extra}\]'"):
+        _ = field.rates
+
+
+def test_a_surface_given_by_a_table_is_refused() -> None:
+    r = np.linspace(0.0, 0.3, 7)
+    dish = tr.Support(tr.Revolution.through(r.tolist(), (0.5 * r * r).tolist()))
+    with pytest.raises(OutOfDomainError, match="cannot be written out as formulas"):
+        tr.RollingSystem(tr.Body.solid_sphere(0.02, 0.1), dish).vector_field("c")

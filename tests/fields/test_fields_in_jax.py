@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import mpmath
@@ -18,12 +17,6 @@ from trundle.mechanics.parameters import with_numbers
 from trundle.solve.laws import RollingLaw
 
 jax = pytest.importorskip("jax", reason="the extra jax is not installed")
-
-
-@pytest.fixture(autouse=True)
-def in_double_precision() -> Iterator[None]:
-    with jax.enable_x64(True):
-        yield
 
 
 @pytest.mark.parametrize("name", FEW)

@@ -59,12 +59,13 @@ def test_it_moves_as_a_run_does(name: str, kind: str, tmp_path: Path) -> None:
     unit, system, start = made(tmp_path, name)
     run = tr.simulate(system, start, duration=4.0, every=0.05)
     found = ran(unit, kind, 4.0)
+    bound = 1e-9 if kind == "CoSimulation" else 1e-6  # by our method at the tolerance asked for; by that of FMPy
     assert found["time"].size == run.data.time.size
     for i, axis in enumerate("xyz"):
         for quantity in ("position", "velocity", "contact_force"):
             known = run.data[quantity].values[:, i]
             size = max(1e-3, np.abs(run.data[quantity].values).max())
-            assert np.abs(found[f"{quantity}_{axis}"] - known).max() <= 1e-6 * size, (quantity, axis)
+            assert np.abs(found[f"{quantity}_{axis}"] - known).max() <= bound * size, (quantity, axis)
 
 
 @WITH_C

@@ -59,7 +59,7 @@ def test_it_is_the_motion(backend: str) -> None:
     if backend == "c" and compiler() is None:
         pytest.skip("no C compiler is found here")
     if backend == "jax":
-        pytest.importorskip("jax").config.update("jax_enable_x64", True)
+        pytest.importorskip("jax", reason="the extra jax is not installed")
     form = SphereOnPlane(rate=1.0, drag=0.1, **GIVEN)
     motion = MotionFormula(form, backend).motion
     for rate, drag, t in CASES:
@@ -88,7 +88,6 @@ def test_in_javascript_too(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("rate", "drag"), list(product((0.0, 3.5), (0.0, 0.05))))
 def test_its_slopes_are_true_where_rate_or_drag_is_nothing(rate: float, drag: float) -> None:
     jax = pytest.importorskip("jax", reason="the extra jax is not installed")
-    jax.config.update("jax_enable_x64", True)
     formula = MotionFormula(SphereOnPlane(rate=rate, drag=drag, **GIVEN), "jax")
     slopes = [jax.jit(each(formula.motion, argnums=1)) for each in (jax.jacfwd, jax.jacrev)]
     names = formula.parameter_names

@@ -25,7 +25,7 @@ def fields(system: tr.RollingSystem, backend: str, phase: str) -> VectorField:
     if backend == "c" and compiler() is None:
         pytest.skip("no C compiler is found here")
     if backend == "jax":
-        pytest.importorskip("jax").config.update("jax_enable_x64", True)
+        pytest.importorskip("jax", reason="the extra jax is not installed")
     return system.vector_field(backend, phase, ())
 
 
@@ -47,6 +47,26 @@ RUNS = {
         ),
         {"height": 0.3, "velocity": (0.5, 0.0, 0.0), "orientation": (0.9, 0.2, 0.1, 0.3)},
         0.8,
+    ),
+    "egg on a rough floor": (
+        tr.RollingSystem(tr.Body.ellipsoid((0.2, 0.15, 0.12), mass=1.0), ROUGH),
+        {"height": 0.3, "velocity": (0.5, 0.0, 0.0), "orientation": (0.9, 0.2, 0.1, 0.3)},
+        0.6,
+    ),
+    "superball": (
+        tr.RollingSystem(
+            tr.Body.solid_sphere(0.1, 2.0),
+            tr.Support(tr.Plane(), friction=0.5, restitution=0.9, tangential_restitution=0.8),
+        ),
+        {"height": 0.3, "velocity": (0.5, 0.0, 0.0)},
+        1.0,
+    ),
+    "ball on a turntable that turns freely": (
+        tr.RollingSystem(
+            tr.Body.solid_sphere(0.1, 2.0), tr.Support(tr.Plane(), motion=tr.FreeAxle(0.5, rate=3.0), restitution=0.6)
+        ),
+        {"position": (0.3, 0.0), "height": 0.3, "velocity": (0.4, 1.0, 0.0)},
+        1.2,
     ),
     "ball that swerves": (
         tr.RollingSystem(tr.Body.solid_sphere(0.03, 0.17), tr.Support(tr.Plane(), friction=0.2)),
@@ -88,16 +108,15 @@ def test_what_follows_an_event_is_what_follows_it_in_a_run(name: str) -> None:
     run = tr.simulate(system, start, duration=duration, every=1e-3)
     seen = set()
     for before, after, event in followed(run):
-        if event.kind == "settle" or ((before, after) == ("flight", "flight") and event.kind != "land"):
-            continue
+        kind = "land" if event.kind == "settle" else event.kind  # a landing after which the bounce is cut
         field = system.vector_field("numpy", before, ())
-        if event.kind not in field.resets:
+        if kind not in field.resets and kind != "land":
             continue
         y = field.pack(event.before)
         if before == "slipping" and event.kind == "grip":
             y[10:13] = 0.0
             y[10] = 1e-14  # all but ended
-        found, state = field.after(event.kind, event.time, y, field.parameters, field.inputs)
+        found, state = field.after(kind, event.time, y, field.parameters, field.inputs)
         assert event.after is not None
         reference = found.pack(event.after)
         size = np.abs(reference).max()
@@ -108,7 +127,7 @@ def test_what_follows_an_event_is_what_follows_it_in_a_run(name: str) -> None:
             assert 0 < np.abs(little).max() <= 1e-4 * np.abs(later).max()
             assert little @ later >= 0.99 * np.linalg.norm(little) * np.linalg.norm(later)
             state[begins] = reference[begins] = 0.0
-        assert (before, after) == (before, found.phase) or event.kind == "land"
+        assert found.phase == ("flight" if "bounced" in event.text else after)  # perhaps for less than a sample
         assert np.abs(state - reference).max() <= 1e-8 * size, event.text
         seen.add((before, event.kind, found.phase))
     assert seen
@@ -163,7 +182,7 @@ def test_slip_begins_against_friction_and_ends_in_rolling(backend: str) -> None:
 
 def test_what_is_not_written_out_is_said() -> None:
     egg = tr.RollingSystem(tr.Body.ellipsoid((0.2, 0.15, 0.12), mass=1.0), ROUGH)
-    field = egg.vector_field("numpy", "flight")
+    field = egg.vector_field("c", "flight")
     given = (0.0, field.pack(egg.place(height=0.1)), field.parameters, field.inputs)
     with pytest.raises(OutOfDomainError, match="turns the slip on the way"):
         field.after("land", *given)

@@ -68,7 +68,10 @@ def equations(
         groups = tuple(part.strip() for part in inputs.split(",") if part.strip())
     if phase is None:
         phase = "slipping" if system.support.friction == 0 else "rolling"
-    field = system.vector_field(FORMS[form], phase, groups)
+    try:
+        field = system.vector_field(FORMS[form], phase, groups)
+    except InvalidValueError as error:
+        raise InvalidValueError("--phase", error.rule, error.received, error.remedy) from None
     if output is None:
         screen.out(field.source(start=start), end="")
         return

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import Contact, contact_at
+from ..mechanics.contact import contact_at
 from ..mechanics.impact import keeps_direction, straight_impulse
 from ..mechanics.scalars import Scalar, is_number, less, namespace
 from ..mechanics.slipping import unpushed
@@ -178,5 +178,3 @@ RESETS = {
     ("rest", "slip"): Reset(_slip),
     ("rest", "lift"): Reset(_lift),
 }
-
-__all__ = ["CODES", "RESETS", "Contact", "Follows", "Reset", "event_parameters"]
