@@ -141,12 +141,12 @@ def dense(
         while stop is None and run.reference < end:
             until = min(end, max(run.reference + part, math.nextafter(run.reference, end)))
             reached = run.go_to(until - run.reference)
-            if run.kept.steps > most:
-                return TooMany(run.kept.steps, run.time)
-            if reached is None:
-                run.tidy(until)
-            else:
+            if reached is not None:
                 stop = run.stop(reached)
+            elif run.kept.steps > most and until < end:
+                return TooMany(run.kept.at, run.kept.steps, until, run.integrator.state.copy())
+            else:
+                run.tidy(until)
         return Leg(run.kept.at, stop, run.kept.steps)
 
 
