@@ -198,3 +198,13 @@ def test_a_body_over_its_flat_side_is_refused(turn: float) -> None:
         tr.simulate(floor, turned, 0.1, 0.01)
     with pytest.raises(tr.InvalidValueError, match=r"orientation.*got .*turn it"):
         floor.place(height=0.3, orientation=turned.orientation)
+
+
+@pytest.mark.parametrize("speed", [3e-28, 1e-300, 0.0])
+def test_where_nothing_moves_a_slip_of_a_rounding_is_none(speed: float) -> None:
+    system = tr.RollingSystem(tr.Body.solid_sphere(0.02, 0.1), tr.Support(tr.Plane()))
+    start = system.place(velocity=(speed, 0.0), angular_velocity=(0.0, 0.0, 0.0))
+    run = tr.simulate(system, start, 0.1, 0.05)
+    assert np.abs(run.samples.velocity).max() <= speed
+    with pytest.raises(tr.InvalidValueError, match="must agree with rolling"):
+        system.place(velocity=(1e-12, 0.0), angular_velocity=(0.0, 0.0, 0.0))

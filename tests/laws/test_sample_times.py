@@ -7,6 +7,7 @@ import trundle as tr
 from trundle.mechanics.algebra import Vector
 from trundle.solve import phases
 from trundle.solve.methods import METHODS, Method
+from trundle.solve.patience import Patience
 
 BALL = tr.Body.solid_sphere(radius="28.6 mm", mass="170 g")
 NUMERICAL = ("taylor", "runge-kutta")
@@ -179,3 +180,18 @@ def test_what_follows_its_events_is_worked_out_once_however_often_a_run_is_looke
     stops = sum(leg.stop is not None for leg in read.legs)
     assert stops > 4
     assert counts == [(stops, stops + looks) for looks in (1, 2, 3)]  # of each look only how it starts
+
+
+@pytest.mark.parametrize("share", [2.0, 0.9, 0.5])  # of its steps that are kept
+def test_a_stretch_of_more_steps_than_are_kept_is_gone_through_once_too(share, monkeypatch):
+    taken, after = [], Patience.after
+    monkeypatch.setattr(Patience, "after", lambda self, steps, time: [taken.append(steps), after(self, steps, time)][1])
+    system = tr.RollingSystem(BALL, tr.Support(tr.Plane(), motion=tr.Spin(3.0)))
+    start, times = system.place((0.2, 0.0), (0.0, 0.3), spin=400.0), np.array([0.0, 2.0])
+    Method.of("runge-kutta").solve(system, start, times)
+    alone = sum(taken)
+    taken.clear()
+    monkeypatch.setattr("trundle.solve.dense._MOST_STEPS", int(share * alone))
+    Method.of("runge-kutta").dense(system, start, 2.0)(times)
+    assert alone > 300
+    assert sum(taken) < 1.1 * alone

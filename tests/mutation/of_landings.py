@@ -6,7 +6,7 @@ from .planting import Mutant
 
 FOLLOWING = "solve.transitions"
 RESPONSE = "mechanics.slipping"
-IMPACT = "mechanics.impact"
+IMPACT, TURNING = "mechanics.impact", "mechanics.turning_slip"
 BOUNCES = "egg_bounces"
 
 LANDINGS = (
@@ -89,30 +89,30 @@ LANDINGS = (
     ),
     Mutant(
         "landing: Keller's friction 1 % too large",
-        IMPACT,
-        "f, g = -self.mu * c, -self.mu * s",
-        "f, g = -1.01 * self.mu * c, -1.01 * self.mu * s",
+        TURNING,
+        "mu, n = self.mu, 1.0",
+        "mu, n = 1.01 * self.mu, 1.0",
         BOUNCES,
     ),
     Mutant(
         "landing: slip does not turn",
-        IMPACT,
-        "return [c * a + s * b, c * b - s * a, rising, y[2] * sigma, self.mu * sigma * sigma]",
-        "return [c * a + s * b, 0.0, rising, y[2] * sigma, self.mu * sigma * sigma]",
+        TURNING,
+        "-_product(s, turning),\n                _product(c, turning),",
+        "0.0,\n                0.0,",
         BOUNCES,
     ),
     Mutant(
         "landing: slip turns the other way",
-        IMPACT,
-        "return [c * a + s * b, c * b - s * a, rising, y[2] * sigma, self.mu * sigma * sigma]",
-        "return [c * a + s * b, s * a - c * b, rising, y[2] * sigma, self.mu * sigma * sigma]",
+        TURNING,
+        "-_product(s, turning),\n                _product(c, turning),",
+        "_product(s, turning),\n                -_product(c, turning),",
         BOUNCES,
     ),
     Mutant(
         "landing: Stronge's work 1 % off",
-        IMPACT,
-        "return [c * a + s * b, c * b - s * a, rising, y[2] * sigma, self.mu * sigma * sigma]",
-        "return [c * a + s * b, c * b - s * a, rising, y[2] * sigma + 0.01, self.mu * sigma * sigma]",
+        TURNING,
+        "                _product(up, size),",
+        "                _product(up, size) + 0.01 * one,",
         BOUNCES,
     ),
     Mutant(

@@ -10,9 +10,9 @@ FOLLOWING = "solve.transitions"
 RK = "solve.runge_kutta"
 DOME = "egg_slips_off_dome"
 AIR = "egg_over_bowl"
-LOCATED = "    return min(found) if found else None"
-LATE = "    return (path.t_old + 1.01 * (min(found)[0] - path.t_old), min(found)[1]) if found else None"
-EARLY = "    return (path.t_old + 0.99 * (min(found)[0] - path.t_old), min(found)[1]) if found else None"
+LOCATED = "            found = fall, which"
+LATE = "            found = path.t_old + 1.01 * (fall - path.t_old), which"
+EARLY = "            found = path.t_old + 0.99 * (fall - path.t_old), which"
 RECORDED = """now = self._recorded(system, time, states)
         turning = self._turns(now.contact, Vector.of(Omega))
         centre, V, R, Omega = _arrays(p, now.contact.centre, now.velocity, now.reaction, turning)

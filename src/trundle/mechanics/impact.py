@@ -13,21 +13,18 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from ..errors import SolverError
 from .algebra import E_X, E_Y, E_Z, ZERO, Matrix, Quaternion, Vector
 from .contact import Contact
-from .duals import Dual, stacked, unstacked
 from .onset import onset
 from .scalars import as_float, is_zero, less, namespace
 from .slipping import response
+from .turning_slip import TurningSlip
 
 if TYPE_CHECKING:
     from .system import RollingSystem
 
-_SLOW = 1e-10  # share of the speed at impact from which on slipping ends along a straight line
-_JAMMED, _FAR = 30.0, 1e9  # ln σ and τ, in units of an impact: what comes so far never ends
+_SLOW = 1e-14  # share of the speed at impact from which on slipping ends along a straight line
 _STRAIGHT = 1e-15  # share of M by which slip that goes on along one line seems to turn
 _MOST_PIECES = 20
 
@@ -301,68 +298,44 @@ class _Course:
         """Go on slipping until slip or compression ends, or the impact: along a line where friction keeps to one."""
         sigma = _length(self.slip)
         c, s = self.slip.x / sigma, self.slip.y / sigma
-        direction = Vector(-self.mu * c, -self.mu * s, 1.0)
-        change = self.M @ direction
+        change = self.M @ Vector(-self.mu * c, -self.mu * s, 1.0)
         if abs(c * change.y - s * change.x) > _STRAIGHT * max(row.norm() for row in self.M.rows):
             return self._curved(size)
+        return self._straight_on()
+
+    def _straight_on(self) -> Vector:
+        """Go on along the line on which it slips."""
+        sigma = _length(self.slip)
+        c, s = self.slip.x / sigma, self.slip.y / sigma
+        direction = Vector(-self.mu * c, -self.mu * s, 1.0)
+        change = self.M @ direction
         growth = c * change.x + s * change.y
         return self._straight(direction, -sigma / growth if growth < 0 else math.inf)
 
     def _curved(self, size: float) -> Vector:
-        """Do the same where slip turns on the way.
-
-        The slip is σ ŝ with ŝ at an angle β, and dP = σ dτ: in τ, ln σ and β change alike fast, however slow the slip
-        is. Speeds are shares of `size`, impulses and work of what that makes of them.
-        """
-        from scipy.integrate import solve_ivp
-
+        """Do the same where slip turns on the way; of speeds `size` is the unit, and by M of impulses and work."""
         unit = self.M.c.z
-        (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = (row / unit for row in self.M.rows)
-        first, second, up = self.slip / size
-        begin, joule = _length(self.slip / size), size * size / unit
-        xp = namespace(unit, first, begin, *self.M.a, *self.M.b, self.mu)
-
-        def rates(y: Any) -> list[Any]:
-            sigma, c, s = begin * xp.exp(y[0]), xp.cos(y[1]), xp.sin(y[1])
-            f, g = -self.mu * c, -self.mu * s
-            a, b = xx * f + xy * g + xz, yx * f + yy * g + yz
-            rising = (zx * f + zy * g + zz) * sigma
-            return [c * a + s * b, c * b - s * a, rising, y[2] * sigma, self.mu * sigma * sigma]
-
-        y0 = [0.0, xp.atan2(second, first), up, self.work / joule, self.taken / joule]
-        count = max((len(part.slopes) for part in (*y0, unit, begin, self.mu) if isinstance(part, Dual)), default=0)
-        aim = 0.0 if self.aim is None else self.aim / joule
-        slowest = xp.log(_SLOW / begin)
-
-        def stacked_rates(_: float, y: Any) -> list[float]:
-            return stacked(rates(unstacked(y, 5)), count) if count else rates(y)
-
-        # It ends where slip does, where compression or the impact does, or never.
-        ends = [lambda _, y: y[0] - float(slowest)]
-        ends.append((lambda _, y: y[2]) if self.aim is None else (lambda _, y: y[3] - float(aim)))
-        ends.append(lambda _, y: y[0] - _JAMMED)
-        for end, direction in zip(ends, (-1, 1, 1), strict=True):
-            end.terminal, end.direction = True, direction  # type: ignore[attr-defined]
-        least = 1e-14 * np.resize([1.0, 1.0, 1.0, 1.0, float(begin) ** 2], 5 * (1 + count))
-        given: dict[str, Any] = {"method": "DOP853", "rtol": 1e-12, "atol": least}
-        found = solve_ivp(stacked_rates, (0.0, _FAR), stacked(y0, count), events=ends, **given)
-        stopped = found.t_events[0].size > 0
-        if not stopped and not found.t_events[1].size:
+        joule = size * size / unit
+        sigma, begun = _length(self.slip), self.slip
+        slips = TurningSlip(
+            M=[list(row / unit) for row in self.M.rows],
+            mu=self.mu,
+            size=sigma / size,
+            c=begun.x / sigma,
+            s=begun.y / sigma,
+            up=begun.z / size,
+            work=self.work / joule,
+            taken=self.taken / joule,
+        )
+        found = slips.followed(_SLOW, None if self.aim is None else self.aim / joule)
+        if found is None:
             raise SolverError("A landing does not end: friction and the body's shape jam it. Use less friction.")
-        # What SciPy reads off a step has fewer digits than its end.
-        last = solve_ivp(stacked_rates, found.t[-2:], found.y[:, -2], **given).y[:, -1]
-        y = unstacked(last, 5) if count else last.tolist()
-        rate = rates(y)
-        if stopped:  # straight on to σ = 0
-            y = [part - slope / rate[0] for part, slope in zip(y, rate, strict=True)]
-        else:
-            on = y[2] / rate[2] if self.aim is None else (y[3] - aim) / rate[3]
-            y = [part - slope * on for part, slope in zip(y, rate, strict=True)]
-        _, beta, up, work, taken = y
-        left = 0.0 if stopped else begin * xp.exp(y[0])
-        before, self.taken, self.work = self.slip, taken * joule, work * joule
-        ended = self.aim is None and not stopped
-        self.slip = Vector(left * xp.cos(beta), left * xp.sin(beta), 0.0 if ended else up) * size
-        if self.aim is not None and not stopped:
+        now, stopped = found
+        self.slip = Vector(now.size * now.c, now.size * now.s, now.up) * size
+        self.taken, self.work = now.taken * joule, now.work * joule
+        if not stopped and self.aim is None:
+            self.slip = Vector(self.slip.x, self.slip.y, 0.0)
+        elif not stopped and self.aim is not None:
             self.work = self.aim
-        return self.M.solve(self.slip - before)  # added up it would have fewer digits: ŝ turns fast where slip ends
+        done = self.M.solve(self.slip - begun)  # added up it would have fewer digits: ŝ turns fast where slip ends
+        return done + self._straight_on() if stopped else done

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 IN_PROPORTION = 100.0  # times what is asked of a start: more must not follow from it
 _ROUNDING = 4 * 2.0**-52
 SLIP_TOLERANCE = 1e-9  # of the largest speed at the contact: beyond it a start slips
+_OF_A_FALL = 1e-15  # of the speed to which a body falls by its size: less is rounding, were it all that moves
 
 
 @dataclass(frozen=True)
@@ -164,7 +165,7 @@ class Placing:
             return V
         rolling = rolling_along(V, u, rho, n)
         self._check_proportion(rolling, V, u)
-        if turning is None or slips(contact, rolling, turning) is None:
+        if turning is None or slips(self.system, contact, rolling, turning) is None:
             return rolling
         return not_opening(V, u, turning, rho, n)
 
@@ -227,7 +228,7 @@ class Placing:
         """Refuse a start that slips where nothing says how rough the support is."""
         if gap > 0 or self.system.support.friction is not None:
             return
-        slip = slips(contact, V, Omega)
+        slip = slips(self.system, contact, V, Omega)
         if slip is not None:
             raise InvalidValueError(
                 "angular_velocity",
@@ -237,13 +238,18 @@ class Placing:
             )
 
 
-def slips(contact: Contact, V: Vector, Omega: Vector) -> float | None:
-    """Return how fast the contact slips along the support; None where that is rounding."""
+def slips(system: RollingSystem, contact: Contact, V: Vector, Omega: Vector) -> float | None:
+    """Return how fast the contact slips along the support; None where that is rounding.
+
+    Where nothing moves it is of the speed to which the body falls by its size: sin(π) of a support that rocks is none.
+    """
     s = contact.slip_velocity(V, Omega)
     along = (s - contact.normal * s.dot(contact.normal)).norm()
     u = contact.support.material_velocity(contact.point)
-    scale = max(V.norm(), Omega.norm() * contact.offset.norm(), u.norm())
-    return float(along) if along > SLIP_TOLERANCE * scale else None
+    arm = float(contact.offset.norm())
+    least = _OF_A_FALL * math.sqrt(float(system.gravity) * arm)
+    scale = max(V.norm(), Omega.norm() * arm, u.norm())
+    return float(along) if along > max(SLIP_TOLERANCE * scale, least) else None
 
 
 def no_gap(contact: Contact, centre: Any) -> float:

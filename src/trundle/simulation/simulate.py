@@ -185,7 +185,7 @@ def _check_loads(system: RollingSystem, start: State, contact: Contact) -> None:
 def _check_slip(system: RollingSystem, start: State, contact: Contact) -> None:
     if system.support.friction is not None:
         return
-    slip = slips(contact, Vector(*start.velocity), Vector(*start.angular_velocity))
+    slip = slips(system, contact, Vector(*start.velocity), Vector(*start.angular_velocity))
     if slip is not None:
         raise InvalidValueError(
             "start.angular_velocity",

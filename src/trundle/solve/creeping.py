@@ -83,28 +83,36 @@ class CreepingLaw(SlippingLaw):
         return rates.direction(c, s), rates.direction(-s, c), settling
 
     def _way(self, system: RollingSystem, time: Scalar, state: Numbers) -> tuple[Vector, Scalar, Scalar]:
-        """Return ŝ, lagging behind the direction that slip keeps, how fast that settles, times |s|, and turns.
-
-        How fast it turns is seen over a step so short that its length does not matter.
-        """
+        """Return ŝ, lagging behind the direction that slip keeps, how fast that settles, times |s|, and turns."""
         first, settling = self._lagging(system, time, state)
         now = self._now(system, time, state, first)
         across = now.contact.normal.cross(first)
-        turning = (self._lagging(system, *self._after(system, time, state, first))[0] - first).dot(across) / self.step
+        before, after = (self._lagging(system, *beside)[0] for beside in self._beside(system, time, state, first))
+        turning = (after - before).dot(across) / (2 * self.step)
         hat = first + across * ((now.slip_rate.dot(across) - state[10] * turning) / settling)
         return hat / hat.norm(), settling, turning
 
     def _lagging(self, system: RollingSystem, time: Scalar, state: Numbers) -> tuple[Vector, Scalar]:
         """Return the same but for the square of how far ŝ lags behind."""
         hat, across, settling = self._settled(system, time, state)
-        turning = (self._settled(system, *self._after(system, time, state, hat))[0] - hat).dot(across) / self.step
+        before, after = (self._settled(system, *beside)[0] for beside in self._beside(system, time, state, hat))
+        turning = (after - before).dot(across) / (2 * self.step)
         hat = hat - across * (state[10] * turning / settling)
         return hat / hat.norm(), settling
 
-    def _after(self, system: RollingSystem, time: Scalar, state: Numbers, hat: Vector) -> tuple[Scalar, list[Scalar]]:
-        """Return the time and the state a step later."""
+    def _beside(
+        self, system: RollingSystem, time: Scalar, state: Numbers, hat: Vector
+    ) -> list[tuple[Scalar, list[Scalar]]]:
+        """Return the time and the state a step before and a step later: how fast a direction turns is seen over both.
+
+        The step is so short that the square of its share of the time in which the motion changes is left out, and so
+        long that a slope of a slope has more digits than a method asks for.
+        """
         rates = self._rates(system, time, state, hat)
-        return time + self.step, [number + rate * self.step for number, rate in zip(state, rates, strict=True)]
+        return [
+            (time + step, [number + rate * step for number, rate in zip(state, rates, strict=True)])
+            for step in (-self.step, self.step)
+        ]
 
     def _now(self, system: RollingSystem, time: Scalar, state: Numbers, direction: Vector | None = None) -> Slipping:
         p, q, Omega, (speed, *_), coordinates = self.split(state)

@@ -44,14 +44,20 @@ class TooMany:
 
     Parameters
     ----------
+    states : callable
+        Takes instants up to where the kept steps led, as `Leg` does.
     steps : int
-        That it took so far.
+        So many.
     time : float
         How far they led, s.
+    state_vector : array
+        There.
     """
 
+    states: Callable[[Array], Array]
     steps: int
     time: float
+    state_vector: Array
 
 
 Keep = Callable[[RollingSystem, PhaseStart, float, float, int], Leg | TooMany]
@@ -133,17 +139,24 @@ class Dense:
         self, system: RollingSystem, now: PhaseStart, times: Array, tolerance: float, progress: Progress | None
     ) -> Leg:
         """Go through a stretch, and keep its steps, or where they are too many, some states on its way."""
-        end = self._end_after(now)
-        left = _MOST_STEPS - self.steps
-        leg = self.keep(system, now, end, tolerance, left) if left > 0 else TooMany(0, end)
-        if isinstance(leg, Leg):
-            return leg
-        instants = np.union1d(times, np.linspace(now.time, end, 2 + _MARKS // (1 + len(self.legs))))
-        parts = list(self.beside()(system, now, instants, tolerance, progress))
-        stop = parts[-1].stop
-        share = (leg.time - now.time) / ((end if stop is None else stop.time) - now.time)
-        marks = _Marks(self.beside, system, now, tolerance, parts)
-        return Leg(marks.states, stop, max(leg.steps, int(leg.steps / max(share, 1e-6))))
+        end, left = self._end_after(now), _MOST_STEPS - self.steps
+        kept = self.keep(system, now, end, tolerance, left) if left > 0 else None
+        if isinstance(kept, Leg):
+            return kept
+        first = now if kept is None else _gone_on(system, now, kept.time, kept.state_vector)
+        instants = np.linspace(first.time, end, 2 + _MARKS // (1 + len(self.legs)))
+        instants = np.union1d(times[times > first.time], instants)
+        parts = list(self.beside()(system, first, instants, tolerance, progress))
+        stop, marks = parts[-1].stop, _Marks(self.beside, system, first, tolerance, parts)
+        if kept is None:
+            return Leg(marks.states, stop, 0)
+        share = (kept.time - now.time) / ((end if stop is None else stop.time) - now.time)
+
+        def states(at: Array) -> Array:
+            before, behind = cut(at, kept.time)
+            return np.vstack([kept.states(before), marks.states(behind)])
+
+        return Leg(states, stop, max(kept.steps, int(kept.steps / max(share, 1e-6))))
 
     def _end_after(self, now: PhaseStart) -> float:
         """Return up to when a law may be followed: the next kink, or the end, s."""
@@ -198,6 +211,10 @@ class _Marks:
 
     def _from(self, mark: int) -> PhaseStart:
         """Return the law as it goes on from an instant."""
-        now, time, numbers = self.begin, float(self.times[mark]), self.known[mark]
-        at = now.law.unpack(self.system, time, numbers)
-        return replace(now, start=at.state, state_vector=numbers.tolist(), events=(), across=None)
+        return _gone_on(self.system, self.begin, float(self.times[mark]), self.known[mark])
+
+
+def _gone_on(system: RollingSystem, now: PhaseStart, time: float, numbers: Array) -> PhaseStart:
+    """Return the same law as it goes on from a later instant."""
+    at = now.law.unpack(system, time, numbers)
+    return replace(now, start=at.state, state_vector=numbers.tolist(), events=(), across=None)

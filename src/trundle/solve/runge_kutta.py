@@ -120,7 +120,8 @@ def dense(system: RollingSystem, now: PhaseStart, end: float, tolerance: float, 
     try:
         *_, last = _integrated(system, now, paths, end - now.time, tolerance, None)
     except _TooManyError:
-        return TooMany(paths.count, now.time + paths.begins[-1])
+        time = now.time + paths.reached
+        return TooMany(lambda times: paths.at(times - now.time), paths.count, time, paths.last)
     stop = None if last.stop is None else replace(last.stop, time=now.time + last.stop.time)
     return Leg(lambda times: paths.at(times - now.time), stop, paths.count)
 
@@ -303,6 +304,16 @@ class _Paths:
         self.begins.append(path.t_old)
         self.paths.append(path)
         yield from ()
+
+    @property
+    def reached(self) -> float:
+        """How far they lead."""
+        return float(getattr(self.paths[-1], "t", self.begins[-1]))
+
+    @property
+    def last(self) -> Array:
+        """The state there."""
+        return self.paths[-1](np.array([self.reached]))[:, 0]
 
     def rest(self, stop: ZeroCrossing | None, before: float = np.inf) -> Segment:  # noqa: ARG002
         """Return the stop alone."""

@@ -22,6 +22,7 @@ from .samples import RESTING
 from .tracing import python_law
 
 _FIRST = 1e-6  # share of |ρ| over its speed that the first moment of slip takes
+_SEEN = 1e-4  # the same, over which one sees how its direction turns
 
 
 @dataclass(frozen=True)
@@ -64,7 +65,7 @@ def slip_onset(system: RollingSystem, at: ContactState, law: Law | None = None) 
     speed = moment * ((0.0 if begun is None else begun.rate) + 4 * halfway.rate + grown.rate) / 6
     hat = grown.direction
     slipping = _pushed(system, then, hat * speed, law)
-    creeping = partial(CreepingLaw, step=moment, since=time, near=floats(hat))
+    creeping = partial(CreepingLaw, step=_SEEN / _FIRST * moment, since=time, near=floats(hat))
     held = "held" if law.code == RESTING else "free"
     if grown.settling * moment > SETTLES_FAST * speed and creeping(turning=held).settles(system, slipping):
         return Onset(slipping, creeping, hat, ())

@@ -150,27 +150,27 @@ def dense(
     if now.law.brief:
         return runge_kutta.dense(system, now, end, runge_kutta.FINEST, most)
     shared = Shared() if shared is None else shared
-    legs: list[Leg] = []
+    legs: list[Leg | TooMany] = []
+    ends: list[float] = []
     goes_on: PhaseStart | None = now
     while goes_on is not None:
-        now, steps = goes_on, sum(leg.steps for leg in legs)
-        leg = _dense_in_chart(system, now, end, tolerance, most - steps, shared)
-        if isinstance(leg, TooMany):
-            return replace(leg, steps=leg.steps + steps)
+        now, goes_on = goes_on, None
+        leg = _dense_in_chart(system, now, end, tolerance, most - sum(each.steps for each in legs), shared)
         legs.append(leg)
-        goes_on = None if leg.stop is None else _in_another_chart(system, now, leg.stop)
-    return legs[0] if len(legs) == 1 else _joined(legs)
+        if isinstance(leg, Leg) and leg.stop is not None:
+            goes_on = _in_another_chart(system, now, leg.stop)
+            ends += [leg.stop.time] if goes_on is not None else []
+    return leg if not ends else replace(leg, states=_joined(legs, ends), steps=sum(each.steps for each in legs))
 
 
-def _joined(legs: list[Leg]) -> Leg:
-    """Return legs in different charts as one."""
-    ends = [leg.stop.time for leg in legs[:-1] if leg.stop is not None]
+def _joined(legs: list[Leg | TooMany], ends: list[float]) -> Callable[[Array], Array]:
+    """Return the states of legs in different charts as of one."""
 
     def states(times: Array) -> Array:
         parts = np.split(times, np.searchsorted(times, ends))
         return np.vstack([leg.states(part) for leg, part in zip(legs, parts, strict=True)])
 
-    return Leg(states, legs[-1].stop, sum(leg.steps for leg in legs))
+    return states
 
 
 def _dense_in_chart(
@@ -180,18 +180,23 @@ def _dense_in_chart(
     with _begun(system, now, tolerance, shared) as run:
         run.kept, stop = KeptSeries(now.time, run.integrator.state.copy()), None
         run.patience = shared.patience(now.time, end)
+        kept, to_law = run.kept, run.to_law
+
+        def states(times: Array) -> Array:
+            return to_law(times, kept.at(times))
+
         part = min(_LONGEST, (end - now.time) / _PARTS)
         while stop is None and run.reference < end:
             until = min(end, max(run.reference + part, math.nextafter(run.reference, end)))
             reached = run.go_to(until - run.reference)
-            if run.kept.steps > most:
-                return TooMany(run.kept.steps, run.time)
-            if reached is None:
-                run.tidy(until)
-            else:
+            if reached is not None:
                 stop = run.stop(reached)
-        kept, to_law = run.kept, run.to_law
-        return Leg(lambda times: to_law(times, kept.at(times)), stop, kept.steps)
+            elif kept.steps > most and until < end:
+                (there,) = to_law(np.array([until]), run.integrator.state[None].copy())
+                return TooMany(states, kept.steps, until, there)
+            else:
+                run.tidy(until)
+        return Leg(states, stop, kept.steps)
 
 
 @contextlib.contextmanager

@@ -16,7 +16,7 @@ import numpy as np
 
 from .bounds import Array
 
-_ENDED = 1e-10  # of the slip at first: what is left of slip that has ended
+_ENDED = 1e-13  # of the slip at first: what is left of slip that has ended
 _STRAIGHT = 1e-14  # of M, by which slip along one line seems to turn
 _MOST_PIECES = 20
 _MOST_STEPS = 1000
@@ -46,8 +46,8 @@ class Course:
     A ball of 1 kg that comes down at 2 m/s, slips at 1 m/s, and grips on the way:
 
     >>> course = Course(np.diag([3.5, 3.5, 1.0]), 0.3, 0.5, np.array([1.0, 0.0, -2.0]))
-    >>> course.impulse().round(12).tolist(), course.turned
-    ([-0.285714285714, 0.0, 3.0], False)
+    >>> course.impulse().round(12).tolist()
+    [-0.285714285714, 0.0, 3.0]
     """
 
     M: Array
@@ -55,7 +55,6 @@ class Course:
     restitution: float
     slip: Array
     tangential: float = 0.0
-    turned: bool = False  # whether the slip changed its direction on the way
     work: float = 0.0  # of the normal impulse, J
     aim: float | None = None  # the work at which it ends, known once compression is over
     taken: float = 0.0  # by friction, J: a difference of other works would lose it where it is small
@@ -122,7 +121,6 @@ class Course:
         way = np.append(-self.mu * hat, 1.0)
         rate = self.M @ way
         if abs(hat[0] * rate[1] - hat[1] * rate[0]) > _STRAIGHT * np.abs(self.M).max():
-            self.turned = True
             return self._curve()
         along = float(hat @ rate[:2])
         return self._line(way, -sigma / along if along < 0 else np.inf)

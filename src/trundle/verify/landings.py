@@ -21,14 +21,13 @@ from ..mechanics.system import RollingSystem, State
 from ..solve.samples import Event
 from ..solve.transitions import JOLT
 from .acting import inertia_of
-from .bounds import EXACT, SOLVER, Array
+from .bounds import EXACT, Array
 from .card import CardFigure
 from .course import Course
 from .each_sample import Shares, worst_of
 
 _KINDS = ("land", "settle", JOLT)
 _MOST = 1000  # landings looked at
-_TURNED = SOLVER * 1e-12  # the tolerance at which a run follows slip that turns
 _CUT = 1e-6  # of |ρ|: how high a bounce may rise that is cut
 _ROUNDING = 1e-15  # of the speeds at hand
 _UNCLEAR = 1e-9  # of them, by which it may seem to come off or down where the support jerks along itself
@@ -231,13 +230,17 @@ class Landing:
 
     @cached_property
     def sharp(self) -> float:
-        """The share of the impulse that rounding of V, Ω and ρ leaves open, and the course where a cut needs it."""
-        momentum = float(self.system.body.mass) * self.speed / self.size
-        return self._level + _ROUNDING * momentum + (_TURNED if self.stays and self.course.turned else 0.0)
+        """The share of the impulse that rounding of V, Ω and ρ leaves open.
+
+        ρ is the small difference of two places, and Ω×ρ as sharp as these.
+        """
+        carried = float(np.linalg.norm(_speeds(self.before)[1]) * np.linalg.norm(self._point))
+        momentum = float(self.system.body.mass) * (self.speed + carried) / self.size
+        return self._level + _ROUNDING * momentum
 
     @property
     def _level(self) -> float:
-        """The share of the speed that rounding of ρ, the small difference of two places, leaves open."""
+        """The share of the speed that rounding of ρ leaves open."""
         return EXACT + _ROUNDING * float(np.linalg.norm(self._point)) / float(np.linalg.norm(self.rho))
 
     @property
@@ -305,7 +308,7 @@ class Landing:
         """Yield how far V and Ω after it are from what the impulse of its course makes of them."""
         (V, Omega), (found, turned) = self.expected, _speeds(self.after)
         m, arm = float(self.system.body.mass), float(np.linalg.norm(self.rho))
-        bound = max(self.sharp, _TURNED) if self.course.turned else 10 * self.sharp
+        bound = 10 * self.sharp
         yield "V after it", m * float(np.linalg.norm(found - V)) / self.size, bound
         moment = float(np.linalg.norm(self.J @ (turned - Omega))) / (arm * self.size)
         spun = _ROUNDING * float(np.linalg.norm(self.J @ Omega)) / (arm * self.size)

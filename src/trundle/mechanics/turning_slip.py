@@ -1,0 +1,166 @@
+"""Slip that turns in a landing: Keller's equations for its size and direction, by their Taylor series.
+
+The slip is σ ŝ with ŝ = (c, s), and dP = σ dτ of the normal impulse: in τ, ln σ and the angle of ŝ change alike fast,
+however slow the slip is. All is in units of an impact: speeds as shares of one, M of its part along the normal.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from operator import mul
+
+from .scalars import Scalar, namespace
+
+_TERMS = 32  # of a series
+_PRECISION = 1e-18  # of what the last two of them are, as shares
+_MOST_STEPS = 2000
+_JAMMED = math.exp(30.0)  # times as fast as at first: what becomes so fast goes on without end
+_ROUNDING = 2.0**-52
+
+
+@dataclass(frozen=True)
+class TurningSlip:
+    """Slip at an instant of a landing.
+
+    Parameters
+    ----------
+    M : sequence of 3 sequences of 3 scalars
+        By how much an impulse changes the slip, along two tangents and n.
+    mu : float
+        Coefficient of friction.
+    size, c, s : float
+        σ, and ŝ along the two tangents.
+    up : float
+        Its third component, along n.
+    work, taken : float
+        What the normal impulse did so far, and what friction took.
+    """
+
+    M: Sequence[Sequence[Scalar]]
+    mu: Scalar
+    size: Scalar
+    c: Scalar
+    s: Scalar
+    up: Scalar
+    work: Scalar
+    taken: Scalar
+
+    def followed(self, least: float, aim: Scalar | None) -> tuple[TurningSlip, bool] | None:
+        """Follow it until it is all but nothing, or the landing's part is over, and tell whether the first came.
+
+        None where neither does: friction jams the body.
+
+        Parameters
+        ----------
+        least : float
+            The size at which slip has all but ended.
+        aim : float or None
+            The work at which the landing ends; None: compression ends, at `up` = 0.
+        """
+        now, jammed = self, _JAMMED * self.size
+        row, value = (_UP, 0.0) if aim is None else (_WORK, aim)
+        for _ in range(_MOST_STEPS):
+            step = now.step
+            if now.at(step)[row] >= value:
+                return now.after(now.reaches(row, value, step)), False
+            now = now.after(step)
+            if now.size <= least:
+                return now, True
+            if not now.size < jammed:
+                break
+        return None
+
+    @cached_property
+    def terms(self) -> list[list[Scalar]]:
+        """The coefficients of σ, c, s, `up`, the work and what friction took."""
+        (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = self.M
+        mu, n = self.mu, 1.0
+        size, c, s, up, work, taken = [self.size], [self.c], [self.s], [self.up], [self.work], [self.taken]
+        growth, turning, rising = (
+            list[Scalar](),
+            list[Scalar](),
+            list[Scalar](),
+        )  # of ln σ and the angle; of `up` over σ
+        cc, cs, one = list[Scalar](), list[Scalar](), 1.0
+        while True:
+            cc.append(_product(c, c))
+            cs.append(_product(c, s))
+            ss = one - cc[-1]
+            c_k, s_k = c[-1], s[-1]
+            growth.append(xz * c_k + yz * s_k - mu * (xx * cc[-1] + (xy + yx) * cs[-1] + yy * ss))
+            turning.append(yz * c_k - xz * s_k - mu * (yx * cc[-1] + (yy - xx) * cs[-1] - xy * ss))
+            rising.append(zz * one - mu * (zx * c_k + zy * s_k))
+            rates = (
+                _product(size, growth),
+                -_product(s, turning),
+                _product(c, turning),
+                _product(rising, size),
+                _product(up, size),
+                mu * _product(size, size),
+            )
+            for series, rate in zip((size, c, s, up, work, taken), rates, strict=True):
+                series.append(rate / n)
+            one, n = 0.0, n + 1.0
+            if n == _TERMS:
+                return [size, c, s, up, work, taken]
+
+    @cached_property
+    def step(self) -> float:
+        """How far the series hold to the last digit."""
+        scales, last = (self.size, 1.0, 1.0, 1.0, 1.0, 1.0), _TERMS - 1
+        pairs = list(zip(self.terms, scales, strict=True))
+        shares = [max(abs(float(row[k])) / float(scale) for row, scale in pairs) for k in (-2, -1)]
+        return min(
+            (_PRECISION / max(share, 1e-300)) ** (1.0 / power)
+            for share, power in zip(shares, (last - 1, last), strict=True)
+        )
+
+    def at(self, tau: Scalar) -> list[Scalar]:
+        """Return σ, c, s, `up` and the works after some τ."""
+        powers: list[Scalar] = [1.0]
+        for _ in range(_TERMS - 1):
+            powers.append(powers[-1] * tau)
+        return [sum(map(mul, reversed(row), reversed(powers))) for row in self.terms]
+
+    def after(self, tau: Scalar) -> TurningSlip:
+        """Return the slip after some τ."""
+        size, c, s, up, work, taken = self.at(tau)
+        length = namespace(c, s).sqrt(c * c + s * s)
+        return TurningSlip(self.M, self.mu, size, c / length, s / length, up, work, taken)
+
+    def reaches(self, row: int, value: Scalar, end: float) -> Scalar:
+        """Return the τ at which a number comes up to a value that it has passed at an end, by Newton or by halves."""
+        series = [float(part) for part in self.terms[row]]
+        slopes = [k * part for k, part in enumerate(series)][1:]
+        low, high, tau = 0.0, end, end
+        while high - low > _ROUNDING * high:
+            over = _value(series, tau) - float(value)
+            low, high = (low, tau) if over >= 0 else (tau, high)
+            slope = _value(slopes, tau)
+            before, tau = tau, tau - over / slope if slope > 0 else low
+            if not low < tau < high:
+                tau = 0.5 * (low + high)
+            if abs(tau - before) <= _ROUNDING * before:
+                break
+        # A step more on the terms themselves, which may be duals: so τ has their slopes.
+        slope = _value(slopes, tau)
+        return tau - (_value(self.terms[row], tau) - value) / slope if slope > 0 else tau
+
+
+_UP, _WORK = 3, 4  # rows of the terms
+
+
+def _value(series: Sequence[Scalar], tau: Scalar) -> Scalar:
+    """Return a polynomial's value."""
+    found: Scalar = 0.0
+    for part in reversed(series):
+        found = found * tau + part
+    return found
+
+
+def _product(one: list[Scalar], other: list[Scalar]) -> Scalar:
+    """Return the last coefficient of the product of two series that are known so far."""
+    return sum(map(mul, one, reversed(other)))
