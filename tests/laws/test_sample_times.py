@@ -5,6 +5,7 @@ import pytest
 
 import trundle as tr
 from trundle.mechanics.algebra import Vector
+from trundle.solve import phases
 from trundle.solve.methods import METHODS, Method
 
 BALL = tr.Body.solid_sphere(radius="28.6 mm", mass="170 g")
@@ -161,3 +162,20 @@ def test_a_window_of_so_many_steps_is_short_where_steps_are(method):
         assert first <= middle <= last
         assert within == pytest.approx(0.5 * read.steps) or (cut and within < 0.5 * read.steps)
     assert read.around(1.5, 2 * read.steps + 2) == (0.0, 3.0)
+
+
+@pytest.mark.parametrize("method", ["taylor", "runge-kutta"])
+def test_what_follows_its_events_is_worked_out_once_however_often_a_run_is_looked_at(method, monkeypatch):
+    worked_out = []
+    transitions = phases.transitions
+    after, beyond = transitions.after, phases.corners.beyond
+    monkeypatch.setattr(transitions, "after", lambda *those: [worked_out.append("after"), after(*those)][1])
+    monkeypatch.setattr(phases.corners, "beyond", lambda *those: [worked_out.append("beyond"), beyond(*those)][1])
+    system, start = falling()
+    read, counts = Method.of(method).dense(system, start, 1.0), []
+    for _ in range(3):
+        read(np.linspace(0.0, 1.0, 50))
+        counts.append((worked_out.count("after"), worked_out.count("beyond")))
+    stops = sum(leg.stop is not None for leg in read.legs)
+    assert stops > 4
+    assert counts == [(stops, stops + looks) for looks in (1, 2, 3)]  # of each look only how it starts

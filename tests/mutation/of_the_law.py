@@ -16,13 +16,13 @@ LOADED = "egg_under_loads"
 FREE = "egg_on_free_table"
 
 KINEMATICS = (
-    Mutant("T1: slip left out of the contact's way", CONTACT, "moved = slip + C @", "moved = C @", SLIPS),
-    Mutant("T1: C(Ω − ω)×n 1 % too large", CONTACT, "moved = slip + C @ (", "moved = slip + C * 1.01 @ (", BOWL),
+    Mutant("T1: slip left out of the contact's way", CONTACT, "moved = slip + self", "moved = self", SLIPS),
+    Mutant("T1: C(Ω − ω)×n 1 % too large", CONTACT, "on_tangent((angular", "on_tangent(1.01 * (angular", BOWL),
     Mutant(
         "T1: C(Ω − ω)×n with the other sign",
         CONTACT,
-        "moved = slip + C @",
-        "moved = slip - C @",
+        "moved = slip + self",
+        "moved = slip - self",
         BOWL,
         refused="hold the body down",
     ),
@@ -30,11 +30,11 @@ KINEMATICS = (
     Mutant(
         "T1: 1 + C S taken for 1",
         CONTACT,
-        "along = moved if flat else self.relative_curvature(gap).solve(moved)",
+        "along = self.along_support(moved, gap)",
         "along = moved",
         BOWL,
     ),
-    Mutant("T1: C S 1 % too large", CONTACT, "Matrix.identity() + reach @", "Matrix.identity() + reach * 1.01 @", BOWL),
+    Mutant("T1: C S 1 % too large", CONTACT, "on_tangent(bent)", "on_tangent(bent * 1.01)", BOWL),
     Mutant("T1: u left out of ṗ", CONTACT, "self.support.material_velocity(self.point) + along", "along", EGG),
     Mutant(
         "T1: ρ̇ with the other sign",
@@ -53,8 +53,8 @@ KINEMATICS = (
     Mutant(
         "T4a: the gap left out of 1 + (C + g)S",
         CONTACT,
-        "reach if is_zero(gap) else reach + Matrix.identity() * gap",
-        "reach",
+        "turned if is_zero(gap) else turned + bent * gap",
+        "turned",
         AIR,
     ),
     Mutant("T4a: −(s·n)n left out", CONTACT, "moved - n * slip.dot(n) - omega", "moved - omega", AIR),
@@ -99,15 +99,15 @@ ROLLING = (
     Mutant(
         "T2: Steiner's term 1 % too large",
         CONTACT,
-        "whole = J + point_inertia(m, rho)",
-        "whole = J + point_inertia(m * 1.01, rho)",
+        "whole = inertia_about(J, m, rho)",
+        "whole = inertia_about(J, m * 1.01, rho)",
         EGG,
     ),
     Mutant(
         "T2: J 1 % too large",
         CONTACT,
-        "whole = J + point_inertia(m, rho)",
-        "whole = J * 1.01 + point_inertia(m, rho)",
+        "whole = inertia_about(J, m, rho)",
+        "whole = inertia_about(J * 1.01, m, rho)",
         EGG,
     ),
     Mutant(
@@ -226,7 +226,7 @@ SLIPPING_LAW = (
     Mutant(
         "T4: S w left out of ṅ",
         SLIPPING,
-        " + contact.shape_operator @ (p_rate - support.material_velocity(point))",
+        " + contact.shape_operator.on_tangent(along)",
         "",
         SLIPS,
     ),

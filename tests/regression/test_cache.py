@@ -101,7 +101,7 @@ def test_all_numbers_are_parameters(machine: Machine) -> None:
     others = [
         replace(SYSTEM, body=tr.Body.hollow_sphere(0.1, 2.0)),
         replace(SYSTEM, gravity=1.62),
-        replace(SYSTEM, support=replace(SYSTEM.support, motion=tr.Spin(-1e-3), tilt=0.0, friction=None)),
+        replace(SYSTEM, support=replace(SYSTEM.support, motion=tr.Spin(-1e-3), tilt=-1e-6, friction=None)),
     ]
     for system in (SYSTEM, *others):
         found, wanted = (
@@ -112,11 +112,27 @@ def test_all_numbers_are_parameters(machine: Machine) -> None:
     assert machine.compiled == 1
 
 
+def test_what_is_nothing_is_left_out(machine: Machine) -> None:
+    level = replace(SYSTEM, support=replace(SYSTEM.support, tilt=0.0))
+    zero = next(i for i, value in enumerate(numbers(level)) if value != numbers(SYSTEM)[i])
+    with_it, without_it = (lower(level, RollingLaw(), zeros=zeros) for zeros in ((), (zero,)))
+    assert without_it.cost < with_it.cost
+    assert np.array_equal(machine.run(level).position, machine.run(level).position)
+    machine.run()
+    assert machine.compiled == 2
+
+
+def test_a_push_that_only_adds_to_gravity_is_no_other_structure(machine: Machine) -> None:
+    machine.run()
+    machine.run(replace(SYSTEM, loads=(tr.Force((0.1, 0.0, 0.0)),)))
+    assert machine.compiled == 1
+
+
 def test_another_structure_is_another_integrator(machine: Machine) -> None:
     machine.run()
     for system in (
         replace(SYSTEM, loads=(tr.Drag(0.01),)),
-        replace(SYSTEM, loads=(tr.Force((0.1, 0.0, 0.0)),)),
+        replace(SYSTEM, loads=(tr.Force((0.1, 0.05, 0.0)),)),
         replace(SYSTEM, support=tr.Support(tr.Plane(rim=5.0))),
     ):
         found, wanted = (
@@ -384,7 +400,7 @@ def test_what_is_used_stays(machine: Machine) -> None:
     machine.run()
     first = machine.file
     machine.patch.setattr(integrator_cache, "MOST_BYTES", int(2.9 * first.stat().st_size))
-    others = [replace(SYSTEM, loads=(tr.Drag(0.01),)), replace(SYSTEM, loads=(tr.Force((0.1, 0.0, 0.0)),))]
+    others = [replace(SYSTEM, loads=(tr.Drag(0.01),)), replace(SYSTEM, loads=(tr.Force((0.1, 0.05, 0.0)),))]
     for other in others:
         for path in machine.folder.iterdir():  # as if an hour had passed
             os.utime(path, (path.stat().st_mtime - 3600,) * 2)

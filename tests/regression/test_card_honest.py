@@ -15,7 +15,7 @@ from trundle.solve.methods import Method
 from trundle.verify.again import Again
 from trundle.verify.bounds import sizes_of
 from trundle.verify.growth import growth
-from trundle.verify.law import residuals
+from trundle.verify.law import _SLOPE, _slope_at_middle, residuals, window_times
 
 pytest.importorskip("heyoka")
 
@@ -164,6 +164,21 @@ def test_a_run_that_ends_where_the_support_is_as_hollow_as_the_body_is_round(kin
     velocity[-1] *= 1.01
     altered = replace(run, data=run.data.assign(velocity=velocity), _kept={})
     assert not altered.card().passed
+
+
+def test_a_flight_that_ends_where_no_point_of_the_support_is_nearest() -> None:
+    # Between the clock's last two instants 1 + C S changes by 2e-7 there, and no step is shorter than ten of these.
+    potential = {"kind": "potential", "formula": "1.48277*3*(z**2 + y**2) + -0.0237738*x**2"}
+    r = [0.0, 0.0334105, 0.133642, 0.300694, 0.534567, 0.835262]
+    run = passes(
+        loads=[potential, {"kind": "pivot-friction", "offset": 1.06208e-5}],
+        body={"kind": "sphere", "radius": 0.042949, "mass": 0.00745831, "inertia_ratio": 0.111937},
+        support={"kind": "revolution", "r": r, "z": [0.0, 0.036817, 0.147268, 0.331353, 0.589072, 0.920425]},
+        start={"position": [0.0419193, 0.140352]},
+        run={"duration": 2.0, "every": 0.0121108},
+    )
+    assert run.method == "runge-kutta"
+    assert [event.kind for event in run.events] == ["lift", "curved"]
 
 
 # --- what changes faster than the samples show --------------------------------------------------------------
@@ -546,3 +561,22 @@ def test_at_the_very_grip_the_force_of_a_rounding_is_none(spin: float, friction:
     run = tr.simulate(system, start, duration=0.05, every=0.0005)
     assert [event.kind for event in run.events] == ["grip"]
     assert run.card()["normal force"].passed
+
+
+@pytest.mark.parametrize("place", ["0 m", "300 m", "3000 m"])
+def test_a_weighted_cylinder_that_sticks_and_slips_far_from_the_origin(place: str) -> None:
+    # ρ is the small difference of two places: a slope takes its rounding twenty times, over half of a short window.
+    body = {"kind": "weighted-cylinder", "radius": "104.816 mm", "mass": "708.144 g", "weight": "125.721 g"}
+    passes(
+        body=body | {"distance": "26.2522 mm"},
+        support={"kind": "plane", "tilt": "-7.81827 deg", "friction": 0.195706},
+        start={"position": [place, "0 m"], "roll": "-150.918 deg"},
+        run={"duration": 8.8, "every": 0.02},
+    )
+
+
+def test_a_slope_takes_an_error_of_its_places_twenty_times_at_most() -> None:
+    times = window_times(0.0, 1.0, 3.0)[:1]
+    half = 0.5 * (times[0, -1] - times[0, 0])
+    weights = [_slope_at_middle(times, error[None, :])[0] * half for error in np.eye(times.size)]
+    assert 0.99 * _SLOPE < np.abs(weights).sum() <= _SLOPE

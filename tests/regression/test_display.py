@@ -28,7 +28,7 @@ from trundle.verify import CardFigure
 TITLE = "<script>alert('½ & \"two\"')</script>"
 NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 # What only the classes below it are: nobody gets one.
-INNER = {"Viewable", "Document", "ScenarioFile", "PathFile"}
+INNER = {"Viewable", "Document", "ScenarioFile", "PathFile", "Printed"}
 
 
 @cache
@@ -141,6 +141,8 @@ RESULTS: tuple[Callable[[], Displayed], ...] = (
     lambda: rolled().rotation,
     lambda: rolled().stages,
     lambda: rolled().sampled(1e-3),
+    lambda: scenario("free-turntable-ellipse").system().vector_field("c"),
+    lambda: tr.MotionFormula(run().closed_form),
 )
 
 

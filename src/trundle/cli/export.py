@@ -16,7 +16,7 @@ from . import screen, signals
 if TYPE_CHECKING:
     from ..views.scene import Scene
 
-_SEVERAL = ".html"
+_SEVERAL, _UNIT = ".html", ".fmu"
 
 
 def export(
@@ -30,7 +30,7 @@ def export(
 
     .html: a page that plays it in any browser, without a network, to be mailed; of several runs, all on one stage.
     .glb: an animated model. .gif: an animation. .png, .svg: the figure of the path. .csv: its numbers. .nc: all of
-    it. .toml: its scenario.
+    it. .toml: its scenario. .fmu: the law as a unit of FMI 3.0, for other simulators.
 
     Exit status: 0, all is well; 2, bad input; 130, interrupted; 1, all else.
     """
@@ -38,21 +38,29 @@ def export(
 
     target = Path(file).expanduser()
     _check(runs, target)
-    content = _content(runs, target.suffix.lower(), bar=not quiet)
+    told = ""
+    if target.suffix.lower() == _UNIT:
+        content, told = _unit(runs[0])
+    else:
+        content = _content(runs, target.suffix.lower(), bar=not quiet)
     with written_whole(target) as temporary:
         temporary.write_bytes(content)
     if not quiet:
-        screen.out(f"Wrote {target} ({_size(len(content))})")
+        screen.out(f"Wrote {target} ({_size(len(content))}{told})")
 
 
 def _check(names: list[str], target: Path) -> None:
     """Refuse what cannot be meant before anything is computed."""
-    if target.suffix.lower() not in exports.FORMATS:
-        raise InvalidValueError("FILE", f"must end in one of {', '.join(exports.FORMATS)}", str(target))
+    formats = (*exports.FORMATS, _UNIT)
+    if target.suffix.lower() not in formats:
+        raise InvalidValueError("FILE", f"must end in one of {', '.join(formats)}", str(target))
     if target.is_dir() or not target.parent.is_dir():
         rule = "must not be a folder" if target.is_dir() else "must lie in a folder that exists"
         raise InvalidValueError("FILE", rule, str(target))
-    exports.check_installed(target.suffix, str(target))
+    if target.suffix.lower() != _UNIT:
+        exports.check_installed(target.suffix, str(target))
+    elif _is_run(names[0]):
+        raise InvalidValueError("RUN", f"must be a scenario for {_UNIT}", names[0], "A run is numbers, and has no law.")
     if len(names) > 1 and target.suffix.lower() != _SEVERAL:
         remedy = f"Only {_SEVERAL} can hold several."
         raise InvalidValueError("RUN", "must be one", ", ".join(names), remedy)
@@ -78,6 +86,17 @@ def _content(names: list[str], suffix: str, *, bar: bool) -> bytes:
     check_count(len(names))
     found = [_motion(name, bar=bar) for name in names]
     return page_of([make_scene(motion, with_card=True) for motion, make_scene in found])
+
+
+def _unit(name: str) -> tuple[bytes, str]:
+    """Return the law of a scenario as a unit of FMI, and a word about the binary in it."""
+    from ..fields.fmi import fmu
+
+    scenario = _scenario(name)
+    if hasattr(scenario, "path"):
+        raise InvalidValueError("RUN", "must be a scenario with forces", name, "A path to roll along has no law.")
+    made, where = fmu(scenario.system(), scenario.start_state(), scenario.title)
+    return made, f", with a binary for {where}" if where else ", sources only: no C compiler is found here"
 
 
 def _is_run(name: str) -> bool:

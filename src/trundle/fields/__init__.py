@@ -4,5 +4,6 @@ from __future__ import annotations
 
 from .backends import BACKENDS
 from .field import FieldReset, VectorField
+from .motion_formula import MotionFormula
 
-__all__ = ["BACKENDS", "FieldReset", "VectorField"]
+__all__ = ["BACKENDS", "FieldReset", "MotionFormula", "VectorField"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 from ..errors import SolverError
@@ -25,7 +26,7 @@ def compiler() -> str | None:
 
 def shared_library(command: str, sources: list[Path], target: Path, *options: str) -> None:
     """Compile sources to a shared library."""
-    shared = "-dynamiclib" if os.uname().sysname == "Darwin" else "-shared"
+    shared = "-dynamiclib" if sys.platform == "darwin" else "-shared"
     line = [command, *FLAGS, "-fPIC", shared, *options, "-o", str(target), *map(str, sources), "-lm"]
     done = subprocess.run(line, capture_output=True, text=True, errors="replace", check=False)  # noqa: S603
     if done.returncode:

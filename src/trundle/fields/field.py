@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from ..errors import InvalidValueError, OutOfDomainError, UnknownNameError
-from ..mechanics.parameters import numbers, parameters
 from ..mechanics.system import RollingSystem, State
 from ..units import UNITS
-from .backends import BACKENDS, Backend, Function
+from .backends import BACKENDS, Function
 from .inputs import GROUPS, inputs_of
-from .printers import c, symbolic
+from .printed import Listed, Printed
+from .printers import symbolic
 from .resets import CODES
 from .routines import OUTPUTS, PhaseRoutines, Routine, check_analytic, phases_of
 
@@ -38,8 +38,8 @@ class FieldReset:
     states: Mapping[str, Function]
 
 
-@dataclass(frozen=True)
-class VectorField:
+@dataclass(frozen=True, repr=False)
+class VectorField(Printed):
     """The right-hand side dy/dt = f(t, y, p, u) of a system in one of its phases.
 
     Parameters
@@ -68,18 +68,17 @@ class VectorField:
     backend: str = "numpy"
     phase: str = "rolling"
     input_groups: tuple[str, ...] = GROUPS
+    _outputs = OUTPUTS
 
     def __post_init__(self) -> None:
-        if self.backend not in BACKENDS:
-            raise UnknownNameError("backend", str(self.backend), BACKENDS)
+        self._check_backend()
         check_analytic(self.system)
         if self.phase not in CODES:
             raise UnknownNameError("phase", str(self.phase), CODES)
         if self.phase not in self.phases:
-            raise OutOfDomainError(
-                f"This system has no {self.phase}: it has {', '.join(self.phases)}. Slipping takes a `friction` of the "
-                "support, rolling one that is not 0, and rest a resistance to rolling."
-            )
+            rule = f"must be one that the system may have: {', '.join(self.phases)}"
+            remedy = "Slipping takes a `friction` of the support, rolling one above 0, rest a resistance to rolling."
+            raise InvalidValueError("phase", rule, self.phase, remedy)
         inputs_of(self.system, self.input_groups)
 
     # Names, units and values
@@ -95,21 +94,6 @@ class VectorField:
         own = self._routines.law.variables
         coordinates = (UNITS[kind][0] for kind in self.system.support.motion.coordinate_kinds)
         return (*(_UNIT_OF[name.partition("_")[0]] for name in own), *coordinates)
-
-    @property
-    def parameter_names(self) -> tuple[str, ...]:
-        """The names of the numbers of p: every number of the system."""
-        return tuple(name for name, _ in parameters(self.system))
-
-    @property
-    def parameter_units(self) -> tuple[str, ...]:
-        """Their units; numbers in a formula are in SI, and have none here."""
-        return tuple(UNITS[dimension][0] for _, dimension in parameters(self.system))
-
-    @property
-    def parameters(self) -> Any:
-        """P of the system, an array."""
-        return np.array(numbers(self.system))
 
     @property
     def input_names(self) -> tuple[str, ...]:
@@ -130,16 +114,6 @@ class VectorField:
     def event_names(self) -> tuple[str, ...]:
         """The names of the event functions."""
         return self._routines.events()[0]
-
-    @property
-    def output_names(self) -> tuple[str, ...]:
-        """The names of the outputs."""
-        return tuple(name for name, _ in OUTPUTS)
-
-    @property
-    def output_units(self) -> tuple[str, ...]:
-        """Their units."""
-        return tuple(unit for _, unit in OUTPUTS)
 
     # The functions
 
@@ -168,7 +142,7 @@ class VectorField:
     @cached_property
     def rates(self) -> Function:
         """F(t, y, p, u): the rates of y, each in its unit per second."""
-        return self._backend.function(self._routines.rates())
+        return self._language.function(self._routines.rates())
 
     @cached_property
     def events(self) -> Function:
@@ -177,18 +151,18 @@ class VectorField:
         Where something may shrink to nothing, as slip does, it takes e besides: `event_parameters` of the state in
         which the phase began.
         """
-        return self._backend.function(self._routines.events()[1])
+        return self._language.function(self._routines.events()[1])
 
     @cached_property
     def event_parameters(self) -> Function | None:
         """F(t, y, p, u): what `events` takes as e; None where it takes none."""
         wanted = self._routines.law.event_parameters > 0
-        return self._backend.function(self._routines.event_parameters()) if wanted else None
+        return self._language.function(self._routines.event_parameters()) if wanted else None
 
     @cached_property
     def outputs(self) -> Function:
         """F(t, y, p, u): position, velocity, contact force and energy, in the order of `output_names`."""
-        return self._backend.function(self._routines.outputs())
+        return self._language.function(self._routines.outputs())
 
     @cached_property
     def resets(self) -> Mapping[str, FieldReset]:
@@ -199,8 +173,8 @@ class VectorField:
     def _reset(self, event: str) -> FieldReset:
         routines = {each.name.removeprefix(f"{self.phase}_"): each for each in self._routines.after(event)}
         choice = routines.pop(f"phase_after_{event}", None)
-        states = {name.removesuffix(f"_after_{event}"): self._backend.function(r) for name, r in routines.items()}
-        return FieldReset(None if choice is None else self._backend.function(choice), states)
+        states = {name.removesuffix(f"_after_{event}"): self._language.function(r) for name, r in routines.items()}
+        return FieldReset(None if choice is None else self._language.function(choice), states)
 
     def after(self, event: str, t: float, y: Any, p: Any, u: Any) -> tuple[VectorField, Any]:
         """Return the field of the phase that follows an event, and the state with which it begins.
@@ -246,7 +220,7 @@ class VectorField:
         return self.at(follows), reset.states[follows](t, y, p, u)
 
     def _need_phases(self) -> None:
-        if not self._backend.phases:
+        if not self._language.phases:
             raise OutOfDomainError(
                 f'The backend "{self.backend}" leaves out what follows an event: it has each phase by itself. The '
                 "others have it: " + ", ".join(name for name, each in BACKENDS.items() if each.phases) + "."
@@ -342,26 +316,30 @@ class VectorField:
         definitions, rates = self.equations(shared=shared)
         return symbolic.latex(y, rates, definitions, [*p, *u])
 
-    def routines(self) -> list[Routine]:
+    def routines(self, *, alone: bool = False) -> list[Routine]:
         """Return the routines of all phases that the backend has, as they are printed.
+
+        Parameters
+        ----------
+        alone : bool
+            Whether to leave out the other phases, and what follows an event.
 
         Returns
         -------
         list of Routine
             Those of this phase first.
         """
-        others = [phase for phase in self.phases if phase != self.phase] if self._backend.phases else []
-        return [each for phase in (self.phase, *others) for each in self.at(phase)._routines.all()]
+        if alone or not self._language.phases:
+            return list(self._routines.motion())
+        return [each for phase in self._printed_phases for each in self.at(phase)._routines.all()]
 
     def source(self, name: str = "field", start: State | None = None) -> str:
-        """Return the text of all functions, with what their arguments are.
+        """Return the text of all functions, with what their arguments are; of SymPy, LaTeX.
 
         Parameters
         ----------
-        name : str
-            With which the functions of C begin, and its header: letters, digits and underscores.
-        start : State, optional
-            Its y is told with the names.
+        name, start : see Printed.source
+            Of the functions of C; whose numbers are told.
 
         Returns
         -------
@@ -372,73 +350,38 @@ class VectorField:
         --------
         >>> import trundle as tr
         >>> level = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane()))
-        >>> "void ball_rolling_rates(" in level.vector_field("c").source("ball")
-        True
+        >>> len(level.vector_field("sympy", inputs=()).source().splitlines())  # ten equations, in an align*
+        12
         """
-        if not name.isidentifier() or not name.isascii():
-            raise InvalidValueError("name", "must consist of letters, digits and underscores", name)
-        if not self._backend.phases:
-            return self.latex()
-        return self._backend.source(self.routines(), name, self._said(start))
+        return super().source(name, start) if self._language.phases else self.latex()
 
-    def header(self, name: str = "field") -> str:
-        """Return the header that declares the functions of C.
+    @property
+    def _numbered(self) -> Any:
+        return self.system
 
-        Parameters
-        ----------
-        name : str
-            As of `source`.
+    @property
+    def _title(self) -> str:
+        return "The law of one rolling system"
 
-        Returns
-        -------
-        str
-            C.
-
-        Examples
-        --------
-        >>> import trundle as tr
-        >>> level = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane()))
-        >>> "#ifndef BALL_H" in level.vector_field("c").header("ball")
-        True
-        """
-        return c.header(self.routines(), name, self._said())
-
-    def _said(self, start: State | None = None) -> str:
-        """Say what the functions take, all in SI."""
-        lines = ["The law of one rolling system, as trundle wrote it. All numbers are in SI.", "", "t: time (s)"]
-        for phase in (self.phase, *(each for each in self.phases if self._backend.phases and each != self.phase)):
+    def _listed(self, start: State | None = None) -> Iterator[Listed]:
+        for phase in self._printed_phases:
             there = self.at(phase)
             begins = there.pack(start) if start is not None and phase == self.phase else None
-            lines += _table(f"y of {phase}", there.state_names, there.state_units, begins)
-            if there.event_names:
-                lines.append(f"events of {phase}: " + ", ".join(there.event_names))
-        lines += _table("p", self.parameter_names, self.parameter_units, self.parameters)
-        lines += _table("u", self.input_names, self.input_units, self.inputs)
-        lines += _table("outputs", self.output_names, self.output_units)
-        return "\n".join(lines)
+            yield f"y of {phase}", there.state_names, there.state_units, begins
+            yield f"events of {phase}", there.event_names, [""] * len(there.event_names), None
+        yield "p", self.parameter_names, self.parameter_units, self.parameters
+        yield "u", self.input_names, self.input_units, self.inputs
+        yield "outputs", self.output_names, self.output_units, None
+
+    @property
+    def _printed_phases(self) -> list[str]:
+        """The phases that the backend has, this one first."""
+        others = [phase for phase in self.phases if phase != self.phase]
+        return [self.phase, *(others if self._language.phases else [])]
 
     @cached_property
     def _routines(self) -> PhaseRoutines:
         return PhaseRoutines(self.system, self.phase, self.input_groups)
-
-    @property
-    def _backend(self) -> Backend:
-        return BACKENDS[self.backend]
-
-
-def _table(title: str, names: Sequence[str], units: Sequence[str], values: Any = None) -> list[str]:
-    """List names with their places, units and values."""
-    if not names:
-        return []
-    values = [None] * len(names) if values is None else values.tolist()
-    rows = zip(names, units, values, strict=True)
-    return [
-        f"{title}:",
-        *(
-            f"    [{i}] {name}{f' ({unit})' if unit else ''}{'' if value is None else f' = {value!r}'}"
-            for i, (name, unit, value) in enumerate(rows)
-        ),
-    ]
 
 
 __all__ = ["FieldReset", "VectorField"]

@@ -90,7 +90,8 @@ def _grip(system: RollingSystem, law: Law, time: Scalar, state: Numbers, n: Vect
     rolling, coordinates = RollingLaw(), law.split(state)[4]
     rolls = [*state[: len(CONTACT)], *coordinates]
     contact = contact_at(system, time, *_place(law, state))
-    holds = cone(system, contact, rolling.reaction(system, time, rolls))["slip"]
+    R = rolling.reaction(system, time, rolls)
+    holds = cone(system, contact, R, contact.normal.dot(R))["slip"]
     slips = _slip(system, rolling, time, rolls, n, plain).states["slipping"]
     return _either(holds, ("rolling", rolls), ("slipping", slips))
 

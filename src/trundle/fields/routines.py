@@ -117,13 +117,17 @@ class PhaseRoutines:
 
     def all(self) -> Iterator[Routine]:
         """Return every routine of the phase."""
+        yield from self.motion()
+        for event in self.resets():
+            yield from self.after(event)
+
+    def motion(self) -> Iterator[Routine]:
+        """Return those of the phase by itself."""
         yield self.rates()
         yield self.events()[1]
         if self.law.event_parameters:
             yield self.event_parameters()
         yield self.outputs()
-        for event in self.resets():
-            yield from self.after(event)
 
     def rates(self) -> Routine:
         """Return the right-hand side."""
@@ -177,8 +181,15 @@ class PhaseRoutines:
 
     def _routine(self, name: str, said: str, outputs: Any, *, given: bool = False) -> Routine:
         arguments = [("t", None), *((name, self._sizes[name]) for name in ("y", "p", "u", *("e" * given)))]
-        return Routine(f"{self.phase}_{name}", said, tuple(arguments), tuple(map(_plain, outputs)), self._tape)
+        return Routine(f"{self.phase}_{name}", said, tuple(arguments), tuple(map(plain, outputs)), self._tape)
 
 
-def _plain(value: Scalar) -> Any:
+def plain(value: Scalar) -> Any:
+    """Return what a tape recorded, or a number as a float.
+
+    Examples
+    --------
+    >>> plain(1)
+    1.0
+    """
     return value if isinstance(value, Node) else float(value)

@@ -162,15 +162,125 @@ class Matrix:
         return self.a.dot(self.b.cross(self.c))
 
     @property
+    def trace(self) -> Scalar:
+        """The trace."""
+        return self.a.x + self.b.y + self.c.z
+
+    @property
+    def tangent_determinant(self) -> Scalar:
+        """The determinant on the tangent plane of n, of a matrix that is 0 along n: the sum of the principal minors."""
+        (a, b, c), (d, e, f), (g, h, i) = self.rows
+        return (a * e - b * d) + (a * i - c * g) + (e * i - f * h)
+
+    @property
     def dense(self) -> Matrix:
-        """Itself: with its elements, as `Turned.whole`."""
+        """Itself, as `RotatedTensor.dense`."""
         return self
+
+    def on_tangent(self, v: Vector) -> Vector:
+        """Return M v for a v across n, of a matrix that is 0 along n."""
+        return self @ v
+
+    def trace_with(self, other: Any) -> Scalar:
+        """Return tr(M N) of two symmetric matrices."""
+        a, b, c = other.dense.rows
+        return self.a.dot(a) + self.b.dot(b) + self.c.dot(c)
 
     def solve(self, v: Vector) -> Vector:
         """Return x with (this matrix) x = v, by the cofactors: no pivoting, so that symbols can pass."""
         p, q, r = self.transpose.rows
         qr = q.cross(r)
         return Vector(v.dot(qr), v.dot(r.cross(p)), v.dot(p.cross(q))) / p.dot(qr)
+
+
+@value()
+class TangentialTensor(Matrix):
+    """c P H P with P = 1 − n nᵀ: what is left of a symmetric H across a unit vector n.
+
+    Its elements are at hand, as a matrix's; what does not need them comes from H and n, which is less work.
+
+    Examples
+    --------
+    >>> tangential = TangentialTensor.of(Matrix.diagonal(1.0, 2.0, 3.0), Vector(0.0, 0.0, 1.0))
+    >>> tangential.c.z, tangential.trace, tangential.tangent_determinant
+    (0.0, 3.0, 2.0)
+    """
+
+    bend: Matrix
+    normal: Vector
+    scale: Scalar = 1.0
+
+    @staticmethod
+    def of(bend: Matrix, n: Vector) -> TangentialTensor:
+        """Return P H P."""
+        along = bend @ n
+        made = bend - Matrix.outer(n, along) - Matrix.outer(along, n) + Matrix.outer(n, n) * n.dot(along)
+        return TangentialTensor(made.a, made.b, made.c, bend, n)
+
+    def __mul__(self, factor: Scalar) -> TangentialTensor:
+        a, b, c = (row * factor for row in self.rows)
+        return TangentialTensor(a, b, c, self.bend, self.normal, self.scale * factor)
+
+    __rmul__ = __mul__
+
+    @property
+    def trace(self) -> Scalar:
+        """The trace, c(tr H − n·Hn)."""
+        return (self.bend.trace - self.normal.dot(self.bend @ self.normal)) * self.scale
+
+    @property
+    def tangent_determinant(self) -> Scalar:
+        """The determinant across n, c² n·(cof H) n."""
+        a, b, c = self.bend.rows
+        n = self.normal
+        return n.dot(Matrix(b.cross(c), c.cross(a), a.cross(b)) @ n) * (self.scale * self.scale)
+
+    def on_tangent(self, v: Vector) -> Vector:
+        """Return c P H v."""
+        along = self.bend @ v
+        return (along - self.normal * self.normal.dot(along)) * self.scale
+
+
+@value()
+class RoundTensor(Matrix):
+    """c(1 − n nᵀ): the same in all directions across a unit vector n, as the curvature of a sphere is.
+
+    Examples
+    --------
+    >>> RoundTensor.of(2.0, Vector(0.0, 0.0, 1.0)).on_tangent(Vector(1.0, 0.0, 0.0)).x
+    2.0
+    """
+
+    size: Scalar
+
+    @staticmethod
+    def of(size: Scalar, n: Vector) -> RoundTensor:
+        """Return c(1 − n nᵀ)."""
+        made = (Matrix.identity() - Matrix.outer(n, n)) * size
+        return RoundTensor(made.a, made.b, made.c, size)
+
+    def __mul__(self, factor: Scalar) -> RoundTensor:
+        return RoundTensor(self.a * factor, self.b * factor, self.c * factor, self.size * factor)
+
+    __rmul__ = __mul__
+
+    @property
+    def trace(self) -> Scalar:
+        """The trace, 2 c."""
+        return 2.0 * self.size
+
+    @property
+    def tangent_determinant(self) -> Scalar:
+        """The determinant across n, c²."""
+        return self.size * self.size
+
+    def on_tangent(self, v: Vector) -> Vector:
+        """Return c v."""
+        return v * self.size
+
+    def trace_with(self, other: Any) -> Scalar:
+        """Return c tr N, of a matrix N that is 0 along the same n."""
+        return self.size * other.trace
 
 
 @value()
@@ -198,6 +308,29 @@ class RotatedTensor:
 
     def __matmul__(self, v: Vector) -> Vector:
         return self.turn @ (self.own @ (self.turn.transpose @ v))
+
+    def on_tangent(self, v: Vector) -> Vector:
+        """Return Q M Qᵀ v, as `Matrix.on_tangent`."""
+        return self.turn @ self.own.on_tangent(self.turn.transpose @ v)
+
+    def trace_with(self, other: Any) -> Scalar:
+        """Return tr(Q M Qᵀ N), as `Matrix.trace_with`."""
+        return self.own.trace_with(other) if isinstance(self.own, RoundTensor) else self.dense.trace_with(other)
+
+    @property
+    def is_zero(self) -> bool:
+        """Whether all elements are known to be 0."""
+        return self.own.is_zero
+
+    @property
+    def trace(self) -> Scalar:
+        """The trace, which no rotation changes."""
+        return self.own.trace
+
+    @property
+    def tangent_determinant(self) -> Scalar:
+        """The determinant across n, which no rotation changes."""
+        return self.own.tangent_determinant
 
     @property
     def dense(self) -> Matrix:
@@ -231,6 +364,39 @@ def point_inertia(mass: Scalar, offset: Vector) -> Matrix:
         Vector(-(y * x), z * z + x * x, -(y * z)),
         Vector(-(z * x), -(z * y), x * x + y * y),
     )
+
+
+@value()
+class RoundInertia:
+    """J 1 + m(ρ² 1 − ρ ρᵀ): of a body with the same moment J about every axis, about a point at −ρ from its centre.
+
+    Examples
+    --------
+    >>> RoundInertia(2.0, 1.0, Vector(0.0, 0.0, 1.0)).solve(Vector(3.0, 0.0, 2.0))
+    Vector(x=1.0, y=0.0, z=1.0)
+    """
+
+    moment: Scalar
+    mass: Scalar
+    offset: Vector
+
+    def solve(self, v: Vector) -> Vector:
+        """Return x with (this matrix) x = v: (v + ρ m(ρ·v)/J)/(J + mρ²)."""
+        rho = self.offset
+        return (v + rho * (rho.dot(v) * (self.mass / self.moment))) / (self.moment + self.mass * rho.dot(rho))
+
+
+def inertia_about(J: Matrix, mass: Scalar, offset: Vector) -> Matrix | RoundInertia:
+    """Return J + m(ρ² 1 − ρ ρᵀ), ready to be solved.
+
+    Examples
+    --------
+    >>> inertia_about(Matrix.diagonal(1.0, 2.0, 2.0), 1.0, Vector(0.0, 0.0, 1.0)).a.x
+    2.0
+    """
+    if J.a.x is J.b.y is J.c.z and all(map(is_zero, (J.a.y, J.a.z, J.b.x, J.b.z, J.c.x, J.c.y))):
+        return RoundInertia(J.a.x, mass, offset)
+    return J + point_inertia(mass, offset)
 
 
 @value()

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from .algebra import ZERO, Matrix, Quaternion, RotatedTensor, Vector, point_inertia
+from .algebra import ZERO, Matrix, Quaternion, RotatedTensor, Vector, inertia_about
 from .loads import Acting, BodyMotion
 from .motions import SupportState
 from .scalars import Scalar, is_zero
@@ -27,7 +27,7 @@ class Contact:
     normal: Vector  # n, from the support into the body
     offset: Vector  # ρ, from the centre of mass to p, m
     inverse_curvature: Matrix | RotatedTensor  # C of the body, m
-    shape_operator: Matrix  # S of the support, 1/m
+    shape_operator: Matrix | RotatedTensor  # S of the support, 1/m
 
     @property
     def centre(self) -> Vector:
@@ -43,11 +43,32 @@ class Contact:
         """Return 1 + (C + g)S: how the body's nearest point moves over the support when the support's does."""
         reach = self.inverse_curvature.dense
         reach = reach if is_zero(gap) else reach + Matrix.identity() * gap
-        return Matrix.identity() + reach @ self.shape_operator
+        return Matrix.identity() + reach @ self.shape_operator.dense
 
     def relative_curvature_determinant(self, gap: Scalar = 0.0) -> Scalar:
         """Return det(1 + (C + g)S), which falls to 0 where the support is as hollow as the body is round."""
-        return self.relative_curvature(gap).determinant
+        C, S = self.inverse_curvature, self.shape_operator
+        both = C.tangent_determinant
+        both = both if is_zero(gap) else both + (C.trace + gap) * gap
+        return 1.0 + self._relative_trace(gap) + both * S.tangent_determinant
+
+    def _relative_trace(self, gap: Scalar) -> Scalar:
+        """Return tr((C + g)S)."""
+        C, S = self.inverse_curvature, self.shape_operator
+        return C.trace_with(S) if is_zero(gap) else C.trace_with(S) + S.trace * gap
+
+    def along_support(self, moved: Vector, gap: Scalar = 0.0) -> Vector:
+        """Return w with (1 + (C + g)S) w = v for a v along the support.
+
+        There a matrix M is 2×2, and M² − (tr M) M + det M = 0: so its inverse is (tr M − M)/det M.
+        """
+        if self.flat:
+            return moved
+        bent = self.shape_operator.on_tangent(moved)
+        turned = self.inverse_curvature.on_tangent(bent)
+        turned = turned if is_zero(gap) else turned + bent * gap
+        whole = moved * (1.0 + self._relative_trace(gap)) - turned
+        return whole / self.relative_curvature_determinant(gap)
 
     def rates(
         self, slip: Vector, angular_velocity: Vector, velocity: Vector, gap: Scalar = 0.0
@@ -57,16 +78,15 @@ class Contact:
         Across a gap g, p is the support's point nearest to the body, p + g n the body's nearest to the support, and
         (1 + (C + g)S) w = s − (s·n)n + C(Ω − ω)×n − g ω×n.
         """
-        n, omega, flat = self.normal, self.support.angular_velocity, self.flat
-        C = self.inverse_curvature if flat else self.inverse_curvature.dense  # its elements are wanted anyway
-        moved = slip + C @ (angular_velocity - omega).cross(n)
+        n, omega = self.normal, self.support.angular_velocity
+        moved = slip + self.inverse_curvature.on_tangent((angular_velocity - omega).cross(n))
         if not is_zero(gap):
             moved = moved - n * slip.dot(n) - omega.cross(n) * gap
-        along = moved if flat else self.relative_curvature(gap).solve(moved)
+        along = self.along_support(moved, gap)
         point_rate = self.support.material_velocity(self.point) + along
         if is_zero(gap):
             return point_rate, point_rate - velocity
-        n_rate = omega.cross(n) + self.shape_operator @ along
+        n_rate = omega.cross(n) + self.shape_operator.on_tangent(along)
         return point_rate, point_rate + n * slip.dot(n) + n_rate * gap - velocity
 
     def body_motion(
@@ -96,6 +116,7 @@ class Rolling:
     orientation_rate: Quaternion  # 1/s
     angular_acceleration: Vector  # Ω̇, rad/s²
     reaction: Vector  # R, contact force on the body, N
+    normal_force: Scalar  # N = n·R, N
     axle_moment: Scalar  # of the body on the support, about the support's axle, N m
 
 
@@ -106,7 +127,7 @@ def contact_at(
     surface, support = system.support.surface, system.support.motion.at(time, *coordinates)
     turn, there = support.rotation, support.local(point)
     n = turn @ surface.normal(there)
-    S = RotatedTensor(turn, surface.shape_operator(there)).dense
+    S = RotatedTensor(turn, surface.shape_operator(there))
     rho, C = system.body.shape.contact(orientation.matrix(), n)
     return Contact(support, point, n, rho, C, S)
 
@@ -155,13 +176,14 @@ def roll(
     acting = system.acting_on(contact.body_motion(m, time, V, orientation, Omega))
     F, Q = acting.force, orientation.matrix()
     J = system.body.inertia_in_space(Q)
-    whole = J + point_inertia(m, rho)
+    whole = inertia_about(J, m, rho)
     inertial = u_rate - Omega.cross(rho_rate)
     # T2
     moment = acting.torque - system.body.gyroscopic(Q, Omega) - rho.cross(F) + m * rho.cross(inertial)
     Omega_rate = whole.solve(moment)
     # T3
     R = m * (inertial - Omega_rate.cross(rho)) - F
+    N = m * (n.dot(inertial) - Omega_rate.dot(rho.cross(n))) - n.dot(F)  # ρ×n is 0 for a sphere, and F often along n
     lever = support.lever(point)
     # What grows with an unknown: Ω̇ and R for each newton of N, and for each rad/s² of a free axle.
     couplings = []
@@ -173,9 +195,9 @@ def roll(
         couplings.append((turned, m * (lever - turned.cross(rho))))
     amounts = _amounts(system, time, coordinates, contact, acting, R, [reaction for _, reaction in couplings])
     for amount, (turned, reaction) in zip(amounts, couplings, strict=True):
-        Omega_rate, R = Omega_rate + turned * amount, R + reaction * amount
-    moment_on_axle = acting.moment_on_axle(support, n.dot(R)) - lever.dot(R)
-    return Rolling(contact, V, p_rate, orientation.rate(Omega), Omega_rate, R, moment_on_axle)
+        Omega_rate, R, N = Omega_rate + turned * amount, R + reaction * amount, N + n.dot(reaction) * amount
+    moment_on_axle = acting.moment_on_axle(support, N) - lever.dot(R)
+    return Rolling(contact, V, p_rate, orientation.rate(Omega), Omega_rate, R, N, moment_on_axle)
 
 
 def _amounts(

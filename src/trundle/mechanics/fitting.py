@@ -62,7 +62,7 @@ def room(contact: Contact) -> tuple[float, Vector]:
     first = n.cross(helper)
     first = first / first.norm()
     second = n.cross(first)
-    both = Matrix.identity() + contact.inverse_curvature.dense @ contact.shape_operator
+    both = Matrix.identity() + contact.inverse_curvature.dense @ contact.shape_operator.dense
     tangential = np.array([[float(a.dot(both @ b)) for b in (first, second)] for a in (first, second)])
     values, ways = np.linalg.eig(tangential)  # C S is similar to the symmetric √C S √C: they are real
     least = int(np.argmin(values.real))
@@ -111,7 +111,7 @@ def check_curvature(contact: Contact, received: Any, key: str = "position") -> N
     ...
     trundle.errors.InvalidValueError: `position` must be where the body fits the surface; got (0, 0). There the ...
     """
-    for name, part in (("normal", contact.normal), ("curvature", contact.shape_operator)):
+    for name, part in (("normal", contact.normal), ("curvature", contact.shape_operator.dense)):
         if not _all_finite(part):
             raise InvalidValueError(
                 key, "must be where the surface is smooth", received, f"Its {name} is not finite there."
@@ -120,7 +120,7 @@ def check_curvature(contact: Contact, received: Any, key: str = "position") -> N
         if not _all_finite(own):
             remedy = f"Its {name} is not finite in this position: turn it a little."
             raise InvalidValueError("orientation", "must let the body touch in one point", received, remedy)
-    if _size(contact.shape_operator) * contact.offset.norm() > SHARPEST:
+    if _size(contact.shape_operator.dense) * contact.offset.norm() > SHARPEST:
         remedy = "Its curvature grows beyond all bounds there: it has an edge or an apex."
         raise InvalidValueError(key, "must be where the surface is smooth", received, remedy)
     misfit = too_big(contact)

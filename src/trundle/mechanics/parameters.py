@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass
+from functools import cache
 from typing import Any, NamedTuple, TypeVar
 
 from .expressions import Expression
@@ -25,10 +26,17 @@ def numbers(thing: Any) -> list[float]:
     return [float(value) for value in _walk(thing)]
 
 
+@cache
+def _fields(kind: type) -> tuple[tuple[str, bool], ...] | None:
+    """Return the names of a dataclass's fields, and whether they are compared; None for what is no dataclass."""
+    return tuple((field.name, field.compare) for field in fields(kind)) if is_dataclass(kind) else None
+
+
 def _walk(thing: Any) -> Iterator[Any]:
-    if is_dataclass(thing):
-        for field in fields(thing):
-            yield from _walk(getattr(thing, field.name))
+    known = _fields(thing.__class__)
+    if known is not None:
+        for name, _ in known:
+            yield from _walk(getattr(thing, name))
     elif isinstance(thing, tuple):
         for part in thing:
             yield from _walk(part)
@@ -92,10 +100,11 @@ def structure_of(thing: Any) -> Any:
     >>> structure_of(small) == structure_of(large), structure_of(small) == structure_of(plain)
     (True, False)
     """
-    if is_dataclass(thing) and not isinstance(thing, type):
-        return type(thing), tuple(structure_of(getattr(thing, field.name)) for field in fields(thing) if field.compare)
+    known = _fields(thing.__class__)
+    if known is not None:
+        return type(thing), tuple([structure_of(getattr(thing, name)) for name, compared in known if compared])
     if isinstance(thing, tuple):
-        return tuple(structure_of(part) for part in thing)
+        return tuple([structure_of(part) for part in thing])
     return float if is_number(thing) and not isinstance(thing, bool) else thing
 
 
@@ -113,8 +122,9 @@ def with_numbers(thing: T, values: Sequence[Scalar]) -> T:
 
 
 def _rebuild(thing: Any, values: Iterator[Scalar]) -> Any:
-    if is_dataclass(thing) and not isinstance(thing, type):
-        return type(thing)(**{field.name: _rebuild(getattr(thing, field.name), values) for field in fields(thing)})
+    known = _fields(thing.__class__)
+    if known is not None:
+        return type(thing)(**{name: _rebuild(getattr(thing, name), values) for name, _ in known})
     if isinstance(thing, tuple):
         return tuple(_rebuild(part, values) for part in thing)
     if is_number(thing) and not isinstance(thing, bool):

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .algebra import ZERO, Matrix, Quaternion, Vector
+from .algebra import ZERO, Quaternion, Vector
 from .attitude import attitude
 from .contact import Contact, contact_at
 from .fitting import LEAST_ROOM, SHARPEST
@@ -126,12 +126,12 @@ class ManyPlacing:
             sound &= True if margin is None else np.asarray(margin > 0)
         sound &= np.isfinite(surface.level(there))
         size = np.max(
-            [np.abs(part) for row in contact.shape_operator.rows for part in np.broadcast_arrays(*row)], axis=0
+            [np.abs(part) for row in contact.shape_operator.dense.rows for part in np.broadcast_arrays(*row)], axis=0
         )
         sound &= size * contact.offset.norm() <= SHARPEST
         # 1 + C S is 1 along n: the two other eigenvalues have the determinant as their product, and the trace less 1
         # as their sum.
-        both = Matrix.identity() + contact.inverse_curvature.dense @ contact.shape_operator
+        both = contact.relative_curvature()
         product, half = both.determinant, 0.5 * (sum(row[i] for i, row in enumerate(map(tuple, both.rows))) - 1.0)
         return sound & (half - np.sqrt(np.maximum(half * half - product, 0.0)) > LEAST_ROOM)
 

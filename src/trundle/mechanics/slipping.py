@@ -217,7 +217,8 @@ def unpushed(
     p_rate, rho_rate = contact.rates(s, Omega, V)
     u_rate = support.material_acceleration(point, p_rate)
     acting = system.acting_on(contact.body_motion(m, time, V, orientation, Omega), held=held)
-    n_rate = support.angular_velocity.cross(n) + contact.shape_operator @ (p_rate - support.material_velocity(point))
+    along = p_rate - support.material_velocity(point)
+    n_rate = support.angular_velocity.cross(n) + contact.shape_operator.on_tangent(along)
     Q = orientation.matrix()
     whole = system.body.inertia_in_space(Q)
     torque, holding = acting.torque - system.body.gyroscopic(Q, Omega), ZERO

@@ -317,8 +317,10 @@ class RollingSystem:
         ------
         UnknownNameError
             If there is no such backend, phase or input.
+        InvalidValueError
+            If the system never has that phase.
         OutOfDomainError
-            If the system never has that phase, or its surface is known by a table only.
+            If its surface is known by a table only.
 
         Examples
         --------

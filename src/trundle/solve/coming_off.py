@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..mechanics.system import RollingSystem
-from . import corners
+from . import corner_events
 from .laws import Law
 from .tracing import python_law
 
@@ -36,7 +36,7 @@ def lift_at_hand(
     """
     from scipy.optimize import brentq
 
-    plain = python_law(system, law, (*event_parameters, *[0.0] * corners.count(system)), time, numbers)
+    plain = python_law(system, law, (*event_parameters, *[0.0] * corner_events.count(system)), time, numbers)
     which = plain.names.index("lift"), plain.names.index(name)
 
     def look(wait: float) -> tuple[float, float]:

@@ -120,7 +120,7 @@ class CompiledDOP853:
             times, starts, terms = np.empty(_AT_ONCE + 1), np.empty((_AT_ONCE, size)), np.empty((_AT_ONCE, 7, size))
             numbers = np.array([self.begin, self.t, self.end, self.step_size, self.tolerance])
             state, found = (x, self.y, self.f, self.carry, self.least), (times, starts, terms, values)
-            count, why = _loop()(self.law.rates, self.law.event_functions, numbers, state, _tables(), found)
+            count, why = _loop()(self.law.rates, self.law.event_functions, numbers, state, tables(), found)
             self.t, self.step_size = float(numbers[1]), float(numbers[3])
             plain = count - (why == LOOK)
             for first, last in ((0, plain), (plain, count)):
@@ -134,8 +134,14 @@ class CompiledDOP853:
 
 
 @cache
-def _tables() -> tuple[Array, ...]:
-    """Return the coefficients: all sixteen stages' A and C, B, those of the two errors, D, and the looks."""
+def tables() -> tuple[Array, ...]:
+    """Return the coefficients: A and C of all sixteen stages, the twelfth B, those of the two errors, D, and the looks.
+
+    Examples
+    --------
+    >>> [table.shape for table in tables()]
+    [(16, 16), (16,), (13,), (13,), (4, 16), (8,)]
+    """
     from scipy.integrate import DOP853
 
     a = np.zeros((16, 16))

@@ -12,7 +12,7 @@ from ..mechanics.creep import slip_rates
 from ..mechanics.scalars import Scalar, as_float
 from ..mechanics.slipping import Slipping, slip
 from ..mechanics.system import RollingSystem
-from . import corners
+from . import corner_events
 from .contact_state import ContactState, floats
 from .laws import CONTACT, Numbers, SlippingLaw
 from .tracing import python_law
@@ -144,7 +144,7 @@ class CreepingLaw(SlippingLaw):
     def settles(self, system: RollingSystem, at: ContactState) -> bool:
         """Tell whether the direction of a body's slip settles so fast that it can be followed by this law."""
         time, numbers = at.state.time, self.state_vector(at)
-        law = python_law(system, self, (0.0,) * (self.event_parameters + corners.count(system)), time, numbers)
+        law = python_law(system, self, (0.0,) * (self.event_parameters + corner_events.count(system)), time, numbers)
         stops = dict(zip(law.names, law.event_functions(time, numbers), strict=True))
         return bool(min(stops["settled"], stops["lags"]) > 0)
 

@@ -11,7 +11,6 @@ import numpy as np
 from ..mechanics.kinks import kinks_and_jolts
 from ..mechanics.system import RollingSystem, State
 from . import phases
-from .laws import Law
 from .phases import Integrate, Segment, cut
 from .samples import Array, Progress, Samples
 from .transitions import PhaseStart, ZeroCrossing
@@ -97,7 +96,7 @@ class Dense:
     def __call__(self, times: Array) -> Samples:
         """Return the samples at ascending instants, s, none before the start."""
         self.passed = 0
-        known: Any = {"after": self._after, "bends": self.bends}
+        known: Any = {"remember": self._remember, "bends": self.bends}
         return phases.solve(self._through, self.system, self.start, times, self.tolerance, **known)
 
     def like_it(self, start: State, times: Array) -> Samples:
@@ -150,10 +149,10 @@ class Dense:
         """Return up to when a law may be followed: the next kink, or the end, s."""
         return next((kink.behind for kink in self.bends if kink.behind > now.time), self.end)
 
-    def _after(self, system: RollingSystem, law: Law, stop: ZeroCrossing) -> PhaseStart:
+    def _remember(self, follows: Callable[[], PhaseStart], *_: Any) -> PhaseStart:
         """Return what follows the stretch just passed."""
         if self.passed not in self.follows:
-            self.follows[self.passed] = phases.following_stop(system, law, stop)
+            self.follows[self.passed] = follows()
         return self.follows[self.passed]
 
 

@@ -170,7 +170,8 @@ def integrate(
         Members that came to a stop of the law, or broke down.
     """
     law = RollingLaw()
-    lowered, key = integrators.ready(systems[0], law, tolerance)
+    zeros = np.all([np.equal(numbers(system), 0) for system in systems], axis=0)
+    lowered, key = integrators.ready(systems[0], law, tolerance, zeros=frozenset(np.flatnonzero(zeros).tolist()))
     integrator = integrators.kept(f"{LANES}-{key}", lambda: _compile(lowered, tolerance))
     blocks = [list(members[i : i + LANES]) for i in range(0, len(members), LANES)]
     halt = threading.Event()  # somebody pressed Ctrl-C, or another thread failed
@@ -182,7 +183,7 @@ def integrate(
             for block in blocks[which::workers]:
                 run = _Lanes(mine, lowered, [systems[i] for i in block], states[block])
                 for rows, lanes, path in run.follow(times):
-                    done(_block(law, systems, [block[lane] for lane in lanes], times, rows, path))
+                    done(completed(law, systems, [block[lane] for lane in lanes], times, rows, path))
                     if halt.is_set():
                         return stopped
                 stopped += [block[lane] for lane in sorted(run.left)]
@@ -211,9 +212,10 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _block(
+def completed(
     law: Law, systems: Sequence[RollingSystem], members: list[int], times: Array, rows: slice, path: Array
 ) -> Block:
+    """Complete the states (rows, size, members) of some members at some of the instants."""
     system = together([systems[i] for i in members], len(path))
     flat = path.transpose(0, 2, 1).reshape(-1, path.shape[1])
     samples = law.record(system, np.repeat(times[rows], len(members)), flat)
@@ -268,7 +270,8 @@ class _Lanes:
     def _begin(self, time: float) -> set[int]:
         """Set states and parameters at a new reference of time, and return the lanes for which these are no numbers."""
         self.integrator.set_time(0.0)
-        self.integrator.reset_cooldowns()
+        if self.lowered.event_functions:
+            self.integrator.reset_cooldowns()
         failed = set()
         for i in range(LANES):
             try:

@@ -7,14 +7,15 @@ import copy
 import hashlib
 import pickle
 import platform
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from ..mechanics.parameters import structure_of
+from ..mechanics.parameters import numbers, structure_of
 from ..mechanics.system import RollingSystem
 from . import integrator_cache
+from .charts import LAWS_OWN, charts
 from .laws import Law
 from .lowering import Lowered, lower
 
@@ -51,20 +52,39 @@ def borrowed(lowered: Lowered, key: str, tolerance: float, level: int) -> Iterat
     idle.append(integrator)  # not where it broke down
 
 
-def ready(system: RollingSystem, law: Law, tolerance: float) -> tuple[Lowered, str]:
-    """Return a law ready for the compiler, and the name of what comes of it; worked out once for each structure."""
-    ready = _memory().ready
-    structure: Any = (structure_of(system), type(law), tuple(vars(law).items()), tolerance)
+def ready(
+    system: RollingSystem,
+    law: Law,
+    tolerance: float,
+    state: Sequence[float] | None = None,
+    zeros: frozenset[int] | None = None,
+) -> tuple[Lowered, str]:
+    """Return a law ready for the compiler, and the name of what comes of it; worked out once for each structure.
+
+    Parameters
+    ----------
+    system, law, tolerance
+        What is integrated, and how closely.
+    state : sequence of float, optional
+        The law's numbers where a run begins, for the chart of fewest operations around it; absent: the law's own chart.
+    zeros : frozenset of int, optional
+        Which of the system's numbers are 0 for good; absent: those that are.
+    """
+    if zeros is None:
+        zeros = frozenset(i for i, value in enumerate(numbers(system)) if value == 0)
+    among = (LAWS_OWN,) if state is None else charts(system, law)
+    memory = _memory().ready
+    structure: Any = (structure_of(system), type(law), tuple(vars(law).items()), tolerance, zeros, among)
     try:
-        known = ready.get(structure)
+        known = memory.get(structure)
     except TypeError:  # a part of one's own that cannot be hashed, and so may change
         structure = known = None
     if known is None:
-        lowered = lower(system, law)
-        known = lowered, _key(*lowered.heyoka(), tolerance, lowered.parameters)
+        lowered = sorted((lower(system, law, chart, zeros) for chart in among), key=lambda each: each.cost)
+        known = [(each, _key(*each.heyoka(), tolerance, each.parameters)) for each in lowered]
         if structure is not None:
-            ready[structure] = known
-    return known
+            memory[structure] = known
+    return next(each for each in known if state is None or each[0].chart.contains(state))
 
 
 class _Memory:
@@ -73,7 +93,7 @@ class _Memory:
     def __init__(self) -> None:
         self.known: dict[str, Any] = {}
         self.idle: dict[tuple[str, int], list[Any]] = {}  # copies between two uses
-        self.ready: dict[Any, tuple[Lowered, str]] = {}
+        self.ready: dict[Any, list[tuple[Lowered, str]]] = {}
 
 
 @cache

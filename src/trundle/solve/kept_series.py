@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from .samples import Array
-from .transitions import PhaseStart
 
 
 class KeptSeries:
@@ -17,12 +16,14 @@ class KeptSeries:
 
     Parameters
     ----------
-    now : Next
-        Where the stretch begins.
+    begin : float
+        When the stretch begins, s.
+    numbers : array
+        The integrator's, there.
     """
 
-    def __init__(self, now: PhaseStart) -> None:
-        self.state_vector, self.reference, self.reached = np.asarray(now.state_vector, dtype=float), now.time, 0.0
+    def __init__(self, begin: float, numbers: Array) -> None:
+        self.state_vector, self.reference, self.reached = numbers, begin, 0.0
         self.references: list[float] = []
         self.begins: list[float] = []
         self.series = array("d")  # of all steps, in one piece: to make one of many would take twice the memory

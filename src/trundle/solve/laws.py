@@ -40,6 +40,8 @@ class Law:
         Which of its events come where something shrinks to nothing: "grip", the slip; "stop", turning over the support.
     brief : bool
         Whether it holds for so short a time that to compile it would take longer than to follow it.
+    in_charts : bool
+        Whether its state is no more than place, turning and the support's own motion, which charts know.
     unwatched : int
         How many of the last numbers have no say in how long a step is.
 
@@ -53,6 +55,7 @@ class Law:
     code: int
     variables: tuple[str, ...] = CONTACT
     brief: bool = False
+    in_charts: bool = False
     unwatched: int = 0
 
     def __init__(self, weightless: bool = False) -> None:
@@ -237,6 +240,7 @@ class RollingLaw(Law):
     """No slip: the state is (p, q, Ω)."""
 
     code = ROLLING
+    in_charts = True
 
     def _now(self, system: RollingSystem, time: Scalar, state: Numbers) -> Rolling:
         p, q, Omega, _, coordinates = self.split(state)
@@ -253,7 +257,7 @@ class RollingLaw(Law):
     ) -> dict[str, Scalar]:
         """Return the normal force, the rest of the friction cone, and the bounds."""
         now, (floor, ending) = self._now(system, time, state), self._floor(event_parameters)
-        found = cone(system, now.contact, now.reaction, floor)
+        found = cone(system, now.contact, now.reaction, now.normal_force, floor)
         if ending:
             turning = state_turning(now.contact, Vector(*state[7:10]))
             found |= _ending("stop", turning, now.angular_acceleration, ending)
@@ -531,7 +535,7 @@ class RestingLaw(Law):
         held, (floor, _) = self.held(system, time, state), self._floor(event_parameters)
         n = held.contact.normal
         over = held.couple - n * n.dot(held.couple)
-        found = cone(system, held.contact, held.reaction, floor)
+        found = cone(system, held.contact, held.reaction, n.dot(held.reaction), floor)
         found["start"] = left_of_resistance(system, n.dot(held.reaction) + floor, over)
         return {**found, **self._bounds(system, held.contact, Quaternion(*state[3:7]), 0.0)}
 
@@ -586,10 +590,11 @@ def left_of_resistance(system: RollingSystem, normal_force: Scalar, holding: Vec
     return most * most * (1 + CONE_SLACK) - holding.dot(holding)
 
 
-def cone(system: RollingSystem, contact: Contact, reaction: Vector, floor: Scalar = 0.0) -> dict[str, Scalar]:
+def cone(
+    system: RollingSystem, contact: Contact, reaction: Vector, N: Scalar, floor: Scalar = 0.0
+) -> dict[str, Scalar]:
     """Return the normal force, and what is left of the friction cone where friction has a limit."""
     n = contact.normal
-    N = n.dot(reaction)
     found = {"lift": N + floor}
     if system.support.friction is not None:
         f, most = reaction - n * N, system.support.friction * (N + floor)

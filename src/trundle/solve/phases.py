@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
@@ -71,7 +72,7 @@ def solve(
     progress: Progress | None = None,
     *,
     in_steps: bool = True,
-    after: Callable[[RollingSystem, Law, ZeroCrossing], PhaseStart] | None = None,
+    remember: Callable[[Callable[[], PhaseStart], Law, ZeroCrossing], PhaseStart] = lambda follows, *_: follows(),
     bends: list[Kink] | None = None,
 ) -> Samples:
     """Follow a body through its phases and return its samples with all events.
@@ -93,8 +94,8 @@ def solve(
     in_steps : bool
         Whether the method takes steps: none may then lead across a kink of a formula in the time, and slip whose
         direction settles at once is a phase of its own; to a closed form it is slip.
-    after : callable, optional
-        What follows a stop, if it is known already; absent: `following_stop`.
+    remember : callable, optional
+        Takes what works out what follows a stop, the law and the stop; returns that, or the same if it is known.
     bends : list of Kink, optional
         The kinks of its formulas, if they are known already.
 
@@ -114,7 +115,11 @@ def solve(
     begin = corners.beyond if in_steps else transitions.slipping
     if bends is None:
         bends = kinks_and_jolts(system, start.time, float(times[-1])) if times.size else []
-    now = _behind_it(system, begin(system, transitions.at_start(system, start)), bends)
+
+    def behind(now: PhaseStart) -> PhaseStart:
+        return _behind_it(system, begin(system, now), bends)
+
+    now = behind(transitions.at_start(system, start))
     events += now.events
     left, told = times, _telling(progress, times)
     if now.time > start.time:  # it slips from rest: its first moment is behind it
@@ -135,7 +140,7 @@ def solve(
             record.put(samples)
             events.append(event)
             break
-        now = _behind_it(system, begin(system, (after or following_stop)(system, law, stop)), bends)
+        now = remember(partial(lambda *ended: behind(following_stop(system, *ended)), law, stop), law, stop)
         events += now.events
         _check_count(system, events)
         if stop.name.startswith(CORNER):

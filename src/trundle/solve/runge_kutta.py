@@ -28,6 +28,8 @@ from .transitions import PhaseStart, ZeroCrossing
 TOLERANCE = 1e-12
 FINEST = 1e-13  # SciPy's own limit is 2e-14
 _ASIDE = 1e-12  # s
+_SERIES = np.linalg.inv(np.polynomial.chebyshev.chebvander(2 * places() - 1, LOOKS - 1))  # of what goes through them
+_SURELY = 10.0  # times its last two coefficients that the polynomial is off at most
 _BLUR = 0.05  # share of a step within which a polynomial through these finds where a stop is lowest
 _SINGULAR = ("curved", "edge", "end", "jam")  # stops at which a law is singular
 _ALL_BUT = 1e-3  # share of what was left of such a stop at first
@@ -343,9 +345,10 @@ def _first_stop(path: Path, stops: Any) -> tuple[float, int] | None:
     values = np.array([stops(t, y) for t, y in zip(looks, path(looks).T, strict=True)])
     if not values.size:
         return None
-    found: list[tuple[float, int]] = []
     falls, low = ((values[:-1] >= 0) & (values[1:] < 0)).any(axis=0), np.fmin.reduce(values) < LOW * np.ptp(values, 0)
-    for which in np.flatnonzero(falls | low).tolist():
+    found: tuple[float, int] | None = None
+    # Those that seem to come first are looked for first: of what comes later no more is asked.
+    for which in sorted(np.flatnonzero(falls | low).tolist(), key=lambda which: _about(looks, values[:, which])):
 
         def at(t: float, which: int = which) -> float:
             value, aside = float(stops(t, path(t))[which]), 0.0
@@ -354,42 +357,61 @@ def _first_stop(path: Path, stops: Any) -> tuple[float, int] | None:
                 value = float(stops(t + aside, path(t + aside))[which])
             return value
 
-        fall = _fall(at, looks, values[:, which])
+        fall = _fall(at, looks, values[:, which], np.inf if found is None else found[0])
         if fall is not None:
-            found.append((fall, which))
-    return min(found) if found else None
+            found = fall, which
+    return found
 
 
-def _fall(function: Callable[[float], float], looks: Array, values: Array) -> float | None:
-    """Return where a function first falls through zero, given its values at Chebyshev's points of a step."""
+def _about(looks: Array, values: Array) -> float:
+    """Return about when a function falls through zero: on the line between two looks; infinite where it does not."""
+    first = int(np.argmax((values[:-1] >= 0) & (values[1:] < 0)))
+    high, fell = values[first], values[first + 1]
+    return float(np.interp(0.0, [fell, high], [looks[first + 1], looks[first]])) if high >= 0 > fell else np.inf
+
+
+def _fall(function: Callable[[float], float], looks: Array, values: Array, before: float) -> float | None:
+    """Return where a function first falls through zero before an instant, given it at Chebyshev's points of a step."""
     falls = np.flatnonzero((values[:-1] >= 0) & (values[1:] < 0))
     inside = values[: falls[0] + 1] if falls.size else values
     # What lies between the looks is hardly lower than the lowest of them, beside how much they differ.
     if np.nanmin(inside, initial=np.inf) < LOW * np.ptp(values) and (inside >= 0).all():
-        for low in _minima(function, looks, values):
-            if (not falls.size or low < looks[falls[0]]) and function(low) < 0:
-                before = looks[: np.searchsorted(looks, low)][-1]
-                return root(function, before, low)
+        upto = min(before, looks[falls[0]]) if falls.size else before
+        for low in _minima(function, looks, values, upto):
+            if function(low) < 0:
+                return _sooner(function, looks[np.searchsorted(looks, low) - 1], low, before)
     if not falls.size:
         return None
     first = int(falls[0])
-    return root(function, looks[first], looks[first + 1])
+    return _sooner(function, looks[first], looks[first + 1], before)
 
 
-def _minima(function: Callable[[float], float], looks: Array, values: Array) -> list[float]:
-    """Return where a function is lowest between its looks, in order, near where the polynomial through them is."""
+def _sooner(function: Callable[[float], float], begin: float, end: float, before: float) -> float | None:
+    """Return where a function falls through zero between two instants, if it is before a third."""
+    if begin >= before or (end > before and function(before) >= 0):
+        return None
+    return root(function, begin, min(end, before))
+
+
+def _minima(function: Callable[[float], float], looks: Array, values: Array, before: float) -> list[float]:
+    """Return where a function may be below zero between its looks, in order: where the polynomial through them is low.
+
+    It is as far from the function as its last coefficients are large, about: these become smaller by about one factor.
+    """
     from numpy.polynomial import chebyshev
     from scipy.optimize import minimize_scalar
 
-    x = -np.cos(np.pi * np.arange(LOOKS) / (LOOKS - 1))
-    slope = chebyshev.chebder(chebyshev.chebfit(x, values, LOOKS - 1))
+    series = _SERIES @ values
+    slope = chebyshev.chebder(series)
     roots = chebyshev.chebroots(np.trim_zeros(slope, "b")) if slope.any() else np.empty(0)
     level = np.sort(roots.real[(np.abs(roots.imag) < _BLUR) & (np.abs(roots.real) < 1)])
+    clear = chebyshev.chebval(level, series) > _SURELY * np.abs(series[-2:]).sum()
     rises = chebyshev.chebval(level, chebyshev.chebder(slope)) > 0
     begin, end = looks[0], looks[-1]
     found = []
-    for middle in 0.5 * (begin + end) + 0.5 * (end - begin) * level[rises]:
+    for middle in 0.5 * (begin + end) + 0.5 * (end - begin) * level[rises & ~clear]:
         bounds = max(begin, middle - _BLUR * (end - begin)), min(end, middle + _BLUR * (end - begin))
         options = {"xatol": 1e-9 * (end - begin)}
-        found.append(float(minimize_scalar(function, bounds=bounds, method="bounded", options=options).x))
-    return found
+        if bounds[0] < before:
+            found.append(float(minimize_scalar(function, bounds=bounds, method="bounded", options=options).x))
+    return [low for low in found if low < before]

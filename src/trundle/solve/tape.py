@@ -166,7 +166,10 @@ class Node:
         return operation(self.tape, a, b) if known else NotImplemented
 
     def __neg__(self) -> Any:
-        return self.minus or self.tape.record("neg", self)
+        return self.tape.record("neg", self) if self.minus is None else self.minus
+
+    def __bool__(self) -> bool:
+        raise TypeError("What is recorded has no value to decide by: choose by `where` of `scalars.namespace`.")
 
     @property
     def minus(self) -> Any:

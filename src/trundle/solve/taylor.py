@@ -6,7 +6,7 @@ import contextlib
 import itertools
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
@@ -16,6 +16,7 @@ from ..errors import SolverError
 from ..mechanics.parameters import numbers
 from ..mechanics.system import RollingSystem, State
 from . import corners, phases, runge_kutta
+from .charts import CHART, LAWS_OWN, Chart
 from .dense import Keep, Leg, TooMany
 from .integrators import IN_HASTE, TOLERANCE, WITH_CARE, borrowed, ready
 from .kept_series import KeptSeries
@@ -26,12 +27,14 @@ from .samples import AT_ONCE, Array, Progress, Samples
 from .transitions import PhaseStart, ZeroCrossing
 
 _CHUNKS = 100  # of a run at most, between which progress is told and Ctrl-C is heard
-_LEAST_CHUNK = 60  # instants
+_LEAST_CHUNK = 150  # instants
 _AT_ONCE = 10_000  # steps, between which Ctrl-C is heard too
-# A law's first steps in a run are made by code that is compiled in haste: it takes two or three times as long for a
-# step, and a tenth of a second to compile where what is made with care takes seconds. Most runs need no other. The
-# steps are counted anew in each run, so that it has the same digits whatever is compiled already.
-_HASTY_STEPS, _CARES = 1000, -1
+# A law's first steps in a run are made by code that is compiled in haste: it takes three or four times as long for a
+# step, and a twentieth of a second to compile where what is made with care takes half a second or more. Many runs need
+# no other. The steps are counted anew in each run, so that it has the same digits whatever is compiled already. A short
+# law is compiled with care at once.
+_HASTY_STEPS, _CARES = 200, -1
+_SHORT_LAW = 100  # by `Lowered.cost`
 _PATIENCE: dict[str, Any] = {"steps": 3e6, "spare": 5e4, "name": "Taylor's method"}  # a minute, and some seconds
 _STRAIGHT, _YOUNG, _GROWN = 1e-9, 8, 1e12  # sine of an angle; steps at a time, of slip until it has grown so much
 _LONGEST = 100.0  # s without a new reference of time, at most
@@ -81,15 +84,28 @@ def integrate(
         yield from runge_kutta.integrate(system, now, times, runge_kutta.FINEST, progress)
         return
     shared = Shared() if shared is None else shared
-    with _begun(system, now, tolerance, shared) as run:
-        run.patience = shared.patience(now.time, float(times[-1]) if times.size else now.time)
-        for chunk, states, reached in _propagate(run, times, progress):
-            if reached is None:
-                yield Segment(chunk, states, None)
-                continue
-            stop = run.stop(reached)
-            kept, _ = cut(chunk, stop.time)
-            yield Segment(kept, states[: kept.size], stop)
+    goes_on: PhaseStart | None = now
+    while goes_on is not None:
+        now, goes_on = goes_on, None
+        with _begun(system, now, tolerance, shared) as run:
+            run.patience = shared.patience(now.time, float(times[-1]) if times.size else now.time)
+            for chunk, states, reached in _propagate(run, times, progress):
+                if reached is None:
+                    yield Segment(chunk, states, None)
+                    continue
+                stop = run.stop(reached)
+                kept, _ = cut(chunk, stop.time)
+                goes_on = _in_another_chart(system, now, stop)
+                yield Segment(kept, states[: kept.size], stop if goes_on is None else None)
+                _, times = cut(times, stop.time)
+
+
+def _in_another_chart(system: RollingSystem, now: PhaseStart, stop: ZeroCrossing) -> PhaseStart | None:
+    """Return how the same law goes on where a chart ends; None at any other stop."""
+    if stop.name != CHART:
+        return None
+    at = stop.at(system, now.law)
+    return replace(now, start=at.state, state_vector=stop.state_vector.tolist(), events=(), across=None)
 
 
 @dataclass
@@ -134,8 +150,35 @@ def dense(
     if now.law.brief:
         return runge_kutta.dense(system, now, end, runge_kutta.FINEST, most)
     shared = Shared() if shared is None else shared
+    legs: list[Leg] = []
+    goes_on: PhaseStart | None = now
+    while goes_on is not None:
+        now, steps = goes_on, sum(leg.steps for leg in legs)
+        leg = _dense_in_chart(system, now, end, tolerance, most - steps, shared)
+        if isinstance(leg, TooMany):
+            return replace(leg, steps=leg.steps + steps)
+        legs.append(leg)
+        goes_on = None if leg.stop is None else _in_another_chart(system, now, leg.stop)
+    return legs[0] if len(legs) == 1 else _joined(legs)
+
+
+def _joined(legs: list[Leg]) -> Leg:
+    """Return legs in different charts as one."""
+    ends = [leg.stop.time for leg in legs[:-1] if leg.stop is not None]
+
+    def states(times: Array) -> Array:
+        parts = np.split(times, np.searchsorted(times, ends))
+        return np.vstack([leg.states(part) for leg, part in zip(legs, parts, strict=True)])
+
+    return Leg(states, legs[-1].stop, sum(leg.steps for leg in legs))
+
+
+def _dense_in_chart(
+    system: RollingSystem, now: PhaseStart, end: float, tolerance: float, most: int, shared: Shared
+) -> Leg | TooMany:
+    """Follow one law to its first stop, or to where its chart ends, and keep the polynomial of each step."""
     with _begun(system, now, tolerance, shared) as run:
-        run.kept, stop = KeptSeries(now), None
+        run.kept, stop = KeptSeries(now.time, run.integrator.state.copy()), None
         run.patience = shared.patience(now.time, end)
         part = min(_LONGEST, (end - now.time) / _PARTS)
         while stop is None and run.reference < end:
@@ -147,21 +190,23 @@ def dense(
                 run.tidy(until)
             else:
                 stop = run.stop(reached)
-        return Leg(run.kept.at, stop, run.kept.steps)
+        kept, to_law = run.kept, run.to_law
+        return Leg(lambda times: to_law(times, kept.at(times)), stop, kept.steps)
 
 
 @contextlib.contextmanager
 def _begun(system: RollingSystem, now: PhaseStart, tolerance: float, shared: Shared) -> Iterator[_Run]:
     """Lend what integrates a law, at its beginning."""
-    lowered, key = ready(system, now.law, tolerance)
+    lowered, key = ready(system, now.law, tolerance, now.state_vector)
     with contextlib.ExitStack() as lent:
 
         def borrow(level: int) -> Any:
             return lent.enter_context(borrowed(lowered, key, tolerance, level))
 
-        left = max(0, _HASTY_STEPS - shared.hasty.get(key, 0))
+        most = _HASTY_STEPS if lowered.cost > _SHORT_LAW else 0
+        left = max(0, most - shared.hasty.get(key, 0))
         given = [*numbers(system), *now.event_parameters, *corners.directions(system, now)]
-        run = _Run(borrow, left, lowered, given, now.time, now.state_vector)
+        run = _Run(borrow, left, system, lowered, given, now.time, now.state_vector)
         run.lasted = _lasted(system, now)
         yield run
         shared.hasty[key] = _HASTY_STEPS - max(0, run.hasty_steps)
@@ -198,18 +243,20 @@ class _Run:
         self,
         borrow: Callable[[int], Any],
         hasty_steps: int,
+        system: RollingSystem,
         lowered: Lowered,
         given: Sequence[float],
         begin: float,
         state: Sequence[float],
     ) -> None:
         self.borrow, self.lowered, self.given = borrow, lowered, given
+        self.to_law = partial(_to_law, lowered.chart, system)
         self.hasty_steps = hasty_steps or _CARES  # left
         self.integrator = borrow(WITH_CARE if self.hasty_steps == _CARES else IN_HASTE)
         self.patience: Patience
         self.kept: KeptSeries | None = None  # where the polynomials of its steps are kept
         self.lasted, self.begun = math.inf, begin
-        self.integrator.state[:] = state
+        self.integrator.state[:] = lowered.chart.of_law(system, begin, state)
         self._refer_to(begin)
 
     @property
@@ -219,12 +266,14 @@ class _Run:
 
     def stop(self, reached: int) -> ZeroCrossing:
         """Return the stop that it has come to."""
-        return ZeroCrossing(self.time, self.lowered.event_functions[reached], self.integrator.state.copy())
+        (state,) = self.to_law(np.array([self.time]), self.integrator.state[None].copy())
+        return ZeroCrossing(self.time, self.lowered.event_functions[reached], state)
 
     def tidy(self, time: float) -> None:
         """Count from here on, and take rounding's share out of φ(p) = 0 and |q| = 1."""
         self._refer_to(time)
-        self.integrator.state[:] = self.lowered.tidy([0.0, *self.integrator.state.tolist(), *self.values])
+        tidied = self.lowered.tidy([0.0, *self.integrator.state.tolist(), *self.values])
+        self.integrator.state[:] = self.lowered.chart.reduced(tidied)
 
     def go_to(self, until: float) -> int | None:
         """Propagate to a time since the reference; return which terminal event came first if one did."""
@@ -287,6 +336,14 @@ class _Run:
         self.integrator.pars[:] = self.values[: self.lowered.parameters]
 
 
+def _to_law(chart: Chart, system: RollingSystem, times: Array, states: Array) -> Array:
+    """Return a law's numbers at some times, given those of a chart."""
+    if chart == LAWS_OWN:
+        return states
+    columns = chart.to_law(system, times, tuple(states.T))
+    return np.stack([np.broadcast_to(column, times.shape) for column in columns], axis=1)
+
+
 def _propagate(run: _Run, times: Array, progress: Progress | None) -> Iterator[tuple[Array, Array, int | None]]:
     """Yield the times and the states there, a chunk after the other, and last which terminal event came, if one did."""
     for chunk in _chunks(times):
@@ -294,14 +351,15 @@ def _propagate(run: _Run, times: Array, progress: Progress | None) -> Iterator[t
             until = min(float(chunk[0]), run.reference + _LONGEST)
             ended = run.go_to(until - run.reference)
             if ended is not None:
-                yield chunk[:0], np.empty((0, run.integrator.state.size)), ended
+                yield chunk[:0], run.to_law(chunk[:0], np.empty((0, run.integrator.state.size))), ended
                 return
             run.tidy(until)
         # Counted from the reference, two instants may be one: what is left of a difference is rounded.
         since, which = np.unique(chunk - run.reference, return_inverse=True)
         states, ended = run.go_through(since)
         which = which[which < len(states)]
-        yield chunk[: which.size], states[which], ended
+        chunk_reached = chunk[: which.size]
+        yield chunk_reached, run.to_law(chunk_reached, states[which]), ended
         if ended is not None:
             return
         if progress is not None:

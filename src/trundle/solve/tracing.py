@@ -13,7 +13,7 @@ from ..mechanics.duals import has_duals
 from ..mechanics.parameters import numbers, structure_of, with_numbers
 from ..mechanics.scalars import Scalar, as_float
 from ..mechanics.system import RollingSystem, State
-from . import corners
+from . import corner_events
 from .laws import Law, RollingLaw
 from .tape import Tape
 
@@ -44,6 +44,8 @@ class PythonLaw:
         Of the event functions.
     found : callable
         (t, state) -> what else of the state the law works out at some cost, as `Law.found` has it.
+    corners : callable
+        (t, state) -> the components of what passes through zero at each corner of the loads.
     compiled : callable, optional
         () -> the same for numba's loop, which takes a second to compile; absent: it cannot be traced.
     """
@@ -52,6 +54,7 @@ class PythonLaw:
     event_functions: Callable[[float, Sequence[float]], list[float]]
     names: tuple[str, ...]
     found: Callable[[float, Sequence[float]], list[float]]
+    corners: Callable[[float, Sequence[float]], list[float]]
     compiled: Callable[[], CompiledLaw] | None = None
 
 
@@ -108,6 +111,7 @@ def python_law(
         lambda t, y: flat.event_functions([t, *y, *values]),
         flat.names,
         lambda t, y: flat.found([t, *y, *values]),
+        lambda t, y: flat.corners([t, *y, *values]),
         lambda: CompiledLaw(*flat.compiled, len(flat.names), tuple(map(float, values))),
     )
 
@@ -123,6 +127,7 @@ class _Flat:
     event_functions: _Function
     names: tuple[str, ...]
     found: _Function
+    corners: _Function
     filling: Callable[[], tuple[Any, Any]]
 
     @cached_property
@@ -156,20 +161,22 @@ def _traced(system: RollingSystem, law: Law, own: tuple[str, ...]) -> _Flat:
     """Trace a law with all numbers of the system, and those of the law, as inputs."""
     size, count = len(law.names(system)), len(numbers(system))
     tape = Tape()
-    time, *rest = tape.inputs(1 + size + count + len(own) + law.event_parameters + corners.count(system))
+    time, *rest = tape.inputs(1 + size + count + len(own) + law.event_parameters + corner_events.count(system))
     state, parameters = rest[:size], rest[size:]
     symbolic, free = with_numbers(system, parameters[:count]), copy(law)
     vars(free).update(zip(own, parameters[count:], strict=False))
     rates = free.rates(symbolic, time, state)
-    stops = corners.all_event_functions(symbolic, free, time, state, parameters[count + len(own) :])
+    stops = corner_events.all_event_functions(symbolic, free, time, state, parameters[count + len(own) :])
     found = free.found(symbolic, time, state)
+    vectors = [part for vector in corner_events.vectors(symbolic, free, time, state) for part in vector]
+    rates_, stops_, found_, vectors_ = (tape.function(part) for part in (rates, list(stops.values()), found, vectors))
 
     def filling() -> tuple[Any, Any]:
         from .compiled_loop import compiled
 
         return compiled(tape, rates), compiled(tape, list(stops.values()))
 
-    return _Flat(tape.function(rates), tape.function(list(stops.values())), tuple(stops), tape.function(found), filling)
+    return _Flat(rates_, stops_, tuple(stops), found_, vectors_, filling)
 
 
 def _untraced(
@@ -179,11 +186,15 @@ def _untraced(
         return [as_float(rate) for rate in law.rates(system, t, y)]
 
     def stops(t: float, y: Sequence[float]) -> list[float]:
-        return [as_float(value) for value in corners.all_event_functions(system, law, t, y, event_parameters).values()]
+        found = corner_events.all_event_functions(system, law, t, y, event_parameters)
+        return [as_float(value) for value in found.values()]
 
     def found(t: float, y: Sequence[float]) -> list[float]:
         return [as_float(part) for part in law.found(system, t, y)]
 
+    def vectors(t: float, y: Sequence[float]) -> list[float]:
+        return [as_float(part) for vector in corner_events.vectors(system, law, t, y) for part in vector]
+
     # Which stops there are is read off a state in which the law holds: of any other it may know nothing.
-    names = tuple(corners.all_event_functions(system, law, time, state, event_parameters)) if len(state) else ()
-    return PythonLaw(rates, stops, names, found)
+    names = tuple(corner_events.all_event_functions(system, law, time, state, event_parameters)) if len(state) else ()
+    return PythonLaw(rates, stops, names, found, vectors)

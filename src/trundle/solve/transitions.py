@@ -447,8 +447,8 @@ def _rolling(system: RollingSystem, at: ContactState, *, slips: bool = False) ->
     at = _turning_on(system, at) if system.resisted else at  # what friction is to give depends on the resistance
     state = at.state
     now = roll(system, state.time, at.contact.point, at.orientation, at.Omega, state.support)
-    n, R = at.contact.normal, now.reaction
-    N = float(n.dot(R))
+    R = now.reaction
+    N = float(now.normal_force)
     forces = at.forces(system)
     weightless = abs(N) <= WEIGHTLESS * forces
     floor = _FLOOR * forces if weightless else 0.0
@@ -457,7 +457,7 @@ def _rolling(system: RollingSystem, at: ContactState, *, slips: bool = False) ->
         return _lifted(system, at)
     if pulled and (system.support.friction is None or _pull(system, at) < 0):
         return _lifted(system, at)
-    if slips or pulled or cone(system, at.contact, R, floor).get("slip", 0.0) < 0:
+    if slips or pulled or cone(system, at.contact, R, N, floor).get("slip", 0.0) < 0:
         return _giving_way(system, at, RollingLaw())
     law = (RollingWithResistance if system.resisted else RollingLaw)(weightless)
     if law.ends and state_turning(at.contact, at.Omega).norm() == 0:

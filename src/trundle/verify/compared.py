@@ -135,6 +135,11 @@ class Compared:
         return min(bound_of(self.method, self.turned), MOST)
 
     @property
+    def _steps(self) -> float:
+        """About how many steps it took, each with an error of its own: one a radian, or as many as were counted."""
+        return max(self.turned, 0.0 if self.kept is None else self.kept.steps)
+
+    @property
     def angle_bound(self) -> float:
         """The angle that the method may be off, rad: rounding, and the error of Ω, add up over the turning."""
         return max(EXACT, 1e-15 * self.turned, 100 * self.method.tolerance * self.turned)
@@ -249,13 +254,13 @@ class Compared:
         if plain <= bound and parts == np.inf:
             return checked(name, plain, bound, said, unit)
         grown = self.growth
-        until = grown.told_until(bound, self.turned)
+        until = grown.told_until(bound, self._steps)
         events = np.array([event.time for event in self.ours.events[: self._shifts.size]])
-        allowed = grown.widened(bound, self.turned, grown.at(self.ours.time))
+        allowed = grown.widened(bound, self._steps, grown.at(self.ours.time))
         told = (self.ours.time <= until) & ((allowed < MOST) | (allowed <= bound))
         later = np.pad(grown.shifted, (grown.skipped, max(0, events.size - grown.skipped - grown.shifted.size)))
         later = np.maximum(later[: events.size], grown.at(events))  # of the times and of the states
-        allowed_then = grown.widened(bound, self.turned, later)
+        allowed_then = grown.widened(bound, self._steps, later)
         known = (events <= until) & ((allowed_then < MOST) | (allowed_then <= bound))
         values = np.concatenate(
             [share[told], self._shifts[known] * bound / self.bound, [np.inf] if parts <= until else []]

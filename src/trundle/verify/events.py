@@ -30,6 +30,7 @@ from .friction import holding, normal_and_friction
 
 _SLACK = 1e-8  # by which static friction and resistance hold more than they say (docs/phases.md), and rounding
 _SHORT = 2e-6  # a run stops a millionth short of an end at which the law is singular
+_CLOSE = 100.0  # roundings of the clock: no step is shorter than ten, and one leads a tenth of the way to such an end
 _MOST = 1000  # events looked at
 _GOES_ON = 100.0  # times the bound: a run goes straight on from where slip or turning has all but ended
 _STRIKES = ("land", "settle", JOLT)
@@ -307,24 +308,16 @@ class AtEvents:
     def _ended(self, event: Event, at: Samples, each: EachSample) -> Iterator[tuple[Event, str, float, float]]:
         """Yield whether a run ended where it says."""
         surface, support = self.system.support.surface, at.support(self.system)
-        there = support.local(Vector.of(at.contact))
-        q = Quaternion.of(at.orientation)
         if event.kind == "rim":
+            there = support.local(Vector.of(at.contact))
             off = np.hypot(_number(there.x), _number(there.y)) - _number(surface.rim)
             yield event, "at the rim", abs(float(off)) / self._sizes["position"], _GOES_ON * self.bound
-        elif event.kind in ("end", "edge"):
-            nu = -(q.matrix().transpose @ Vector.of(at.normals(self.system)))
-            inside = surface.domain_margin(there) if event.kind == "end" else self.system.body.shape.validity_margin(nu)
-            yield event, "at the end", abs(_number(inside)), _SHORT
-        elif event.kind == "curved":
-            contact = contact_at(self.system, at.time, Vector.of(at.contact), q, at.support_columns)
-            gap = float(each.apart[0][0] @ each.normals[0]) if each.flies[0] else 0.0
-            yield (
-                event,
-                "1 + C S singular",
-                abs(_number(contact.relative_curvature_determinant(gap))),
-                _SHORT + _GOES_ON * self.bound,
-            )
+        elif event.kind in ("end", "edge", "curved"):
+            left, then = self._left(event, at), self._sample(event.time)
+            allowed = _SHORT + (_GOES_ON * self.bound if event.kind == "curved" else 0.0)
+            if then is not None:  # it goes with the root of the time that is left, its square evenly with the time
+                allowed += float(np.sqrt(_CLOSE * max(0.0, left**2 - self._left(event, then) ** 2)))
+            yield event, "1 + C S singular" if event.kind == "curved" else "at the end", abs(left), allowed
         elif event.kind == "spot":
             yield (
                 event,
@@ -332,6 +325,19 @@ class AtEvents:
                 self._turning(at, each) / self._sizes["angular_velocity"],
                 _GOES_ON * self.bound,
             )
+
+    def _left(self, event: Event, at: Samples) -> float:
+        """Return how much is left of what ends a run."""
+        q, support = Quaternion.of(at.orientation), at.support(self.system)
+        if event.kind == "end":
+            return _number(self.system.support.surface.domain_margin(support.local(Vector.of(at.contact))))
+        if event.kind == "edge":
+            nu = -(q.matrix().transpose @ Vector.of(at.normals(self.system)))
+            return _number(self.system.body.shape.validity_margin(nu))
+        contact = contact_at(self.system, at.time, Vector.of(at.contact), q, at.support_columns)
+        each = EachSample(self.system, at, self.bound)
+        gap = float(each.apart[0][0] @ each.normals[0]) if each.flies[0] else 0.0
+        return _number(contact.relative_curvature_determinant(gap))
 
 
 def _number(value: Any) -> float:

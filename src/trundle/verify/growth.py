@@ -1,10 +1,10 @@
 """What a motion does to a small difference: runs from starts changed by a known little, each in the phase of the start.
 
-A numerical method errs a little at each step, about one a radian; these errors add up as a random walk, and the motion
-magnifies them. How much, the runs from starts changed in every way show, divided by the change: their linear response.
-As they are all that can change, they say of an error made at any later instant, too, what becomes of it: it is at that
-instant a sum of theirs, and so it is ever after. Where the response is no longer small, two honest runs may be
-anywhere, and no comparison says anything.
+A numerical method errs a little at each step, about one a radian, or more where it begins anew often; these errors add
+up as a random walk, and the motion magnifies them. How much, the runs from starts changed in every way show, divided by
+the change: their linear response. As they are all that can change, they say of an error made at any later instant, too,
+what becomes of it: it is at that instant a sum of theirs, and so it is ever after. Where the response is no longer
+small, two honest runs may be anywhere, and no comparison says anything.
 """
 
 from __future__ import annotations
@@ -64,18 +64,18 @@ class Growth:
     carried: float = 0.0
     skipped: int = 0
 
-    def widened(self, bound: float, turned: float, magnified: Array) -> Array:
-        """Return a bound by what the motion makes of a method's errors in so many radians, and of what was before."""
-        grows = A_STEP * np.sqrt(max(turned, 1.0)) / SOLVER + self.carried / bound
+    def widened(self, bound: float, steps: float, magnified: Array) -> Array:
+        """Return a bound by what the motion makes of a method's errors in so many steps, and of what was before."""
+        grows = A_STEP * np.sqrt(max(steps, 1.0)) / SOLVER + self.carried / bound
         return np.minimum(MOST, bound * np.maximum(1.0, grows * magnified))
 
     def at(self, times: Array) -> Array:
         """Return how many times larger a change shows by then."""
         return self.magnified[np.clip(np.searchsorted(self.times, times), 0, self.times.size - 1)]
 
-    def told_until(self, bound: float, turned: float) -> float:
+    def told_until(self, bound: float, steps: float) -> float:
         """Return up to when a bound so widened is small enough to tell anything, s."""
-        lost = self.times[self.widened(bound, turned, self.magnified) >= MOST]
+        lost = self.times[self.widened(bound, steps, self.magnified) >= MOST]
         return min(self.until, float(lost[0])) if lost.size else self.until
 
 

@@ -233,8 +233,12 @@ class Landing:
     def sharp(self) -> float:
         """The share of the impulse that rounding of V, Ω and ρ leaves open, and the course where a cut needs it."""
         momentum = float(self.system.body.mass) * self.speed / self.size
-        far = float(np.linalg.norm(self._point)) / float(np.linalg.norm(self.rho))
-        return EXACT + _ROUNDING * (momentum + far) + (_TURNED if self.stays and self.course.turned else 0.0)
+        return self._level + _ROUNDING * momentum + (_TURNED if self.stays and self.course.turned else 0.0)
+
+    @property
+    def _level(self) -> float:
+        """The share of the speed that rounding of ρ, the small difference of two places, leaves open."""
+        return EXACT + _ROUNDING * float(np.linalg.norm(self._point)) / float(np.linalg.norm(self.rho))
 
     @property
     def work(self) -> float:
@@ -272,8 +276,8 @@ class Landing:
             aside = float(np.linalg.norm(P - along * self.n))
             yield "the friction cone", (aside - self.course.mu * along) / self.size, self.sharp
         if not self.jolted:
-            yield "comes down before", float(self.comes @ self.n) / self.speed, EXACT
-        yield "and not after", -float(self.goes @ self.n) / self.speed, EXACT
+            yield "comes down before", float(self.comes @ self.n) / self.speed, self._level
+        yield "and not after", -float(self.goes @ self.n) / self.speed, self._level
         place = np.subtract(self.after.position, self.before.position)
         yield "the place stays", float(np.abs(place).max()), 0.0
         yield (

@@ -20,8 +20,8 @@ from .bounds import Array, largest
 
 WINDOWS = 24
 _HALF_NODES = 6  # a polynomial of degree 12
-# Of a place, over half a window: a slope takes 20 times an error of its 13 places, each of ten roundings or so.
-_ROUNDING = 4e-14
+_SLOPE = 20.0  # over half a window: the sum of the weights by which a slope takes the errors of its 13 places
+_ROUNDING = 4e-14  # of a place, over half a window: so many times ten roundings or so
 _A_ROUNDING = 2.0**-52
 _PRODUCT = 4e-15  # of a moment: R and its arm are ten roundings off or so, each
 _NARROWEST = 1e-10  # of what the clock shows: in less, 13 instants have too few digits
@@ -273,14 +273,15 @@ class _Windows:
         sharp = _ROUNDING * fastest / self.half / self.bound  # of Ω×ρ also where Ω is along ρ
         acting = np.abs(F).max() / float(self.system.body.mass)
         size = max(acting, np.abs(V_rate).max())
-        blurred = self._blurred * max(size / largest(at.contact - at.position), turning / self.half)
+        arm = largest(at.contact - at.position)
+        blurred = self._blurred * max(size / arm, _SLOPE * turning / self.half)
         return float(max(size, V * self.rate, sharp, blurred, 1e-300))
 
     @cached_property
     def _blurred(self) -> float:
         """By how much rounding of places may move ρ, their small difference, over the bound, m: it turns, and Ω×ρ̇."""
         at = self.middle
-        return _A_ROUNDING * (largest(at.position) + largest(at.contact)) / self.bound
+        return 0.5 * _A_ROUNDING * (largest(at.position) + largest(at.contact)) / self.bound
 
     @property
     def _sharp_turn(self) -> float:

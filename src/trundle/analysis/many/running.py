@@ -24,6 +24,7 @@ from ...solve.methods import Method
 from ...solve.samples import Progress
 from ...solve.sampling import MOST_SAMPLES, check_clock, sample_times
 from ...units import UNITS
+from .on_device import ERROR, OnDevice, check_device
 
 if TYPE_CHECKING:
     import xarray
@@ -44,6 +45,7 @@ def simulate_many(
     progress: Progress | None = None,
     known: Mapping[str, Any] | None = None,
     title: str = "",
+    device: str | None = None,
 ) -> xarray.Dataset:
     """Run many members of one system and return them as one dataset over member and time.
 
@@ -68,6 +70,9 @@ def simulate_many(
         What else you know of the members, one value for each, such as the seeds that they were drawn with.
     title : str
         For figures and files.
+    device : str, optional
+        "gpu" or "cpu": members that roll all the way go through DOP853 in JAX there, thousands at a time, and each has
+        an `error`; absent: Taylor's method.
 
     Returns
     -------
@@ -102,11 +107,15 @@ def simulate_many(
     times = starts[0].time + instants
     told = {**varied(systems), **_of_starts(systems[0], starts), **_checked(known or {}, len(systems))}
     result = _Result(systems[0], len(systems), times, progress)
-    rest = _rolled(result, systems, starts, times, workers) if _batched(systems[0]) else range(len(systems))
+    where = None if device is None else check_device(device)
+    rest: Iterable[int] = range(len(systems))
+    if _batched(systems[0], where):
+        rest = _rolled(result, systems, starts, times, workers, where)
     for member in rest:
         result.put_alone(member, systems[member], starts[member], duration, every)
     title, scenario = _described(systems[0], starts[0], times, title)
-    return result.dataset(told, labels.attributes(title, Method.of("taylor")) | {"scenario": scenario})
+    method = Method.of("taylor") if where is None else Method("runge-kutta", ERROR)
+    return result.dataset(told, labels.attributes(title, method) | {"scenario": scenario})
 
 
 def varied(systems: Sequence[RollingSystem]) -> dict[str, Any]:
@@ -225,18 +234,18 @@ def _check(systems: list[RollingSystem], starts: list[State], instants: int, eve
         raise InvalidValueError("workers", "must be a whole number, 1 or more, or None", workers)
 
 
-def _batched(system: RollingSystem) -> bool:
-    """Tell whether heyoka can take members of such a system eight at a time.
+def _batched(system: RollingSystem, device: Any) -> bool:
+    """Tell whether members of such a system can be taken many at a time, by heyoka or on a device.
 
     Resistances that bring a body to rest make nearly every run an event; a straight roller is checked one by one; each
     member comes to a kink of its own formulas, or to a corner of its loads, at an instant of its own.
     """
     alone = system.resisted or system.body.shape.axis is not None or system.corners or has_kinks(system)
-    return taylor.available() and system.support.surface.analytic and not alone
+    return (device is not None or taylor.available()) and system.support.surface.analytic and not alone
 
 
 def _rolled(
-    result: _Result, systems: list[RollingSystem], starts: list[State], times: Any, workers: int | None
+    result: _Result, systems: list[RollingSystem], starts: list[State], times: Any, workers: int | None, device: Any
 ) -> list[int]:
     """Run the members that roll, and return those that are left."""
     from ...solve import ensemble
@@ -252,7 +261,14 @@ def _rolled(
     def done(block: Block) -> None:
         result.put(replace(block, members=sound[block.members]))
 
-    stopped = ensemble.integrate(some, states, members, times, done, workers=count) if members else []
+    stopped: list[int] = []
+    if members and device is not None:
+        stopped, errors = OnDevice(some, states, times, device).follow(members, done)
+        result.error = np.full(len(systems), np.nan)
+        result.error[sound[members]] = errors
+        result.error[sound[stopped]] = np.nan
+    elif members:
+        stopped = ensemble.integrate(some, states, members, times, done, workers=count)
     rolled = np.zeros(len(systems), dtype=bool)
     rolled[sound[members]] = True
     rolled[sound[stopped]] = False
@@ -295,6 +311,7 @@ class _Result:
         self.end = np.full(members, float(times[-1]))
         self.events = np.zeros(members, dtype=np.int32)
         self.ending, self.reason = (np.full(members, "", dtype=object) for _ in range(2))
+        self.error: Any = None
         self.done, self.told, self.lock = np.zeros(members), 0.0, threading.Lock()
 
     def put(self, block: Block) -> None:
@@ -358,6 +375,9 @@ class _Result:
             "ending": (("member",), self.ending, {"long_name": "what ended the run early"}),
             "reason": (("member",), self.reason, {"long_name": "what ended the run early, in words"}),
         }
+        if self.error is not None:
+            said = "error, as a share of the largest of a kind; NaN: run by itself, by Taylor's method"
+            about["error"] = (("member",), self.error, {"long_name": said, "units": "1"})
         coordinates = {**labels.coordinates(self.times), "member": pd.RangeIndex(self.end.size), **told}
         return xarray.Dataset({**variables, **about}, coords=coordinates, attrs=attributes)
 

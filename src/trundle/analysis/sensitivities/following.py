@@ -7,7 +7,7 @@ derivatives are less by the new rates times dt*/dθ: together, the saltation mat
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -22,7 +22,7 @@ from ...mechanics.parameters import with_numbers
 from ...mechanics.placing import SLIP_TOLERANCE
 from ...mechanics.slipping import slip
 from ...mechanics.system import RollingSystem, State
-from ...solve import corners, phases, runge_kutta, taylor, transitions
+from ...solve import corner_events, corners, phases, runge_kutta, taylor, transitions
 from ...solve.contact_state import ContactState
 from ...solve.laws import CORNER, Law, SlippingLaw, state_turning
 from ...solve.phases import Integrate, Segment
@@ -87,7 +87,7 @@ def follow(
         partial(taylor.integrate, shared=taylor.Shared()) if method is taylor else runge_kutta.integrate
     )
     run = _Run(integrate, system, start, times, in_duals, names)
-    given: Any = {"after": run.after, "bends": run.bends}
+    given: Any = {"remember": run.remember, "bends": run.bends}
     tolerance = method.TOLERANCE if tolerance is None else tolerance
     samples = phases.solve(run.integrate, system, start, times, tolerance, progress, **given)
     return Followed(samples, run.slopes(samples), run.instants(samples))
@@ -189,13 +189,13 @@ class _Run:
                 stop = ZeroCrossing(stop.time, stop.name, stop.state_vector[:size])
             yield Segment(piece.times, piece.states[:, :size], stop)
 
-    def after(self, system: RollingSystem, law: Law, stop: ZeroCrossing) -> PhaseStart:
+    def remember(self, follows: Callable[[], PhaseStart], law: Law, stop: ZeroCrossing) -> PhaseStart:
         """Return what follows a stop, and keep the same in duals."""
         if not stop.name.startswith(CORNER):  # there the same goes on
             self.begins = phases.following_stop(self.duals, law, self._crossing(law, stop))
             self.stops[-1] = (*self.stops[-1][:3], self.begins)
             self.events += self.begins.events
-        return phases.following_stop(system, law, stop)
+        return follows()
 
     # Derivatives at an instant
 
@@ -250,7 +250,7 @@ class _Run:
         time = Dual(stop.time, (*(0.0,) * self.count, 1.0))
         numbers = [Dual(value_of(one), (*slopes_of(one, self.count), 0.0)) for one in self.varied.scalars()]
         system = with_numbers(self.system, numbers)
-        found = corners.all_event_functions(system, law, time, ahead, self.event_parameters)
+        found = corner_events.all_event_functions(system, law, time, ahead, self.event_parameters)
         *slopes, falls = (float(slope) for slope in slopes_of(found[stop.name], self.count + 1))
         self._check_crossing(law, stop, falls)
         return tuple(-slope / falls for slope in slopes)
@@ -262,7 +262,7 @@ class _Run:
         numbers = stop.state_vector.tolist()
         wait = _BEFORE * law.unpack(self.system, stop.time, numbers).moment(self.system)
         before = law.rk4_step(self.system, stop.time, numbers, -wait)
-        stops = corners.all_event_functions(self.system, law, stop.time - wait, before, self.event_parameters)
+        stops = corner_events.all_event_functions(self.system, law, stop.time - wait, before, self.event_parameters)
         if not abs(falls) * wait > _GRAZES * abs(float(stops[stop.name])):
             raise no_derivative(stop.time, f"the event there ({stop.name}) is only just reached")
 

@@ -76,6 +76,11 @@ class Isotropic:
         """Return Ω×JΩ = 0: JΩ is along Ω."""
         return ZERO
 
+    @property
+    def of_revolution(self) -> Isotropic:
+        """The same, known to be symmetric about the third axis."""
+        return self
+
     def parameters(self, body: Any) -> dict[str, Any]:  # noqa: ARG002
         """Return what a builder may be given instead."""
         return {"moment_of_inertia": self.moment, "moments": (self.moment,) * 3}
@@ -115,6 +120,11 @@ class RatioInertia:
     def gyroscopic(self, Q: Matrix, Omega: Vector, body: Any) -> Vector:  # noqa: ARG002
         """Return Ω×JΩ = 0: JΩ is along Ω."""
         return ZERO
+
+    @property
+    def of_revolution(self) -> RatioInertia:
+        """The same, known to be symmetric about the third axis."""
+        return self
 
     def parameters(self, body: Any) -> dict[str, Any]:
         """Return what a builder may be given instead."""
@@ -163,6 +173,11 @@ class Principal:
     def axisymmetric(self) -> bool:
         """Whether the first two moments are equal."""
         return is_number(self.x) and is_number(self.y) and bool(self.x == self.y)
+
+    @property
+    def of_revolution(self) -> Principal:
+        """The same, known to be symmetric about the third axis."""
+        return Principal(self.x, self.x, self.z)
 
     def in_space(self, Q: Matrix, body: Any) -> Matrix:  # noqa: ARG002
         """Return Q diag(x, y, z) Qᵀ, the inertia tensor in the support frame, kg m²."""
@@ -252,6 +267,11 @@ class Tensor:
         return all(is_number(element) for element in self.elements) and bool(
             self.xx == self.yy and self.xy == self.xz == self.yz == 0
         )
+
+    @property
+    def of_revolution(self) -> Principal:
+        """The same, known to be symmetric about the third axis."""
+        return Principal(self.xx, self.xx, self.zz)
 
     def in_space(self, Q: Matrix, body: Any) -> Matrix:  # noqa: ARG002
         """Return Q J Qᵀ, the inertia tensor in the support frame, kg m²."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from ...errors import InvalidValueError
-from ..algebra import E_Z, Matrix, Vector
+from ..algebra import E_Z, Matrix, RoundTensor, Vector
 from ..scalars import Scalar, is_number
 from .base import CENTRE, RADIUS, Shape, moved, on_third_axis
 
@@ -49,7 +49,7 @@ class Sphere(Shape):
 
     def support_gradient(self, nu: Vector) -> Matrix:
         """Return a(1 − ν νᵀ)."""
-        return self.radius * (Matrix.identity() - Matrix.outer(nu, nu))
+        return RoundTensor.of(self.radius, nu)
 
     def contact(self, Q: Matrix, n: Vector) -> tuple[Vector, Matrix]:
         """Return ρ = Q c − a n and C = a(1 − n nᵀ): a sphere looks the same from every side, so Q Qᵀ drops out."""

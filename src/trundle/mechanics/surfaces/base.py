@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any, ClassVar
 
 from ...errors import InvalidValueError
-from ..algebra import Matrix, Vector
+from ..algebra import Matrix, TangentialTensor, Vector
 from ..jets import jets
 from ..parts import Lengths, Number, Part
 from ..scalars import Scalar, namespace
@@ -251,7 +251,7 @@ class Surface(Part):
             raise InvalidValueError("tilt", "must lie in [-180 deg, 180 deg]", received, remedy)
 
 
-def tangential(bend: Matrix, n: Vector) -> Matrix:
+def tangential(bend: Matrix, n: Vector) -> TangentialTensor:
     """Return P H P with P = 1 − n nᵀ, what is left of a symmetric H along a surface.
 
     Examples
@@ -259,8 +259,7 @@ def tangential(bend: Matrix, n: Vector) -> Matrix:
     >>> tangential(Matrix.identity(), Vector(0.0, 0.0, 1.0)).c.z
     0.0
     """
-    along = bend @ n
-    return bend - Matrix.outer(n, along) - Matrix.outer(along, n) + Matrix.outer(n, n) * n.dot(along)
+    return TangentialTensor.of(bend, n)
 
 
 def check_upright(tilt: float, received: Any) -> None:

@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar
 
 from ... import wording
 from ...errors import InvalidValueError
-from ..algebra import Matrix, Vector
+from ..algebra import Matrix, RoundTensor, Vector
 from ..parts import POSITIVE, Number
 from ..scalars import Scalar, is_number, namespace
 from .base import Surface, check_upright
@@ -73,7 +73,7 @@ class Spherical(Surface):
         arm = self._arm(p)
         distance = arm.norm()
         e = arm / distance
-        return (Matrix.identity() - Matrix.outer(e, e)) * (self.sign / distance)
+        return RoundTensor.of(self.sign / distance, e)
 
     def domain_margin(self, p: Vector) -> Scalar | None:
         """Return how far below its rim a bowl has the point, how far above it a dome, m; without a rim, None."""

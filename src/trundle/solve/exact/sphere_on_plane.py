@@ -6,13 +6,14 @@ import cmath
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
 from ...errors import OutOfDomainError
 from ...mechanics.algebra import Vector
 from ...mechanics.loads import constant_part
+from ...mechanics.parts import Number
 from ...mechanics.scalars import Scalar, is_number, is_zero, namespace
 from ...mechanics.surfaces import Plane
 from ...mechanics.system import RollingSystem, State
@@ -68,16 +69,16 @@ class SphereOnPlane(ManySamples, ClosedForm):
     [0.1, -0.0, 0.025]
     """
 
-    radius: Scalar
-    mass: Scalar
-    inertia_ratio: Scalar
-    rate: Scalar
-    position: tuple[Scalar, Scalar]
-    velocity: tuple[Scalar, Scalar] = (0.0, 0.0)
-    spin: Scalar = 0.0
-    force: tuple[Scalar, Scalar, Scalar] = (0.0, 0.0, 0.0)
-    torque: tuple[Scalar, Scalar, Scalar] = (0.0, 0.0, 0.0)
-    drag: Scalar = 0.0
+    radius: Annotated[Scalar, Number("length")]
+    mass: Annotated[Scalar, Number("mass")]
+    inertia_ratio: Annotated[Scalar, Number("number")]
+    rate: Annotated[Scalar, Number("angular velocity")]
+    position: Annotated[tuple[Scalar, Scalar], Number("length")]
+    velocity: Annotated[tuple[Scalar, Scalar], Number("velocity")] = (0.0, 0.0)
+    spin: Annotated[Scalar, Number("angular velocity")] = 0.0
+    force: Annotated[tuple[Scalar, Scalar, Scalar], Number("force")] = (0.0, 0.0, 0.0)
+    torque: Annotated[tuple[Scalar, Scalar, Scalar], Number("torque")] = (0.0, 0.0, 0.0)
+    drag: Annotated[Scalar, Number("damping")] = 0.0
 
     name = "sphere on a plane"
     equation = "T5"

@@ -1,0 +1,126 @@
+"""The file of a unit: its description, its sources, and a binary where a C compiler is found."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import platform
+import tempfile
+import zipfile
+from importlib.resources import files
+from pathlib import Path
+
+from ...errors import SolverError
+from ...mechanics.system import RollingSystem, State
+from ...solve.transitions import at_start
+from ..compiler import compiler, shared_library
+from ..field import VectorField
+from ..printers import c
+from ..resets import CODES
+from .description import IDENTIFIER, build_description, model_description
+
+_EARLIEST = (1980, 1, 1, 0, 0, 0)  # so that the same unit is the same file
+
+
+def fmu(system: RollingSystem, start: State, title: str) -> tuple[bytes, str]:
+    """Make a unit of a system in the phase in which it starts.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        What moves; each of its numbers becomes a tunable parameter.
+    start : State
+        From which it goes.
+    title : str
+        What the unit is.
+
+    Returns
+    -------
+    bytes, str
+        The file; and the platform of the binary in it, or nothing where no C compiler is found.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> level = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane()))
+    >>> made, _ = fmu(level, level.place(), "A ball")
+    >>> zipfile.ZipFile(io.BytesIO(made)).namelist()[0]
+    'modelDescription.xml'
+    """
+    code = at_start(system, start).law.code
+    field = VectorField(system, "c", next(name for name, known in CODES.items() if known == code))
+    sources = {
+        "fmi3.c": files(__package__).joinpath("fmi3.c").read_text(encoding="utf-8"),
+        "model.c": c.source(field.routines(alone=True), "model", title),
+    }
+    token = hashlib.sha256("".join([*sources.values(), repr(field.pack(start).tolist())]).encode()).hexdigest()
+    sources["model.h"] = _header(field, start, token)
+    texts = {
+        "modelDescription.xml": model_description(field, start, title, token),
+        "sources/buildDescription.xml": build_description([name for name in sources if name.endswith(".c")]),
+        **{f"sources/{name}": text for name, text in sources.items()},
+    }
+    binary, where = _binary(sources)
+    held = io.BytesIO()
+    with zipfile.ZipFile(held, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, text in texts.items():
+            archive.writestr(zipfile.ZipInfo(name, _EARLIEST), text, zipfile.ZIP_DEFLATED)
+        if binary:
+            archive.writestr(zipfile.ZipInfo(where, _EARLIEST), binary, zipfile.ZIP_DEFLATED)
+    return held.getvalue(), where.split("/")[1] if binary else ""
+
+
+def _header(field: VectorField, start: State, token: str) -> str:
+    """Return what the functions of FMI know of the model."""
+    phase, routines = field.phase, field.routines(alone=True)
+    given = sum(len(each.outputs) for each in routines if each.name == f"{phase}_event_parameters")
+    sizes = {
+        "STATES": len(field.state_names),
+        "PARAMETERS": len(field.parameter_names),
+        "INPUTS": len(field.input_names),
+        "EVENTS": len(field.event_names),
+        "OUTPUTS": len(field.output_names),
+        "GIVEN": given,
+    }
+    e = ", e" if given else ""
+    begin = f"model_{phase}_event_parameters(t, y, p, u, e)" if given else "(void)0"
+    arrays = {"start": field.pack(start), "parameters": field.parameters, "inputs": field.inputs}
+    names = ", ".join(f'"{name}"' for name in field.event_names) or "0"
+    return "\n".join(
+        [
+            c.header(routines, "model", "The model's functions, and its numbers."),
+            *(f"#define MODEL_{name} {size}" for name, size in sizes.items()),
+            f'#define MODEL_TOKEN "{token}"',
+            f"#define MODEL_RATES(t, y, p, u, found) model_{phase}_rates(t, y, p, u, found)",
+            f"#define MODEL_EVENTS_OF(t, y, p, u, e, found) model_{phase}_events(t, y, p, u{e}, found)",
+            f"#define MODEL_OUTPUTS_OF(t, y, p, u, found) model_{phase}_outputs(t, y, p, u, found)",
+            f"#define MODEL_BEGIN(t, y, p, u, e) {begin}",
+            *(
+                f"static const double model_{name}[] = {{{', '.join(map(repr, values.tolist()))}}};"
+                for name, values in arrays.items()
+            ),
+            f"static const char *const model_event_names[] = {{{names}}};",
+            "",
+        ]
+    )
+
+
+def _binary(sources: dict[str, str]) -> tuple[bytes, str]:
+    """Compile the sources; nothing, where there is no compiler or it refuses."""
+    command = compiler()
+    system = {"Linux": ("linux", ".so"), "Darwin": ("darwin", ".dylib"), "Windows": ("windows", ".dll")}
+    if command is None or platform.system() not in system:
+        return b"", ""
+    name, ending = system[platform.system()]
+    machine = platform.machine().lower()
+    machine = {"amd64": "x86_64", "arm64": "aarch64"}.get(machine, machine)
+    with tempfile.TemporaryDirectory(prefix="trundle-", ignore_cleanup_errors=True) as folder:
+        for file, text in sources.items():
+            (Path(folder) / file).write_text(text, encoding="utf-8")
+        target = Path(folder) / f"{IDENTIFIER}{ending}"
+        units = [Path(folder) / file for file in sources if file.endswith(".c")]
+        try:
+            shared_library(command, units, target, "-fvisibility=hidden")
+        except SolverError:
+            return b"", ""
+        return target.read_bytes(), f"binaries/{machine}-{name}/{target.name}"
