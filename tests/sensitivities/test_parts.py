@@ -7,11 +7,14 @@ from typing import Any
 import pytest
 
 import trundle as tr
-from trundle.analysis.sensitivities.keys import keys
+from trundle.analysis.sensitivities.keys import chosen, keys, varied
 from trundle.mechanics.loads import Load
 from trundle.mechanics.motions import Motion
 from trundle.mechanics.parts import kinds_of
 from trundle.mechanics.surfaces import Surface
+from trundle.solve.charts import charts
+from trundle.solve.laws import RollingLaw
+from trundle.solve.variational import VariationalLaw, VariedSystem
 
 GRID = [i * 0.05 - 0.5 for i in range(21)]
 AWAY = {"position": [0.1, 0.05], "velocity": [0.1, 0.2]}
@@ -195,3 +198,33 @@ def test_no_kind_is_left_out_that_only_these_tests_know() -> None:
     known = {*kinds_of(Surface), *kinds_of(Motion)} - {"plane", "fixed", "tilt", "spin-by", "move"}
     assert [kind for kind in known if f"'{kind}'" not in said] == []
     assert {"drag", "magnus", "potential", "rolling-resistance", "torque"} <= set(kinds_of(Load))
+
+
+COIN = {
+    "body": {"kind": "disc", "radius": 0.05, "mass": 0.02, "moments": [1.3e-5, 1.3e-5, 2.5e-5]},
+    "support": {"kind": "plane", "tilt": 0.1},
+    "start": {"position": [0, 0], "velocity": [0.6, 0], "spin": 3.0, "attitude": [0.2, 1.4, 0.1]},
+    "run": {"duration": 1.0, "every": 0.1},
+}
+
+
+@pytest.mark.parametrize("wrt", ["body.moments", "start.attitude", "body.radius", "support.tilt", "start.spin"])
+def test_a_coin_has_its_derivatives_also_by_what_makes_it_no_coin(wrt: str) -> None:
+    found = tr.sensitivities(tr.Scenario.read(COIN), wrt)
+    assert found.agreement.apart <= 1e-8
+    assert not found.agreement.left_out
+
+
+def test_a_chart_that_leans_on_a_symmetry_serves_only_what_keeps_it() -> None:
+    scenario = tr.Scenario.read(COIN)
+
+    def taken(*wrt: str) -> set[str]:
+        wanted = chosen(scenario, wrt)
+        system, _ = varied(scenario, wanted)
+        law = VariationalLaw(RollingLaw(), 10, len(wanted))
+        found = charts(VariedSystem.of(system), law)
+        return {type(getattr(chart, "chart", chart)).__name__ for chart in found}
+
+    assert "LineOfNodes" in taken("body.radius", "start.attitude")
+    assert "LineOfNodes" not in taken("body.moments[0]")
+    assert "LineOfNodes" not in taken("body.radius", "body.moments[1]")
