@@ -73,6 +73,16 @@ def test_an_angular_velocity_that_must_agree_with_rolling_cannot_change_alone() 
     assert "Give `spin`" in said or "give `spin`" in said
 
 
+def test_turning_that_begins_against_a_resistance_has_no_derivative() -> None:
+    loads = [{"kind": "rolling-resistance", "offset": 0.002}]
+    start = {"position": [0.1, 0.0], "velocity": [1.0, 0.2], "angular_velocity": [0, 0, 0]}
+    slides = level(support={"kind": "plane", "friction": 0.2}, loads=loads, start=start)
+    assert "does not turn at the start" in refusal("start.angular_velocity", tr.Scenario.read(slides))
+    rests = level(support={"kind": "plane"}, loads=loads, start={"position": [0.1, 0.0], "velocity": [0, 0]})
+    assert "does not turn at the start" in refusal("start.velocity", tr.Scenario.read(rests))
+    assert tr.sensitivities(tr.Scenario.read(rests), "start.position").passed
+
+
 def test_friction_with_nothing_to_spare_is_on_the_brink() -> None:
     alpha = 0.3
     exactly = 2 / 7 * math.tan(alpha)  # what a solid ball takes to roll down

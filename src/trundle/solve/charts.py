@@ -18,7 +18,7 @@ from ..mechanics.algebra import Matrix, Quaternion, Vector
 from ..mechanics.contact import normal_at
 from ..mechanics.loads import BodyMotion, Load
 from ..mechanics.motions import Motion, SupportState
-from ..mechanics.scalars import Scalar, namespace
+from ..mechanics.scalars import Scalar, as_float, namespace
 from ..mechanics.symmetry import on_plane
 from ..mechanics.system import RollingSystem
 from . import corner_events
@@ -293,15 +293,14 @@ class LineOfNodes(Chart):
 
     def of_law(self, system: RollingSystem, time: float, state: Sequence[float]) -> list[float]:  # noqa: ARG002
         """Return the angles by half their sum and half their difference, so that q keeps its sign."""
-        import math
-
-        q = Quaternion(*map(float, state[3:7]))
-        total, difference = math.atan2(q.z, q.w), math.atan2(q.y, q.x)
-        theta = 2 * math.atan2(math.hypot(q.x, q.y), math.hypot(q.w, q.z))
+        x, y, _, *rest = map(as_float, state)
+        q, Omega, coordinates = Quaternion(*rest[:4]), Vector(*rest[4:7]), rest[7:]
+        xp = namespace(*q)
+        total, difference = xp.atan2(q.z, q.w), xp.atan2(q.y, q.x)
+        theta = 2 * xp.atan2(xp.hypot(q.x, q.y), xp.hypot(q.w, q.z))
         psi = total + difference
-        axes = _nodes(math.sin(theta), math.cos(theta), math.sin(psi), math.cos(psi))
-        w = axes.transpose @ Vector(*map(float, state[7:10]))
-        return [*map(float, state[:2]), theta, psi, total - difference, *w, *map(float, state[10:])]
+        axes = _nodes(xp.sin(theta), xp.cos(theta), xp.sin(psi), xp.cos(psi))
+        return [x, y, theta, psi, total - difference, *(axes.transpose @ Omega), *coordinates]
 
     def to_law(self, system: RollingSystem, time: Any, numbers: Numbers) -> list[Any]:
         """Return p, q and Ω."""
@@ -323,6 +322,10 @@ def charts(system: RollingSystem, law: Law) -> tuple[Chart, ...]:
     >>> [type(chart).__name__ for chart in charts(coin, RollingLaw())]
     ['Chart', 'BodyAxes', 'LineOfNodes']
     """
+    if law.variational:
+        from .variational import charts_with_slopes
+
+        return charts_with_slopes(system, law)
     # Event functions that take directions take them along the support frame's axes.
     if not law.in_charts or law.ends or system.corners:
         return (LAWS_OWN,)

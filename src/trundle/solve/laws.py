@@ -42,6 +42,8 @@ class Law:
         Whether it holds for so short a time that to compile it would take longer than to follow it.
     in_charts : bool
         Whether its state is no more than place, turning and the support's own motion, which charts know.
+    variational : bool
+        Whether its numbers are those of another law with their derivatives.
     unwatched : int
         How many of the last numbers have no say in how long a step is.
 
@@ -57,6 +59,7 @@ class Law:
     brief: bool = False
     in_charts: bool = False
     unwatched: int = 0
+    variational: bool = False
 
     def __init__(self, weightless: bool = False) -> None:
         self.weightless = weightless

@@ -37,6 +37,7 @@ class NormalForm:
         self.positive: set[int] = set()
         self.units: list[list[Monomial]] = []  # the squares that add up to 1
         self.made: dict[Any, Node] = {}
+        self.begun: set[Any] = set()  # on their way there
         # How products and sums came about: they are written so, where nothing simpler has come of them.
         self.splits: dict[Monomial, tuple[Monomial, Monomial, str]] = {}
         self.parts: dict[Any, tuple[Sum, Sum, str]] = {}
@@ -99,8 +100,11 @@ class NormalForm:
         if not value:
             return 0.0
         key = _key_of(value)
+        if key in self.begun and key not in self.made:  # x = a + b and a = x − b: each would be written by the other
+            self.made[key] = self._sum(value) if len(value) > 1 else self._written(value)
         if key not in self.made:
-            self.made[key] = self._written(value)
+            self.begun.add(key)
+            self.made.setdefault(key, self._written(value))
         return self.made[key]
 
     def _other(self, operation: str, nodes: list[Any]) -> Sum:

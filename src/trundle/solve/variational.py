@@ -7,18 +7,23 @@ Y' = (∂f/∂y) Y + ∂f/∂θ. So every method that follows the law follows th
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, fields, is_dataclass
 from typing import Any
 
+from ..errors import InvalidValueError
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.duals import Dual, slopes_of, unstacked, value_of, values_of
+from ..mechanics.duals import Dual, slopes_of, stacked, unstacked, value_of, values_of
 from ..mechanics.loads import BodyMotion
 from ..mechanics.parameters import structure_of, with_numbers
 from ..mechanics.scalars import Scalar, is_number
 from ..mechanics.system import RollingSystem
+from .charts import LAWS_OWN, Chart, SupportAxes, Traced, charts
 from .contact_state import ContactState
 from .laws import Law, Numbers
 from .samples import Array
+
+_ASIDE = 1e-7  # of a parameter, in SI: where a symmetry is no more, whatever the size
 
 
 class Template:
@@ -75,6 +80,21 @@ class VariedSystem(RollingSystem):
         parts = {field.name: getattr(plain, field.name) for field in fields(RollingSystem)}
         return cls(**parts, slopes=slopes, template=Template(plain))
 
+    def aside(self) -> RollingSystem | None:
+        """Return the system with numbers a little off along all their slopes at once; None where it may not be so."""
+        for step in (_ASIDE, -_ASIDE):
+            with suppress(InvalidValueError):  # a number at its limit
+                return self._moved(step)
+        return None
+
+    def _moved(self, step: float) -> RollingSystem:
+        way = [1.0 + 0.37 * j for j in range(len(self.slopes[0]))]
+        moved = []
+        for number, row in zip(_scalars(self, self.template.system), self.slopes, strict=True):
+            slope = sum(0.0 if one is None else one * share for one, share in zip(row, way, strict=True))
+            moved.append(number + step * slope)
+        return with_numbers(self.template.system, moved)
+
     def in_duals(self) -> RollingSystem:
         """Return the system in duals."""
         return with_numbers(self.template.system, self.scalars())
@@ -112,6 +132,8 @@ class VariationalLaw(Law):
     count : int
         How many parameters there are.
     """
+
+    variational = True
 
     def __init__(self, law: Law, size: int, count: int) -> None:
         super().__init__(law.weightless)
@@ -196,3 +218,86 @@ class VariationalLaw(Law):
 def in_duals(system: RollingSystem) -> RollingSystem:
     """Return a varied system in duals; any other as it is: nothing of it depends on a parameter."""
     return system.in_duals() if isinstance(system, VariedSystem) else system
+
+
+@dataclass(frozen=True)
+class ChartWithSlopes(Chart):
+    """A chart for a law and its derivatives: the numbers of another chart, each with its slopes.
+
+    Parameters
+    ----------
+    chart : Chart
+        Of the law itself.
+    own : int
+        How many numbers that has.
+    size, count : int
+        How many numbers the law has, and how many parameters there are.
+    """
+
+    chart: Chart = LAWS_OWN
+    own: int = 0
+    size: int = 0
+    count: int = 0
+
+    @property
+    def bounded(self) -> bool:
+        """Whether a run may leave it."""
+        return self.chart.bounded
+
+    def names(self, system: RollingSystem, law: Law) -> tuple[str, ...]:
+        """Return the names of the numbers, and of their slopes."""
+        own = self.chart.names(system, _inner(law))
+        return (*own, *(f"d{j}_{name}" for j in range(self.count) for name in own))
+
+    def contains(self, state: Sequence[float]) -> bool:
+        """Tell whether a run may begin in it."""
+        return self.chart.contains(state[: self.size])
+
+    def traced(
+        self, system: RollingSystem, law: Law, time: Scalar, state: Numbers, event_parameters: Numbers
+    ) -> Traced:
+        """Return the rates of the numbers and of their slopes."""
+        seen = in_duals(system)
+        found = self.chart.traced(seen, _inner(law), time, unstacked(state, self.own), event_parameters)
+        stops = {name: value_of(stop) for name, stop in found.event_functions.items()}
+        normal, positive = Vector(*map(value_of, found.normal)), tuple(map(value_of, found.positive))
+        return Traced(stacked(found.rates, self.count), stops, normal, positive)
+
+    def tidied(self, system: RollingSystem, law: Law, time: Scalar, state: Numbers) -> list[Scalar]:
+        """Return the state with its numbers tidied."""
+        return [*self.chart.tidied(system, _inner(law), time, state[: self.own]), *state[self.own :]]
+
+    def reduced(self, numbers: Sequence[float]) -> list[float]:
+        """Return the numbers with whole turns taken out of the angles."""
+        return [*self.chart.reduced(numbers[: self.own]), *numbers[self.own :]]
+
+    def of_law(self, system: RollingSystem, time: float, state: Sequence[float]) -> list[float]:
+        """Return its numbers, given the law's."""
+        numbers: Any = unstacked(list(map(float, state)), self.size)
+        found = self.chart.of_law(in_duals(system), time, numbers)
+        return [float(number) for number in stacked(found, self.count)]
+
+    def to_law(self, system: RollingSystem, time: Any, numbers: Numbers) -> list[Any]:
+        """Return the law's numbers, or columns of them, given its own."""
+        return stacked(self.chart.to_law(in_duals(system), time, unstacked(numbers, self.own)), self.count)
+
+
+def charts_with_slopes(system: RollingSystem, law: Law) -> tuple[Chart, ...]:
+    """Return the charts in which a law may be integrated with its derivatives: those of it, and of what is like it.
+
+    A number that breaks a symmetry of the system has slopes that a chart which leans on it does not know.
+    """
+    if not isinstance(law, VariationalLaw) or not isinstance(system, VariedSystem):
+        return (LAWS_OWN,)
+    aside = system.aside()
+    there = () if aside is None else charts(aside, law.law)
+    found: list[Chart] = [LAWS_OWN]
+    for chart in charts(system, law.law)[1:]:
+        if chart in there and not isinstance(chart, SupportAxes):  # how far the support has turned has slopes, too
+            own = len(chart.names(system, law.law))
+            found.append(ChartWithSlopes(chart=chart, own=own, size=law.size, count=law.count))
+    return tuple(found)
+
+
+def _inner(law: Law) -> Law:
+    return law.law if isinstance(law, VariationalLaw) else law

@@ -15,12 +15,11 @@ from ...simulation import labels
 from ...simulation.memory import check_room
 from ...simulation.simulate import Scenario
 from ...simulation.trajectory import Trajectory
-from ...solve import runge_kutta, taylor
 from ...solve.samples import Array, Progress
 from ...solve.sampling import longer_step, sample_times
 from .by_formula import follow_formula
 from .comparing import Agreement, compare
-from .following import Followed, follow
+from .following import Followed, follow, method_for
 from .keys import Key, chosen, varied
 from .result import Sensitivities
 
@@ -108,8 +107,7 @@ def sensitivities(
         followed = follow(system, start, times, in_duals, names, tolerance, progress)
     agreement = Agreement(np.nan, np.nan, 0)
     if compared:
-        solve = taylor.solve if taylor.available() else runge_kutta.solve
-        agreement = compare(scenario, wanted, followed, times, solve)
+        agreement = compare(scenario, wanted, followed, times, method_for(system).solve)
     return Sensitivities(scenario.title, _dataset(system, wanted, followed, way), way, agreement)
 
 

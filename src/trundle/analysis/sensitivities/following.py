@@ -15,14 +15,16 @@ from typing import Any
 import numpy as np
 
 from ...errors import InvalidValueError, SolverError
-from ...mechanics.algebra import ZERO
+from ...mechanics.algebra import ZERO, Vector
 from ...mechanics.duals import Dual, slopes_of, stacked, unstacked, value_of
 from ...mechanics.kinks import kinks_and_jolts
 from ...mechanics.parameters import with_numbers
+from ...mechanics.placing import SLIP_TOLERANCE
 from ...mechanics.slipping import slip
 from ...mechanics.system import RollingSystem, State
 from ...solve import corner_events, corners, phases, runge_kutta, taylor, transitions
-from ...solve.laws import CORNER, Law, SlippingLaw
+from ...solve.contact_state import ContactState
+from ...solve.laws import CORNER, Law, SlippingLaw, state_turning
 from ...solve.phases import Integrate, Segment
 from ...solve.samples import RESTING, ROLLING, SLIPPING, Array, Progress, Samples
 from ...solve.transitions import JOLT, PhaseStart, ZeroCrossing
@@ -80,7 +82,7 @@ def follow(
     progress : callable, optional
         Told the fraction done.
     """
-    method: Any = taylor if taylor.available() else runge_kutta
+    method: Any = method_for(system)
     integrate: Integrate = (
         partial(taylor.integrate, shared=taylor.Shared()) if method is taylor else runge_kutta.integrate
     )
@@ -106,6 +108,11 @@ def no_derivative(time: float, why: str) -> SolverError:
     return SolverError(
         f"At t = {time:.9g} s the motion has no derivative: {why}. Ask for a shorter run, or change a number."
     )
+
+
+def method_for(system: RollingSystem) -> Any:
+    """Return the method that takes steps: Taylor's, where it is to be had and the surface is a formula."""
+    return taylor if taylor.available() and system.support.surface.analytic else runge_kutta
 
 
 class _Run:
@@ -136,16 +143,25 @@ class _Run:
         self.stops: list[tuple[Law, float, Array, PhaseStart | None]] = [(before.law, start.time, state, begins)]
 
     def _check_start(self, begins: PhaseStart, first: State) -> None:
-        """Refuse numbers of a start that rolls or rests which alone would make it slip."""
-        if begins.law.code not in (ROLLING, RESTING):
-            return
-        at = begins.law.unpack(self.duals, value_of(first.time), begins.state_vector)
-        apart = [slopes_of(a - b, self.count) for a, b in zip(first.velocity, at.V, strict=True)]
-        sizes = [slopes_of(part, self.count) for part in (*first.velocity, *first.angular_velocity)]
+        """Refuse numbers of a start that alone would make slip what rolls, or turn what does not turn."""
+        given = ContactState.of(self.duals, first)
+        turning = state_turning(given.contact, given.Omega)
+        if self.system.resisted and float(turning.norm()) * given.arm <= SLIP_TOLERANCE * given.speed:
+            rule = "must name numbers that change alone without turning a body that does not turn at the start"
+            remedy = "A resistance acts against either way at once, and so there is no derivative."
+            self._refuse(turning * given.arm, given, rule, remedy)
+        at = begins.law.unpack(self.duals, value_of(begins.time), begins.state_vector)
+        if begins.law.code in (ROLLING, RESTING):
+            rule = "must name numbers that change alone without making a body slip that rolls at the start"
+            remedy = "Velocity and angular velocity are both given: give `spin` instead, so that the rest follows."
+            self._refuse(given.V - at.V, given, rule, remedy)
+
+    def _refuse(self, apart: Vector, at: ContactState, rule: str, remedy: str) -> None:
+        """Refuse a number that changes what must stay nothing, m/s."""
+        rows = [slopes_of(part, self.count) for part in apart]
+        sizes = [slopes_of(part, self.count) for part in (*at.V, *at.Omega)]
         for j, name in enumerate(self.names):
-            if max(abs(row[j]) for row in apart) > _SLIPS * max(1e-6, *(abs(row[j]) for row in sizes)):
-                rule = "must name numbers that change alone without making a body slip that rolls at the start"
-                remedy = "Velocity and angular velocity are both given: give `spin` instead, so that the rest follows."
+            if max(abs(row[j]) for row in rows) > _SLIPS * max(at.speed, *(abs(row[j]) for row in sizes)):
                 raise InvalidValueError("wrt", rule, name, remedy)
 
     # What `phases.solve` asks for

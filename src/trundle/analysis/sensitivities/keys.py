@@ -137,24 +137,28 @@ def moved(scenario: ScenarioFile, values: dict[str, float]) -> tuple[RollingSyst
 
 
 def _fields(table: Any) -> Iterator[tuple[str, str, str]]:
-    """Yield the name of each field of a table, that in the file, and the SI unit of its numbers."""
+    """Yield the name of each field of a table, that in the file, and the SI unit of its numbers.
+
+    The numbers of a surface that is given as a table belong to its structure: nothing is differentiated by them.
+    """
     for name, field in type(table).model_fields.items():
-        if name not in _APART and name != "kind":
-            kind = next((kind for note in (*field.metadata, field.annotation) for kind in _kinds(note)), "number")
+        tabled = any(isinstance(note, ListOfLengths) for note in _notes(field))
+        if name not in _APART and name != "kind" and not tabled:
+            kind = next((note.kind for note in map(_each, _notes(field)) if isinstance(note, Measure)), "number")
             yield name, field.alias or name, UNITS[kind][0]
 
 
-def _kinds(note: Any) -> Iterator[str]:
-    """Yield the kinds of quantity that the annotation of a field speaks of."""
-    if isinstance(note, Measure):
-        yield note.kind
-    elif isinstance(note, Measures):
-        yield note.each.kind
-    elif isinstance(note, ListOfLengths):
-        yield "length"
-    else:
-        for part in (*getattr(note, "__metadata__", ()), *get_args(note)):
-            yield from _kinds(part)
+def _notes(field: Any) -> Iterator[Any]:
+    """Yield the notes on the numbers of a field, also where these may be absent."""
+    waiting = [*field.metadata, field.annotation]
+    while waiting:
+        note = waiting.pop(0)
+        waiting += [*getattr(note, "__metadata__", ()), *get_args(note)]
+        yield note
+
+
+def _each(note: Any) -> Any:
+    return note.each if isinstance(note, Measures) else note
 
 
 def _leaves(table: Any, before: str = "") -> Iterator[tuple[str, Any, str]]:

@@ -9,6 +9,7 @@ from typing import Any
 
 from ...errors import InvalidValueError, OutOfDomainError
 from ...units import to_si
+from ..duals import has_duals, value_of
 from ..scalars import Scalar, is_number
 
 _LEAST = 4  # points along an axis: a cubic
@@ -64,6 +65,8 @@ class Spline:
         """Return the spline or a derivative of it."""
         import numpy as np
 
+        if has_duals(at):
+            return self._in_duals(at, orders or (0,) * len(at))
         _check_evaluable(at)
         places = np.stack(np.broadcast_arrays(*at), axis=-1)
         orders = orders or (0,) * len(at)
@@ -73,6 +76,15 @@ class Spline:
                 further = tuple(order + (i == j) for j, order in enumerate(orders))
                 value = value + 1j * places.imag[..., i] * self._spline(places.real, nu=further)
         return float(value) if all(map(is_number, at)) else value
+
+    def _in_duals(self, at: tuple[Scalar, ...], orders: tuple[int, ...]) -> Scalar:
+        """Return a derivative with its slopes, which are those of the place."""
+        places = tuple(map(value_of, at))
+        found: Scalar = self(places, orders)
+        for i, place in enumerate(at):
+            further = self(places, tuple(order + (i == j) for j, order in enumerate(orders)))
+            found = found + (place - places[i]) * further
+        return found
 
 
 def _check_evaluable(at: tuple[Scalar, ...]) -> None:
