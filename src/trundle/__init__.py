@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from .analysis.geometry import Arc, Curve, PathScenario, RolledPath, Rotation, Straight, roll_along
     from .analysis.holonomy import ConstraintAnalysis, PfaffianSystem
     from .analysis.imperfections import Sensitivity, air_drag, sensitivity
-    from .analysis.many import place_many, simulate_many
+    from .analysis.many import Starts, place_many, simulate_many
     from .analysis.sensitivities import Sensitivities, sensitivities
     from .analysis.statics import Equilibria, Equilibrium, equilibria
     from .analysis.steady import PeriodicMotion, SteadyMotion, SteadyMotions, periodic_motion, steady_motions
@@ -102,7 +102,7 @@ _HOMES = {
     "analysis.geometry": ("roll_along", "Straight", "Arc", "Curve", "RolledPath", "Rotation", "PathScenario"),
     "analysis.holonomy": ("PfaffianSystem", "ConstraintAnalysis"),
     "analysis.imperfections": ("sensitivity", "Sensitivity", "air_drag"),
-    "analysis.many": ("place_many", "simulate_many"),
+    "analysis.many": ("place_many", "Starts", "simulate_many"),
     "fields": ("VectorField", "MotionFormula"),
     "mechanics.bodies": ("Body", "Isotropic", "Principal", "RatioInertia", "Tensor"),
     "mechanics.shapes": (
@@ -238,6 +238,7 @@ __all__ = [
     "Sphere",
     "Spin",
     "SpinBy",
+    "Starts",
     "State",
     "SteadyMotion",
     "SteadyMotions",

@@ -107,6 +107,7 @@ RESULTS: tuple[Callable[[], Displayed], ...] = (
     run,
     billiards,
     lambda: run().card(),
+    lambda: tr.place_many(run().system, [[0.1, 0.0], [0.2, -0.1]], velocity=(0.0, 0.1)),
     lambda: run().card().figures[0],
     lambda: replace(run().card().figures[0], name=TITLE, passed=False),
     lambda: billiards().events[0],

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any, overload
 
 import numpy as np
 
+from ...display import Displayed, Headline, Markup, pairs
 from ...errors import InvalidValueError
 from ...mechanics import checks
 from ...mechanics.finiteness import check_finite, varies
@@ -29,6 +30,60 @@ _PARTS: dict[str, tuple[tuple[int, ...], str]] = {
 }
 
 
+class Starts(Displayed, Sequence[State]):
+    """Many starts, as a list of `State` would have them.
+
+    Parameters
+    ----------
+    states : iterable of State
+        One for each member.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> ball = tr.RollingSystem(tr.Body.solid_sphere(0.025, 0.065), tr.Support(tr.Plane()))
+    >>> starts = tr.place_many(ball, [[0.1, 0.0], [0.2, 0.0]])
+    >>> starts, starts[1].position, starts[::-1][0] == starts[1]
+    (<Starts: 2 members>, (0.2, 0.0, 0.025), True)
+    """
+
+    def __init__(self, states: Iterable[State]) -> None:
+        self._states = tuple(states)
+
+    def __len__(self) -> int:
+        return len(self._states)
+
+    @overload
+    def __getitem__(self, which: int) -> State: ...
+
+    @overload
+    def __getitem__(self, which: slice) -> Starts: ...
+
+    def __getitem__(self, which: int | slice) -> State | Starts:
+        return Starts(self._states[which]) if isinstance(which, slice) else self._states[which]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, (Starts, list, tuple)) and self._states == tuple(other)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __str__(self) -> str:
+        return f"{self._headline().words}: {', '.join(f'{name} {span}' for name, span in self._spans())}"
+
+    def _headline(self) -> Headline:
+        return Headline(words=f"{len(self)} members")
+
+    def _parts(self) -> Iterator[Markup]:
+        yield pairs(self._spans())
+
+    def _spans(self) -> list[tuple[str, str]]:
+        """Return from where to where the starts reach."""
+        r, V = (np.array([getattr(each, name) for each in self]) for name in ("position", "velocity"))
+        across = [(f"{axis}", column, "m") for axis, column in zip("xyz", r.T, strict=True)]
+        rows = [*across, ("|V|", np.linalg.norm(V, axis=1), "m/s")]
+        return [(name, f"{column.min():.6g} to {column.max():.6g} {unit}") for name, column, unit in rows]
+
+
 def place_many(
     systems: RollingSystem | Sequence[RollingSystem],
     position: Any,
@@ -42,7 +97,7 @@ def place_many(
     height: Any = 0.0,
     time: Any = 0.0,
     support: Any = None,
-) -> list[State]:
+) -> Starts:
     """Put many bodies down as `RollingSystem.place` does one, twenty times faster.
 
     Each part is what `place` takes, for all members, or an array of that with one row for each. What `place` would
@@ -75,8 +130,8 @@ def place_many(
 
     Returns
     -------
-    list of State
-        One for each member.
+    Starts
+        A sequence of `State`, one for each member.
 
     Raises
     ------
@@ -120,14 +175,14 @@ def place_many(
             raise InvalidValueError(key, error.rule, error.received, error.remedy) from None
 
     if placed is None:
-        return [alone(member) for member in range(count)]
+        return Starts(alone(member) for member in range(count))
     own = tuple(map(float, many[0].support.motion.initial_coordinates() if support is None else support))
     columns = (placed.position, placed.velocity, placed.angular_velocity, placed.orientation)
     rows = zip(*(column.tolist() for column in columns), placed.sound.tolist(), strict=True)
-    return [
+    return Starts(
         State(tuple(r), tuple(V), tuple(Omega), tuple(q), now, own) if sound else alone(member)
         for member, (r, V, Omega, q, sound) in enumerate(rows)
-    ]
+    )
 
 
 def _together(
