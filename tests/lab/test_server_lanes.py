@@ -304,9 +304,9 @@ def test_whoever_comes_whenever_the_bounds_are_kept(
 
 
 def test_a_flood_is_told_so_in_the_form_of_the_lab_and_another_visitor_is_answered() -> None:
-    slow = shipped("tippe-top")
-    slow["run"] = {"duration": "3000 s", "every": "20 ms", "method": "runge-kutta"}
-    settings = Settings(workers=1, slow_workers=1, share=2, wall_time=4.0, quick_time=0.3)
+    slow = shipped("rattleback")
+    slow["run"] = {"duration": "3600 s", "every": "20 ms", "method": "runge-kutta"}  # six seconds, compiled
+    settings = Settings(workers=1, slow_workers=1, share=2, wall_time=2.0, quick_time=0.3)
     app = create_app(settings)
     told: list[Any] = []
     with TestClient(app, base_url="http://127.0.0.1", client=(ONE, 1)) as lab:

@@ -151,7 +151,7 @@ def test_a_long_computation_ends_when_its_client_goes() -> None:
 
 def long_runs(count: int) -> list[dict[str, Any]]:
     """Scenarios that each take longer than the lab allows."""
-    scenario = shipped("tippe-top")
+    scenario = shipped("rattleback")
     run = {"every": "20 ms", "method": "runge-kutta"}
     return [{**scenario, "run": {**run, "duration": f"{3600 - i} s"}} for i in range(count)]
 

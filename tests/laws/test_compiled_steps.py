@@ -230,6 +230,46 @@ def test_without_heyoka_every_scenario_passes_its_card(name: str, tmp_path: Path
     assert "DOP853" in done.stdout
 
 
+ONE_LAW = """
+import sys
+import numpy as np
+from pathlib import Path
+from trundle.solve import integrator_cache
+from trundle.solve.compiled_loop import compiled
+from trundle.solve.compiled_steps import CompiledDOP853
+from trundle.solve.tape import Tape
+from trundle.solve.tracing import CompiledLaw
+
+integrator_cache.cache_folder = lambda: Path(sys.argv[1])
+laws = []
+for which in map(float, sys.argv[2:]):
+    tape = Tape()
+    t, y = tape.inputs(2)
+    laws.append(CompiledLaw(compiled(tape, [-which * y]), compiled(tape, []), 0, ()))
+    if len(sys.argv) > 3:
+        assert laws[-1].rates.stats.cache_hits
+
+
+class Begun:
+    t, t_bound, y, h_abs = 0.0, 1.0, np.array([1.0]), 0.01
+
+
+for which, law in zip(sys.argv[2:], laws):
+    Begun.f = np.array([-float(which)])
+    *_, last = CompiledDOP853(law, Begun, 0.0, 1e-12, np.array([1e-12]))
+    assert abs(last(1.0)[0] - np.exp(-float(which))) < 1e-11, (which, last(1.0)[0])
+"""
+
+
+def test_laws_that_other_processes_compiled_are_not_taken_for_each_other(tmp_path: Path) -> None:
+    """Each process counts what it compiles from 1 on: two of them give two laws one number."""
+    (tmp_path / "one_law.py").write_text(ONE_LAW)
+    for laws in (["1"], ["2"], ["3"], ["1", "2", "3"]):
+        words = [sys.executable, str(tmp_path / "one_law.py"), str(tmp_path / "cache"), *laws]
+        done = subprocess.run(words, capture_output=True, text=True, check=False)  # noqa: S603
+        assert done.returncode == 0, done.stderr
+
+
 def kept(folder: Path) -> list[Path]:
     return sorted((folder / "__pycache__").glob("law-*.nb?"))
 

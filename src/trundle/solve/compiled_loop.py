@@ -202,10 +202,11 @@ def compiled(tape: Tape, outputs: Sequence[Any]) -> Any:
     >>> found.tolist()
     [6.0]
     """
-    text = tape.filling(outputs)
+    # Numba names what it compiles after the function: were two laws of one name, it would take one for the other.
+    text, name = tape.filling(outputs)
     file = kept_text(text)
     # Where numba reads what it has kept, it asks for the module.
-    function = defined(text, "<law>" if file is None else str(file), where=_where, __name__=__name__)
+    function = defined(text, name, "<law>" if file is None else str(file), where=_where, __name__=__name__)
     if file is not None:
         with contextlib.suppress(Exception):
             return njit(_FILLING, cache=True, **_given)(function)

@@ -299,10 +299,10 @@ class _Paths:
     def take(self, path: Path, before: float | None = None) -> Iterator[Segment]:  # noqa: ARG002
         """Keep some more."""
         self.count += path.count
-        if self.count > self.most:
-            raise _TooManyError
         self.begins.append(path.t_old)
         self.paths.append(path)
+        if self.count > self.most:
+            raise _TooManyError
         yield from ()
 
     @property

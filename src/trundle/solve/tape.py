@@ -7,6 +7,7 @@ last bit in every language, and the functions of a library are not.
 
 from __future__ import annotations
 
+import hashlib
 import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
@@ -77,12 +78,17 @@ class Tape:
         worked_out = [f"    {name} = {text}" for name, text in lines]
         return defined("\n".join(["def traced(x):", *worked_out, f"    return [{', '.join(results)}]"]))
 
-    def filling(self, outputs: Sequence[Any]) -> str:
-        """Return the text of a function of the inputs and an array, `out`, that fills the outputs in."""
+    def filling(self, outputs: Sequence[Any]) -> tuple[str, str]:
+        """Return the text of a function of the inputs and an array, `out`, that fills the outputs in, and its name.
+
+        No other function has its name: it is made from what it does.
+        """
         lines, results = self.written(outputs, Dialect())
         worked_out = [f"    {name} = {text}" for name, text in lines]
         filled = [f"    out[{i}] = {part}" for i, part in enumerate(results)]
-        return "\n".join(["def traced(x, out):", *worked_out, *filled, "    return", ""])
+        body = "\n".join([*worked_out, *filled, "    return", ""])
+        name = f"law_{hashlib.sha256(body.encode()).hexdigest()[:32]}"
+        return f"def {name}(x, out):\n{body}", name
 
     def written(self, outputs: Sequence[Any], dialect: Dialect) -> tuple[list[tuple[str, str]], list[str]]:
         """Return the steps that lead to the outputs, each a name and its text, and then the texts of the outputs.
@@ -261,7 +267,7 @@ _PYTHON: dict[str, Callable[..., Any]] = {
 }
 
 
-def defined(text: str, file: str = "<tape>", **functions: Any) -> Callable[..., Any]:
+def defined(text: str, name: str = "traced", file: str = "<tape>", **functions: Any) -> Callable[..., Any]:
     r"""Return the function whose text a tape has written, with other names than Python's functions.
 
     Examples
@@ -271,7 +277,7 @@ def defined(text: str, file: str = "<tape>", **functions: Any) -> Callable[..., 
     """
     place: dict[str, Any] = _PYTHON | functions
     exec(compile(text, file, "exec"), place)  # noqa: S102  operators, numbers and the names of `place`, nothing else
-    return place["traced"]
+    return place[name]
 
 
 _Functions: Any = type("_Functions", (), {**{name: _function(name) for name in _PYTHON}, "hypot": staticmethod(_hypot)})
