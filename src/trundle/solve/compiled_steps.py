@@ -114,9 +114,9 @@ class CompiledDOP853:
 
     def __iter__(self) -> Iterator[Steps]:
         """Go on to the end, or to where no step is possible: then `t` is short of it."""
-        size, why = self.y.size, FULL
+        size = self.y.size
         x, values = np.array([0.0, *self.y, *self.law.values]), np.empty((LOOKS, self.law.count))
-        while why != ENDED:
+        while self.t < self.end:
             times, starts, terms = np.empty(_AT_ONCE + 1), np.empty((_AT_ONCE, size)), np.empty((_AT_ONCE, 7, size))
             numbers = np.array([self.begin, self.t, self.end, self.step_size, self.tolerance])
             state, found = (x, self.y, self.f, self.carry, self.least), (times, starts, terms, values)
@@ -129,8 +129,6 @@ class CompiledDOP853:
                     yield Steps(*part, plain=first < plain)
             if why == STUCK:
                 raise StuckError(self.t, self.y.copy(), "Required step size is less than spacing between numbers.")
-            if self.t >= self.end:
-                return
 
 
 @cache

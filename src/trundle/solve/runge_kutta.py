@@ -308,7 +308,7 @@ class _Paths:
     @property
     def reached(self) -> float:
         """How far they lead."""
-        return float(getattr(self.paths[-1], "t", self.begins[-1]))
+        return self.paths[-1].t
 
     @property
     def last(self) -> Array:

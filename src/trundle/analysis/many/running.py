@@ -50,8 +50,9 @@ def simulate_many(
 ) -> xarray.Dataset:
     """Run many members of one system and return them as one dataset over member and time.
 
-    Members that roll all the way go through Taylor's method eight at a time. A member that starts in another phase, or
-    comes to an event, is run by `simulate` instead, phase by phase: the result is the same either way, only slower.
+    Members that roll all the way, or until they run off a rim, an end or their own edge, go through Taylor's method
+    eight at a time. A member that starts in another phase, or comes to another event, is run by `simulate` instead,
+    phase by phase: the result is the same either way to rounding, only slower.
 
     Parameters
     ----------
@@ -82,9 +83,9 @@ def simulate_many(
         the systems differ, as "body.radius" with its unit, the starts, as "start.position", and what is `known`; the
         attribute `scenario` is the first member as a scenario file. For each member there are `end`, the time its run
         reached, `events`, how many there were, `ending`, what ended it early, or nothing, and `reason`, the same in
-        words. After its end a member is NaN, its phase −1. Its events and its card are those of `simulate` for that
-        member alone. Where `simulate` would refuse a member, its ending is "refused", and where it would break down,
-        "failed": such a member is NaN throughout, and the others are what they are without it.
+        words. After its end a member is NaN, its phase −1. Its events and its card are, to rounding, those of
+        `simulate` for that member alone. Where `simulate` would refuse a member, its ending is "refused", and where it
+        would break down, "failed": such a member is NaN throughout, and the others are what they are without it.
 
     Raises
     ------

@@ -178,15 +178,19 @@ class Sensitivities(Displayed):
         """
         from matplotlib.figure import Figure
 
+        from ...views.plots.sheet import BLUE, FAINT, GREEN, VERMILION
+
+        styles = zip(self.data.axis.values, (BLUE, VERMILION, GREEN), ("-", "--", ":"), strict=True)
+        lines = [(axis, {"color": colour, "linestyle": dash, "linewidth": 1.4}) for axis, colour, dash in styles]
         count = self.data.parameter.size
         figure = Figure(figsize=(7.0, 1.2 + 1.8 * count), layout="constrained")
         panels = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
         for j, panel in enumerate(panels):
-            for axis in self.data.axis.values:
+            for axis, style in lines:
                 slopes = self.data.position.isel(parameter=j).sel(axis=axis)
-                panel.plot(self.data.time.values, slopes.values, label=str(axis), linewidth=1.2)
+                panel.plot(self.data.time.values, slopes.values, label=str(axis), **style)
             for instant in self.data.instant.values:
-                panel.axvline(float(instant), color="0.7", linewidth=0.8, zorder=0)
+                panel.axvline(float(instant), color=FAINT, linewidth=0.8, zorder=0)
             unit = str(self.data.unit.values[j])
             panel.set_ylabel(f"m per {unit}" if unit else "m")
             panel.set_title(f"∂r/∂({self.data.parameter.values[j]})", fontsize=10, loc="left")
