@@ -11,7 +11,7 @@ export interface Route {
 export interface Router {
   readonly route: Route
   navigate(route: string, params?: Record<string, string>): void
-  /** Change the address without a new entry in the history, and without telling anyone. */
+  /** Change the address without a new entry in the history, and without telling anyone; not while somebody leaves it. */
   replace(route: string, params?: Record<string, string>): void
   subscribe(listener: (route: Route) => void): () => void
 }
@@ -37,9 +37,11 @@ export function formatRoute(route: string, params: Record<string, string> = {}):
 
 export function createRouter(): Router {
   const listeners = new Set<(route: Route) => void>()
-  let route = parseRoute(location.hash)
+  let known = location.hash
+  let route = parseRoute(known)
   window.addEventListener('hashchange', () => {
-    route = parseRoute(location.hash)
+    known = location.hash
+    route = parseRoute(known)
     for (const listener of [...listeners]) listener(route)
   })
   return {
@@ -50,8 +52,10 @@ export function createRouter(): Router {
       location.hash = formatRoute(to, params)
     },
     replace(to, params) {
+      if (location.hash !== known) return // somebody goes elsewhere, and the event that tells of it is on its way
       history.replaceState(history.state, '', formatRoute(to, params))
-      route = parseRoute(location.hash)
+      known = location.hash
+      route = parseRoute(known)
     },
     subscribe(listener) {
       listeners.add(listener)
