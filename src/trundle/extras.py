@@ -7,11 +7,13 @@ from importlib.util import find_spec
 from .errors import MissingExtraError
 
 MODULES = {  # what each brings, as it is imported
+    "fit": ("lmfit", "emcee", "defusedxml", "openpyxl"),
     "lab": ("fastapi", "uvicorn", "pebble", "pygltflib"),
     "jax": ("jax",),
     "notebook": ("anywidget",),
     "numba": ("numba",),
     "parquet": ("pyarrow",),
+    "sweep": ("dask", "distributed", "zarr"),
 }
 
 

@@ -1,0 +1,1 @@
+"""Is the motion regular? Sections, Lyapunov exponents, periodic orbits."""

@@ -1,0 +1,1 @@
+"""Which numbers of a scenario a measured track tells, and how well."""
