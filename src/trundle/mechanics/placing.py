@@ -20,6 +20,7 @@ from .scalars import Scalar, as_float, is_number, is_zero
 if TYPE_CHECKING:
     from .system import RollingSystem, State
 
+VELOCITY_WORDS = ("co-rotating", "rolling")  # let go at rest on the support; at the speed that rolls with the Ω given
 IN_PROPORTION = 100.0  # times what is asked of a start: more must not follow from it
 _ROUNDING = 4 * 2.0**-52
 SLIP_TOLERANCE = 1e-9  # of the largest speed at the contact: beyond it a start slips
@@ -147,10 +148,9 @@ class Placing:
         begin, rho, n = contact.support, contact.offset, contact.normal
         first, second = (begin.rotation @ e for e in self.system.support.surface.directions(there))
         velocity, u = self.velocity, begin.material_velocity(contact.point)
-        if isinstance(velocity, str):
-            if velocity != "co-rotating":
-                remedy = did_you_mean(velocity, ["co-rotating"]).strip()
-                raise InvalidValueError("velocity", 'must be two components or "co-rotating"', velocity, remedy)
+        if self._word == "rolling":
+            return u - self._rolled(gap, turning).cross(rho)
+        if self._word == "co-rotating":
             carried = begin.material_velocity(contact.centre)
             along: tuple[Any, ...] = (carried.dot(first), carried.dot(second))
         else:
@@ -168,6 +168,28 @@ class Placing:
         if turning is None or slips(self.system, contact, rolling, turning) is None:
             return rolling
         return not_opening(V, u, turning, rho, n)
+
+    @property
+    def _word(self) -> str | None:
+        """Return the word that stands for a velocity, where one does."""
+        if not isinstance(self.velocity, str):
+            return None
+        if self.velocity not in VELOCITY_WORDS:
+            words = " or ".join(f'"{word}"' for word in VELOCITY_WORDS)
+            remedy = did_you_mean(self.velocity, VELOCITY_WORDS).strip()
+            raise InvalidValueError("velocity", f"must be two components, {words}", self.velocity, remedy)
+        return self.velocity
+
+    def _rolled(self, gap: float, turning: Vector | None) -> Vector:
+        """Return the Ω that says at which velocity the body rolls."""
+        if gap > 0:
+            raise InvalidValueError(
+                "velocity", 'must not be "rolling" above the support', self.velocity, "Leave out `height`."
+            )
+        if turning is None:
+            remedy = "Give all three components of `angular_velocity`; with `spin`, give the velocity."
+            raise InvalidValueError("velocity", 'must have Ω beside it where it is "rolling"', self.velocity, remedy)
+        return turning
 
     def _given_turning(self, contact: Contact, gap: float) -> Vector | None:
         """Return Ω where it is given, or where nothing else could say it."""
