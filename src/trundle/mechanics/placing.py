@@ -256,7 +256,8 @@ class Placing:
                 "angular_velocity",
                 "must agree with rolling, V + Ω×ρ = u(p), where the support has no `friction`",
                 f"a slip of {slip:.6g} m/s",
-                "Give `spin` instead and the rest follows from no slip; or give the support a friction.",
+                'Let one follow from no slip: give `spin` instead, or `velocity = "rolling"`; or give the support a '
+                "friction.",
             )
 
 

@@ -103,6 +103,32 @@ def check_brink(system: RollingSystem, now: PhaseStart) -> None:
         raise no_derivative(now.time, "friction holds the body with nothing to spare")
 
 
+def check_start(
+    system: RollingSystem, duals: RollingSystem, begins: PhaseStart, first: State, names: Sequence[str]
+) -> None:
+    """Refuse numbers of a start that alone would make slip what rolls, or turn what does not turn."""
+    given = ContactState.of(duals, first)
+    turning = state_turning(given.contact, given.Omega)
+    if system.resisted and float(turning.norm()) * given.arm <= SLIP_TOLERANCE * given.speed:
+        rule = "must name numbers that change alone without turning a body that does not turn at the start"
+        remedy = "A resistance acts against either way at once, and so there is no derivative."
+        _refuse(turning * given.arm, given, names, rule, remedy)
+    at = begins.law.unpack(duals, value_of(begins.time), begins.state_vector)
+    if begins.law.code in (ROLLING, RESTING):
+        rule = "must name numbers that change alone without making a body slip that rolls at the start"
+        remedy = 'Both velocities are given: let one follow, by `spin` or by `velocity = "rolling"`.'
+        _refuse(given.V - at.V, given, names, rule, remedy)
+
+
+def _refuse(apart: Vector, at: ContactState, names: Sequence[str], rule: str, remedy: str) -> None:
+    """Refuse a number that changes what must stay nothing, m/s."""
+    rows = [slopes_of(part, len(names)) for part in apart]
+    sizes = [slopes_of(part, len(names)) for part in (*at.V, *at.Omega)]
+    for j, name in enumerate(names):
+        if max(abs(row[j]) for row in rows) > _SLIPS * max(at.speed, *(abs(row[j]) for row in sizes)):
+            raise InvalidValueError("wrt", rule, name, remedy)
+
+
 def no_derivative(time: float, why: str) -> SolverError:
     """Return the refusal of a motion at an instant."""
     return SolverError(
@@ -133,7 +159,7 @@ class _Run:
         self.bends = kinks_and_jolts(system, start.time, float(times[-1]))
         self.pieces: list[tuple[Array, Slopes]] = []
         begins = transitions.at_start(self.duals, first)
-        self._check_start(begins, first)
+        check_start(system, self.duals, begins, first, names)
         self.events = list(begins.events)
         self.begins: PhaseStart | None = begins  # in duals, where an event was
         self.here: tuple[Law, float, list[Any]]  # where the derivatives are known, and by which law they go on
@@ -141,28 +167,6 @@ class _Run:
         state = np.array(stacked(before.state_vector, self.count), dtype=float)
         # The start, and where phases ended: the law before, the state stacked with its derivatives, and what follows.
         self.stops: list[tuple[Law, float, Array, PhaseStart | None]] = [(before.law, start.time, state, begins)]
-
-    def _check_start(self, begins: PhaseStart, first: State) -> None:
-        """Refuse numbers of a start that alone would make slip what rolls, or turn what does not turn."""
-        given = ContactState.of(self.duals, first)
-        turning = state_turning(given.contact, given.Omega)
-        if self.system.resisted and float(turning.norm()) * given.arm <= SLIP_TOLERANCE * given.speed:
-            rule = "must name numbers that change alone without turning a body that does not turn at the start"
-            remedy = "A resistance acts against either way at once, and so there is no derivative."
-            self._refuse(turning * given.arm, given, rule, remedy)
-        at = begins.law.unpack(self.duals, value_of(begins.time), begins.state_vector)
-        if begins.law.code in (ROLLING, RESTING):
-            rule = "must name numbers that change alone without making a body slip that rolls at the start"
-            remedy = "Velocity and angular velocity are both given: give `spin` instead, so that the rest follows."
-            self._refuse(given.V - at.V, given, rule, remedy)
-
-    def _refuse(self, apart: Vector, at: ContactState, rule: str, remedy: str) -> None:
-        """Refuse a number that changes what must stay nothing, m/s."""
-        rows = [slopes_of(part, self.count) for part in apart]
-        sizes = [slopes_of(part, self.count) for part in (*at.V, *at.Omega)]
-        for j, name in enumerate(self.names):
-            if max(abs(row[j]) for row in rows) > _SLIPS * max(at.speed, *(abs(row[j]) for row in sizes)):
-                raise InvalidValueError("wrt", rule, name, remedy)
 
     # What `phases.solve` asks for
 
