@@ -35,7 +35,7 @@ def follow_formula(
     check_brink(system, now)
     duals, first = in_duals
     begins, count = transitions.at_start(duals, first), len(names)
-    check_start(system, duals, begins, first, names)
+    check_start(duals, begins, first, names)
     varied = type(form).from_state_vector(duals, begins.start, begins.state_vector)
     (r, V, Omega, R), _ = varied.motion_and_support_at(times - start.time)
     q = _turned(form, varied, start, begins.start, times, nodes, count)
