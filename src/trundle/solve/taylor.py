@@ -132,6 +132,18 @@ class Shared:
         return Shared({key: steps for key, steps in self.hasty.items() if steps >= _HASTY_STEPS})
 
 
+def first_steps(
+    system: RollingSystem, now: PhaseStart, end: float, tolerance: float, count: int
+) -> tuple[float, float, tuple[str, ...]]:
+    """Return how long its first steps are, s, how many products one takes, and the names of the event functions."""
+    with _begun(system, now, tolerance, Shared()) as run:
+        _, _, _, taken, *_ = run.integrator.propagate_until(end - now.time, max_steps=count)
+        gone = float(run.integrator.time)
+        order = math.ceil(1 - math.log(tolerance) / 2)
+        # A coefficient of order n is a sum of n products for each operation.
+        return gone / max(taken, 1), run.lowered.cost * order * (order + 3) / 2, run.lowered.event_functions
+
+
 def keeping() -> tuple[Keep, Callable[[], Integrate]]:
     """Return the way through all stretches of one run that keeps the polynomials of their steps, and one beside it."""
     shared = Shared()
