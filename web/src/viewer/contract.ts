@@ -79,6 +79,8 @@ export interface Viewer {
   step(by: number): void
   speed: number
   loop: boolean
+  /** Begin at a speed at which the runs can be watched, again and again where they are short; returns that speed. */
+  suit(): number
   readonly time: number
   readonly duration: number
   readonly playing: boolean
