@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from .analysis.sensitivities import Sensitivities, sensitivities
     from .analysis.statics import Equilibria, Equilibrium, equilibria
     from .analysis.steady import PeriodicMotion, SteadyMotion, SteadyMotions, periodic_motion, steady_motions
+    from .analysis.sweep import Sweep, sweep
     from .analysis.vakonomic import VakonomicComparison, VakonomicPath, compare_vakonomic, vakonomic_path
     from .errors import (
         InvalidValueError,
@@ -165,6 +166,7 @@ _HOMES = {
     "analysis.statics": ("equilibria", "Equilibria", "Equilibrium"),
     "analysis.steady": ("steady_motions", "SteadyMotions", "SteadyMotion", "periodic_motion", "PeriodicMotion"),
     "simulation.trajectory": ("Trajectory", "Event"),
+    "analysis.sweep": ("sweep", "Sweep"),
     "analysis.vakonomic": ("compare_vakonomic", "vakonomic_path", "VakonomicComparison", "VakonomicPath"),
     "verify": ("Card",),
     "analysis.checking": ("check", "check_equations", "Check", "Mistake"),
@@ -246,6 +248,7 @@ __all__ = [
     "Support",
     "SupportFunction",
     "Surface",
+    "Sweep",
     "Tensor",
     "Tilt",
     "Torque",
@@ -275,6 +278,7 @@ __all__ = [
     "simulate",
     "simulate_many",
     "steady_motions",
+    "sweep",
     "to_turntable",
     "twin",
     "units",

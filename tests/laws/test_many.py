@@ -29,13 +29,13 @@ BOWL = tr.EllipsoidalBowl((0.5, 0.4, 0.3))
 def alone(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """Note which members are not taken along with the others."""
     found: list[int] = []
-    put_alone = many._Result.put_alone
+    put_alone = many.Runs.put_alone
 
     def noted(self: Any, member: int, *arguments: Any) -> None:
         found.append(member)
         put_alone(self, member, *arguments)
 
-    monkeypatch.setattr(many._Result, "put_alone", noted)
+    monkeypatch.setattr(many.Runs, "put_alone", noted)
     return found
 
 

@@ -293,7 +293,7 @@ def test_who_ends_for_good_ends_in_company(every: float, monkeypatch: pytest.Mon
         for rim in (0.2, 0.3, 0.4, 0.45, 10.0, 0.100001)
     ]
     starts = [system.place((0.1, 0.0), (0.2, 0.1)) for system in systems]
-    monkeypatch.setattr(many._Result, "put_alone", None)
+    monkeypatch.setattr(many.Runs, "put_alone", None)
     runs = tr.simulate_many(systems, starts, 2.0, every)
     for i, (system, start) in enumerate(zip(systems, starts, strict=True)):
         exact, mine = tr.simulate(system, start, 2.0, every, method="exact"), runs.isel(member=i)

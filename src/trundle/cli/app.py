@@ -22,6 +22,7 @@ from .export import export
 from .lab import lab
 from .sensitivity import sensitivity
 from .steady import steady
+from .sweep import sweep
 from .twin import twin
 from .vakonomic import vakonomic
 
@@ -54,6 +55,7 @@ def command() -> Any:
     app.command("equations", short_help="Print the law as C, Python, JavaScript, LaTeX or JAX.")(equations)
     app.command("export", short_help="Write a run as a page, a model, a picture, a table.")(export)
     app.command("lab", short_help="Open the lab: the ball in a browser.")(lab)
+    app.command("sweep", short_help="Run a scenario for many values of its numbers.")(sweep)
     app.command("steady", short_help="Steady motions, and whether they are stable.")(steady)
     return typer.main.get_command(app)
 

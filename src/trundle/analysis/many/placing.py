@@ -19,7 +19,7 @@ from ...solve.ensemble import together
 from .running import check_structures, listed
 
 # Of the parts of `place` that may be given for each member: how many components, and of which kind.
-_PARTS: dict[str, tuple[tuple[int, ...], str]] = {
+PARTS: dict[str, tuple[tuple[int, ...], str]] = {
     "position": ((2,), "length"),
     "velocity": ((2, 3), "velocity"),
     "spin": ((), "angular velocity"),
@@ -159,8 +159,8 @@ def place_many(
     named |= {"attitude": attitude, "roll": roll, "height": height}
     many = [systems] if isinstance(systems, RollingSystem) else listed(systems, "systems", RollingSystem)
     check_structures(many)
-    kinds = {name: (kind,) for name, (_, kind) in _PARTS.items()} | {"position": many[0].support.surface.coordinates}
-    parts = {name: _rows(value, name, _PARTS[name][0], kinds[name]) for name, value in named.items()}
+    kinds = {name: (kind,) for name, (_, kind) in PARTS.items()} | {"position": many[0].support.surface.coordinates}
+    parts = {name: _rows(value, name, PARTS[name][0], kinds[name]) for name, value in named.items()}
     count = _count({"systems": many if len(many) > 1 else None, **parts})
     members = many if len(many) > 1 else many * count
     now, given = checks.real(time, "time", "time") + 0.0, {"time": time, "support": support}
@@ -226,7 +226,7 @@ def _for_all(name: str, value: Any, count: int) -> Any:
     """Return a part as an array over members."""
     if value is None or _is_rows(value) or (name == "velocity" and isinstance(value, str) and value in VELOCITY_WORDS):
         return value
-    sizes, kind = _PARTS[name]
+    sizes, kind = PARTS[name]
     if not sizes:
         return np.full(count, checks.real(value, kind, name))
     size = len(value) if hasattr(value, "__len__") and len(value) in sizes else sizes[0]
