@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from . import units
     from .analysis.analogy import ChargedParticle, Twin, to_turntable, twin
+    from .analysis.chaos import LyapunovExponents, lyapunov_exponents
     from .analysis.checking import Check, Mistake, check, check_equations
     from .analysis.derivation import derive
     from .analysis.geometry import Arc, Curve, PathScenario, RolledPath, Rotation, Straight, roll_along
@@ -91,6 +92,7 @@ if TYPE_CHECKING:
 # Public name -> module that holds it: `import trundle` loads nothing until a name is used.
 _HOMES = {
     "analysis.analogy": ("ChargedParticle", "Twin", "twin", "to_turntable"),
+    "analysis.chaos": ("lyapunov_exponents", "LyapunovExponents"),
     "errors": (
         "TrundleError",
         "InvalidValueError",
@@ -203,6 +205,7 @@ __all__ = [
     "InvalidValueError",
     "Isotropic",
     "Load",
+    "LyapunovExponents",
     "Magnus",
     "MissingExtraError",
     "Mistake",
@@ -270,6 +273,7 @@ __all__ = [
     "compare_vakonomic",
     "derive",
     "equilibria",
+    "lyapunov_exponents",
     "periodic_motion",
     "place_many",
     "roll_along",
