@@ -85,6 +85,7 @@ if TYPE_CHECKING:
     from .simulation.simulate import Scenario, simulate
     from .simulation.trajectory import Event, Trajectory
     from .solve.exact import ClosedForm
+    from .tracks import Track, read_track
     from .verify import Card
 
 # Public name -> module that holds it: `import trundle` loads nothing until a name is used.
@@ -166,6 +167,7 @@ _HOMES = {
     "analysis.steady": ("steady_motions", "SteadyMotions", "SteadyMotion", "periodic_motion", "PeriodicMotion"),
     "simulation.trajectory": ("Trajectory", "Event"),
     "analysis.vakonomic": ("compare_vakonomic", "vakonomic_path", "VakonomicComparison", "VakonomicPath"),
+    "tracks": ("read_track", "Track"),
     "verify": ("Card",),
     "analysis.checking": ("check", "check_equations", "Check", "Mistake"),
 }
@@ -251,6 +253,7 @@ __all__ = [
     "Torque",
     "Torus",
     "TorusTrack",
+    "Track",
     "Trajectory",
     "TrundleError",
     "Twin",
@@ -269,6 +272,7 @@ __all__ = [
     "equilibria",
     "periodic_motion",
     "place_many",
+    "read_track",
     "roll_along",
     "sensitivities",
     "sensitivity",
