@@ -87,6 +87,7 @@ if TYPE_CHECKING:
     from .simulation.simulate import Scenario, simulate
     from .simulation.trajectory import Event, Trajectory
     from .solve.exact import ClosedForm
+    from .tracks import Track, read_track
     from .verify import Card
 
 # Public name -> module that holds it: `import trundle` loads nothing until a name is used.
@@ -170,6 +171,7 @@ _HOMES = {
     "simulation.trajectory": ("Trajectory", "Event"),
     "analysis.sweep": ("sweep", "Sweep"),
     "analysis.vakonomic": ("compare_vakonomic", "vakonomic_path", "VakonomicComparison", "VakonomicPath"),
+    "tracks": ("read_track", "Track"),
     "verify": ("Card",),
     "analysis.checking": ("check", "check_equations", "Check", "Mistake"),
 }
@@ -257,6 +259,7 @@ __all__ = [
     "Torque",
     "Torus",
     "TorusTrack",
+    "Track",
     "Trajectory",
     "TrundleError",
     "Twin",
@@ -276,6 +279,7 @@ __all__ = [
     "lyapunov_exponents",
     "periodic_motion",
     "place_many",
+    "read_track",
     "roll_along",
     "sensitivities",
     "sensitivity",
