@@ -17,7 +17,7 @@ from ...scenario.tables.of_parts import ListOfLengths
 from ...scenario.tables.values import Table
 from ...units import UNITS
 
-_APART = {"title", "notes", "timing"}  # what says nothing of the motion
+_APART = {"title", "group", "notes", "timing"}  # what says nothing of the motion
 # At 0 these say that there is nothing of the kind, and a start is where the clock of the derivatives begins.
 _AT_ZERO = {
     "start.height": "a body that touches its support cannot be a little lower",
