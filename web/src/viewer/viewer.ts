@@ -256,6 +256,13 @@ class StageViewer implements Viewer {
     this.canvas.dataset.tool = tool
   }
 
+  get grabs(): boolean {
+    return this.tools?.grabs ?? false
+  }
+  set grabs(grabs: boolean) {
+    if (this.tools) this.tools.grabs = grabs
+  }
+
   get theme(): 'light' | 'dark' {
     return this.drawnTheme
   }
