@@ -18,7 +18,7 @@ from ...scenario.together import tell_all
 from ...simulation import labels
 from ...simulation.simulate import Scenario
 from ...solve.sampling import sample_times
-from .job import BLOCK, Job
+from .job import Job, block_of
 from .measures import Measure, read_measures
 from .varying import Axis, Design, check_values, grid_shape, read_axes
 
@@ -50,7 +50,7 @@ class Plan:
     keep : int
         Each how-many-th sample is kept; 0: none.
     chunk : int
-        Members in a chunk, a multiple of `BLOCK`.
+        Members in a chunk, a multiple of those that go together.
     table : array (members, axes)
         The value of each axis for each member.
     text : str
@@ -71,7 +71,7 @@ class Plan:
     @cached_property
     def job(self) -> Job:
         """What is done with each member."""
-        return Job(self.document.to_toml(), self.axes, self.measures, self.keep)
+        return Job(self.document.to_toml(), self.axes, self.measures, self.keep, block_of(self.members))
 
     @property
     def members(self) -> int:
@@ -255,14 +255,15 @@ def _distinct(axes: list[Axis], measures: list[Measure]) -> None:
 
 def _chunk(given: Any, members: int, keep: int, document: Scenario) -> int:
     """Return how many members are written at once: small enough to lose little, large enough to run fast."""
+    block = block_of(members)
     if given is not None:
         if isinstance(given, bool) or not isinstance(given, int) or given < 1:
             raise InvalidValueError("chunk", "must be a whole number of members, 1 or more", given)
-        return -(-given // BLOCK) * BLOCK
+        return -(-given // block) * block
     timing = document.timing
     kept = len(sample_times(float(timing.duration), float(timing.every))[:: keep or 1]) if keep else 0
     most = min(_MOST_CHUNK, _MOST_BYTES // (kept * _SAMPLE_BYTES) if kept else _MOST_CHUNK)
-    return max(BLOCK, min(most, members // _PARTS) // BLOCK * BLOCK)
+    return max(block, min(most, members // _PARTS) // block * block)
 
 
 def _written(tables: Mapping[str, Any]) -> str:
