@@ -1,8 +1,9 @@
-"""What a sweep measures, against what is known of each motion; and that neither workers nor chunks change a bit of it."""
+"""What a sweep measures, against what is known of each motion; and that neither workers nor chunks change a bit."""
 
 from __future__ import annotations
 
 import math
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -232,9 +233,24 @@ def test_all_that_is_wrong_is_told_at_once() -> None:
     assert str(told.value).count("my.toml: `") == 4
 
 
+def test_it_reads_back_what_it_writes() -> None:
+    """Tables and lists in one order, keys with brackets, and all kinds of values."""
+    over = {
+        "support.tilt": {"from": "0 deg", "to": "1 deg", "count": 2},
+        "start.position[0]": np.array([0.1, 0.2]),
+        "gravity": (9.8, 9.9),
+    }
+    plan = read_plan({"scenario": TABLE, "over": over, "measure": {"a": "max x", 'b "b"': "end t"}})
+    again = read_plan(tomllib.loads(plan.text))
+    assert [axis.key for axis in again.axes] == list(over)
+    assert np.array_equal(again.table, plan.table)
+    assert again.measures == plan.measures
+    assert again.text == plan.text
+
+
 def test_a_function_that_cannot_travel_is_refused_where_it_has_to() -> None:
     with pytest.raises(tr.InvalidValueError, match="must be a function of a module"):
-        tr.sweep(TABLE, {"gravity": [9.8]}, lambda run: 1.0, workers=2)
+        tr.sweep(TABLE, {"gravity": [9.8]}, lambda _: 1.0, workers=2)
     assert Engine(1).processes == 1
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
@@ -267,13 +268,32 @@ def _chunk(given: Any, members: int, keep: int, document: Scenario) -> int:
 
 
 def _written(tables: Mapping[str, Any]) -> str:
-    """Return the tables of a sweep as TOML, a scenario by its title."""
+    """Return the tables of a sweep as TOML, what varies in its order, and a scenario by its title."""
     import tomli_w
 
-    plain = {key: value for key, value in tables.items() if value is not None}
-    if isinstance(plain.get("scenario"), Scenario):
-        plain["scenario"] = plain["scenario"].title
-    return tomli_w.dumps(_plain(plain))
+    plain = _plain(tables)
+    heads = {key: value for key, value in plain.items() if not isinstance(value, dict)}
+    if isinstance(tables.get("scenario"), Scenario):
+        heads["scenario"] = tables["scenario"].title
+    text = tomli_w.dumps(heads)
+    for name, inner in plain.items():
+        if isinstance(inner, dict) and name == "scenario":
+            text += "\n" + tomli_w.dumps({name: inner})
+        elif isinstance(inner, dict):  # each on a line: else what is a table would come after what is none
+            lines = [f"{json.dumps(key, ensure_ascii=False)} = {_inline(part)}\n" for key, part in inner.items()]
+            text += f"\n[{name}]\n" + "".join(lines)
+    return text
+
+
+def _inline(value: Any) -> str:
+    import tomli_w
+
+    if isinstance(value, dict):
+        parts = (f"{json.dumps(key, ensure_ascii=False)} = {_inline(part)}" for key, part in value.items())
+        return f"{{ {', '.join(parts)} }}"
+    if isinstance(value, list):
+        return f"[{', '.join(map(_inline, value))}]"
+    return tomli_w.dumps({"v": value}).removeprefix("v = ").rstrip("\n")
 
 
 def _plain(value: Any) -> Any:
