@@ -14,12 +14,13 @@ import numpy as np
 from ...errors import InvalidValueError, TrundleError
 from ...mechanics.finiteness import check_finite, varies
 from ...mechanics.kinks import has_kinks
-from ...mechanics.parameters import numbers, parameters, structure_of
+from ...mechanics.parameters import parameters, structure_of
 from ...mechanics.system import RollingSystem, State
 from ...simulation import labels
 from ...simulation.memory import check_room
 from ...simulation.simulate import check_state, described, simulate
 from ...solve import taylor
+from ...solve.ensemble import numbers_of
 from ...solve.methods import Method
 from ...solve.phases import ENDS, ended_in_words
 from ...solve.samples import Progress
@@ -154,7 +155,7 @@ def varied(systems: Sequence[RollingSystem]) -> dict[str, Any]:
     """
     if all(system is systems[0] for system in systems):
         return {}
-    values = np.array([numbers(system) for system in systems])
+    values = np.array(numbers_of(systems))
     return {
         name: (("member",), column, {"units": UNITS[dimension][0] or "1"})
         for (name, dimension), column in zip(parameters(systems[0]), values.T, strict=True)
@@ -352,9 +353,8 @@ class Runs:
     def put(self, block: Block) -> None:
         """Take members that rolled through some of the instants."""
         for name, values in labels.columns(block.system, block.samples).items():
-            shaped = values.reshape(-1, block.members.size, *values.shape[1:]).swapaxes(0, 1)
-            self.arrays[name][block.members, block.rows] = shaped
-        self._tell(block.members, block.rows.stop / self.times.size)
+            self.arrays[name][block.members, block.rows] = values
+        self._tell(block.members, (block.rows + 1) / self.times.size)
 
     def put_end(self, member: int, system: RollingSystem, stop: Stop) -> None:
         """Take where a member's run ended for good."""
@@ -397,7 +397,7 @@ class Runs:
         if run.events and reached[-1] < self.times[-1]:
             self.ending[member], self.reason[member] = run.events[-1].kind, run.events[-1].text
 
-    def _tell(self, members: Any, share: float) -> None:
+    def _tell(self, members: Any, share: Any) -> None:
         with self.lock:
             self.done[members] = share
             self.told = max(self.told, float(self.done.mean()))

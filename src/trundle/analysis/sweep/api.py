@@ -12,7 +12,7 @@ import numpy as np
 
 from ...solve.samples import Progress
 from .engine import Engine
-from .job import BLOCK, Columns
+from .job import Columns
 from .plan import Plan, read_plan
 from .result import Sweep
 from .store import Store
@@ -229,7 +229,7 @@ def cost(plan: Plan, engine: Engine) -> Cost:
     50
     """
     each = 0.0
-    for count in (1, _PILOTS, BLOCK):
+    for count in (1, _PILOTS, plan.job.block):
         chosen = np.linspace(0, plan.members - 1, min(count, plan.members)).astype(int)
         begun = time.perf_counter()
         plan.job.run(plan.table[chosen])

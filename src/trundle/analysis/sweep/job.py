@@ -27,9 +27,19 @@ from .varying import Axis, Varied, numbers_of
 Array = NDArray[np.float64]
 Columns = dict[str, Any]  # one array for each variable, a row for each member
 
-# Members go together in blocks that begin at whole multiples of this, so that a member's company depends on nothing but
-# its number: results are the same to the last bit for any number of workers and any size of a chunk.
-BLOCK = 64
+
+def block_of(members: int) -> int:
+    """Return how many members go together in a sweep of so many.
+
+    Their blocks begin at whole multiples of this, so that a member's company depends on nothing but its number: results
+    are the same to the last bit for any number of workers and any size of a chunk.
+
+    Examples
+    --------
+    >>> block_of(100), block_of(100_000)
+    (8, 128)
+    """
+    return next(block for least, block in ((4096, 128), (512, 32), (0, 8)) if members >= least)
 
 
 @dataclass(frozen=True)
@@ -46,12 +56,15 @@ class Job:
         What is measured.
     keep : int
         Each how-many-th sample is kept; 0: none.
+    block : int
+        Members that go together.
     """
 
     scenario: str
     axes: tuple[Axis, ...]
     measures: tuple[Measure, ...]
     keep: int = 0
+    block: int = 8
 
     @property
     def document(self) -> Scenario:
@@ -67,7 +80,7 @@ class Job:
 
     def run(self, values: Array) -> Columns:
         """Run some whole blocks of members, given the value of each axis (members, axes)."""
-        parts = [self._block(values[first : first + BLOCK]) for first in range(0, len(values), BLOCK)]
+        parts = [self._block(values[first : first + self.block]) for first in range(0, len(values), self.block)]
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
     def _block(self, values: Array) -> Columns:
@@ -199,4 +212,4 @@ def _reason(text: str) -> str:
     return _ITS_NUMBER.sub("start", str(text)).partition("\n")[0]
 
 
-__all__ = ["BLOCK", "Columns", "Job"]
+__all__ = ["Columns", "Job", "block_of"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
@@ -18,7 +19,7 @@ from ...scenario.together import tell_all
 from ...simulation import labels
 from ...simulation.simulate import Scenario
 from ...solve.sampling import sample_times
-from .job import BLOCK, Job
+from .job import Job, block_of
 from .measures import Measure, read_measures
 from .varying import Axis, Design, check_values, grid_shape, read_axes
 
@@ -50,7 +51,7 @@ class Plan:
     keep : int
         Each how-many-th sample is kept; 0: none.
     chunk : int
-        Members in a chunk, a multiple of `BLOCK`.
+        Members in a chunk, a multiple of those that go together.
     table : array (members, axes)
         The value of each axis for each member.
     text : str
@@ -71,7 +72,7 @@ class Plan:
     @cached_property
     def job(self) -> Job:
         """What is done with each member."""
-        return Job(self.document.to_toml(), self.axes, self.measures, self.keep)
+        return Job(self.document.to_toml(), self.axes, self.measures, self.keep, block_of(self.members))
 
     @property
     def members(self) -> int:
@@ -255,24 +256,44 @@ def _distinct(axes: list[Axis], measures: list[Measure]) -> None:
 
 def _chunk(given: Any, members: int, keep: int, document: Scenario) -> int:
     """Return how many members are written at once: small enough to lose little, large enough to run fast."""
+    block = block_of(members)
     if given is not None:
         if isinstance(given, bool) or not isinstance(given, int) or given < 1:
             raise InvalidValueError("chunk", "must be a whole number of members, 1 or more", given)
-        return -(-given // BLOCK) * BLOCK
+        return -(-given // block) * block
     timing = document.timing
     kept = len(sample_times(float(timing.duration), float(timing.every))[:: keep or 1]) if keep else 0
     most = min(_MOST_CHUNK, _MOST_BYTES // (kept * _SAMPLE_BYTES) if kept else _MOST_CHUNK)
-    return max(BLOCK, min(most, members // _PARTS) // BLOCK * BLOCK)
+    return max(block, min(most, members // _PARTS) // block * block)
 
 
 def _written(tables: Mapping[str, Any]) -> str:
-    """Return the tables of a sweep as TOML, a scenario by its title."""
+    """Return the tables of a sweep as TOML, what varies in its order, and a scenario by its title."""
     import tomli_w
 
-    plain = {key: value for key, value in tables.items() if value is not None}
-    if isinstance(plain.get("scenario"), Scenario):
-        plain["scenario"] = plain["scenario"].title
-    return tomli_w.dumps(_plain(plain))
+    plain = _plain(tables)
+    heads = {key: value for key, value in plain.items() if not isinstance(value, dict)}
+    if isinstance(tables.get("scenario"), Scenario):
+        heads["scenario"] = tables["scenario"].title
+    text = tomli_w.dumps(heads)
+    for name, inner in plain.items():
+        if isinstance(inner, dict) and name == "scenario":
+            text += "\n" + tomli_w.dumps({name: inner})
+        elif isinstance(inner, dict):  # each on a line: else what is a table would come after what is none
+            lines = [f"{json.dumps(key, ensure_ascii=False)} = {_inline(part)}\n" for key, part in inner.items()]
+            text += f"\n[{name}]\n" + "".join(lines)
+    return text
+
+
+def _inline(value: Any) -> str:
+    import tomli_w
+
+    if isinstance(value, dict):
+        parts = (f"{json.dumps(key, ensure_ascii=False)} = {_inline(part)}" for key, part in value.items())
+        return f"{{ {', '.join(parts)} }}"
+    if isinstance(value, list):
+        return f"[{', '.join(map(_inline, value))}]"
+    return tomli_w.dumps({"v": value}).removeprefix("v = ").rstrip("\n")
 
 
 def _plain(value: Any) -> Any:
