@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from . import units
     from .analysis.analogy import ChargedParticle, Twin, to_turntable, twin
-    from .analysis.chaos import LyapunovExponents, lyapunov_exponents
+    from .analysis.chaos import LyapunovExponents, PoincareSection, lyapunov_exponents, poincare_section
     from .analysis.checking import Check, Mistake, check, check_equations
     from .analysis.derivation import derive
     from .analysis.geometry import Arc, Curve, PathScenario, RolledPath, Rotation, Straight, roll_along
@@ -93,7 +93,7 @@ if TYPE_CHECKING:
 # Public name -> module that holds it: `import trundle` loads nothing until a name is used.
 _HOMES = {
     "analysis.analogy": ("ChargedParticle", "Twin", "twin", "to_turntable"),
-    "analysis.chaos": ("lyapunov_exponents", "LyapunovExponents"),
+    "analysis.chaos": ("lyapunov_exponents", "LyapunovExponents", "poincare_section", "PoincareSection"),
     "errors": (
         "TrundleError",
         "InvalidValueError",
@@ -222,6 +222,7 @@ __all__ = [
     "PfaffianSystem",
     "PivotFriction",
     "Plane",
+    "PoincareSection",
     "Potential",
     "PrecessingTilt",
     "Principal",
@@ -279,6 +280,7 @@ __all__ = [
     "lyapunov_exponents",
     "periodic_motion",
     "place_many",
+    "poincare_section",
     "read_track",
     "roll_along",
     "sensitivities",

@@ -50,8 +50,8 @@ def lyapunov_exponents(
 
     The error of an exponent is the half-width of the 95 % interval from the means of ten blocks of the time, and the
     difference between the means of both halves of it, together. An exponent so small that it may be a growth by a power
-    of the time, up to the third, has one more share: what a growth in proportion to the time seems to be. No error knows
-    of what the motion has not yet come to.
+    of the time, up to the third, has one more share: what a growth in proportion to the time seems to be. No error
+    knows of what the motion has not yet come to.
 
     Parameters
     ----------
@@ -106,12 +106,13 @@ def lyapunov_exponents(
     dimension = basis.shape[1]
     columns = (basis @ _mixed(dimension))[:, : checked_count(count, dimension)]
     step = max(1 / rate, length / _MOST) if every is None else float(checks.positive(every, "time", "every"))
-    left_out = 0.1 * length if transient is None else float(checks.non_negative(transient, "time", "transient"))
+    left_out = None if transient is None else float(checks.non_negative(transient, "time", "transient"))
     times = asked.start.time + np.linspace(0.0, length, max(1, int(np.ceil(length / step - 1e-9))) + 1)[1:]
     integrate, error = integrator(asked.system, method, tolerance, asked.start.time, float(times[-1]))
     run = TangentRun(integrate, asked.system, times, now, columns, at.arm, rate)
     samples = run.solve(asked.start, error, progress)
     run.finished()
+    left_out = 0.1 * (run.growth[-1].time - asked.start.time) if left_out is None else left_out
     _check_long_enough(run.growth, samples, left_out)
     zeros = _zeros(asked.system, now, samples, basis, scale)
     return _told(asked, run, samples, length, left_out, dimension, zeros)
@@ -145,7 +146,7 @@ def _zeros(system: RollingSystem, now: PhaseStart, samples: Samples, basis: Arra
     states += [np.array(law.state_vector(ContactState.of(system, samples.state(int(i))))) for i in chosen]
     times = np.array([now.time, *samples.time[chosen]])
     phases = dict.fromkeys([PHASES[law.code], *(PHASES[int(code)] for code in np.unique(samples.phase))])
-    return neutral(system, law, times, np.array(states), basis, scale, tuple(phases))
+    return neutral(system, law, times, np.array(states), basis, scale, tuple(phases), changes=bool(samples.events))
 
 
 def _told(

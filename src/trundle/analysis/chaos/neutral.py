@@ -23,8 +23,11 @@ from .volume import slopes_at
 
 _NEUTRAL = 1e-8  # singular values below this share are none
 _RANK = 1e-6
-_GONE = 1e-6  # share of itself that is left of a neutral difference where the motion comes to rest
-_SHIFTS, _TURNS = slice(0, 3), slice(3, 6)  # shares of a move; behind them turns of the body, and the support's own angle
+_DIES = 0.2  # share of itself that is left at the end of a neutral difference which dies away with the motion
+_SHIFTS, _TURNS = (
+    slice(0, 3),
+    slice(3, 6),
+)  # shares of a move; behind them turns of the body, and the support's own angle
 
 
 @dataclass(frozen=True)
@@ -57,7 +60,15 @@ class Neutral:
 
 
 def neutral(
-    system: RollingSystem, law: Law, times: Array, states: Array, basis: Array, scale: Array, phases: Sequence[str]
+    system: RollingSystem,
+    law: Law,
+    times: Array,
+    states: Array,
+    basis: Array,
+    scale: Array,
+    phases: Sequence[str],
+    *,
+    changes: bool,
 ) -> Neutral:
     """Find the exponents that must be zero.
 
@@ -73,9 +84,11 @@ def neutral(
         What is large of each number of the state.
     phases : sequence of str
         All that the motion goes through.
+    changes : bool
+        Whether events stand between them.
     """
     flow, moves = _neutral_moves(system, law, times, states, scale)
-    integrals, rows = _integrals(system, law, float(times[0]), states[0], basis, scale, phases)
+    integrals, rows = _integrals(system, law, float(times[0]), states[0], basis, scale, phases, changes=changes)
     along = basis.T @ moves[0] if moves.size else np.zeros((basis.shape[1], 0))
     k, m = _rank(along), _rank(rows)
     double = _rank(rows @ np.linalg.qr(along)[0]) if k and m else 0
@@ -87,22 +100,25 @@ def _rank(matrix: Array) -> int:
     return int((np.linalg.svd(matrix, compute_uv=False) > _RANK).sum()) if matrix.size else 0
 
 
-def _neutral_moves(
-    system: RollingSystem, law: Law, times: Array, states: Array, scale: Array
-) -> tuple[bool, Array]:
+def _neutral_moves(system: RollingSystem, law: Law, times: Array, states: Array, scale: Array) -> tuple[bool, Array]:
     """Return whether the flow is neutral, and the neutral differences at each instant, in units of the scale."""
     slopes, names = slopes_at(system, law, times, states), law.names(system)
     length, rate = float(scale[0]), float(scale[7])
     angles = [i for i, name in enumerate(names) if name.startswith("support") and scale[i] == 1.0]
     sizes = np.array([length] * 3 + [1.0] * (6 + len(angles)) + [1 / rate])
-    rates = np.array([law.rates(system, t, list(y)) for t, y in zip(times.tolist(), states.tolist(), strict=True)], float)
+    rates = np.array(
+        [law.rates(system, t, list(y)) for t, y in zip(times.tolist(), states.tolist(), strict=True)], float
+    )
     rows, vectors = [], []
     for time, y, f, J in zip(times.tolist(), states, rates, slopes, strict=True):
         moves = [_moved(names, share, y, angles) for share in np.eye(sizes.size - 1)]
         swapped = [_moved(names, share, f, angles, linear=True) for share in np.eye(sizes.size - 1)]
         v = np.stack([*moves, f], axis=1) * sizes
         commutators = np.stack([J[:, :-1] @ a - b for a, b in zip(moves, swapped, strict=True)] + [-J[:, -1]], axis=1)
-        rows += [commutators * sizes / (scale * rate)[:, None], constraint_rows(system, law, time, y.tolist()) @ v / length]
+        rows += [
+            commutators * sizes / (scale * rate)[:, None],
+            constraint_rows(system, law, time, y.tolist()) @ v / length,
+        ]
         vectors.append(v / scale[:, None])
     _, singular, basis = np.linalg.svd(np.vstack(rows))
     singular = np.append(singular, np.zeros(len(basis) - len(singular)))
@@ -121,11 +137,15 @@ def _across(row: Array) -> Array:
 
 
 def _lasting(found: Array) -> Array:
-    """Return the combinations of neutral differences that have not died away by the end."""
-    _, sizes, combined = np.linalg.svd(found[-1])
-    sizes = np.append(sizes, np.zeros(len(combined) - len(sizes)))
-    first = np.linalg.norm(found[0] @ combined.T, axis=0)
-    return np.asarray(combined[sizes > _GONE * np.maximum(first, 1e-300)].T)
+    """Return the combinations of neutral differences that do not die away: those that last from early to late."""
+    from scipy.linalg import eigh
+
+    count = max(1, len(found) // 3)
+    early, late = np.vstack(list(found[:count])), np.vstack(list(found[-count:]))
+    _, sizes, combined = np.linalg.svd(early)
+    whole = combined[: int((sizes > _RANK).sum())].T
+    shares, combinations = eigh((late @ whole).T @ (late @ whole), (early @ whole).T @ (early @ whole))
+    return np.asarray(whole @ combinations[:, shares > _DIES**2])
 
 
 def _moved(names: Sequence[str], share: Array, y: Array, angles: Sequence[int], *, linear: bool = False) -> Array:
@@ -146,13 +166,21 @@ def _moved(names: Sequence[str], share: Array, y: Array, angles: Sequence[int], 
 
 
 def _integrals(
-    system: RollingSystem, law: Law, time: float, y: Array, basis: Array, scale: Array, phases: Sequence[str]
+    system: RollingSystem,
+    law: Law,
+    time: float,
+    y: Array,
+    basis: Array,
+    scale: Array,
+    phases: Sequence[str],
+    *,
+    changes: bool,
 ) -> tuple[list[str], Array]:
     """Return the first integrals that the motion keeps throughout, and their slopes along the basis."""
     names: list[str] = []
     rows = np.zeros((0, basis.shape[1]))
     for integral in invariants_of(system, phases=tuple(phases)):
-        if len(phases) > 1 and not integral.through_changes:
+        if changes and not integral.through_changes:
             continue
 
         def value(there: Any, integral: Any = integral) -> Array:

@@ -69,7 +69,7 @@ class LyapunovExponents(Displayed):
 
     >>> import trundle as tr
     >>> dome = tr.RollingSystem(tr.Body.solid_sphere(0.025, 0.065), tr.Support(tr.Dome(0.2)))
-    >>> found = tr.lyapunov_exponents(dome, dome.place(), "4 s")
+    >>> found = tr.lyapunov_exponents(dome, dome.place(), "8 s", transient="4 s")
     >>> round(found.largest / math.sqrt(9.80665 / (1.4 * 0.225)), 9)
     1.0
     >>> found.passed
@@ -194,8 +194,8 @@ class LyapunovExponents(Displayed):
         --------
         >>> import trundle as tr
         >>> dome = tr.RollingSystem(tr.Body.solid_sphere(0.025, 0.065), tr.Support(tr.Dome(0.2)))
-        >>> tr.lyapunov_exponents(dome, dome.place(), "4 s").as_dict()["zeros_expected"]
-        4
+        >>> tr.lyapunov_exponents(dome, dome.place(), "4 s").as_dict()["dimension"]
+        8
         """
         return {
             "title": self.title,

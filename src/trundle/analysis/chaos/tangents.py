@@ -86,10 +86,9 @@ def tangents(system: RollingSystem, now: PhaseStart, scale: Array) -> Array:
     L, w = float(scale[0]), float(scale[7])
     kinds = system.support.motion.coordinate_kinds
     sizes = [L] * 3 + [L * w] * 3 + [w] * 3 + [1.0] * 4 + [1.0 if kind == "angle" else w for kind in kinds]
-    units, count, moved = iter(np.diag(sizes)), len(sizes), []
-    for part in parts:
-        moved.append(tuple(Dual(value, tuple(next(units).tolist())) for value in part))
-    at = ContactState.of(system, State(*moved[:4], start.time, moved[4]))  # type: ignore[arg-type]
+    units, count = iter(np.diag(sizes)), len(sizes)
+    moved: Any = [tuple(Dual(value, tuple(next(units).tolist())) for value in part) for part in parts]
+    at = ContactState.of(system, State(moved[0], moved[1], moved[2], moved[3], start.time, moved[4]))
     if now.law.code != FLIGHT:
         at = at.over(0.0)
     columns = np.array([slopes_of(one, count) for one in now.law.state_vector(at)], dtype=float) / scale[:, None]
@@ -130,7 +129,7 @@ class TangentRun(VariationalRun):
     ) -> None:
         self.length, self.rate = length, rate
         rows = scale_of(system, now.law, length, rate)[:, None] * columns
-        numbers = [Dual(value, tuple(row)) for value, row in zip(now.state_vector, rows.tolist(), strict=True)]
+        numbers: Any = [Dual(value, tuple(row)) for value, row in zip(now.state_vector, rows.tolist(), strict=True)]
         begins = replace(now, state_vector=numbers)
         super().__init__(method, system, times, system, begins, columns.shape[1])
         self.alive = np.ones(self.count, dtype=bool)

@@ -83,16 +83,16 @@ def grown(system: RollingSystem, stretches: list[Stretch]) -> float:
                 rough += [one for one, fine in zip(some, smooth, strict=True) if not fine]
         if not rough or depth == _DEEPEST:
             break
-        left = [half for _, same in itertools.groupby(rough, key=lambda one: id(one.at)) for half in _halves(list(same))]
+        left = [
+            half for _, same in itertools.groupby(rough, key=lambda one: id(one.at)) for half in _halves(list(same))
+        ]
     return total
 
 
 def _halves(stretches: list[Stretch]) -> Iterator[Stretch]:
     """Yield the halves of stretches that are parts of one, which is gone through once for all."""
     edges = [
-        pair
-        for one in stretches
-        for pair in itertools.pairwise((one.begin, 0.5 * (one.begin + one.end), one.end))
+        pair for one in stretches for pair in itertools.pairwise((one.begin, 0.5 * (one.begin + one.end), one.end))
     ]
     states = stretches[0].at(np.concatenate([nodes(*pair) for pair in edges]))
     if len(states) != _COUNT * len(edges):
