@@ -29,6 +29,7 @@ from .unknowns import Unknown, changed, limit, of_run, prepared, unknowns
 
 _SHOWS = 1e-5  # share of a direction from which a number takes part in it
 _MOST_LIMITS = 8
+_PLAINLY = 3.0  # χ²/dof
 _CERTAIN = 25.0  # χ² by which motion must beat rest, for each number fitted, to be motion
 _DIMENSIONS = {unit: kind for kind, (unit, _) in reversed(UNITS.items())}
 
@@ -216,6 +217,11 @@ def _solved(problem: Problem, guess: Array, loss: str) -> _Solved:
         guess[place] = prior.value
     found = minimise(problem, guess, none, loss)
     evaluations = found.evaluations
+    if _far(problem, found.values):  # perhaps a minimum that is not the least: once more, with all data at once
+        again = minimise(problem, guess, none, loss, staged=False)
+        evaluations += again.evaluations
+        if _sum(problem, again.values) < _sum(problem, found.values):
+            found = again
     found, pivots = _with_pivots(problem, found, guess, none, loss)
     limits: dict[int, tuple[float, float]] = {}
     for _ in range(_MOST_LIMITS):
@@ -236,6 +242,16 @@ def _solved(problem: Problem, guess: Array, loss: str) -> _Solved:
     whole = look(problem, found.values, held)
     covariance = found.covariance if not (pivots and loss == "linear") else whole.covariance
     return _Solved(found.values, whole, covariance, pivots, limits, found.result, evaluations)
+
+
+def _sum(problem: Problem, values: Array) -> float:
+    residual = problem.residual(values)
+    return float(residual @ residual)
+
+
+def _far(problem: Problem, values: Array) -> bool:
+    """Tell whether what is left over is larger than any noise."""
+    return _sum(problem, values) > _PLAINLY * problem.size
 
 
 def _with_pivots(problem: Problem, found: Minimum, guess: Array, held: Array, loss: str) -> tuple[Minimum, list[int]]:
@@ -284,7 +300,7 @@ def _scaled(problem: Problem, found: Minimum) -> Array:
 def _told(problem: Problem, solved: _Solved, scenario: ScenarioFile, loss: str, *, cures: bool) -> Fit:
     """Return the result."""
     values, found = solved.values, solved.free
-    judgement = judge(problem, values, found.basis.shape[1])
+    judgement = judge(problem, values, found.basis.shape[1], robust=loss != "linear")
     factor = 1.0
     if not judgement.noise_known and judgement.freedom > 0:
         factor = judgement.reduced

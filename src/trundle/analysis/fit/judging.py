@@ -12,6 +12,7 @@ from .problem import Problem
 ENOUGH = 5.0  # standard deviations by which a fit is bad
 _OUTLIER = 1e-3  # chance of one outlier among all values, were the noise normal
 _MOST_ROWS = 12
+_REMEDY = "; leave these out, or take a loss that bears them, such as soft_l1"
 _FEW = 0.05  # of all values: more are no outliers, but a law that is wrong
 _OF_SCATTER = 3.0  # times the spread of χ²: noise that was estimated is itself not better known
 
@@ -96,14 +97,18 @@ class Judgement:
         if 0 < len(self.outliers) <= _FEW * (self.freedom + 1):
             some = ", ".join(f"row {one.row} ({one.column}, {one.off:+.1f}σ)" for one in self.outliers[:_MOST_ROWS])
             more = len(self.outliers) - _MOST_ROWS
-            said.append(f"far from the fit: {some}" + (f" and {more} more" if more > 0 else ""))
+            said.append(f"far from the fit: {some}" + (f" and {more} more" if more > 0 else "") + _REMEDY)
         return said
 
 
-def judge(problem: Problem, values: Array, fitted: int) -> Judgement:
+def judge(problem: Problem, values: Array, fitted: int, *, robust: bool = False) -> Judgement:
     """Return what the residuals say of a fit of some numbers."""
     residual = problem.residual(values)
     count = residual.size
+    if robust:  # what such a loss bears is not held against the fit
+        borne = np.abs(residual) > _limit(count)
+        residual = np.where(borne & (borne.sum() <= _FEW * count), 0.0, residual)
+        fitted += int((residual == 0).sum())
     chi, freedom = float(residual @ residual), count - fitted
     known = all(noise.known for noise in problem.noises)
     spread = np.sqrt(2.0 * max(freedom, 1)) * (1.0 if known else _OF_SCATTER)
@@ -111,24 +116,25 @@ def judge(problem: Problem, values: Array, fitted: int) -> Judgement:
     scale = 1.0 if known else np.sqrt(chi / freedom) if freedom > 0 and chi > 0 else 1.0
     memory, memory_excess, runs = 0.0, 0.0, 0.0
     outliers: list[Outlier] = []
+    whole = problem.residual(values)
     limit = _limit(count)
     at = 0
     for i, model in enumerate(problem.models):
         seen = model.seen.known
         size = int(seen.sum())
         z = np.full(seen.shape, np.nan)
-        z[seen] = residual[at : at + size]
+        z[seen] = whole[at : at + size]
         at += size
-        robust = max(scale if known else 1.4826 * float(np.nanmedian(np.abs(z))), 1e-300)
+        typical = max(scale if known else 1.4826 * float(np.nanmedian(np.abs(z))), 1e-300)
         for c in range(len(model.seen.columns)):
             column = z[:, c][np.isfinite(z[:, c])]
             r, off = _memory(column)
             if off > memory_excess:
                 memory, memory_excess = r, off
             runs = max(runs, _runs(column))
-        far = np.argwhere(np.abs(np.nan_to_num(z)) > limit * robust)
+        far = np.argwhere(np.abs(np.nan_to_num(z)) > limit * typical)
         outliers += [
-            Outlier(i, int(model.seen.rows[row]), model.seen.columns[c], -float(z[row, c]) / robust) for row, c in far
+            Outlier(i, int(model.seen.rows[row]), model.seen.columns[c], -float(z[row, c]) / typical) for row, c in far
         ]
     outliers.sort(key=lambda one: -abs(one.off))
     return Judgement(chi, freedom, float(excess), memory, memory_excess, runs, tuple(outliers), known)

@@ -14,8 +14,10 @@ from .problem import Problem
 
 LOSSES = ("linear", "soft_l1", "huber", "cauchy")
 _FEWEST = 3.0  # values for each unknown, in the first stretch
-_ROUNDS = 4  # in which the directions are found again
-_STAGE, _LAST = 25, 200  # trials
+_PART = 0.3  # of a number, by which the scenario's may be off
+_LONGER = 3.0  # times, from one stretch to the next
+_ROUNDS = 3  # in which the directions are found again
+_STAGE, _LAST = 20, 60  # trials
 
 
 @dataclass(frozen=True)
@@ -101,15 +103,32 @@ def _staged(problem: Problem, values: Array, held: Any) -> tuple[Array, int]:
     while share < 1:
         problem.until = share
         try:
-            found = look(problem, values, held)
-            if found.basis.shape[1]:
-                values, result = _lmfit(problem, values, found.basis, "linear", _STAGE, 1e-4)
+            basis = _careful(problem, values, held)
+            if basis.shape[1]:
+                values, result = _lmfit(problem, values, basis, "linear", _STAGE, 1e-4)
                 evaluations += result.nfev
         except TrundleError:
             break
-        share *= 2
+        share *= _LONGER
     problem.until = 1.0
     return values, evaluations
+
+
+def _careful(problem: Problem, values: Array, held: Any) -> Array:
+    """Return the directions that a stretch fixes well enough to move along them already.
+
+    A number that was asked for may be off by a part of itself; any other by what moves the body across all it went.
+    """
+    _, jacobian = problem.both(values)
+    norms = np.linalg.norm(jacobian, axis=0)
+    scale = problem.signal() / np.where(norms > 0, norms, np.inf)
+    for j, one in enumerate(problem.unknowns):
+        if one.asked and values[j] != 0:
+            scale[j] = min(scale[j], _PART * abs(values[j]))
+    scale[held] = 0.0
+    _, s, Vt = np.linalg.svd(jacobian * scale, full_matrices=False)
+    good = s > 1.0
+    return np.asarray((scale[:, None] * Vt.T)[:, good] / s[good])
 
 
 def _lmfit(problem: Problem, values: Array, basis: Array, loss: str, most: int, tolerance: float) -> tuple[Array, Any]:

@@ -17,6 +17,7 @@ from ...scenario import ScenarioFile
 from ...solve import closed_form, methods, transitions
 from ...solve.exact import ClosedForm, form_of_phase
 from ...solve.samples import Array, Samples
+from ...solve.transitions import PhaseStart
 from ..sensitivities import by_formula, keys
 from ..sensitivities.following import Followed, check_brink, follow
 from .camera import Camera
@@ -114,7 +115,7 @@ class RunModel:
         """Return the motion in floats."""
         system, start = keys.moved(self.scenario, dict(numbers))
         times = self.times(rows, float(camera.time_offset))
-        form = None if self._turned else form_throughout(system, start, float(times[-1]))
+        form, _ = (None, None) if self._turned else form_throughout(system, start, float(times[-1]))
         if form is not None:
             parts, grown = form.motion_and_support_at(times - start.time)
             support = tuple(first + gone for first, gone in zip(start.support, grown, strict=True))
@@ -134,9 +135,9 @@ class RunModel:
         duals = keys.varied(self.scenario, listed)  # names that it does not have only make room for slopes
         times = self.times(rows, float(value_of(camera.time_offset)))
         begun = np.maximum(times, start.time)
-        form = None if self._turned else form_throughout(system, start, float(times[-1]))
-        if form is not None and form.differentiable:
-            check_brink(system, transitions.at_start(system, start))
+        form, begin = (None, None) if self._turned else form_throughout(system, start, float(times[-1]))
+        if form is not None and begin is not None and form.differentiable:
+            check_brink(system, begin)
             now = transitions.at_start(*duals)
             varied = type(form).from_state_vector(duals[0], now.start, now.state_vector)
             parts, grown = varied.motion_and_support_at(times - start.time)
@@ -206,13 +207,13 @@ class RunModel:
         return angle + turns * (2 * np.pi)
 
 
-def form_throughout(system: RollingSystem, start: State, end: float) -> ClosedForm | None:
-    """Return the closed form that covers all of a run; None where none does, or the run comes to an event."""
+def form_throughout(system: RollingSystem, start: State, end: float) -> tuple[ClosedForm | None, PhaseStart]:
+    """Return the closed form of all of a run and how it begins; no form where none covers it, or an event comes."""
     now = transitions.at_start(system, start)
     form = form_of_phase(now.law.code, system, now.start, now.state_vector)
     if form is None or now.events or closed_form._first_stop(system, now, form, end - now.time) is not None:
-        return None
-    return form
+        return None, now
+    return form, now
 
 
 def _held(samples: Samples, times: Array) -> Any:

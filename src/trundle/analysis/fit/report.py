@@ -97,7 +97,7 @@ def toml(fit: Fit, run: int = 0) -> str:
             remarks.setdefault(key[: index.start()] if index else key, []).append(
                 f"{index[0]} {said}" if index else said
             )
-    head = [f"# {fit.verdict}", *outside, *(f"# {one}" for one in fit.undetermined)]
+    head = [f"# {fit.verdict}", *outside, *(f"# {one}" for one in fit.undetermined if len(one.names) > 1)]
     lines, table = [], ""
     counts: dict[str, int] = {}
     for line in fit.scenarios[run].to_toml().rstrip("\n").split("\n"):

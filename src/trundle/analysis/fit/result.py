@@ -202,7 +202,11 @@ class Fit(Displayed):
     @property
     def remarks(self) -> list[str]:
         """What else there is to say, a sentence each."""
-        said = [str(one) for one in self.undetermined]
+        asked = {one.name for one in self.estimates if one.asked}
+        silent = [one.names[0] for one in self.undetermined if len(one.names) == 1 and one.names[0] not in asked]
+        said = [str(one) for one in self.undetermined if one.names[0] not in silent]
+        if silent:
+            said.append(f"Held, as these data do not show it: {', '.join(silent)}.")
         said += [f"{text[:1].upper()}{text[1:]}." for text in self.judgement.remarks]
         for name, model in zip(report.labels(self), self.problem.models, strict=True):
             said.append(f"{name}: {model.seen.read}.")

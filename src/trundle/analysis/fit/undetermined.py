@@ -183,19 +183,26 @@ def _combination(names: Sequence[Unknown], values: Array, covariance: Array, row
     gradient = np.zeros(values.size)
     if one.unit == other.unit and abs(abs(slope) - 1) < _SAME:
         gradient[[q, p]] = 1.0, -slope
-        sign = "−" if slope > 0 else "+"
-        text = f"{other.name} {sign} {one.name}"
-        return Combination(text, float(gradient @ values), _sigma(gradient, covariance), one.unit, True, other.name)
+        if slope > 0 and gradient @ values < 0:
+            gradient, one, other = -gradient, other, one
+        text = f"{other.name} {'−' if slope > 0 else '+'} {one.name}"
+        with_name = names[q].name
+        return Combination(text, float(gradient @ values), _sigma(gradient, covariance), one.unit, True, with_name)
     product = _product(one, other, float(values[p]), float(values[q]), float(slope))
     if product is not None:
         f, g, power = product
         value = float(g.at(float(values[q])) * f.at(float(values[p])) ** float(power))
-        gradient[[q, p]] = value * g.slope(values[q]), value * float(power) * f.slope(values[p])
-        first = power == 1 and bool(one.unit) and not other.unit  # what has a unit stands first
-        unit = one.unit if first and f is _PLAIN else other.unit if not one.unit and g is _PLAIN else ""
+        gradient[[q, p]] = value * g.slope(float(values[q])), value * float(power) * f.slope(float(values[p]))
         sides = g.written.format(other.name), f.written.format(one.name)
-        text = _written(*(sides[::-1] if first else sides), power)
-        return Combination(text, float(value), _sigma(gradient, covariance), unit, True, other.name)
+        first = abs(power) == 1 and bool(one.unit) and not other.unit  # what has a unit stands first
+        text = _written(*sides, power)
+        unit = other.unit if not one.unit and g is _PLAIN else ""
+        if first:
+            text = _written(*sides[::-1], power)
+            unit = one.unit if f is _PLAIN else ""
+            if power < 0:
+                value, gradient = 1 / value, -gradient / value**2
+        return Combination(text, value, _sigma(gradient, covariance), unit, True, other.name)
     gradient[[q, p]] = 1.0, -slope
     text = f"{other.name} {'−' if slope > 0 else '+'} {abs(slope):.4g}·{one.name}"
     return Combination(text, float(gradient @ values), _sigma(gradient, covariance), other.unit, False, other.name)
