@@ -165,6 +165,7 @@ _HOMES = {
     "solve.exact": ("ClosedForm",),
     "analysis.derivation": ("derive",),
     "simulation.simulate": ("simulate", "Scenario"),
+    "analysis.fit": ("fit", "plan_fit", "Fit", "FitPlan", "Estimate", "Camera"),
     "analysis.sensitivities": ("sensitivities", "Sensitivities"),
     "analysis.statics": ("equilibria", "Equilibria", "Equilibrium"),
     "analysis.steady": ("steady_motions", "SteadyMotions", "SteadyMotion", "periodic_motion", "PeriodicMotion"),
