@@ -50,7 +50,7 @@ def dataset_table(data: Any, options: Options) -> Table:
         variable = data[name]
         if variable.dtype.kind not in "iuf":
             continue
-        unit = str(variable.attrs.get("units", ""))
+        unit = str(variable.attrs.get("units", "")).partition(" since ")[0]
         unit = re.sub(r"\s+([a-z]+)-(\d)", r"/\1^\2", unit).replace("^1", "")  # "m s-1", as CF has it
         found[f"{name} [{unit}]" if unit else str(name)] = variable.values
     return mapping_table(found, options, frame=str(data.attrs.get("frame", "")))

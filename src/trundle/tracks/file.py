@@ -5,9 +5,11 @@ from __future__ import annotations
 import io
 import zipfile
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path, PurePosixPath
+from typing import Any
 
 from ..errors import InvalidValueError
 from ..extras import need
@@ -111,3 +113,15 @@ class File:
                 yield sheet.title, grid_of_cells(list(sheet.iter_rows(values_only=True)))
         finally:
             book.close()
+
+
+@contextmanager
+def opened(file: File) -> Iterator[Any]:
+    """Give what is in a file of HDF5, by name; nothing where it is of another kind."""
+    import h5py
+
+    if not file.content.startswith(b"\x89HDF"):
+        yield {}
+        return
+    with h5py.File(io.BytesIO(file.content)) as root:
+        yield root

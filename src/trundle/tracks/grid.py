@@ -14,9 +14,10 @@ import numpy as np
 from ..errors import InvalidValueError
 from .table import Rejected
 
-MISSING = ("", "nan", "na", "n/a", "null", "none", "-", "--")  # what programs write where they have no number
+MISSING = ("", "nan", "na", "n/a", "null", "none", "-", "--", "#n/a")  # what programs write where they have no number
 CELL = "\x1f"  # between cells that come apart already: from a spreadsheet, or from quotes
 DECIMALS = {"point": ".", "comma": ","}
+_NOTE = re.compile(r"#(?!\d|\s*[,;\t]|\s*$|N/A|DIV/0|VALUE|REF|NUM|NAME).*")
 _SPELLINGS = sorted({way(word) for word in MISSING for way in (str, str.upper, str.capitalize)} | {"NaN", "N/A"})
 _SEPARATORS: tuple[str | None, ...] = ("\t", ";", ",", None)  # None: any white space
 _LOOKED_AT = 200  # lines, in which separator and headings are looked for
@@ -202,7 +203,10 @@ def grid_of_cells(cells: Sequence[Sequence[Any]]) -> Grid:
     [0.5, nan]
     """
     written = [["" if cell is None else str(cell).translate(_TIDY) for cell in row] for row in cells]
-    rows = [CELL.join(row) for row in written]
+    width = max(map(len, written), default=0)
+    rows = [
+        CELL.join([*row, *[""] * (width - len(row))]) for row in written
+    ]  # a sheet leaves out empty cells at the end
     lines = [i for i, row in enumerate(rows, 1) if row.strip(CELL).strip()]
     return _grid([rows[i - 1] for i in lines], lines, None, (), CELL, "row")
 
@@ -241,7 +245,8 @@ def _unquoted(row: str, separator: str) -> str:
 
 
 def _without_note(line: str) -> str:
-    return line.partition("#")[0]
+    """Return a line without what stands behind a #, which in "Run #2" and "#N/A" begins no note."""
+    return "" if line.lstrip().startswith("#") else _NOTE.sub("", line)
 
 
 def _split(row: str, separator: str | None) -> list[str]:
@@ -271,7 +276,7 @@ def numeric_share(cells: Sequence[str]) -> float:
 def _first_row(rows: Sequence[Sequence[str]]) -> int:
     """Return where the numbers begin: at a row of mostly numbers that another follows, so that no heading is one."""
     numeric = [numeric_share(row) >= _MOSTLY for row in rows]
-    follows = [*numeric[1:], True]
+    follows = [*numeric[1:], True][: len(rows)]
     return next((i for i, (one, after) in enumerate(zip(numeric, follows, strict=True)) if one and after), len(rows))
 
 
@@ -297,6 +302,8 @@ def _decimal(rows: Sequence[str]) -> str:
     if not any("," in row for row in rows):
         return "."
     text = "\n".join(rows)
+    if "." not in text and _SURELY.search(text):
+        return ","
     commas, points = len(_COMMA.findall(text)), len(_POINT.findall(text))
     if not commas or points > _FEW * commas:
         return "."

@@ -19,6 +19,8 @@ ALIASES: dict[str, tuple[str, ...]] = {
     "t": ("t", "time", "times", "timestamp", "sec", "seconds", "sim_time"),
     "frame": ("frame", "frames", "frame_number", "frame_index", "frame_idx"),
     "angle": ("angle", "theta", "phi"),
+    # A mark on the table, and a spot on the body, beside the centre of it.
+    **{f"{point}_{axis}": (f"{point}_{axis}", f"{point}{axis}") for point in ("mark", "spot") for axis in "xyz"},
     **{f"{key}{axis}": tuple(f"{name}{axis}" for name in names) for key, names in _VECTOR.items() for axis in "xyz"},
     **{f"q{part}": tuple(f"{name}{part}" for name in _QUATERNION) for part in "wxyz"},
     "e1": ("e1", "euler1", "euler_1", "roll"),
@@ -31,7 +33,13 @@ for _axis in "xyz":  # written the other way round: xdot, x_dot, x_velocity
     ALIASES[f"v{_axis}"] += (f"{_axis}_velocity",)
     ALIASES[_axis] += (f"{_axis}_position",)
 
-_KINDS = {"t": "time", "v": "velocity", "w": "angular velocity", "e": "angle", "a": "angle"}
+_KINDS = {
+    "t": "time",
+    **dict.fromkeys(("x", "y", "z", *(name for name in ALIASES if name[:5] in ("mark_", "spot_"))), "length"),
+    **dict.fromkeys(("vx", "vy", "vz"), "velocity"),
+    **dict.fromkeys(("wx", "wy", "wz"), "angular velocity"),
+    **dict.fromkeys(("e1", "e2", "e3", "angle"), "angle"),
+}
 PIXELS, FRAMES = ("px", "pixel", "pixels", "pix"), ("frame", "frames")
 _WRITTEN = {"deg.": "deg", "degrees": "deg", "degree": "deg", "sec": "s", "seconds": "s", "metres": "m", "meters": "m"}
 _UNITS = {unit for units in OFFERED.values() for unit in units} | {*PIXELS, *FRAMES, *_WRITTEN, "°", "°/s", "us", "µs"}
@@ -79,9 +87,7 @@ def kind_of(column: str) -> str | None:
     >>> kind_of("wx"), kind_of("x"), kind_of("qw")
     ('angular velocity', 'length', None)
     """
-    if column == "t" or column in ("x", "y", "z"):
-        return "time" if column == "t" else "length"
-    return _KINDS.get(column[0])
+    return _KINDS.get(column)
 
 
 def recognise(headings: Iterable[str]) -> dict[str, tuple[str, str]]:

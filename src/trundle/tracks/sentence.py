@@ -37,8 +37,10 @@ def _rhythm(time: Array, measured: Any, noun: str) -> list[str]:
     times = time[measured]
     if times.size < 3:
         return []
-    steps = np.diff(times) / float(np.median(np.diff(time)))
-    even = bool(np.all(np.abs(steps - np.round(steps)) < _EVEN))
+    steps = np.diff(times)
+    scales = [float(np.median(np.diff(time))), float(steps.min())]  # most frames are there, or two in a row at least
+    even = [scale for scale in scales if np.all(np.abs(steps / scale - np.round(steps / scale)) < _EVEN)]
+    steps = steps / [*even, *scales][0]
     edges = [int(np.argmax(measured)), int(np.argmax(measured[::-1]))]  # empty rows before the first, behind the last
     count = int((steps > 1.5).sum()) + sum(edge > 0 for edge in edges)
     if not even:

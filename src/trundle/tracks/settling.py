@@ -18,6 +18,7 @@ from .table import NOT_USED, Column, Table
 from .track import Array, Track
 
 FRAMES, AXES = ("support", "world", "corotating"), ("space", "body")
+_UPWARDS = ("y", "vy", "mark_y", "spot_y")  # what turns its sign with y
 _STEP = 1.0  # nobody films a ball once a second: times without a unit in such steps are more often frames or ms
 
 
@@ -47,9 +48,8 @@ class Reading:
         values = {name: self.cells[name].numbers * factor for name, (factor, _) in units.items()}
         if not values:
             self._ask()
-        for name in ("y", "vy"):
-            if name in values and self._down:
-                values[name] = -values[name]
+        if self._down:
+            values |= {name: -array for name, array in values.items() if name in _UPWARDS}
         if "angle" in values and self._clockwise:
             values["angle"] = -values["angle"]
         used = {"t": self.cells["t"]} | {name: self.cells[name] for name in values}
@@ -60,7 +60,7 @@ class Reading:
                 for name, array in values.items()
             },
             coords={
-                "time": ("time", time[kept], {"units": "s", "heading": found[self._clock][0].heading}),
+                "time": ("time", time[kept], {"units": "s", "heading": found["t"][0].heading}),
                 "row": ("time", row_numbers(self.table, time.size)[kept]),
             },
             attrs={"frame": self._frame, "axes": self.table.axes or self.axes},
@@ -121,8 +121,6 @@ class Reading:
             raise InvalidValueError("columns", rule, received[:400], remedy)
         return found
 
-    _clock = "t"
-
     # --- units -----------------------------------------------------------------------------------------
 
     def _units(self, found: Mapping[str, tuple[Column, str]]) -> dict[str, tuple[float, str]]:
@@ -142,6 +140,9 @@ class Reading:
                 self._leave(name, column, "nobody says whether it is clockwise: --sense", error)
             else:
                 known[name] = (self._factor(unit, kind, column), unit)
+        if self.options.pixel is not None and not any(_in_pixels(unit) for _, unit in known.values()):
+            shown = ", ".join(f"`{column.heading}`" for column, _ in found.values())
+            raise InvalidValueError("pixel", "is for places in pixels", shown, "Leave it out.")
         return known
 
     def _unit(self, kind: str | None) -> str | None:
@@ -162,7 +163,7 @@ class Reading:
         what = f"no unit of `{column.heading}` in {self.source or 'the data'}"
         error = InvalidValueError("units", rule, what, f"Give {example}, or m, or what it is." if kind == "length"
                                   else f"Give {example}, or what it is.")  # fmt: skip
-        if name in ("x", "y", "z"):
+        if kind == "length":
             raise error
         self._leave(name, column, f"its unit is not known: {option}", error)
 
@@ -180,8 +181,7 @@ class Reading:
                                 "Name them: columns x=HEADING.")  # fmt: skip
 
     def _factor(self, unit: str, kind: str | None, column: Column) -> float:
-        pixel, _, per = unit.partition("/")
-        if pixel.strip() in names.PIXELS and per.strip() in ("", "s"):
+        if _in_pixels(unit):
             if self.options.pixel is None:
                 rule = "must be given where places are in pixels"
                 remedy = "Give the size of one: pixel='0.8 mm' (`--pixel '0.8 mm'`)."
@@ -226,7 +226,7 @@ class Reading:
             self.unit_of_time = "frames"
             if self.options.rate is None:
                 rule = "must be given where a file counts frames"
-                heading = self.table.columns[0].heading
+                heading = self.cells["t"].heading
                 raise InvalidValueError("rate", rule, f"`{heading}`", "Give the frames a second: --rate 60.")
             return numbers / self.options.rate
         if self.options.rate is not None and self.table.rate is None:
@@ -242,9 +242,13 @@ class Reading:
             said.append("y turned up")
         if "angle" in units and self._clockwise:
             said.append("angle turned anticlockwise")
-        if self.options.pixel is not None and any(unit.startswith(names.PIXELS) for unit in units.values()):
+        if self.options.pixel is not None and any(map(_in_pixels, units.values())):
             said.append(f"a pixel of {self.options.pixel * 1e3:.6g} mm")
         return ", ".join([*said, *self.table.remarks])
+
+
+def _in_pixels(unit: str) -> bool:
+    return unit.removesuffix("/s").strip() in names.PIXELS
 
 
 def _si(name: str) -> str:

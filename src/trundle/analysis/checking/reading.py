@@ -17,6 +17,7 @@ from ...tracks import Track, read_track
 from .record import Array, ExternalTrajectory
 from .rows import whole_rows
 
+_OTHER_POINTS = ("angle", "mark_", "spot_")  # what a track may hold beside the motion of the centre
 AXES, ORDERS, DIRECTIONS = ("space", "body"), ("wxyz", "xyzw"), ("body-to-space", "space-to-body")
 
 
@@ -95,7 +96,7 @@ def read(data: Any, system: RollingSystem, conventions: Conventions) -> External
     wrong = next((one.error for one in track.rejected if one.error is not None), None)
     if wrong is not None:
         raise wrong
-    columns, remarks = whole_rows(track, [name for name in track.columns if name != "angle"])
+    columns, remarks = whole_rows(track, [name for name in track.columns if not name.startswith(_OTHER_POINTS)])
     theirs = _arrays(columns, conventions, track)
     theirs = _in_space(theirs) if track.axes == "body" and theirs.angular_velocity is not None else theirs
     theirs = theirs if track.frame == "support" else from_frame(theirs, system, track.frame)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import InvalidValueError
-from ..file import File
+from ..file import File, opened
 from ..grid import Grid
 from ..options import Options
 from ..rows import Cells, row_numbers
@@ -50,32 +50,27 @@ class DeepLabCutHDF5(Format):
 
     def recognises(self, file: File) -> bool:
         """Tell by the table that pandas writes."""
-        return any(True for _ in _tables(file))
+        with opened(file) as root:
+            return _table(root) is not None
 
     def read(self, file: File, options: Options) -> Sequence[Table]:
         """Return a track for each part."""
-        table = next(_tables(file))
-        labels = _labels(table.attrs.get("values_block_0_kind"))
-        values = np.asarray(table["values_block_0"], dtype=float)
+        with opened(file) as root:
+            table = _table(root)
+            labels = _labels(table.attrs.get("values_block_0_kind"))
+            values = np.asarray(table["values_block_0"], dtype=float)
+            frames = np.asarray(table["index"], dtype=float)
         if values.ndim != 2 or len(labels) != values.shape[1]:
             rule = "must have a name for each column"
             received = f"{len(labels)} for columns of the shape {values.shape[1:]}"
             raise InvalidValueError("file", rule, received, "Export it as CSV: analyze_videos with save_as_csv=True.")
-        frames = np.asarray(table["index"], dtype=float)
         return parts(Table([]), frames, [label[1:] for label in labels], list(values.T), options)
 
 
-def _tables(file: File) -> Any:
-    """Yield the tables of pandas in a file of HDF5."""
-    import h5py
-
-    if file.content[:8] != b"\x89HDF\r\n\x1a\n":
-        return
-    with h5py.File(io.BytesIO(file.content)) as opened:
-        for group in opened.values():
-            table = group.get("table") if isinstance(group, h5py.Group) else None
-            if isinstance(table, h5py.Dataset) and {"index", "values_block_0"} <= set(table.dtype.names or ()):
-                yield table
+def _table(root: Any) -> Any:
+    """Return the table that pandas writes to HDF5; None where there is none."""
+    tables = (group["table"] for group in root.values() if "table" in getattr(group, "keys", dict)())
+    return next((table for table in tables if {"index", "values_block_0"} <= set(table.dtype.names or ())), None)
 
 
 class _Words(pickle.Unpickler):

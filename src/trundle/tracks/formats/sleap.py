@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from ...errors import InvalidValueError
-from ..file import File
+from ..file import File, opened
 from ..options import Options
 from ..table import Column, Table
 from .base import Format
@@ -24,21 +23,15 @@ class Sleap(Format):
 
     def recognises(self, file: File) -> bool:
         """Tell by the names of the datasets."""
-        import h5py
-
-        if file.content[:8] != b"\x89HDF\r\n\x1a\n":
-            return False
-        with h5py.File(io.BytesIO(file.content)) as opened:
-            return isinstance(opened.get("tracks"), h5py.Dataset) and isinstance(opened.get("node_names"), h5py.Dataset)
+        with opened(file) as root:
+            return {"tracks", "node_names"} <= set(root)
 
     def read(self, file: File, options: Options) -> Sequence[Table]:  # noqa: ARG002
         """Return a track for each node of each track."""
-        import h5py
-
-        with h5py.File(io.BytesIO(file.content)) as opened:
-            places = np.asarray(opened["tracks"], dtype=float)
-            nodes = _words(opened["node_names"])
-            names = _words(opened["track_names"]) if "track_names" in opened else []
+        with opened(file) as root:
+            places = np.asarray(root["tracks"], dtype=float)
+            nodes = _words(root["node_names"])
+            names = _words(root["track_names"]) if "track_names" in root else []
         if places.ndim != 4 or places.shape[1] != 2 or places.shape[2] != len(nodes):
             rule = "must hold `tracks` of the shape (tracks, 2, nodes, frames)"
             raise InvalidValueError("file", rule, f"{places.shape}, with {len(nodes)} nodes", "Export it again.")
