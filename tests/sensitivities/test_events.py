@@ -217,7 +217,7 @@ def test_when_an_event_comes_has_its_derivative(name: str) -> None:
     assert len(kinds) == len(found.data.kind)
 
 
-# Where rolling ends as friction just fails, or at rest, the rates do not jump, and when that is does not matter: but they
+# Where rolling ends as friction just fails, or at rest, the rates do not jump, and when that is does not matter. They
 # do where less friction is left than held the body.
 JUMPS = [
     name
