@@ -217,8 +217,8 @@ def test_when_an_event_comes_has_its_derivative(name: str) -> None:
     assert len(kinds) == len(found.data.kind)
 
 
-# Where rolling ends as friction just fails, or at rest, the rates do not jump, and when that is does not matter; they do
-# where less friction is left than held the body.
+# Where rolling ends as friction just fails, or at rest, the rates do not jump, and when that is does not matter. They
+# do where less friction is left than held the body.
 JUMPS = [
     name
     for name, (tables, _, kinds, _) in EVENTS.items()

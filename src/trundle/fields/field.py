@@ -216,7 +216,7 @@ class VectorField(Printed):
         if name not in self.resets:
             raise OutOfDomainError(
                 f"After `{event}` of {self.phase} no phase follows that can be written out: the run ends there, or the "
-                "landing turns the slip on the way, as where the body is no ball and friction is limited, or gives back. "
+                "landing turns the slip on the way, as where the body is no ball and friction is limited. "
                 'vector_field("numpy") knows that landing.'
             )
         reset = self.resets[name]

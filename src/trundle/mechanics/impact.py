@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import SolverError
 from .algebra import E_X, E_Y, E_Z, ZERO, Matrix, Quaternion, Vector
 from .contact import Contact
+from .duals import value_of
 from .onset import onset
 from .scalars import as_float, is_zero, less, namespace
 from .slipping import response
@@ -201,7 +202,7 @@ class _Course:
     def _to_the_end(self) -> Vector:
         """Return the impulse of Keller's course, up to where the share e² of compression is given back, N s."""
         total, size = ZERO, self.slip.norm()
-        if math.isinf(self.mu):  # friction without limit: slip ends at once
+        if math.isinf(value_of(self.mu)):  # friction without limit: slip ends at once
             total = self._end_at_once()
         for _ in range(_MOST_PIECES):
             if self.aim is None and self.slip.z >= 0:

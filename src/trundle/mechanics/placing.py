@@ -12,6 +12,7 @@ from . import checks, fitting, line_contact
 from .algebra import ZERO, Quaternion, Vector
 from .attitude import attitude
 from .contact import Contact, contact_at
+from .duals import value_of
 from .finiteness import check_finite
 from .motions import SupportState
 from .nearest import closest_contact, misplaced
@@ -218,8 +219,8 @@ class Placing:
 
     def _check_proportion(self, follows: Vector, *given: Vector) -> None:
         """Refuse what follows from rolling where it is out of all proportion: the body all but lies on its side."""
-        most = max(float(v.norm()) for v in given)
-        if float(follows.norm()) <= IN_PROPORTION * most:
+        most = max(value_of(v.norm()) for v in given)
+        if value_of(follows.norm()) <= IN_PROPORTION * most:
             return
         key = "orientation" if self.attitude is None else "attitude"
         value = (1.0, 0.0, 0.0, 0.0) if self.orientation is None else self.orientation
@@ -269,16 +270,16 @@ def slips(system: RollingSystem, contact: Contact, V: Vector, Omega: Vector) -> 
     s = contact.slip_velocity(V, Omega)
     along = (s - contact.normal * s.dot(contact.normal)).norm()
     u = contact.support.material_velocity(contact.point)
-    arm = float(contact.offset.norm())
-    least = _OF_A_FALL * math.sqrt(float(system.gravity) * arm)
+    arm = value_of(contact.offset.norm())
+    least = _OF_A_FALL * math.sqrt(value_of(system.gravity) * arm)
     scale = max(V.norm(), Omega.norm() * arm, u.norm())
-    return float(along) if along > max(SLIP_TOLERANCE * scale, least) else None
+    return float(value_of(along)) if along > max(SLIP_TOLERANCE * scale, least) else None
 
 
 def no_gap(contact: Contact, centre: Any) -> float:
     """Return the gap that a body may have which touches, m: what is asked of a start, or what rounding leaves of it."""
     places = Vector(*centre).norm() + contact.point.norm()
-    return max(SLIP_TOLERANCE * float(contact.offset.norm()), _ROUNDING * float(places))
+    return float(max(SLIP_TOLERANCE * value_of(contact.offset.norm()), _ROUNDING * value_of(places)))
 
 
 def _length(value: Any) -> int:
@@ -299,7 +300,7 @@ def _pair(value: Any, key: str) -> tuple[Any, Any]:
 
 def _unit_quaternion(orientation: Any) -> Quaternion:
     parts = checks.components(orientation, "number", "orientation", 4)
-    length = math.hypot(*parts)
+    length = math.hypot(*map(value_of, parts))
     if not 0 < length < math.inf:
         raise InvalidValueError("orientation", "must be a quaternion other than zero", orientation)
     if all(map(is_number, parts)) and abs(length - 1) < 4e-16:  # it is one already: keep it to the last digit

@@ -120,7 +120,7 @@ def check_start(system: RollingSystem, begins: PhaseStart, first: State, names: 
     """Refuse numbers of a start that alone would make slip what rolls, or turn what does not turn."""
     given = ContactState.of(system, first)
     turning = state_turning(given.contact, given.Omega)
-    if system.resisted and float(turning.norm()) * given.arm <= SLIP_TOLERANCE * given.speed:
+    if system.resisted and value_of(turning.norm() * given.arm) <= SLIP_TOLERANCE * given.speed:
         rule = "must name numbers that change alone without turning a body that does not turn at the start"
         remedy = "A resistance acts against either way at once, and so there is no derivative."
         _refuse(turning * given.arm, given, names, rule, remedy)
@@ -221,7 +221,7 @@ class VariationalRun:
         """Return the state in duals at which a phase begins, for a fixed instant."""
         if self.begins is not None:
             begins, self.begins = self.begins, None
-            self.here = begins.law, float(begins.time), self._at_fixed_time(now, begins)
+            self.here = begins.law, float(value_of(begins.time)), self._at_fixed_time(now, begins)
         law, time, state = self.here
         if now.time > time:
             state = law.rk4_step(self.duals, time, state, now.time - time)
@@ -239,7 +239,7 @@ class VariationalRun:
         numbers = [float(value_of(number)) for number in begins.state_vector]
         rates = [0.0] * len(numbers)
         if any(moved):
-            rates = [float(rate) for rate in now.law.rates(self.system, float(begins.time), numbers)]
+            rates = [float(rate) for rate in now.law.rates(self.system, float(value_of(begins.time)), numbers)]
         found = []
         for number, rate, part in zip(numbers, rates, begins.state_vector, strict=True):
             pairs = zip(slopes_of(part, self.count), moved, strict=True)
