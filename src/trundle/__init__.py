@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from . import units
     from .analysis.analogy import ChargedParticle, Twin, to_turntable, twin
+    from .analysis.chaos import LyapunovExponents, PoincareSection, lyapunov_exponents, poincare_section
     from .analysis.checking import Check, Mistake, check, check_equations
     from .analysis.derivation import derive
     from .analysis.geometry import Arc, Curve, PathScenario, RolledPath, Rotation, Straight, roll_along
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from .analysis.sensitivities import Sensitivities, sensitivities
     from .analysis.statics import Equilibria, Equilibrium, equilibria
     from .analysis.steady import PeriodicMotion, SteadyMotion, SteadyMotions, periodic_motion, steady_motions
+    from .analysis.sweep import Sweep, sweep
     from .analysis.vakonomic import VakonomicComparison, VakonomicPath, compare_vakonomic, vakonomic_path
     from .errors import (
         InvalidValueError,
@@ -91,6 +93,7 @@ if TYPE_CHECKING:
 # Public name -> module that holds it: `import trundle` loads nothing until a name is used.
 _HOMES = {
     "analysis.analogy": ("ChargedParticle", "Twin", "twin", "to_turntable"),
+    "analysis.chaos": ("lyapunov_exponents", "LyapunovExponents", "poincare_section", "PoincareSection"),
     "errors": (
         "TrundleError",
         "InvalidValueError",
@@ -162,10 +165,12 @@ _HOMES = {
     "solve.exact": ("ClosedForm",),
     "analysis.derivation": ("derive",),
     "simulation.simulate": ("simulate", "Scenario"),
+    "analysis.fit": ("fit", "plan_fit", "Fit", "FitPlan", "Estimate", "Camera"),
     "analysis.sensitivities": ("sensitivities", "Sensitivities"),
     "analysis.statics": ("equilibria", "Equilibria", "Equilibrium"),
     "analysis.steady": ("steady_motions", "SteadyMotions", "SteadyMotion", "periodic_motion", "PeriodicMotion"),
     "simulation.trajectory": ("Trajectory", "Event"),
+    "analysis.sweep": ("sweep", "Sweep"),
     "analysis.vakonomic": ("compare_vakonomic", "vakonomic_path", "VakonomicComparison", "VakonomicPath"),
     "tracks": ("read_track", "Track"),
     "verify": ("Card",),
@@ -203,6 +208,7 @@ __all__ = [
     "InvalidValueError",
     "Isotropic",
     "Load",
+    "LyapunovExponents",
     "Magnus",
     "MissingExtraError",
     "Mistake",
@@ -217,6 +223,7 @@ __all__ = [
     "PfaffianSystem",
     "PivotFriction",
     "Plane",
+    "PoincareSection",
     "Potential",
     "PrecessingTilt",
     "Principal",
@@ -248,6 +255,7 @@ __all__ = [
     "Support",
     "SupportFunction",
     "Surface",
+    "Sweep",
     "Tensor",
     "Tilt",
     "Torque",
@@ -270,8 +278,10 @@ __all__ = [
     "compare_vakonomic",
     "derive",
     "equilibria",
+    "lyapunov_exponents",
     "periodic_motion",
     "place_many",
+    "poincare_section",
     "read_track",
     "roll_along",
     "sensitivities",
@@ -279,6 +289,7 @@ __all__ = [
     "simulate",
     "simulate_many",
     "steady_motions",
+    "sweep",
     "to_turntable",
     "twin",
     "units",

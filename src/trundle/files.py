@@ -43,7 +43,7 @@ def staging(above: Path, *others: Path) -> Iterator[Path]:
     stage = made.with_name(made.name.replace(_UNHELD, _STAGE))  # it has this name only while it is held
     held = None
     try:
-        held = _hold(made)
+        held = hold(made)
         made.replace(stage)
         yield stage
     finally:
@@ -53,8 +53,17 @@ def staging(above: Path, *others: Path) -> Iterator[Path]:
             os.close(held)
 
 
-def _hold(folder: Path) -> int | None:
-    """Lock a folder, and return what holds the lock; None where somebody else has it, or folders cannot be locked."""
+def hold(folder: Path) -> int | None:
+    """Lock a folder, and return what holds the lock; None where somebody else has it, or folders cannot be locked.
+
+    Examples
+    --------
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     lock = hold(Path(folder))
+    ...     print(hold(Path(folder)))
+    ...     os.close(lock)
+    None
+    """
     try:
         import fcntl
 
@@ -81,7 +90,7 @@ def _clear_one(left: Path) -> None:
     if left.is_symlink() or not left.is_dir():
         return
     old = time.time() - left.stat().st_mtime > _OLD
-    held = _hold(left) if left.name.startswith(_STAGE) else None
+    held = hold(left) if left.name.startswith(_STAGE) else None
     if held is not None or old:
         shutil.rmtree(left, ignore_errors=True)
     if held is not None:

@@ -19,10 +19,12 @@ from .derive import derive
 from .equations import equations
 from .equilibria import equilibria
 from .export import export
+from .fit import fit
 from .lab import lab
 from .read import read
 from .sensitivity import sensitivity
 from .steady import steady
+from .sweep import sweep
 from .twin import twin
 from .vakonomic import vakonomic
 
@@ -45,6 +47,7 @@ def command() -> Any:
     app.command("list", short_help="Name the scenarios that ship with trundle.")(list_scenarios)
     app.command("show", short_help="Print a scenario file, and what to expect of it.")(show)
     app.command("check", short_help="Check somebody else's trajectory, and name the likely mistake.")(check)
+    app.command("fit", short_help="Fit numbers to measured motion, and say what it cannot show.")(fit)
     app.command("read", short_help="Say what is taken for what in a measured track.")(read)
     app.command("derive", short_help="Derive a motion, each equation proved by the code.")(derive)
     app.command("schema", short_help="Print the JSON schema of scenario files, for editors.")(schema)
@@ -56,6 +59,7 @@ def command() -> Any:
     app.command("equations", short_help="Print the law as C, Python, JavaScript, LaTeX or JAX.")(equations)
     app.command("export", short_help="Write a run as a page, a model, a picture, a table.")(export)
     app.command("lab", short_help="Open the lab: the ball in a browser.")(lab)
+    app.command("sweep", short_help="Run a scenario for many values of its numbers.")(sweep)
     app.command("steady", short_help="Steady motions, and whether they are stable.")(steady)
     return typer.main.get_command(app)
 
