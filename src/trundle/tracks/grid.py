@@ -226,6 +226,10 @@ def _grid(
         separator = _separator(rows[:_LOOKED_AT])
         if separator is not None and any('"' in row for row in rows):
             rows, separator = [_unquoted(row, separator) for row in rows], CELL
+    blank = f"{separator or ''} \t"
+    if not all(row.strip(blank) for row in rows):  # separators and nothing between them
+        kept = [i for i, row in enumerate(rows) if row.strip(blank)]
+        rows, lines = [rows[i] for i in kept], [lines[i] for i in kept]
     cells = [_split(row, separator) for row in rows[:_LOOKED_AT]]
     first = _first_row(cells)
     head = tuple((lines[i], tuple(cell.strip().strip('"') for cell in cells[i])) for i in range(first))

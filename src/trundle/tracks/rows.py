@@ -83,7 +83,7 @@ def taken_rows(table: Table, time: Array, cells: Mapping[str, Cells]) -> tuple[I
 def _check_few(rejected: list[Rejected], size: int) -> None:
     """Refuse a table of which too much is wrong, by the first of it."""
     errors = [one.error for one in rejected if one.error is not None]
-    if len(errors) > max(_FEW, _SHARE * size):
+    if errors and (len(errors) > max(_FEW, _SHARE * size) or 2 * len(errors) >= size):
         raise errors[0]
 
 

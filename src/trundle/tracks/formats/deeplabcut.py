@@ -35,7 +35,9 @@ class DeepLabCut(GridFormat):
     def tracks(self, grid: Grid, options: Options) -> Sequence[Table]:
         """Return a track for each part."""
         width = len(grid.names)
-        levels = [cells[1:width] for _, cells in grid.head if cells and cells[0].lower() in _LEVELS[1:]]
+        levels = [
+            [*cells, *[""] * width][1:width] for _, cells in grid.head if cells and cells[0].lower() in _LEVELS[1:]
+        ]
         labels = list(zip(*levels, strict=True))
         table = table_of(grid, grid.names)
         return parts(table, table.columns[0].cells, labels, [column.cells for column in table.columns[1:]], options)

@@ -48,9 +48,16 @@ class TrackerProject(Format):
 
 
 def _tracks(content: bytes, options: Options) -> Iterator[Table]:
+    from defusedxml import DefusedXmlException
     from defusedxml.ElementTree import fromstring
 
-    panel = _read(fromstring(content, forbid_dtd=True))
+    try:
+        panel = _read(fromstring(content, forbid_dtd=True))
+    except DefusedXmlException:
+        rule = "must hold neither a document type nor entities"
+        raise InvalidValueError(
+            "file", rule, "such a one", "Tracker writes none: was the file made to do harm?"
+        ) from None
     if not isinstance(panel, Mapping) or not _class(panel).endswith(_PANEL):
         rule = "must be a project of Tracker's"
         raise InvalidValueError("file", rule, "another kind of XML", "Save the tab with its tracks as .trk.")
@@ -64,7 +71,7 @@ def _tracks(content: bytes, options: Options) -> Iterator[Table]:
     axes = _Axes(coords, options, calibrated=calibrated)
     for thing in things:
         if _class(thing).endswith(f".{_MASS}") and _object(thing, "framedata"):
-            yield _track(thing, clip, _clock(clip, clock, options), axes, str(panel.get("length_unit", "m") or "m"))
+            yield _track(thing, clip, _clock(clip, clock, options), axes, str(panel.get("length_unit", "")))
 
 
 def _clock(clip: Mapping[str, Any], clock: Mapping[str, Any], options: Options) -> float:
@@ -110,6 +117,8 @@ class _Axes:
 
     def __init__(self, coords: Mapping[str, Any], options: Options, *, calibrated: bool) -> None:
         known = {frame: data for frame, data in (coords.get("framedata") or {}).items() if isinstance(data, Mapping)}
+        if not known:
+            raise InvalidValueError("coords", "must hold the axes of a frame", "none", "Save it again in Tracker.")
         self._frames = sorted(known)
         self._known = {frame: self._of(data) for frame, data in known.items()}
         unscaled = all(scale == (1.0, 1.0) for *_, scale in self._known.values())
@@ -119,14 +128,12 @@ class _Axes:
 
     @staticmethod
     def _of(data: Mapping[str, Any]) -> tuple[float, float, float, tuple[float, float]]:
-        x, y, angle = (_finite(name, data.get(name, 0.0)) for name in ("xorigin", "yorigin", "angle"))
-        xscale, yscale = (_positive(name, data.get(name, 1.0)) for name in ("xscale", "yscale"))
+        x, y, angle = (_finite(name, data.get(name)) for name in ("xorigin", "yorigin", "angle"))
+        xscale, yscale = (_positive(name, data.get(name)) for name in ("xscale", "yscale"))
         return x, y, math.radians(angle), (xscale, yscale)
 
     def place(self, frame: int, x: float, y: float) -> tuple[float, float]:
         """Return a point along the axes of its frame, those of the last frame that has some, in units of the scale."""
-        if not self._frames:
-            return x, -y
         at = self._frames[max(int(np.searchsorted(self._frames, frame, side="right")) - 1, 0)]
         x0, y0, angle, (xscale, yscale) = self._known[at]
         dx, dy, c, s = x - x0, y - y0, math.cos(angle), math.sin(angle)
