@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from .result import Fit
 
 _PLAIN = 10.0  # by which Akaike's criterion must fall for another law to be plainly better (Burnham and Anderson 2002)
+_TRIALS = 12  # of the model, for each law
 _LEAST = 1e-6  # where an added number begins, which may have no slope at 0
 HEADINGS = ("what is added", "χ²", "numbers", "AIC, against the fit", "value")
 
@@ -164,11 +165,11 @@ class Alternatives(Displayed):
 
 def compare(fit: Fit) -> Alternatives:
     """Return the fits with something added, the best first."""
-    found = [one for one in (_tried(fit, idea) for idea in IDEAS) if one is not None]
+    found = [one for one in (tried(fit, idea) for idea in IDEAS) if one is not None]
     return Alternatives(fit.title, tuple(sorted(found, key=lambda one: -one.gain)))
 
 
-def _tried(fit: Fit, idea: _Idea) -> Alternative | None:
+def tried(fit: Fit, idea: _Idea) -> Alternative | None:
     """Return one alternative; None where it is in the scenario already, or cannot be followed."""
     problem = fit.problem
     scenarios = []
@@ -191,7 +192,7 @@ def _tried(fit: Fit, idea: _Idea) -> Alternative | None:
     other = Problem(unknowns, models, problem.noises, dict(problem.priors))
     held = np.array([one.state in ("held", "limit") for one in fit.estimates] + [False] * len(fresh))
     try:
-        minimum = minimise(other, other.start, held, staged=False)
+        minimum = minimise(other, other.start, held, staged=False, most=_TRIALS)
         chi = float((other.residual(minimum.values) ** 2).sum())
         if not np.array_equal(other.inside(minimum.values), minimum.values):  # of nothing the data would like less
             chi = fit.judgement.chi_square

@@ -16,7 +16,7 @@ from ...simulation.simulate import Scenario
 from ...solve.samples import Array
 from ...units import UNITS, to_si
 from .camera import Camera
-from .directions import Directions, echelon
+from .directions import Directions, echelon, taken
 from .first_guess import first_guess
 from .judging import judge
 from .minimising import LOSSES, Minimum, look, minimise
@@ -27,7 +27,6 @@ from .result import Estimate, Fit
 from .undetermined import preference, undetermined
 from .unknowns import Unknown, changed, limit, of_run, prepared, unknowns
 
-_SHOWS = 1e-5  # share of a direction from which a number takes part in it
 _MOST_LIMITS = 8
 _PLAINLY = 3.0  # χ²/dof
 _CERTAIN = 25.0  # χ² by which motion must beat rest, for each number fitted, to be motion
@@ -306,8 +305,7 @@ def _told(problem: Problem, solved: _Solved, scenario: ScenarioFile, loss: str, 
         factor = judgement.reduced
     _, jacobian = problem.both(values)
     scale = alone(jacobian)
-    nulls = np.abs(np.hstack([found.free, found.weak]) / scale[:, None])
-    together = (nulls > _SHOWS * nulls.max(axis=0, initial=1e-300)).any(axis=1)
+    together = taken(found, scale, problem.signal())
     scaled = replace(found, basis=found.basis * np.sqrt(factor))
     open_ = undetermined(problem, values, scaled, scale, cures=cures)
     covariance = solved.covariance * factor

@@ -8,11 +8,13 @@ which nothing that was measured changes.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ...solve.samples import Array
 
+_SHOWS, _MOVED = 1e-5, 0.1
 EXACT = 1e-7  # of the largest: below it the data do not change at all along a direction
 
 
@@ -81,6 +83,19 @@ def _unit(columns: Array) -> Array:
     lengths = np.linalg.norm(columns, axis=0)
     columns = columns / np.where(lengths > 0, lengths, 1.0)
     return np.asarray(columns * np.where(columns[-1:] < 0, -1.0, 1.0)) if columns.size else columns
+
+
+def taken(found: Directions, scale: Array, signal: float) -> Any:
+    """Return which numbers take part in a direction that is not fixed, (p,).
+
+    In a weak direction, those that a step as large as all of the motion would move by more than they are known.
+    """
+    free = np.abs(found.free / scale[:, None])
+    part = (free > _SHOWS * free.max(axis=0, initial=1e-300)).any(axis=1)
+    weak = np.abs(found.weak / scale[:, None])
+    weak /= np.linalg.norm(weak, axis=0, keepdims=True)
+    known = np.linalg.norm(found.basis, axis=1) / scale
+    return np.asarray(part | (weak * signal > _MOVED * known[:, None]).any(axis=1))
 
 
 def echelon(null: Array, scale: Array, preferred: Array) -> tuple[Array, list[int]]:

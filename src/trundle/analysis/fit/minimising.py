@@ -45,7 +45,9 @@ class Minimum:
     evaluations: int
 
 
-def minimise(problem: Problem, values: Array, held: Any, loss: str = "linear", *, staged: bool = True) -> Minimum:
+def minimise(
+    problem: Problem, values: Array, held: Any, loss: str = "linear", *, staged: bool = True, most: int = _LAST
+) -> Minimum:
     """Return the minimum nearest to a first guess; unknowns that are held keep their values.
 
     Raises
@@ -58,15 +60,15 @@ def minimise(problem: Problem, values: Array, held: Any, loss: str = "linear", *
         values, evaluations = _staged(problem, values, held)
     problem.until = 1.0
     found = look(problem, values, held)
-    for _ in range(_ROUNDS):
+    for _ in range(_ROUNDS if most == _LAST else 1):
         rank = found.basis.shape[1]
         if rank == 0:
             return Minimum(values, found, np.zeros((values.size, values.size)), None, evaluations)
-        values, result = _lmfit(problem, values, found.basis, loss, _LAST, 1e-10)
+        values, result = _lmfit(problem, values, found.basis, loss, most, 1e-10)
         evaluations += result.nfev
         again = look(problem, values, held)
         same, found_before, found = again.basis.shape[1] == rank, found, again
-        if same and (result.success or result.nfev < _LAST):
+        if same and (result.success or result.nfev < most):
             break
     covariance = _covariance(result, found_before.basis, found, loss)
     return Minimum(values, found, covariance, result, evaluations)

@@ -18,7 +18,7 @@ from ...units import to_si
 from ..sensitivities import keys
 from .api import alone, pose
 from .camera import Camera
-from .directions import directions
+from .directions import directions, taken
 from .model import RunModel
 from .observations import COLUMNS, Observations
 from .undetermined import Undetermined, undetermined
@@ -27,7 +27,6 @@ _LENGTHS = (0.25, 0.5, 1.0)  # of the scenario's duration
 _RATES = (30.0, 60.0, 120.0)  # pictures a second
 _NOISES = (2e-4, 5e-4, 1e-3, 2e-3)  # m
 _MOST_ROWS = 50_000
-_SHOWS = 1e-5
 
 
 @dataclass(frozen=True, repr=False)
@@ -278,6 +277,4 @@ def _errors(jacobian: Array, signal: float) -> Array:
     if jacobian.shape[0] < jacobian.shape[1]:
         return np.full(jacobian.shape[1], np.nan)
     found = directions(jacobian, signal)
-    nulls = np.abs(np.hstack([found.free, found.weak]) / alone(jacobian)[:, None])
-    open_ = (nulls > _SHOWS * nulls.max(axis=0, initial=1e-300)).any(axis=1)
-    return np.where(open_, np.nan, np.sqrt(np.diag(found.covariance)))
+    return np.where(taken(found, alone(jacobian), signal), np.nan, np.sqrt(np.diag(found.covariance)))

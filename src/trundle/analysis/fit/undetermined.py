@@ -15,7 +15,7 @@ import numpy as np
 
 from ...errors import TrundleError
 from ...solve.samples import Array
-from .directions import Directions, echelon
+from .directions import Directions, echelon, taken
 from .problem import Problem
 from .unknowns import Unknown, of_marks, of_run
 
@@ -105,15 +105,19 @@ class Undetermined:
         apart = [name for name in others if not name.startswith("start.")]
         start = len(apart) < len(others)
         if not others:
-            return f"{'The noise hides' if self.noisy else 'These data do not show'} `{first}`. {cure}"
+            return f"{self._data} do not show `{first}`. {cure}"
         if not apart:
             apart, start = list(others), False
         names = f"{_and((first, *apart))} apart{', nor the start' if start else ''}"
         if not self.combinations:
-            return f"{'The noise hides' if self.noisy else 'These data do not show'} {names}. {cure}"
+            return f"{self._data} do not tell {names}. {cure}"
         told = [one for one in self.combinations if one.with_name in apart]
         fixed = "; ".join(map(str, told[:_SHOWN])) + (f"; and {len(told) - _SHOWN} more" if len(told) > _SHOWN else "")
         return f"The data fix only {fixed}. They do not tell {names}. {cure}"
+
+    @property
+    def _data(self) -> str:
+        return "In this noise the data" if self.noisy else "These data"
 
 
 def pm(value: float, sigma: float) -> str:
@@ -142,7 +146,9 @@ def undetermined(
     for null, noisy in ((found.free, False), (found.weak, True)):
         if null.shape[1]:
             rows, pivots = echelon(null, scale, preference(problem.unknowns, null, scale))
-            nulls += [(row, pivot, noisy) for row, pivot in zip(rows.T, pivots, strict=True)]
+            part = taken(found, scale, problem.signal())
+            part[pivots] = True
+            nulls += [(np.where(part, row, 0.0), pivot, noisy) for row, pivot in zip(rows.T, pivots, strict=True)]
     shown = _others(problem, values) if cures and nulls else []
     told = []
     for i, (row, pivot, noisy) in enumerate(nulls):
