@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from .analysis.sensitivities import Sensitivities, sensitivities
     from .analysis.statics import Equilibria, Equilibrium, equilibria
     from .analysis.steady import PeriodicMotion, SteadyMotion, SteadyMotions, periodic_motion, steady_motions
-    from .analysis.sweep import Sweep, sweep
+    from .analysis.sweep import Sweep, Tolerance, sweep, tolerance
     from .analysis.vakonomic import VakonomicComparison, VakonomicPath, compare_vakonomic, vakonomic_path
     from .errors import (
         InvalidValueError,
@@ -166,7 +166,7 @@ _HOMES = {
     "analysis.statics": ("equilibria", "Equilibria", "Equilibrium"),
     "analysis.steady": ("steady_motions", "SteadyMotions", "SteadyMotion", "periodic_motion", "PeriodicMotion"),
     "simulation.trajectory": ("Trajectory", "Event"),
-    "analysis.sweep": ("sweep", "Sweep"),
+    "analysis.sweep": ("sweep", "Sweep", "tolerance", "Tolerance"),
     "analysis.vakonomic": ("compare_vakonomic", "vakonomic_path", "VakonomicComparison", "VakonomicPath"),
     "verify": ("Card",),
     "analysis.checking": ("check", "check_equations", "Check", "Mistake"),
@@ -251,6 +251,7 @@ __all__ = [
     "Sweep",
     "Tensor",
     "Tilt",
+    "Tolerance",
     "Torque",
     "Torus",
     "TorusTrack",
@@ -280,6 +281,7 @@ __all__ = [
     "steady_motions",
     "sweep",
     "to_turntable",
+    "tolerance",
     "twin",
     "units",
     "vakonomic_path",
