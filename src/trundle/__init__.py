@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from .analysis.sensitivities import Sensitivities, sensitivities
     from .analysis.statics import Equilibria, Equilibrium, equilibria
     from .analysis.steady import PeriodicMotion, SteadyMotion, SteadyMotions, periodic_motion, steady_motions
-    from .analysis.sweep import Sweep, sweep
+    from .analysis.sweep import Sweep, Tolerance, sweep, tolerance
     from .analysis.vakonomic import VakonomicComparison, VakonomicPath, compare_vakonomic, vakonomic_path
     from .errors import (
         InvalidValueError,
@@ -170,7 +170,7 @@ _HOMES = {
     "analysis.statics": ("equilibria", "Equilibria", "Equilibrium"),
     "analysis.steady": ("steady_motions", "SteadyMotions", "SteadyMotion", "periodic_motion", "PeriodicMotion"),
     "simulation.trajectory": ("Trajectory", "Event"),
-    "analysis.sweep": ("sweep", "Sweep"),
+    "analysis.sweep": ("sweep", "Sweep", "tolerance", "Tolerance"),
     "analysis.vakonomic": ("compare_vakonomic", "vakonomic_path", "VakonomicComparison", "VakonomicPath"),
     "tracks": ("read_track", "Track"),
     "verify": ("Card",),
@@ -258,6 +258,7 @@ __all__ = [
     "Sweep",
     "Tensor",
     "Tilt",
+    "Tolerance",
     "Torque",
     "Torus",
     "TorusTrack",
@@ -291,6 +292,7 @@ __all__ = [
     "steady_motions",
     "sweep",
     "to_turntable",
+    "tolerance",
     "twin",
     "units",
     "vakonomic_path",

@@ -2,5 +2,6 @@
 
 from .api import sweep
 from .result import Sweep
+from .tolerancing import Tolerance, tolerance
 
-__all__ = ["Sweep", "sweep"]
+__all__ = ["Sweep", "Tolerance", "sweep", "tolerance"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -51,15 +52,12 @@ def in_print(unit: str) -> str:
 
     Examples
     --------
-    >>> in_print("m/s^2"), in_print("m s-1"), in_print("1")
-    ('m/s²', 'm s⁻¹', '')
+    >>> in_print("m/s^2"), in_print("m s-1"), in_print("kg*m^2"), in_print("1")
+    ('m/s²', 'm s⁻¹', 'kg m²', '')
     """
     if unit == "1":
         return ""
-    parts = [
-        part.rstrip("-0123456789") + part[len(part.rstrip("-0123456789")) :].translate(_POWERS) for part in unit.split()
-    ]
-    return " ".join(parts).replace("^2", "²").replace("^3", "³").replace("*", " ")
+    return re.sub(r"(?<=[A-Za-z])\^?(-?\d+)", lambda found: found[1].translate(_POWERS), unit).replace("*", " ")
 
 
 def draw(found: Sweep, name: str, at: Mapping[str, float] | None = None, axes: tuple[str, ...] = ()) -> Figure:
@@ -86,7 +84,7 @@ def draw(found: Sweep, name: str, at: Mapping[str, float] | None = None, axes: t
     grid = bool(data.attrs["grid"])
     with look():
         if not grid and len(found.over) != len(drawn) and not axes:
-            return _marginals(found, name)
+            return draw_marginals(found, name)
         figure = Sheet(7.0, 4.6 if len(drawn) == 2 else 3.6, layout="constrained")
         panel = figure.add_subplot()
         said = found.title
@@ -173,22 +171,27 @@ def _line(panel: Axes, across: Shown, measured: Shown, mark: str) -> None:
     _scaled(panel, "y", measured)
 
 
-def _marginals(found: Sweep, name: str) -> Figure:
+def draw_marginals(found: Sweep, name: str) -> Figure:
     """Draw a measure over each number alone, and how it is distributed."""
-    from ...views.plots.sheet import BLUE, Sheet
+    from ...views.plots.sheet import BLUE, Sheet, look
 
+    with look():
+        return _marginals(found, name, BLUE, Sheet)
+
+
+def _marginals(found: Sweep, name: str, colour: str, sheet: Any) -> Figure:
     measured = Shown.of(found.data[name])
     keys = found.over[: _MOST_PANELS - 1]
-    figure = Sheet(2 * _PANEL + 2, _PANEL * -(-(len(keys) + 1) // 2), layout="constrained")
+    figure = sheet(2 * _PANEL + 2, _PANEL * -(-(len(keys) + 1) // 2), layout="constrained")
     panels = figure.subplots(-(-(len(keys) + 1) // 2), 2, squeeze=False).ravel()
     for panel, key in zip(panels, keys, strict=False):
         _line(panel, Shown.of(found.data[key]), measured, ".")
     values = _drawable(measured).compressed()
     if measured.classes:
         counts = [int((values == value).sum()) for value, _ in measured.classes]
-        panels[len(keys)].bar([word for _, word in measured.classes], counts, color=BLUE)
+        panels[len(keys)].bar([word for _, word in measured.classes], counts, color=colour)
     else:
-        panels[len(keys)].hist(values, bins=min(40, max(5, int(np.sqrt(values.size)))), color=BLUE)
+        panels[len(keys)].hist(values, bins=min(40, max(5, int(np.sqrt(values.size)))), color=colour)
         panels[len(keys)].set_xlabel(measured.label)
     panels[len(keys)].set_ylabel("members")
     for panel in panels[len(keys) + 1 :]:

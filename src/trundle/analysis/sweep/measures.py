@@ -38,8 +38,8 @@ _SAMPLED = {
 }
 VARIABLES = {"t": "s", **{name: unit for name, (_, _, unit) in _SAMPLED.items()}, "tilt": "rad", "energy": "J"}
 
-OUTCOMES = ("waiting", "done", "refused", "failed")  # of a member
-WAITING, DONE, REFUSED, FAILED = range(4)
+OUTCOMES = ("waiting", "done", "refused", "failed", "inferred")  # of a member: the last from those about it
+WAITING, DONE, REFUSED, FAILED, INFERRED = range(5)
 _NEWTON = 60  # halvings of an interval between two samples
 
 

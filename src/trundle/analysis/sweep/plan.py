@@ -151,6 +151,7 @@ def _plan(tables: Mapping[str, Any], document: Scenario, near: Path | None) -> P
         partial(design.check, axes),
         *(partial(check_values, axis, document) for axis in axes),
         partial(_distinct, axes, measures),
+        partial(_classes_first, design, measures),
     )
     table = design.table(axes)
     chunk = _chunk(tables.get("chunk"), len(table), keep, document)
@@ -252,6 +253,12 @@ def _distinct(axes: list[Axis], measures: list[Measure]) -> None:
     for one in measures:
         if one.name in names:
             raise InvalidValueError(f"measure.{one.name}", "must not have the name of what varies", one.name)
+
+
+def _classes_first(design: Design, measures: list[Measure]) -> None:
+    if design.name == "boundary" and not measures[0].classes:
+        rule = 'must begin with a figure that has classes where the design is "boundary"'
+        raise InvalidValueError("measure", rule, measures[0].text, "These are: turned-over, ending.")
 
 
 def _chunk(given: Any, members: int, keep: int, document: Scenario) -> int:

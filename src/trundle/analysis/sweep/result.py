@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,6 +19,8 @@ from .store import Store, as_listed, described, plan_of, variables
 if TYPE_CHECKING:
     import xarray
     from matplotlib.figure import Figure
+
+    from ...simulation.simulate import Scenario
 
 _HEADINGS = ("what", "unit", "least", "median", "largest", "members without")
 
@@ -144,6 +146,46 @@ class Sweep(Displayed):
         found = np.bincount(self.data.status.values, minlength=len(OUTCOMES))
         return dict(zip(OUTCOMES, found.tolist(), strict=True))
 
+    def member(self, at: Mapping[str, float]) -> Scenario:
+        """Return the scenario of the member nearest to some values.
+
+        Parameters
+        ----------
+        at : mapping of str to float
+            Values of what varied, SI, each as near as there is one; absent: any.
+
+        Returns
+        -------
+        Scenario
+            Of one member, to run again.
+
+        Raises
+        ------
+        UnknownNameError
+            If something of that name did not vary.
+
+        Examples
+        --------
+        >>> import trundle as tr
+        >>> found = tr.sweep("tilted-turntable", {"gravity": [9.78, 9.83]}, ["end-time"], duration="1 s")
+        >>> found.member({"gravity": 9.9}).gravity
+        9.83
+        """
+        for key in at:
+            if key not in self.over:
+                raise UnknownNameError("number that varies", str(key), self.over)
+        off = np.zeros(self.data.sizes["member"])
+        for key, value in at.items():
+            column = self.data[key].values.astype(float)
+            off += ((column - float(value)) / (np.ptp(column) or 1.0)) ** 2
+        place = int(np.argmin(off))
+        plan = self._plan
+        return plan.job.member(plan.table[place])
+
+    @property
+    def _plan(self) -> Plan:
+        return plan_of(self.data.attrs, lambda key: as_listed(self.data[key].values, self.data[key].attrs))
+
     def __str__(self) -> str:
         rows = [_HEADINGS, *self._rows]
         widths = [max(len(row[i]) for row in rows) for i in range(len(_HEADINGS))]
@@ -184,13 +226,20 @@ class Sweep(Displayed):
             yield paragraph(" ".join(notes.split("\n")).strip())
         yield table(self._rows, _HEADINGS)
 
-    def plot(self, measure: str | None = None) -> Figure:
+    def plot(
+        self, measure: str | None = None, *, over: Sequence[str] = (), at: Mapping[str, float] | None = None
+    ) -> Figure:
         """Draw a measure over what varied: a line over one number, a map over two, else a panel for each number.
 
         Parameters
         ----------
         measure : str, optional
             Absent: the first.
+        over : sequence of str
+            The one or two numbers to draw it over; absent: the first two.
+        at : mapping of str to float, optional
+            Of a grid over more numbers: where the others are held, SI, as near as there is a value; absent: their
+            middle.
 
         Returns
         -------
@@ -214,7 +263,7 @@ class Sweep(Displayed):
         name = self.measures[0] if measure is None else measure
         if name not in self.measures:
             raise UnknownNameError("measure", str(name), self.measures)
-        return draw(self, name)
+        return draw(self, name, at, tuple(over))
 
     def save(self, path: Any) -> Path:
         """Write the results to a new Zarr store, whole or not at all.
@@ -238,7 +287,7 @@ class Sweep(Displayed):
         --------
         See `load`.
         """
-        plan = plan_of(self.data.attrs, lambda key: as_listed(self.data[key].values, self.data[key].attrs))
+        plan = self._plan
         store = Store.create(Path(path), plan)
         names = [str(name) for name in self.data.data_vars]
         for chunk in range(plan.chunks):

@@ -19,8 +19,8 @@ from ..sensitivities.keys import leaves
 
 Array = NDArray[np.float64]
 
-DESIGNS = ("grid", "together", "random", "latin-hypercube", "sobol", "variance")
-DRAWN = DESIGNS[2:]  # these draw from distributions, and need a number of members
+DESIGNS = ("grid", "boundary", "together", "random", "latin-hypercube", "sobol", "variance")
+DRAWN = DESIGNS[3:]  # these draw from distributions, and need a number of members
 MOST_MEMBERS = 10_000_000
 SHAPES = (
     'Write a list, { from = 1, to = 2, count = 11 }, the same with scale = "log", { uniform = [1, 2] }, '
@@ -142,8 +142,8 @@ def _texts(key: str, spec: Any, where: str) -> Axis:
 
 def _numeric(key: str, spec: Any, where: str, unit: str) -> Axis:
     convert = partial(_si, kind=_KIND_OF[unit])
-    if isinstance(spec, str) and (about := _PLUS_MINUS.fullmatch(spec)):
-        return _uniform(key, unit, *_limits(about[1], about[2], spec, convert, where), where)
+    if isinstance(spec, str) and halves(spec) is not None:
+        return _uniform(key, unit, *_limits(spec, convert, where), where)
     if isinstance(spec, Mapping):
         return _spaced(key, spec, where, unit, convert)
     if hasattr(spec, "tolist"):
@@ -160,15 +160,31 @@ def _si(value: Any, key: str, kind: str) -> float:
     return float(to_si(value, kind, key))
 
 
-def _limits(middle: str, half: str, whole: str, convert: Any, where: str) -> tuple[float, float]:
-    """Return the limits of "33.3 ± 0.3 rpm": a unit stands for both where it stands once."""
+def halves(text: str) -> tuple[str, str] | None:
+    """Return the two parts of "33.3 ± 0.3 rpm", each with the unit; None where it is written otherwise.
+
+    Examples
+    --------
+    >>> halves("33.3 ± 0.3 rpm"), halves("33.3 rpm")
+    (('33.3 rpm', '0.3 rpm'), None)
+    """
+    about = _PLUS_MINUS.fullmatch(text)
+    if about is None:
+        return None
+    middle, half = about[1], about[2]
     unit = _NUMBER.sub("", half, count=1)
-    bare = _NUMBER.fullmatch(middle)
+    return (f"{middle}{unit}" if _NUMBER.fullmatch(middle) else middle), half
+
+
+def _limits(text: str, convert: Any, where: str) -> tuple[float, float]:
+    """Return the limits of "33.3 ± 0.3 rpm": a unit stands for both where it stands once."""
+    middle, half = halves(text) or (text, text)
     try:
-        centre = float(convert(f"{middle}{unit}" if bare else middle, where))
-        reach = float(convert(half, where))
+        centre, reach = (
+            float(convert(part if not _NUMBER.fullmatch(part) else float(part), where)) for part in (middle, half)
+        )
     except InvalidValueError as error:
-        raise InvalidValueError(where, error.rule, whole, error.remedy) from None
+        raise InvalidValueError(where, error.rule, text, error.remedy) from None
     return centre - reach, centre + reach
 
 
@@ -300,8 +316,9 @@ class Design:
     Parameters
     ----------
     name : str
-        "grid": each with each. "together": the first of each, then the second. "random", "latin-hypercube", "sobol":
-        drawn. "variance": the three sets of draws that shares of the variance need.
+        "grid": each with each. "boundary": a grid of two, run near the boundary between classes only. "together": the
+        first of each, then the second. "random", "latin-hypercube", "sobol": drawn. "variance": the sets of draws that
+        shares of the variance need.
     members : int or None
         How many are drawn; for "variance" in each set.
     seed : int
@@ -369,6 +386,9 @@ class Design:
                 rule = f'must say how many values it takes where the design is "{self.name}"'
                 remedy = 'Give a list or a `count`; or draw: design = "sobol" with `members`.'
                 raise InvalidValueError(f"over.{axis.key}", rule, "a distribution or a range without `count`", remedy)
+            if self.name == "boundary" and (len(axes) != 2 or axis.values.size < 2):
+                rule = 'must be two numbers, each with 2 values or more, where the design is "boundary"'
+                raise InvalidValueError("over", rule, [one.key for one in axes], 'Or take design = "grid".')
             if self.name == "together" and axes[0].values is not None and axis.values.size != axes[0].values.size:
                 rule = f"must take as many values as `{axes[0].key}`, {axes[0].values.size}"
                 raise InvalidValueError(
@@ -396,7 +416,7 @@ class Design:
 
 def grid_shape(design: Design, axes: Sequence[Axis]) -> tuple[int, ...] | None:
     """Return how many values each axis of a grid takes; None where the members are no grid."""
-    if design.name != "grid":
+    if design.name not in ("grid", "boundary"):
         return None
     return tuple(axis.values.size for axis in axes if axis.values is not None)
 
