@@ -8,7 +8,15 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from . import units
     from .analysis.analogy import ChargedParticle, Twin, to_turntable, twin
-    from .analysis.chaos import LyapunovExponents, PoincareSection, lyapunov_exponents, poincare_section
+    from .analysis.chaos import (
+        LyapunovExponents,
+        OrbitBranch,
+        PeriodicOrbit,
+        PoincareSection,
+        lyapunov_exponents,
+        periodic_orbit,
+        poincare_section,
+    )
     from .analysis.checking import Check, Mistake, check, check_equations
     from .analysis.derivation import derive
     from .analysis.geometry import Arc, Curve, PathScenario, RolledPath, Rotation, Straight, roll_along
@@ -93,7 +101,15 @@ if TYPE_CHECKING:
 # Public name -> module that holds it: `import trundle` loads nothing until a name is used.
 _HOMES = {
     "analysis.analogy": ("ChargedParticle", "Twin", "twin", "to_turntable"),
-    "analysis.chaos": ("lyapunov_exponents", "LyapunovExponents", "poincare_section", "PoincareSection"),
+    "analysis.chaos": (
+        "lyapunov_exponents",
+        "LyapunovExponents",
+        "poincare_section",
+        "PoincareSection",
+        "periodic_orbit",
+        "PeriodicOrbit",
+        "OrbitBranch",
+    ),
     "errors": (
         "TrundleError",
         "InvalidValueError",
@@ -216,10 +232,12 @@ __all__ = [
     "MotionFormula",
     "Motor",
     "Move",
+    "OrbitBranch",
     "OutOfDomainError",
     "Paraboloid",
     "PathScenario",
     "PeriodicMotion",
+    "PeriodicOrbit",
     "PfaffianSystem",
     "PivotFriction",
     "Plane",
@@ -281,6 +299,7 @@ __all__ = [
     "equilibria",
     "lyapunov_exponents",
     "periodic_motion",
+    "periodic_orbit",
     "place_many",
     "poincare_section",
     "read_track",
