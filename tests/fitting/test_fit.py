@@ -306,7 +306,7 @@ def test_covariances_and_units_say_the_same() -> None:
     for again in (
         tr.fit(data, table(), [K], noise=NOISE**2 * np.eye(2)),
         tr.fit(data, table(), [K], noise=NOISE**2 * np.eye(600)),
-        tr.fit(in_mm, table(), [K], noise="0.5 mm", length="mm"),
+        tr.fit(in_mm, table(), [K], noise="0.5 mm", units="mm"),
         tr.fit(data, table(), [K], noise=np.full(300, NOISE)),
     ):
         assert again[K].value == pytest.approx(plain[K].value, rel=1e-8)
