@@ -45,8 +45,8 @@ def fit(
     loss: str = "linear",
     start: str = "free",
     columns: Mapping[str, str] | None = None,
-    time: str = "s",
-    length: str = "m",
+    time: str | None = None,
+    length: str | None = None,
 ) -> Fit:
     """Fit numbers of a scenario to measured motion, and say which of them the data fix, and how well.
 
@@ -56,7 +56,7 @@ def fit(
 
     Parameters
     ----------
-    data : mapping, DataFrame, Dataset, path, or a list of these
+    data : Track, mapping, DataFrame, Dataset, path, or a list of these
         Columns over time: ``t`` and some of ``x``, ``y``, ``z`` (the centre), ``vx`` to ``vz``, ``wx`` to ``wz``
         (angular velocity), ``mark_x``, ``mark_y`` (a mark on the support), ``angle`` (by which the support has turned),
         ``spot_x`` to ``spot_z`` (a spot on the body). Several runs share what is free, and have each their own start.
@@ -79,8 +79,8 @@ def fit(
         "free", or "given": as in the scenario.
     columns : mapping, optional
         Of headings that do not tell: ``{"t": "frame_time", "x": "u"}``.
-    time, length : str
-        Units of headings that have none.
+    time, length : str, optional
+        Units of headings that have none; None: a file has to tell, and numbers in memory are in SI.
 
     Returns
     -------
