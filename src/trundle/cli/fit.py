@@ -86,6 +86,7 @@ def fit(
     Exit status: 0, a good fit; 2, bad input; 3, a bad fit; 4, these data cannot decide; 130, interrupted; 1, all else.
     """
     from ..analysis.fit import fit as fit_tracks
+    from ..tracks import read_track
 
     if scenario is None:
         remedy = "Name a shipped one (`trundle list`) or a TOML file."
