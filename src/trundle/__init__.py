@@ -8,6 +8,15 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from . import units
     from .analysis.analogy import ChargedParticle, Twin, to_turntable, twin
+    from .analysis.chaos import (
+        LyapunovExponents,
+        OrbitBranch,
+        PeriodicOrbit,
+        PoincareSection,
+        lyapunov_exponents,
+        periodic_orbit,
+        poincare_section,
+    )
     from .analysis.checking import Check, Mistake, check, check_equations
     from .analysis.derivation import derive
     from .analysis.geometry import Arc, Curve, PathScenario, RolledPath, Rotation, Straight, roll_along
@@ -86,11 +95,21 @@ if TYPE_CHECKING:
     from .simulation.simulate import Scenario, simulate
     from .simulation.trajectory import Event, Trajectory
     from .solve.exact import ClosedForm
+    from .tracks import Track, read_track
     from .verify import Card
 
 # Public name -> module that holds it: `import trundle` loads nothing until a name is used.
 _HOMES = {
     "analysis.analogy": ("ChargedParticle", "Twin", "twin", "to_turntable"),
+    "analysis.chaos": (
+        "lyapunov_exponents",
+        "LyapunovExponents",
+        "poincare_section",
+        "PoincareSection",
+        "periodic_orbit",
+        "PeriodicOrbit",
+        "OrbitBranch",
+    ),
     "errors": (
         "TrundleError",
         "InvalidValueError",
@@ -162,12 +181,14 @@ _HOMES = {
     "solve.exact": ("ClosedForm",),
     "analysis.derivation": ("derive",),
     "simulation.simulate": ("simulate", "Scenario"),
+    "analysis.fit": ("fit", "plan_fit", "Fit", "FitPlan", "Estimate", "Camera"),
     "analysis.sensitivities": ("sensitivities", "Sensitivities"),
     "analysis.statics": ("equilibria", "Equilibria", "Equilibrium"),
     "analysis.steady": ("steady_motions", "SteadyMotions", "SteadyMotion", "periodic_motion", "PeriodicMotion"),
     "simulation.trajectory": ("Trajectory", "Event"),
     "analysis.sweep": ("sweep", "Sweep", "tolerance", "Tolerance"),
     "analysis.vakonomic": ("compare_vakonomic", "vakonomic_path", "VakonomicComparison", "VakonomicPath"),
+    "tracks": ("read_track", "Track"),
     "verify": ("Card",),
     "analysis.checking": ("check", "check_equations", "Check", "Mistake"),
 }
@@ -203,6 +224,7 @@ __all__ = [
     "InvalidValueError",
     "Isotropic",
     "Load",
+    "LyapunovExponents",
     "Magnus",
     "MissingExtraError",
     "Mistake",
@@ -210,13 +232,16 @@ __all__ = [
     "MotionFormula",
     "Motor",
     "Move",
+    "OrbitBranch",
     "OutOfDomainError",
     "Paraboloid",
     "PathScenario",
     "PeriodicMotion",
+    "PeriodicOrbit",
     "PfaffianSystem",
     "PivotFriction",
     "Plane",
+    "PoincareSection",
     "Potential",
     "PrecessingTilt",
     "Principal",
@@ -255,6 +280,7 @@ __all__ = [
     "Torque",
     "Torus",
     "TorusTrack",
+    "Track",
     "Trajectory",
     "TrundleError",
     "Twin",
@@ -271,8 +297,12 @@ __all__ = [
     "compare_vakonomic",
     "derive",
     "equilibria",
+    "lyapunov_exponents",
     "periodic_motion",
+    "periodic_orbit",
     "place_many",
+    "poincare_section",
+    "read_track",
     "roll_along",
     "sensitivities",
     "sensitivity",

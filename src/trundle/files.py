@@ -6,11 +6,16 @@ import os
 import shutil
 import tempfile
 import time
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from .errors import TrundleError
+from .errors import RunFileError, TrundleError
+
+if TYPE_CHECKING:
+    import xarray
 
 _STAGE, _UNHELD = ".trundle-", ".trundle+"  # folders of a process that holds them, and for an instant before that
 _OLD = 86_400.0  # s: older than this is what nobody writes to any more, where no lock can tell
@@ -115,6 +120,35 @@ def written_whole(target: Path) -> Iterator[Path]:
     except OSError as error:
         reason = error.strerror or str(error)
         raise TrundleError(f"{target} cannot be written: {reason}. Choose another folder or make room.") from None
+
+
+def read_netcdf(path: Path) -> xarray.Dataset:
+    """Read a NetCDF4 file into memory.
+
+    Examples
+    --------
+    >>> _ = Path("text.nc").write_text("not NetCDF")
+    >>> read_netcdf(Path("text.nc"))
+    Traceback (most recent call last):
+    ...
+    trundle.errors.RunFileError: text.nc: `file` must be NetCDF4; got 'text.nc'. It is damaged, or something else (...).
+    """
+    import h5py
+    import xarray
+
+    if path.is_dir():
+        raise RunFileError("file", "must not be a folder", path.name, "Name a file in it.", str(path))
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of what is odd in a file, xarray warns before it fails
+            with h5py.File(path) as file:
+                dict(file.attrs)  # where one is damaged, h5netcdf leaves a file half open that complains when it goes
+            return xarray.load_dataset(path, engine="h5netcdf", decode_times=False)
+    except FileNotFoundError:
+        raise RunFileError("file", "must exist", path.name, "Check the name and the folder.", str(path)) from None
+    except Exception as error:  # noqa: BLE001  a damaged file makes four libraries raise a dozen kinds
+        remedy = f"It is damaged, or something else ({first_line(error)})."
+        raise RunFileError("file", "must be NetCDF4", path.name, remedy, str(path)) from None
 
 
 def first_line(error: Exception) -> str:

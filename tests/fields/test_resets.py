@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -154,6 +155,24 @@ def test_a_ball_that_slips_as_it_lands_is_slowed_by_the_friction_of_the_impulse(
     found, state = field.after("land", 0.0, y, field.parameters, field.inputs)
     assert found.phase == "flight"
     assert meant(found, state)["V_x"] == pytest.approx(3.0 - 0.48, abs=EXACT(16, 3))
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("friction", [None, 0.7, 0.15, 0.05])
+def test_a_ball_gives_back_what_friction_can(friction: float | None, backend: str) -> None:
+    """An impulse P changes the slip by 7/2 P/m: (1 + e_t) of what ends it is given, or μ (1 + e) v m, what is less.
+
+    There is as much friction as one likes, enough, too little for all of it, and too little to end the slip.
+    """
+    support = tr.Support(tr.Plane(), friction=friction, restitution=0.8, tangential_restitution=0.8)
+    field = fields(tr.RollingSystem(FLOOR.body, support), backend, "flight")
+    y = field.pack(coming_down(2.0, -3.0))
+    found, state = field.after("land", 0.0, y, field.parameters, field.inputs)
+    now = meant(found, state)
+    impulse = min(1.8 * 2.0 / 3.5, math.inf if friction is None else friction * 1.8 * 3.0)
+    assert found.phase == "flight"
+    assert now["V_x"] == pytest.approx(2.0 - impulse, abs=EXACT(16, 2))
+    assert now["Omega_y"] * 0.1 == pytest.approx(2.5 * impulse, abs=EXACT(32, 2))
 
 
 @pytest.mark.parametrize("backend", BACKENDS)

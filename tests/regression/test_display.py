@@ -22,6 +22,7 @@ from IPython.core.interactiveshell import InteractiveShell
 import trundle as tr
 from trundle import verify
 from trundle.analysis.checking import Mistake
+from trundle.analysis.fit import Alternative, Alternatives
 from trundle.display import Displayed, Headline, markup
 from trundle.verify import CardFigure
 
@@ -95,6 +96,16 @@ def derivatives() -> tr.Sensitivities:
 
 
 @cache
+def fitted() -> tr.Fit:
+    measured = run().data.isel(time=slice(0, 60))
+    columns = {"t": measured.time.values} | {
+        axis: measured.position.sel(axis=axis).values + 1e-3 * np.sin(1e4 * np.arange(60) + i)
+        for i, axis in enumerate("xy")
+    }
+    return tr.fit(columns, scenario("tilted-turntable"), ["support.tilt", "camera.scale"], noise="1 mm")
+
+
+@cache
 def equilibria() -> tr.Equilibria:
     return tr.equilibria(scenario("weighted-cylinder-on-incline"))
 
@@ -143,6 +154,10 @@ RESULTS: tuple[Callable[[], Displayed], ...] = (
     sensitivity,
     lambda: sensitivity().rows[0],
     derivatives,
+    fitted,
+    lambda: fitted().sample(steps=20, walkers=20),
+    lambda: Alternatives(TITLE, (Alternative("drag", 12.5, 3, 25.0, (("loads[0].coefficient", 0.5, 0.25),)),)),
+    lambda: tr.plan_fit(scenario("tilted-turntable"), "support.tilt", durations=[2.0], rates=[10]),
     derivation,
     lambda: derivation().steps[0],
     lambda: derivation().steps[0].equations[0],

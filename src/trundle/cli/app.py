@@ -19,7 +19,9 @@ from .derive import derive
 from .equations import equations
 from .equilibria import equilibria
 from .export import export
+from .fit import fit
 from .lab import lab
+from .read import read
 from .map import draw_map
 from .sensitivity import sensitivity
 from .steady import steady
@@ -47,6 +49,8 @@ def command() -> Any:
     app.command("list", short_help="Name the scenarios that ship with trundle.")(list_scenarios)
     app.command("show", short_help="Print a scenario file, and what to expect of it.")(show)
     app.command("check", short_help="Check somebody else's trajectory, and name the likely mistake.")(check)
+    app.command("fit", short_help="Fit numbers to measured motion, and say what it cannot show.")(fit)
+    app.command("read", short_help="Say what is taken for what in a measured track.")(read)
     app.command("derive", short_help="Derive a motion, each equation proved by the code.")(derive)
     app.command("schema", short_help="Print the JSON schema of scenario files, for editors.")(schema)
     app.command("twin", short_help="Find the charge in crossed fields that moves as the ball does.")(twin)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from operator import mul
 
+from .duals import value_of
 from .scalars import Scalar, namespace
 
 _TERMS = 32  # of a series
@@ -112,7 +113,7 @@ class TurningSlip:
         """How far the series hold to the last digit."""
         scales, last = (self.size, 1.0, 1.0, 1.0, 1.0, 1.0), _TERMS - 1
         pairs = list(zip(self.terms, scales, strict=True))
-        shares = [max(abs(float(row[k])) / float(scale) for row, scale in pairs) for k in (-2, -1)]
+        shares = [max(abs(value_of(row[k])) / value_of(scale) for row, scale in pairs) for k in (-2, -1)]
         return min(
             (_PRECISION / max(share, 1e-300)) ** (1.0 / power)
             for share, power in zip(shares, (last - 1, last), strict=True)
@@ -133,11 +134,11 @@ class TurningSlip:
 
     def reaches(self, row: int, value: Scalar, end: float) -> Scalar:
         """Return the τ at which a number comes up to a value that it has passed at an end, by Newton or by halves."""
-        series = [float(part) for part in self.terms[row]]
+        series = [float(value_of(part)) for part in self.terms[row]]
         slopes = [k * part for k, part in enumerate(series)][1:]
         low, high, tau = 0.0, end, end
         while high - low > _ROUNDING * high:
-            over = _value(series, tau) - float(value)
+            over = _value(series, tau) - value_of(value)
             low, high = (low, tau) if over >= 0 else (tau, high)
             slope = _value(slopes, tau)
             before, tau = tau, tau - over / slope if slope > 0 else low

@@ -14,6 +14,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from ..mechanics.surfaces.splines import Pieces, evaluated
+
 _LONGEST = 300  # characters of an expression: Python reads no more than 200 brackets in each other
 
 
@@ -76,7 +78,8 @@ class Tape:
         """Return the function of the inputs that gives the outputs."""
         lines, results = self.written(outputs, Dialect())
         worked_out = [f"    {name} = {text}" for name, text in lines]
-        return defined("\n".join(["def traced(x):", *worked_out, f"    return [{', '.join(results)}]"]))
+        text = ["def traced(x):", *worked_out, f"    return [{', '.join(results)}]"]
+        return defined("\n".join([*self._tables(outputs), *text]))
 
     def filling(self, outputs: Sequence[Any]) -> tuple[str, str]:
         """Return the text of a function of the inputs and an array, `out`, that fills the outputs in, and its name.
@@ -88,7 +91,16 @@ class Tape:
         filled = [f"    out[{i}] = {part}" for i, part in enumerate(results)]
         body = "\n".join([*worked_out, *filled, "    return", ""])
         name = f"law_{hashlib.sha256(body.encode()).hexdigest()[:32]}"
-        return f"def {name}(x, out):\n{body}", name
+        return "\n".join([*self._tables(outputs), f"def {name}(x, out):", body]), name
+
+    def _tables(self, outputs: Sequence[Any]) -> list[str]:
+        """Return the lines that define the tables which steps lean on."""
+        found = [part for i in self.needed(outputs) for part in self.steps[i][1:] if isinstance(part, Pieces)]
+        return [
+            f"{name} = table({numbers!r})"
+            for pieces in dict.fromkeys(found)
+            for name, numbers in zip(_names(pieces), (pieces.x, pieces.y, pieces.terms), strict=True)
+        ]
 
     def written(self, outputs: Sequence[Any], dialect: Dialect) -> tuple[list[tuple[str, str]], list[str]]:
         """Return the steps that lead to the outputs, each a name and its text, and then the texts of the outputs.
@@ -264,6 +276,7 @@ _PYTHON: dict[str, Callable[..., Any]] = {
     "abs": abs,
     "atan2": math.atan2,
     "where": _where,
+    "spline": evaluated,
 }
 
 
@@ -275,7 +288,7 @@ def defined(text: str, name: str = "traced", file: str = "<tape>", **functions: 
     >>> defined("def traced(x):\n    return [sqrt(x[0])]")([4.0])
     [2.0]
     """
-    place: dict[str, Any] = _PYTHON | functions
+    place: dict[str, Any] = _PYTHON | {"table": tuple} | functions
     exec(compile(text, file, "exec"), place)  # noqa: S102  operators, numbers and the names of `place`, nothing else
     return place[name]
 
@@ -309,7 +322,16 @@ def _is(value: Any, number: float) -> bool:
     return isinstance(value, (int, float)) and value == number
 
 
+def _names(pieces: Pieces) -> list[str]:
+    """Return what the tables of pieces are called: no others, and none evaluated otherwise, have these names."""
+    known = repr((pieces.x, pieces.y, pieces.terms)).encode() + evaluated.__code__.co_code
+    digest = hashlib.sha256(known).hexdigest()[:32]
+    return [f"{part}_{digest}" for part in ("x", "y", "terms")]
+
+
 def _name(part: Any, names: dict[int, str], dialect: Dialect) -> str:
+    if isinstance(part, Pieces):
+        return ", ".join(_names(part))
     return names[part.index] if isinstance(part, Node) else dialect.number(float(part))
 
 

@@ -12,6 +12,7 @@ from ...errors import InvalidValueError
 from ...mechanics import checks
 from ...mechanics.finiteness import check_finite, varies
 from ...mechanics.overlap import fits_anywhere
+from ...mechanics.placing import VELOCITY_WORDS
 from ...mechanics.placing_many import ManyPlacing, Placed
 from ...mechanics.system import RollingSystem, State
 from ...solve.ensemble import together
@@ -109,7 +110,7 @@ def place_many(
         One for all, or one for each member, of the same parts.
     position : array (members, 2) or sequence of 2 floats or quantities
         Of the contact or the centre, as of `place`: lengths in m, angles in rad.
-    velocity : array (members, 2 or 3), or for all, or "co-rotating", optional
+    velocity : array (members, 2 or 3), or for all, "co-rotating" or "rolling", optional
         Along the directions in which the two coordinates grow and along the normal, m/s.
     spin : array (members,), or for all, optional
         Ω·n, rad/s.
@@ -223,7 +224,7 @@ def _singular(system: RollingSystem, now: float) -> bool:
 
 def _for_all(name: str, value: Any, count: int) -> Any:
     """Return a part as an array over members."""
-    if value is None or _is_rows(value) or (name == "velocity" and isinstance(value, str) and value == "co-rotating"):
+    if value is None or _is_rows(value) or (name == "velocity" and isinstance(value, str) and value in VELOCITY_WORDS):
         return value
     sizes, kind = PARTS[name]
     if not sizes:

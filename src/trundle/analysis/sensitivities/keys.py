@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, get_args
 
 from ...errors import InvalidValueError, UnknownNameError
@@ -17,7 +18,7 @@ from ...scenario.tables.of_parts import ListOfLengths
 from ...scenario.tables.values import Table
 from ...units import UNITS
 
-_APART = {"title", "notes", "timing"}  # what says nothing of the motion
+_APART = {"title", "group", "notes", "timing"}  # what says nothing of the motion
 # At 0 these say that there is nothing of the kind, and a start is where the clock of the derivatives begins.
 _AT_ZERO = {
     "start.height": "a body that touches its support cannot be a little lower",
@@ -136,16 +137,19 @@ def moved(scenario: ScenarioFile, values: dict[str, float]) -> tuple[RollingSyst
     return model.system(), model.start_state()
 
 
-def _fields(table: Any) -> Iterator[tuple[str, str, str]]:
-    """Yield the name of each field of a table, that in the file, and the SI unit of its numbers.
+@cache
+def _fields(kind: Any) -> tuple[tuple[str, str, str], ...]:
+    """Return the name of each field of a kind of table, that in the file, and the SI unit of its numbers.
 
     The numbers of a surface that is given as a table belong to its structure: nothing is differentiated by them.
     """
-    for name, field in type(table).model_fields.items():
+    found = []
+    for name, field in kind.model_fields.items():
         tabled = any(isinstance(note, ListOfLengths) for note in _notes(field))
         if name not in _APART and name != "kind" and not tabled:
-            kind = next((note.kind for note in map(_each, _notes(field)) if isinstance(note, Measure)), "number")
-            yield name, field.alias or name, UNITS[kind][0]
+            measured = next((note.kind for note in map(_each, _notes(field)) if isinstance(note, Measure)), "number")
+            found.append((name, field.alias or name, UNITS[measured][0]))
+    return tuple(found)
 
 
 def _notes(field: Any) -> Iterator[Any]:
@@ -170,7 +174,7 @@ def leaves(table: Any, before: str = "") -> Iterator[tuple[str, Any, str]]:
     >>> next(leaves(tr.Scenario.load("tilted-turntable")))
     ('gravity', 9.80665, 'm/s^2')
     """
-    for name, alias, unit in _fields(table):
+    for name, alias, unit in _fields(table.__class__):
         yield from _within(getattr(table, name), f"{before}{alias}", unit)
 
 
@@ -187,7 +191,7 @@ def _within(value: Any, name: str, unit: str) -> Iterator[tuple[str, Any, str]]:
 def _replaced(table: Any, before: str, other: Callable[[str, Any], Any]) -> Any:
     """Return a table with other values; they are not checked again."""
     update = {}
-    for name, alias, _ in _fields(table):
+    for name, alias, _ in _fields(table.__class__):
         value = getattr(table, name)
         now = _other(value, f"{before}{alias}", other)
         if now is not value:

@@ -1,0 +1,162 @@
+"""Least squares by lmfit, along the directions that the data fix, over longer and longer stretches of the data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...errors import SolverError, TrundleError
+from ...solve.samples import Array
+from .directions import Directions, directions
+from .problem import Problem
+
+LOSSES = ("linear", "soft_l1", "huber", "cauchy")
+_FEWEST = 3.0  # values for each unknown, in the first stretch
+_PART = 0.3  # of a number, by which the scenario's may be off
+_LONGER = 3.0  # times, from one stretch to the next
+_ROUNDS = 3  # in which the directions are found again
+_STAGE, _LAST = 20, 60  # trials
+
+
+@dataclass(frozen=True)
+class Minimum:
+    """Where the sum of squares is least.
+
+    Parameters
+    ----------
+    values : array (p,)
+        Of the unknowns.
+    directions : Directions
+        There.
+    covariance : array (p, p)
+        Of the unknowns along the directions fixed, by lmfit; not scaled.
+    result : lmfit.minimizer.MinimizerResult or None
+        Of the last round; None where nothing is fixed.
+    evaluations : int
+        Of the model.
+    """
+
+    values: Array
+    directions: Directions
+    covariance: Array
+    result: Any
+    evaluations: int
+
+
+def minimise(
+    problem: Problem, values: Array, held: Any, loss: str = "linear", *, staged: bool = True, most: int = _LAST
+) -> Minimum:
+    """Return the minimum nearest to a first guess; unknowns that are held keep their values.
+
+    Raises
+    ------
+    TrundleError
+        If there is no motion from the first guess on.
+    """
+    evaluations = 0
+    if staged:
+        values, evaluations = _staged(problem, values, held)
+    problem.until = 1.0
+    found = look(problem, values, held)
+    for _ in range(_ROUNDS if most == _LAST else 1):
+        rank = found.basis.shape[1]
+        if rank == 0:
+            return Minimum(values, found, np.zeros((values.size, values.size)), None, evaluations)
+        values, result = _lmfit(problem, values, found.basis, loss, most, 1e-10)
+        evaluations += result.nfev
+        again = look(problem, values, held)
+        same, found_before, found = again.basis.shape[1] == rank, found, again
+        if same and (result.success or result.nfev < most):
+            break
+    covariance = _covariance(result, found_before.basis, found, loss)
+    return Minimum(values, found, covariance, result, evaluations)
+
+
+def _covariance(result: Any, basis: Array, found: Directions, loss: str) -> Array:
+    """Return lmfit's covariance of the combinations as that of the unknowns.
+
+    Where something is free, the directions turn on the way; then it is taken from those at the minimum.
+    """
+    whole = found.free.shape[1] + found.weak.shape[1] == 0 or loss != "linear"
+    if getattr(result, "covar", None) is None or basis.shape[1] != found.basis.shape[1] or not whole:
+        return found.covariance
+    return np.asarray(basis @ result.covar @ basis.T)
+
+
+def look(problem: Problem, values: Array, held: Any) -> Directions:
+    """Return the directions at some values; held unknowns take part in none."""
+    _, jacobian = problem.both(values)
+    found = directions(jacobian[:, ~held], problem.signal())
+
+    def among_all(columns: Array) -> Array:
+        whole = np.zeros((held.size, columns.shape[1]))
+        whole[~held] = columns
+        return whole
+
+    return Directions(among_all(found.basis), among_all(found.free), among_all(found.weak), found.values)
+
+
+def _staged(problem: Problem, values: Array, held: Any) -> tuple[Array, int]:
+    """Return values found over longer and longer stretches: what turns many times has many false minima at once."""
+    whole, evaluations = problem.size, 0
+    share = min(1.0, max(_FEWEST * values.size, 16.0) / max(whole, 1))
+    while share < 1:
+        problem.until = share
+        try:
+            basis = _careful(problem, values, held)
+            if basis.shape[1]:
+                values, result = _lmfit(problem, values, basis, "linear", _STAGE, 1e-4)
+                evaluations += result.nfev
+        except TrundleError:
+            break
+        share *= _LONGER
+    problem.until = 1.0
+    return values, evaluations
+
+
+def _careful(problem: Problem, values: Array, held: Any) -> Array:
+    """Return the directions that a stretch fixes well enough to move along them already.
+
+    A number that was asked for may be off by a part of itself; any other by what moves the body across all it went.
+    """
+    _, jacobian = problem.both(values)
+    norms = np.linalg.norm(jacobian, axis=0)
+    scale = problem.signal() / np.where(norms > 0, norms, np.inf)
+    for j, one in enumerate(problem.unknowns):
+        if one.asked and values[j] != 0:
+            scale[j] = min(scale[j], _PART * abs(values[j]))
+    scale[held] = 0.0
+    _, s, Vt = np.linalg.svd(jacobian * scale, full_matrices=False)
+    good = s > 1.0
+    return np.asarray((scale[:, None] * Vt.T)[:, good] / s[good])
+
+
+def _lmfit(problem: Problem, values: Array, basis: Array, loss: str, most: int, tolerance: float) -> tuple[Array, Any]:
+    """Let lmfit move along some directions, whose steps are of one standard deviation."""
+    import lmfit
+
+    parameters = lmfit.Parameters()
+    names = [f"c{i}" for i in range(basis.shape[1])]
+    for name in names:
+        parameters.add(name, value=0.0)
+
+    def at(now: Any) -> Array:
+        return np.asarray(values + basis @ np.array([now[name].value for name in names]))
+
+    def residual(now: Any) -> Array:
+        return problem.tried(at(now))
+
+    def jacobian(now: Any) -> Array:
+        try:
+            return np.asarray(problem.both(at(now))[1] @ basis)
+        except (TrundleError, ArithmeticError, ValueError):
+            raise SolverError("The fit came to numbers with which there is no motion.") from None
+
+    minimiser = lmfit.Minimizer(residual, parameters, scale_covar=False, nan_policy="raise", max_nfev=most)
+    if loss == "linear":
+        result = minimiser.leastsq(Dfun=jacobian, ftol=tolerance, xtol=tolerance, gtol=0.0)
+    else:
+        result = minimiser.least_squares(jac=jacobian, loss=loss, ftol=tolerance, xtol=tolerance)
+    return at(result.params), result

@@ -1,0 +1,320 @@
+"""What was measured: columns over time, how well each is known, and in which row of the data each stands."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...errors import InvalidValueError
+from ...solve.samples import Array
+from ...units import UNITS, to_si
+from ..checking import names
+from ..checking.files import Table, open_file
+
+# What may be observed beside the columns of a trajectory, and of which kind it is.
+OTHERS = {
+    "mark_x": "length",
+    "mark_y": "length",
+    "angle": "angle",
+    "spot_x": "length",
+    "spot_y": "length",
+    "spot_z": "length",
+}
+COLUMNS = {**{f"{kind}{axis}": names.kind_of(f"{kind}{axis}") for kind in ("", "v", "w") for axis in "xyz"}, **OTHERS}
+_FEWEST = 4  # rows
+_HALF = 4  # rows to either side of one, whose polynomial shows the noise
+_DEGREE = 3
+
+
+@dataclass(frozen=True)
+class Observations:
+    """The measured values of one run.
+
+    Parameters
+    ----------
+    time : array (n,)
+        Ascending, s.
+    columns : tuple of str
+        Names of `COLUMNS`.
+    values : array (n, c)
+        SI; not a number where there is none.
+    rows : array (n,)
+        What the data call each row: the line of a file, or the place in the table, from 1.
+    label : str
+        The file's name, or "data".
+    read : str
+        What was taken for what.
+    """
+
+    time: Array
+    columns: tuple[str, ...]
+    values: Array
+    rows: Any
+    label: str
+    read: str
+
+    @property
+    def known(self) -> Array:
+        """Which values there are, (n, c)."""
+        return np.isfinite(self.values)
+
+    def column(self, name: str) -> Array:
+        """Return one column."""
+        return np.asarray(self.values[:, self.columns.index(name)])
+
+
+def observe(
+    data: Any, columns: Mapping[str, str] | None = None, time: str = "s", length: str = "m", label: str = "data"
+) -> Observations:
+    """Read measured columns.
+
+    Parameters
+    ----------
+    data : mapping, DataFrame, Dataset or path
+        Columns over time.
+    columns : mapping, optional
+        Of names that do not tell: ours to theirs.
+    time, length : str
+        Units of what has none in its heading.
+    label : str
+        What to call it, unless it is a file.
+
+    Examples
+    --------
+    >>> seen = observe({"t": [0.0, 0.1, 0.2, 0.3], "x [mm]": [1, 2, 3, 4], "y [cm]": [1, None, 0, 0]})
+    >>> seen.columns, seen.values[:, 0].tolist()
+    (('x', 'y'), [0.001, 0.002, 0.003, 0.004])
+    """
+    columns = dict(columns or {})
+    if isinstance(data, (str, os.PathLike)):
+        label = Path(data).name
+        data = open_file(Path(data), columns)
+    table, lines = _table(data)
+    found = _recognised(table, columns)
+    if "t" not in found:
+        remedy = f"The columns are {', '.join(table)}. Say which is the time: columns t=HEADING."
+        raise InvalidValueError("columns", "must have one of times", "none", remedy)
+    units = {"time": time, "length": length, "velocity": f"{length}/s"}
+    read = {name: _in_si(table, name, *there, units) for name, there in found.items()}
+    return _sorted(read, lines, label, {name: heading for name, (heading, _) in found.items()})
+
+
+def _table(data: Any) -> tuple[dict[str, Any], Any]:
+    """Return columns by heading, and what each row is called."""
+    if isinstance(data, Table):
+        return dict(data.columns), np.asarray(data.lines)
+    if hasattr(data, "data_vars"):  # an xarray dataset
+        frame = data.reset_coords().to_dataframe().reset_index()
+        return _table({str(name): frame[name].to_numpy() for name in frame})
+    given = getattr(data, "columns", data)
+    if hasattr(data, "to_numpy"):  # a pandas frame
+        given = {str(name): data[name].to_numpy() for name in data.columns}
+    if not isinstance(given, Mapping):
+        rule = "must be columns: a table, a dictionary of lists, or the name of a file"
+        raise InvalidValueError("data", rule, data, 'Give for instance {"t": times, "x": xs, "y": ys}.')
+    found = {str(name): np.asarray(getattr(column, "values", column)) for name, column in given.items()}
+    found = {name: column for name, column in found.items() if column.ndim == 1}
+    sizes = {column.size for column in found.values()}
+    if len(sizes) > 1:
+        told = ", ".join(f"{name}: {column.size}" for name, column in found.items())
+        raise InvalidValueError("data", "must have columns of one length", told, "Leave gaps as nan.")
+    return found, np.arange(1, (sizes.pop() if sizes else 0) + 1)
+
+
+def _recognised(table: Mapping[str, Any], columns: Mapping[str, str]) -> dict[str, tuple[str, str]]:
+    """Return the heading and the unit of each column that can be used."""
+    headings = list(table)
+    own = {names.apart(heading)[0].strip().lower(): (heading, names.apart(heading)[1]) for heading in headings}
+    found = {name: own[name] for name in OTHERS if name in own}
+    rest = [heading for heading in headings if heading not in {there[0] for there in found.values()}]
+    standard = {name: heading for name, heading in columns.items() if name not in OTHERS}
+    for name in columns.keys() & OTHERS.keys():
+        if columns[name] not in headings:
+            raise names.mapped({"t": columns[name]}, headings)  # type: ignore[misc]  # it refuses the heading
+        found[name] = (columns[name], names.apart(columns[name])[1])
+    taken = set(columns.values())
+    found |= {name: there for name, there in names.recognise(h for h in rest if h not in taken).items()
+              if name == "t" or name in COLUMNS}  # fmt: skip
+    return found | names.mapped(standard, headings)
+
+
+def _in_si(table: Mapping[str, Any], name: str, heading: str, unit: str, units: Mapping[str, str]) -> Array:
+    kind = "time" if name == "t" else COLUMNS[name]
+    try:
+        values = np.asarray(table[heading], dtype=float)
+    except (TypeError, ValueError):
+        text = next((str(v) for v in table[heading] if not _is_number(v)), "")
+        raise InvalidValueError(heading, "must hold numbers", text, "Take the cell out, or leave it empty.") from None
+    return values * names.factor(unit or units.get(str(kind), ""), kind, heading)
+
+
+def _is_number(value: Any) -> bool:
+    try:
+        float(value)
+    except (TypeError, ValueError):
+        return False
+    return True
+
+
+def _sorted(read: dict[str, Array], lines: Any, label: str, headings: Mapping[str, str]) -> Observations:
+    """Return the observations in the order of time, without rows that say nothing."""
+    time, wanted = read.pop("t"), [name for name in COLUMNS if name in read]
+    empty = [headings[name] for name in wanted if not np.isfinite(read[name]).any()]
+    wanted = [name for name in wanted if headings[name] not in empty]
+    if not wanted:
+        told = f"only empty ones: {', '.join(empty)}" if empty else "none"
+        remedy = f"What may be fitted: {', '.join(COLUMNS)}."
+        raise InvalidValueError("columns", "must have one of what was seen of the motion", told, remedy)
+    values = np.column_stack([read[name] for name in wanted])
+    values[~np.isfinite(values)] = np.nan
+    good = np.isfinite(time) & np.isfinite(values).any(axis=1)
+    order = np.flatnonzero(good)[np.argsort(time[good], kind="stable")]
+    if order.size < _FEWEST:
+        raise InvalidValueError("data", f"must have {_FEWEST} rows at least", f"{order.size} with a time and a value")
+    time, values, lines = time[order], values[order], lines[order]
+    twice = np.flatnonzero(np.diff(time) == 0)
+    if twice.size:
+        told = f"t = {time[twice[0]]:g} s in rows {lines[twice[0]]} and {lines[twice[0] + 1]}"
+        raise InvalidValueError("data", "must have one row an instant", told, "Fit several runs as several tables.")
+    said = f"t from `{headings['t']}`, " + ", ".join(f"{name} from `{headings[name]}`" for name in wanted)
+    gaps = int((np.diff(time) > 1.5 * np.median(np.diff(time))).sum())
+    said += f"; {order.size} rows over {time[-1] - time[0]:.4g} s"
+    said += f", {gaps} gap{'s' * (gaps != 1)}" if gaps else ""
+    said += f"; empty: {', '.join(empty)}" if empty else ""
+    return Observations(time, tuple(wanted), values, lines, label, said)
+
+
+# How well it is known
+
+
+def scatter(seen: Observations) -> Array:
+    """Return the standard deviation of one value of each column, from how it scatters about short polynomials.
+
+    Examples
+    --------
+    >>> t, draw = np.linspace(0.0, 6.0, 400), np.random.default_rng(0)
+    >>> seen = observe({"t": t, "x": np.sin(t) + draw.normal(scale=1e-3, size=400)})
+    >>> float(scatter(seen)[0].round(3))
+    0.001
+    """
+    return np.array([_scatter(seen.time, column) for column in seen.values.T])
+
+
+def _scatter(time: Array, column: Array) -> float:
+    """Return what polynomials of degree 3 through nine neighbours leave over of the one in the middle."""
+    good = np.isfinite(column)
+    t, x, width = time[good], column[good], 2 * _HALF + 1
+    if x.size < width:
+        return float(np.std(x - np.polyval(np.polyfit(t - t[0], x, 1), t - t[0]), ddof=2)) if x.size > 3 else 0.0
+    first = np.arange(0, x.size - width + 1)
+    at = first[:, None] + np.arange(width)
+    u = t[at] - t[at[:, _HALF]][:, None]
+    u = u / np.abs(u).max(axis=1, keepdims=True)
+    powers = u[:, :, None] ** np.arange(_DEGREE + 1)
+    # What is left of the middle one, of which the fit itself takes a share: r = x − h·x, var r = (1 − h_mid) σ².
+    weights = np.linalg.pinv(powers)[:, 0, :]
+    left = x[at[:, _HALF]] - np.einsum("ij,ij->i", weights, x[at] - x[at[:, :1]]) - x[at[:, 0]]
+    left /= np.sqrt(np.maximum(1 - 2 * weights[:, _HALF] + (weights**2).sum(axis=1), 1e-12))
+    rounding = 4 * float(np.finfo(float).eps * np.abs(x).max())
+    return max(1.4826 * float(np.median(np.abs(left))), rounding)
+
+
+@dataclass(frozen=True)
+class Noise:
+    """How a difference between data and model is turned into one of unit variance.
+
+    Parameters
+    ----------
+    known : bool
+        Whether it was given; an estimated one is scaled by the fit.
+    sigma : array (n, c)
+        Standard deviation of each value.
+    factor : array, optional
+        Of a covariance between values: the lower Cholesky factor over all values that there are.
+    """
+
+    known: bool
+    sigma: Array
+    factor: Array | None = None
+
+    def whiten(self, values: Array, seen: Array) -> Array:
+        """Return rows (n, c, ...) where `seen` (n, c), in units of the noise, stacked."""
+        picked = values[seen]
+        if self.factor is None:
+            return np.asarray(picked / self.sigma[seen].reshape(-1, *(1,) * (picked.ndim - 1)))
+        from scipy.linalg import solve_triangular
+
+        count = picked.shape[0]  # of a shorter stretch the first, which a triangle leaves as they are
+        return np.asarray(solve_triangular(self.factor[:count, :count], picked, lower=True))
+
+
+def noise_for(given: Any, seen: Observations) -> Noise:
+    """Return the noise of observations, as given or as they scatter.
+
+    Examples
+    --------
+    >>> seen = observe({"t": [0, 1, 2, 3], "x": [0, 1, 0, 1], "wz": [1, 1, 2, 1]})
+    >>> noise_for({"x": "1 mm", "wz": "1 deg/s"}, seen).sigma[0].round(6).tolist()
+    [0.001, 0.017453]
+    """
+    shape = seen.values.shape
+    if given is None:
+        return Noise(False, np.broadcast_to(np.maximum(scatter(seen), _least(seen)), shape))
+    if isinstance(given, Mapping):
+        missing = [name for name in seen.columns if name not in given]
+        if missing:
+            raise InvalidValueError("noise", "must be given of each column", f"none of {', '.join(missing)}")
+        each = [np.asarray(_positive(given[name], COLUMNS[name], f"noise[{name}]")) for name in seen.columns]
+        return Noise(True, np.column_stack([np.broadcast_to(one, shape[:1]) for one in each]))
+    array = np.asarray(given) if not isinstance(given, str) else np.empty(0)
+    if array.ndim == 2:
+        return _correlated(array.astype(float), seen)
+    kinds = {COLUMNS[name] for name in seen.columns}
+    if len(kinds) > 1:
+        remedy = "Write for instance {'x': '0.5 mm', 'y': '0.5 mm', 'wz': '0.01 rad/s'}."
+        raise InvalidValueError("noise", "must be given of each column where they differ in kind", given, remedy)
+    sigma = _positive(given, kinds.pop(), "noise")
+    if np.ndim(sigma) and np.size(sigma) != shape[0]:
+        raise InvalidValueError("noise", f"must be one number, or one for each of {shape[0]} rows", np.size(sigma))
+    return Noise(True, np.broadcast_to(np.reshape(sigma, (-1, 1)) if np.ndim(sigma) else sigma, shape))
+
+
+def _least(seen: Observations) -> Array:
+    """Return the noise below which nothing is believed: a rounding of the largest value."""
+    return np.asarray(np.finfo(float).eps * 16 * np.maximum(np.nanmax(np.abs(seen.values), axis=0), 1e-30))
+
+
+def _positive(given: Any, kind: str | None, key: str) -> Any:
+    number = to_si(given, str(kind), key)
+    try:
+        array = np.asarray(number, dtype=float)
+    except (TypeError, ValueError):
+        raise InvalidValueError(key, "must be a number", given) from None
+    if not (np.isfinite(array) & (array > 0)).all():
+        remedy = f"Leave it out, and it is estimated; or write for instance {UNITS[str(kind)][1]!r}."
+        raise InvalidValueError(key, "must be positive", given, remedy)
+    return number
+
+
+def _correlated(covariance: Array, seen: Observations) -> Noise:
+    """Return the noise of a covariance: between the columns of each row, or between all values."""
+    n, c = seen.values.shape
+    if covariance.shape == (c, c) != (n * c, n * c):
+        covariance = np.asarray(np.kron(np.eye(n), covariance))
+    elif covariance.shape != (n * c, n * c):
+        rule = f"must be of shape ({c}, {c}), columns within a row, or ({n * c}, {n * c}), row by row"
+        raise InvalidValueError("noise", rule, str(covariance.shape))
+    picked = seen.known.ravel()
+    chosen: Any = covariance[np.ix_(picked, picked)]
+    try:
+        factor: Any = np.linalg.cholesky(chosen)
+    except np.linalg.LinAlgError:
+        raise InvalidValueError("noise", "must be a covariance: symmetric, positive definite", "another") from None
+    sigma = np.full(n * c, np.nan)
+    sigma[picked] = np.sqrt(np.diag(chosen))
+    return Noise(True, sigma.reshape(n, c), factor)

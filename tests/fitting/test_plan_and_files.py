@@ -1,0 +1,99 @@
+"""What a plan promises, what files hold, what emcee draws."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray
+from tests.fitting.measured import ball, on_turntable, scenario, seen, turntable
+
+import trundle as tr
+
+K, RATE = "body.inertia_ratio", "support.motion.rate"
+T = np.arange(300) / 30.0
+TABLE = scenario(body=ball(0.4), support=turntable(3.487), start={"position": [0.1, 0.0], "velocity": [0.0, 0.15]})
+
+
+@pytest.fixture(scope="module")
+def fitted() -> tr.Fit:
+    return tr.fit(seen(T, 5e-4, 1, z=on_turntable(T, 3.487)), TABLE, [K, RATE], noise="0.5 mm")
+
+
+def test_a_plan_promises_what_a_fit_then_has() -> None:
+    found = tr.fit(seen(T, 5e-4, 2, z=on_turntable(T, 3.487)), TABLE, [K], noise="0.5 mm")
+    plan = tr.plan_fit(TABLE, K, durations=[T[-1]], rates=[30], noises=["0.5 mm"])
+    assert plan.sigma[0, 0, 0, 0] == pytest.approx(found[K].sigma, rel=0.02)
+
+
+def test_a_circle_alone_is_as_well_known_as_its_phase() -> None:
+    # Of z = z0 + R e^{iκt} the rate has the textbook error of a phase against time, wider for what else is free:
+    # at most σ √(24/N)/(R T) over many rounds (Rife and Boorstyn 1974: √12 for x and y each of half the noise power).
+    duration, noise, rate = 600.0, 1e-3, 30.0
+    plan = tr.plan_fit(TABLE, RATE, durations=[duration], rates=[rate], noises=[noise])
+    radius, count = 0.15 / (3.487 * 2 / 7), duration * rate
+    kappa = noise * np.sqrt(12 / count) / (radius * duration)
+    assert plan.sigma[0, 0, 0, 0] == pytest.approx(kappa * 7 / 2, rel=0.05)
+
+
+def test_a_plan_says_what_no_length_of_film_shows() -> None:
+    plan = tr.plan_fit(TABLE, [K, RATE], durations=[10.0], rates=[30], noises=[5e-4])
+    assert np.isnan(plan.sigma).all()
+    assert f"{RATE}·{K}/(1 + {K})" in str(plan)
+    marked = tr.plan_fit(TABLE, [K, RATE], durations=[10.0], rates=[30], noises=[5e-4],
+                         observed=("x", "y", "wx", "wy"))  # fmt: skip
+    assert np.isfinite(marked.sigma).all()
+
+
+def test_a_plan_refuses_what_cannot_be() -> None:
+    for given, says in (
+        ({"durations": [-1.0]}, "`durations` must be positive"),
+        ({"rates": []}, "a length, a rate and a noise"),
+        ({"observed": ("u",)}, "unknown column"),
+        ({"durations": [1e5], "rates": [60]}, "at most"),
+        ({"start": "here"}, "unknown start"),
+    ):
+        with pytest.raises(tr.TrundleError, match=says):
+            tr.plan_fit(TABLE, K, **given)
+
+
+def test_a_file_holds_data_fit_and_covariance(fitted: tr.Fit, tmp_path) -> None:
+    path = fitted.save(tmp_path / "fit.nc")
+    with xarray.open_dataset(path, engine="h5netcdf") as kept:
+        assert kept.measured.dims == ("row", "column")
+        assert np.allclose(kept.measured - kept.fitted, kept.residual)
+        assert kept.covariance.dims == ("parameter", "parameter_2")
+        assert np.isnan(kept.sigma.sel(parameter=K))
+        assert float(kept.sigma.sel(parameter="start.velocity[1]")) > 0
+        assert "do not tell" in kept.attrs["undetermined"]
+        tr.Scenario.loads(kept.attrs["scenario"]).run()
+
+
+def test_each_form_of_table_has_each_number(fitted: tr.Fit) -> None:
+    for form in ("text", "markdown", "latex", "csv"):
+        told = fitted.table(form)
+        for one in fitted.estimates:
+            assert one.name.replace("_", r"\_" if form == "latex" else "_") in told
+    assert "nan" not in str(fitted) + fitted.table("csv")
+    with pytest.raises(tr.UnknownNameError):
+        fitted.table("word")
+
+
+def test_a_figure_and_a_page_of_its_own(fitted: tr.Fit, tmp_path) -> None:
+    figure = fitted.plot()
+    path, correlations, residuals = figure.axes
+    assert path.get_aspect() == 1.0
+    assert (path.get_xlabel(), residuals.get_ylabel()) == ("x, m", "residual, σ")
+    assert correlations.get_title() == "correlation"
+    text = fitted.save_html(tmp_path / "fit.html").read_text(encoding="utf-8")
+    assert "data:image/png;base64," in text
+    assert "<script" not in text
+
+
+def test_emcee_draws_what_least_squares_say() -> None:
+    t = T[::6]
+    found = tr.fit(seen(t, 5e-4, 3, z=on_turntable(t, 3.487)), TABLE, [K], noise="0.5 mm")
+    draws = found.sample(steps=120, walkers=16, seed=1)
+    spread = draws.draws[:, 0].std()
+    assert spread == pytest.approx(found[K].sigma, rel=0.35)
+    assert abs(np.median(draws.draws[:, 0]) - found[K].value) < found[K].sigma
+    assert "too short" in draws.verdict
