@@ -21,8 +21,8 @@ from .equilibria import equilibria
 from .export import export
 from .fit import fit
 from .lab import lab
-from .read import read
 from .map import draw_map
+from .read import read
 from .sensitivity import sensitivity
 from .steady import steady
 from .sweep import sweep

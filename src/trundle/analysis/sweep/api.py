@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -199,7 +200,12 @@ def run_plan(
             opened.write(chunk, columns)
             told()
 
-        engine.run(plan, left, write)
+        try:
+            engine.run(plan, left, write)
+        except InvalidValueError:  # there is no such scheduler
+            if not there:
+                shutil.rmtree(store)
+            raise
     return Sweep(plan.title, opened.dataset())
 
 
