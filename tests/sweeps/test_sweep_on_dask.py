@@ -14,13 +14,12 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import pytest
+from tests.sweeps.stores import files_of
 
 from trundle.analysis.sweep import api
 from trundle.analysis.sweep.engine import Engine
 from trundle.analysis.sweep.plan import read_plan
 from trundle.analysis.sweep.store import Store
-
-from .test_sweep_store import files_of
 
 pytest.importorskip("heyoka")
 pytest.importorskip("distributed")

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ...errors import InvalidValueError
 from ...solve.samples import Progress
 from .engine import Engine
 from .job import Columns
