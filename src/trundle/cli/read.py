@@ -21,6 +21,14 @@ Columns = Annotated[
 Rate = Annotated[float | None, typer.Option("--rate", metavar="NUMBER", help="Frames a second, where frames count.")]
 Pixel = Annotated[str | None, typer.Option("--pixel", metavar="LENGTH", help="The size of one, such as '0.8 mm'.")]
 Upwards = Annotated[str | None, typer.Option("--y", metavar="SENSE", help="up or down: which way y grows.")]
+Unit = Annotated[
+    str | None, typer.Option("--unit", "--length", metavar="UNIT", help="Of places, such as cm; speeds per second.")
+]
+Time = Annotated[str | None, typer.Option("--time", metavar="UNIT", help="Of time, such as ms.")]
+Angles = Annotated[str | None, typer.Option("--angles", metavar="UNIT", help="rad or deg, also of rates.")]
+Sense = Annotated[
+    str | None, typer.Option("--sense", metavar="SENSE", help="clockwise or anticlockwise: how an angle grows.")
+]
 Decimal = Annotated[str | None, typer.Option("--decimal", metavar="SIGN", help="point or comma, for '1,234'.")]
 
 
@@ -28,17 +36,13 @@ def read(
     file: File,
     track: Which = None,
     columns: Columns = None,
-    unit: Annotated[
-        str | None, typer.Option("--unit", "--length", metavar="UNIT", help="Of places, such as cm; speeds per second.")
-    ] = None,
-    time: Annotated[str | None, typer.Option(metavar="UNIT", help="Of time, such as ms.")] = None,
-    angles: Annotated[str | None, typer.Option(metavar="UNIT", help="rad or deg, also of rates.")] = None,
+    unit: Unit = None,
+    time: Time = None,
+    angles: Angles = None,
     rate: Rate = None,
     pixel: Pixel = None,
     y: Upwards = None,
-    sense: Annotated[
-        str | None, typer.Option(metavar="SENSE", help="clockwise or anticlockwise: how an angle grows.")
-    ] = None,
+    sense: Sense = None,
     decimal: Decimal = None,
     figure: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Draw the track: track.png, or .svg, or .pdf.")
@@ -50,12 +54,11 @@ def read(
     """
     from ..tracks import read_track
 
-    units = {"length": unit, "time": time, "angle": angles}
     found = read_track(
         file,
         track=track,
         columns=pairs(columns),
-        units={kind: unit for kind, unit in units.items() if unit is not None},
+        units=units_of(unit, time, angles),
         rate=rate,
         pixel=pixel,
         y=y,
@@ -77,6 +80,17 @@ def _draw(found: Track, target: Path) -> None:
     drawn = found.plot()
     with written_whole(target) as temporary:
         drawn.savefig(temporary)
+
+
+def units_of(unit: str | None, time: str | None, angles: str | None) -> dict[str, str]:
+    """Return the units that were said.
+
+    Examples
+    --------
+    >>> units_of("cm", None, "deg")
+    {'length': 'cm', 'angle': 'deg'}
+    """
+    return {kind: said for kind, said in (("length", unit), ("time", time), ("angle", angles)) if said is not None}
 
 
 def pairs(text: str | None) -> dict[str, str]:

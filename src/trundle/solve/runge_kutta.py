@@ -38,8 +38,7 @@ _PATIENCE: dict[str, Any] = {"steps": 1e7, "spare": 5e3, "name": "The Runge-Kutt
 _BRIEF = 3e3  # steps of a law that holds for an instant only
 _FIRST_STEP = 1e-12  # s
 _BEGINNING = 20  # steps, after which one sees how many there will be
-WORTH_COMPILING = 500  # steps: for so many SciPy takes as long as a law takes to be compiled
-_WORTH_COMPILING = 2_000  # steps: for so many, in a run and its card, SciPy takes as long as laws take to be compiled
+WORTH_COMPILING = 2_000  # steps: for so many, in a run and its card, SciPy takes as long as laws take to be compiled
 
 
 class Path(Protocol):

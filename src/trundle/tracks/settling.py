@@ -200,7 +200,9 @@ class Reading:
     def _clockwise(self) -> bool | None:
         """Whether an angle grows clockwise; where its format counts y upwards, it counts angles the other way."""
         told = {"clockwise": True, "anticlockwise": False}
-        return told[self.options.sense] if self.options.sense else self.table.y_down
+        if self.options.sense is not None:
+            return told[self.options.sense]
+        return self.table.y_down if self.film else False
 
     @property
     def _frame(self) -> str:

@@ -145,7 +145,9 @@ class RunModel:
             motion = Motion(*parts[:3], None, duals[0], times, support)
         else:
             own = keys.varied(self.scenario, listed[:inside])
-            followed = by_formula.follow_formula(system, start, begun, own, list(numbers)[:inside]) if self._turned else None
+            followed = (
+                by_formula.follow_formula(system, start, begun, own, list(numbers)[:inside]) if self._turned else None
+            )
             if followed is None:
                 followed = follow(system, start, begun, own, list(numbers)[:inside])
             motion = _as_duals(followed, duals[0], begun, times, inside, count)
