@@ -110,6 +110,17 @@ def equilibria() -> tr.Equilibria:
     return tr.equilibria(scenario("weighted-cylinder-on-incline"))
 
 
+@cache
+def swept() -> tr.Sweep:
+    return tr.sweep(scenario("level-turntable-nudged"), {"gravity": [9.8, 9.9]}, "end x", duration=1.0)
+
+
+@cache
+def tolerated() -> tr.Tolerance:
+    limits = {"support.motion.rate": "33.3 ± 0.3 rpm", "body.mass": "65 ± 1 g"}
+    return tr.tolerance(scenario("level-turntable-nudged"), limits, "end x", members=4, duration=1.0)
+
+
 # Every result that shows itself; the first test says if one is missing.
 RESULTS: tuple[Callable[[], Displayed], ...] = (
     lambda: scenario("tilted-turntable"),
@@ -159,6 +170,8 @@ RESULTS: tuple[Callable[[], Displayed], ...] = (
     lambda: rolled().sampled(1e-3),
     lambda: scenario("free-turntable-ellipse").system().vector_field("c"),
     lambda: tr.MotionFormula(run().closed_form),
+    swept,
+    tolerated,
 )
 
 
