@@ -14,6 +14,7 @@ import typer
 from ..errors import ScenarioError
 from ..scenario import files
 from . import CARD_FAILED, constraints, screen, signals
+from .chaos import chaos
 from .check import check
 from .derive import derive
 from .equations import equations
@@ -54,6 +55,7 @@ def command() -> Any:
     app.command("equations", short_help="Print the law as C, Python, JavaScript, LaTeX or JAX.")(equations)
     app.command("export", short_help="Write a run as a page, a model, a picture, a table.")(export)
     app.command("lab", short_help="Open the lab: the ball in a browser.")(lab)
+    app.command("chaos", short_help="Lyapunov exponents, Poincaré sections, periodic orbits.")(chaos)
     app.command("steady", short_help="Steady motions, and whether they are stable.")(steady)
     return typer.main.get_command(app)
 
