@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.sweeps.stores import files_of
 
 import trundle as tr
 from trundle.analysis.sweep import api, job
@@ -29,10 +30,6 @@ def a_plan(members: int = 64, chunk: int = 8, **more: Any) -> Plan:
     over = {"start.position[0]": {"from": 0.05, "to": 0.4, "count": members}}
     return read_plan({"scenario": TABLE, "run": {"duration": 1.0, "every": 0.1}, "over": over, "chunk": chunk,
                       "measure": ["end x", "ending"], **more})  # fmt: skip
-
-
-def files_of(path: Path) -> dict[str, bytes]:
-    return {part.relative_to(path).as_posix(): part.read_bytes() for part in path.rglob("*") if part.is_file()}
 
 
 def test_it_opens_in_xarray_without_a_warning_with_units_and_texts(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -10,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ...errors import InvalidValueError
 from ...solve.samples import Progress
 from .engine import Engine
 from .job import Columns
@@ -199,7 +201,12 @@ def run_plan(
             opened.write(chunk, columns)
             told()
 
-        engine.run(plan, left, write)
+        try:
+            engine.run(plan, left, write)
+        except InvalidValueError:  # there is no such scheduler
+            if not there:
+                shutil.rmtree(store)
+            raise
     return Sweep(plan.title, opened.dataset())
 
 

@@ -21,6 +21,7 @@ from .plan import Plan
 
 Take = Callable[[int, Columns], None]
 
+PATIENCE = "10s"  # for a scheduler to answer
 _AHEAD = 2  # chunks under way for each worker
 _ATTEMPTS = 3  # of a chunk whose worker was lost
 
@@ -168,7 +169,7 @@ def _client(scheduler: str, count: int) -> Iterator[Any]:
             yield client
         return
     try:
-        client = Client(scheduler, timeout="10s")
+        client = Client(scheduler, timeout=PATIENCE)
     except (OSError, TimeoutError, ValueError) as error:
         rule = 'must be "local", or the address of a Dask scheduler that answers'
         remedy = "`dask scheduler` prints its own, such as tcp://10.0.0.1:8786."

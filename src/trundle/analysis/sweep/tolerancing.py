@@ -227,7 +227,9 @@ def _shares(found: Sweep, values: Any, members: int) -> dict[str, tuple[float, f
     done = (found.data.status.values == DONE).all() and np.isfinite(values).all()
     if not done or np.ptp(values) <= _NOTHING * np.abs(values).max():
         return dict.fromkeys(keys, (np.nan, np.nan))
-    one, other, *mixed = values.reshape(-1, 1, members)
+    one, other, *mixed = np.repeat(
+        values.reshape(-1, 1, members), 2, axis=1
+    )  # twice: of one by one SciPy makes no array
     indices = sobol_indices(func={"f_A": one, "f_B": other, "f_AB": np.stack(mixed)}, n=members)
-    first, total = np.ravel(indices.first_order), np.ravel(indices.total_order)
+    first, total = (np.reshape(part, (2, len(keys)))[0] for part in (indices.first_order, indices.total_order))
     return {key: (float(first[i]), float(total[i])) for i, key in enumerate(keys)}
