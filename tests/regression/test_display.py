@@ -183,6 +183,7 @@ RESULTS: tuple[Callable[[], Displayed], ...] = (
     lambda: tr.MotionFormula(run().closed_form),
     swept,
     tolerated,
+    lambda: tr.read_track(run()),
 )
 
 
