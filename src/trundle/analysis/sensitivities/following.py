@@ -64,6 +64,8 @@ def follow(
     names: Sequence[str],
     tolerance: float | None = None,
     progress: Progress | None = None,
+    *,
+    of_motion: bool = False,
 ) -> Followed:
     """Follow a body through its phases with the derivatives by some parameters.
 
@@ -81,12 +83,14 @@ def follow(
         Of the method, Taylor's where it can be had; absent: its own.
     progress : callable, optional
         Told the fraction done.
+    of_motion : bool
+        Whether only slopes of the motion are asked for, and of no force.
     """
     method: Any = method_for(system)
     integrate: Integrate = (
         partial(taylor.integrate, shared=taylor.Shared()) if method is taylor else runge_kutta.integrate
     )
-    run = _Run(integrate, system, start, times, in_duals, names)
+    run = _Run(integrate, system, start, times, in_duals, names, of_motion=of_motion)
     given: Any = {"remember": run.remember, "bends": run.bends}
     tolerance = method.TOLERANCE if tolerance is None else tolerance
     samples = phases.solve(run.integrate, system, start, times, tolerance, progress, **given)
@@ -126,7 +130,10 @@ class _Run:
         times: Array,
         in_duals: tuple[RollingSystem, State],
         names: Sequence[str],
+        *,
+        of_motion: bool = False,
     ) -> None:
+        self.of_motion = of_motion
         self.method, self.system, (self.duals, first) = method, system, in_duals
         self.names, self.count = names, len(names)
         self.varied = VariedSystem.of(self.duals)
@@ -178,7 +185,7 @@ class _Run:
         self.event_parameters = (*now.event_parameters, *corners.directions(system, now))
         for piece in self.method(self.varied, begin, times, tolerance, progress):
             if piece.times.size:
-                slopes = slopes_of_samples(self.duals, now.law, piece.times, piece.states, self.count)
+                slopes = slopes_of_samples(self.duals, now.law, piece.times, piece.states, self.count, self.of_motion)
                 self.pieces.append((piece.times, slopes))
                 self.here = now.law, float(piece.times[-1]), unstacked(piece.states[-1].tolist(), size)
             stop = piece.stop
@@ -298,8 +305,11 @@ class _Run:
         size = state.size // (1 + self.count)
         moved = law.rk4_step(self.duals, since, unstacked(state.tolist(), size), time - since)
         row = np.array([stacked(moved, self.count)], dtype=float)
-        for name, slopes in slopes_of_samples(self.duals, law, np.array([time]), row, self.count).items():
+        found = slopes_of_samples(self.duals, law, np.array([time]), row, self.count, self.of_motion)
+        for name, slopes in found.items():
             columns[name][i] = slopes[0]
+        if self.of_motion:
+            return
         if phase == SLIPPING != law.code and follows is not None and follows.law.code == SLIPPING:  # all but zero
             p, q, Omega, _, coordinates = law.split(moved)
             hat = follows.law.direction(self.duals, follows.time, follows.state_vector)
