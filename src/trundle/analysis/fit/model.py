@@ -25,7 +25,6 @@ from .observations import Observations
 from .unknowns import Unknown, camera_with, rotated, vector_of
 
 _OUTSIDE = ("camera.", "mark.", "spot.")
-_FINELY = 1e-11  # tolerance of a step of the motion with its derivatives
 _TURNED = {"spot_x", "spot_y", "spot_z"}  # what needs the body's orientation
 
 
@@ -62,7 +61,9 @@ class RunModel:
     seen: Observations
     unknowns: tuple[Unknown, ...]
     camera: Camera
-    _form: list[type[ClosedForm]] = field(default_factory=list, compare=False, repr=False)  # once it is known to do
+    _form: list[type[ClosedForm]] = field(
+        default_factory=list, init=False, compare=False, repr=False
+    )  # once it is known to do
 
     @property
     def by_formula(self) -> bool:
@@ -149,7 +150,7 @@ class RunModel:
             own = keys.varied(self.scenario, listed[:inside])
             followed = by_formula.follow_formula(system, start, begun, own, inside) if self._turned else None
             if followed is None:
-                followed = follow(system, start, begun, own, list(numbers)[:inside], _FINELY, of_motion=True)
+                followed = follow(system, start, begun, own, list(numbers)[:inside], of_motion=True)
             motion = _as_duals(followed, self._moving(duals[0]), begun, times, inside, count)
         if isinstance(camera.time_offset, Dual):
             shift = Dual(0.0, camera.time_offset.slopes)

@@ -7,12 +7,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...errors import TrundleError
+from ...errors import SolverError, TrundleError
 from ...solve.samples import Array
 from .model import RunModel
 from .observations import Noise
 from .unknowns import Unknown, limit, of_run
 
+_ASIDE = 1e-9
 _NOWHERE = 1e8  # standard deviations, of a trial that has no motion
 
 
@@ -75,7 +76,11 @@ class Problem:
     def both(self, values: Array) -> tuple[Array, Array]:
         """Return the residuals and their derivatives, (m, unknowns)."""
         if self.last is None or self.last[:2] != (values.tobytes(), self.until):
-            self.last = (values.tobytes(), self.until, *self._stacked(values, slopes=True))
+            try:
+                found = self._stacked(values, slopes=True)
+            except (SolverError, ArithmeticError):  # an event that hangs on a rounding does not a little aside
+                found = self._stacked(values * (1 + _ASIDE), slopes=True)
+            self.last = (values.tobytes(), self.until, *found)
         return self.last[2], self.last[3]
 
     @property
