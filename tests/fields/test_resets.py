@@ -211,6 +211,19 @@ def test_a_landing_that_turns_the_slip_is_that_of_a_run(backend: str) -> None:
         assert np.abs(V - struck.array()).max() <= 1e-12 * np.abs(struck.array()).max(), name
 
 
+def test_landings_by_the_thousand_are_those_of_each() -> None:
+    egg = tr.Body.ellipsoid((0.2, 0.15, 0.12), mass=1.0, centre=(0.02, -0.01, 0.03))
+    system = tr.RollingSystem(egg, tr.Support(tr.Plane(), friction=0.3, restitution=0.5))
+    field = system.vector_field("numpy", "flight", ())
+    y = field.pack(system.place(velocity=(0.5, -0.2, -2.0), orientation=(0.8, 0.36, 0.48, 0.0)))
+    many = np.tile(y, (7, 1))
+    many[:, field.state_names.index("V_x")] = np.linspace(-1.0, 1.0, 7)
+    land_ = field.resets["land"].states["flight"]
+    found = land_(0.0, many, field.parameters, field.inputs)
+    for one, state in zip(many, found, strict=True):
+        assert np.abs(state - land_(0.0, one, field.parameters, field.inputs)).max() <= EXACT(64, 2.0)
+
+
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_it_stays_where_nothing_is_given_back(backend: str) -> None:
     for speed, phase in ((0.1, "rolling"), (30.0, "slipping")):
