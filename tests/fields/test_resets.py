@@ -248,6 +248,31 @@ def test_slip_begins_against_friction_and_ends_in_rolling(backend: str) -> None:
     assert np.array_equal(state, y)
 
 
+def test_where_resistance_holds_a_body_that_slips_it_is_said() -> None:
+    """A ball that slides with little turning stops turning first, as in the run."""
+    system = tr.RollingSystem(
+        tr.Body.solid_sphere(0.02, 0.1), tr.Support(tr.Plane(), friction=0.2), (tr.RollingResistance(0.015),)
+    )
+    start = system.place(velocity=(1.0, 0.0), angular_velocity=(0.0, -2.0, 0.0))
+    run = tr.simulate(system, start, duration=0.2, every=0.01)
+    stop = next(event for event in run.events if "stopped turning" in event.text)
+    field = system.vector_field("numpy", "slipping", ())
+    y, given = field.pack(start), (field.parameters, field.inputs)
+    e = field.event_parameters(0.0, y, *given)
+    assert "stop" in field.event_names
+    where = field.event_names.index("stop")
+    before, after = (
+        field.events(0.0, y + t * field.rates(0.0, y, *given), *given, e)[where]  # of a ball all rates are constant
+        for t in (0.9 * stop.time, 1.1 * stop.time)
+    )
+    assert before > 0 > after
+    with pytest.raises(OutOfDomainError, match="keeps it from turning"):
+        field.after("stop", stop.time, y, *given)
+    rests = system.vector_field("numpy", "rest", ())
+    with pytest.raises(OutOfDomainError, match="keeps it from turning"):
+        rests.after("slip", 0.0, rests.pack(system.place()), *given)
+
+
 def test_what_is_not_written_out_is_said() -> None:
     egg = tr.RollingSystem(tr.Body.ellipsoid((0.2, 0.15, 0.12), mass=1.0), ROUGH)
     field = egg.vector_field("c", "flight")
