@@ -92,6 +92,24 @@ def test_pivot_friction_slows_the_spin_alone_and_evenly() -> None:
     assert (now.reaction - E_Z * (MASS * G)).norm() <= EXACT(16, MASS * G)
 
 
+@pytest.mark.parametrize("below", [1e-3, 3e-4])
+@pytest.mark.parametrize("gain", [0.3, 0.8])
+def test_pivot_friction_takes_along_what_did_not_spin(gain: float, below: float) -> None:
+    """On a table that starts to turn as αt, a ball in the middle soon spins as the table less what keeps it going.
+
+    With x = Ω_n − αt and c = εg/(ka²), ẋ = −α − c x/√(x² + w²) settles where x = −αw/√(c² − α²), and in the end as
+    e^{−t(c² − α²)^{3/2}/(c²w)}.
+    """
+    pytest.importorskip("heyoka")
+    table = tr.Support(tr.Plane(), motion=tr.SpinBy(f"{gain!r}*t"))
+    system = tr.RollingSystem(BALL, table, (tr.PivotFriction(1e-4, below=below),))
+    run = tr.simulate(system, system.place((0.0, 0.0), spin=0.0), 1.0, 0.25, "taylor")
+    c = 1e-4 * G / (K * RADIUS**2)
+    wanted = gain * run.samples.time - gain * below / math.sqrt(c * c - gain * gain)
+    assert (c * c - gain * gain) ** 1.5 * 0.25 / (c * c * below) > 40.0
+    assert np.abs(run.samples.angular_velocity[1:, 2] - wanted[1:]).max() <= SOLVER(1000, run.tolerance, gain)
+
+
 def test_a_rolling_couple_lets_speed_and_spin_die_out_each_at_its_rate() -> None:
     # (1 + k) m a² Ω̇_t = −c Ω_t and k m a² Ω̇_n = −c_n Ω_n
     data = path(tr.RollingCouple(3e-4, 2e-4), 2.0, velocity=(0.3, -0.1), spin=4.0)
