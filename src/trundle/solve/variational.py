@@ -289,14 +289,40 @@ def charts_with_slopes(system: RollingSystem, law: Law) -> tuple[Chart, ...]:
     """
     if not isinstance(law, VariationalLaw) or not isinstance(system, VariedSystem):
         return (LAWS_OWN,)
-    aside = system.aside()
-    there = () if aside is None else charts(aside, law.law)
     found: list[Chart] = [LAWS_OWN]
-    for chart in charts(system, law.law)[1:]:
-        if chart in there and not isinstance(chart, SupportAxes):  # how far the support has turned has slopes, too
-            own = len(chart.names(system, law.law))
-            found.append(ChartWithSlopes(chart=chart, own=own, size=law.size, count=law.count))
+    for chart in _kept(system, law.law):
+        own = len(chart.names(system, law.law))
+        found.append(ChartWithSlopes(chart=chart, own=own, size=law.size, count=law.count))
     return tuple(found)
+
+
+def keeps_charts(system: RollingSystem, law: Law) -> bool:
+    """Tell whether all charts of a law know the slopes of a system that is given in duals.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> from trundle.mechanics.duals import duals
+    >>> from trundle.solve.laws import RollingLaw
+    >>> radius, moment = duals((0.02, 1e-5))
+    >>> coin = tr.Body.disc(radius=radius, mass=0.1)
+    >>> keeps_charts(tr.RollingSystem(coin, tr.Support(tr.Plane())), RollingLaw())
+    True
+    """
+    plain = VariedSystem.of(system)
+    return len(_kept(plain, law)) == len(_others(plain, law))
+
+
+def _others(system: RollingSystem, law: Law) -> list[Chart]:
+    """Return the charts of a law beside its own; how far a support has turned has slopes that its axes do not know."""
+    return [chart for chart in charts(system, law)[1:] if not isinstance(chart, SupportAxes)]
+
+
+def _kept(system: VariedSystem, law: Law) -> list[Chart]:
+    """Return those of them whose symmetry all numbers keep that have slopes."""
+    aside = system.aside()
+    there = () if aside is None else charts(aside, law)
+    return [chart for chart in _others(system, law) if chart in there]
 
 
 def _inner(law: Law) -> Law:

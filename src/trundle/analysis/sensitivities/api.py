@@ -15,8 +15,10 @@ from ...simulation import labels
 from ...simulation.memory import check_room
 from ...simulation.simulate import Scenario
 from ...simulation.trajectory import Trajectory
+from ...solve import transitions
 from ...solve.samples import Array, Progress
 from ...solve.sampling import longer_step, sample_times
+from ...solve.variational import keeps_charts
 from .by_formula import follow_formula
 from .comparing import Agreement, compare
 from .following import Followed, follow, method_for
@@ -98,13 +100,13 @@ def sensitivities(
     system, start = scenario.system(), scenario.start_state()
     in_duals = varied(scenario, wanted)
     check_room(times.size, labels.size_of(system) * len(wanted), "every", every, partial(longer_step, times))
-    names, tolerance = [key.name for key in wanted], _tolerance(run_or_scenario)
+    tolerance = _tolerance(run_or_scenario)
     followed = None
     if method != "variational":
         followed = follow_formula(system, start, times, in_duals, names)
     way = "variational" if followed is None else "exact"
     if followed is None:
-        followed = follow(system, start, times, in_duals, names, tolerance, progress)
+        followed = _in_parts(scenario, wanted, times, tolerance, progress)
     agreement = Agreement(np.nan, np.nan, 0)
     if compared:
         agreement = compare(scenario, wanted, followed, times, method_for(system).solve)
@@ -125,6 +127,32 @@ def _read(given: Any, duration: Any, every: Any) -> tuple[ScenarioFile, Array]:
         rule = "must be a run whose scenario can be written: its numbers have no keys otherwise"
         raise InvalidValueError("run", rule, given.title, "A part of it is of a kind of your own.")
     return Scenario.loads(given.scenario, given.title or "run"), given.data.time.values.astype(float)
+
+
+def _in_parts(
+    scenario: ScenarioFile, wanted: Sequence[Key], times: Array, tolerance: float | None, progress: Progress | None
+) -> Followed:
+    """Follow the run with its derivatives, those apart by numbers that break a symmetry by which the law is short."""
+    system, start = scenario.system(), scenario.start_state()
+
+    def by(keys: Sequence[Key]) -> Followed:
+        return follow(system, start, times, varied(scenario, keys), [key.name for key in keys], tolerance, progress)
+
+    law = transitions.at_start(system, start).law
+    short = [key for key in wanted if keeps_charts(varied(scenario, [key])[0], law)]
+    rest = [key for key in wanted if key not in short]
+    if not (short and rest):
+        return by(wanted)
+    first, second = by(short), by(rest)
+    if first.samples.time.size != second.samples.time.size or first.instants.shape[0] != second.instants.shape[0]:
+        return by(wanted)
+    order = [[*short, *rest].index(key) for key in wanted]
+
+    def joined(one: Array, other: Array) -> Array:
+        return np.concatenate([one, other], axis=-1)[..., order]
+
+    slopes = {name: joined(columns, second.slopes[name]) for name, columns in first.slopes.items()}
+    return Followed(first.samples, slopes, joined(first.instants, second.instants))
 
 
 def _tolerance(given: Any) -> float | None:
