@@ -30,6 +30,7 @@ NAMES = (
     "start_up",
     "fields",
     "members",
+    "sweeps",
     "lab_load",
     "lab_page",
 )
