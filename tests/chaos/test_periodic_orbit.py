@@ -32,7 +32,7 @@ def test_a_bounce_in_step_with_the_table_has_the_multipliers_of_the_formula(rest
 
 
 def test_its_fold_and_its_period_doubling_are_where_the_formula_has_them():
-    """Γ = πn(1 − e)/(1 + e), and √(that² + (2(1 + e²)/(1 + e)²)²) [guckenheimer1983, section 2.4], [luck1993]."""
+    """Γ = πn(1 − e)/(1 + e), and √(that² + (2(1 + e²)/(1 + e)²)²) [guckenheimer1983, section 2.4]."""
     bouncing = Bouncing(0.5, 1.3)
     unit = G / bouncing.rate**2
     orbit = tr.periodic_orbit(bouncing.system, bouncing.start, period=bouncing.period)

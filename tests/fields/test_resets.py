@@ -14,6 +14,9 @@ from trundle.errors import InvalidValueError, OutOfDomainError, UnknownNameError
 from trundle.fields import VectorField
 from trundle.fields.compiler import compiler
 from trundle.fields.resets import CODES
+from trundle.mechanics.algebra import Quaternion, Vector
+from trundle.mechanics.contact import contact_at
+from trundle.mechanics.impact import land
 from trundle.simulation.trajectory import Event
 
 BACKENDS = ("numpy", "numba", "jax", "c")
@@ -175,6 +178,52 @@ def test_a_ball_gives_back_what_friction_can(friction: float | None, backend: st
     assert now["Omega_y"] * 0.1 == pytest.approx(2.5 * impulse, abs=EXACT(32, 2))
 
 
+TURNS = {
+    "it goes on slipping": ({"friction": 0.2, "restitution": 0.5}, (0.5, -0.2, -2.0)),
+    "it sticks on the way": ({"friction": 0.7, "restitution": 0.3}, (0.3, 0.2, -3.0)),
+    "some of the slip is given back": (
+        {"friction": 0.9, "restitution": 0.6, "tangential_restitution": 0.7},
+        (0.3, 0.2, -3.0),
+    ),
+    "without limit, and given back": ({"restitution": 0.6, "tangential_restitution": 0.7}, (0.3, 0.2, -3.0)),
+    "slip ends, and begins the other way": ({"friction": 0.05, "restitution": 0.8}, (0.02, 0.01, -2.0)),
+}
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_a_landing_that_turns_the_slip_is_that_of_a_run(backend: str) -> None:
+    """`mechanics.impact.land` follows the same course by branches, and by series of more terms."""
+    egg = tr.Body.ellipsoid((0.2, 0.15, 0.12), mass=1.0, centre=(0.02, -0.01, 0.03))
+    turned, made = (0.8, 0.36, 0.48, 0.0), dict[Any, VectorField]()
+    for name, (given, velocity) in TURNS.items():
+        if backend != "numpy" and "friction" not in given:  # another function, which takes its time to be compiled
+            continue
+        system = tr.RollingSystem(egg, tr.Support(tr.Plane(), **given))
+        # One structure, one function: numbers are parameters.
+        field = made.setdefault("friction" in given, fields(system, backend, "flight"))
+        slips = tr.RollingSystem(egg, tr.Support(tr.Plane(), friction=1.0))
+        y = field.pack(slips.place(velocity=velocity, orientation=turned, angular_velocity=(0.0, 0.0, 0.0)))
+        p = system.vector_field("numpy", "flight", ()).parameters
+        contact = contact_at(system, 0.0, Vector(*y[:3]), Quaternion(*turned))
+        struck = land(system, contact, Quaternion(*turned), Vector(*velocity)).velocity_change
+        state = np.asarray(field.resets["land"].states["flight"](0.0, y, p, field.inputs))
+        V = state[[field.state_names.index(f"V_{axis}") for axis in "xyz"]] - velocity
+        assert np.abs(V - struck.array()).max() <= 1e-12 * np.abs(struck.array()).max(), name
+
+
+def test_landings_by_the_thousand_are_those_of_each() -> None:
+    egg = tr.Body.ellipsoid((0.2, 0.15, 0.12), mass=1.0, centre=(0.02, -0.01, 0.03))
+    system = tr.RollingSystem(egg, tr.Support(tr.Plane(), friction=0.3, restitution=0.5))
+    field = system.vector_field("numpy", "flight", ())
+    y = field.pack(system.place(velocity=(0.5, -0.2, -2.0), orientation=(0.8, 0.36, 0.48, 0.0)))
+    many = np.tile(y, (7, 1))
+    many[:, field.state_names.index("V_x")] = np.linspace(-1.0, 1.0, 7)
+    land_ = field.resets["land"].states["flight"]
+    found = land_(0.0, many, field.parameters, field.inputs)
+    for one, state in zip(many, found, strict=True):
+        assert np.abs(state - land_(0.0, one, field.parameters, field.inputs)).max() <= EXACT(64, 2.0)
+
+
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_it_stays_where_nothing_is_given_back(backend: str) -> None:
     for speed, phase in ((0.1, "rolling"), (30.0, "slipping")):
@@ -199,12 +248,38 @@ def test_slip_begins_against_friction_and_ends_in_rolling(backend: str) -> None:
     assert np.array_equal(state, y)
 
 
+def test_where_resistance_holds_a_body_that_slips_it_is_said() -> None:
+    """A ball that slides with little turning stops turning first, as in the run."""
+    system = tr.RollingSystem(
+        tr.Body.solid_sphere(0.02, 0.1), tr.Support(tr.Plane(), friction=0.2), (tr.RollingResistance(0.015),)
+    )
+    start = system.place(velocity=(1.0, 0.0), angular_velocity=(0.0, -2.0, 0.0))
+    run = tr.simulate(system, start, duration=0.2, every=0.01)
+    stop = next(event for event in run.events if "stopped turning" in event.text)
+    field = system.vector_field("numpy", "slipping", ())
+    y, given = field.pack(start), (field.parameters, field.inputs)
+    e = field.event_parameters(0.0, y, *given)
+    assert "stop" in field.event_names
+    where = field.event_names.index("stop")
+    before, after = (
+        field.events(0.0, y + t * field.rates(0.0, y, *given), *given, e)[where]  # of a ball all rates are constant
+        for t in (0.9 * stop.time, 1.1 * stop.time)
+    )
+    assert before > 0 > after
+    with pytest.raises(OutOfDomainError, match="keeps it from turning"):
+        field.after("stop", stop.time, y, *given)
+    rests = system.vector_field("numpy", "rest", ())
+    with pytest.raises(OutOfDomainError, match="keeps it from turning"):
+        rests.after("slip", 0.0, rests.pack(system.place()), *given)
+
+
 def test_what_is_not_written_out_is_said() -> None:
     egg = tr.RollingSystem(tr.Body.ellipsoid((0.2, 0.15, 0.12), mass=1.0), ROUGH)
     field = egg.vector_field("c", "flight")
     given = (0.0, field.pack(egg.place(height=0.1)), field.parameters, field.inputs)
-    with pytest.raises(OutOfDomainError, match="turns the slip on the way"):
-        field.after("land", *given)
+    bounded = tr.RollingSystem(egg.body, tr.Support(tr.Plane(rim=0.5))).vector_field("numpy")
+    with pytest.raises(OutOfDomainError, match="the run ends there"):
+        bounded.after("rim", 0.0, bounded.pack(egg.place()), bounded.parameters, bounded.inputs)
     with pytest.raises(UnknownNameError, match="There are: land"):
         field.after("lend", *given)
     with pytest.raises(OutOfDomainError, match="leaves out what follows an event"):

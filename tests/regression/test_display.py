@@ -86,6 +86,12 @@ def periodic() -> tr.PeriodicMotion:
 
 
 @cache
+def swing() -> tr.PeriodicOrbit:
+    trough = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Cylinder(0.5), tilt="90 deg"))
+    return tr.periodic_orbit(trough, trough.place(position=(0.1, 0.0)), period=1.5)
+
+
+@cache
 def comparison() -> tr.VakonomicComparison:
     return tr.compare_vakonomic(scenario("level-turntable-nudged"))
 
@@ -145,6 +151,11 @@ RESULTS: tuple[Callable[[], Displayed], ...] = (
     lambda: steady()[0],
     lambda: steady()[0].along("speed", count=3),
     periodic,
+    swing,
+    lambda: swing().along("gravity", 9.5, 10.0),
+    lambda: tr.lyapunov_exponents(scenario("tilted-turntable"), duration=2.0, count=2),
+    lambda: tr.poincare_section(scenario("tilted-turntable"), "velocity.x falling through 0", duration=10.0),
+    lambda: tr.lyapunov_map(swing().system, {"x": [0.1]}, lambda x: swing().system.place(position=(x, 0.0)), 1.0),
     lambda: tr.twin(scenario("tilted-turntable")),
     lambda: tr.twin(scenario("tilted-turntable"), electron=True).particle,
     lambda: tr.PfaffianSystem.load("sphere"),
@@ -172,6 +183,7 @@ RESULTS: tuple[Callable[[], Displayed], ...] = (
     lambda: tr.MotionFormula(run().closed_form),
     swept,
     tolerated,
+    lambda: tr.read_track(run()),
 )
 
 

@@ -40,6 +40,8 @@ def test_entities_are_refused(tmp_path: Path) -> None:
     laughs = "".join(f'<!ENTITY a{i + 1} "{f"&a{i};" * 10}">' for i in range(9))
     trap = PROJECT.replace(b"?>", f'?>\n<!DOCTYPE x [<!ENTITY a0 "ha">{laughs}]>'.encode()).replace(b"mass A", b"&a9;")
     assert "neither a document type nor entities" in refused(tmp_path / "film.trk", trap)
+    empty = PROJECT.replace(b"?>", b"?>\n<!DOCTYPE x>")
+    assert "neither a document type nor entities" in refused(tmp_path / "film.trk", empty)
     outside = PROJECT.replace(b"?>", b'?>\n<!DOCTYPE x [<!ENTITY a SYSTEM "file:///etc/passwd">]>')
     assert "neither a document type nor entities" in refused(tmp_path / "film.trk", outside)
 

@@ -118,12 +118,13 @@ def test_axes_that_move_turn_and_grow(tmp_path: Path) -> None:
 
     frames: dict[int, dict[str, Any]] = {
         0: {"xorigin": 320.0, "yorigin": 240.0, "angle": 30.0, "xscale": 500.0, "yscale": 400.0},
-        2: {"xorigin": 300.0, "yorigin": 250.0, "angle": -90.0, "xscale": 800.0, "yscale": 800.0},
+        3: {"xorigin": 300.0, "yorigin": 250.0, "angle": -90.0, "xscale": 800.0, "yscale": 800.0},
     }
     path = tmp_path / "film.trk"
-    path.write_bytes(trk(MARKS, frames, unit="cm"))
+    marks = MARKS | {4: MARKS[3]}
+    path.write_bytes(trk(marks, frames, unit="cm"))
     track = tr.read_track(path)
-    true = [place(*mark, frames[0 if i < 2 else 2]) for i, mark in MARKS.items()]
+    true = [place(*mark, frames[0 if i < 3 else 3]) for i, mark in marks.items()]
     np.testing.assert_allclose(np.column_stack([track["x"], track["y"]]), np.array(true) / 100, rtol=1e-13, atol=1e-15)
     # Up in the film along an x axis that was turned to −90°, which points down: by hand.
     assert track["x"][2] == pytest.approx(-(250 - 224) / 800 / 100)

@@ -14,6 +14,7 @@ import typer
 from ..errors import ScenarioError
 from ..scenario import files
 from . import CARD_FAILED, constraints, screen, signals
+from .chaos import chaos
 from .check import check
 from .derive import derive
 from .equations import equations
@@ -64,6 +65,7 @@ def command() -> Any:
     app.command("sweep", short_help="Run a scenario for many values of its numbers.")(sweep)
     app.command("map", short_help="Draw a sweep, and open the run behind a point of it.")(draw_map)
     app.command("tolerance", short_help="How far a run may be off within tolerances.")(tolerance)
+    app.command("chaos", short_help="Lyapunov exponents, Poincaré sections, periodic orbits.")(chaos)
     app.command("steady", short_help="Steady motions, and whether they are stable.")(steady)
     return typer.main.get_command(app)
 

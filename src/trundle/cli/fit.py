@@ -103,7 +103,6 @@ def fit(
     from .writing import check_folder, write_together
 
     check_folder(folder, tuple(files))
-    from ..tracks import read_track
 
     told: dict[str, Any] = {"rate": rate, "pixel": pixel, "y": y, "sense": sense, "decimal": decimal, "track": track}
     found = fit_tracks(

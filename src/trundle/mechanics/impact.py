@@ -91,7 +91,7 @@ def keeps_direction(system: RollingSystem) -> bool:
     """Tell whether the slip of a body that lands keeps to one line: `straight_impulse` holds.
 
     It does where a push along the support answers alike all round. Else it does without friction, or with as much as it
-    takes, if nothing of the slip is given back.
+    takes if nothing of the slip is given back.
 
     Examples
     --------
@@ -103,7 +103,7 @@ def keeps_direction(system: RollingSystem) -> bool:
     """
     support = system.support
     alike = system.body.is_isotropic_sphere and not support.motion.free
-    return alike or (support.tangential_restitution == 0 and support.friction in (None, 0))
+    return alike or support.friction == 0 or (support.friction is None and support.tangential_restitution == 0)
 
 
 def straight_impulse(system: RollingSystem, contact: Contact, orientation: Quaternion, slip: Vector) -> Vector:

@@ -251,7 +251,7 @@ def _follow(
     paths: Iterable[Path], y0: Array, rows: _Rows | _Paths, stops: Any, names: tuple[str, ...]
 ) -> Iterator[Segment]:
     """Go along steps to the end or the first stop; states are read off the steps' own polynomials."""
-    yield from rows.take(_OneStep(0.0, 0.0, lambda t: np.tile(y0[:, None], t.size)))
+    yield from rows.take(_OneStep(0.0, 0.0, lambda t: np.tile(y0[:, None], t.size), count=0))
     first = stops(0.0, y0)
     try:
         for path in paths:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...errors import SolverError
+from ...errors import InvalidValueError, SolverError
 from ...mechanics import checks
 from ...mechanics.system import RollingSystem, State
 from ...simulation.labels import PHASES
@@ -82,6 +82,8 @@ def lyapunov_exponents(
 
     Raises
     ------
+    InvalidValueError
+        If a number is refused, or the duration is too short for an error to be told.
     SolverError
         If the motion starts at an event, rests, ends so soon that no error can be told, or has no derivative because an
         event is only just reached.
@@ -129,12 +131,15 @@ def _check_long_enough(growth: list[Growth], samples: Samples, left_out: float) 
     kept = sum(one.time >= growth[0].time + left_out for one in growth)
     if kept >= _LEAST and end > growth[0].time + left_out:
         return
-    last = samples.events[-1] if samples.events else None
-    why = f"The motion {last.text}. Begin it elsewhere" if last is not None and last.final else "Follow it for longer"
-    raise SolverError(
-        f"The motion was followed for {end - growth[0].time:.6g} s, of which {left_out:.6g} s are left out: "
-        f"{kept} times its differences were made orthonormal, and an error needs {_LEAST}. {why}, or give `every`."
+    said = (
+        f"Of {end - growth[0].time:.6g} s {left_out:.6g} s are left out: {kept} times the differences were made "
+        f"orthonormal, and an error needs {_LEAST}."
     )
+    last = samples.events[-1] if samples.events else None
+    if last is not None and last.final:
+        raise SolverError(f"The motion {last.text}. {said} Begin it elsewhere, or give a shorter `every`.")
+    remedy = f"{said} Follow it for longer, or give a shorter `every`."
+    raise InvalidValueError("duration", "must be long enough for an error", f"{end - growth[0].time:.6g} s", remedy)
 
 
 def _zeros(system: RollingSystem, now: PhaseStart, samples: Samples, basis: Array, scale: Array) -> Neutral:

@@ -14,16 +14,9 @@ from ...tracks import Track, read_track
 from ...tracks.names import kind_of
 from ...units import UNITS, to_si
 
-# What may be observed beside the columns of a trajectory, and of which kind it is.
-OTHERS = {
-    "mark_x": "length",
-    "mark_y": "length",
-    "angle": "angle",
-    "spot_x": "length",
-    "spot_y": "length",
-    "spot_z": "length",
-}
-COLUMNS = {**{f"{kind}{axis}": kind_of(f"{kind}{axis}") for kind in ("", "v", "w") for axis in "xyz"}, **OTHERS}
+# What may be observed: the columns of a trajectory and others beside them, and of which kind each is.
+OTHERS = ("mark_x", "mark_y", "angle", "spot_x", "spot_y", "spot_z")
+COLUMNS = {name: kind_of(name) for name in (*(f"{part}{axis}" for part in ("", "v", "w") for axis in "xyz"), *OTHERS)}
 _FEWEST = 4  # rows
 _HALF = 4  # rows to either side of one, whose polynomial shows the noise
 _DEGREE = 3
@@ -93,9 +86,10 @@ def observe(
     """
     track = read_track(data, columns=columns, units=units)
     _check_frame(track)
-    wanted = [name for name in COLUMNS if name in track.columns and np.isfinite(track[name]).any()]
+    known = [name for name in COLUMNS if name in track.columns]
+    wanted = [name for name in known if np.isfinite(track[name]).any()]
     if not wanted:
-        told = f"only {', '.join(track.columns) or 'none'}, without a number" if track.columns else "none"
+        told = f"only empty ones: {', '.join(known)}" if known else "none"
         remedy = f"What may be fitted: {', '.join(COLUMNS)}."
         raise InvalidValueError("columns", "must have one of what was seen of the motion", told, remedy)
     values = np.column_stack([track[name] for name in wanted])
@@ -103,10 +97,6 @@ def observe(
     time, values, rows = track.time[good], values[good], np.asarray(track.data["row"].values)[good]
     if time.size < _FEWEST:
         raise InvalidValueError("data", f"must have {_FEWEST} rows at least", f"{time.size} with a time and a value")
-    twice = np.flatnonzero(np.diff(time) == 0)
-    if twice.size:
-        told = f"t = {time[twice[0]]:g} s in rows {rows[twice[0]]} and {rows[twice[0] + 1]}"
-        raise InvalidValueError("data", "must have one row an instant", told, "Fit several runs as several tables.")
     said = f"{track.taken}. {track.left_out_rows}".rstrip(" .")
     return Observations(time, tuple(wanted), values, rows, _called(track, label), said)
 
