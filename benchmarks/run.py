@@ -31,6 +31,7 @@ NAMES = (
     "start_up",
     "fields",
     "members",
+    "sweeps",
     "lab_load",
     "lab_page",
 )

@@ -6,11 +6,13 @@ import os
 import pickle
 import signal
 import threading
+import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any
 
 from ...errors import InvalidValueError, SolverError
@@ -22,7 +24,8 @@ from .plan import Plan
 Take = Callable[[int, Columns], None]
 
 PATIENCE = "10s"  # for a scheduler to answer
-_AHEAD = 2  # chunks under way for each worker
+_AHEAD = 4  # chunks under way for each worker
+_ASKED_EVERY = 2.0  # s
 _ATTEMPTS = 3  # of a chunk whose worker was lost
 
 
@@ -185,13 +188,18 @@ def _on_dask(client: Any, plan: Plan, waiting: Iterator[int], take: Take) -> Non
     going: dict[str, int] = {}
     done = as_completed(with_results=True, raise_errors=False)
 
+    asked, most = 0.0, 0  # when, and how many chunks may be under way: workers come and go
+
     def more() -> None:
-        most = _AHEAD * max(1, sum(client.nthreads().values()))
-        some: list[int] = []
-        while len(going) + len(some) < most and (chunk := next(waiting, None)) is not None:
-            some.append(chunk)
-        for chunk in some:
-            future = client.submit(run_chunk, job, plan.values(chunk), pure=False, retries=_ATTEMPTS)
+        nonlocal asked, most
+        if time.monotonic() - asked > _ASKED_EVERY:
+            asked, most = time.monotonic(), _AHEAD * max(1, sum(client.nthreads().values()))
+        if len(going) > most // 2:  # many at once cost the scheduler less
+            return
+        some = list(islice(waiting, most - len(going)))
+        values = [plan.values(chunk) for chunk in some]
+        futures = client.map(run_chunk, [job] * len(some), values, pure=False, retries=_ATTEMPTS) if some else []
+        for chunk, future in zip(some, futures, strict=True):
             going[future.key] = chunk
             done.add(future)
 
@@ -203,5 +211,4 @@ def _on_dask(client: Any, plan: Plan, waiting: Iterator[int], take: Take) -> Non
                 raise SolverError("a chunk lost its worker again and again: is there memory enough?") from None
             raise error
         take(going.pop(future.key), columns)
-        if len(going) < _AHEAD * max(1, len(client.nthreads())):
-            more()
+        more()
