@@ -1,7 +1,7 @@
 """Execute every code block of the documents, and run each doctest in a folder of its own.
 
 - `python` blocks run in order, in one namespace per document;
-- `toml` blocks are parsed, and whole scenarios loaded;
+- `toml` blocks are parsed, and whole scenarios and sweeps loaded;
 - in `console` blocks each `$ command` runs, must exit as its comment says (`# exit status 3`; else 0),
   and must print the lines shown, in that order, with `...` for what varies;
 - `text` blocks are not run.
@@ -33,6 +33,7 @@ from sybil.parsers.markdown import CodeBlockParser
 ROOT = Path(__file__).parent
 WHOLE_SCENARIO = {"body", "support", "start", "run"}
 WHOLE_PATH = {"body", "path"}
+WHOLE_SWEEP = {"scenario", "over", "measure"}
 # What a reader types to install or change trundle; a test must not.
 NOT_RUN = {"cd", "git", "pip", "python3"}
 SHELL = frozenset("|<>&;$*?~")  # what only a shell understands
@@ -63,6 +64,10 @@ def run_toml(example: Example) -> None:
         from trundle.analysis.geometry import PathScenario
 
         PathScenario.read(tables).run()
+    elif tables.keys() >= WHOLE_SWEEP:
+        from trundle.analysis.sweep.plan import read_plan
+
+        read_plan(tables)
 
 
 def run_console(example: Example) -> str | None:

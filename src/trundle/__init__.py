@@ -8,6 +8,18 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from . import units
     from .analysis.analogy import ChargedParticle, Twin, to_turntable, twin
+    from .analysis.chaos import (
+        LyapunovExponents,
+        OrbitBranch,
+        PeriodicOrbit,
+        PoincareSection,
+        StartMap,
+        basins_of_attraction,
+        lyapunov_exponents,
+        lyapunov_map,
+        periodic_orbit,
+        poincare_section,
+    )
     from .analysis.checking import Check, Mistake, check, check_equations
     from .analysis.derivation import derive
     from .analysis.geometry import Arc, Curve, PathScenario, RolledPath, Rotation, Straight, roll_along
@@ -17,6 +29,7 @@ if TYPE_CHECKING:
     from .analysis.sensitivities import Sensitivities, sensitivities
     from .analysis.statics import Equilibria, Equilibrium, equilibria
     from .analysis.steady import PeriodicMotion, SteadyMotion, SteadyMotions, periodic_motion, steady_motions
+    from .analysis.sweep import Sweep, Tolerance, sweep, tolerance
     from .analysis.vakonomic import VakonomicComparison, VakonomicPath, compare_vakonomic, vakonomic_path
     from .errors import (
         InvalidValueError,
@@ -85,11 +98,24 @@ if TYPE_CHECKING:
     from .simulation.simulate import Scenario, simulate
     from .simulation.trajectory import Event, Trajectory
     from .solve.exact import ClosedForm
+    from .tracks import Track, read_track
     from .verify import Card
 
 # Public name -> module that holds it: `import trundle` loads nothing until a name is used.
 _HOMES = {
     "analysis.analogy": ("ChargedParticle", "Twin", "twin", "to_turntable"),
+    "analysis.chaos": (
+        "lyapunov_exponents",
+        "LyapunovExponents",
+        "poincare_section",
+        "PoincareSection",
+        "periodic_orbit",
+        "PeriodicOrbit",
+        "OrbitBranch",
+        "lyapunov_map",
+        "basins_of_attraction",
+        "StartMap",
+    ),
     "errors": (
         "TrundleError",
         "InvalidValueError",
@@ -166,7 +192,9 @@ _HOMES = {
     "analysis.statics": ("equilibria", "Equilibria", "Equilibrium"),
     "analysis.steady": ("steady_motions", "SteadyMotions", "SteadyMotion", "periodic_motion", "PeriodicMotion"),
     "simulation.trajectory": ("Trajectory", "Event"),
+    "analysis.sweep": ("sweep", "Sweep", "tolerance", "Tolerance"),
     "analysis.vakonomic": ("compare_vakonomic", "vakonomic_path", "VakonomicComparison", "VakonomicPath"),
+    "tracks": ("read_track", "Track"),
     "verify": ("Card",),
     "analysis.checking": ("check", "check_equations", "Check", "Mistake"),
 }
@@ -202,6 +230,7 @@ __all__ = [
     "InvalidValueError",
     "Isotropic",
     "Load",
+    "LyapunovExponents",
     "Magnus",
     "MissingExtraError",
     "Mistake",
@@ -209,13 +238,16 @@ __all__ = [
     "MotionFormula",
     "Motor",
     "Move",
+    "OrbitBranch",
     "OutOfDomainError",
     "Paraboloid",
     "PathScenario",
     "PeriodicMotion",
+    "PeriodicOrbit",
     "PfaffianSystem",
     "PivotFriction",
     "Plane",
+    "PoincareSection",
     "Potential",
     "PrecessingTilt",
     "Principal",
@@ -239,6 +271,7 @@ __all__ = [
     "Sphere",
     "Spin",
     "SpinBy",
+    "StartMap",
     "Starts",
     "State",
     "SteadyMotion",
@@ -247,11 +280,14 @@ __all__ = [
     "Support",
     "SupportFunction",
     "Surface",
+    "Sweep",
     "Tensor",
     "Tilt",
+    "Tolerance",
     "Torque",
     "Torus",
     "TorusTrack",
+    "Track",
     "Trajectory",
     "TrundleError",
     "Twin",
@@ -263,20 +299,28 @@ __all__ = [
     "Wobble",
     "__version__",
     "air_drag",
+    "basins_of_attraction",
     "check",
     "check_equations",
     "compare_vakonomic",
     "derive",
     "equilibria",
+    "lyapunov_exponents",
+    "lyapunov_map",
     "periodic_motion",
+    "periodic_orbit",
     "place_many",
+    "poincare_section",
+    "read_track",
     "roll_along",
     "sensitivities",
     "sensitivity",
     "simulate",
     "simulate_many",
     "steady_motions",
+    "sweep",
     "to_turntable",
+    "tolerance",
     "twin",
     "units",
     "vakonomic_path",

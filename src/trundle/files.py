@@ -6,11 +6,16 @@ import os
 import shutil
 import tempfile
 import time
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from .errors import TrundleError
+from .errors import RunFileError, TrundleError
+
+if TYPE_CHECKING:
+    import xarray
 
 _STAGE, _UNHELD = ".trundle-", ".trundle+"  # folders of a process that holds them, and for an instant before that
 _OLD = 86_400.0  # s: older than this is what nobody writes to any more, where no lock can tell
@@ -38,7 +43,7 @@ def staging(above: Path, *others: Path) -> Iterator[Path]:
     stage = made.with_name(made.name.replace(_UNHELD, _STAGE))  # it has this name only while it is held
     held = None
     try:
-        held = _hold(made)
+        held = hold(made)
         made.replace(stage)
         yield stage
     finally:
@@ -48,8 +53,17 @@ def staging(above: Path, *others: Path) -> Iterator[Path]:
             os.close(held)
 
 
-def _hold(folder: Path) -> int | None:
-    """Lock a folder, and return what holds the lock; None where somebody else has it, or folders cannot be locked."""
+def hold(folder: Path) -> int | None:
+    """Lock a folder, and return what holds the lock; None where somebody else has it, or folders cannot be locked.
+
+    Examples
+    --------
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     lock = hold(Path(folder))
+    ...     print(hold(Path(folder)))
+    ...     os.close(lock)
+    None
+    """
     try:
         import fcntl
 
@@ -76,7 +90,7 @@ def _clear_one(left: Path) -> None:
     if left.is_symlink() or not left.is_dir():
         return
     old = time.time() - left.stat().st_mtime > _OLD
-    held = _hold(left) if left.name.startswith(_STAGE) else None
+    held = hold(left) if left.name.startswith(_STAGE) else None
     if held is not None or old:
         shutil.rmtree(left, ignore_errors=True)
     if held is not None:
@@ -106,6 +120,35 @@ def written_whole(target: Path) -> Iterator[Path]:
     except OSError as error:
         reason = error.strerror or str(error)
         raise TrundleError(f"{target} cannot be written: {reason}. Choose another folder or make room.") from None
+
+
+def read_netcdf(path: Path) -> xarray.Dataset:
+    """Read a NetCDF4 file into memory.
+
+    Examples
+    --------
+    >>> _ = Path("text.nc").write_text("not NetCDF")
+    >>> read_netcdf(Path("text.nc"))
+    Traceback (most recent call last):
+    ...
+    trundle.errors.RunFileError: text.nc: `file` must be NetCDF4; got 'text.nc'. It is damaged, or something else (...).
+    """
+    import h5py
+    import xarray
+
+    if path.is_dir():
+        raise RunFileError("file", "must not be a folder", path.name, "Name a file in it.", str(path))
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of what is odd in a file, xarray warns before it fails
+            with h5py.File(path) as file:
+                dict(file.attrs)  # where one is damaged, h5netcdf leaves a file half open that complains when it goes
+            return xarray.load_dataset(path, engine="h5netcdf", decode_times=False)
+    except FileNotFoundError:
+        raise RunFileError("file", "must exist", path.name, "Check the name and the folder.", str(path)) from None
+    except Exception as error:  # noqa: BLE001  a damaged file makes four libraries raise a dozen kinds
+        remedy = f"It is damaged, or something else ({first_line(error)})."
+        raise RunFileError("file", "must be NetCDF4", path.name, remedy, str(path)) from None
 
 
 def first_line(error: Exception) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from playwright.sync_api import expect
@@ -20,8 +22,8 @@ def bench(visitor: Visitor) -> Bench:
     return from_above(visitor, NAME)
 
 
-def from_above(visitor: Visitor, name: str) -> Bench:
-    shown = Bench(visitor.open(f"#/bench?name={name}"))
+def from_above(visitor: Visitor, name: str, **options: Any) -> Bench:
+    shown = Bench(visitor.open(f"#/bench?name={name}", **options))
     shown.stage.canvas.focus()
     shown.page.keyboard.press("Home")
     shown.page.keyboard.press("t")
@@ -53,6 +55,87 @@ def test_the_ball_is_dragged_to_another_start(bench: Bench) -> None:
 
     eventually(bench.page, moved)
     expect(bench.box("start.position.0")).not_to_have_value("20")
+
+
+def test_the_ball_is_taken_with_the_pointer_that_turns_the_view_and_put_down(bench: Bench) -> None:
+    expect(bench.page.get_by_text("Take the ball and let it go, or throw it.")).to_be_visible()
+    x, y = bench.stage.ball()
+    mouse = bench.page.mouse
+    mouse.move(x, y)
+    mouse.down()
+    mouse.move(x - 40, y, steps=4)
+    mouse.move(x - 60, y - 40, steps=4)
+    bench.page.wait_for_timeout(200)  # held still: it is put down, not thrown
+    mouse.up()
+
+    def put_down() -> None:
+        place, velocity = start(bench)
+        assert place[0] < 0.19
+        assert place[1] > 0.01
+        assert velocity == pytest.approx([0.0, 0.1], abs=1e-9), "the velocity stays"
+        assert bench.stage.ball() == pytest.approx((x - 60, y - 40), abs=6), "the ball lies where it was let go"
+
+    eventually(bench.page, put_down)
+    expect(bench.page.get_by_text("Take the ball and let it go, or throw it.")).to_be_hidden()
+
+
+def test_the_ball_is_thrown_as_the_hand_moves(bench: Bench) -> None:
+    """To the left on the screen, down the first axis, at about the speed of the hand."""
+    bench.page.evaluate(FLING, [*bench.stage.ball(), -60])
+
+    def thrown() -> None:
+        place, velocity = start(bench)
+        assert place[0] < 0.19
+        assert velocity[0] < -0.05
+        assert abs(velocity[1]) < 0.1 * abs(velocity[0])
+
+    eventually(bench.page, thrown)
+
+
+def test_a_click_on_the_ball_changes_nothing(bench: Bench) -> None:
+    before = bench.scenario()
+    x, y = bench.stage.ball()
+    bench.page.mouse.click(x, y)
+    bench.page.wait_for_timeout(500)
+    assert bench.scenario() == before
+
+
+def test_what_is_thrown_starts_its_film(visitor: Visitor) -> None:
+    """Also in the middle of a film: it begins anew from where the ball was let go."""
+    bench = from_above(visitor, NAME, reduced_motion="no-preference")
+    eventually(bench.page, lambda: runs(bench))
+    bench.page.keyboard.press("Space")
+    bench.page.evaluate("document.activeElement.blur()")  # the frame of the focus is as blue as the ball
+    x, y = bench.stage.ball()
+    was = bench.scenario()
+    bench.page.mouse.move(x, y)
+    bench.page.mouse.down()
+    bench.page.mouse.move(x + 30, y + 10, steps=4)
+    bench.page.mouse.up()
+
+    def began() -> None:
+        assert bench.scenario()["start"]["position"] != was["start"]["position"]
+        assert bench.stage.drawn().playing
+
+    eventually(bench.page, began)
+
+
+def runs(bench: Bench) -> None:
+    assert bench.stage.drawn().time > 0.3
+
+
+# Within the page, so that the hand is no slower than a hand on a busy machine either.
+FLING = """async ([x, y, by]) => {
+  const canvas = document.querySelector('[data-testid="stage"]')
+  const tell = (name, clientX) => canvas.dispatchEvent(new PointerEvent(
+    name, { clientX, clientY: y, pointerId: 1, button: 0, bubbles: true, cancelable: true }))
+  tell('pointerdown', x)
+  for (const share of [0.2, 0.4, 0.6, 0.8, 1]) {
+    await new Promise(done => setTimeout(done, 10))
+    tell('pointermove', x + share * by)
+  }
+  tell('pointerup', x + by)
+}"""
 
 
 def test_its_velocity_is_drawn_as_an_arrow(bench: Bench) -> None:

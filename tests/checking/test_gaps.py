@@ -88,7 +88,8 @@ def test_a_long_gap_is_no_mistake() -> None:
             lambda text: [text[0], *(line.rpartition(",")[0] + "," for line in text[1:])],
             "`vz` must hold a number in most rows",
         ),
-        (lambda text: text[:1], "12 samples or more"),
+        (lambda text: text[:1], "must hold rows of numbers below its headings"),
+        (lambda text: text[:9], "12 samples or more"),
         (lambda text: [*text[:30], text[29], *text[30:]], "`time` must ascend"),
     ],
 )

@@ -13,8 +13,8 @@ import xarray
 from scipy.spatial.transform import Rotation
 
 import trundle as tr
-from trundle.analysis.checking.names import recognise
 from trundle.analysis.checking.reading import Conventions, read
+from trundle.tracks.names import recognise
 
 from .test_mistakes import BALL, run, system
 from .theirs import only, vectors

@@ -206,7 +206,7 @@ def test_one_that_is_still_writing_is_left_alone(tmp_path: Path) -> None:
 
 
 def test_where_no_lock_can_tell_only_what_is_old_is_cleared(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(files, "_hold", lambda _: None)
+    monkeypatch.setattr(files, "hold", lambda _: None)
     for name, age in ((".trundle-young", 3600.0), (".trundle-old", 90_000.0), (".trundle+old", 90_000.0)):
         (tmp_path / name).mkdir()
         (tmp_path / name / "run.nc").write_bytes(b"x")

@@ -306,7 +306,7 @@ def test_covariances_and_units_say_the_same() -> None:
     for again in (
         tr.fit(data, table(), [K], noise=NOISE**2 * np.eye(2)),
         tr.fit(data, table(), [K], noise=NOISE**2 * np.eye(600)),
-        tr.fit(in_mm, table(), [K], noise="0.5 mm", length="mm"),
+        tr.fit(in_mm, table(), [K], noise="0.5 mm", units="mm"),
         tr.fit(data, table(), [K], noise=np.full(300, NOISE)),
     ):
         assert again[K].value == pytest.approx(plain[K].value, rel=1e-8)
@@ -342,10 +342,10 @@ def test_correlated_noise_is_weighed_as_it_is() -> None:
         ({"data": {"t": [0, 1, 2], "x": [0, 1, 2]}}, "4 rows at least"),
         ({"data": {"t": [0, 1, 2, 3], "x": [0, 1, 2, 3]}}, "4 values for 5 numbers"),
         ({"data": {"t": [0, 1, 2, 3], "x": [np.nan] * 4}}, "only empty ones: x"),
-        ({"data": {"t": [0, 1, 1, 3], "x": [0, 1, 2, 3]}}, "in rows 2 and 3"),
-        ({"data": {"x": [0, 1, 2, 3]}}, "must have one of times"),
+        ({"data": {"t": [0, 1, 1, 3, 3, 4, 4, 5, 5], "x": [0] * 9}}, "rows 2 and 3"),
+        ({"data": {"x": [0, 1, 2, 3]}}, "no column for t"),
         ({"data": {"t": [0, 1, 2, 3], "x": ["a", "b", "c", "d"]}}, "`x` must hold numbers"),
-        ({"data": 7}, "must be columns"),
+        ({"data": 7}, "must be a file, a table"),
     ],
 )
 def test_what_is_refused_is_refused_in_words(change: dict[str, Any], says: str) -> None:

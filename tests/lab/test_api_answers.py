@@ -34,6 +34,9 @@ def test_the_list_names_every_scenario_and_says_which_are_exact(lab: TestClient)
     assert not listed["rattleback"]["exact"]
     assert listed["roll-x-then-y"]["motion"] == "path"
     assert all(entry["summary"] for entry in listed.values())
+    headings = [entry["group"] for entry in listed.values()]
+    assert all(headings)
+    assert min(headings.count(heading) for heading in headings) > 1, "a heading for one scenario alone"
 
 
 def test_a_scenario_comes_as_it_is_written_and_as_tables(lab: TestClient) -> None:

@@ -26,7 +26,7 @@ BALL = tr.Body.solid_sphere(radius=0.025, mass=0.065)
 @pytest.fixture
 def compiling(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """Compile every law after its first steps, and count the calls of the loop."""
-    monkeypatch.setattr(runge_kutta, "_WORTH_COMPILING", 0)
+    monkeypatch.setattr(runge_kutta, "WORTH_COMPILING", 0)
     calls: list[int] = []
     loop = compiled_steps._loop
 
@@ -195,7 +195,7 @@ def test_the_same_run_twice_is_the_same_to_the_last_bit() -> None:
 
 @pytest.mark.parametrize("compile_at", [0, 10**9])
 def test_a_pole_of_a_formula_is_told_in_the_same_words(compile_at: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(runge_kutta, "_WORTH_COMPILING", compile_at)
+    monkeypatch.setattr(runge_kutta, "WORTH_COMPILING", compile_at)
     push = tr.Force(("0.01 / (20 - t)**2", 0.0, 0.0))
     system = tr.RollingSystem(BALL, tr.Support(tr.Plane()), loads=[push])
     with pytest.raises(SolverError, match=r"hardly gets on at t = 19\.99"):

@@ -11,7 +11,9 @@ from mpmath import mp
 
 import trundle as tr
 from trundle.solve import corner_events
+from trundle.solve.dense import Dense
 from trundle.solve.laws import FlightLaw, RollingLaw
+from trundle.solve.methods import Method
 from trundle.solve.tracing import python_law
 
 METHODS = ("taylor", "runge-kutta")
@@ -176,3 +178,20 @@ def test_what_passes_through_zero_at_a_corner_is_the_same_as_flat_python(place: 
         wanted = [float(part) for w in corner_events.vectors(system, law, 0.3, numbers) for part in w]
         assert len(wanted) == 3 * len(system.corners) == 6
         assert python_law(system, law).corners(0.3, numbers) == pytest.approx(wanted, rel=1e-14)
+
+
+@pytest.mark.parametrize("gap", [1e-5, 1e-6, 1e-7])
+def test_a_velocity_that_only_whirls_about_passes_no_corner(gap: float) -> None:
+    """In a bowl all but as round as the ball V whirls at √(5g/(7(R − a))), and nothing else is as fast.
+
+    Each quarter turn was taken for a corner, and the law begun anew behind it: some runs took a minute.
+    """
+    bowl = tr.Support(tr.Bowl(A + gap))
+    system = tr.RollingSystem(BALL, bowl, loads=[tr.QuadraticDrag(1e-6)])
+    rate = np.sqrt(5 * G / (7 * gap))
+    start = system.place((0.3 * A, 0.0), (0.0, 0.3 * gap * rate))
+    run = Method.of("taylor").dense(system, start, 20 / rate)
+    assert isinstance(run, Dense)
+    lengths = np.linalg.norm(run(np.linspace(0.0, 20 / rate, 100)).velocity, axis=1)
+    assert lengths.min() > 0.8 * lengths.max()
+    assert len(run.legs) == 1

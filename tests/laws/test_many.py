@@ -29,13 +29,13 @@ BOWL = tr.EllipsoidalBowl((0.5, 0.4, 0.3))
 def alone(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """Note which members are not taken along with the others."""
     found: list[int] = []
-    put_alone = many._Result.put_alone
+    put_alone = many.Runs.put_alone
 
     def noted(self: Any, member: int, *arguments: Any) -> None:
         found.append(member)
         put_alone(self, member, *arguments)
 
-    monkeypatch.setattr(many._Result, "put_alone", noted)
+    monkeypatch.setattr(many.Runs, "put_alone", noted)
     return found
 
 
@@ -178,12 +178,13 @@ def test_instants_at_any_distance() -> None:
     found: dict[int, list[Any]] = {}
 
     def done(block: ensemble.Block) -> None:
-        for i, member in enumerate(block.members.tolist()):
-            found.setdefault(member, []).append((block.rows, block.samples.part(slice(i, None, block.members.size))))
+        for member in np.unique(block.members).tolist():
+            own = block.members == member
+            found.setdefault(member, []).append((block.rows[own], block.samples.part(own)))
 
     assert ensemble.integrate(systems, states, range(len(systems)), times, done, workers=2) == ([], {})
     for member in (0, 7, 10):
-        rows = np.concatenate([np.arange(times.size)[rows] for rows, _ in found[member]])
+        rows = np.concatenate([rows for rows, _ in found[member]])
         assert np.array_equal(rows, np.arange(times.size))
         mine = np.concatenate([part.position for _, part in found[member]])
         wanted = taylor.solve(systems[member], starts[member], times).position

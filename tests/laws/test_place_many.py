@@ -95,6 +95,8 @@ def test_they_are_put_down_as_one_by_one(name: str, body: Any) -> None:
     down += agree(system, position=some["position"], velocity=some["whole"], angular_velocity=some["turning"])
     down += agree(system, position=some["position"], velocity=some["velocity"], angular_velocity=some["turning"])
     down += agree(system, position=some["position"], velocity=some["whole"], spin=2.0)
+    down += agree(system, position=some["position"], velocity="rolling", angular_velocity=some["turning"])
+    agree(system, position=some["position"], velocity="rolling", spin=2.0)  # refused, whoever
     assert down > COUNT
 
 

@@ -83,9 +83,25 @@ def test_an_angular_velocity_that_agrees_is_taken_as_it_is(body: tr.Body) -> Non
     assert again == start
 
 
+@pytest.mark.parametrize("turning", [(3.0, -2.0, 4.0), (0.0, 0.0, -4.0), (0.0, 0.0, 0.0), (1e-9, 0.0, 0.0)])
+def test_rolling_is_the_velocity_that_goes_with_the_angular_velocity(body: tr.Body, turning: Any) -> None:
+    place = {"position": (0.2, -0.3), "angular_velocity": turning, "orientation": TURNED}
+    for table in (TABLES["spinning"], tr.Support(tr.Plane(), motion=tr.Spin(-RATE), friction=0.3)):
+        start = tr.RollingSystem(body, table).place(velocity="rolling", **place)
+        assert start.angular_velocity == turning
+        rho = lowest(body, start.orientation)
+        omega = [0.0, 0.0, RATE if table.friction is None else -RATE]
+        u = np.cross(omega, np.array(start.position) + rho)
+        assert np.abs(np.array(start.velocity) + np.cross(turning, rho) - u).max() <= EXACT(16, 2.0)
+
+
 @pytest.mark.parametrize(
     ("arguments", "key"),
     [
+        ({"velocity": "rolling"}, "velocity"),
+        ({"velocity": "rolling", "spin": 1.0}, "velocity"),
+        ({"velocity": "rolling", "angular_velocity": (0.0, 0.0, 1.0), "height": 0.1}, "velocity"),
+        ({"velocity": "roling", "angular_velocity": (0.0, 0.0, 1.0)}, "velocity"),
         ({"position": (1.0, 0.0)}, "position"),
         ({"position": (0.8, -0.7)}, "position"),
         ({"position": (0.1,)}, "position"),

@@ -203,3 +203,21 @@ def test_a_ball_put_down_in_a_pipe_touches_its_wall_and_rolls() -> None:
     riding = system.place((1.0, 0.2), "co-rotating")
     assert np.allclose(riding.velocity, 2.0 * 0.35 * around, atol=1e-15)
     assert np.allclose(riding.angular_velocity, [0.0, 0.0, 2.0], atol=EXACT(32, 1))
+
+
+@pytest.mark.parametrize("distance", [0.0, 100.0, 1e4])
+@pytest.mark.parametrize("tilt", [0.0, 0.1])
+@pytest.mark.parametrize("body", [tr.Body.cylinder(radius=0.05, mass=0.2), tr.Body.solid_sphere(0.05, 0.2)])
+def test_far_away_it_turns_as_far_as_it_rolls(body: tr.Body, tilt: float, distance: float) -> None:
+    """Its turn was read off its place, of which 10 km away a radian has eleven digits left."""
+    system = tr.RollingSystem(body, tr.Support(tr.Plane(), tilt=tilt))
+    run = tr.simulate(system, system.place((distance, 0.0), (0.3, 0.0)), 2.0, 0.1)
+    assert run.method == "exact"
+    t, k = run.samples.time, 0.5 if body.shape.axis is not None else 0.4
+    turned = (0.3 * t + 0.5 * G * np.sin(tilt) / (1 + k) * t * t) / 0.05
+    w, x, y, z = run.samples.orientation[0]
+    c, s = np.cos(0.5 * turned), np.sin(0.5 * turned)  # about the second axis
+    wanted = np.stack([c * w - s * y, c * x + s * z, c * y + s * w, c * z - s * x], axis=1)
+    assert np.abs(run.samples.orientation - wanted).max() <= EXACT(8, turned.max())
+    failures = run.card().failures
+    assert not failures, failures

@@ -443,3 +443,27 @@ def test_a_cache_that_cannot_be_tidied_is_no_reason_to_fail(machine: Machine) ->
     machine.patch.setattr(os, "utime", refuse)
     machine.restart()
     assert machine.run(replace(SYSTEM, loads=(tr.Drag(0.01),))).position.shape == (5, 3)
+
+
+def test_heyoka_does_not_keep_the_same_once_more(machine: Machine, tmp_path: Path) -> None:
+    heyoka = pytest.importorskip("heyoka")
+    state = heyoka.llvm_state
+    if not hasattr(state, "set_diskcache_path"):
+        pytest.skip("this heyoka keeps nothing on disk")
+    before, theirs = (state.get_diskcache_path(), state.get_diskcache_enabled()), tmp_path / "heyoka"
+    state.set_diskcache_path(theirs)
+    state.set_diskcache_enabled(True)
+    state.clear_memcache()
+    try:
+        machine.run()
+        machine.restart()
+        machine.run()
+        assert machine.compiled
+        assert not [path for path in theirs.rglob("*") if path.is_file()]
+        assert state.get_diskcache_enabled()  # for others
+        x = heyoka.make_vars("x")
+        heyoka.taylor_adaptive([(x, 0.123 - heyoka.sin(x))], [0.0])
+        assert [path for path in theirs.rglob("*") if path.is_file()]
+    finally:
+        state.set_diskcache_path(before[0])
+        state.set_diskcache_enabled(before[1])

@@ -86,6 +86,12 @@ def periodic() -> tr.PeriodicMotion:
 
 
 @cache
+def swing() -> tr.PeriodicOrbit:
+    trough = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Cylinder(0.5), tilt="90 deg"))
+    return tr.periodic_orbit(trough, trough.place(position=(0.1, 0.0)), period=1.5)
+
+
+@cache
 def comparison() -> tr.VakonomicComparison:
     return tr.compare_vakonomic(scenario("level-turntable-nudged"))
 
@@ -108,6 +114,17 @@ def fitted() -> tr.Fit:
 @cache
 def equilibria() -> tr.Equilibria:
     return tr.equilibria(scenario("weighted-cylinder-on-incline"))
+
+
+@cache
+def swept() -> tr.Sweep:
+    return tr.sweep(scenario("level-turntable-nudged"), {"gravity": [9.8, 9.9]}, "end x", duration=1.0)
+
+
+@cache
+def tolerated() -> tr.Tolerance:
+    limits = {"support.motion.rate": "33.3 ± 0.3 rpm", "body.mass": "65 ± 1 g"}
+    return tr.tolerance(scenario("level-turntable-nudged"), limits, "end x", members=4, duration=1.0)
 
 
 # Every result that shows itself; the first test says if one is missing.
@@ -134,6 +151,11 @@ RESULTS: tuple[Callable[[], Displayed], ...] = (
     lambda: steady()[0],
     lambda: steady()[0].along("speed", count=3),
     periodic,
+    swing,
+    lambda: swing().along("gravity", 9.5, 10.0),
+    lambda: tr.lyapunov_exponents(scenario("tilted-turntable"), duration=2.0, count=2),
+    lambda: tr.poincare_section(scenario("tilted-turntable"), "velocity.x falling through 0", duration=10.0),
+    lambda: tr.lyapunov_map(swing().system, {"x": [0.1]}, lambda x: swing().system.place(position=(x, 0.0)), 1.0),
     lambda: tr.twin(scenario("tilted-turntable")),
     lambda: tr.twin(scenario("tilted-turntable"), electron=True).particle,
     lambda: tr.PfaffianSystem.load("sphere"),
@@ -159,6 +181,9 @@ RESULTS: tuple[Callable[[], Displayed], ...] = (
     lambda: rolled().sampled(1e-3),
     lambda: scenario("free-turntable-ellipse").system().vector_field("c"),
     lambda: tr.MotionFormula(run().closed_form),
+    swept,
+    tolerated,
+    lambda: tr.read_track(run()),
 )
 
 

@@ -335,6 +335,7 @@ BAD = [  # (what stands in the file, what comes instead, the key, the value, the
     ("[0, 1, 0, 0]", '[0, 1, 0, 0]\nheight = "-1 cm"', "start.height", "'-1 cm'", "must not be negative"),
     (VELOCITY, 'velocity = ["1 m/s"]', "start.velocity", "['1 m/s']", "a list of 2 or 3"),
     (VELOCITY, 'velocity = [0, 0, "1 m"]', "start.velocity[2]", "'1 m'", "must be a velocity"),
+    (VELOCITY, 'velocity = "roll"', "start.velocity", "'roll'", 'must be a list of 2 or 3, "co-rotating" or "rolling"'),
     (VELOCITY, 'velocity = "corotating"', "start.velocity", "'corotating'", "Did you mean 'co-rotating'?"),
     ("[0, 1, 0, 0]", "[0, 0, 0, 0]", "start.orientation", "[0.0, 0.0", "[1, 0, 0, 0]"),
     # what belongs to another surface, body or load

@@ -68,9 +68,17 @@ def test_a_word_has_no_derivative() -> None:
 
 
 def test_an_angular_velocity_that_must_agree_with_rolling_cannot_change_alone() -> None:
-    said = refusal("start.angular_velocity", "rattleback")
+    start = {"position": [0.1, 0.0], "velocity": [0.1, 0.0], "angular_velocity": [0.0, 4.0, 1.0]}
+    on_table = level(support={"kind": "plane"}, start=start)
+    said = refusal("start.angular_velocity", tr.Scenario.read(on_table))
     assert "without making a body slip" in said
-    assert "Give `spin`" in said or "give `spin`" in said
+    assert "`spin`" in said
+    # As it says: the velocity follows, and x grows by a·∂Ω_y.
+    follows = tr.Scenario.read({**on_table, "start": {**start, "velocity": "rolling"}})
+    slopes = tr.sensitivities(follows, "start.angular_velocity[1]")
+    assert slopes.passed
+    moved = slopes.data.position.sel(axis="x").values.squeeze()
+    assert moved == pytest.approx(0.025 * slopes.data.time.values, abs=1e-12)
 
 
 def test_turning_that_begins_against_a_resistance_has_no_derivative() -> None:

@@ -10,7 +10,7 @@ import pytest
 import trundle as tr
 from trundle.analysis.sensitivities.keys import Key, keys, moved, varied
 from trundle.errors import TrundleError
-from trundle.mechanics.duals import slopes_of
+from trundle.mechanics.duals import slopes_of, value_of
 from trundle.mechanics.system import State
 
 # At rest a half cylinder has no way across which it could lie: a push to either side lays it another way.
@@ -53,4 +53,4 @@ def test_a_start_has_the_derivatives_of_its_differences(name: str) -> None:
 def test_a_start_in_duals_has_the_values_of_the_start() -> None:
     for name in tr.Scenario.names():
         scenario = tr.Scenario.load(name)
-        assert [float(part) for part in parts(varied(scenario, keys(scenario))[1])] == parts(scenario.start_state())
+        assert [value_of(part) for part in parts(varied(scenario, keys(scenario))[1])] == parts(scenario.start_state())

@@ -14,6 +14,7 @@ import typer
 from ..errors import ScenarioError
 from ..scenario import files
 from . import CARD_FAILED, constraints, screen, signals
+from .chaos import chaos
 from .check import check
 from .derive import derive
 from .equations import equations
@@ -21,8 +22,12 @@ from .equilibria import equilibria
 from .export import export
 from .fit import fit
 from .lab import lab
+from .map import draw_map
+from .read import read
 from .sensitivity import sensitivity
 from .steady import steady
+from .sweep import sweep
+from .tolerance import tolerance
 from .twin import twin
 from .vakonomic import vakonomic
 
@@ -46,6 +51,7 @@ def command() -> Any:
     app.command("show", short_help="Print a scenario file, and what to expect of it.")(show)
     app.command("check", short_help="Check somebody else's trajectory, and name the likely mistake.")(check)
     app.command("fit", short_help="Fit numbers to measured motion, and say what it cannot show.")(fit)
+    app.command("read", short_help="Say what is taken for what in a measured track.")(read)
     app.command("derive", short_help="Derive a motion, each equation proved by the code.")(derive)
     app.command("schema", short_help="Print the JSON schema of scenario files, for editors.")(schema)
     app.command("twin", short_help="Find the charge in crossed fields that moves as the ball does.")(twin)
@@ -56,6 +62,10 @@ def command() -> Any:
     app.command("equations", short_help="Print the law as C, Python, JavaScript, LaTeX or JAX.")(equations)
     app.command("export", short_help="Write a run as a page, a model, a picture, a table.")(export)
     app.command("lab", short_help="Open the lab: the ball in a browser.")(lab)
+    app.command("sweep", short_help="Run a scenario for many values of its numbers.")(sweep)
+    app.command("map", short_help="Draw a sweep, and open the run behind a point of it.")(draw_map)
+    app.command("tolerance", short_help="How far a run may be off within tolerances.")(tolerance)
+    app.command("chaos", short_help="Lyapunov exponents, Poincaré sections, periodic orbits.")(chaos)
     app.command("steady", short_help="Steady motions, and whether they are stable.")(steady)
     return typer.main.get_command(app)
 
@@ -142,7 +152,7 @@ def run(
         finely = None if tolerance is None else f"{tolerance:g}"
         options = {"duration": duration, "every": every, "method": method, "tolerance": finely}
         told = along_path.run(tables, scenario, folder, figure=not no_figure, **options)
-        return _report(*told, quiet=quiet, as_json=as_json)
+        return report(*told, quiet=quiet, as_json=as_json)
     names = FILES[:1] if no_figure else FILES
     check_tolerance(tolerance, "--tolerance")
     loaded = load(scenario, tables, duration=duration, every=every, method=method)
@@ -150,11 +160,11 @@ def run(
     with screen.ProgressBar(wanted=not quiet) as bar:
         trajectory = loaded.run(tolerance=tolerance, progress=bar)
     signals.check()
-    card, written = _finish(trajectory, folder, names)
-    return _report(card, [event.text for event in trajectory.events], written, quiet=quiet, as_json=as_json)
+    card, written = finish(trajectory, folder, names)
+    return report(card, [event.text for event in trajectory.events], written, quiet=quiet, as_json=as_json)
 
 
-def _finish(trajectory: Trajectory, folder: Path, names: tuple[str, ...]) -> tuple[Card, list[Path]]:
+def finish(trajectory: Trajectory, folder: Path, names: tuple[str, ...]) -> tuple[Card, list[Path]]:
     """Make card, figures and file, on two processors where there are two, and let the files appear together."""
     from .apart import ForkedCall
     from .writing import write_together
@@ -180,7 +190,7 @@ def _finish(trajectory: Trajectory, folder: Path, names: tuple[str, ...]) -> tup
         return checked.result(), [folder / name for name in names]
 
 
-def _report(card: Card, lines: list[str], written: list[Path], *, quiet: bool, as_json: bool) -> None:
+def report(card: Card, lines: list[str], written: list[Path], *, quiet: bool, as_json: bool) -> None:
     """Print the card, what else there is to say and the files' names; leave with a status if a check failed."""
     try:
         if as_json:

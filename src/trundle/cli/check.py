@@ -9,6 +9,7 @@ import typer
 
 from ..errors import InvalidValueError
 from . import CANNOT_DECIDE, CARD_FAILED, screen
+from .read import Columns, Decimal, Pixel, Rate, Upwards, Which, pairs
 
 if TYPE_CHECKING:
     from ..analysis.checking import Check
@@ -17,7 +18,7 @@ FIGURE = "check.png"
 
 
 def check(
-    theirs: Annotated[Path, typer.Argument(metavar="FILE", help="Their trajectory: .csv, .txt, .parquet or .nc.")],
+    theirs: Annotated[Path, typer.Argument(metavar="FILE", help="Their trajectory: a table, a track or a run.nc.")],
     scenario: Annotated[
         str | None,
         typer.Option("--scenario", "-s", metavar="SCENARIO", help="What moves: a shipped scenario or a TOML file."),
@@ -25,9 +26,8 @@ def check(
     output: Annotated[
         Path | None, typer.Option("--output", "-o", metavar="FOLDER", help="Default: a folder of the file's name.")
     ] = None,
-    columns: Annotated[
-        str | None, typer.Option(metavar="LIST", help="Names that do not tell: 't=frame_time, x=u, y=v'.")
-    ] = None,
+    track: Which = None,
+    columns: Columns = None,
     axes: Annotated[str, typer.Option(metavar="AXES", help="Along which Ω is given: space or body.")] = "space",
     angles: Annotated[str, typer.Option(metavar="UNIT", help="rad or deg, also of rates.")] = "rad",
     quaternion: Annotated[str, typer.Option(metavar="ORDER", help="wxyz or xyzw, where numbered.")] = "wxyz",
@@ -37,7 +37,13 @@ def check(
     euler: Annotated[str, typer.Option(metavar="AXES", help="Of e1, e2, e3: xyz fixed, ZXZ of the body.")] = "xyz",
     frame: Annotated[str, typer.Option(metavar="FRAME", help="support, world or corotating.")] = "support",
     time: Annotated[str, typer.Option(metavar="UNIT", help="Of time, such as ms.")] = "s",
-    length: Annotated[str, typer.Option(metavar="UNIT", help="Of positions, such as mm; speeds per second.")] = "m",
+    length: Annotated[
+        str, typer.Option("--length", "--unit", metavar="UNIT", help="Of positions, such as mm; speeds per second.")
+    ] = "m",
+    rate: Rate = None,
+    pixel: Pixel = None,
+    y: Upwards = None,
+    decimal: Decimal = None,
     tolerance: Annotated[
         float, typer.Option(metavar="SHARE", help="To which it is held, as a share of the speed.")
     ] = 1e-5,
@@ -51,25 +57,27 @@ def check(
     1, all else.
     """
     from ..analysis.checking import check as check_trajectory
+    from ..tracks import read_track
     from .writing import check_folder, write_together
 
     folder = Path(theirs.stem) if output is None else output.expanduser()
     if not no_figure:
         check_folder(folder, (FIGURE,))
-    found = check_trajectory(
+    moved = _scenario(theirs, scenario)
+    read = read_track(
         theirs,
-        _scenario(theirs, scenario),
-        columns=_columns(columns),
-        axes=axes,
-        angles=angles,
-        quaternion=quaternion,
-        orientation=orientation,
-        euler=euler,
+        track=track,
+        columns=pairs(columns),
+        units={"time": time, "length": length, "angle": angles},
+        rate=rate,
+        pixel=pixel,
+        y=y,
+        decimal=decimal,
         frame=frame,
-        time=time,
-        length=length,
-        tolerance=tolerance,
+        axes=axes,
+        quaternion=quaternion,
     )
+    found = check_trajectory(read, moved, orientation=orientation, euler=euler, tolerance=tolerance)
     written = [] if no_figure else write_together(folder, {FIGURE: lambda path: found.plot().savefig(path)})
     if as_json:
         screen.out(found.as_json())
@@ -106,14 +114,3 @@ def _scenario(theirs: Path, scenario: str | None) -> object:
     raise InvalidValueError(
         "--scenario", "must say what moves", "none", "Name a shipped one (`trundle list`) or a TOML file."
     )
-
-
-def _columns(text: str | None) -> dict[str, str]:
-    """Read 't=frame_time, x=u'."""
-    if text is None:
-        return {}
-    pairs = [pair.partition("=") for pair in text.split(",") if pair.strip()]
-    wrong = next((f"{name}{sign}{heading}" for name, sign, heading in pairs if not (sign and heading.strip())), None)
-    if wrong is not None:
-        raise InvalidValueError("--columns", "must be pairs NAME=HEADING", wrong.strip(), "Write 't=time, x=u, y=v'.")
-    return {name.strip(): heading.strip() for name, _, heading in pairs}

@@ -11,6 +11,7 @@ import typer
 
 from ..errors import InvalidValueError
 from . import CANNOT_DECIDE, CARD_FAILED, screen, signals
+from .read import Angles, Columns, Decimal, Pixel, Rate, Sense, Time, Unit, Upwards, Which, pairs, units_of
 
 if TYPE_CHECKING:
     from ..analysis.fit import Fit
@@ -23,7 +24,7 @@ def fit(
     tracks: Annotated[
         list[Path] | None,
         typer.Argument(
-            metavar="TRACK", help="Measured motion: .csv, .txt, .parquet or .nc; several share what is free."
+            metavar="TRACK", help="Measured motion, as `trundle read` reads it; several share what is free."
         ),
     ] = None,
     scenario: Annotated[
@@ -54,11 +55,16 @@ def fit(
         str, typer.Option(metavar="LOSS", help="linear; against outliers soft_l1, huber, cauchy.")
     ] = "linear",
     given_start: Annotated[bool, typer.Option("--given-start", help="Take the start from the scenario.")] = False,
-    columns: Annotated[
-        str | None, typer.Option(metavar="LIST", help="Headings that do not tell: 't=frame_time, x=u, y=v'.")
-    ] = None,
-    time: Annotated[str, typer.Option(metavar="UNIT", help="Of times without a unit, such as ms.")] = "s",
-    length: Annotated[str, typer.Option(metavar="UNIT", help="Of lengths without a unit, such as mm.")] = "m",
+    track: Which = None,
+    columns: Columns = None,
+    unit: Unit = None,
+    time: Time = None,
+    angles: Angles = None,
+    rate: Rate = None,
+    pixel: Pixel = None,
+    y: Upwards = None,
+    sense: Sense = None,
+    decimal: Decimal = None,
     compare: Annotated[
         bool, typer.Option("--compare", help="Say what may be missing: drag, resistance, a lean …")
     ] = False,
@@ -80,6 +86,7 @@ def fit(
     Exit status: 0, a good fit; 2, bad input; 3, a bad fit; 4, these data cannot decide; 130, interrupted; 1, all else.
     """
     from ..analysis.fit import fit as fit_tracks
+    from ..tracks import read_track
 
     if scenario is None:
         remedy = "Name a shipped one (`trundle list`) or a TOML file."
@@ -96,8 +103,10 @@ def fit(
     from .writing import check_folder, write_together
 
     check_folder(folder, tuple(files))
+
+    told: dict[str, Any] = {"rate": rate, "pixel": pixel, "y": y, "sense": sense, "decimal": decimal, "track": track}
     found = fit_tracks(
-        [str(track) for track in tracks],
+        [read_track(one, columns=pairs(columns), units=units_of(unit, time, angles), **told) for one in tracks],
         loaded,
         free=free or [],
         priors=_priors(prior or []),
@@ -105,9 +114,6 @@ def fit(
         camera=numbers,
         loss=loss,
         start="given" if given_start else "free",
-        columns=_columns(columns),
-        time=time,
-        length=length,
     )
     signals.check()
     writers: dict[str, Any] = {
@@ -173,10 +179,6 @@ def _load(scenario: str) -> object:
     from ..simulation.simulate import Scenario
 
     return Scenario.read(files.tables_of(scenario), scenario)
-
-
-def _columns(text: str | None) -> dict[str, str]:
-    return {} if text is None else {k: str(v) for k, v in _pairs(text.split(","), "--columns").items()}
 
 
 def _noise(text: str | None) -> Any:

@@ -120,6 +120,8 @@ class ProgressBar:
     ----------
     wanted : bool
         Whether there may be a bar at all.
+    members : int
+        Of a sweep: how many are run, to say how many a second; 0 of one run.
 
     Examples
     --------
@@ -127,8 +129,8 @@ class ProgressBar:
     ...     bar(0.5)
     """
 
-    def __init__(self, *, wanted: bool) -> None:
-        self.wanted = wanted and sys.stderr.isatty()
+    def __init__(self, *, wanted: bool, members: int = 0) -> None:
+        self.wanted, self.members = wanted and sys.stderr.isatty(), members
         self._began = time.monotonic()
         self._bar: Any = None
 
@@ -147,12 +149,15 @@ class ProgressBar:
         if self.wanted and self._bar is None and time.monotonic() - self._began > PATIENCE:
             self._begin()
         if self._bar is not None:
-            self._bar.update(self._bar.task_ids[0], completed=fraction)
+            rate = fraction * self.members / (time.monotonic() - self._began)
+            self._bar.update(self._bar.task_ids[0], completed=fraction, rate=f"{rate:,.4g} a second")
 
     def _begin(self) -> None:
         from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
-        columns = (TextColumn("rolling"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
+        columns = [TextColumn("rolling"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn()]
+        if self.members:
+            columns.append(TextColumn("{task.fields[rate]}"))
         self._bar = Progress(*columns, console=_console(stderr=True), transient=True)
-        self._bar.add_task("", total=1.0)
+        self._bar.add_task("", total=1.0, rate="")
         self._bar.start()

@@ -42,7 +42,7 @@ class Numpy(Backend):
 
     def function(self, routine: Routine) -> Function:
         """Return a function that works with floats where y has one axis, else with arrays."""
-        plain, arrays = _made(python.PRELUDE, python.function(routine), routine.name), list[Function]()
+        plain, arrays = _alone(python.PRELUDE, python.function(routine), routine, None), list[Function]()
 
         def found(t: Any, y: Any, *others: Any) -> Any:
             y = np.asarray(y, dtype=float)
@@ -50,7 +50,7 @@ class Numpy(Backend):
             if np.ndim(t) == 0 and all(each.ndim == 1 for each in (y, *given)):
                 return plain(float(t), y.tolist(), *(each.tolist() for each in given))
             if not arrays:
-                arrays.append(_made(python.PRELUDE, python.array_function(routine, "np"), routine.name))
+                arrays.append(_alone(python.ARRAY_PRELUDE, python.array_function(routine, "np"), routine, "np"))
             return arrays[0](t, y, *given)
 
         found.__doc__ = routine.said
@@ -69,7 +69,9 @@ class Numba(Numpy):
         need("numba", 'vector_field("numba")', 'vector_field("numpy") does without it.')
         import numba
 
-        return numba.njit(error_model="numpy")(_made(python.PRELUDE, python.function(routine), routine.name))
+        jit = numba.njit(error_model="numpy")
+        around = {name: _compiled(text, name) for name, text in python.loops(routine).items()}
+        return jit(_made(python.PRELUDE, python.function(routine), routine.name, tuple(around.items())))
 
 
 class Jax(Backend):
@@ -80,7 +82,7 @@ class Jax(Backend):
     def function(self, routine: Routine) -> Function:
         """Return a function of arrays."""
         need("jax", 'vector_field("jax")', 'vector_field("numpy") does without it.')
-        return _made(python.JAX_PRELUDE, python.array_function(routine, "jnp"), routine.name)
+        return _alone(python.JAX_PRELUDE, python.array_function(routine, "jnp"), routine, "jnp")
 
     def source(self, routines: Sequence[Routine], name: str, said: str) -> str:  # noqa: ARG002
         """Return a module of JAX."""
@@ -174,11 +176,25 @@ def _each(given: Any, size: int | None) -> list[Any]:
 
 
 @cache
-def _made(prelude: str, text: str, name: str) -> Function:
-    """Run a printed function."""
-    place: dict[str, Any] = {}
+def _made(prelude: str, text: str, name: str, around: tuple[tuple[str, Function], ...] = ()) -> Function:
+    """Run a printed function, among others that it calls."""
+    place: dict[str, Any] = dict(around)
     exec(f"{prelude}\n\n{text}", place)  # noqa: S102  operators, numbers and names that the printers write
     return place[name]
+
+
+def _alone(prelude: str, text: str, routine: Routine, module: str | None) -> Function:
+    """Run a printed function of Python's, with its loops."""
+    around = {name: _made(prelude, loop, name) for name, loop in python.loops(routine, module).items()}
+    return _made(prelude, text, routine.name, tuple(around.items()))
+
+
+@cache
+def _compiled(text: str, name: str) -> Function:
+    """Compile a loop, once for all functions that call it."""
+    import numba
+
+    return numba.njit(error_model="numpy")(_made(python.PRELUDE, text, name))
 
 
 def _numbers(given: Any, size: int | None) -> Any:

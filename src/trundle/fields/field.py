@@ -10,13 +10,10 @@ from typing import Any
 import numpy as np
 
 from ..errors import InvalidValueError, OutOfDomainError, UnknownNameError
-from ..mechanics.parameters import with_numbers
 from ..mechanics.system import RollingSystem, State
-from ..solve import transitions
-from ..solve.transitions import ZeroCrossing
 from ..units import UNITS
 from .backends import BACKENDS, Function
-from .inputs import GROUPS, inputs_of, with_inputs
+from .inputs import GROUPS, inputs_of
 from .printed import Listed, Printed
 from .printers import symbolic
 from .resets import CODES
@@ -211,27 +208,12 @@ class VectorField(Printed):
         name = event.removeprefix("near ")
         if event not in self.event_names:
             raise UnknownNameError("event", event, self.event_names)
-        if name == "land" and name not in self.resets and self.backend == "numpy":
-            return self._landed(t, y, p, u)
         if name not in self.resets:
-            raise OutOfDomainError(
-                f"After `{event}` of {self.phase} no phase follows that can be written out: the run ends there, or the "
-                "landing turns the slip on the way, as where the body is no ball and friction is limited. "
-                'vector_field("numpy") knows that landing.'
-            )
+            raise OutOfDomainError(f"After `{event}` of {self.phase} no phase follows: the run ends there.")
         reset = self.resets[name]
         code = None if reset.phase is None else int(np.asarray(reset.phase(t, y, p, u)).item())
         follows = next(phase for phase in reset.states if code is None or CODES[phase] == code)
         return self.at(follows), reset.states[follows](t, y, p, u)
-
-    def _landed(self, t: float, y: Any, p: Any, u: Any) -> tuple[VectorField, Any]:
-        """Return what follows a landing that has no formula, as a run works it out."""
-        state, values, driven = (np.asarray(part, dtype=float).tolist() for part in (y, p, u))
-        system = with_inputs(with_numbers(self.system, values), self.input_groups, driven)
-        landed = transitions.after(system, self._routines.law, ZeroCrossing(float(t), "land", np.array(state)))
-        follows = transitions.slipping(system, landed)
-        phase = next(name for name, code in CODES.items() if code == follows.law.code)
-        return self.at(phase), np.array(follows.state_vector)
 
     def _need_phases(self) -> None:
         if not self._language.phases:

@@ -1,7 +1,6 @@
 """What follows when a phase ends, over any scalar: grip, slip onset, lift-off, landing, stop and start.
 
-As in `trundle.solve.transitions`, which looks closer: there slip begins after its first moment, and a landing may turn
-the slip on the way.
+As in `trundle.solve.transitions`, which looks closer: there slip begins after its first moment.
 """
 
 from __future__ import annotations
@@ -19,6 +18,7 @@ from ..solve.contact_state import STILL
 from ..solve.laws import CONTACT, Law, Numbers, RestingLaw, RollingLaw, cone, state_turning
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING
 from ..solve.transitions import SETTLED, TAKE_OFF
+from .landings import turning_impulse
 
 CODES = {"rolling": ROLLING, "slipping": SLIPPING, "flight": FLIGHT, "rest": RESTING}
 _FIRST = 1e-9  # share of the speeds at hand with which slip, or turning, begins, and below which there is none
@@ -36,12 +36,8 @@ class Follows:
         return [(name, CODES[name]) for name in self.states]
 
 
-@dataclass(frozen=True)
-class Reset:
-    """What follows an event: a function of (system, law, time, state, n, the system with plain numbers)."""
-
-    follows: Callable[[RollingSystem, Law, Scalar, Numbers, Vector, RollingSystem], Follows]
-    covers: Callable[[RollingSystem], bool] = lambda _: True
+# What follows an event, of (system, law, time, state, n, the system with plain numbers).
+Reset = Callable[[RollingSystem, Law, Scalar, Numbers, Vector, RollingSystem], Follows]
 
 
 def event_parameters(system: RollingSystem, law: Law, time: Scalar, state: Numbers) -> list[Scalar]:
@@ -121,7 +117,8 @@ def _land(system: RollingSystem, law: Law, time: Scalar, state: Numbers, n: Vect
     p, q, Omega, _, coordinates = law.split(state)
     motion, contact = law.motion(system, time, state), contact_at(system, time, p, q, coordinates)
     V, mass, free = motion.velocity, system.body.mass, system.support.motion.free
-    P = straight_impulse(system, contact, q, contact.slip_velocity(V, Omega))
+    impulse = straight_impulse if keeps_direction(plain) else turning_impulse
+    P = impulse(system, contact, q, contact.slip_velocity(V, Omega))
     J = system.body.inertia_in_space(q.matrix())
     V, Omega = V + P / mass, Omega + J.solve(contact.offset.cross(P))
     if free:
@@ -167,14 +164,14 @@ def _either(holds: Scalar, one: tuple[str, list[Scalar]], other: tuple[str, list
     return Follows(dict((one, other)), namespace(holds).where(less(holds, 0.0), second, first))
 
 
-RESETS = {
-    ("rolling", "slip"): Reset(_slip),
-    ("rolling", "lift"): Reset(_lift),
-    ("rolling", "stop"): Reset(_stop),
-    ("slipping", "grip"): Reset(_grip),
-    ("slipping", "lift"): Reset(_lift),
-    ("flight", "land"): Reset(_land, keeps_direction),
-    ("rest", "start"): Reset(_start),
-    ("rest", "slip"): Reset(_slip),
-    ("rest", "lift"): Reset(_lift),
+RESETS: dict[tuple[str, str], Reset] = {
+    ("rolling", "slip"): _slip,
+    ("rolling", "lift"): _lift,
+    ("rolling", "stop"): _stop,
+    ("slipping", "grip"): _grip,
+    ("slipping", "lift"): _lift,
+    ("flight", "land"): _land,
+    ("rest", "start"): _start,
+    ("rest", "slip"): _slip,
+    ("rest", "lift"): _lift,
 }

@@ -156,8 +156,7 @@ class PhaseRoutines:
     def resets(self) -> list[str]:
         """Return the events after which another phase follows."""
         names = (name for name in self.events()[0] if not name.startswith("near "))
-        known = ((name, RESETS.get((self.phase, name))) for name in names)
-        return [name for name, reset in known if reset is not None and reset.covers(self._plain)]
+        return [name for name in names if (self.phase, name) in RESETS]
 
     def after(self, event: str) -> Iterator[Routine]:
         """Return which phase follows an event, if it depends, and the state with which each that may follow begins."""
@@ -173,7 +172,7 @@ class PhaseRoutines:
     def follows(self, event: str) -> Follows:
         """Return what follows an event, on the tape."""
         n = contact_at(self.system, self._time, *self._place()).normal
-        return RESETS[self.phase, event].follows(self.system, self.law, self._time, self._state, n, self._plain)
+        return RESETS[self.phase, event](self.system, self.law, self._time, self._state, n, self._plain)
 
     def _place(self) -> Any:
         p, q, _, _, coordinates = self.law.split(self._state)

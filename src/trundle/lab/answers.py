@@ -187,7 +187,7 @@ def _entry(name: str) -> dict[str, Any]:
     tables = files.tables_of(name)
     notes = " ".join(str(tables.get("notes", "")).split())
     summary = notes[: notes.index(". ") + 1] if ". " in notes else notes
-    told = {"name": name, "title": tables["title"], "summary": summary}
+    told = {"name": name, "title": tables["title"], "group": tables.get("group", ""), "summary": summary}
     if files.rolls_along_path(tables):
         return {**told, "support": "plane", "body": "sphere", "motion": "path", "exact": True}
     scenario = Scenario.read(tables, name)

@@ -19,7 +19,7 @@ def path_of(radius: Any, curve: Mapping[str, Any]) -> dict[str, Any]:
     """
     if "kind" in curve:
         return {"title": "A ball rolled along a curve", "body": {"radius": radius}, "path": [dict(curve)]}
-    known = ("path", "start", "title", "notes")
+    known = ("path", "start", "title", "group", "notes")
     for key in curve:
         if key not in known:
             path = f"curve.{quoted(key)}"

@@ -93,7 +93,11 @@ def dragged(scenario: Scenario, at: Mapping[str, Any]) -> dict[str, Any]:
     >>> dragged(tr.Scenario.load("tilted-turntable"), at)
     {'position': [0.1, -0.2]}
     """
-    return {"position": _place(scenario, at, _begin(scenario)).coordinates}
+    found: dict[str, Any] = {"position": _place(scenario, at, _begin(scenario)).coordinates}
+    start, rough = scenario.start, scenario.support.friction is not None
+    if start.angular_velocity is not None and not (rough or start.height or isinstance(start.velocity, str)):
+        found["velocity"] = "rolling"  # it did, there
+    return found
 
 
 def thrown(scenario: Scenario, at: Mapping[str, Any], velocity: Sequence[float]) -> dict[str, Any]:

@@ -20,6 +20,8 @@ from .scalars import Scalar, is_number, is_zero, less, namespace
 class Dual:
     """A value and its slopes in some parameters; comparisons look at the value alone.
 
+    It becomes a float only where it has no slopes: what is decided by a number is decided by `value_of` it.
+
     Parameters
     ----------
     value : Scalar
@@ -99,10 +101,12 @@ class Dual:
         return DualFunctions.abs(self)
 
     def __float__(self) -> float:
-        return float(self.value)  # what is decided by a number is decided by its value
+        if not all(map(is_zero, self.slopes)):
+            raise TypeError("A float has no slopes: take `value_of` to decide something by a number, or keep the dual.")
+        return float(self.value)
 
     def __format__(self, spec: str) -> str:
-        return format(float(self), spec)
+        return format(self.value, spec)
 
     def __bool__(self) -> bool:
         return bool(self.value)

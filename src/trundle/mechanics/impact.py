@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import SolverError
 from .algebra import E_X, E_Y, E_Z, ZERO, Matrix, Quaternion, Vector
 from .contact import Contact
+from .duals import value_of
 from .onset import onset
 from .scalars import as_float, is_zero, less, namespace
 from .slipping import response
@@ -87,9 +88,10 @@ def land(system: RollingSystem, contact: Contact, orientation: Quaternion, slip:
 
 
 def keeps_direction(system: RollingSystem) -> bool:
-    """Tell whether the slip of a body that lands keeps to one line, and gives nothing back: `straight_impulse` holds.
+    """Tell whether the slip of a body that lands keeps to one line: `straight_impulse` holds.
 
-    It does without friction, or with as much as it takes; else where a push along the support answers alike all round.
+    It does where a push along the support answers alike all round. Else it does without friction, or with as much as it
+    takes if nothing of the slip is given back.
 
     Examples
     --------
@@ -101,7 +103,7 @@ def keeps_direction(system: RollingSystem) -> bool:
     """
     support = system.support
     alike = system.body.is_isotropic_sphere and not support.motion.free
-    return support.tangential_restitution == 0 and (alike or support.friction in (None, 0))
+    return alike or support.friction == 0 or (support.friction is None and support.tangential_restitution == 0)
 
 
 def straight_impulse(system: RollingSystem, contact: Contact, orientation: Quaternion, slip: Vector) -> Vector:
@@ -117,6 +119,14 @@ def straight_impulse(system: RollingSystem, contact: Contact, orientation: Quate
     >>> P = straight_impulse(floor, contact, still, Vector(3.0, 0.0, -3.0))
     >>> round(P.x, 12), round(P.z, 12)
     (-0.6, 6.0)
+
+    With friction enough Garwin's superball (1969) slips as fast the other way:
+
+    >>> superball = tr.Support(tr.Plane(), restitution=1.0, tangential_restitution=1.0)
+    >>> bounces = tr.RollingSystem(floor.body, superball)
+    >>> P = straight_impulse(bounces, contact, still, Vector(1.0, 0.0, -3.0))
+    >>> round(1.0 + P.x / 2.0 * (1.0 + 5 / 2), 12)  # with what the turning does to the point that touches
+    -1.0
     """
     n, support = contact.normal, system.support
     J = system.body.inertia_in_space(orientation.matrix())
@@ -126,16 +136,17 @@ def straight_impulse(system: RollingSystem, contact: Contact, orientation: Quate
     s = slip.dot(n)
     xp = namespace(s, *n)
     ending = (along @ M @ along + normal).solve(-(along @ slip))  # what ends the slip, along the support
+    back = 1.0 + support.tangential_restitution
     if support.friction is None:
         holding = M.solve(n)
         closing = s + n.dot(M @ ending)
         closing = xp.where(less(closing, 0.0), -closing, 0.0)
-        return ending + holding * ((1.0 + support.restitution) * closing)
+        return ending * back + holding * ((1.0 + support.restitution) * closing)
     closing = xp.where(less(s, 0.0), -s, 0.0)
     N = (1.0 + support.restitution) * closing / n.dot(M @ n)
     size, most = ending.norm(), support.sliding_friction * N
-    enough = less(most, size)
-    share = xp.where(enough, most / xp.where(enough, size, 1.0), 1.0)
+    enough = less(most, back * size)
+    share = xp.where(enough, most / xp.where(enough, size, 1.0), back)
     return ending * share + n * N
 
 
@@ -191,7 +202,7 @@ class _Course:
     def _to_the_end(self) -> Vector:
         """Return the impulse of Keller's course, up to where the share e² of compression is given back, N s."""
         total, size = ZERO, self.slip.norm()
-        if math.isinf(self.mu):  # friction without limit: slip ends at once
+        if math.isinf(value_of(self.mu)):  # friction without limit: slip ends at once
             total = self._end_at_once()
         for _ in range(_MOST_PIECES):
             if self.aim is None and self.slip.z >= 0:

@@ -12,6 +12,7 @@ from . import checks, fitting, line_contact
 from .algebra import ZERO, Quaternion, Vector
 from .attitude import attitude
 from .contact import Contact, contact_at
+from .duals import value_of
 from .finiteness import check_finite
 from .motions import SupportState
 from .nearest import closest_contact, misplaced
@@ -20,6 +21,7 @@ from .scalars import Scalar, as_float, is_number, is_zero
 if TYPE_CHECKING:
     from .system import RollingSystem, State
 
+VELOCITY_WORDS = ("co-rotating", "rolling")  # let go at rest on the support; at the speed that rolls with the Ω given
 IN_PROPORTION = 100.0  # times what is asked of a start: more must not follow from it
 _ROUNDING = 4 * 2.0**-52
 SLIP_TOLERANCE = 1e-9  # of the largest speed at the contact: beyond it a start slips
@@ -147,10 +149,9 @@ class Placing:
         begin, rho, n = contact.support, contact.offset, contact.normal
         first, second = (begin.rotation @ e for e in self.system.support.surface.directions(there))
         velocity, u = self.velocity, begin.material_velocity(contact.point)
-        if isinstance(velocity, str):
-            if velocity != "co-rotating":
-                remedy = did_you_mean(velocity, ["co-rotating"]).strip()
-                raise InvalidValueError("velocity", 'must be two components or "co-rotating"', velocity, remedy)
+        if self._word == "rolling":
+            return u - self._rolled(gap, turning).cross(rho)
+        if self._word == "co-rotating":
             carried = begin.material_velocity(contact.centre)
             along: tuple[Any, ...] = (carried.dot(first), carried.dot(second))
         else:
@@ -168,6 +169,28 @@ class Placing:
         if turning is None or slips(self.system, contact, rolling, turning) is None:
             return rolling
         return not_opening(V, u, turning, rho, n)
+
+    @property
+    def _word(self) -> str | None:
+        """Return the word that stands for a velocity, where one does."""
+        if not isinstance(self.velocity, str):
+            return None
+        if self.velocity not in VELOCITY_WORDS:
+            words = " or ".join(f'"{word}"' for word in VELOCITY_WORDS)
+            remedy = did_you_mean(self.velocity, VELOCITY_WORDS).strip()
+            raise InvalidValueError("velocity", f"must be two components, {words}", self.velocity, remedy)
+        return self.velocity
+
+    def _rolled(self, gap: float, turning: Vector | None) -> Vector:
+        """Return the Ω that says at which velocity the body rolls."""
+        if gap > 0:
+            raise InvalidValueError(
+                "velocity", 'must not be "rolling" above the support', self.velocity, "Leave out `height`."
+            )
+        if turning is None:
+            remedy = "Give all three components of `angular_velocity`; with `spin`, give the velocity."
+            raise InvalidValueError("velocity", 'must have Ω beside it where it is "rolling"', self.velocity, remedy)
+        return turning
 
     def _given_turning(self, contact: Contact, gap: float) -> Vector | None:
         """Return Ω where it is given, or where nothing else could say it."""
@@ -196,8 +219,8 @@ class Placing:
 
     def _check_proportion(self, follows: Vector, *given: Vector) -> None:
         """Refuse what follows from rolling where it is out of all proportion: the body all but lies on its side."""
-        most = max(float(v.norm()) for v in given)
-        if float(follows.norm()) <= IN_PROPORTION * most:
+        most = max(value_of(v.norm()) for v in given)
+        if value_of(follows.norm()) <= IN_PROPORTION * most:
             return
         key = "orientation" if self.attitude is None else "attitude"
         value = (1.0, 0.0, 0.0, 0.0) if self.orientation is None else self.orientation
@@ -234,7 +257,8 @@ class Placing:
                 "angular_velocity",
                 "must agree with rolling, V + Ω×ρ = u(p), where the support has no `friction`",
                 f"a slip of {slip:.6g} m/s",
-                "Give `spin` instead and the rest follows from no slip; or give the support a friction.",
+                'Let one follow from no slip: give `spin` instead, or `velocity = "rolling"`; or give the support a '
+                "friction.",
             )
 
 
@@ -246,16 +270,16 @@ def slips(system: RollingSystem, contact: Contact, V: Vector, Omega: Vector) -> 
     s = contact.slip_velocity(V, Omega)
     along = (s - contact.normal * s.dot(contact.normal)).norm()
     u = contact.support.material_velocity(contact.point)
-    arm = float(contact.offset.norm())
-    least = _OF_A_FALL * math.sqrt(float(system.gravity) * arm)
+    arm = value_of(contact.offset.norm())
+    least = _OF_A_FALL * math.sqrt(value_of(system.gravity) * arm)
     scale = max(V.norm(), Omega.norm() * arm, u.norm())
-    return float(along) if along > max(SLIP_TOLERANCE * scale, least) else None
+    return float(value_of(along)) if along > max(SLIP_TOLERANCE * scale, least) else None
 
 
 def no_gap(contact: Contact, centre: Any) -> float:
     """Return the gap that a body may have which touches, m: what is asked of a start, or what rounding leaves of it."""
     places = Vector(*centre).norm() + contact.point.norm()
-    return max(SLIP_TOLERANCE * float(contact.offset.norm()), _ROUNDING * float(places))
+    return float(max(SLIP_TOLERANCE * value_of(contact.offset.norm()), _ROUNDING * value_of(places)))
 
 
 def _length(value: Any) -> int:
@@ -276,7 +300,7 @@ def _pair(value: Any, key: str) -> tuple[Any, Any]:
 
 def _unit_quaternion(orientation: Any) -> Quaternion:
     parts = checks.components(orientation, "number", "orientation", 4)
-    length = math.hypot(*parts)
+    length = math.hypot(*map(value_of, parts))
     if not 0 < length < math.inf:
         raise InvalidValueError("orientation", "must be a quaternion other than zero", orientation)
     if all(map(is_number, parts)) and abs(length - 1) < 4e-16:  # it is one already: keep it to the last digit

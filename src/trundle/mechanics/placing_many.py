@@ -46,7 +46,7 @@ class ManyPlacing:
     free : array (members,) of bool
         Whether the body is known to lie below the surface nowhere.
     position : array (members, 2)
-    velocity : array (members, 2 or 3), or "co-rotating", optional
+    velocity : array (members, 2 or 3), "co-rotating" or "rolling", optional
     spin : array (members,), optional
     angular_velocity : array (members, 3), optional
     orientation : array (members, 4), optional
@@ -138,6 +138,9 @@ class ManyPlacing:
     def _motion(self, contact: Contact, turning: Vector | None) -> tuple[Vector, Vector, Mask]:
         """Return V, Ω, and who rolls, or slips where it may, in proportion to what is asked."""
         rho, n, u = contact.offset, contact.normal, contact.support.material_velocity(contact.point)
+        if isinstance(self.velocity, str) and self.velocity == "rolling":
+            Omega = ZERO if turning is None else turning
+            return u - Omega.cross(rho), Omega, np.full(len(self.position), turning is not None)
         given = self._given(contact)
         V = given if self._whole else rolling_along(given, u, rho, n)
         sound = np.ones(len(self.position), dtype=bool)

@@ -245,10 +245,11 @@ class RollingSystem:
         position : sequence of 2 floats or quantities
             On a plane, the centre of the body over it, m. On a curved support, the coordinates of the contact: on a
             cylinder the angle from its first axis towards the second, rad, and the height along its axis, m.
-        velocity : sequence of 2 or 3 floats or quantities, or "co-rotating", optional
+        velocity : sequence of 2 or 3 floats or quantities, "co-rotating" or "rolling", optional
             Of the centre, in the inertial support frame, along the directions in which the two coordinates grow and
             along the normal, m/s; absent: at rest. Of two components, the third follows from the contact.
-            "co-rotating" releases the body from rest relative to the support's material under it.
+            "co-rotating" releases the body from rest relative to the support's material under it; "rolling" is the
+            velocity at which it rolls with the `angular_velocity` given.
         spin : float or quantity, optional
             Ω·n, rad/s; the rest of Ω follows from no slip. Absent: 0, or the support's rate when co-rotating.
         angular_velocity : sequence of 3 floats or quantities, optional

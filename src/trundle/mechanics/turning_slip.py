@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from operator import mul
 
+from .duals import value_of
 from .scalars import Scalar, namespace
 
 _TERMS = 32  # of a series
@@ -76,6 +77,10 @@ class TurningSlip:
     @cached_property
     def terms(self) -> list[list[Scalar]]:
         """The coefficients of σ, c, s, `up`, the work and what friction took."""
+        return self.series(_TERMS)
+
+    def series(self, count: int) -> list[list[Scalar]]:
+        """Return so many of them."""
         (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = self.M
         mu, n = self.mu, 1.0
         size, c, s, up, work, taken = [self.size], [self.c], [self.s], [self.up], [self.work], [self.taken]
@@ -104,7 +109,7 @@ class TurningSlip:
             for series, rate in zip((size, c, s, up, work, taken), rates, strict=True):
                 series.append(rate / n)
             one, n = 0.0, n + 1.0
-            if n == _TERMS:
+            if n == count:
                 return [size, c, s, up, work, taken]
 
     @cached_property
@@ -112,7 +117,7 @@ class TurningSlip:
         """How far the series hold to the last digit."""
         scales, last = (self.size, 1.0, 1.0, 1.0, 1.0, 1.0), _TERMS - 1
         pairs = list(zip(self.terms, scales, strict=True))
-        shares = [max(abs(float(row[k])) / float(scale) for row, scale in pairs) for k in (-2, -1)]
+        shares = [max(abs(value_of(row[k])) / value_of(scale) for row, scale in pairs) for k in (-2, -1)]
         return min(
             (_PRECISION / max(share, 1e-300)) ** (1.0 / power)
             for share, power in zip(shares, (last - 1, last), strict=True)
@@ -133,28 +138,34 @@ class TurningSlip:
 
     def reaches(self, row: int, value: Scalar, end: float) -> Scalar:
         """Return the τ at which a number comes up to a value that it has passed at an end, by Newton or by halves."""
-        series = [float(part) for part in self.terms[row]]
+        series = [float(value_of(part)) for part in self.terms[row]]
         slopes = [k * part for k, part in enumerate(series)][1:]
         low, high, tau = 0.0, end, end
         while high - low > _ROUNDING * high:
-            over = _value(series, tau) - float(value)
+            over = polynomial(series, tau) - value_of(value)
             low, high = (low, tau) if over >= 0 else (tau, high)
-            slope = _value(slopes, tau)
+            slope = polynomial(slopes, tau)
             before, tau = tau, tau - over / slope if slope > 0 else low
             if not low < tau < high:
                 tau = 0.5 * (low + high)
             if abs(tau - before) <= _ROUNDING * before:
                 break
         # A step more on the terms themselves, which may be duals: so τ has their slopes.
-        slope = _value(slopes, tau)
-        return tau - (_value(self.terms[row], tau) - value) / slope if slope > 0 else tau
+        slope = polynomial(slopes, tau)
+        return tau - (polynomial(self.terms[row], tau) - value) / slope if slope > 0 else tau
 
 
 _UP, _WORK = 3, 4  # rows of the terms
 
 
-def _value(series: Sequence[Scalar], tau: Scalar) -> Scalar:
-    """Return a polynomial's value."""
+def polynomial(series: Sequence[Scalar], tau: Scalar) -> Scalar:
+    """Return a polynomial's value.
+
+    Examples
+    --------
+    >>> polynomial([1.0, 0.0, 2.0], 3.0)
+    19.0
+    """
     found: Scalar = 0.0
     for part in reversed(series):
         found = found * tau + part

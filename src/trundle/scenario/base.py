@@ -30,6 +30,7 @@ class Document(Displayed, Table):
     rolls_along_path: ClassVar[bool] = False  # whether it has [[path]] tables: they tell the kinds of file apart
 
     title: str = ""
+    group: str = Field(default="", description="The heading under which a list of scenarios has it.")
     notes: str = Field(default="", description="What a lecturer says about it.")
 
     # --- reading -----------------------------------------------------------------------------------------
@@ -154,7 +155,7 @@ class Document(Displayed, Table):
         """
         return [name for name in files.names() if files.is_shipped_path(name) == cls.rolls_along_path]
 
-    @field_validator("title", "notes")
+    @field_validator("title", "group", "notes")
     @classmethod
     def _printable(cls, text: str, info: Any) -> str:
         allowed = "\n\t" if info.field_name == "notes" else ""

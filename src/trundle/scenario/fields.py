@@ -265,8 +265,8 @@ class Measures:
         What each number is.
     size : int
         How many.
-    word : str, optional
-        A text that may stand instead of the list.
+    words : tuple of str
+        Texts that may stand instead of the list.
     most : int, optional
         How many there may be at most, where some may be left out at the end; absent: `size`.
     names : tuple of str
@@ -280,16 +280,16 @@ class Measures:
 
     each: Measure
     size: int
-    word: str | None = None
+    words: tuple[str, ...] = ()
     most: int | None = None
     names: tuple[str, ...] = ("x", "y", "z")
 
     def __call__(self, value: Any) -> tuple[Quantity, ...] | str:
         """Return the checked numbers, or the word."""
-        if self.word is not None and isinstance(value, str):
-            if value == self.word:
+        if self.words and isinstance(value, str):
+            if value in self.words:
                 return value
-            raise InvalidValueError("", self._rule, value, (did_you_mean(value, [self.word]) or self._remedy).strip())
+            raise InvalidValueError("", self._rule, value, (did_you_mean(value, self.words) or self._remedy).strip())
         if not isinstance(value, (list, tuple)) or not self.size <= len(value) <= (self.most or self.size):
             raise InvalidValueError("", self._rule, value, self._remedy)
         return each_checked(self.each, value)
@@ -306,7 +306,8 @@ class Measures:
     @property
     def _rule(self) -> str:
         sizes = str(self.size) if self.most is None else f"{self.size} or {self.most}"
-        return f"must be a list of {sizes}" + (f', or "{self.word}"' if self.word else "")
+        *others, last = [f"a list of {sizes}", *(f'"{word}"' for word in self.words)]
+        return f"must be {', '.join(others)} or {last}" if others else f"must be {last}"
 
     @property
     def _remedy(self) -> str:
@@ -316,10 +317,10 @@ class Measures:
         return core_schema.no_info_plain_validator_function(self.__call__)
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        """Return what an editor may know of it: a list of so many numbers, or the word."""
+        """Return what an editor may know of it: a list of so many numbers, or a word."""
         each = self.each.__get_pydantic_json_schema__(schema, handler)
         numbers = {"type": "array", "items": each, "minItems": self.size, "maxItems": self.most or self.size}
-        return {"anyOf": [numbers, {"const": self.word}]} if self.word else numbers
+        return {"anyOf": [numbers, {"enum": list(self.words)}]} if self.words else numbers
 
 
 def _a(kind: str) -> str:

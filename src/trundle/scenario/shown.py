@@ -39,7 +39,7 @@ def shown(document: Document, kinds: Kinds) -> Markup:
 def _entries(model: BaseModel, place: str, kinds: Kinds) -> Iterator[tuple[str, str, str]]:
     for name, info in type(model).model_fields.items():
         value, key = getattr(model, name), info.alias or name
-        if name not in model.model_fields_set or (not place and key in ("title", "notes")):
+        if name not in model.model_fields_set or (not place and key in ("title", "group", "notes")):
             continue
         inner = f"{place}.{key}".lstrip(".")
         if isinstance(value, BaseModel):

@@ -1,17 +1,15 @@
-"""NetCDF files: read with words for what is damaged, written whole or not at all and without a copy in memory."""
+"""NetCDF files, written whole or not at all and without a copy in memory."""
 
 from __future__ import annotations
 
 import io
 import os
-import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..errors import RunFileError
-from ..files import first_line, written_whole
+from ..files import written_whole
 
 if TYPE_CHECKING:
     import xarray
@@ -28,35 +26,6 @@ def write_dataset(data: xarray.Dataset, target: Path) -> None:
     """
     with written_whole(target) as temporary, _Patient(temporary) as stream:
         data.to_netcdf(stream, engine="h5netcdf")
-
-
-def read_netcdf(path: Path) -> xarray.Dataset:
-    """Read a NetCDF4 file into memory.
-
-    Examples
-    --------
-    >>> _ = Path("text.nc").write_text("not NetCDF")
-    >>> read_netcdf(Path("text.nc"))
-    Traceback (most recent call last):
-    ...
-    trundle.errors.RunFileError: text.nc: `file` must be NetCDF4; got 'text.nc'. It is damaged, or something else (...).
-    """
-    import h5py
-    import xarray
-
-    if path.is_dir():
-        raise RunFileError("file", "must not be a folder", path.name, "Name a file in it.", str(path))
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of what is odd in a file, xarray warns before it fails
-            with h5py.File(path) as file:
-                dict(file.attrs)  # where one is damaged, h5netcdf leaves a file half open that complains when it goes
-            return xarray.load_dataset(path, engine="h5netcdf", decode_times=False)
-    except FileNotFoundError:
-        raise RunFileError("file", "must exist", path.name, "Check the name and the folder.", str(path)) from None
-    except Exception as error:  # noqa: BLE001  a damaged file makes four libraries raise a dozen kinds
-        remedy = f"It is damaged, or something else ({first_line(error)})."
-        raise RunFileError("file", "must be NetCDF4", path.name, remedy, str(path)) from None
 
 
 class _Patient(io.RawIOBase):

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import InvalidValueError, RunFileError, TrundleError
-from ..files import first_line
+from ..files import first_line, read_netcdf
 from ..mechanics.system import RollingSystem, State
 from ..scenario import ScenarioFile
 from ..solve.frames import FRAMES
@@ -20,7 +20,7 @@ from ..solve.methods import METHODS, check_tolerance
 from ..solve.samples import FLIGHT, Event
 from ..verify import Card
 from . import labels
-from .netcdf import read_netcdf, write_dataset
+from .netcdf import write_dataset
 
 if TYPE_CHECKING:
     import xarray

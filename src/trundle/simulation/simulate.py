@@ -51,10 +51,11 @@ def simulate(
         Step between samples, s; the end is always sampled.
     method : str
         "exact": the closed form. "taylor": heyoka at 1e-15. "runge-kutta": DOP853 at 1e-12. "auto": the closed
-        form where every phase of the run has one, else Taylor's method.
+        form where every phase of the run has one, else Taylor's method, or "runge-kutta" where it takes less work to
+        the error that Taylor's method has at `tolerance`.
     tolerance : float, optional
         Of "taylor" and "runge-kutta", relative, for each step, 1e-15 to 1e-6; absent: as above. The run remembers it,
-        and its card allows for it. A closed form has none.
+        a hundredth of it where "auto" takes "runge-kutta", and its card allows for it. A closed form has none.
     title : str
         For figures and the card.
     scenario : str, optional

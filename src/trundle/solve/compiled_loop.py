@@ -16,6 +16,7 @@ import numba
 import numpy as np
 from numba import errors, float64, int64, types, void
 
+from ..mechanics.surfaces.splines import evaluated
 from .compiled_steps import ENDED, FULL, LOOK, LOW, STUCK
 from .integrator_cache import forget, kept_text
 from .tape import Tape, defined
@@ -206,7 +207,8 @@ def compiled(tape: Tape, outputs: Sequence[Any]) -> Any:
     text, name = tape.filling(outputs)
     file = kept_text(text)
     # Where numba reads what it has kept, it asks for the module.
-    function = defined(text, name, "<law>" if file is None else str(file), where=_where, __name__=__name__)
+    known: Any = {"where": _where, "spline": _spline, "table": np.array, "__name__": __name__}
+    function = defined(text, name, "<law>" if file is None else str(file), **known)
     if file is not None:
         with contextlib.suppress(Exception):
             return njit(_FILLING, cache=True, **_given)(function)
@@ -217,3 +219,6 @@ def compiled(tape: Tape, outputs: Sequence[Any]) -> Any:
 @njit(inline="always", **_given)
 def _where(condition: Any, yes: Any, no: Any) -> Any:
     return yes if condition else no
+
+
+_spline = njit(**_given)(evaluated)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import Contact, contact_at
+from ..mechanics.duals import value_of
 from ..mechanics.nearest import closest_contact
 from ..mechanics.scalars import as_float
 from ..mechanics.system import RollingSystem, State
@@ -49,7 +50,7 @@ class ContactState:
         u, turning = contact.support.material_velocity(contact.point), contact.support.angular_velocity
         speed = max(V.norm(), Omega.norm() * arm, u.norm(), turning.norm() * arm)
         return ContactState(
-            state, contact, q, V, Omega, contact.slip_velocity(V, Omega), as_float(gap), arm, float(speed)
+            state, contact, q, V, Omega, contact.slip_velocity(V, Omega), as_float(gap), arm, float(value_of(speed))
         )
 
     @property
@@ -89,15 +90,15 @@ class ContactState:
         pull = (force.norm() + torque.norm() / self.arm) / system.body.mass
         support, p = self.contact.support, self.contact.point
         pull = max(pull, support.material_acceleration(p, support.material_velocity(p)).norm())
-        return max(self.speed, math.sqrt(pull * self.arm), 1e-30)
+        return max(self.speed, math.sqrt(value_of(pull * self.arm)), 1e-30)
 
     def moment(self, system: RollingSystem) -> float:
         """Return a time in which this motion changes, s."""
-        return float(self.arm / self.scale(system))
+        return float(value_of(self.arm) / self.scale(system))
 
     def forces(self, system: RollingSystem) -> float:
         """Return the size of the forces in this motion, N."""
-        return float(system.body.mass) * self.scale(system) ** 2 / self.arm
+        return float(value_of(system.body.mass)) * self.scale(system) ** 2 / self.arm
 
     def still(self, system: RollingSystem) -> float:
         """Return the speed at which slip has all but ended, m/s."""

@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from .transitions import PhaseStart
 
 _CLOSE = 1e-2  # W as a share of the vector's length, or of how it changes in the time in which the motion changes
-# Shares of that time: behind a corner, clear of it, and where one sees what a vector grows to.
+# Shares of that time, which is shorter where the vector turns about sooner: behind a corner, clear of it, and where one
+# sees what a vector grows to.
 _BEHIND, _CLEAR, _AHEAD = 1e-13, 1e-9, 1e-6
 _FURTHER, _TRIES = 4.0, 10
 _ROUNDING = 1e-15  # of |ρ|
@@ -36,10 +37,12 @@ def directions(system: RollingSystem, now: PhaseStart) -> tuple[float, ...]:
     if not system.corners:
         return ()
     found: list[float] = []
-    for w, ahead in zip(*_here_and_ahead(system, now), strict=True):
+    for w, ahead, further in zip(*_here_and_ahead(system, now, 2), strict=True):
         way = ahead if _is_on(w, ahead) else w
         length = float(np.linalg.norm(way))
-        size = max(float(np.linalg.norm(w)), float(np.linalg.norm(ahead - w)) / _AHEAD)
+        change, bend = (float(np.linalg.norm(part)) for part in (ahead - w, further - 2 * ahead + w))
+        grows = change / max(_AHEAD, bend / change) if change > 0 else 0.0  # until it has turned back
+        size = max(float(np.linalg.norm(w)), grows)
         found += [*(way / length if length > 0 else way).tolist(), 1 / (_CLOSE * size) if size > 0 else 0.0]
     return tuple(found)
 
@@ -89,11 +92,14 @@ def check_count(system: RollingSystem, times: Sequence[float], now: PhaseStart) 
     )
 
 
-def _here_and_ahead(system: RollingSystem, now: PhaseStart) -> tuple[list[Array], list[Array]]:
-    """Return what passes through zero at the corners, and the same a little later."""
+def _here_and_ahead(system: RollingSystem, now: PhaseStart, looks: int = 1) -> list[list[Array]]:
+    """Return what passes through zero at the corners, and the same a little later, and so on."""
     law, numbers, wait = python_law(system, now.law), list(map(float, now.state_vector)), _AHEAD * _moment(system, now)
-    later = now.law.rk4_step(system, now.time, numbers, wait, law.rates)
-    return _vectors(law, now.time, numbers), _vectors(law, now.time + wait, later)
+    found = [_vectors(law, now.time, numbers)]
+    for look in range(1, looks + 1):
+        later = now.law.rk4_step(system, now.time, numbers, look * wait, law.rates)
+        found.append(_vectors(law, now.time + look * wait, later))
+    return found
 
 
 def _vectors(law: PythonLaw, time: float, numbers: Sequence[float]) -> list[Array]:

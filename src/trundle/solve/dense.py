@@ -16,7 +16,7 @@ from .samples import Array, Progress, Samples
 from .transitions import PhaseStart, ZeroCrossing
 
 _MOST_STEPS = 100_000  # kept, of some two or three kilobytes each
-_MARKS = 1000  # states on the way through a stretch of more
+_MARKS = 10_000  # states on the way through a stretch of more
 
 
 @dataclass(frozen=True)

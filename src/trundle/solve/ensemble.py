@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import Contact, contact_at
@@ -30,29 +31,60 @@ from .samples import AT_ONCE, Array, Samples
 LANES = 8  # doubles in the widest registers; where they are half as wide, two at a time still gain
 _MOST_CHUNKS = 10
 _MOST_STEPS = 30  # of Newton's method
+_COMPLETED = 4000  # samples that are completed at once, at least: of few, each costs more
 _PRESSED = 1e-9  # share of the weight with which a member must press on to be taken along
 
 
 @dataclass(frozen=True)
 class Block:
-    """What one register's worth of members did, or a part of it.
+    """What some members did, or a part of it.
 
     Parameters
     ----------
-    members : array (k,)
-        Which they are.
-    rows : slice
-        The instants that this is about.
+    members, rows : array (n,) of int
+        Of each sample: whose it is, and at which instant; those of a member ascend.
     samples : Samples
-        Of all at the first instant, then of all at the second, and so on.
+        n of them.
     system : RollingSystem
         Its numbers are arrays as long as the samples where members differ.
     """
 
-    members: Array
-    rows: slice
+    members: NDArray[np.int64]
+    rows: NDArray[np.int64]
     samples: Samples
     system: RollingSystem
+
+
+@dataclass(frozen=True)
+class Piece:
+    """States (rows, size, members) of some members at some of the instants, to be completed."""
+
+    members: Sequence[int]
+    rows: slice
+    path: Array
+
+    @property
+    def size(self) -> int:
+        """How many samples it makes."""
+        return len(self.members) * len(self.path)
+
+
+def numbers_of(systems: Sequence[RollingSystem]) -> list[list[float]]:
+    """Return the numbers of each system, which are looked up once where many members share one.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> ball = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane()))
+    >>> one, other = numbers_of([ball, ball])
+    >>> one is other
+    True
+    """
+    found: dict[int, list[float]] = {}
+    for system in systems:
+        if id(system) not in found:
+            found[id(system)] = numbers(system)
+    return [found[id(system)] for system in systems]
 
 
 def together(systems: Sequence[RollingSystem], repeat: int = 1) -> RollingSystem:
@@ -65,7 +97,9 @@ def together(systems: Sequence[RollingSystem], repeat: int = 1) -> RollingSystem
     >>> together(balls, 2).body.shape.radius.tolist(), together(balls).body.mass
     ([0.1, 0.2, 0.1, 0.2], 1.0)
     """
-    values = np.array([numbers(system) for system in systems]).T
+    if all(system is systems[0] for system in systems):
+        return systems[0]
+    values = np.array(numbers_of(systems)).T
     columns = [float(row[0]) if (row == row[0]).all() else np.tile(row, repeat) for row in values]
     return with_numbers(systems[0], columns)
 
@@ -172,7 +206,8 @@ def integrate(
         Of each member that came to a stop of the law, where that was.
     """
     law = RollingLaw()
-    zeros = np.all([np.equal(numbers(system), 0) for system in systems], axis=0)
+    given = numbers_of(systems)
+    zeros = np.equal(np.array(given), 0).all(axis=0)
     lowered, key = integrators.ready(systems[0], law, tolerance, zeros=frozenset(np.flatnonzero(zeros).tolist()))
     integrator = integrators.kept(f"{LANES}-passing-{key}", lambda: _compile(lowered, tolerance))
     blocks = [list(members[i : i + LANES]) for i in range(0, len(members), LANES)]
@@ -182,15 +217,21 @@ def integrate(
         mine = copy.copy(integrator)
         broken: list[int] = []
         stops: dict[int, Stop] = {}
+        pieces: list[Piece] = []
         try:
             for block in blocks[which::workers]:
-                run = _Lanes(mine, lowered, [systems[i] for i in block], states[block])
+                run = _Lanes(mine, lowered, [given[i] for i in block], states[block])
                 for rows, lanes, path in run.follow(times):
-                    done(completed(law, systems, [block[lane] for lane in lanes], times, rows, path))
+                    pieces.append(Piece([block[lane] for lane in lanes], rows, path))
+                    if sum(piece.size for piece in pieces) >= _COMPLETED:
+                        done(completed(law, systems, times, pieces))
+                        pieces.clear()
                     if halt.is_set():
                         return broken, stops
                 broken += [block[lane] for lane in sorted(run.left)]
                 stops |= {block[lane]: stop for lane, stop in run.stops.items()}
+            if pieces:
+                done(completed(law, systems, times, pieces))
         except BaseException:
             halt.set()
             raise
@@ -217,14 +258,23 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def completed(
-    law: Law, systems: Sequence[RollingSystem], members: list[int], times: Array, rows: slice, path: Array
-) -> Block:
-    """Complete the states (rows, size, members) of some members at some of the instants."""
-    system = together([systems[i] for i in members], len(path))
-    flat = path.transpose(0, 2, 1).reshape(-1, path.shape[1])
-    samples = law.record(system, np.repeat(times[rows], len(members)), flat)
-    return Block(np.array(members), rows, samples, system)
+def completed(law: Law, systems: Sequence[RollingSystem], times: Array, pieces: Sequence[Piece]) -> Block:
+    """Complete the states of some members at some of the instants, all pieces at once."""
+    members = np.concatenate([np.tile(np.asarray(piece.members), len(piece.path)) for piece in pieces])
+    rows = np.concatenate([np.repeat(np.arange(times.size)[piece.rows], len(piece.members)) for piece in pieces])
+    flat = np.concatenate([piece.path.transpose(0, 2, 1).reshape(-1, piece.path.shape[1]) for piece in pieces])
+    system = _of_samples(systems, members)
+    return Block(members, rows, law.record(system, times[rows], flat), system)
+
+
+def _of_samples(systems: Sequence[RollingSystem], members: NDArray[np.int64]) -> RollingSystem:
+    """Return one system whose numbers are arrays over samples, of which each is some member's."""
+    known, places = np.unique(members, return_inverse=True)
+    own = [systems[i] for i in known]
+    if all(system is own[0] for system in own):
+        return own[0]
+    values = np.array(numbers_of(own)).T
+    return with_numbers(own[0], [float(row[0]) if (row == row[0]).all() else row[places] for row in values])
 
 
 @dataclass(frozen=True)
@@ -252,10 +302,10 @@ class _Lanes:
     left out. Where a lane breaks down, all go back to where the leg began. Another's state takes the place of both.
     """
 
-    def __init__(self, integrator: Any, lowered: Lowered, systems: list[RollingSystem], states: Array) -> None:
-        self.integrator, self.lowered, self.count = integrator, lowered, len(systems)
+    def __init__(self, integrator: Any, lowered: Lowered, given: list[list[float]], states: Array) -> None:
+        self.integrator, self.lowered, self.count = integrator, lowered, len(given)
         self.lane = [min(i, self.count - 1) for i in range(LANES)]  # a short block repeats its last member
-        self.given = [numbers(systems[i]) for i in self.lane]
+        self.given = [given[i] for i in self.lane]
         self.state, self.left = states[self.lane].T.copy(), set[int]()
         self.stops: dict[int, Stop] = {}
 
@@ -315,9 +365,12 @@ class _Lanes:
         for event in self._events:
             event.callback.times.clear()
         failed = set()
+        worked_out: dict[int, list[float]] = {}  # many members may share one system
         for i in range(LANES):
             try:
-                values = self.lowered.values(self.given[i], time)
+                if id(self.given[i]) not in worked_out:
+                    worked_out[id(self.given[i])] = self.lowered.values(self.given[i], time)
+                values = worked_out[id(self.given[i])]
                 self.integrator.pars[:, i] = values[: self.lowered.parameters]
                 self.integrator.state[:, i] = self.lowered.tidy([0.0, *self.state[:, i].tolist(), *values])
             except (ArithmeticError, ValueError):

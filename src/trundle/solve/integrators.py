@@ -108,9 +108,27 @@ def kept(key: str, compile_: Callable[[], Any]) -> Any:
         _quiet()
         known[key] = integrator_cache.load(key)
         if known[key] is None:
-            known[key] = compile_()
+            with _kept_once():
+                known[key] = compile_()
             integrator_cache.store(key, known[key])
     return known[key]
+
+
+@contextlib.contextmanager
+def _kept_once() -> Iterator[None]:
+    """Keep heyoka from keeping on disk, in up to 20 gigabytes, what is kept here."""
+    import heyoka
+
+    state = heyoka.llvm_state
+    enabled = hasattr(state, "set_diskcache_enabled") and state.get_diskcache_enabled()  # of 7.10 and later
+    if not enabled:
+        yield
+        return
+    state.set_diskcache_enabled(False)
+    try:
+        yield
+    finally:
+        state.set_diskcache_enabled(True)
 
 
 @cache

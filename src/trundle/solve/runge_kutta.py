@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -37,7 +38,7 @@ _PATIENCE: dict[str, Any] = {"steps": 1e7, "spare": 5e3, "name": "The Runge-Kutt
 _BRIEF = 3e3  # steps of a law that holds for an instant only
 _FIRST_STEP = 1e-12  # s
 _BEGINNING = 20  # steps, after which one sees how many there will be
-_WORTH_COMPILING = 500  # steps: for so many SciPy takes as long as a law takes to be compiled
+WORTH_COMPILING = 2_000  # steps: for so many, in a run and its card, SciPy takes as long as laws take to be compiled
 
 
 class Path(Protocol):
@@ -124,6 +125,15 @@ def dense(system: RollingSystem, now: PhaseStart, end: float, tolerance: float, 
         return TooMany(lambda times: paths.at(times - now.time), paths.count, time, paths.last)
     stop = None if last.stop is None else replace(last.stop, time=now.time + last.stop.time)
     return Leg(lambda times: paths.at(times - now.time), stop, paths.count)
+
+
+def first_steps(system: RollingSystem, now: PhaseStart, end: float, tolerance: float, count: int) -> float:
+    """Return how long its steps are after the first few, which are too short, s; ∞ where there are not so many."""
+    paths = _Paths(np.asarray(now.state_vector, dtype=float), count)
+    with suppress(_TooManyError):
+        _ = list(_integrated(system, now, paths, end - now.time, tolerance, None))
+        return math.inf
+    return (paths.reached - paths.begins[count // 2]) / (len(paths.begins) - count // 2)
 
 
 def _integrated(
@@ -217,7 +227,7 @@ def _many_to_come(stepper: Any) -> Callable[[], bool]:
         if taken % _BEGINNING:
             return False
         mean, since = (stepper.t - since) / _BEGINNING, stepper.t
-        return stepper.t_bound - stepper.t > _WORTH_COMPILING * mean
+        return stepper.t_bound - stepper.t > WORTH_COMPILING * mean
 
     return many
 
@@ -241,7 +251,7 @@ def _follow(
     paths: Iterable[Path], y0: Array, rows: _Rows | _Paths, stops: Any, names: tuple[str, ...]
 ) -> Iterator[Segment]:
     """Go along steps to the end or the first stop; states are read off the steps' own polynomials."""
-    yield from rows.take(_OneStep(0.0, 0.0, lambda t: np.tile(y0[:, None], t.size)))
+    yield from rows.take(_OneStep(0.0, 0.0, lambda t: np.tile(y0[:, None], t.size), count=0))
     first = stops(0.0, y0)
     try:
         for path in paths:

@@ -11,8 +11,10 @@ import hashlib
 import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
+
+from ..mechanics.surfaces.splines import Pieces, evaluated
 
 _LONGEST = 300  # characters of an expression: Python reads no more than 200 brackets in each other
 
@@ -39,6 +41,47 @@ class Dialect:
     number: Callable[[float], str] = repr
 
 
+@dataclass(frozen=True)
+class Loop:
+    """What is done again and again, on a tape of its own.
+
+    Parameters
+    ----------
+    tape : Tape
+        Its inputs are the numbers that change, and then those that stay.
+    outputs : tuple
+        What becomes of the numbers that change; as long as the first is above 0 it goes on.
+    """
+
+    tape: Tape
+    outputs: tuple[Any, ...]
+
+
+@dataclass(frozen=True)
+class WrittenLoop:
+    """The same as text, with names that do not depend on where it stands.
+
+    Parameters
+    ----------
+    targets : tuple of str
+        What the numbers that change are called afterwards.
+    start, given : tuple of str
+        How these begin, and those that stay.
+    changing, staying : tuple of str
+        What both are called within.
+    lines, results : list
+        One pass, as `Tape.written` has it.
+    """
+
+    targets: tuple[str, ...]
+    start: tuple[str, ...]
+    given: tuple[str, ...]
+    changing: tuple[str, ...]
+    staying: tuple[str, ...]
+    lines: list[Any]
+    results: list[str]
+
+
 class Tape:
     """The operations recorded so far.
 
@@ -53,6 +96,7 @@ class Tape:
     def __init__(self) -> None:
         self.steps: list[tuple[Any, ...]] = []
         self.known: dict[tuple[Any, ...], Node] = {}
+        self.loops: list[Loop] = []
         self.size = 0
 
     def inputs(self, count: int) -> list[Node]:
@@ -76,7 +120,8 @@ class Tape:
         """Return the function of the inputs that gives the outputs."""
         lines, results = self.written(outputs, Dialect())
         worked_out = [f"    {name} = {text}" for name, text in lines]
-        return defined("\n".join(["def traced(x):", *worked_out, f"    return [{', '.join(results)}]"]))
+        text = ["def traced(x):", *worked_out, f"    return [{', '.join(results)}]"]
+        return defined("\n".join([*self._tables(outputs), *text]))
 
     def filling(self, outputs: Sequence[Any]) -> tuple[str, str]:
         """Return the text of a function of the inputs and an array, `out`, that fills the outputs in, and its name.
@@ -88,10 +133,21 @@ class Tape:
         filled = [f"    out[{i}] = {part}" for i, part in enumerate(results)]
         body = "\n".join([*worked_out, *filled, "    return", ""])
         name = f"law_{hashlib.sha256(body.encode()).hexdigest()[:32]}"
-        return f"def {name}(x, out):\n{body}", name
+        return "\n".join([*self._tables(outputs), f"def {name}(x, out):", body]), name
 
-    def written(self, outputs: Sequence[Any], dialect: Dialect) -> tuple[list[tuple[str, str]], list[str]]:
+    def _tables(self, outputs: Sequence[Any]) -> list[str]:
+        """Return the lines that define the tables which steps lean on."""
+        found = [part for i in self.needed(outputs) for part in self.steps[i][1:] if isinstance(part, Pieces)]
+        return [
+            f"{name} = table({numbers!r})"
+            for pieces in dict.fromkeys(found)
+            for name, numbers in zip(_names(pieces), (pieces.x, pieces.y, pieces.terms), strict=True)
+        ]
+
+    def written(self, outputs: Sequence[Any], dialect: Dialect, prefix: str = "v") -> tuple[list[Any], list[str]]:
         """Return the steps that lead to the outputs, each a name and its text, and then the texts of the outputs.
+
+        A loop is a `WrittenLoop` among the steps.
 
         Examples
         --------
@@ -101,15 +157,32 @@ class Tape:
         ([('v2', '(x * y)')], ['(v2 + 1.0)', 'v2'])
         """
         needed = self.needed(outputs)
-        uses = [*outputs, *(part for i in needed for part in self.steps[i][1:])]
+        uses = [*outputs, *(part for i in needed for part in self.steps[i][1:] * (1 + (self.steps[i][0] == "loop")))]
         used = Counter(part.index for part in uses if isinstance(part, Node))
-        lines, names = list[tuple[str, str]](), dict[int, str]()
+        lines, names = list[Any](), dict[int, str]()
         for i in needed:
+            name = f"{prefix}{i}"
+            if self.steps[i][0] == "loop":
+                lines.append(self._written_loop(i, name, names, dialect))
+                names[i] = name
+                continue
             names[i] = _written(self.steps[i], names, dialect)
             if used[i] > 1 or len(names[i]) > _LONGEST:  # what is used once stands where it is used: twice as fast
-                lines.append((f"v{i}", names[i]))
-                names[i] = f"v{i}"
+                lines.append((name, names[i]))
+                names[i] = name
         return lines, [_name(part, names, dialect) for part in outputs]
+
+    def _written_loop(self, index: int, name: str, names: dict[int, str], dialect: Dialect) -> WrittenLoop:
+        _, which, *operands = self.steps[index]
+        loop, texts = self.loops[which], [_name(part, names, dialect) for part in operands]
+        size = len(loop.outputs)
+        changing, staying = (
+            tuple(f"{letter}{i}" for i in range(n)) for letter, n in (("c", size), ("g", len(texts) - size))
+        )
+        inner = replace(dialect, variable=[*changing, *staying].__getitem__)
+        targets = tuple(f"{name}_{i}" for i in range(size))
+        given = tuple(texts[:size]), tuple(texts[size:])
+        return WrittenLoop(targets, *given, changing, staying, *loop.tape.written(loop.outputs, inner, "w"))
 
     def needed(self, outputs: Sequence[Any]) -> list[int]:
         """Return the steps that the outputs lean on, in order."""
@@ -120,6 +193,40 @@ class Tape:
                 found.add(index)
                 waiting += [part.index for part in self.steps[index][1:] if isinstance(part, Node)]
         return sorted(found)
+
+
+def repeated(body: Callable[..., Sequence[Any]], start: Sequence[Any], given: Sequence[Any]) -> list[Any]:
+    """Return what becomes of some numbers that a body changes again and again while the first is above 0.
+
+    Parameters
+    ----------
+    body : callable
+        Takes the numbers that change and then those that stay, and returns the first.
+    start, given : sequence of scalars
+        Floats, or what a tape recorded: then the loop is recorded, too.
+
+    Examples
+    --------
+    >>> def halved(left, x, by):
+    ...     return left - 1.0, x / by
+    >>> repeated(halved, (3.0, 8.0), (2.0,))
+    [0.0, 1.0]
+    >>> tape = Tape()
+    >>> count, x = tape.inputs(2)
+    >>> (*_, loop), results = tape.written(repeated(halved, (count, x), (2.0,)), Dialect("nx".__getitem__))
+    >>> loop.changing, loop.results, results
+    (('c0', 'c1'), ['(c0 - 1.0)', '(c1 / g0)'], ['v2_0', 'v2_1'])
+    """
+    tapes = [part.tape for part in (*start, *given) if isinstance(part, Node)]
+    if not tapes:
+        now = list(start)
+        while now[0] > 0:
+            now = list(body(*now, *given))
+        return now
+    tape, inner = tapes[0], Tape()
+    tape.loops.append(Loop(inner, tuple(body(*inner.inputs(len(start) + len(given))))))
+    done = tape.record("loop", len(tape.loops) - 1, *start, *given)
+    return [tape.record("part", done, i) for i in range(len(start))]
 
 
 def _key(operation: str, operands: Sequence[Any]) -> tuple[Any, ...]:
@@ -264,6 +371,7 @@ _PYTHON: dict[str, Callable[..., Any]] = {
     "abs": abs,
     "atan2": math.atan2,
     "where": _where,
+    "spline": evaluated,
 }
 
 
@@ -275,7 +383,7 @@ def defined(text: str, name: str = "traced", file: str = "<tape>", **functions: 
     >>> defined("def traced(x):\n    return [sqrt(x[0])]")([4.0])
     [2.0]
     """
-    place: dict[str, Any] = _PYTHON | functions
+    place: dict[str, Any] = _PYTHON | {"table": tuple} | functions
     exec(compile(text, file, "exec"), place)  # noqa: S102  operators, numbers and the names of `place`, nothing else
     return place[name]
 
@@ -309,7 +417,16 @@ def _is(value: Any, number: float) -> bool:
     return isinstance(value, (int, float)) and value == number
 
 
+def _names(pieces: Pieces) -> list[str]:
+    """Return what the tables of pieces are called: no others, and none evaluated otherwise, have these names."""
+    known = repr((pieces.x, pieces.y, pieces.terms)).encode() + evaluated.__code__.co_code
+    digest = hashlib.sha256(known).hexdigest()[:32]
+    return [f"{part}_{digest}" for part in ("x", "y", "terms")]
+
+
 def _name(part: Any, names: dict[int, str], dialect: Dialect) -> str:
+    if isinstance(part, Pieces):
+        return ", ".join(_names(part))
     return names[part.index] if isinstance(part, Node) else dialect.number(float(part))
 
 
@@ -318,6 +435,8 @@ def _written(step: tuple[Any, ...], names: dict[int, str], dialect: Dialect) -> 
     if operation == "input":
         return dialect.variable(operands[0])
     written = [_name(part, names, dialect) for part in operands]
+    if operation == "part":
+        return f"{written[0]}_{operands[1]}"
     if operation == "neg":
         return f"(-{written[0]})"
     if operation == "where":

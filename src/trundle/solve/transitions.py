@@ -9,6 +9,7 @@ from typing import Any
 from ..errors import SolverError
 from ..mechanics.algebra import ZERO, Vector
 from ..mechanics.contact import roll
+from ..mechanics.duals import value_of
 from ..mechanics.impact import land
 from ..mechanics.kinks import Kink
 from ..mechanics.placing import SLIP_TOLERANCE, no_gap
@@ -225,13 +226,13 @@ _NAMES = {
 def _goes_on(system: RollingSystem, law: Law, at: ContactState, stop: ZeroCrossing) -> bool:
     """Tell whether slip or turning was only at its slowest, and did not end."""
     name = stop.name.removeprefix("near ")
-    left = float(law.shrinking(system, at.state.time, stop.state_vector, name).norm())
+    left = value_of(law.shrinking(system, at.state.time, stop.state_vector, name).norm())
     if left <= 4 * _least(system, at, name):
         return False
     if not stop.name.startswith("near "):
         return True
     rate = law.shrinking_rate(system, at.state.time, stop.state_vector, name)
-    return left > 4 * AN_INSTANT * float(rate.norm())
+    return bool(left > 4 * AN_INSTANT * rate.norm())
 
 
 def _least(system: RollingSystem, at: ContactState, stop: str) -> float:
@@ -296,16 +297,15 @@ def _pulled_back(system: RollingSystem, at: ContactState) -> bool:
     n, coordinates = at.contact.normal, at.state.support
     R = roll(system, at.state.time, at.contact.point, at.orientation, at.Omega, coordinates).reaction
     J = system.body.inertia_in_space(at.orientation.matrix())
-    by_friction = pull - float(response(system, at.contact, J, n * n.dot(R)).slip.dot(n))
+    by_friction = pull - value_of(response(system, at.contact, J, n * n.dot(R)).slip.dot(n))
     return bool(min(pull, by_friction) > limit)
 
 
 def _pull(system: RollingSystem, at: ContactState) -> float:
     """Return how fast the body would come down on the support if it did not push, m/s²."""
     coordinates = at.state.support
-    return -float(
-        unpushed(system, at.state.time, at.contact, at.orientation, at.Omega, at.sliding, coordinates).opening
-    )
+    free = unpushed(system, at.state.time, at.contact, at.orientation, at.Omega, at.sliding, coordinates)
+    return -float(value_of(free.opening))
 
 
 def _opens(system: RollingSystem, at: ContactState) -> bool:
@@ -412,9 +412,9 @@ def _slipping(
     state, held = at.state, turning == "held"
     place = at.contact.point, at.orientation, at.Omega, at.sliding, state.support
     now = slip(system, state.time, *place, direction, held=held)
-    N, forces = float(now.normal_force), at.forces(system)
+    N, forces = float(value_of(now.normal_force)), at.forces(system)
     weightless = abs(N) <= WEIGHTLESS * forces
-    share = float(now.opening_per_newton * system.body.mass)
+    share = float(value_of(now.opening_per_newton * system.body.mass))
     if share <= JAMS and not weightless:
         raise jammed(state.time, share, opens=N * share < 0)
     if _opens(system, at) if weightless else N < 0:
@@ -436,7 +436,7 @@ def _resisted(system: RollingSystem, at: ContactState, direction: Vector, *, sta
         )
     place = at.contact.point, at.orientation, at.Omega, at.sliding, state.support
     now = slip(system, state.time, *place, direction, held=True)
-    N = float(now.normal_force) + _FLOOR * at.forces(system)
+    N = float(value_of(now.normal_force)) + _FLOOR * at.forces(system)
     if not starts and N >= 0 and left_of_resistance(system, N, now.holding) >= 0:
         return replace(_turned_off(system, at, ZERO, at.sliding), slip=at.slip), "held"
     return replace(_turned_off(system, at, now.holding, at.sliding), slip=at.slip), "resisted"
@@ -448,7 +448,7 @@ def _rolling(system: RollingSystem, at: ContactState, *, slips: bool = False) ->
     state = at.state
     now = roll(system, state.time, at.contact.point, at.orientation, at.Omega, state.support)
     R = now.reaction
-    N = float(now.normal_force)
+    N = float(value_of(now.normal_force))
     forces = at.forces(system)
     weightless = abs(N) <= WEIGHTLESS * forces
     floor = _FLOOR * forces if weightless else 0.0

@@ -52,7 +52,7 @@ def same_again(
 
 def finer(system: RollingSystem, start: State, at: Samples, method: Method, kept: Dense | None) -> Iterator[CardFigure]:
     """Compare a Runge-Kutta run with one of a smaller tolerance: how exact it is, its tolerance alone does not say."""
-    pace = _COMPILED if available() and system.support.surface.analytic else 1
+    pace = _COMPILED if available() and system.support.surface.recordable else 1
     if method.name != "runge-kutta" or method.tolerance <= FINEST or kept is None or kept.steps > _FEW_STEPS * pace:
         return
     with_more = replace(method, tolerance=max(FINEST, method.tolerance / 10))

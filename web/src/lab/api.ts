@@ -27,6 +27,8 @@ export function isAbort(error: unknown): boolean {
 export interface ScenarioEntry {
   name: string
   title: string
+  /** The heading under which it stands. */
+  group: string
   summary: string
   support: string
   body: string

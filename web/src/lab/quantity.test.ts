@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest'
 import { PARTS } from './parts.fixture'
-import { parse, show, stepped, toSI, write } from './quantity'
+import { brief, parse, show, stepped, toSI, write } from './quantity'
 
 const { length = {}, velocity = {}, density = {}, number = {}, angle = {} } = PARTS.units
 const turning = PARTS.units['angular velocity'] ?? {}
@@ -50,4 +50,21 @@ it('numbers are shown for people', () => {
   expect(show(0)).toBe('0')
   expect(show(null)).toBe('–')
   expect(show(Number.NaN)).toBe('–')
+})
+
+it.each([
+  ['33.30', '33.30'],
+  ['9.80665', '9.807'],
+  ['-0.06170474949657112', '-0.06170'],
+  ['2.9942857e-6', '2.994e-6'],
+  ['-0.0000029942857', '-2.994e-6'],
+  ['0.000000001', '1e-9'],
+  ['123456789', '1.235e+8'],
+  ['12345', '12345'],
+  ['0', '0'],
+  ['0.0000000', '0'],
+  ['3.4*(1 - exp(-t))', '3.4*(1 - exp(-t))'],
+  ['', ''],
+])('shows %s as %s in a small box', (digits, shown) => {
+  expect(brief(digits)).toBe(shown)
 })

@@ -71,6 +71,16 @@ function shortest(value: number): string {
   return Math.abs(value) >= 1e-4 || value === 0 ? String(value) : value.toExponential()
 }
 
+/** Digits as written where they are few, else four of them: what fits a small box, and what an eye takes in. */
+export function brief(digits: string): string {
+  const number = Number(digits)
+  const many = digits.replace(/e.*/i, '').replace(/\D/g, '').replace(/^0+/, '').length
+  if (!Number.isFinite(number) || (many <= 5 && digits.length <= 8)) return digits
+  const size = Math.abs(number)
+  const shown = Math.max(1, Math.min(4, many))
+  return size !== 0 && (size < 1e-3 || size >= 1e5) ? number.toExponential(shown - 1) : number.toPrecision(shown)
+}
+
 /** The size of an arrow key's step: a one in the last place but one of what is shown, a tenth of the number at most. */
 export function stepFor(number: number): number {
   if (number === 0) return 0.1

@@ -37,7 +37,8 @@ export interface ViewerEvents {
   /** A place on the support, in its frame: where the first body is dragged to. */
   dragstart: Place
   drag: Place
-  dragend: Place
+  /** Let go; `velocity`: thrown so, m/s, along the support. */
+  dragend: Place & { velocity: Triple | null }
   /** A velocity drawn as an arrow along the support, in m/s. */
   arrow: Drawn
   /** The same while it runs: what is to be added to the velocity at this time. */
@@ -79,6 +80,8 @@ export interface Viewer {
   step(by: number): void
   speed: number
   loop: boolean
+  /** Begin at a speed at which the runs can be watched, again and again where they are short; returns that speed. */
+  suit(): number
   readonly time: number
   readonly duration: number
   readonly playing: boolean
@@ -87,6 +90,8 @@ export interface Viewer {
   get show(): Show
   set show(part: Partial<Show>)
   tool: Tool
+  /** Whether the first body may be taken hold of while the tool turns the view: beside it, the view turns. */
+  grabs: boolean
   get theme(): 'light' | 'dark'
   set theme(theme: Theme)
   projector: boolean

@@ -26,6 +26,7 @@ function show(root: Document, stage: HTMLElement, scenes: Scene[]): void {
   stage.append(host)
   const viewer = createViewer(host, { theme: themeNow(root), controls: true })
   viewer.setScenes(scenes)
+  viewer.suit()
   viewer.loop = true
   offerThemes(root, (theme) => {
     viewer.theme = theme

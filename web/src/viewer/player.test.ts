@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest'
-import { nextSpeed, Player } from './player'
+import { nextSpeed, Player, watchable } from './player'
 
 function player(begin = 0, duration = 10): Player {
   const made = new Player()
@@ -84,5 +84,18 @@ test('speeds go up and down by the usual steps and end there', () => {
   expect(nextSpeed(1, -1)).toBe(0.5)
   expect(nextSpeed(0.7, 1)).toBe(1)
   expect(nextSpeed(10, 1)).toBe(10)
-  expect(nextSpeed(0.1, -1)).toBe(0.1)
+  expect(nextSpeed(0.1, -1)).toBe(0.05)
+  expect(nextSpeed(0.01, -1)).toBe(0.01)
+})
+
+test.each([
+  [20, 5, 1],
+  [20, 100, 1],
+  [4, 150, 0.5],
+  [0.16, 0, 0.1],
+  [0.16, 3000, 0.02],
+  [1e-6, 0, 0.01],
+  [600, 0, 1],
+])('a run of %d s that turns at %d rad/s can be watched at %d of its speed', (duration, turning, speed) => {
+  expect(watchable(duration, turning)).toBe(speed)
 })

@@ -62,7 +62,16 @@ export class Player {
 
 const LONGEST_FRAME = 400 // ms
 
-export const SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10] as const
+export const SPEEDS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10] as const
+
+const SHORTEST = 1.5 // s that a film takes
+const FASTEST = 100 // rad/s that an eye follows at sixty pictures a second
+
+/** The speed at which a run of this duration, s, turning at most so fast, rad/s, can be watched: never above the true one. */
+export function watchable(duration: number, turning: number): number {
+  const most = Math.min(duration / SHORTEST, turning > 0 ? FASTEST / turning : 1)
+  return [...SPEEDS].reverse().find((speed) => speed <= 1 && speed <= most) ?? SPEEDS[0]
+}
 
 /** The next slower or faster of the usual speeds. */
 export function nextSpeed(speed: number, direction: 1 | -1): number {

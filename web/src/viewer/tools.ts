@@ -7,6 +7,7 @@ import { contactNormal } from './normals'
 import { drawnVelocity, type Hit, pickNear, pickPlane, pickSupport, Stroke, sideAt } from './picking'
 import type { Triple } from './scene'
 import type { Stage } from './stage'
+import { Swing } from './swing'
 import type { Palette } from './theme'
 import type { World } from './world'
 
@@ -14,12 +15,14 @@ const REACH = 26 // CSS pixels: how near to a ball one must point to take hold o
 const LEAST = 6 // CSS pixels: a shorter arrow is a click
 
 interface Gesture {
-  move(x: number, y: number): void
-  end(): void
+  /** `at`: when, ms. */
+  move(x: number, y: number, at: number): void
+  end(at: number): void
 }
 
 export class Tools {
   tool: Tool = 'orbit'
+  grabs = false
   private gesture: Gesture | null = null
   private readonly arrow = new Arrow(40)
   private readonly abort = new AbortController()
@@ -46,7 +49,7 @@ export class Tools {
   }
 
   private down(event: PointerEvent): void {
-    if (event.target !== this.canvas || event.button !== 0 || this.tool === 'orbit') return
+    if (event.target !== this.canvas || event.button !== 0 || !this.acts) return
     const [x, y] = this.at(event)
     this.gesture = this.begin(x, y)
     if (!this.gesture) return
@@ -55,20 +58,26 @@ export class Tools {
     this.host.redraw()
   }
 
+  /** Is there something to be done with the pointer but turn the view? What rides along is where it was at the start. */
+  private get acts(): boolean {
+    return this.tool !== 'orbit' || (this.grabs && this.world.frame !== 'corotating')
+  }
+
   private begin(x: number, y: number): Gesture | null {
     if (this.tool === 'draw') return this.draw(x, y)
     if (!this.nearBall(x, y)) return null
-    return this.tool === 'drag' ? this.drag(x, y) : this.throw(this.tool === 'nudge')
+    if (this.tool === 'velocity' || this.tool === 'nudge') return this.throw(this.tool === 'nudge')
+    return this.drag(x, y)
   }
 
   private move(event: PointerEvent): void {
     const [x, y] = this.at(event)
     if (!this.gesture) {
-      this.canvas.dataset.near = String(this.tool !== 'orbit' && (this.tool === 'draw' || this.nearBall(x, y)))
+      this.canvas.dataset.near = String(this.acts && (this.tool === 'draw' || this.nearBall(x, y)))
       return
     }
     event.stopPropagation()
-    this.gesture.move(x, y)
+    this.gesture.move(x, y, event.timeStamp)
     this.host.redraw()
   }
 
@@ -76,7 +85,7 @@ export class Tools {
     if (!this.gesture) return
     event.stopPropagation()
     if (this.canvas.hasPointerCapture(event.pointerId)) this.canvas.releasePointerCapture(event.pointerId)
-    this.gesture.end()
+    this.gesture.end(event.timeStamp)
     this.gesture = null
     this.host.redraw()
   }
@@ -100,19 +109,27 @@ export class Tools {
     const place = body.group.position.clone()
     const lift = place.clone().sub(contact)
     const find = this.finder(x, y, contact)
-    const tell = (name: 'dragstart' | 'drag' | 'dragend') =>
-      this.events.emit(name, { x: place.x, y: place.y, z: place.z, contact: contact.toArray() })
-    tell('dragstart')
+    const swing = new Swing(LEAST * this.stage.metresPerPixel(place))
+    const here = () => ({ x: place.x, y: place.y, z: place.z, contact: contact.toArray() })
+    let taken = false
     return {
-      move: (px, py) => {
+      move: (px, py, at) => {
+        if (!taken && Math.hypot(px - x, py - y) < LEAST) return // a click moves nothing
+        if (!taken) this.events.emit('dragstart', here())
+        taken = true
         const hit = find(px, py)
         if (!hit) return
         contact.copy(hit.place)
         place.copy(contact).add(this.flat ? lift : hit.normal.multiplyScalar(lift.length()))
         this.world.hold(place)
-        tell('drag')
+        swing.add(at, place)
+        this.events.emit('drag', here())
       },
-      end: () => tell('dragend'),
+      end: (at) => {
+        if (!taken) return
+        const velocity = this.tool === 'orbit' ? swing.velocity(at) : null
+        this.events.emit('dragend', { ...here(), velocity })
+      },
     }
   }
 

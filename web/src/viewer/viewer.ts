@@ -9,7 +9,7 @@ import { Fallback } from './fallback'
 import { framesOf, nextFrame } from './frames'
 import { LabelLayer } from './labels'
 import { Legend } from './legend'
-import { Player } from './player'
+import { Player, watchable } from './player'
 import { type Scene, saidOf, type Triple } from './scene'
 import { Sharpness } from './sharpness'
 import { liveShow } from './shown'
@@ -206,6 +206,13 @@ class StageViewer implements Viewer {
     this.controls?.refresh()
   }
 
+  suit(): number {
+    const turning = this.scenes.map(({ columns }) => fastest(columns.angular_velocity))
+    this.speed = watchable(this.duration, Math.max(0, ...turning))
+    this.loop = this.duration < BRIEF
+    return this.speed
+  }
+
   get loop(): boolean {
     return this.player.loop
   }
@@ -247,6 +254,13 @@ class StageViewer implements Viewer {
   set tool(tool: Tool) {
     if (this.tools) this.tools.tool = tool
     this.canvas.dataset.tool = tool
+  }
+
+  get grabs(): boolean {
+    return this.tools?.grabs ?? false
+  }
+  set grabs(grabs: boolean) {
+    if (this.tools) this.tools.grabs = grabs
   }
 
   get theme(): 'light' | 'dark' {
@@ -390,4 +404,14 @@ class StageViewer implements Viewer {
     this.events.clear()
     this.root.remove()
   }
+}
+
+const BRIEF = 3 // s: a run that is over so soon is shown again and again
+
+/** The fastest turning of a run, rad/s. */
+function fastest(turning: Float32Array | undefined): number {
+  let most = 0
+  for (let i = 0; i + 2 < (turning?.length ?? 0); i += 3)
+    most = Math.max(most, Math.hypot(turning![i]!, turning![i + 1]!, turning![i + 2]!))
+  return most
 }

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,19 +13,12 @@ from ...errors import InvalidValueError, UnknownNameError
 from ...mechanics.algebra import Quaternion, Vector
 from ...mechanics.system import RollingSystem
 from ...solve import frames
-from . import names
-from .files import Table, open_file
+from ...tracks import Track, read_track
 from .record import Array, ExternalTrajectory
 from .rows import whole_rows
 
+_OTHER_POINTS = ("angle", "mark_", "spot_")  # what a track may hold beside the motion of the centre
 AXES, ORDERS, DIRECTIONS = ("space", "body"), ("wxyz", "xyzw"), ("body-to-space", "space-to-body")
-_ARRAYS = {
-    "t": ("t", "time"),
-    "xyz": ("position", "r", "x"),
-    "v": ("velocity", "V", "v"),
-    "w": ("angular_velocity", "Omega", "Ω", "omega"),
-    "q": ("orientation", "q", "quaternion"),
-}
 
 
 @dataclass(frozen=True)
@@ -81,19 +73,9 @@ class Conventions:
         if not re.fullmatch(r"[xyz]{3}|[XYZ]{3}", self.euler):
             raise InvalidValueError("euler", "must name three axes, such as xyz or ZXZ", self.euler)
 
-    def unit(self, kind: str | None) -> str:
-        """Return the unit of a column that says none."""
-        return {
-            "time": self.time,
-            "length": self.length,
-            "velocity": f"{self.length}/s",
-            "angular velocity": f"{self.angles}/s",
-            "angle": self.angles,
-        }.get(kind or "", "")
-
 
 def read(data: Any, system: RollingSystem, conventions: Conventions) -> ExternalTrajectory:
-    """Read a trajectory from whatever it comes in.
+    """Read a trajectory from whatever it comes in; a row that is wrong is refused, and one that is empty left out.
 
     Examples
     --------
@@ -103,111 +85,33 @@ def read(data: Any, system: RollingSystem, conventions: Conventions) -> External
     >>> read({"t": t, "x": t, "y": 0 * t}, system, Conventions()).position[-1].tolist()
     [1.0, 0.0, 0.0]
     """
-    source = ""
-    if isinstance(data, (str, Path)):
-        source, data = Path(data).name, open_file(Path(data), conventions.columns)
-    elif hasattr(data, "samples") and hasattr(data, "in_frame"):  # a Trajectory
-        source, data = data.title, data.data
-    lines: tuple[int, ...] = ()
-    if isinstance(data, Table):
-        data, lines = data.columns, data.lines
-    elif hasattr(data, "data_vars"):
-        conventions = _told(data, conventions)
-        data = _variables(data)
-    elif hasattr(data, "columns"):
-        data = {str(name): data[name].to_numpy() for name in data.columns}
-    if not isinstance(data, Mapping):
-        raise InvalidValueError(
-            "data", "must be a file, a table, a dataset or a mapping from names to arrays", type(data).__name__
-        )
-    headings = [str(name) for name in data]
-    table = _flat(data, conventions)
-    found = names.recognise(name for name in table if name not in conventions.columns.values())
-    found |= names.mapped(conventions.columns, table)
-    table, remarks = whole_rows(table, [heading for heading, _ in found.values()], lines)
-    theirs = _in_space(_arrays(table, found, conventions, headings), system, conventions)
-    return replace(theirs, source=source, remarks=remarks)
+    track = read_track(
+        data,
+        columns=conventions.columns,
+        units={"time": conventions.time, "length": conventions.length, "angle": conventions.angles},
+        frame=conventions.frame,
+        axes=conventions.axes,
+        quaternion=conventions.quaternion,
+    )
+    wrong = next((one.error for one in track.rejected if one.error is not None), None)
+    if wrong is not None:
+        raise wrong
+    columns, remarks = whole_rows(track, [name for name in track.columns if not name.startswith(_OTHER_POINTS)])
+    theirs = _arrays(columns, conventions, track)
+    theirs = _in_space(theirs) if track.axes == "body" and theirs.angular_velocity is not None else theirs
+    theirs = theirs if track.frame == "support" else from_frame(theirs, system, track.frame)
+    return replace(theirs, source=track.source, remarks=remarks)
 
 
-def _told(data: Any, conventions: Conventions) -> Conventions:
-    """Take the frame from a file of trundle's own."""
-    frame = data.attrs.get("frame", conventions.frame)
-    return replace(conventions, frame=str(frame)) if frame in frames.FRAMES else conventions
-
-
-def _variables(data: Any) -> dict[str, Any]:
-    """Return the variables of a dataset by name, with a unit in brackets where an attribute says one."""
-    found = {}
-    for name in [*data.coords, *data.data_vars]:
-        variable = data[name]
-        if variable.dtype.kind not in "iuf":
-            continue
-        unit = str(variable.attrs.get("units", ""))
-        unit = re.sub(r"\s+([a-z]+)-(\d)", r"/\1^\2", unit).replace("^1", "")  # "m s-1", as CF has it
-        labelled = f"{name} [{unit}]" if unit else str(name)
-        found[labelled] = variable.values
-    return found
-
-
-def _flat(data: Mapping[str, Any], conventions: Conventions) -> dict[str, Array]:
-    """Return one-dimensional columns: arrays of vectors come apart under trundle's names."""
-    parts = {"xyz": "xyz", "v": "xyz", "w": "xyz", "q": conventions.quaternion}
-    whole = {name: key for key, several in _ARRAYS.items() for name in several if key != "t"}
-    table: dict[str, Array] = {}
-    for name, values in data.items():
-        try:
-            array = np.asarray(values, dtype=float)
-        except (TypeError, ValueError):
-            array = np.asarray(values, dtype=object)  # text: to be refused where a number is needed
-        if array.ndim == 1:
-            table[str(name)] = array
-            continue
-        bare, unit = names.apart(str(name))
-        if bare not in whole or array.dtype == object:
-            continue
-        key, behind = whole[bare], f" [{unit}]" if unit else ""
-        if array.ndim == 2:
-            if array.shape[1] not in ((2, 3) if key == "xyz" else (len(parts[key]),)):
-                raise InvalidValueError(
-                    str(name), f"must have the shape (n, {len(parts[key])})", f"the shape {array.shape}"
-                )
-            stem = "" if key == "xyz" else key
-            columns = zip(range(array.shape[1]), parts[key], strict=False)
-            table |= {f"{stem}{part}{behind}": array[:, i] for i, part in columns}
-        elif array.ndim == 3 and array.shape[1:] == (3, 3):
-            table |= {f"r{i + 1}{j + 1}": array[:, i, j] for i in range(3) for j in range(3)}
-    return _numbered(table, conventions)
-
-
-def _numbered(table: dict[str, Array], conventions: Conventions) -> dict[str, Array]:
-    """Name the columns q0 to q3, or q1 to q4, by the order of the quaternion."""
-    small = {name.lower().replace("_", ""): name for name in table}
-    for stem in ("q", "quat"):
-        for numbers in ("0123", "1234"):
-            if all(f"{stem}{number}" in small for number in numbers):
-                renamed = {small[f"{stem}{n}"]: f"q{p}" for n, p in zip(numbers, conventions.quaternion, strict=True)}
-                return {renamed.get(name, name): array for name, array in table.items()}
-    return table
-
-
-def _arrays(
-    table: dict[str, Array], found: dict[str, tuple[str, str]], conventions: Conventions, headings: list[str]
-) -> ExternalTrajectory:
-    columns = {}
-    for column, (heading, unit) in found.items():
-        kind = names.kind_of(column)
-        columns[column] = table[heading] * names.factor(unit or conventions.unit(kind), kind, f"unit of {heading}")
+def _arrays(columns: dict[str, Array], conventions: Conventions, track: Track) -> ExternalTrajectory:
     missing = [column for column in ("t", "x", "y") if column not in columns]
     if missing:
         raise InvalidValueError(
             "columns",
             "must hold time and position",
-            f"no column for {', '.join(missing)} among {', '.join(headings)}",
+            f"no column for {', '.join(missing)} among {', '.join([*columns, *track.left_out])}",
             f"Name them: columns {missing[0]}=HEADING.",
         )
-    sizes = {column: array.size for column, array in columns.items()}
-    if len(set(sizes.values())) > 1:
-        raise InvalidValueError("columns", "must be of one length", sizes)
     height = "z" in columns
     z = columns["z"] if height else np.zeros_like(columns["x"])
     if "vx" in columns and "vy" in columns and "vz" not in columns:
@@ -247,20 +151,17 @@ def _orientation(columns: dict[str, Array], conventions: Conventions) -> Array |
     return q
 
 
-def _in_space(theirs: ExternalTrajectory, system: RollingSystem, conventions: Conventions) -> ExternalTrajectory:
-    if conventions.axes == "body" and theirs.angular_velocity is not None:
-        if theirs.orientation is None:
-            raise InvalidValueError(
-                "axes",
-                "must be space axes where there is no orientation",
-                "body",
-                "Add qw, qx, qy, qz; or leave it out, and the check finds the axes by how the ball rolls.",
-            )
-        Q = Quaternion.of(theirs.orientation).matrix()
-        theirs = replace(theirs, angular_velocity=(Q @ Vector.of(theirs.angular_velocity)).array())
-    if conventions.frame == "support":
-        return theirs
-    return from_frame(theirs, system, conventions.frame)
+def _in_space(theirs: ExternalTrajectory) -> ExternalTrajectory:
+    """Turn an Ω along the axes of the body to those of space."""
+    if theirs.orientation is None:
+        raise InvalidValueError(
+            "axes",
+            "must be space axes where there is no orientation",
+            "body",
+            "Add qw, qx, qy, qz; or leave it out, and the check finds the axes by how the ball rolls.",
+        )
+    Q = Quaternion.of(theirs.orientation).matrix()
+    return replace(theirs, angular_velocity=(Q @ Vector.of(theirs.angular_velocity)).array())
 
 
 def from_frame(theirs: ExternalTrajectory, system: RollingSystem, frame: str) -> ExternalTrajectory:

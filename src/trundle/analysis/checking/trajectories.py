@@ -78,7 +78,7 @@ def check(
 
     Parameters
     ----------
-    data : path, pandas.DataFrame, xarray.Dataset, Trajectory or mapping of arrays
+    data : path, Track, pandas.DataFrame, xarray.Dataset, Trajectory or mapping of arrays
         Time and position of the centre at least; velocity, Ω and orientation where they are known. Columns are found
         by common names: t, x, y, z, vx, ..., wx, ..., qw, ...; vectors may come as arrays (n, 3): position, velocity,
         angular_velocity, orientation. A heading may carry a unit: "x [mm]".
@@ -87,7 +87,8 @@ def check(
     start : State, optional
         Instead of the scenario's.
     columns : mapping, optional
-        Trundle's name -> the heading in the file, where the name does not tell.
+        Trundle's name -> the heading in the file, where the name does not tell. This and the options below say how
+        `data` is to be read; of a `Track`, which was read already, only `orientation` and `euler` are left open.
     axes : str
         "space" or "body": along which Ω has its components.
     angles : str

@@ -44,8 +44,7 @@ def fit(
     loss: str = "linear",
     start: str = "free",
     columns: Mapping[str, str] | None = None,
-    time: str = "s",
-    length: str = "m",
+    units: str | Mapping[str, str] | None = None,
 ) -> Fit:
     """Fit numbers of a scenario to measured motion, and say which of them the data fix, and how well.
 
@@ -55,7 +54,7 @@ def fit(
 
     Parameters
     ----------
-    data : mapping, DataFrame, Dataset, path, or a list of these
+    data : Track, mapping, DataFrame, Dataset, path, or a list of these
         Columns over time: ``t`` and some of ``x``, ``y``, ``z`` (the centre), ``vx`` to ``vz``, ``wx`` to ``wz``
         (angular velocity), ``mark_x``, ``mark_y`` (a mark on the support), ``angle`` (by which the support has turned),
         ``spot_x`` to ``spot_z`` (a spot on the body). Several runs share what is free, and have each their own start.
@@ -78,8 +77,9 @@ def fit(
         "free", or "given": as in the scenario.
     columns : mapping, optional
         Of headings that do not tell: ``{"t": "frame_time", "x": "u"}``.
-    time, length : str
-        Units of headings that have none.
+    units : str or mapping, optional
+        Of headings that have none, as of `trundle.read_track`, which reads the data: call it yourself where it asks
+        for more.
 
     Returns
     -------
@@ -121,7 +121,7 @@ def fit(
     if start not in ("free", "given"):
         raise UnknownNameError("start", str(start), ("free", "given"))
     several = list(data) if isinstance(data, (list, tuple)) else [data]
-    seen = [observe(one, columns, time, length, f"data {i + 1}") for i, one in enumerate(several)]
+    seen = [observe(one, columns, units, f"data {i + 1}") for i, one in enumerate(several)]
     return fit_observed(seen, scenario, free, priors, noise, Camera.of(camera), loss, start=start == "free")
 
 

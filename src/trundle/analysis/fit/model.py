@@ -148,7 +148,9 @@ class RunModel:
             system, start = keys.moved(self.scenario, dict(numbers))
             begun = np.maximum(times, start.time)
             own = keys.varied(self.scenario, listed[:inside])
-            followed = by_formula.follow_formula(system, start, begun, own, inside) if self._turned else None
+            followed = (
+                by_formula.follow_formula(system, start, begun, own, list(numbers)[:inside]) if self._turned else None
+            )
             if followed is None:
                 followed = follow(system, start, begun, own, list(numbers)[:inside], of_motion=True)
             motion = _as_duals(followed, self._moving(duals[0]), begun, times, inside, count)

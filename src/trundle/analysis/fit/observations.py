@@ -2,30 +2,21 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ...errors import InvalidValueError
 from ...solve.samples import Array
+from ...tracks import Track, read_track
+from ...tracks.names import kind_of
 from ...units import UNITS, to_si
-from ..checking import names
-from ..checking.files import Table, open_file
 
-# What may be observed beside the columns of a trajectory, and of which kind it is.
-OTHERS = {
-    "mark_x": "length",
-    "mark_y": "length",
-    "angle": "angle",
-    "spot_x": "length",
-    "spot_y": "length",
-    "spot_z": "length",
-}
-COLUMNS = {**{f"{kind}{axis}": names.kind_of(f"{kind}{axis}") for kind in ("", "v", "w") for axis in "xyz"}, **OTHERS}
+# What may be observed: the columns of a trajectory and others beside them, and of which kind each is.
+OTHERS = ("mark_x", "mark_y", "angle", "spot_x", "spot_y", "spot_z")
+COLUMNS = {name: kind_of(name) for name in (*(f"{part}{axis}" for part in ("", "v", "w") for axis in "xyz"), *OTHERS)}
 _FEWEST = 4  # rows
 _HALF = 4  # rows to either side of one, whose polynomial shows the noise
 _DEGREE = 3
@@ -69,18 +60,21 @@ class Observations:
 
 
 def observe(
-    data: Any, columns: Mapping[str, str] | None = None, time: str = "s", length: str = "m", label: str = "data"
+    data: Any,
+    columns: Mapping[str, str] | None = None,
+    units: str | Mapping[str, str] | None = None,
+    label: str = "data",
 ) -> Observations:
     """Read measured columns.
 
     Parameters
     ----------
-    data : mapping, DataFrame, Dataset or path
+    data : Track, mapping, DataFrame, Dataset or path
         Columns over time.
     columns : mapping, optional
         Of names that do not tell: ours to theirs.
-    time, length : str
-        Units of what has none in its heading.
+    units : str or mapping, optional
+        Of what has none in its heading, as of `trundle.read_track`.
     label : str
         What to call it, unless it is a file.
 
@@ -90,103 +84,35 @@ def observe(
     >>> seen.columns, seen.values[:, 0].tolist()
     (('x', 'y'), [0.001, 0.002, 0.003, 0.004])
     """
-    columns = dict(columns or {})
-    if isinstance(data, (str, os.PathLike)):
-        label = Path(data).name
-        data = open_file(Path(data), columns)
-    table, lines = _table(data)
-    found = _recognised(table, columns)
-    if "t" not in found:
-        remedy = f"The columns are {', '.join(table)}. Say which is the time: columns t=HEADING."
-        raise InvalidValueError("columns", "must have one of times", "none", remedy)
-    units = {"time": time, "length": length, "velocity": f"{length}/s"}
-    read = {name: _in_si(table, name, *there, units) for name, there in found.items()}
-    return _sorted(read, lines, label, {name: heading for name, (heading, _) in found.items()})
-
-
-def _table(data: Any) -> tuple[dict[str, Any], Any]:
-    """Return columns by heading, and what each row is called."""
-    if isinstance(data, Table):
-        return dict(data.columns), np.asarray(data.lines)
-    if hasattr(data, "data_vars"):  # an xarray dataset
-        frame = data.reset_coords().to_dataframe().reset_index()
-        return _table({str(name): frame[name].to_numpy() for name in frame})
-    given = getattr(data, "columns", data)
-    if hasattr(data, "to_numpy"):  # a pandas frame
-        given = {str(name): data[name].to_numpy() for name in data.columns}
-    if not isinstance(given, Mapping):
-        rule = "must be columns: a table, a dictionary of lists, or the name of a file"
-        raise InvalidValueError("data", rule, data, 'Give for instance {"t": times, "x": xs, "y": ys}.')
-    found = {str(name): np.asarray(getattr(column, "values", column)) for name, column in given.items()}
-    found = {name: column for name, column in found.items() if column.ndim == 1}
-    sizes = {column.size for column in found.values()}
-    if len(sizes) > 1:
-        told = ", ".join(f"{name}: {column.size}" for name, column in found.items())
-        raise InvalidValueError("data", "must have columns of one length", told, "Leave gaps as nan.")
-    return found, np.arange(1, (sizes.pop() if sizes else 0) + 1)
-
-
-def _recognised(table: Mapping[str, Any], columns: Mapping[str, str]) -> dict[str, tuple[str, str]]:
-    """Return the heading and the unit of each column that can be used."""
-    headings = list(table)
-    own = {names.apart(heading)[0].strip().lower(): (heading, names.apart(heading)[1]) for heading in headings}
-    found = {name: own[name] for name in OTHERS if name in own}
-    rest = [heading for heading in headings if heading not in {there[0] for there in found.values()}]
-    standard = {name: heading for name, heading in columns.items() if name not in OTHERS}
-    for name in columns.keys() & OTHERS.keys():
-        if columns[name] not in headings:
-            raise names.mapped({"t": columns[name]}, headings)  # type: ignore[misc]  # it refuses the heading
-        found[name] = (columns[name], names.apart(columns[name])[1])
-    taken = set(columns.values())
-    found |= {name: there for name, there in names.recognise(h for h in rest if h not in taken).items()
-              if name == "t" or name in COLUMNS}  # fmt: skip
-    return found | names.mapped(standard, headings)
-
-
-def _in_si(table: Mapping[str, Any], name: str, heading: str, unit: str, units: Mapping[str, str]) -> Array:
-    kind = "time" if name == "t" else COLUMNS[name]
-    try:
-        values = np.asarray(table[heading], dtype=float)
-    except (TypeError, ValueError):
-        text = next((str(v) for v in table[heading] if not _is_number(v)), "")
-        raise InvalidValueError(heading, "must hold numbers", text, "Take the cell out, or leave it empty.") from None
-    return values * names.factor(unit or units.get(str(kind), ""), kind, heading)
-
-
-def _is_number(value: Any) -> bool:
-    try:
-        float(value)
-    except (TypeError, ValueError):
-        return False
-    return True
-
-
-def _sorted(read: dict[str, Array], lines: Any, label: str, headings: Mapping[str, str]) -> Observations:
-    """Return the observations in the order of time, without rows that say nothing."""
-    time, wanted = read.pop("t"), [name for name in COLUMNS if name in read]
-    empty = [headings[name] for name in wanted if not np.isfinite(read[name]).any()]
-    wanted = [name for name in wanted if headings[name] not in empty]
+    track = read_track(data, columns=columns, units=units)
+    _check_frame(track)
+    known = [name for name in COLUMNS if name in track.columns]
+    wanted = [name for name in known if np.isfinite(track[name]).any()]
     if not wanted:
-        told = f"only empty ones: {', '.join(empty)}" if empty else "none"
+        told = f"only empty ones: {', '.join(known)}" if known else "none"
         remedy = f"What may be fitted: {', '.join(COLUMNS)}."
         raise InvalidValueError("columns", "must have one of what was seen of the motion", told, remedy)
-    values = np.column_stack([read[name] for name in wanted])
-    values[~np.isfinite(values)] = np.nan
-    good = np.isfinite(time) & np.isfinite(values).any(axis=1)
-    order = np.flatnonzero(good)[np.argsort(time[good], kind="stable")]
-    if order.size < _FEWEST:
-        raise InvalidValueError("data", f"must have {_FEWEST} rows at least", f"{order.size} with a time and a value")
-    time, values, lines = time[order], values[order], lines[order]
-    twice = np.flatnonzero(np.diff(time) == 0)
-    if twice.size:
-        told = f"t = {time[twice[0]]:g} s in rows {lines[twice[0]]} and {lines[twice[0] + 1]}"
-        raise InvalidValueError("data", "must have one row an instant", told, "Fit several runs as several tables.")
-    said = f"t from `{headings['t']}`, " + ", ".join(f"{name} from `{headings[name]}`" for name in wanted)
-    gaps = int((np.diff(time) > 1.5 * np.median(np.diff(time))).sum())
-    said += f"; {order.size} rows over {time[-1] - time[0]:.4g} s"
-    said += f", {gaps} gap{'s' * (gaps != 1)}" if gaps else ""
-    said += f"; empty: {', '.join(empty)}" if empty else ""
-    return Observations(time, tuple(wanted), values, lines, label, said)
+    values = np.column_stack([track[name] for name in wanted])
+    good = np.isfinite(values).any(axis=1)
+    time, values, rows = track.time[good], values[good], np.asarray(track.data["row"].values)[good]
+    if time.size < _FEWEST:
+        raise InvalidValueError("data", f"must have {_FEWEST} rows at least", f"{time.size} with a time and a value")
+    said = f"{track.taken}. {track.left_out_rows}".rstrip(" .")
+    return Observations(time, tuple(wanted), values, rows, _called(track, label), said)
+
+
+def _check_frame(track: Track) -> None:
+    """Refuse what is measured along axes that turn."""
+    if track.frame != "support":
+        rule, remedy = "must be along the support's axes at rest", "Say so, or turn the columns first."
+        raise InvalidValueError("frame", rule, track.frame, remedy)
+    if track.axes == "body" and any(name in track.columns for name in ("wx", "wy", "wz")):
+        remedy = "Leave the columns wx, wy and wz out; `trundle check` turns them by a measured orientation."
+        raise InvalidValueError("axes", "must be those of space", "Ω along axes of the body", remedy)
+
+
+def _called(track: Track, label: str) -> str:
+    return " · ".join(filter(None, (track.source, track.name))) if track.format else label
 
 
 # How well it is known

@@ -15,7 +15,7 @@ from ...extras import need
 from ...mechanics.parameters import numbers
 from ...mechanics.system import RollingSystem
 from ...solve.compiled_steps import tables
-from ...solve.ensemble import Block, completed
+from ...solve.ensemble import Block, Piece, completed
 from ...solve.laws import RollingLaw
 
 Array = NDArray[np.float64]
@@ -94,8 +94,9 @@ class OnDevice:
             left += [member for member, sound in zip(some, good.tolist(), strict=True) if not sound]
             kept = [member for member, sound in zip(some, good.tolist(), strict=True) if sound]
             if kept:
-                rows, states = slice(0, self.times.size), path[:, : len(some)][:, good].swapaxes(1, 2)
-                done(completed(RollingLaw(), self.systems, kept, self.times, rows, states))
+                states = path[:, : len(some)][:, good].swapaxes(1, 2)
+                piece = Piece(kept, slice(0, self.times.size), states)
+                done(completed(RollingLaw(), self.systems, self.times, [piece]))
             errors.append(error)
         return left, np.concatenate(errors)
 

@@ -12,13 +12,14 @@ from ...errors import InvalidValueError
 from ...mechanics import checks
 from ...mechanics.finiteness import check_finite, varies
 from ...mechanics.overlap import fits_anywhere
+from ...mechanics.placing import VELOCITY_WORDS
 from ...mechanics.placing_many import ManyPlacing, Placed
 from ...mechanics.system import RollingSystem, State
 from ...solve.ensemble import together
 from .running import check_structures, listed
 
 # Of the parts of `place` that may be given for each member: how many components, and of which kind.
-_PARTS: dict[str, tuple[tuple[int, ...], str]] = {
+PARTS: dict[str, tuple[tuple[int, ...], str]] = {
     "position": ((2,), "length"),
     "velocity": ((2, 3), "velocity"),
     "spin": ((), "angular velocity"),
@@ -109,7 +110,7 @@ def place_many(
         One for all, or one for each member, of the same parts.
     position : array (members, 2) or sequence of 2 floats or quantities
         Of the contact or the centre, as of `place`: lengths in m, angles in rad.
-    velocity : array (members, 2 or 3), or for all, or "co-rotating", optional
+    velocity : array (members, 2 or 3), or for all, "co-rotating" or "rolling", optional
         Along the directions in which the two coordinates grow and along the normal, m/s.
     spin : array (members,), or for all, optional
         Ω·n, rad/s.
@@ -158,8 +159,8 @@ def place_many(
     named |= {"attitude": attitude, "roll": roll, "height": height}
     many = [systems] if isinstance(systems, RollingSystem) else listed(systems, "systems", RollingSystem)
     check_structures(many)
-    kinds = {name: (kind,) for name, (_, kind) in _PARTS.items()} | {"position": many[0].support.surface.coordinates}
-    parts = {name: _rows(value, name, _PARTS[name][0], kinds[name]) for name, value in named.items()}
+    kinds = {name: (kind,) for name, (_, kind) in PARTS.items()} | {"position": many[0].support.surface.coordinates}
+    parts = {name: _rows(value, name, PARTS[name][0], kinds[name]) for name, value in named.items()}
     count = _count({"systems": many if len(many) > 1 else None, **parts})
     members = many if len(many) > 1 else many * count
     now, given = checks.real(time, "time", "time") + 0.0, {"time": time, "support": support}
@@ -223,9 +224,9 @@ def _singular(system: RollingSystem, now: float) -> bool:
 
 def _for_all(name: str, value: Any, count: int) -> Any:
     """Return a part as an array over members."""
-    if value is None or _is_rows(value) or (name == "velocity" and isinstance(value, str) and value == "co-rotating"):
+    if value is None or _is_rows(value) or (name == "velocity" and isinstance(value, str) and value in VELOCITY_WORDS):
         return value
-    sizes, kind = _PARTS[name]
+    sizes, kind = PARTS[name]
     if not sizes:
         return np.full(count, checks.real(value, kind, name))
     size = len(value) if hasattr(value, "__len__") and len(value) in sizes else sizes[0]

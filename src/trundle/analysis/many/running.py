@@ -14,12 +14,13 @@ import numpy as np
 from ...errors import InvalidValueError, TrundleError
 from ...mechanics.finiteness import check_finite, varies
 from ...mechanics.kinks import has_kinks
-from ...mechanics.parameters import numbers, parameters, structure_of
+from ...mechanics.parameters import parameters, structure_of
 from ...mechanics.system import RollingSystem, State
 from ...simulation import labels
 from ...simulation.memory import check_room
 from ...simulation.simulate import check_state, described, simulate
 from ...solve import taylor
+from ...solve.ensemble import numbers_of
 from ...solve.methods import Method
 from ...solve.phases import ENDS, ended_in_words
 from ...solve.samples import Progress
@@ -106,18 +107,39 @@ def simulate_many(
     instants = sample_times(duration, every)
     _check(systems, starts, instants.size, every, workers)
     check_clock(systems[0], starts[0], float(instants[1]))
-    times = starts[0].time + instants
     told = {**varied(systems), **_of_starts(systems[0], starts), **_checked(known or {}, len(systems))}
-    result = _Result(systems[0], len(systems), times, progress)
     where = None if device is None else check_device(device)
-    rest: Iterable[int] = range(len(systems))
-    if _batched(systems[0], where):
-        rest = _rolled(result, systems, starts, times, workers, where)
-    for member in rest:
-        result.put_alone(member, systems[member], starts[member], duration, every)
-    title, scenario = _described(systems[0], starts[0], times, title)
+    result = run_members(systems, starts, duration, every, workers=workers, progress=progress, where=where)
+    title, scenario = _described(systems[0], starts[0], result.times, title)
     method = Method.of("taylor") if where is None else Method("runge-kutta", ERROR)
     return result.dataset(told, labels.attributes(title, method) | {"scenario": scenario})
+
+
+def run_members(
+    systems: Sequence[RollingSystem],
+    starts: Sequence[State],
+    duration: Any,
+    every: Any,
+    *,
+    method: str = "auto",
+    workers: int | None = 1,
+    progress: Progress | None = None,
+    where: Any = None,
+) -> Runs:
+    """Run as many systems as starts, of one structure and at one time, and return their arrays.
+
+    By "auto" and "taylor" they go as `simulate_many` says; by any other method of `simulate` each goes alone.
+    """
+    times = starts[0].time + sample_times(duration, every)
+    result = Runs(systems[0], len(systems), times, progress)
+    rest: Iterable[int] = range(len(systems))
+    if method in ("auto", "taylor"):
+        method = "taylor" if systems[0].support.surface.analytic else "runge-kutta"
+        if _batched(systems[0], where):
+            rest = _rolled(result, systems, starts, times, workers, where)
+    for member in rest:
+        result.put_alone(member, systems[member], starts[member], duration, every, method)
+    return result
 
 
 def varied(systems: Sequence[RollingSystem]) -> dict[str, Any]:
@@ -133,7 +155,7 @@ def varied(systems: Sequence[RollingSystem]) -> dict[str, Any]:
     """
     if all(system is systems[0] for system in systems):
         return {}
-    values = np.array([numbers(system) for system in systems])
+    values = np.array(numbers_of(systems))
     return {
         name: (("member",), column, {"units": UNITS[dimension][0] or "1"})
         for (name, dimension), column in zip(parameters(systems[0]), values.T, strict=True)
@@ -247,16 +269,21 @@ def _batched(system: RollingSystem, device: Any) -> bool:
 
 
 def _rolled(
-    result: _Result, systems: list[RollingSystem], starts: list[State], times: Any, workers: int | None, device: Any
+    result: Runs,
+    systems: Sequence[RollingSystem],
+    starts: Sequence[State],
+    times: Any,
+    workers: int | None,
+    device: Any,
 ) -> list[int]:
     """Run the members that roll, and return those that are left."""
     from ...solve import ensemble
 
     sound = np.flatnonzero(_sound(systems, starts, times))  # `simulate` says what is wrong with the others
-    some = [systems[i] for i in sound]
+    some = [systems[int(i)] for i in sound]
     if not some:
         return list(range(len(systems)))
-    states, rolls = ensemble.rolling_from(some, [starts[i] for i in sound])
+    states, rolls = ensemble.rolling_from(some, [starts[int(i)] for i in sound])
     members = np.flatnonzero(rolls).tolist()
     count = min(workers or ensemble.cores(), -(-len(members) // ensemble.LANES) or 1)
 
@@ -283,7 +310,7 @@ def _rolled(
     return np.flatnonzero(~rolled).tolist()
 
 
-def _sound(systems: list[RollingSystem], starts: list[State], times: Any) -> list[bool]:
+def _sound(systems: Sequence[RollingSystem], starts: Sequence[State], times: Any) -> list[bool]:
     """Tell of which members start and formulas in the time are numbers, throughout the run."""
     finite: dict[int, bool] = {}  # of each system, once
     for system in systems if varies(systems[0]) else ():
@@ -301,8 +328,8 @@ def _passes(check: Callable[..., None], *given: Any) -> bool:
     return True
 
 
-class _Result:
-    """The arrays of all members, filled as the members come in."""
+class Runs:
+    """The arrays of all members, filled as the members come in; `happened` holds (kind, time) of each one's events."""
 
     def __init__(self, system: RollingSystem, members: int, times: Any, progress: Progress | None) -> None:
         self.times, self.progress = times, progress
@@ -319,25 +346,27 @@ class _Result:
         self.end = np.full(members, float(times[-1]))
         self.events = np.zeros(members, dtype=np.int32)
         self.ending, self.reason = (np.full(members, "", dtype=object) for _ in range(2))
+        self.happened: list[list[tuple[str, float]]] = [[] for _ in range(members)]
         self.error: Any = None
         self.done, self.told, self.lock = np.zeros(members), 0.0, threading.Lock()
 
     def put(self, block: Block) -> None:
         """Take members that rolled through some of the instants."""
         for name, values in labels.columns(block.system, block.samples).items():
-            shaped = values.reshape(-1, block.members.size, *values.shape[1:]).swapaxes(0, 1)
-            self.arrays[name][block.members, block.rows] = shaped
-        self._tell(block.members, block.rows.stop / self.times.size)
+            self.arrays[name][block.members, block.rows] = values
+        self._tell(block.members, (block.rows + 1) / self.times.size)
 
     def put_end(self, member: int, system: RollingSystem, stop: Stop) -> None:
         """Take where a member's run ended for good."""
         self.end[member], self.events[member], self.ending[member] = stop.time, 1, stop.name
         self.reason[member] = ended_in_words(system, stop.name, stop.time)
+        self.happened[member] = [(stop.name, stop.time)]
         self._tell(member, 1.0)
 
-    def put_alone(self, member: int, system: RollingSystem, start: State, duration: Any, every: Any) -> None:
+    def put_alone(
+        self, member: int, system: RollingSystem, start: State, duration: Any, every: Any, method: str
+    ) -> None:
         """Run one member by itself, through all its phases; what `simulate` has against it becomes its ending."""
-        method = "taylor" if system.support.surface.analytic else "runge-kutta"
         run, refused = None, None
         try:
             run = simulate(system, start, duration, every, method=method, scenario="")
@@ -364,10 +393,11 @@ class _Result:
         for name, array in self.arrays.items():
             array[member, :kept] = run.data[name].values[:kept]
         self.end[member], self.events[member] = reached[-1], len(run.events)
+        self.happened[member] = [(event.kind, event.time) for event in run.events]
         if run.events and reached[-1] < self.times[-1]:
             self.ending[member], self.reason[member] = run.events[-1].kind, run.events[-1].text
 
-    def _tell(self, members: Any, share: float) -> None:
+    def _tell(self, members: Any, share: Any) -> None:
         with self.lock:
             self.done[members] = share
             self.told = max(self.told, float(self.done.mean()))

@@ -101,7 +101,7 @@ def sensitivities(
     names, tolerance = [key.name for key in wanted], _tolerance(run_or_scenario)
     followed = None
     if method != "variational":
-        followed = follow_formula(system, start, times, in_duals, len(wanted))
+        followed = follow_formula(system, start, times, in_duals, names)
     way = "variational" if followed is None else "exact"
     if followed is None:
         followed = follow(system, start, times, in_duals, names, tolerance, progress)

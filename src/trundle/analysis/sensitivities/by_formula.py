@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from ...mechanics.system import RollingSystem, State
 from ...solve import closed_form, transitions
 from ...solve.exact import ClosedForm, form_of_phase
 from ...solve.samples import Array
-from .following import Followed, check_brink
+from .following import Followed, check_brink, check_start
 from .outputs import sampled, stacked_slopes
 
 _NODES, _MOST_NODES = 16, 4_000_000  # of Gauss's rule, for each radian of the fastest rate; of a run
@@ -20,7 +21,7 @@ _PHASE = 1.0  # rad
 
 
 def follow_formula(
-    system: RollingSystem, start: State, times: Array, in_duals: tuple[RollingSystem, State], count: int
+    system: RollingSystem, start: State, times: Array, in_duals: tuple[RollingSystem, State], names: Sequence[str]
 ) -> Followed | None:
     """Return a run and its derivatives by one closed form; None where none covers all of it, or by floats only."""
     now = transitions.at_start(system, start)
@@ -33,7 +34,8 @@ def follow_formula(
         return None
     check_brink(system, now)
     duals, first = in_duals
-    begins = transitions.at_start(duals, first)
+    begins, count = transitions.at_start(duals, first), len(names)
+    check_start(duals, begins, first, names)
     varied = type(form).from_state_vector(duals, begins.start, begins.state_vector)
     (r, V, Omega, R), _ = varied.motion_and_support_at(times - start.time)
     q = _turned(form, varied, start, begins.start, times, nodes, count)

@@ -90,10 +90,12 @@ def follow(
     integrate: Integrate = (
         partial(taylor.integrate, shared=taylor.Shared()) if method is taylor else runge_kutta.integrate
     )
-    run = _Run(integrate, system, start, times, in_duals, names, of_motion=of_motion)
-    given: Any = {"remember": run.remember, "bends": run.bends}
-    tolerance = method.TOLERANCE if tolerance is None else tolerance
-    samples = phases.solve(run.integrate, system, start, times, tolerance, progress, **given)
+    duals, first = in_duals
+    begins = transitions.at_start(duals, first)
+    run = _Run(integrate, system, times, duals, begins, len(names))
+    run.of_motion = of_motion
+    check_start(duals, begins, first, names)
+    samples = run.solve(start, method.TOLERANCE if tolerance is None else tolerance, progress)
     return Followed(samples, run.slopes(samples), run.instants(samples))
 
 
@@ -119,57 +121,69 @@ def method_for(system: RollingSystem) -> Any:
     return taylor if taylor.available() and system.support.surface.analytic else runge_kutta
 
 
-class _Run:
-    """What is known of the derivatives on the way through a run."""
+def check_start(system: RollingSystem, begins: PhaseStart, first: State, names: Sequence[str]) -> None:
+    """Refuse numbers of a start that alone would make slip what rolls, or turn what does not turn."""
+    given = ContactState.of(system, first)
+    turning = state_turning(given.contact, given.Omega)
+    if system.resisted and value_of(turning.norm() * given.arm) <= SLIP_TOLERANCE * given.speed:
+        rule = "must name numbers that change alone without turning a body that does not turn at the start"
+        remedy = "A resistance acts against either way at once, and so there is no derivative."
+        _refuse(turning * given.arm, given, names, rule, remedy)
+    at = begins.law.unpack(system, value_of(begins.time), begins.state_vector)
+    if begins.law.code in (ROLLING, RESTING):
+        rule = "must name numbers that change alone without making a body slip that rolls at the start"
+        remedy = 'Both velocities are given: let one follow, by `spin` or by `velocity = "rolling"`.'
+        _refuse(given.V - at.V, given, names, rule, remedy)
+
+
+def _refuse(apart: Vector, at: ContactState, names: Sequence[str], rule: str, remedy: str) -> None:
+    """Refuse a number that changes what must stay nothing, m/s."""
+    count = len(names)
+    rows = [slopes_of(part, count) for part in apart]
+    sizes = [slopes_of(part, count) for part in (*at.V, *at.Omega)]
+    for j, name in enumerate(names):
+        if max(abs(row[j]) for row in rows) > _SLIPS * max(at.speed, *(abs(row[j]) for row in sizes)):
+            raise InvalidValueError("wrt", rule, name, remedy)
+
+
+class VariationalRun:
+    """A run with how its state changes with some parameters, from phase to phase.
+
+    Parameters
+    ----------
+    method : callable
+        The way through one stretch.
+    system : RollingSystem
+        In numbers.
+    times : array (n,)
+        Ascending, s.
+    duals : RollingSystem
+        The same in duals, where its numbers depend on the parameters.
+    begins : PhaseStart
+        How it starts, in duals.
+    count : int
+        How many parameters there are.
+    """
 
     def __init__(
         self,
         method: Integrate,
         system: RollingSystem,
-        start: State,
         times: Array,
-        in_duals: tuple[RollingSystem, State],
-        names: Sequence[str],
-        *,
-        of_motion: bool = False,
+        duals: RollingSystem,
+        begins: PhaseStart,
+        count: int,
     ) -> None:
-        self.of_motion = of_motion
-        self.method, self.system, (self.duals, first) = method, system, in_duals
-        self.names, self.count = names, len(names)
-        self.varied = VariedSystem.of(self.duals)
-        self.bends = kinks_and_jolts(system, start.time, float(times[-1]))
-        self.pieces: list[tuple[Array, Slopes]] = []
-        begins = transitions.at_start(self.duals, first)
-        self._check_start(begins, first)
-        self.events = list(begins.events)
+        self.method, self.system, self.times, self.duals, self.count = method, system, times, duals, count
+        self.varied = VariedSystem.of(duals)
         self.begins: PhaseStart | None = begins  # in duals, where an event was
         self.here: tuple[Law, float, list[Any]]  # where the derivatives are known, and by which law they go on
-        before = begins.across or begins
-        state = np.array(stacked(before.state_vector, self.count), dtype=float)
-        # The start, and where phases ended: the law before, the state stacked with its derivatives, and what follows.
-        self.stops: list[tuple[Law, float, Array, PhaseStart | None]] = [(before.law, start.time, state, begins)]
 
-    def _check_start(self, begins: PhaseStart, first: State) -> None:
-        """Refuse numbers of a start that alone would make slip what rolls, or turn what does not turn."""
-        given = ContactState.of(self.duals, first)
-        turning = state_turning(given.contact, given.Omega)
-        if self.system.resisted and float(turning.norm()) * given.arm <= SLIP_TOLERANCE * given.speed:
-            rule = "must name numbers that change alone without turning a body that does not turn at the start"
-            remedy = "A resistance acts against either way at once, and so there is no derivative."
-            self._refuse(turning * given.arm, given, rule, remedy)
-        at = begins.law.unpack(self.duals, value_of(begins.time), begins.state_vector)
-        if begins.law.code in (ROLLING, RESTING):
-            rule = "must name numbers that change alone without making a body slip that rolls at the start"
-            remedy = "Velocity and angular velocity are both given: give `spin` instead, so that the rest follows."
-            self._refuse(given.V - at.V, given, rule, remedy)
-
-    def _refuse(self, apart: Vector, at: ContactState, rule: str, remedy: str) -> None:
-        """Refuse a number that changes what must stay nothing, m/s."""
-        rows = [slopes_of(part, self.count) for part in apart]
-        sizes = [slopes_of(part, self.count) for part in (*at.V, *at.Omega)]
-        for j, name in enumerate(self.names):
-            if max(abs(row[j]) for row in rows) > _SLIPS * max(at.speed, *(abs(row[j]) for row in sizes)):
-                raise InvalidValueError("wrt", rule, name, remedy)
+    def solve(self, start: State, tolerance: float, progress: Progress | None) -> Samples:
+        """Follow the body from its start through its phases."""
+        self.bends = kinks_and_jolts(self.system, start.time, float(self.times[-1]))
+        given: Any = {"remember": self.remember, "bends": self.bends}
+        return phases.solve(self.integrate, self.system, start, self.times, tolerance, progress, **given)
 
     # What `phases.solve` asks for
 
@@ -185,14 +199,12 @@ class _Run:
         self.event_parameters = (*now.event_parameters, *corners.directions(system, now))
         for piece in self.method(self.varied, begin, times, tolerance, progress):
             if piece.times.size:
-                slopes = slopes_of_samples(self.duals, now.law, piece.times, piece.states, self.count, self.of_motion)
-                self.pieces.append((piece.times, slopes))
+                self.keep(now.law, piece)
                 self.here = now.law, float(piece.times[-1]), unstacked(piece.states[-1].tolist(), size)
             stop = piece.stop
             if stop is not None:
                 self.here = now.law, stop.time, unstacked(stop.state_vector.tolist(), size)
-                self.stops.append((now.law, stop.time, stop.state_vector, None))
-                self.ending = stop.name
+                self.stopped(now.law, stop)
                 stop = ZeroCrossing(stop.time, stop.name, stop.state_vector[:size])
             yield Segment(piece.times, piece.states[:, :size], stop)
 
@@ -200,9 +212,13 @@ class _Run:
         """Return what follows a stop, and keep the same in duals."""
         if not stop.name.startswith(CORNER):  # there the same goes on
             self.begins = phases.following_stop(self.duals, law, self._crossing(law, stop))
-            self.stops[-1] = (*self.stops[-1][:3], self.begins)
-            self.events += self.begins.events
         return follows()
+
+    def keep(self, law: Law, piece: Segment) -> None:
+        """Take note of states with their derivatives."""
+
+    def stopped(self, law: Law, stop: ZeroCrossing) -> None:
+        """Take note of where a law ended, the state with its derivatives."""
 
     # Derivatives at an instant
 
@@ -210,7 +226,7 @@ class _Run:
         """Return the state in duals at which a phase begins, for a fixed instant."""
         if self.begins is not None:
             begins, self.begins = self.begins, None
-            self.here = begins.law, float(begins.time), self._at_fixed_time(now, begins)
+            self.here = begins.law, float(value_of(begins.time)), self._at_fixed_time(now, begins)
         law, time, state = self.here
         if now.time > time:
             state = law.rk4_step(self.duals, time, state, now.time - time)
@@ -228,7 +244,7 @@ class _Run:
         numbers = [float(value_of(number)) for number in begins.state_vector]
         rates = [0.0] * len(numbers)
         if any(moved):
-            rates = [float(rate) for rate in now.law.rates(self.system, float(begins.time), numbers)]
+            rates = [float(rate) for rate in now.law.rates(self.system, float(value_of(begins.time)), numbers)]
         found = []
         for number, rate, part in zip(numbers, rates, begins.state_vector, strict=True):
             pairs = zip(slopes_of(part, self.count), moved, strict=True)
@@ -272,6 +288,48 @@ class _Run:
         stops = corner_events.all_event_functions(self.system, law, stop.time - wait, before, self.event_parameters)
         if not abs(falls) * wait > _GRAZES * abs(float(stops[stop.name])):
             raise no_derivative(stop.time, f"the event there ({stop.name}) is only just reached")
+
+
+class _Run(VariationalRun):
+    """What is known of the derivatives on the way through a run."""
+
+    of_motion = False  # whether nobody asks for forces
+
+    def __init__(
+        self,
+        method: Integrate,
+        system: RollingSystem,
+        times: Array,
+        duals: RollingSystem,
+        begins: PhaseStart,
+        count: int,
+    ) -> None:
+        super().__init__(method, system, times, duals, begins, count)
+        self.pieces: list[tuple[Array, Slopes]] = []
+        self.events = list(begins.events)
+        before = begins.across or begins
+        state = np.array(stacked(before.state_vector, count), dtype=float)
+        # The start, and where phases ended: the law before, the state stacked with its derivatives, and what follows.
+        time = float(value_of(before.time))
+        self.stops: list[tuple[Law, float, Array, PhaseStart | None]] = [(before.law, time, state, begins)]
+
+    def keep(self, law: Law, piece: Segment) -> None:
+        """Keep the derivatives of the samples."""
+        slopes = slopes_of_samples(self.duals, law, piece.times, piece.states, self.count, self.of_motion)
+        self.pieces.append((piece.times, slopes))
+
+    def stopped(self, law: Law, stop: ZeroCrossing) -> None:
+        """Keep where a law ended."""
+        self.stops.append((law, stop.time, stop.state_vector, None))
+        self.ending = stop.name
+
+    def remember(self, follows: Callable[[], PhaseStart], law: Law, stop: ZeroCrossing) -> PhaseStart:
+        """Return what follows a stop, and keep it and its events."""
+        found = super().remember(follows, law, stop)
+        if self.begins is not None:
+            self.stops[-1] = (*self.stops[-1][:3], self.begins)
+            self.events += self.begins.events
+        return found
 
     # Derivatives of the samples
 

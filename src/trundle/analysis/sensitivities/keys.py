@@ -18,7 +18,7 @@ from ...scenario.tables.of_parts import ListOfLengths
 from ...scenario.tables.values import Table
 from ...units import UNITS
 
-_APART = {"title", "notes", "timing"}  # what says nothing of the motion
+_APART = {"title", "group", "notes", "timing"}  # what says nothing of the motion
 # At 0 these say that there is nothing of the kind, and a start is where the clock of the derivatives begins.
 _AT_ZERO = {
     "start.height": "a body that touches its support cannot be a little lower",
@@ -59,8 +59,8 @@ def keys(scenario: ScenarioFile) -> list[Key]:
         f"{key}[{i}]": kind for key, all_ in scenario._kinds_of_components().items() for i, kind in enumerate(all_)
     }
     units = {name: UNITS[kind][0] for name, kind in kinds.items()}
-    leaves = ((name, value, units.get(name, unit)) for name, value, unit in _leaves(scenario))
-    return [Key(*one) for one in leaves if is_number(one[1]) and not _without(*one[:2])]
+    told = ((name, value, units.get(name, unit)) for name, value, unit in leaves(scenario))
+    return [Key(*one) for one in told if is_number(one[1]) and not _without(*one[:2])]
 
 
 def _without(name: str, value: Any) -> str:
@@ -98,7 +98,7 @@ def _refusal(scenario: ScenarioFile, name: str, known: list[Key]) -> Exception:
         return InvalidValueError(
             "wrt", "must hold names of numbers of the scenario", name, f"It has {', '.join(names)}."
         )
-    given = {key: value for key, value, _ in _leaves(scenario)}
+    given = {key: value for key, value, _ in leaves(scenario)}
     if given.get(name, 0.0) is None:
         rule = "must name numbers that the scenario gives"
         return InvalidValueError(
@@ -165,15 +165,22 @@ def _each(note: Any) -> Any:
     return note.each if isinstance(note, Measures) else note
 
 
-def _leaves(table: Any, before: str = "") -> Iterator[tuple[str, Any, str]]:
-    """Yield each value of a table with its name and unit, and of the tables within."""
+def leaves(table: Any, before: str = "") -> Iterator[tuple[str, Any, str]]:
+    """Yield each value of a table with its name and unit, and of the tables within.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> next(leaves(tr.Scenario.load("tilted-turntable")))
+    ('gravity', 9.80665, 'm/s^2')
+    """
     for name, alias, unit in _fields(table.__class__):
         yield from _within(getattr(table, name), f"{before}{alias}", unit)
 
 
 def _within(value: Any, name: str, unit: str) -> Iterator[tuple[str, Any, str]]:
     if isinstance(value, Table):
-        yield from _leaves(value, f"{name}.")
+        yield from leaves(value, f"{name}.")
     elif isinstance(value, tuple):
         for i, part in enumerate(value):
             yield from _within(part, f"{name}[{i}]", unit)

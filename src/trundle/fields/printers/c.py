@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
-from ...solve.tape import Dialect
+from ...solve.tape import Dialect, WrittenLoop
 from ..routines import Routine
 
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off")  # a fused product and sum would round once, not twice
@@ -33,10 +34,26 @@ def function(routine: Routine, prefix: str) -> str:
     """Print a function that fills `found`."""
     lines, results = routine.written(_dialect, "{}[{}]")
     unused = [f"(void){name};" for name, _ in routine.arguments]
-    steps = [f"const double {name} = {text};" for name, text in lines]
+    steps = [part for line in lines for part in _step(line)]
     filled = [f"found[{i}] = {text};" for i, text in enumerate(results)]
     body = "\n".join(f"    {line}" for line in (*unused, *steps, *filled))
     return f"{declaration(routine, prefix)}\n{{\n{body}\n}}\n"
+
+
+def _step(line: Any) -> list[str]:
+    """Print a step, or a loop."""
+    if not isinstance(line, WrittenLoop):
+        return [f"const double {line[0]} = {line[1]};"]
+    outside = [f"double {name};" for name in line.targets]
+    begin = [f"double {name} = {text};" for name, text in zip(line.changing, line.start, strict=True)]
+    begin += [f"const double {name} = {text};" for name, text in zip(line.staying, line.given, strict=True)]
+    steps = [part for each in line.lines for part in _step(each)]
+    after = [f"const double next_{name} = {text};" for name, text in zip(line.changing, line.results, strict=True)]
+    goes_on = [f"{name} = next_{name};" for name in line.changing]
+    inside = [f"    {each}" for each in (*steps, *after, *goes_on)]
+    end = [f"{target} = {name};" for target, name in zip(line.targets, line.changing, strict=True)]
+    block = [*begin, f"while ({line.changing[0]} > 0.0) {{", *inside, "}", *end]
+    return [*outside, "{", *(f"    {each}" for each in block), "}"]
 
 
 def header(routines: Iterable[Routine], prefix: str, said: str) -> str:

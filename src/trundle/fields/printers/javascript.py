@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
-from ...solve.tape import Dialect
+from ...solve.tape import Dialect, WrittenLoop
 from ..routines import Routine
 
 _FUNCTIONS = {name: f"Math.{name}" for name in ("sqrt", "sin", "cos", "tan", "exp", "expm1", "log", "abs", "atan2")}
@@ -26,9 +27,22 @@ def function(routine: Routine) -> str:
     export function rolling_rates(t, y, p, u) {
     """
     lines, results = routine.written(_dialect, "{}[{}]")
-    steps = [f"  const {name} = {text};" for name, text in lines]
+    steps = [f"  {part}" for line in lines for part in _step(line)]
     head = f"export function {routine.name}({', '.join(name for name, _ in routine.arguments)}) {{"
     return "\n".join([f"/** {routine.said} */", head, *steps, f"  return [{', '.join(results)}];", "}"]) + "\n"
+
+
+def _step(line: Any) -> list[str]:
+    """Print a step, or a loop."""
+    if not isinstance(line, WrittenLoop):
+        return [f"const {line[0]} = {line[1]};"]
+    begin = [f"let {name} = {text};" for name, text in zip(line.changing, line.start, strict=True)]
+    begin += [f"const {name} = {text};" for name, text in zip(line.staying, line.given, strict=True)]
+    steps = [part for each in line.lines for part in _step(each)]
+    goes_on = f"[{', '.join(line.changing)}] = [{', '.join(line.results)}];"
+    end = f"[{', '.join(line.targets)}] = [{', '.join(line.changing)}];"
+    block = [*begin, f"while ({line.changing[0]} > 0) {{", *(f"  {each}" for each in (*steps, goes_on)), "}", end]
+    return [f"let {', '.join(line.targets)};", "{", *(f"  {each}" for each in block), "}"]
 
 
 def module(routines: Iterable[Routine], said: str) -> str:

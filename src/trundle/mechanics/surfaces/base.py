@@ -76,6 +76,11 @@ class Surface(Part):
         return None
 
     @property
+    def recordable(self) -> bool:
+        """Whether a tape can record it: a formula, or splines through tables."""
+        return self.analytic
+
+    @property
     def axisymmetric(self) -> bool:
         """Whether a turn about the third axis leaves the surface as it is."""
         raise NotImplementedError

@@ -88,6 +88,7 @@ class RevolutionTable(OverPlane):
     table_of = "revolution"
     noun = "surface of revolution"
     analytic = False
+    recordable = True
     axisymmetric = True
     domain_end = "the end of the table"
 
@@ -136,6 +137,7 @@ class HeightTable(OverPlane):
     grid: Grid
     table_of = "height-field"
     analytic = False
+    recordable = True
     axisymmetric = False
     domain_end = "the end of the table"
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import Any
@@ -10,16 +12,124 @@ from typing import Any
 from ...errors import InvalidValueError, OutOfDomainError
 from ...units import to_si
 from ..duals import has_duals, value_of
-from ..scalars import Scalar, is_number
+from ..scalars import Scalar, is_number, namespace
 
 _LEAST = 4  # points along an axis: a cubic
 _QUINTIC = 6
 
 
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """A function that is a polynomial between any two of its knots, on a line or a grid.
+
+    Parameters
+    ----------
+    x, y : tuple of float
+        Where its pieces begin along either axis; on a line y is (0,).
+    terms : nested tuple of float
+        terms[i][j][a][b] for each piece: the coefficients, counted from where it begins, the highest powers first.
+
+    Examples
+    --------
+    >>> square = Pieces((0.0, 1.0), (0.0,), ((((1.0,), (0.0,), (0.0,)),), (((1.0,), (2.0,), (1.0,)),)))
+    >>> square(3.0), square(-1.0)
+    (9.0, 1.0)
+    """
+
+    x: tuple[float, ...]
+    y: tuple[float, ...]
+    terms: tuple[Any, ...]
+
+    @staticmethod
+    def of(axes: Sequence[Sequence[float]], values: Any, orders: tuple[int, ...]) -> Pieces:
+        """Return a derivative of the spline through values."""
+        import numpy as np
+        from scipy.interpolate import make_interp_spline
+
+        found, starts = np.asarray(values, dtype=float), list[tuple[float, ...]]()
+        for axis, order in zip(axes, orders, strict=True):
+            degree = 5 if len(axis) >= _QUINTIC else 3
+            line = make_interp_spline(np.asarray(axis), found, k=degree)
+            begins = line.t[degree : -degree - 1]
+            powers = range(max(degree - order, 0), -1, -1)
+            found = np.stack([line(begins, nu=order + power) / math.factorial(power) for power in powers])
+            found = np.moveaxis(found, (0, 1), (-2, -1))  # the next axis comes first
+            starts.append(tuple(begins.tolist()))
+        if len(starts) == 1:
+            found, starts = found[..., None, None], [*starts, (0.0,)]
+        x, y = starts
+        return Pieces(x, y, _tuples(found.transpose(1, 3, 0, 2).tolist()))
+
+    def __call__(self, x: Scalar, y: Scalar = 0.0) -> Scalar:
+        """Return its value at a number, or at the places of arrays."""
+        if is_number(x) and is_number(y):
+            return evaluated(self.x, self.y, self.terms, float(x), float(y))
+        import numpy as np
+
+        x, y = np.broadcast_arrays(x, y)
+        (i, u), (j, v) = _counted(np.asarray(self.x), x), _counted(np.asarray(self.y), y)
+        terms, value = self._table[i, j], 0.0
+        for a in range(terms.shape[-2]):
+            part = 0.0
+            for b in range(terms.shape[-1]):
+                part = part * v + terms[..., a, b]
+            value = value * u + part
+        return value
+
+    @cached_property
+    def _table(self) -> Any:
+        import numpy as np
+
+        return np.asarray(self.terms)
+
+
+def evaluated(starts: Any, others: Any, terms: Any, x: float, y: float = 0.0) -> float:
+    """Return the value of pieces at a number; numba compiles this, too.
+
+    Examples
+    --------
+    >>> evaluated((0.0,), (0.0,), ((((2.0,), (1.0,)),),), 3.0)
+    7.0
+    """
+    i, j, last, end = 0, 0, len(starts) - 1, len(others) - 1
+    while i < last:
+        middle = (i + last + 1) // 2
+        if x < starts[middle]:
+            last = middle - 1
+        else:
+            i = middle
+    while j < end:
+        middle = (j + end + 1) // 2
+        if y < others[middle]:
+            end = middle - 1
+        else:
+            j = middle
+    u, v, value = x - starts[i], y - others[j], 0.0
+    for row in terms[i][j]:
+        part = 0.0
+        for term in row:
+            part = part * v + term
+        value = value * u + part
+    return value
+
+
+def _counted(starts: Any, places: Any) -> tuple[Any, Any]:
+    """Return in which pieces places are, and how far from where those begin."""
+    import numpy as np
+
+    which = np.searchsorted(starts[1:], places.real, side="right")
+    return which, places - starts[which]
+
+
+def _tuples(nested: Any) -> Any:
+    return tuple(map(_tuples, nested)) if isinstance(nested, list) else nested
+
+
 class Spline:
     """The spline through a table of numbers on a line or a grid: quintic, C⁴, or cubic, C², through fewer than six.
 
-    The numbers belong to the structure of a system, not to its parameters: nothing is traced through a spline.
+    The numbers belong to the structure of a system, not to its parameters: a tape records no more than that a spline is
+    evaluated, and no symbol is traced through it.
 
     Parameters
     ----------
@@ -49,33 +159,22 @@ class Spline:
         return f"<spline through {' × '.join(str(len(axis)) for axis in self.axes)} points>"
 
     @cached_property
-    def _spline(self) -> Any:
-        import numpy as np
-        from scipy.interpolate import NdBSpline, make_interp_spline
-
-        coefficients, knots = np.asarray(self.values, dtype=float), []
-        degrees = tuple(5 if len(axis) >= _QUINTIC else 3 for axis in self.axes)
-        for i, (axis, degree) in enumerate(zip(self.axes, degrees, strict=True)):
-            line = make_interp_spline(np.asarray(axis), coefficients, k=degree, axis=i)
-            knots.append(line.t)
-            coefficients = np.moveaxis(line.c, 0, i)
-        return NdBSpline(tuple(knots), coefficients, degrees, extrapolate=True)
+    def _known(self) -> dict[tuple[int, ...], Pieces]:
+        """The spline and those of its derivatives that were asked for."""
+        return {}
 
     def __call__(self, at: tuple[Scalar, ...], orders: tuple[int, ...] | None = None) -> Scalar:
         """Return the spline or a derivative of it."""
-        import numpy as np
-
-        if has_duals(at):
-            return self._in_duals(at, orders or (0,) * len(at))
-        _check_evaluable(at)
-        places = np.stack(np.broadcast_arrays(*at), axis=-1)
         orders = orders or (0,) * len(at)
-        value = self._spline(places.real, nu=orders)
-        if np.iscomplexobj(places):  # a step aside into the complex plane, for a derivative: to first order
-            for i in range(len(at)):
-                further = tuple(order + (i == j) for j, order in enumerate(orders))
-                value = value + 1j * places.imag[..., i] * self._spline(places.real, nu=further)
-        return float(value) if all(map(is_number, at)) else value
+        if has_duals(at):
+            return self._in_duals(at, orders)
+        if orders not in self._known:
+            self._known[orders] = Pieces.of(self.axes, self.values, orders)
+        pieces, functions = self._known[orders], namespace(*at)
+        if hasattr(functions, "spline"):  # a tape's
+            return functions.spline(pieces, *at)
+        _check_evaluable(at)
+        return pieces(*at)
 
     def _in_duals(self, at: tuple[Scalar, ...], orders: tuple[int, ...]) -> Scalar:
         """Return a derivative with its slopes, which are those of the place."""

@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, model_validato
 from pydantic_core import CoreSchema
 
 from ...errors import InvalidValueError
+from ...mechanics.placing import VELOCITY_WORDS
 from ..fields import Coordinate, Diameter, Measure, Measures, diameter_of
 
 
@@ -58,7 +59,7 @@ Step = Annotated[float, Measure("time", "positive", example='"10 ms"')]
 Rate3 = Annotated[tuple[float, float, float], Measures(Measure("angular velocity", example='"10 rad/s"'), 3)]
 Place2 = Annotated[tuple[float, float], Measures(Coordinate("length", example='"10 cm"'), 2)]
 Velocity = Annotated[
-    tuple[float, float] | tuple[float, float, float] | str, Measures(Measure("velocity"), 2, "co-rotating", most=3)
+    tuple[float, float] | tuple[float, float, float] | str, Measures(Measure("velocity"), 2, VELOCITY_WORDS, most=3)
 ]
 _TURNS = ("heading", "lean", "turn")
 Angle3 = Annotated[tuple[float, float, float], Measures(Measure("angle", example='"90 deg"'), 3, names=_TURNS)]

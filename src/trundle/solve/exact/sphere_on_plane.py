@@ -250,9 +250,13 @@ class SphereOnPlane(ManySamples, ClosedForm):
         >>> SphereOnPlane(0.025, 0.065, 0.4, 3.5, (0.1, 0.2)).position_at(5.0)
         Vector(x=0.1, y=0.2, z=0.025)
         """
-        _, t_phi1, tt_phi2 = self._terms(t)
-        zeta = Complex(*self.position) + t_phi1 * Complex(*self.velocity) + tt_phi2 * self.phi
+        zeta = Complex(*self.position) + self._gone(t)
         return Vector(zeta.re, zeta.im, self.radius)
+
+    def _gone(self, t: Any) -> Complex:
+        """Return how far it is from where it started: beside a distant place a difference has fewer digits."""
+        _, t_phi1, tt_phi2 = self._terms(t)
+        return t_phi1 * Complex(*self.velocity) + tt_phi2 * self.phi
 
     def motion_at(self, t: Any) -> tuple[Vector, Vector, Vector, Vector]:
         """Return position, velocity, angular velocity and contact force together.
@@ -297,9 +301,8 @@ class SphereOnPlane(ManySamples, ClosedForm):
             return None
         x, y = (vx, vy) if vx or vy else (phi.re, phi.im)
         size = math.hypot(x, y) or 1.0
-        along = Vector(x / size, y / size, 0.0)
-        gone = self.position_at(t) - Vector(*self.position, self.radius)
-        return Vector(-along.y, along.x, 0.0), gone.dot(along) / self.radius
+        x, y, gone = x / size, y / size, self._gone(t)
+        return Vector(-y, x, 0.0), (gone.re * x + gone.im * y) / self.radius
 
     @property
     def circle(self) -> Circle | None:

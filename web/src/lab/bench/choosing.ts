@@ -14,7 +14,8 @@ export function withBody(scenario: Scenario, kind: string, parts: Parts): Scenar
   const both = chosen.ball && (parts.body[scenario.body.kind]?.ball ?? false)
   const body = { ...chosen.first, ...(both && kept(scenario.body, ['radius', 'mass'])) }
   if (both) return { ...scenario, body }
-  const start = { position: [0, 0], ...kept(scenario.start, ['position', 'velocity']), ...chosen.start }
+  const said = scenario.start.velocity === 'rolling' ? ['position'] : ['position', 'velocity'] // with the Ω that goes
+  const start = { position: [0, 0], ...kept(scenario.start, said), ...chosen.start }
   return { ...scenario, body, start }
 }
 

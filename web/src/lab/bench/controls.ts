@@ -8,7 +8,7 @@ import type { Json, Path, Scenario } from '../scenario'
 import { valueAt, withValue } from '../scenario'
 import type { Field } from './field'
 import { createField } from './field'
-import { type Item, layout, type Option, type Section } from './layout'
+import { type Item, layout, type Option, rollingAgain, type Section } from './layout'
 
 export interface Controls {
   element: HTMLElement
@@ -40,6 +40,7 @@ export function createControls(app: App): Controls {
   let wrong: ApiError | null = null
   let parts: Parts | undefined
 
+  const put = (next: Scenario, gesture?: string) => store.set(rollingAgain(next), { source: 'control', gesture })
   const unitKey = (path: Path) => path.replace(/\.\d+$/, '').replace(/\.\d+\./, '.')
 
   function makeField(item: Extract<Item, { type: 'field' }>): HTMLElement {
@@ -58,7 +59,7 @@ export function createControls(app: App): Controls {
       },
       change: (value, gesture) => {
         const next = item.set ? item.set(store.scenario, value) : withValue(store.scenario, path, value)
-        store.set(next, { source: 'control', gesture })
+        put(next, gesture)
       },
     })
     fields.push(field)
@@ -69,7 +70,7 @@ export function createControls(app: App): Controls {
     const id = uniqueId('choice')
     const select = h(
       'select',
-      { id, onchange: () => store.set(item.set(store.scenario, select.value)) },
+      { id, onchange: () => put(item.set(store.scenario, select.value)) },
       item.options.map(option),
     )
     select.value = item.value
@@ -84,7 +85,7 @@ export function createControls(app: App): Controls {
       type: 'checkbox',
       role: 'switch',
       checked: item.on,
-      onchange: () => store.set(item.set(store.scenario, box.checked)),
+      onchange: () => put(item.set(store.scenario, box.checked)),
     })
     const words = h('span', {}, item.label, item.hint && !item.on ? h('small', {}, ` ${item.hint}`) : null)
     return h('label', { class: 'switch', 'data-path': item.path }, box, words)
@@ -99,7 +100,7 @@ export function createControls(app: App): Controls {
       spellcheck: 'false',
       autocomplete: 'off',
       value: String(valueAt(store.scenario, item.path) ?? ''),
-      onchange: () => store.set(withValue(store.scenario, item.path, input.value)),
+      onchange: () => put(withValue(store.scenario, item.path, input.value)),
     })
     return h('div', { class: 'row row-text', 'data-path': item.path }, h('label', { for: id }, item.label), input)
   }
@@ -107,7 +108,7 @@ export function createControls(app: App): Controls {
   function makeAdd(item: Extract<Item, { type: 'add' }>): HTMLElement {
     const select = h(
       'select',
-      { 'aria-label': item.label, onchange: () => store.set(item.set(store.scenario, select.value)) },
+      { 'aria-label': item.label, onchange: () => put(item.set(store.scenario, select.value)) },
       h('option', { value: '', selected: true }, `${item.label} …`),
       item.options.map(option),
     )
@@ -129,7 +130,7 @@ export function createControls(app: App): Controls {
       case 'remove':
         return h(
           'button',
-          { class: 'quiet small', type: 'button', onclick: () => store.set(item.set(store.scenario)) },
+          { class: 'quiet small', type: 'button', onclick: () => put(item.set(store.scenario)) },
           item.label,
         )
     }

@@ -40,6 +40,18 @@ it('shows the number as it is written, and its unit beside it', () => {
   expect(slider.getAttribute('aria-valuetext')).toBe('33.30 rpm')
 })
 
+it('shows four digits of a number that has many, and all of them to whoever is about to change it', () => {
+  const { field, change, input, slider } = setUp('4.999619237890978 rad/s')
+  expect(input.value).toBe('5.000')
+  expect(slider.getAttribute('aria-valuetext')).toBe('5.000 rad/s')
+  input.focus()
+  expect([input.value, input.selectionStart, input.selectionEnd]).toEqual(['4.999619237890978', 0, 17])
+  input.blur()
+  expect([input.value, change.mock.calls]).toEqual(['5.000', []])
+  field.update(-2.9942857e-6)
+  expect(input.value).toBe('-2.859e-5')
+})
+
 it('sends what is typed, with the unit that is shown', () => {
   const { change, type } = setUp('33.3 rpm')
   type('45')
@@ -48,8 +60,8 @@ it('sends what is typed, with the unit that is shown', () => {
 
 it('shows a bare number, which is SI, in the unit that it shows', () => {
   const { field, chosen, input, unit, slider } = setUp(45)
-  expect([input.value, unit.value]).toEqual(['429.718', 'rpm'])
-  expect(slider.getAttribute('aria-valuetext')).toBe('429.718 rpm')
+  expect([input.value, unit.value]).toEqual(['429.7', 'rpm'])
+  expect(slider.getAttribute('aria-valuetext')).toBe('429.7 rpm')
   chosen.unit = 'rad/s'
   field.update(46)
   expect([input.value, unit.value]).toEqual(['46', 'rad/s'])

@@ -1,7 +1,7 @@
 /** One number of the scenario: typed with its unit, dragged by a slider, stepped by the arrow keys. */
 import { hide, put, say } from '../../viewer/elements'
 import { h, uniqueId } from '../dom'
-import { parse, rounded, siUnit, stepped, toSI, type Units, write } from '../quantity'
+import { brief, parse, rounded, siUnit, stepped, toSI, type Units, write } from '../quantity'
 import type { Json, Path } from '../scenario'
 
 /** What a control shows of a number. */
@@ -144,7 +144,7 @@ export function createField(options: FieldOptions): Field {
 
   function draw(): void {
     if (hasUnits) fillUnits()
-    if (!typing) input.value = digits()
+    if (!typing) input.value = document.activeElement === input ? digits() : brief(digits())
     const si = toSI(value, entry.units)
     slider.disabled = si === null
     if (si === null) return
@@ -154,7 +154,7 @@ export function createField(options: FieldOptions): Field {
     const zero = entry.decades ? 0 : Math.min(1, Math.max(0, place(0)))
     slider.style.setProperty('--from', `${Math.min(zero, at) * 100}%`)
     slider.style.setProperty('--to', `${Math.max(zero, at) * 100}%`)
-    put(slider, 'aria-valuetext', `${digits()} ${hasUnits ? shownUnit() : ''}`.trim())
+    put(slider, 'aria-valuetext', `${brief(digits())} ${hasUnits ? shownUnit() : ''}`.trim())
   }
 
   function commit(next: Json, word?: string): void {
@@ -186,6 +186,12 @@ export function createField(options: FieldOptions): Field {
     const { value: next } = typed()
     if (next !== value) commit(next)
     else draw()
+  })
+  input.addEventListener('focus', () => {
+    const all = digits()
+    if (typing || input.value === all) return
+    input.value = all
+    input.select() // as a box is that one comes to by the keyboard: other text takes its place
   })
   input.addEventListener('blur', () => {
     typing = false

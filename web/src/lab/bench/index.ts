@@ -5,6 +5,7 @@ import './results.css'
 import './dialogs.css'
 import './phone.css'
 import { hide, say } from '../../viewer/elements'
+import { shortNumber } from '../../viewer/quantities'
 import { createAfterwards } from '../afterwards'
 import { ApiError, isAbort } from '../api'
 import type { App, Page } from '../app'
@@ -55,6 +56,7 @@ function _mount(host: HTMLElement, app: App): () => void {
   const computing = createComputing(app, {
     scene(scene, milliseconds, again) {
       stage.setScene(scene, { camera: !fresh, time: !fresh && !restart, rests: again })
+      if (fresh) sayPace(stage.viewer.suit())
       fresh = false
       restart = false
       stage.stale(null)
@@ -88,6 +90,10 @@ function _mount(host: HTMLElement, app: App): () => void {
       tabs.badge('card', text, kind)
     },
   })
+
+  function sayPace(speed: number): void {
+    if (speed < 1) app.toast(`In slow motion: ${shortNumber(speed)} of the true speed.`)
+  }
 
   function opened(scenario: Scenario, source: string): void {
     fresh = true

@@ -1,7 +1,7 @@
 import { expect, it } from 'vitest'
 import { PARTS, PEA } from '../parts.fixture'
 import type { Scenario } from '../scenario'
-import { type Item, layout } from './layout'
+import { type Item, layout, rollingAgain } from './layout'
 
 type FieldItem = Extract<Item, { type: 'field' }>
 
@@ -94,6 +94,25 @@ it('offers a start that rides along only where the support moves', () => {
   const names = (scenario: Scenario) => items(scenario).map((item) => item.path)
   expect(names(PEA)).toContain('start.velocity.on')
   expect(names(choose(PEA, 'support.motion.kind', 'still'))).not.toContain('start.velocity.on')
+})
+
+it('lets a body whose turning is told roll on, whatever else is changed', () => {
+  const start = { ...PEA.start, angular_velocity: [0, '2 rad/s', '5 rad/s'], velocity: ['0.05 m/s', 0] }
+  const turning = { ...PEA, start }
+  const names = items(turning).map((item) => item.path)
+  expect(names).toContain('start.angular_velocity.2')
+  expect(names).not.toContain('start.velocity.0')
+  expect(rollingAgain(turning).start).toEqual({ ...start, velocity: 'rolling' })
+  const told = found(rollingAgain(turning), 'switch', 'start.velocity.on')
+  expect(told.set(rollingAgain(turning), false).start).toEqual({ ...PEA.start, velocity: ['0 m/s', '0 m/s'] })
+  // What may slip, rides along or flies says both by itself.
+  for (const other of [
+    { support: { ...PEA.support, friction: 0.3 } },
+    { start: { ...start, velocity: 'co-rotating' } },
+  ])
+    expect(rollingAgain({ ...turning, ...other })).toEqual({ ...turning, ...other })
+  expect(rollingAgain({ ...PEA, start: { ...start, height: '1 cm' } }).start.velocity).toBe(start.velocity)
+  expect(choose(rollingAgain(turning), 'body.kind', 'penny').start.velocity).not.toBe('rolling')
 })
 
 it('writes a velocity that is not there yet as a pair', () => {

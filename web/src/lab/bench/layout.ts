@@ -205,13 +205,26 @@ function positions(coordinates: readonly Coordinate[], reach: number, parts: Par
   })
 }
 
+/** Is the start said by Ω, and the velocity what rolls with it? Where friction has a limit, a start may slip. */
+function saysTurning({ start, support }: Scenario): boolean {
+  if (typeof start.velocity === 'string') return start.velocity === 'rolling'
+  return Array.isArray(start.angular_velocity) && support.friction === undefined && start.height === undefined
+}
+
+/** With whatever else was changed: a velocity that rolled before rolls again. */
+export function rollingAgain(scenario: Scenario): Scenario {
+  const given = Array.isArray(scenario.start.velocity)
+  return given && saysTurning(scenario) ? withValue(scenario, 'start.velocity', 'rolling') : scenario
+}
+
 function startSection(scenario: Scenario, reach: number, parts: Parts, make: Maker): Section {
   const { start, support } = scenario
   const fields = parts.common.start
   const rides = start.velocity === 'co-rotating'
+  const turns = saysTurning(scenario)
   const moves = support.motion !== undefined && support.motion.kind !== parts.at_rest
   const items = positions(parts.support[support.kind]?.coordinates ?? [], reach, parts)
-  if (moves || rides)
+  if ((moves || rides) && !turns)
     items.push({
       type: 'switch',
       path: 'start.velocity.on',
@@ -220,7 +233,18 @@ function startSection(scenario: Scenario, reach: number, parts: Parts, make: Mak
       hint: 'and is let go',
       set: (now, on) => withValue(now, 'start.velocity', on ? 'co-rotating' : ['0 m/s', '0 m/s']),
     })
-  if (!rides) items.push(...make.vector('start.velocity', fields.velocity, ['0 m/s', '0 m/s']))
+  if (turns)
+    items.push({
+      type: 'switch',
+      path: 'start.velocity.on',
+      label: 'Rolls at the speed that goes with its angular velocity',
+      on: true,
+      set: (now) => {
+        const given = withValue(now, 'start.velocity', ['0 m/s', '0 m/s'])
+        return support.friction === undefined ? withValue(given, 'start.angular_velocity', undefined) : given
+      },
+    })
+  if (!rides && !turns) items.push(...make.vector('start.velocity', fields.velocity, ['0 m/s', '0 m/s']))
   if (Array.isArray(start.angular_velocity))
     items.push(...make.vector('start.angular_velocity', fields.angular_velocity))
   else items.push(...make.number('start.spin', fields.spin, rides ? undefined : 0))

@@ -3,23 +3,14 @@ import type { Api, ScenarioEntry } from '../api'
 import { fill, h } from '../dom'
 import { icon } from '../icons'
 
-const GROUPS: [string, RegExp][] = [
-  ['Turntables', /turntable|drop|off-the-rim|real-demonstration/],
-  ['Rolling without forces', /^roll-(x|y|home|small|figure)/],
-  ['Bowls, funnels, tubes and domes', /bowl|dish|funnel|dome|sphere-slipping|off-a-sphere|loop|golfer|trough/],
-  ['Billiards, bounces and slopes', /billiard|bounc|incline|slip|force|torque|box/],
-  ['Coins, hoops and discs', /coin|disc|hoop/],
-  ['Tops and stones', /rattleback|tippe|routh|chaplygin/],
-  ['Cylinders and rockers', /./],
-]
-
-/** Which heading a scenario stands under: by its name, the first that fits. */
-export function groupOf(entry: ScenarioEntry): string {
-  const name = entry.name
-  if (/coin|hoop/.test(name)) return 'Coins, hoops and discs'
-  if (/chaplygin/.test(name)) return 'Tops and stones'
-  if (/cylinder|rocking/.test(name)) return 'Cylinders and rockers'
-  return GROUPS.find(([, pattern]) => pattern.test(name))?.[0] ?? 'Others'
+/** The entries under their headings: the largest group first. */
+export function grouped(entries: ScenarioEntry[]): [string, ScenarioEntry[]][] {
+  const groups = new Map<string, ScenarioEntry[]>()
+  for (const entry of entries) {
+    const group = entry.group || 'Others'
+    groups.set(group, [...(groups.get(group) ?? []), entry])
+  }
+  return [...groups].sort(([, some], [, others]) => others.length - some.length)
 }
 
 /** Do all words of the query stand somewhere in what is said of the scenario? */
@@ -69,6 +60,8 @@ export async function pickScenario(api: Api, choose: (name: string) => void): Pr
     return
   }
 
+  const groups = grouped(entries)
+
   function card(entry: ScenarioEntry): HTMLElement {
     const take = () => {
       dialog.close()
@@ -88,14 +81,12 @@ export async function pickScenario(api: Api, choose: (name: string) => void): Pr
   }
 
   function draw(): void {
-    const found = entries.filter((entry) => matches(entry, search.value.trim()))
-    count.textContent = `${found.length} of ${entries.length}`
-    const names = [...new Set(['Turntables', ...GROUPS.map(([name]) => name), 'Others'])]
-    const groups = names.map((name): [string, ScenarioEntry[]] => [
-      name,
-      found.filter((entry) => groupOf(entry) === name),
-    ])
-    const shown = groups.filter(([, members]) => members.length > 0)
+    const query = search.value.trim()
+    const shown = groups
+      .map(([name, all]): [string, ScenarioEntry[]] => [name, all.filter((entry) => matches(entry, query))])
+      .filter(([, members]) => members.length > 0)
+    const found = shown.reduce((sum, [, members]) => sum + members.length, 0)
+    count.textContent = `${found} of ${entries.length}`
     fill(
       list,
       shown.map(([name, members]) =>

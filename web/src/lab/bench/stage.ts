@@ -25,12 +25,27 @@ type BenchTool = Exclude<Tool, 'draw'>
 
 const SOON = 250 // ms: an answer that comes sooner needs no sign that one works at it, which would only flicker
 
-const TOOLS: { tool: BenchTool; icon: IconName; label: string; key: string; hint: string }[] = [
-  { tool: 'orbit', icon: 'orbit', label: 'Turn the view', key: 'O', hint: '' },
-  { tool: 'drag', icon: 'hand', label: 'Move the ball', key: 'D', hint: 'Drag the ball to where it should start.' },
+const TOOLS: { tool: BenchTool; icon: IconName; word: string; label: string; key: string; hint: string }[] = [
+  {
+    tool: 'orbit',
+    icon: 'orbit',
+    word: 'View',
+    label: 'Turn the view',
+    key: 'O',
+    hint: 'Take the ball and let it go, or throw it. Drag beside it to turn the view.',
+  },
+  {
+    tool: 'drag',
+    icon: 'hand',
+    word: 'Move',
+    label: 'Move the ball',
+    key: 'D',
+    hint: 'Drag the ball to where it should start.',
+  },
   {
     tool: 'velocity',
     icon: 'arrow',
+    word: 'Throw',
     label: 'Draw its velocity',
     key: 'V',
     hint: 'Drag from the ball: the arrow is its first velocity.',
@@ -38,6 +53,7 @@ const TOOLS: { tool: BenchTool; icon: IconName; label: string; key: string; hint
   {
     tool: 'nudge',
     icon: 'nudge',
+    word: 'Nudge',
     label: 'Nudge it',
     key: 'N',
     hint: 'Drag from the ball while it runs: it goes on from there.',
@@ -68,13 +84,16 @@ export function createStage(app: App): Stage {
   const old = h('p', { class: 'stage-stale', hidden: true }, 'The last path that could be computed')
   const empty = h('p', { class: 'stage-empty working' }, 'Computing the motion …')
   const tools = h('div', { class: 'stage-tools', role: 'radiogroup', 'aria-label': 'What the pointer does' })
-  const element = h('section', { class: 'stage', 'aria-label': 'Stage' }, host, empty, tools, big, time, old, hint)
+  const element = h('section', { class: 'stage', 'aria-label': 'Stage' }, host, empty, tools, big, time, old)
   const viewer = createViewer(host, { theme: app.appearance, controls: true, projector: app.settings.projector })
+  host.querySelector('.tr-stage')?.append(hint)
   let scene: Scene | undefined
   let hasStarted = false
+  let released = false
+  let knowsHand = false // whoever has taken the ball once needs no word about it
   let late: ReturnType<typeof setTimeout> | undefined
 
-  const buttons = TOOLS.map(({ tool, icon: name, label, key }) => {
+  const buttons = TOOLS.map(({ tool, icon: name, word, label, key }) => {
     const button = h('button', {
       class: 'tool',
       type: 'button',
@@ -83,7 +102,7 @@ export function createStage(app: App): Stage {
       'aria-label': label,
       'data-tool': tool,
     })
-    button.append(icon(name))
+    button.append(icon(name), h('span', { class: 'tool-word' }, word))
     button.addEventListener('click', () => useTool(tool))
     return button
   })
@@ -114,7 +133,7 @@ export function createStage(app: App): Stage {
       button.tabIndex = on ? 0 : -1
     })
     hint.textContent = chosen?.hint ?? ''
-    hint.hidden = !chosen?.hint
+    hint.hidden = tool === 'orbit' && (knowsHand || whyNotDragged(store.scenario) !== null)
     if (tool === 'drag' || tool === 'velocity') {
       viewer.pause()
       viewer.seek(0)
@@ -123,19 +142,22 @@ export function createStage(app: App): Stage {
   useTool('orbit')
 
   /** What is done by hand: the package says which start that is. */
-  const starts = createRunner<{ by: StartRequest; change: Change; done?: string }, () => void>({
-    async run({ by, change, done }, signal) {
+  const starts = createRunner<{ by: StartRequest[]; change: Change; done?: string; go?: boolean }, () => void>({
+    async run({ by, change, done, go }, signal) {
       const before = store.scenario
-      const [parts, found] = await Promise.all([app.parts(), app.api.start(before, by, { signal, lane: null })])
+      const asked = by.map((one) => app.api.start(before, one, { signal, lane: null }))
+      const [parts, ...found] = await Promise.all([app.parts(), ...asked])
       return () => {
-        store.set(by.nudge ? goneOn(before, found) : put(store.scenario, found, parts), change)
+        const start = Object.assign({}, ...found)
+        released = go ?? false
+        store.set(by[0]?.nudge ? goneOn(before, start) : put(store.scenario, start, parts), change)
         if (done) app.toast(done)
       }
     },
     done: (apply) => apply(),
-    failed: (error, { by }) => {
+    failed: (error, { by, go }) => {
       // While it is dragged there is no need to say that it cannot lie just there.
-      if (by.nudge && !isAbort(error)) app.toast(error instanceof Error ? error.message : String(error))
+      if ((by[0]?.nudge || go) && !isAbort(error)) app.toast(error instanceof Error ? error.message : String(error))
     },
   })
 
@@ -143,14 +165,18 @@ export function createStage(app: App): Stage {
   undo.add(
     viewer.on('dragstart', () => {
       gestures += 1
+      if (viewer.tool !== 'orbit') return
+      knowsHand = hint.hidden = true
+      viewer.pause()
+      viewer.seek(0)
     }),
-    viewer.on('drag', drag),
-    viewer.on('dragend', drag),
+    viewer.on('drag', (place) => drag(place, null)),
+    viewer.on('dragend', ({ velocity, ...place }) => drag(place, velocity, viewer.tool === 'orbit')),
     viewer.on('arrow', ({ vx, vy, vz, done }) => {
       if (!scene) return
       const { position, contact } = instantAt(scene, viewer.time)
       const by: StartRequest = { at: { position, contact }, velocity: [vx, vy, vz] }
-      starts.ask({ by, change: { source: 'drag', gesture: `arrow${gestures}` } })
+      starts.ask({ by: [by], change: { source: 'drag', gesture: `arrow${gestures}` } })
       if (done) gestures += 1
     }),
     viewer.on('nudge', ({ vx, vy, vz, time: when, done }) => {
@@ -159,16 +185,18 @@ export function createStage(app: App): Stage {
     () => starts.stop(),
   )
 
-  function drag({ x, y, z, contact }: Place): void {
-    const by: StartRequest = { at: { position: [x, y, z], contact } }
-    starts.ask({ by, change: { source: 'drag', gesture: `drag${gestures}` } })
+  /** The ball is put down there, or thrown from there; `go`: it was let go, and the film begins. */
+  function drag({ x, y, z, contact }: Place, velocity: Triple | null, go = false): void {
+    const at: StartRequest['at'] = { position: [x, y, z], contact }
+    const by: StartRequest[] = velocity ? [{ at }, { at, velocity }] : [{ at }]
+    starts.ask({ by, go, change: { source: 'drag', gesture: `drag${gestures}` } })
   }
 
   function nudge(by: Triple, when: number): void {
     if (!scene) return
     const at = sampleAt(scene, when)
     const done = `Nudged at ${show(at.time, 3)} s by ${show(Math.hypot(...by), 2)} m/s: this is the new start.`
-    starts.ask({ by: { at, nudge: by }, change: { source: 'nudge' }, done })
+    starts.ask({ by: [{ at, nudge: by }], change: { source: 'nudge' }, done })
   }
 
   /** While it stands still the whole path is there; while it runs the ball draws it. */
@@ -213,7 +241,10 @@ export function createStage(app: App): Stage {
       drawAhead()
       viewer.setScenes([next], { keepTime: !first && keep.time, keepCamera: !first && keep.camera, rests: keep.rests })
       element.dataset.shown = next.header.title // for tests: a title changes before its path is there
-      if (was && !viewer.playing) viewer.play()
+      viewer.grabs = whyNotDragged(store.scenario) === null
+      if (released) viewer.seek(0)
+      if ((was || (released && !app.settings.reducedMotion)) && !viewer.playing) viewer.play()
+      released = false
       drawHeadline(next)
       if (!hasStarted && !app.settings.reducedMotion && viewer.tool === 'orbit') viewer.play()
       hasStarted = true

@@ -1,0 +1,141 @@
+"""`trundle chaos`: Lyapunov exponents of a motion; or a section through it, or the periodic orbit next to it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ..errors import InvalidValueError, ScenarioError
+from ..scenario import files
+from . import CARD_FAILED, screen, signals
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ..simulation.simulate import Scenario
+
+EXPONENTS, SECTION, ORBITS = "lyapunov.png", "section.png", "orbits.png"
+SECTION_DATA = "section.nc"
+
+
+def _complete(incomplete: str) -> list[str]:
+    return [name for name in files.names() if name.startswith(incomplete)]
+
+
+Name = Annotated[
+    str,
+    typer.Argument(metavar="SCENARIO", help="The name of a shipped one, or a TOML file.", autocompletion=_complete),
+]
+
+
+def chaos(
+    scenario: Name,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", metavar="FOLDER", help="Default: a folder of the scenario's name."),
+    ] = None,
+    duration: Annotated[
+        str | None, typer.Option(metavar="TIME", help="How long to follow the motion, in place of the file's.")
+    ] = None,
+    count: Annotated[int | None, typer.Option(metavar="NUMBER", help="How many exponents; default: all.")] = None,
+    section: Annotated[
+        str | None,
+        typer.Option(metavar="TEXT", help="Such as 'position.z rising through 10 mm', or an event: 'land'."),
+    ] = None,
+    strobe: Annotated[
+        str | None, typer.Option(metavar="TIME", help="Once in each period, such as that of the support.")
+    ] = None,
+    orbit: Annotated[
+        str | None, typer.Option(metavar="TIME", help="Find the periodic orbit next to the start; about its period.")
+    ] = None,
+    along: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Follow that orbit along a number, such as support.tilt.")
+    ] = None,
+    lowest: Annotated[str | None, typer.Option("--from", metavar="VALUE", help="Where that ends below.")] = None,
+    highest: Annotated[str | None, typer.Option("--to", metavar="VALUE", help="Where that ends above.")] = None,
+    no_figure: Annotated[bool, typer.Option("--no-figure", help="Write no file.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the findings as JSON, and nothing else.")] = False,
+) -> None:
+    """Find the Lyapunov exponents of a scenario's motion, with errors, and write lyapunov.png.
+
+    With --section or --strobe, a Poincaré section in section.png and section.nc; with --orbit, the periodic orbit next
+    to the start with its Floquet multipliers, and with --along its branch in orbits.png.
+    """
+    asked = [name for name, value in (("--section", section), ("--strobe", strobe), ("--orbit", orbit)) if value]
+    if len(asked) > 1:
+        raise InvalidValueError(asked[1], f"must not stand beside {asked[0]}", scenario, "Ask one after the other.")
+    for name, value in (("--along", along), ("--from", lowest), ("--to", highest)):
+        if value is not None and not (orbit and along):
+            raise InvalidValueError(name, "needs --orbit and --along", value, "Give the period of the orbit.")
+    for name, given in (("--count", count if asked else None), ("--duration", duration if orbit else None)):
+        if given is not None:
+            raise InvalidValueError(name, f"has no meaning with {asked[0]}", given, "Leave it out.")
+    loaded = _loaded(scenario)
+    folder = Path(Path(scenario).stem) if output is None else output.expanduser()
+    wanted: tuple[str, ...] = (EXPONENTS,)
+    if asked:
+        wanted = (ORBITS,) if along else () if orbit else (SECTION, SECTION_DATA)
+    wanted = () if no_figure else wanted
+    if wanted:
+        from .writing import check_folder
+
+        check_folder(folder, wanted)
+    if orbit:
+        found = _orbit(loaded, orbit, along, lowest, highest)
+    else:
+        with screen.ProgressBar(wanted=not (quiet or as_json)) as bar:
+            found = _followed(loaded, duration, count, section, strobe, bar)
+    signals.check()
+    _tell(found, folder, wanted, quiet=quiet, as_json=as_json)
+
+
+def _loaded(scenario: str) -> Scenario:
+    tables = files.tables_of(scenario)
+    if files.rolls_along_path(tables):
+        remedy = "A ball rolled along a path feels no forces; name a scenario with a body under gravity."
+        raise ScenarioError("path", "has no exponents", scenario, remedy)
+    from ..simulation.simulate import Scenario
+
+    return Scenario.read(tables, scenario)
+
+
+def _orbit(loaded: Scenario, period: str, along: str | None, lowest: str | None, highest: str | None) -> Any:
+    from ..analysis.chaos import periodic_orbit
+
+    orbit = periodic_orbit(loaded, period=period)
+    return orbit if along is None else orbit.along(along, lowest, highest)
+
+
+def _followed(
+    loaded: Scenario, duration: str | None, count: int | None, section: str | None, strobe: str | None, bar: Any
+) -> Any:
+    from ..analysis.chaos import lyapunov_exponents, poincare_section
+
+    if section or strobe:
+        return poincare_section(loaded, section, duration=duration, period=strobe, progress=bar)
+    return lyapunov_exponents(loaded, duration=duration, count=count, progress=bar)
+
+
+def _tell(found: Any, folder: Path, wanted: tuple[str, ...], *, quiet: bool, as_json: bool) -> None:
+    """Write the files, and print what was found; a figure that fails is told by the exit status."""
+    from .writing import write_together
+
+    writers: dict[str, Callable[[Path], Any]] = {
+        name: (lambda path: found.data.to_netcdf(path, engine="h5netcdf"))
+        if name == SECTION_DATA
+        else (lambda path: found.plot().savefig(path))
+        for name in wanted
+    }
+    written = write_together(folder, writers)
+    if as_json:
+        screen.out(json.dumps(found.as_dict(), indent=2, ensure_ascii=False))
+    elif not quiet:
+        screen.out(str(found))
+        if written:
+            screen.out(f"Wrote {', '.join(str(path) for path in written)}")
+    if getattr(found, "passed", None) is False or getattr(found, "located", True) is False:
+        raise typer.Exit(CARD_FAILED)
