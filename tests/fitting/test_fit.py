@@ -162,7 +162,7 @@ HOLLOWS = {
 
 @pytest.mark.parametrize("kind", HOLLOWS)
 def test_a_bowl_and_a_pipe_tell_their_radius_by_that_of_the_ball(kind: str) -> None:
-    t = np.arange(150) / 40.0
+    t = np.arange(60) / 30.0
     swing = 0.1 * np.exp(1j * in_hollow(t, 0.125, 0.4, 0.6))  # the centre, from the middle of the circle
     data = seen(t, NOISE, 11, z=swing) if kind == "cylinder" else seen(t, NOISE, 11, z=swing.imag + 0j)
     support, start = HOLLOWS[kind]
@@ -176,7 +176,7 @@ def test_a_bowl_and_a_pipe_tell_their_radius_by_that_of_the_ball(kind: str) -> N
 
 @pytest.mark.parametrize("kind", HOLLOWS)
 def test_a_bowl_and_a_pipe_tell_the_ratio_by_gravity(kind: str) -> None:
-    t = np.arange(150) / 40.0
+    t = np.arange(60) / 30.0
     swing = 0.1 * np.exp(1j * in_hollow(t, 0.125, 0.4, 0.6))
     data = seen(t, NOISE, 12, z=swing) if kind == "cylinder" else seen(t, NOISE, 12, z=swing.imag + 0j)
     support, start = HOLLOWS[kind]

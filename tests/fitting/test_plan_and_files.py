@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import xarray
+from tests.fitting.coverage import CASES, chances, distances
 from tests.fitting.measured import ball, on_turntable, scenario, seen, turntable
 
 import trundle as tr
@@ -90,10 +91,17 @@ def test_a_figure_and_a_page_of_its_own(fitted: tr.Fit, tmp_path) -> None:
 
 
 def test_emcee_draws_what_least_squares_say() -> None:
-    t = T[::6]
+    t = T[::10]
     found = tr.fit(seen(t, 5e-4, 3, z=on_turntable(t, 3.487)), TABLE, [K], noise="0.5 mm")
-    draws = found.sample(steps=120, walkers=16, seed=1)
+    draws = found.sample(steps=100, walkers=12, seed=1)
     spread = draws.draws[:, 0].std()
     assert spread == pytest.approx(found[K].sigma, rel=0.35)
     assert abs(np.median(draws.draws[:, 0]) - found[K].value) < found[K].sigma
     assert "too short" in draws.verdict
+
+
+def test_errors_are_as_large_as_they_say() -> None:
+    case = CASES["incline"]  # `python -m tests.fitting.coverage` does this for each case, with more draws
+    squares = distances(case, 40)
+    for share, chance in chances(squares, len(case.truth)).values():
+        assert chance > 1e-3, share
