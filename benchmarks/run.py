@@ -24,6 +24,7 @@ NAMES = (
     "compiled_steps",
     "ensembles",
     "sensitivities",
+    "fits",
     "reuse",
     "long_run",
     "orientation",

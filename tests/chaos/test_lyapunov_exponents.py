@@ -74,6 +74,21 @@ def test_chaplygins_ball_on_a_turning_table_is_chaotic_and_keeps_its_volume():
     assert found.passed
 
 
+@pytest.mark.parametrize("spin", [5.0, -5.0])
+def test_a_spinning_rattleback_gains_or_loses_volume_at_the_rates_of_its_modes(spin):
+    """The linear law of the steady spin, found another way: each mode that oscillates counts for two exponents."""
+    stone = tr.Scenario.load("rattleback").system()
+    (spinning,) = tr.steady_motions(stone, stone.place(spin=spin), holding={"spin": None})
+    found = tr.lyapunov_exponents(stone, spinning.state, "2.5 s", transient="0.5 s", every="25 ms")
+    total = 2 * sum(mode.growth for mode in spinning.modes)
+    assert math.copysign(1.0, total) == math.copysign(1.0, spin)
+    assert math.isclose(found.divergence, total, rel_tol=1e-9)
+    assert math.isclose(found.sum_between_events, total, rel_tol=1e-9)
+    extreme = found.exponents[:2] if spin > 0 else found.exponents[-2:]
+    rate = max((mode.growth for mode in spinning.modes), key=abs)
+    assert abs(extreme.mean() - rate) <= found.errors.max()
+
+
 def test_a_fault_in_the_divergence_is_seen(monkeypatch):
     true = volume.slopes_at
     monkeypatch.setattr(volume, "slopes_at", lambda *given: true(*given) * (1 + 1e-6))

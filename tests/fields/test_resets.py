@@ -211,6 +211,19 @@ def test_a_landing_that_turns_the_slip_is_that_of_a_run(backend: str) -> None:
         assert np.abs(V - struck.array()).max() <= 1e-12 * np.abs(struck.array()).max(), name
 
 
+def test_landings_by_the_thousand_are_those_of_each() -> None:
+    egg = tr.Body.ellipsoid((0.2, 0.15, 0.12), mass=1.0, centre=(0.02, -0.01, 0.03))
+    system = tr.RollingSystem(egg, tr.Support(tr.Plane(), friction=0.3, restitution=0.5))
+    field = system.vector_field("numpy", "flight", ())
+    y = field.pack(system.place(velocity=(0.5, -0.2, -2.0), orientation=(0.8, 0.36, 0.48, 0.0)))
+    many = np.tile(y, (7, 1))
+    many[:, field.state_names.index("V_x")] = np.linspace(-1.0, 1.0, 7)
+    land_ = field.resets["land"].states["flight"]
+    found = land_(0.0, many, field.parameters, field.inputs)
+    for one, state in zip(many, found, strict=True):
+        assert np.abs(state - land_(0.0, one, field.parameters, field.inputs)).max() <= EXACT(64, 2.0)
+
+
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_it_stays_where_nothing_is_given_back(backend: str) -> None:
     for speed, phase in ((0.1, "rolling"), (30.0, "slipping")):
@@ -233,6 +246,31 @@ def test_slip_begins_against_friction_and_ends_in_rolling(backend: str) -> None:
     rolls, state = level.after("grip", 0.0, state, level.parameters, level.inputs)
     assert rolls.phase == "rolling"
     assert np.array_equal(state, y)
+
+
+def test_where_resistance_holds_a_body_that_slips_it_is_said() -> None:
+    """A ball that slides with little turning stops turning first, as in the run."""
+    system = tr.RollingSystem(
+        tr.Body.solid_sphere(0.02, 0.1), tr.Support(tr.Plane(), friction=0.2), (tr.RollingResistance(0.015),)
+    )
+    start = system.place(velocity=(1.0, 0.0), angular_velocity=(0.0, -2.0, 0.0))
+    run = tr.simulate(system, start, duration=0.2, every=0.01)
+    stop = next(event for event in run.events if "stopped turning" in event.text)
+    field = system.vector_field("numpy", "slipping", ())
+    y, given = field.pack(start), (field.parameters, field.inputs)
+    e = field.event_parameters(0.0, y, *given)
+    assert "stop" in field.event_names
+    where = field.event_names.index("stop")
+    before, after = (
+        field.events(0.0, y + t * field.rates(0.0, y, *given), *given, e)[where]  # of a ball all rates are constant
+        for t in (0.9 * stop.time, 1.1 * stop.time)
+    )
+    assert before > 0 > after
+    with pytest.raises(OutOfDomainError, match="keeps it from turning"):
+        field.after("stop", stop.time, y, *given)
+    rests = system.vector_field("numpy", "rest", ())
+    with pytest.raises(OutOfDomainError, match="keeps it from turning"):
+        rests.after("slip", 0.0, rests.pack(system.place()), *given)
 
 
 def test_what_is_not_written_out_is_said() -> None:

@@ -155,6 +155,7 @@ RESULTS: tuple[Callable[[], Displayed], ...] = (
     lambda: swing().along("gravity", 9.5, 10.0),
     lambda: tr.lyapunov_exponents(scenario("tilted-turntable"), duration=2.0, count=2),
     lambda: tr.poincare_section(scenario("tilted-turntable"), "velocity.x falling through 0", duration=10.0),
+    lambda: tr.lyapunov_map(swing().system, {"x": [0.1]}, lambda x: swing().system.place(position=(x, 0.0)), 1.0),
     lambda: tr.twin(scenario("tilted-turntable")),
     lambda: tr.twin(scenario("tilted-turntable"), electron=True).particle,
     lambda: tr.PfaffianSystem.load("sphere"),

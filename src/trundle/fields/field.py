@@ -16,7 +16,7 @@ from .backends import BACKENDS, Function
 from .inputs import GROUPS, inputs_of
 from .printed import Listed, Printed
 from .printers import symbolic
-from .resets import CODES
+from .resets import CODES, HELD
 from .routines import OUTPUTS, PhaseRoutines, Routine, check_analytic, phases_of
 
 _UNIT_OF = {"p": "m", "q": "", "Omega": "rad/s", "s": "m/s", "V": "m/s", "g": "m", "r": "m"}  # of the state's symbols
@@ -208,6 +208,11 @@ class VectorField(Printed):
         name = event.removeprefix("near ")
         if event not in self.event_names:
             raise UnknownNameError("event", event, self.event_names)
+        if (self.phase, name) in HELD:
+            raise OutOfDomainError(
+                f"After `{event}` of {self.phase} the body slips while resistance to rolling keeps it from turning, "
+                "which is no phase of vector fields. trundle.simulate follows it."
+            )
         if name not in self.resets:
             raise OutOfDomainError(f"After `{event}` of {self.phase} no phase follows: the run ends there.")
         reset = self.resets[name]

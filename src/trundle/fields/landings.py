@@ -82,7 +82,7 @@ class _Course:
         slip, taken = (begin, 0.0) if limited else self._ended(begin, ending)
         holding = self.M.solve(E_Z)
         hx, hy = holding.x / holding.z, holding.y / holding.z
-        xp = namespace(hx)
+        xp = namespace(hx, begin.x)
         spare = self.mu - xp.hypot(hx, hy)
         c, s = self._beginning()
         held = (xp.where(less(spare, 0.0), part, hold) for part, hold in ((-self.mu * c, hx), (-self.mu * s, hy)))
@@ -134,7 +134,7 @@ class _Course:
 
         First the body comes off the more slowly; then, if that is not all, the support holds against it.
         """
-        xp = namespace(up, taken, unused)
+        xp = namespace(*direction, up, taken, unused, self.e_t)
         pressing = -self.M.c.dot(direction)
         presses = less(0.0, pressing)
         rising = xp.where(less(0.0, up), up, 0.0)
@@ -157,7 +157,7 @@ class _Course:
 
     def _amount(self, direction: Vector, left: Scalar, turned: Scalar, unused: Scalar) -> Scalar:
         """Return how much of an impulse gives back what is left of a work, or as much as friction has left unused."""
-        xp = namespace(left, unused)
+        xp = namespace(*direction, left, turned, unused)
         size = xp.hypot(direction.x, direction.y) - self.mu * direction.z
         root = turned + xp.sqrt(turned * turned + 2.0 * self._gain(direction) * left)
         works, takes = less(0.0, root), less(0.0, size)
@@ -190,7 +190,7 @@ def _further(*now: Scalar) -> list[Scalar]:
 def _slid(slip: TurningSlip, aimed: Scalar, aim: Scalar) -> list[Scalar]:
     """Return slip, work and what friction took after a step, and that nothing was spared."""
     rows = slip.series(_TERMS)
-    xp = namespace(slip.size, aimed)
+    xp = namespace(slip.size, slip.up, slip.mu, aim)
     step = _longest(rows, slip.size)
     returns = less(0.5, aimed)
     series = [xp.where(returns, of_work, of_up) for of_up, of_work in zip(rows[3], rows[4], strict=True)]
@@ -242,7 +242,7 @@ def _stuck(
     """
     x, y, spare = held
     change = [row[0] * x + row[1] * y + row[2] for row in M]
-    xp = namespace(*change, work, aimed)
+    xp = namespace(*slip, *change, work, aim)
     rises, returns, holds = less(_LEAST, change[2]), less(0.5, aimed), less(0.0, spare)
     up = xp.where(rises, change[2], 1.0)
     square = slip.z * slip.z + 2.0 * up * (aim - work)

@@ -172,6 +172,8 @@ RESETS: dict[tuple[str, str], Reset] = {
     ("slipping", "lift"): _lift,
     ("flight", "land"): _land,
     ("rest", "start"): _start,
-    ("rest", "slip"): _slip,
     ("rest", "lift"): _lift,
 }
+
+# Where a body goes on slipping, and resistance to rolling keeps it from turning: no phase of fields.
+HELD = {("slipping", "stop"), ("rest", "slip")}

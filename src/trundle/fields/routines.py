@@ -72,7 +72,8 @@ def phases_of(system: RollingSystem) -> dict[str, Law]:
     if not none:
         found["rolling"] = RollingWithResistance() if system.resisted else RollingLaw()
     if friction is not None:
-        found["slipping"] = SlidingFreely() if none else SlippingLaw()
+        turning = "resisted" if system.resisted else "free"
+        found["slipping"] = SlidingFreely(turning=turning) if none else SlippingLaw(turning=turning)
     found["flight"] = FlightLaw()
     if system.resisted and not none and not system.support.motion.free:
         found["rest"] = RestingLaw()

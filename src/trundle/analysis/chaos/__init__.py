@@ -1,8 +1,9 @@
-"""Is the motion regular? Sections, Lyapunov exponents, periodic orbits."""
+"""Is the motion regular? Sections, Lyapunov exponents, periodic orbits, maps over starts."""
 
 from .branch import OrbitBranch
 from .crossings import poincare_section
 from .exponents import lyapunov_exponents
+from .maps import StartMap, basins_of_attraction, lyapunov_map
 from .orbit import PeriodicOrbit, periodic_orbit
 from .section import PoincareSection
 from .spectrum import LyapunovExponents
@@ -12,7 +13,10 @@ __all__ = [
     "OrbitBranch",
     "PeriodicOrbit",
     "PoincareSection",
+    "StartMap",
+    "basins_of_attraction",
     "lyapunov_exponents",
+    "lyapunov_map",
     "periodic_orbit",
     "poincare_section",
 ]

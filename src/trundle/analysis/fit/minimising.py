@@ -16,7 +16,10 @@ LOSSES = ("linear", "soft_l1", "huber", "cauchy")
 _FEWEST = 3.0  # values for each unknown, in the first stretch
 _PART = 0.3  # of a number, by which the scenario's may be off
 _LONGER = 3.0  # times, from one stretch to the next
-_ROUNDS = 3  # in which the directions are found again
+_AS_SAID = 0.3  # share of a change that derivatives may miss and still do
+_FIRST = 1e-2  # of MINPACK's first step, a hundred over this: in standard deviations, as far as a guess may be off
+_THERE = 1e-3  # standard deviations
+_ROUNDS = 5  # in which the directions are found again
 _STAGE, _LAST = 20, 60  # trials
 
 
@@ -64,11 +67,11 @@ def minimise(
         rank = found.basis.shape[1]
         if rank == 0:
             return Minimum(values, found, np.zeros((values.size, values.size)), None, evaluations)
-        values, result = _lmfit(problem, values, found.basis, loss, most, 1e-10)
+        values, result = _lmfit(problem, values, found.basis, loss, most, 1e-4)
         evaluations += result.nfev
         again = look(problem, values, held)
         same, found_before, found = again.basis.shape[1] == rank, found, again
-        if same and (result.success or result.nfev < most):
+        if same and (loss != "linear" or _left(problem, values, found) < _THERE):
             break
     covariance = _covariance(result, found_before.basis, found, loss)
     return Minimum(values, found, covariance, result, evaluations)
@@ -83,6 +86,16 @@ def _covariance(result: Any, basis: Array, found: Directions, loss: str) -> Arra
     if getattr(result, "covar", None) is None or basis.shape[1] != found.basis.shape[1] or not whole:
         return found.covariance
     return np.asarray(basis @ result.covar @ basis.T)
+
+
+def _left(problem: Problem, values: Array, found: Directions) -> float:
+    """Return how far the minimum still is, in standard deviations: by the next step of Gauss and Newton."""
+    residual, jacobian = problem.both(values)
+    return float(np.linalg.norm(found.basis.T @ (jacobian.T @ residual)) / np.sqrt(max(1.0, _reduced(residual))))
+
+
+def _reduced(residual: Array) -> float:
+    return float(residual @ residual) / residual.size
 
 
 def look(problem: Problem, values: Array, held: Any) -> Directions:
@@ -107,7 +120,7 @@ def _staged(problem: Problem, values: Array, held: Any) -> tuple[Array, int]:
         try:
             basis = _careful(problem, values, held)
             if basis.shape[1]:
-                values, result = _lmfit(problem, values, basis, "linear", _STAGE, 1e-4)
+                values, result = _lmfit(problem, values, basis, "linear", _STAGE, 1e-2)
                 evaluations += result.nfev
         except TrundleError:
             break
@@ -133,6 +146,18 @@ def _careful(problem: Problem, values: Array, held: Any) -> Array:
     return np.asarray((scale[:, None] * Vt.T)[:, good] / s[good])
 
 
+def _updated(known: list[Array], place: Array, residuals: Array) -> list[Array] | None:
+    """Return derivatives that a step has mended (Broyden 1965); None where the step did not go as they said.
+
+    Those at the minimum are exact again: only the way there is cheaper.
+    """
+    step, change = place - known[0], residuals - known[1]
+    missed = change - known[2] @ step
+    if not 0 < np.linalg.norm(missed) <= _AS_SAID * np.linalg.norm(change):
+        return None
+    return [place, residuals, known[2] + np.outer(missed, step) / (step @ step)]
+
+
 def _lmfit(problem: Problem, values: Array, basis: Array, loss: str, most: int, tolerance: float) -> tuple[Array, Any]:
     """Let lmfit move along some directions, whose steps are of one standard deviation."""
     import lmfit
@@ -148,15 +173,25 @@ def _lmfit(problem: Problem, values: Array, basis: Array, loss: str, most: int, 
     def residual(now: Any) -> Array:
         return problem.tried(at(now))
 
+    mended = loss == "linear" and not problem.by_formula
+    known: list[Array] = []  # where the derivatives are known, the residuals there, and these
+
     def jacobian(now: Any) -> Array:
+        place = np.array([now[name].value for name in names])
         try:
-            return np.asarray(problem.both(at(now))[1] @ basis)
+            found = _updated(known, place, problem.residual(at(now))) if known and mended else None
+            if found is None:
+                residuals, slopes = problem.both(at(now))
+                found = [place, residuals, slopes @ basis]
+            known[:] = found
+            return known[2]
         except (TrundleError, ArithmeticError, ValueError):
             raise SolverError("The fit came to numbers with which there is no motion.") from None
 
     minimiser = lmfit.Minimizer(residual, parameters, scale_covar=False, nan_policy="raise", max_nfev=most)
     if loss == "linear":
-        result = minimiser.leastsq(Dfun=jacobian, ftol=tolerance, xtol=tolerance, gtol=0.0)
+        first = np.full(len(names), _FIRST)
+        result = minimiser.leastsq(Dfun=jacobian, ftol=tolerance, xtol=tolerance, gtol=0.0, diag=first)
     else:
         result = minimiser.least_squares(jac=jacobian, loss=loss, ftol=tolerance, xtol=tolerance)
     return at(result.params), result

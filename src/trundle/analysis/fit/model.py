@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, fields, is_dataclass
 from typing import Any
 
 import numpy as np
@@ -61,6 +61,14 @@ class RunModel:
     seen: Observations
     unknowns: tuple[Unknown, ...]
     camera: Camera
+    _form: list[type[ClosedForm]] = field(
+        default_factory=list, init=False, compare=False, repr=False
+    )  # once it is known to do
+
+    @property
+    def by_formula(self) -> bool:
+        """Whether derivatives come from a closed form, and cost little more than the motion."""
+        return bool(self._form)
 
     def predict(self, values: Sequence[float], rows: int, *, slopes: bool) -> tuple[Array, Array | None]:
         """Return what is predicted of the first rows, (rows, c), and the derivatives, (rows, c, unknowns).
@@ -79,18 +87,15 @@ class RunModel:
             camera = camera_with(self.camera, numbers)
             motion = self._motion(numbers, rows, camera)
             return self._columns(motion, numbers, camera, self.seen.columns), None
-        duals = {
-            name: Dual(number, tuple(float(i == j) for j in range(count)))
-            for i, (name, number) in enumerate(numbers.items())
-        }
+        each = np.eye(count)[:, :, None]
+        duals = {name: Dual(number, (each[i],)) for i, (name, number) in enumerate(numbers.items())}
         camera = camera_with(self.camera, duals)
         motion = self._in_duals(numbers, rows, camera, inside, count)
         found = self._duals(motion, duals, camera, self.seen.columns)
         predicted = np.stack([np.broadcast_to(value_of(one), rows) for one in found], axis=-1)
         jacobian = np.empty((rows, len(found), count))
         for c, one in enumerate(found):
-            for j, slope in enumerate(slopes_of(one, count)):
-                jacobian[:, c, order[j]] = slope
+            jacobian[:, c, order] = np.broadcast_to(slopes_of(one, 1)[0], (count, rows)).T
         if not (np.isfinite(predicted).all() and np.isfinite(jacobian).all()):
             raise SolverError("The motion has no derivative there.")
         return predicted, jacobian
@@ -131,32 +136,52 @@ class RunModel:
     def _in_duals(self, numbers: Mapping[str, float], rows: int, camera: Camera, inside: int, count: int) -> Motion:
         """Return the motion in duals, with slopes by all that is unknown: the scenario's numbers come first."""
         listed = [keys.Key(name, number, "") for name, number in numbers.items()]
-        system, start = keys.moved(self.scenario, dict(numbers))
         duals = keys.varied(self.scenario, listed)  # names that it does not have only make room for slopes
         times = self.times(rows, float(value_of(camera.time_offset)))
-        begun = np.maximum(times, start.time)
-        form, begin = (None, None) if self._turned else form_throughout(system, start, float(times[-1]))
-        if form is not None and begin is not None and form.differentiable:
-            check_brink(system, begin)
-            now = transitions.at_start(*duals)
-            varied = type(form).from_state_vector(duals[0], now.start, now.state_vector)
-            parts, grown = varied.motion_and_support_at(times - start.time)
-            support = tuple(first + gone for first, gone in zip(duals[1].support, grown, strict=True))
-            motion = Motion(*parts[:3], None, duals[0], times, support)
+        form = self._formula(numbers, float(times[-1]))
+        if form is not None:
+            varied = gathered(form.of(*duals))
+            (r, V, Omega, _), grown = varied.motion_and_support_at(times - float(duals[1].time))
+            support = tuple(first + gone for first, gone in zip(gathered(duals[1].support), grown, strict=True))
+            motion = Motion(r, V, Omega, None, self._moving(duals[0]), times, support)
         else:
+            system, start = keys.moved(self.scenario, dict(numbers))
+            begun = np.maximum(times, start.time)
             own = keys.varied(self.scenario, listed[:inside])
             followed = (
                 by_formula.follow_formula(system, start, begun, own, list(numbers)[:inside]) if self._turned else None
             )
             if followed is None:
-                followed = follow(system, start, begun, own, list(numbers)[:inside])
-            motion = _as_duals(followed, duals[0], begun, times, inside, count)
-        shift = Dual(0.0, slopes_of(camera.time_offset, count))
-        if any(shift.slopes):
+                followed = follow(system, start, begun, own, list(numbers)[:inside], of_motion=True)
+            motion = _as_duals(followed, self._moving(duals[0]), begun, times, inside, count)
+        if isinstance(camera.time_offset, Dual):
+            shift = Dual(0.0, camera.time_offset.slopes)
             moved = Vector(*(one + v * shift for one, v in zip(motion.r, motion.V, strict=True)))
             clock: Any = Dual(times, shift.slopes)
             motion = Motion(moved, motion.V, motion.Omega, motion.q, motion.system, clock, motion.support)
         return motion
+
+    def _moving(self, system: RollingSystem) -> RollingSystem:
+        """Return the system with its slopes gathered, where a column looks at the support itself."""
+        own = any(name == "angle" or name.startswith("mark_") for name in self.seen.columns)
+        return gathered(system) if own else system
+
+    def _formula(self, numbers: Mapping[str, float], end: float) -> type[ClosedForm] | None:
+        """Return the closed form that has derivatives and covers all of the run.
+
+        Where no event can come, whatever the numbers, it is asked for once.
+        """
+        if self._turned or self._form:
+            return None if self._turned else self._form[0]
+        system, start = keys.moved(self.scenario, dict(numbers))
+        form, now = form_throughout(system, start, end)
+        if form is None or not form.differentiable:
+            return None
+        check_brink(system, now)
+        names = now.law.event_functions(system, now.time, now.state_vector, now.event_parameters)
+        if set(names) <= form.impossible_events:
+            self._form.append(type(form))
+        return type(form)
 
     @property
     def _turned(self) -> bool:
@@ -209,6 +234,21 @@ class RunModel:
         return angle + turns * (2 * np.pi)
 
 
+def gathered(thing: Any) -> Any:
+    """Return a structure whose duals have all their slopes as one, a column: each operation does all of them at once.
+
+    Examples
+    --------
+    >>> gathered((Dual(1.0, (2.0, 3.0)), 4.0))[0].slopes[0].tolist()
+    [[2.0], [3.0]]
+    """
+    if isinstance(thing, Dual):
+        return Dual(thing.value, (np.array(thing.slopes, dtype=float)[:, None],))
+    if is_dataclass(thing) and not isinstance(thing, type):
+        return type(thing)(**{part.name: gathered(getattr(thing, part.name)) for part in fields(thing)})
+    return tuple(map(gathered, thing)) if type(thing) is tuple else thing
+
+
 def form_throughout(system: RollingSystem, start: State, end: float) -> tuple[ClosedForm | None, PhaseStart]:
     """Return the closed form of all of a run and how it begins; no form where none covers it, or an event comes."""
     now = transitions.at_start(system, start)
@@ -241,11 +281,11 @@ def _as_duals(followed: Followed, system: RollingSystem, begun: Array, times: Ar
     """Return what was followed as duals of arrays."""
     held, slopes = _held(followed.samples, begun), followed.slopes
     places = np.clip(np.searchsorted(followed.samples.time, begun), 0, followed.samples.time.size - 1)
-    rest = (0.0,) * (count - inside)
 
     def parts(values: Array, name: str) -> list[Dual]:
-        of = slopes[name][places]
-        return [Dual(values[:, i], (*of[:, i].T, *rest)) for i in range(values.shape[1])]
+        of = np.zeros((count, *values.shape))
+        of[:inside] = np.moveaxis(slopes[name][places], 2, 0)
+        return [Dual(values[:, i], (of[:, :, i],)) for i in range(values.shape[1])]
 
     V = parts(held.velocity, "velocity")
     late = times - begun  # less than 0 where the run begins a little later

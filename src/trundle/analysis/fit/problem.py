@@ -7,12 +7,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...errors import TrundleError
+from ...errors import SolverError, TrundleError
 from ...solve.samples import Array
 from .model import RunModel
 from .observations import Noise
 from .unknowns import Unknown, limit, of_run
 
+_ASIDE = 1e-9
 _NOWHERE = 1e8  # standard deviations, of a trial that has no motion
 
 
@@ -48,7 +49,8 @@ class Problem:
     priors: dict[int, Prior] = field(default_factory=dict)
     until: float = 1.0
     limits: dict[int, tuple[float, float]] = field(default_factory=dict)  # those that a trial has come to
-    last: tuple[bytes, float, Array, Array] | None = None
+    last: tuple[bytes, float, Array, Array] | None = None  # residuals and derivatives
+    recent: tuple[bytes, float, Array] | None = None  # residuals alone
 
     @property
     def start(self) -> Array:
@@ -65,20 +67,31 @@ class Problem:
 
     def residual(self, values: Array) -> Array:
         """Return (model − data)/σ of all that counts, and of the priors."""
-        if self.last is not None and self.last[:2] == (values.tobytes(), self.until):
-            return self.last[2]
-        return self._stacked(values, slopes=False)[0]
+        for known in (self.last, self.recent):
+            if known is not None and known[:2] == (values.tobytes(), self.until):
+                return known[2]
+        self.recent = (values.tobytes(), self.until, self._stacked(values, slopes=False)[0])
+        return self.recent[2]
 
     def both(self, values: Array) -> tuple[Array, Array]:
         """Return the residuals and their derivatives, (m, unknowns)."""
         if self.last is None or self.last[:2] != (values.tobytes(), self.until):
-            self.last = (values.tobytes(), self.until, *self._stacked(values, slopes=True))
+            try:
+                found = self._stacked(values, slopes=True)
+            except (SolverError, ArithmeticError):  # an event that hangs on a rounding does not a little aside
+                found = self._stacked(values * (1 + _ASIDE), slopes=True)
+            self.last = (values.tobytes(), self.until, *found)
         return self.last[2], self.last[3]
+
+    @property
+    def by_formula(self) -> bool:
+        """Whether derivatives cost little more than the motion."""
+        return all(model.by_formula for model in self.models)
 
     def tried(self, values: Array) -> Array:
         """Return the residuals; enormous ones where there is no motion, so that the step is not taken."""
         try:
-            found = self.residual(values)
+            found = self.both(values)[0] if self.by_formula else self.residual(values)
         except (TrundleError, ArithmeticError, ValueError, IndexError):
             return np.full(self.size, _NOWHERE)
         return np.where(np.isfinite(found), found, _NOWHERE)

@@ -64,6 +64,8 @@ def follow(
     names: Sequence[str],
     tolerance: float | None = None,
     progress: Progress | None = None,
+    *,
+    of_motion: bool = False,
 ) -> Followed:
     """Follow a body through its phases with the derivatives by some parameters.
 
@@ -81,6 +83,8 @@ def follow(
         Of the method, Taylor's where it can be had; absent: its own.
     progress : callable, optional
         Told the fraction done.
+    of_motion : bool
+        Whether only slopes of the motion are asked for, and of no force.
     """
     method: Any = method_for(system)
     integrate: Integrate = (
@@ -88,7 +92,7 @@ def follow(
     )
     duals, first = in_duals
     begins = transitions.at_start(duals, first)
-    run = _Run(integrate, system, times, duals, begins, len(names))
+    run = _Run(integrate, system, times, duals, begins, len(names), of_motion=of_motion)
     check_start(duals, begins, first, names)
     samples = run.solve(start, method.TOLERANCE if tolerance is None else tolerance, progress)
     return Followed(samples, run.slopes(samples), run.instants(samples))
@@ -296,8 +300,11 @@ class _Run(VariationalRun):
         duals: RollingSystem,
         begins: PhaseStart,
         count: int,
+        *,
+        of_motion: bool = False,
     ) -> None:
         super().__init__(method, system, times, duals, begins, count)
+        self.of_motion = of_motion
         self.pieces: list[tuple[Array, Slopes]] = []
         self.events = list(begins.events)
         before = begins.across or begins
@@ -308,7 +315,7 @@ class _Run(VariationalRun):
 
     def keep(self, law: Law, piece: Segment) -> None:
         """Keep the derivatives of the samples."""
-        slopes = slopes_of_samples(self.duals, law, piece.times, piece.states, self.count)
+        slopes = slopes_of_samples(self.duals, law, piece.times, piece.states, self.count, self.of_motion)
         self.pieces.append((piece.times, slopes))
 
     def stopped(self, law: Law, stop: ZeroCrossing) -> None:
@@ -356,8 +363,11 @@ class _Run(VariationalRun):
         size = state.size // (1 + self.count)
         moved = law.rk4_step(self.duals, since, unstacked(state.tolist(), size), time - since)
         row = np.array([stacked(moved, self.count)], dtype=float)
-        for name, slopes in slopes_of_samples(self.duals, law, np.array([time]), row, self.count).items():
+        found = slopes_of_samples(self.duals, law, np.array([time]), row, self.count, self.of_motion)
+        for name, slopes in found.items():
             columns[name][i] = slopes[0]
+        if self.of_motion:
+            return
         if phase == SLIPPING != law.code and follows is not None and follows.law.code == SLIPPING:  # all but zero
             p, q, Omega, _, coordinates = law.split(moved)
             hat = follows.law.direction(self.duals, follows.time, follows.state_vector)

@@ -15,7 +15,9 @@ from ...solve.samples import FLIGHT, Array
 Slopes = dict[str, Array]  # of each quantity, (n, components, parameters)
 
 
-def slopes_of_samples(system: RollingSystem, law: Law, time: Array, states: Array, count: int) -> Slopes:
+def slopes_of_samples(
+    system: RollingSystem, law: Law, time: Array, states: Array, count: int, of_motion: bool = False
+) -> Slopes:
     """Return the derivatives of all sampled quantities, given states stacked with their own.
 
     Parameters
@@ -30,6 +32,8 @@ def slopes_of_samples(system: RollingSystem, law: Law, time: Array, states: Arra
         As `VariationalLaw` has them.
     count : int
         How many parameters there are.
+    of_motion : bool
+        Whether the motion alone is asked for: no contact, no force, no slip.
 
     Returns
     -------
@@ -40,12 +44,25 @@ def slopes_of_samples(system: RollingSystem, law: Law, time: Array, states: Arra
     state: Any = unstacked(list(states.T), size)
     state[3:7] = Quaternion(*state[3:7]).unit
     with np.errstate(all="ignore"):  # a slope that there is not is no number
-        return stacked_slopes(_quantities(system, law, time, state), time.size, count)
+        return stacked_slopes((_motion if of_motion else _quantities)(system, law, time, state), time.size, count)
 
 
 def stacked_slopes(found: dict[str, Any], samples: int, count: int) -> Slopes:
     """Return the slopes of each quantity as an array."""
     return {name: _array(parts, samples, count) for name, parts in found.items()}
+
+
+def _motion(system: RollingSystem, law: Law, time: Any, state: Any) -> dict[str, Any]:
+    """Return where the body is and how it moves, in duals, from a state."""
+    motion = law.motion(system, time, state)
+    _, q, _, _, coordinates = law.split(state)
+    return {
+        "position": motion.position,
+        "velocity": motion.velocity,
+        "angular_velocity": motion.angular_velocity,
+        "orientation": q,
+        "support": coordinates,
+    }
 
 
 def _quantities(system: RollingSystem, law: Law, time: Any, state: Any) -> dict[str, Any]:
