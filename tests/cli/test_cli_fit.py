@@ -52,7 +52,7 @@ def test_it_prints_the_numbers_and_writes_all_of_it(trundle: Command) -> None:
     done = trundle("fit", "track.csv", *ASKED, "--noise", "0.5 mm", "--table", "latex")
     assert (done.status, done.err) == (0, "")
     assert "good fit, χ²/dof = " in done.out
-    assert "t from `t`, x from `x [mm]`, y from `y [mm]`; 200 rows over 9.95 s." in done.out
+    assert "t from column `t`, x, y in mm, 200 rows, no gaps, 20 frames a second." in done.out
     assert {f"track/fit.{end}" for end in ("toml", "nc", "png", "html", "tex")} <= done.files
     text = Path("track/fit.toml").read_text(encoding="utf-8")
     assert abs(tomllib.loads(text)["body"]["inertia_ratio"] - 0.4) < 5e-4

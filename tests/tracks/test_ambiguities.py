@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 import trundle as tr
 from trundle.tracks.grid import grid_of
 
-from .examples import AXES, DEEPLABCUT, MARKS, MULTI, trk
+from .examples import AXES, DEEPLABCUT, MARKS, MULTI, trk, workbook
 
 
 def read(folder: Path, text: str | bytes, name: str = "track.csv", **options: Any) -> tr.Track:
@@ -105,6 +105,13 @@ def test_a_column_that_was_written_is_read_or_asked_for(values: list[float], sep
         assert error.key == "decimal"  # noqa: PT017
         return
     assert grid.cells(2)[0][1].tolist() == values
+
+
+def test_a_spreadsheet_of_words_is_asked_as_a_text_is(tmp_path: Path) -> None:
+    sheet = workbook(Sheet=[["t", "x (mm)"], ["1,000", "1,234"], ["1,100", "1,345"], ["1,200", "1,456"]])
+    assert "`decimal` must be known" in refused(tmp_path, sheet, "track.xlsx")
+    track = read(tmp_path, sheet, "track.xlsx", decimal="comma")
+    assert track.time.tolist() == [1.0, 1.1, 1.2]
 
 
 # --- which track, unit, pixel, sense ------------------------------------------------------------------

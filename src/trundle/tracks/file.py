@@ -111,7 +111,7 @@ class File:
         try:
             for sheet in book.worksheets:
                 sheet.reset_dimensions()  # what the file says of its own size may be wrong
-                yield sheet.title, grid_of_cells(list(sheet.iter_rows(values_only=True)))
+                yield sheet.title, grid_of_cells(list(sheet.iter_rows(values_only=True)), self.decimal)
         finally:
             book.close()
 

@@ -194,7 +194,7 @@ def grid_of(text: str, decimal: str | None = None) -> Grid:
     return _grid([raw[i - 1] for i in lines], lines, decimal, notes)
 
 
-def grid_of_cells(cells: Sequence[Sequence[Any]]) -> Grid:
+def grid_of_cells(cells: Sequence[Sequence[Any]], decimal: str | None = None) -> Grid:
     """Take the rows of a spreadsheet for lines of text.
 
     Examples
@@ -208,7 +208,7 @@ def grid_of_cells(cells: Sequence[Sequence[Any]]) -> Grid:
         CELL.join([*row, *[""] * (width - len(row))]) for row in written
     ]  # a sheet leaves out empty cells at the end
     lines = [i for i, row in enumerate(rows, 1) if row.strip(CELL).strip()]
-    return _grid([rows[i - 1] for i in lines], lines, None, (), CELL, "row")
+    return _grid([rows[i - 1] for i in lines], lines, decimal, (), CELL, "row")
 
 
 _TIDY = str.maketrans({"\n": " ", "\r": " ", CELL: " "})
