@@ -103,7 +103,7 @@ def sensitivities(
     tolerance = _tolerance(run_or_scenario)
     followed = None
     if method != "variational":
-        followed = follow_formula(system, start, times, in_duals, names)
+        followed = follow_formula(system, start, times, in_duals, [key.name for key in wanted])
     way = "variational" if followed is None else "exact"
     if followed is None:
         followed = _in_parts(scenario, wanted, times, tolerance, progress)
