@@ -15,8 +15,7 @@ TITLE = "Derivatives by ten numbers beside the run alone, by the same method"
 COUNT, MOST, ROUNDS = 10, 60.0, 5
 EVERY = 0.1
 DURATIONS = {"rattleback": 5.0, "coin": 60.0, "bowl": 100.0}
-# Of 0; four numbers for three; and what alone would make the coin no body of revolution, with a law of more operations.
-LEFT_OUT = ("restitution", "start.orientation", "moments")
+LEFT_OUT = ("restitution", "start.orientation")  # of 0; four numbers for three
 
 
 def scenarios() -> Iterator[tuple[str, tr.Scenario, str]]:
