@@ -15,7 +15,7 @@ import trundle as tr
 from trundle.analysis.sweep.engine import Engine
 from trundle.analysis.sweep.measures import FAILED, REFUSED, VARIABLES
 from trundle.analysis.sweep.plan import read_plan
-from trundle.analysis.sweep.varying import DESIGNS, Design, read_axes
+from trundle.analysis.sweep.varying import DRAWN, Design, read_axes
 
 pytest.importorskip("heyoka")
 
@@ -143,7 +143,7 @@ def test_draws_fill_what_they_are_drawn_from() -> None:
         {"gravity": {"uniform": [9, 10]}, "body.mass": {"normal": [0.1, 0.01]}, "support.tilt": "1 ± 0.5 deg"},
         tr.Scenario.load(TABLE),
     )
-    for name in DESIGNS[2:]:
+    for name in DRAWN:
         table = Design(name, 1024, 3).table(axes)[:1024]
         g, m, tilt = table.T
         assert 9 < g.min() < 9.05 < 9.95 < g.max() < 10

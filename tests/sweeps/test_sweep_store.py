@@ -54,7 +54,7 @@ def test_a_store_opens_while_it_grows(tmp_path: Path) -> None:
     store = Store.create(tmp_path / "a.zarr", plan)
     store.write(3, plan.job.run(plan.values(3)))
     found = tr.Sweep.load(tmp_path / "a.zarr")
-    assert found.counts == {"waiting": 56, "done": 8, "refused": 0, "failed": 0}
+    assert found.counts == {"waiting": 56, "done": 8, "refused": 0, "failed": 0, "inferred": 0}
     assert np.isfinite(found.data["end x"].values).sum() == 8
     assert "56 waiting" in str(found)
 

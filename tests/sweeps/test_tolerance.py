@@ -8,6 +8,9 @@ import numpy as np
 import pytest
 
 import trundle as tr
+from trundle.analysis.sweep.api import run_plan
+from trundle.analysis.sweep.engine import Engine
+from trundle.analysis.sweep.plan import read_plan
 from trundle.analysis.sweep.refining import refine
 
 pytest.importorskip("heyoka")
@@ -82,3 +85,6 @@ def test_the_boundary_of_a_sweep_is_that_of_its_grid() -> None:
     assert np.abs(near["end x"] - whole["end x"]).where(run).max() < 1e-12
     with pytest.raises(tr.InvalidValueError, match="must begin with a figure that has classes"):
         tr.sweep("tilted-turntable", over, "end x", design="boundary")
+    plan = read_plan({"scenario": "tilted-turntable", "over": over, "measure": "ending", "design": "boundary"})
+    with pytest.raises(tr.InvalidValueError, match="must be run whole"):
+        run_plan(plan, Engine(), part=(1, 2))

@@ -18,7 +18,7 @@ from .job import Columns
 from .measures import INFERRED
 from .plan import Plan, read_plan
 from .result import Sweep
-from .store import Store
+from .store import Store, check_new
 
 _PILOTS, _QUICK = 4, 0.01  # members that are timed, and s: a whole block of those that take less
 
@@ -174,6 +174,13 @@ def run_plan(
     """
     engine.check(plan)
     if plan.design.name == "boundary":
+        if part != (1, 1) or (resume and store is not None and store.exists()):
+            rule = 'must be run whole where the design is "boundary": where a run is made depends on those before it'
+            raise InvalidValueError(
+                "--part" if part != (1, 1) else "--resume", rule, plan.title, "Run it from the beginning."
+            )
+        if store is not None:
+            check_new(store)
         found = Sweep.of(plan, _near_boundary(plan, engine, progress))
         return found if store is None else Sweep.load(found.save(store))
     told = _Told(progress, plan.chunks)
