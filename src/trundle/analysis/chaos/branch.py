@@ -48,6 +48,10 @@ class OrbitBranch(Displayed):
         Where a multiplier passes −1.
     stopped : tuple of str
         Why the branch ends at its beginning and at its end.
+
+    Examples
+    --------
+    See `PeriodicOrbit.along`.
     """
 
     title: str
@@ -92,6 +96,10 @@ class OrbitBranch(Displayed):
         -------
         dict
             Without the states.
+
+        Examples
+        --------
+        See `PeriodicOrbit.along`.
         """
         return {
             "title": self.title,
@@ -113,6 +121,10 @@ class OrbitBranch(Displayed):
         -------
         matplotlib.figure.Figure
             Needs neither a display nor pyplot.
+
+        Examples
+        --------
+        See `PeriodicOrbit.along`.
         """
         from matplotlib.figure import Figure
 

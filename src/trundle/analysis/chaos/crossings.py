@@ -137,9 +137,8 @@ class _Motion:
                 known = exact.dense(system, start, self.end)
                 known(np.array([start.time, self.end]))
                 return exact, known
-        name = methods.choose(method, system, start)
-        name = methods._numerical(system) if method == "auto" and name == "exact" else name
-        chosen = Method.of(name, tolerance)
+            method = "taylor" if system.support.surface.analytic else "runge-kutta"
+        chosen = Method.of(methods.choose(method, system, start), tolerance)
         return chosen, chosen.dense(system, start, self.end)
 
     def at(self, times: Array) -> Samples:

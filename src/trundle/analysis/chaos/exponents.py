@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -117,6 +118,7 @@ def lyapunov_exponents(
     left_out = 0.1 * (run.growth[-1].time - asked.start.time) if left_out is None else left_out
     _check_long_enough(run.growth, samples, left_out)
     zeros = _zeros(asked.system, now, samples, basis, scale)
+    zeros = replace(zeros, count=max(0, zeros.count - len(run.lost)), lost=len(run.lost))
     return _told(asked, run, samples, length, left_out, dimension, zeros)
 
 

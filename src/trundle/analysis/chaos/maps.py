@@ -91,6 +91,10 @@ class StartMap(Displayed):
         -------
         matplotlib.figure.Figure
             Needs neither a display nor pyplot.
+
+        Examples
+        --------
+        See `lyapunov_map` and `basins_of_attraction`.
         """
         from matplotlib.colors import BoundaryNorm, ListedColormap
         from matplotlib.figure import Figure

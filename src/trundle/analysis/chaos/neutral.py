@@ -22,7 +22,7 @@ from .tangents import constraint_rows
 from .volume import slopes_at
 
 _NEUTRAL = 1e-8  # singular values below this share are none
-_RANK = 1e-6
+_RANK, _ROUGH = 1e-6, 1e-4  # the second where slopes are differences
 _DIES = 0.2  # share of itself that is left at the end of a neutral difference which dies away with the motion
 _SHIFTS, _TURNS = (
     slice(0, 3),
@@ -44,19 +44,23 @@ class Neutral:
         How many more directions the symmetries have.
     integrals : tuple of str
         The first integrals that count.
+    lost : int
+        How many exponents are −∞, by which there may be fewer.
     """
 
     count: int
     flow: bool
     symmetries: int
     integrals: tuple[str, ...]
+    lost: int = 0
 
     def __str__(self) -> str:
         said = ["the flow itself"] if self.flow else []
         if self.symmetries:
             said.append(f"{self.symmetries} {'symmetry' if self.symmetries == 1 else 'symmetries'}")
         said += [f"the {name}" for name in self.integrals]
-        return f"{self.count} ({', '.join(said)})" if said else "none"
+        less = f"; less {self.lost} that events take away" if self.lost else ""
+        return f"{self.count} ({', '.join(said)}{less})" if said else "none"
 
 
 def neutral(
@@ -90,14 +94,14 @@ def neutral(
     flow, moves = _neutral_moves(system, law, times, states, scale)
     integrals, rows = _integrals(system, law, float(times[0]), states[0], basis, scale, phases, changes=changes)
     along = basis.T @ moves[0] if moves.size else np.zeros((basis.shape[1], 0))
-    k, m = _rank(along), _rank(rows)
-    double = _rank(rows @ np.linalg.qr(along)[0]) if k and m else 0
+    k, m = _rank(along), _rank(rows, _ROUGH)
+    double = _rank(rows @ np.linalg.qr(along)[0], _ROUGH) if k and m else 0
     return Neutral(k + m - double, flow, max(0, k - flow), tuple(integrals))
 
 
-def _rank(matrix: Array) -> int:
+def _rank(matrix: Array, least: float = _RANK) -> int:
     """Return the rank of a matrix whose rows or columns are of the size of 1."""
-    return int((np.linalg.svd(matrix, compute_uv=False) > _RANK).sum()) if matrix.size else 0
+    return int((np.linalg.svd(matrix, compute_uv=False) > least).sum()) if matrix.size else 0
 
 
 def _neutral_moves(system: RollingSystem, law: Law, times: Array, states: Array, scale: Array) -> tuple[bool, Array]:
@@ -193,12 +197,12 @@ def _integrals(
             parts = [_parts(term, there.shape[1]) for term in terms]
             return np.asarray(sum(parts)) if parts else np.zeros((0, there.shape[1]))
 
-        slopes = differences(value, y, scale[:, None] * basis)
+        slopes = differences(value, y, scale[:, None] * basis, rough=True)  # some are quadratures
         sizes = np.abs(slopes).max() if slopes.size else 0.0
         if not np.isfinite(sizes) or sizes == 0:
             continue
         together = np.vstack([rows, slopes / sizes])
-        if _rank(together) > _rank(rows):
+        if _rank(together, _ROUGH) > _rank(rows, _ROUGH):
             names.append(integral.name)
             rows = together
     return names, rows

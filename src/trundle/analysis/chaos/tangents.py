@@ -155,8 +155,9 @@ class TangentRun(VariationalRun):
             for piece in super().integrate(system, now, instants, tolerance, None):
                 last = piece.times == until
                 yield replace(piece, times=piece.times[last], states=piece.states[last])
-                if piece.stop is not None:
+                if piece.stop is not None and not _shrinks(now.law, piece.stop):
                     self._cut_short(now.law, begin, piece.stop.time, tolerance)
+                if piece.stop is not None:
                     return
             law, _, state = self.here
             if whole:
@@ -175,7 +176,8 @@ class TangentRun(VariationalRun):
     def stopped(self, law: Law, stop: ZeroCrossing) -> None:
         """Write down how much the differences have grown by an event."""
         _, time, state = self.here
-        self.here = law, time, self._renormalised(law, stop.time, state)
+        # Where slip or turning shrinks to nothing, its differences die away without end: that belongs to the event.
+        self.here = law, time, self._renormalised(law, stop.time, state, across=_shrinks(law, stop))
         self.on_event = True
 
     def _state(self, now: PhaseStart) -> list[Dual]:
@@ -260,6 +262,11 @@ class TangentRun(VariationalRun):
         rows = constraint_rows(self.system, law, time, values) * scale
         basis = np.linalg.qr(rows.T)[0]
         return np.asarray(columns - basis @ (basis.T @ columns))
+
+
+def _shrinks(law: Law, stop: ZeroCrossing) -> bool:
+    """Tell whether a law ends because something has shrunk to nothing."""
+    return stop.name.removeprefix("near ") in law.ends
 
 
 def constraint_rows(system: RollingSystem, law: Law, time: float, values: list[float]) -> Array:

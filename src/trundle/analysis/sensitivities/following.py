@@ -258,7 +258,10 @@ class VariationalRun:
             numbers: Any = np.array(state, dtype=object)
             known = transitions.jolted(self.duals, law, kink, numbers) if stop.name == JOLT else None
             return ZeroCrossing(stop.time, stop.name, numbers, known)
-        rates = [float(rate) for rate in law.rates(self.system, stop.time, [one.value for one in state])]
+        try:
+            rates = [float(rate) for rate in law.rates(self.system, stop.time, [one.value for one in state])]
+        except ZeroDivisionError:
+            raise no_derivative(stop.time, "slip is nothing there to the last digit, and has no direction") from None
         moved = self._moved(law, stop, state, rates)
         pairs = zip(state, rates, strict=True)
         there = [
