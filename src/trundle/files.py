@@ -12,12 +12,13 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .errors import RunFileError, TrundleError
+from .errors import InvalidValueError, RunFileError, TrundleError
 
 if TYPE_CHECKING:
     import xarray
 
 _STAGE, _UNHELD = ".trundle-", ".trundle+"  # folders of a process that holds them, and for an instant before that
+_HEAP = b"GCOL\x01\0\0\0"  # where a file of HDF5 keeps its words
 _OLD = 86_400.0  # s: older than this is what nobody writes to any more, where no lock can tell
 
 
@@ -141,6 +142,7 @@ def read_netcdf(path: Path) -> xarray.Dataset:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of what is odd in a file, xarray warns before it fails
+            check_heaps(path.read_bytes())
             with h5py.File(path) as file:
                 dict(file.attrs)  # where one is damaged, h5netcdf leaves a file half open that complains when it goes
             return xarray.load_dataset(path, engine="h5netcdf", decode_times=False)
@@ -149,6 +151,34 @@ def read_netcdf(path: Path) -> xarray.Dataset:
     except Exception as error:  # noqa: BLE001  a damaged file makes four libraries raise a dozen kinds
         remedy = f"It is damaged, or something else ({first_line(error)})."
         raise RunFileError("file", "must be NetCDF4", path.name, remedy, str(path)) from None
+
+
+def check_heaps(content: bytes) -> None:
+    r"""Refuse a file of HDF5 whose words lie in a heap that leads back to itself: the library would never return.
+
+    A heap of words begins with GCOL, and holds objects that each say how long they are; the last is free space.
+
+    Examples
+    --------
+    >>> check_heaps(b"GCOL\x01\0\0\0" + (64).to_bytes(8, "little") + bytes(48))
+    Traceback (most recent call last):
+    ...
+    trundle.errors.InvalidValueError: `file` must be whole; got 'words that lead back to themselves'. It is damaged.
+    """
+    place = content.find(_HEAP)
+    while place >= 0:
+        end = place + int.from_bytes(content[place + 8 : place + 16], "little")
+        at = place + 16
+        while at + 16 <= min(end, len(content)):
+            index, size = (
+                int.from_bytes(content[at : at + 2], "little"),
+                int.from_bytes(content[at + 8 : at + 16], "little"),
+            )
+            step = 16 + -(-size // 8) * 8 if index else size  # the size of what is free has its own 16 bytes in it
+            if step < 16 or at + step > end:
+                raise InvalidValueError("file", "must be whole", "words that lead back to themselves", "It is damaged.")
+            at += step
+        place = content.find(_HEAP, place + 4)
 
 
 def first_line(error: Exception) -> str:

@@ -515,3 +515,12 @@ def test_a_name_from_elsewhere_is_not_taken_for_a_file(tmp_path: Path) -> None:
     other = tmp_path / "ball läuft (2).nc"
     shutil.copy(source, other)
     assert "ball läuft (2).nc" in tr.Trajectory.load(other).card().origin
+
+
+def test_words_that_lead_back_to_themselves_are_refused(tmp_path: Path) -> None:
+    """HDF5 itself goes round for ever in such a file."""
+    whole = content("a closed form")
+    heap = whole.index(b"GCOL")
+    (tmp_path / "run.nc").write_bytes(whole[: heap + 16] + bytes(64) + whole[heap + 80 :])
+    with pytest.raises(tr.InvalidValueError, match="words that lead back to themselves"):
+        tr.Trajectory.load(tmp_path / "run.nc")

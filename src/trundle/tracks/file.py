@@ -13,12 +13,12 @@ from typing import Any
 
 from ..errors import InvalidValueError
 from ..extras import need
+from ..files import check_heaps
 from .grid import Grid, decoded, grid_of, grid_of_cells
 
 _MOST = 2**29  # bytes of one member of an archive
 _SMALL, _TIMES = 2**23, 200  # bytes, above which nothing may be so many times larger than its archive says
 _MEMBERS = 4096
-_HEAP = b"GCOL\x01\0\0\0"
 _TABLES = (".csv", ".tsv", ".txt")
 _BOOKS = (".xlsx", ".xlsm")
 
@@ -127,24 +127,3 @@ def opened(file: File) -> Iterator[Any]:
     check_heaps(file.content)
     with h5py.File(io.BytesIO(file.content)) as root:
         yield root
-
-
-def check_heaps(content: bytes) -> None:
-    """Refuse a file of HDF5 whose words lie in a heap that leads back to itself: the library would never return.
-
-    A heap of words begins with GCOL, and holds objects that each say how long they are; the last is free space.
-    """
-    place = content.find(_HEAP)
-    while place >= 0:
-        end = place + int.from_bytes(content[place + 8 : place + 16], "little")
-        at = place + 16
-        while at + 16 <= min(end, len(content)):
-            index, size = (
-                int.from_bytes(content[at : at + 2], "little"),
-                int.from_bytes(content[at + 8 : at + 16], "little"),
-            )
-            step = 16 + -(-size // 8) * 8 if index else size  # the size of what is free has its own 16 bytes in it
-            if step < 16 or at + step > end:
-                raise InvalidValueError("file", "must be whole", "words that lead back to themselves", "It is damaged.")
-            at += step
-        place = content.find(_HEAP, place + 4)

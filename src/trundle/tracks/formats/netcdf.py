@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from ...files import read_netcdf
 from ..arrays import dataset_table
-from ..file import File, check_heaps
+from ..file import File
 from ..options import Options
 from ..table import Table
 from .base import Format
@@ -28,6 +28,5 @@ class NetCDF(Format):
         import xarray
 
         classic = file.content[:3] == b"CDF"  # NetCDF3, which is no HDF5
-        check_heaps(file.content)
         data = xarray.load_dataset(file.path, decode_times=False) if classic else read_netcdf(file.path)
         return [dataset_table(data, options)]
