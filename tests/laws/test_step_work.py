@@ -50,10 +50,10 @@ def rattleback() -> Any:
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-8, 1e-9])
 def test_the_error_reached_is_of_the_tolerance_asked_for(rattleback: Any, tolerance: float) -> None:
     """Against Taylor's method at its finest, and against the energy, which needs no other run."""
-    ours = tr.simulate(*rattleback, 20.0, 0.1, tolerance=tolerance)
-    fine = tr.simulate(*rattleback, 20.0, 0.1)
+    ours = tr.simulate(*rattleback, 30.0, 0.1, tolerance=tolerance)
+    fine = tr.simulate(*rattleback, 30.0, 0.1)
     assert (ours.method, fine.method) == ("runge-kutta", "taylor")
-    turned = float(np.linalg.norm(fine.data.angular_velocity.values, axis=1).mean() * 20.0)
+    turned = float(np.linalg.norm(fine.data.angular_velocity.values, axis=1).mean() * 30.0)
     p, wanted = ours.data.contact.values, fine.data.contact.values
     assert np.abs(p - wanted).max() <= SOLVER(turned, tolerance, np.abs(wanted).max())
     E = energy(ours)
@@ -97,23 +97,3 @@ def test_it_is_the_same_whatever_has_been_compiled(rattleback: Any) -> None:
     one, other = (tr.simulate(*rattleback, 20.0, 0.1, tolerance=1e-9) for _ in range(2))
     assert one.method == other.method
     assert np.array_equal(one.data.position.values, other.data.position.values)
-
-
-def test_the_choice_is_right_where_the_work_differs_much(rattleback: Any) -> None:
-    """By the time of the processor, for an equal error: what is chosen is not the slower by a third."""
-    from time import process_time
-
-    from trundle.solve.methods import Method
-
-    for system, start, duration in ((*rattleback, 20.0), (COIN, WOBBLING, 60.0)):
-        times = np.linspace(0.0, duration, 11)
-        least = {}
-        for name, tolerance in (("taylor", 1e-9), ("runge-kutta", step_work.of_equal_error(1e-9))):
-            method, took = Method.of(name, tolerance), []
-            for _ in range(4):
-                began = process_time()
-                method.solve(system, start, times)
-                took.append(process_time() - began)
-            least[name] = min(took)
-        chosen = "runge-kutta" if step_work.takes_less(system, start, duration, 1e-9) else "taylor"
-        assert least[chosen] <= 1.33 * min(least.values()), least

@@ -24,11 +24,13 @@ def begin() -> None:
     import scipy.spatial.transform  # noqa: F401
     import xarray  # noqa: F401
 
-    from ..solve import taylor
+    from ..solve import compiled_steps, taylor
     from . import answers
 
     if taylor.available():
         import heyoka  # noqa: F401
+    if compiled_steps.available():
+        import numba  # noqa: F401
     for name in _SHOWN:
         answers.warm(name)
 
