@@ -31,7 +31,7 @@ ROWS = [  # (what stands in the file, what comes instead, the key, the value tha
     ('kind = "plane"', 'kind = "plane"\ntilt = "90 deg"', "`support.tilt`", "'90 deg'", "wall"),
     ('kind = "plane"', 'kind = "plane"\ntilt = 5', "`support.tilt`", "5", 'Did you mean "5 deg"?'),
     (NUDGE, "spin = 1\nangular_velocity = [0, 0, 1]", TURNING, "[0.0, 0.0, 1.0]", "Give `spin`"),
-    (NUDGE, "angular_velocity = [0, 0, 1]", TURNING, "slip", "Give `spin`"),
+    (NUDGE, "angular_velocity = [0, 0, 1]", TURNING, "slip", "give `spin` instead"),
     ('duration = "20 s"', "duration = 1e10", "`run.every`", "'10 ms'", "1,000,000,000,001"),
     (TEXT, "", "`scenario`", "''", "trundle show"),
 ]  # fmt: skip

@@ -186,8 +186,8 @@ class Draw:
         notes = notes_of(one)
         for note in notes:
             if isinstance(note, Measures):
-                if note.word and self.random.random() < 0.15:
-                    return note.word
+                if note.words and self.random.random() < 0.15:
+                    return self.random.choice(note.words)
                 sizes = range(note.size, min(note.most or note.size, note.size + 1) + 1)
                 return [self.number(note.each) for _ in range(self.random.choice(sizes))]
             if isinstance(note, Measure):

@@ -13,7 +13,7 @@ from tests.tolerances import EXACT, SOLVER
 
 import trundle as tr
 from trundle.errors import ScenarioError
-from trundle.scenario import ScenarioFile
+from trundle.scenario import ScenarioFile, files
 
 BALL = tr.Body.solid_sphere(radius=0.02, mass=0.26)
 EGG = tr.Body.shape_formula("0.025 + 0.003*nu_z + 0.004*nu_z**2", density=1030)
@@ -270,3 +270,13 @@ def test_words_are_as_short_as_they_may_be() -> None:
     assert (table.position, table.velocity, table.height) == ((0.1, 0.2), (0.03, 0.04), 0.02)
     assert table.attitude == (0.2, 0.9, 0.1)
     assert table.spin == 0.3
+
+
+def test_what_is_said_to_be_nothing_is_not_written() -> None:
+    """JSON has a word for it, TOML has none."""
+    tables = files.tables_of("tilted-turntable")
+    tables["support"]["rim"] = tables["start"]["spin"] = None
+    text = tr.Scenario.read(tables).to_toml()
+    assert "rim" not in text
+    assert "spin = " not in text.partition("[start]")[2]
+    assert tr.Scenario.loads(text).to_toml() == text

@@ -203,7 +203,7 @@ class Document(Displayed, Table):
         >>> text[text.index("rate =") :].splitlines()[0]
         'rate = "33.3 rpm"'
         """
-        return layout(self.model_dump(exclude_unset=True, by_alias=True))
+        return layout(self.model_dump(exclude_unset=True, exclude_none=True, by_alias=True))
 
 
 def _title_from(source: str) -> str:

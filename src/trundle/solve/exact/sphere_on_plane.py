@@ -272,7 +272,7 @@ class SphereOnPlane(ManySamples, ClosedForm):
         V0, phi = Complex(*self.velocity), self.phi
         zeta0 = Complex(*self.position)
         push = tt_phi2 * phi
-        zeta = zeta0 + t_phi1 * V0 + push
+        zeta = zeta0 + (t_phi1 * V0 + push)  # as `position_at` has it
         V = exponential * V0 + t_phi1 * phi
         # Ω from no slip, a Ω = iζ̇ + ωζ, written so that it keeps its digits where Ω starts at 0 and where it dies out:
         # a Ω = e^{λt} a Ω₀ + t φ₁ [ω(ζ̇₀ − λζ₀) + iφ] + ω t² φ₂ φ.
