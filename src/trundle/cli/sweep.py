@@ -115,8 +115,8 @@ def _go(
         at = "here" if engine.processes == 1 and engine.scheduler is None else f"with {engine.processes} workers"
         at = at if engine.scheduler is None else f"if {engine.scheduler} has {engine.processes} workers"
         screen.out(
-            f"{plan.members:,} members in {plan.chunks:,} chunks: about {_in_words(needed.seconds * share)} {at}, "
-            f"at most {in_bytes(needed.bytes)}, into {store}"
+            f"{plan.members:,} members in {plan.chunks:,} chunk{'s' * (plan.chunks != 1)}: "
+            f"about {_in_words(needed.seconds * share)} {at}, at most {in_bytes(needed.bytes)}, into {store}"
         )
     if dry:
         return
