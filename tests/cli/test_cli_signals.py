@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import signal
 
 import pytest
@@ -17,6 +18,23 @@ def test_an_interrupt_that_was_lost_is_raised_at_the_next_step() -> None:
         assert handler.number == signal.SIGINT
         with pytest.raises(KeyboardInterrupt), ProgressBar(wanted=False) as bar:
             bar(0.5)
+
+
+@pytest.mark.parametrize(("number", "raised"), [(signal.SIGINT, KeyboardInterrupt), (signal.SIGTERM, SystemExit)])
+def test_an_interrupt_that_became_another_exception_is_still_one(number: int, raised: type[BaseException]) -> None:
+    def compiled() -> None:
+        """Lose the exception as compiled code does that asks Python for an attribute and finds none."""
+        with contextlib.suppress(KeyboardInterrupt, SystemExit):
+            signal.raise_signal(number)
+        raise TypeError("missing 1 required positional argument")
+
+    with pytest.raises(raised), ending():
+        compiled()
+
+
+def test_an_exception_without_a_signal_stays_what_it_is() -> None:
+    with pytest.raises(TypeError), ending():
+        raise TypeError
 
 
 def test_handlers_are_put_back() -> None:

@@ -13,8 +13,8 @@ INTERRUPTED = 130
 class Ending:
     """A signal handler that ends the command, and remembers that it was called.
 
-    Python loses an exception that a handler raises inside a callback of the garbage collector or of an import;
-    `check` raises it again.
+    Python loses an exception that a handler raises inside a callback of the garbage collector or of an import, and a
+    compiled library may put another in its place; `check` raises it again.
 
     Examples
     --------
@@ -63,6 +63,9 @@ def ending() -> Iterator[Ending]:
         pass
     try:
         yield handler
+    except Exception:  # whatever it is, a signal that came before it is the cause, or at least the end
+        handler.check()
+        raise
     finally:
         for number, old in before.items():
             signal.signal(number, old)
