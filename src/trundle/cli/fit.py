@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ..errors import InvalidValueError
+from ..units import plus_minus
 from . import CANNOT_DECIDE, CARD_FAILED, screen, signals
 from .read import Angles, Columns, Decimal, Pixel, Rate, Sense, Time, Unit, Upwards, Which, pairs, units_of
 
@@ -187,33 +187,23 @@ def _noise(text: str | None) -> Any:
 
 
 def _pairs(texts: list[str], option: str) -> dict[str, Any]:
-    """Read KEY=VALUE; a number without a unit is one, a list in brackets is one."""
+    """Read KEY=VALUE; what stands in brackets is a list."""
     found: dict[str, Any] = {}
     for text in texts:
         key, sign, value = (part.strip() for part in text.partition("="))
         if not (key and sign and value):
             raise InvalidValueError(option, "must be pairs KEY=VALUE", text, "Write for instance scale=1.02.")
-        listed = [part.strip() for part in value[1:-1].split(";")] if value[:1] == "[" else None
-        found[key] = _number(value) if listed is None else [_number(part) for part in listed]
+        found[key] = [part.strip() for part in value[1:-1].split(";")] if value[:1] == "[" else value
     return found
 
 
 def _priors(texts: list[str]) -> dict[str, tuple[Any, Any]]:
     """Read KEY=VALUE±SIGMA; the unit of SIGMA may stand for both."""
     found = {}
-    for key, value in _pairs([text.replace("+-", "±").replace("+/-", "±") for text in texts], "--prior").items():
-        middle, sign, sigma = (part.strip() for part in str(value).partition("±"))
-        if not sign:
+    for key, value in _pairs(texts, "--prior").items():
+        parts = plus_minus(value) if isinstance(value, str) else None
+        if parts is None:
             remedy = "Write for instance body.inertia_ratio=0.4±0.01."
             raise InvalidValueError("--prior", "must be KEY=VALUE±SIGMA", f"{key}={value}", remedy)
-        unit = re.sub(r"^[+-]?[\d.]+([eE][+-]?\d+)?\s*", "", sigma)
-        bare = isinstance(_number(middle), float)
-        found[key] = (_number(f"{middle} {unit}") if unit and bare else _number(middle), _number(sigma))
+        found[key] = parts
     return found
-
-
-def _number(text: str) -> Any:
-    try:
-        return float(text)
-    except ValueError:
-        return text
