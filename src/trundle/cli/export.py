@@ -12,6 +12,7 @@ from ..errors import InvalidValueError
 from ..scenario import files
 from ..views.viewer import exports
 from . import screen, signals
+from .options import Quiet, load
 
 if TYPE_CHECKING:
     from ..views.scene import Scene
@@ -24,7 +25,7 @@ def export(
         list[str], typer.Argument(metavar="RUN", help="A run.nc, a scenario's name or a TOML file. .html: several.")
     ],
     file: Annotated[str, typer.Argument(metavar="FILE", help="The file to make.")],
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Write a run in another form; the ending of FILE says which. A scenario is run first.
 
@@ -92,9 +93,7 @@ def _unit(name: str) -> tuple[bytes, str]:
     """Return the law of a scenario as a unit of FMI, and a word about the binary in it."""
     from ..fields.fmi import fmu
 
-    scenario = _scenario(name)
-    if hasattr(scenario, "path"):
-        raise InvalidValueError("RUN", "must be a scenario with forces", name, "A path to roll along has no law.")
+    scenario = load(name)
     made, where = fmu(scenario.system(), scenario.start_state(), scenario.title)
     return made, f", with a binary for {where}" if where else ", sources only: no C compiler is found here"
 
@@ -106,7 +105,6 @@ def _is_run(name: str) -> bool:
 def _scenario(name: str) -> Any:
     """Return a scenario, or a path to roll along."""
     from ..analysis.geometry import PathScenario
-    from .app import load
 
     tables = files.tables_of(name)
     return PathScenario.read(tables, name) if files.rolls_along_path(tables) else load(name, tables)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,7 +10,18 @@ import typer
 from ..errors import InvalidValueError
 from ..units import plus_minus
 from . import CANNOT_DECIDE, CARD_FAILED, screen, signals
-from .read import Angles, Columns, Decimal, Pixel, Rate, Sense, Time, Unit, Upwards, Which, pairs, units_of
+from .options import (
+    NOTHING_SAID,
+    FileFolder,
+    Json,
+    Quiet,
+    Reading,
+    WhatMoves,
+    folder_for,
+    load,
+    no_scenario,
+    reads_tracks,
+)
 
 if TYPE_CHECKING:
     from ..analysis.fit import Fit
@@ -20,6 +30,7 @@ FIGURE, PAGE, DATA, SCENARIO = "fit.png", "fit.html", "fit.nc", "fit.toml"
 TABLES = {"markdown": "fit.md", "latex": "fit.tex", "csv": "fit.csv"}
 
 
+@reads_tracks
 def fit(
     tracks: Annotated[
         list[Path] | None,
@@ -27,19 +38,14 @@ def fit(
             metavar="TRACK", help="Measured motion, as `trundle read` reads it; several share what is free."
         ),
     ] = None,
-    scenario: Annotated[
-        str | None,
-        typer.Option("--scenario", "-s", metavar="SCENARIO", help="What moves: a shipped scenario or a TOML file."),
-    ] = None,
+    scenario: WhatMoves = None,
     free: Annotated[
         list[str] | None,
         typer.Option(
             "--free", "-f", metavar="KEY", help="A number to fit, such as body.inertia_ratio; repeat for more."
         ),
     ] = None,
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="FOLDER", help="Default: a folder of the track's name.")
-    ] = None,
+    output: FileFolder = None,
     noise: Annotated[
         str | None,
         typer.Option(metavar="SIZE", help="Of a value, '0.5 mm', or 'x=0.5 mm, wz=1 deg/s'; else estimated."),
@@ -55,16 +61,7 @@ def fit(
         str, typer.Option(metavar="LOSS", help="linear; against outliers soft_l1, huber, cauchy.")
     ] = "linear",
     given_start: Annotated[bool, typer.Option("--given-start", help="Take the start from the scenario.")] = False,
-    track: Which = None,
-    columns: Columns = None,
-    unit: Unit = None,
-    time: Time = None,
-    angles: Angles = None,
-    rate: Rate = None,
-    pixel: Pixel = None,
-    y: Upwards = None,
-    sense: Sense = None,
-    decimal: Decimal = None,
+    reading: Reading = NOTHING_SAID,
     compare: Annotated[
         bool, typer.Option("--compare", help="Say what may be missing: drag, resistance, a lean …")
     ] = False,
@@ -76,8 +73,8 @@ def fit(
         str | None, typer.Option(metavar="FORM", help="Write the table too: markdown, latex or csv.")
     ] = None,
     no_figure: Annotated[bool, typer.Option("--no-figure", help="Draw no figure, and write no page.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON, and nothing else.")] = False,
+    quiet: Quiet = False,
+    as_json: Json = False,
 ) -> None:
     """Fit numbers of a scenario to measured motion, and say which of them the data fix, and how well.
 
@@ -86,27 +83,24 @@ def fit(
     Exit status: 0, a good fit; 2, bad input; 3, a bad fit; 4, these data cannot decide; 130, interrupted; 1, all else.
     """
     from ..analysis.fit import fit as fit_tracks
-    from ..tracks import read_track
 
     if scenario is None:
-        remedy = "Name a shipped one (`trundle list`) or a TOML file."
-        raise InvalidValueError("--scenario", "must say what moves", "none", remedy)
+        raise no_scenario()
     numbers = _pairs(camera or [], "--camera")
     if plan:
         _plan(scenario, free or [], noise, numbers, quiet=quiet, as_json=as_json)
         return
     if not tracks:
         raise InvalidValueError("TRACK", "must name a file", "none", "Or plan a measurement: --plan.")
-    loaded = _load(scenario)
+    loaded = load(scenario)
     files = _names(table, figure=not no_figure)
-    folder = Path(tracks[0].stem) if output is None else output.expanduser()
+    folder = folder_for(output, tracks[0])
     from .writing import check_folder, write_together
 
     check_folder(folder, tuple(files))
 
-    told: dict[str, Any] = {"rate": rate, "pixel": pixel, "y": y, "sense": sense, "decimal": decimal, "track": track}
     found = fit_tracks(
-        [read_track(one, columns=pairs(columns), units=units_of(unit, time, angles), **told) for one in tracks],
+        [reading.read(one) for one in tracks],
         loaded,
         free=free or [],
         priors=_priors(prior or []),
@@ -125,7 +119,7 @@ def fit(
     }
     written = write_together(folder, {name: writers[name] for name in files})
     if as_json:
-        screen.out(json.dumps(found.as_dict(), indent=2, ensure_ascii=False, allow_nan=False))
+        screen.show_json(found.as_dict())
     elif not quiet:
         _tell(found, draws, written, compare=compare)
     _leave(found)
@@ -147,7 +141,7 @@ def _tell(found: Fit, draws: int, written: list[Path], *, compare: bool) -> None
         screen.out(str(found.compare()))
     if draws:
         screen.out(str(found.sample(draws)))
-    screen.out(f"Wrote {', '.join(str(path) for path in written)}")
+    screen.wrote(written)
 
 
 def _leave(found: Fit) -> None:
@@ -167,18 +161,8 @@ def _plan(
     from ..analysis.fit import plan_fit
 
     noises = {} if noise is None else {"noises": [part.strip() for part in noise.split(",")]}
-    found = plan_fit(_load(scenario), free, camera=camera, **noises)  # type: ignore[arg-type]
-    if as_json:
-        screen.out(json.dumps(found.as_dict(), indent=2, ensure_ascii=False))
-    elif not quiet:
-        screen.out(str(found))
-
-
-def _load(scenario: str) -> object:
-    from ..scenario import files
-    from ..simulation.simulate import Scenario
-
-    return Scenario.read(files.tables_of(scenario), scenario)
+    found = plan_fit(load(scenario), free, camera=camera, **noises)  # type: ignore[arg-type]
+    screen.show(found, quiet=quiet, as_json=as_json)
 
 
 def _noise(text: str | None) -> Any:

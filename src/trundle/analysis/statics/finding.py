@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from ...errors import InvalidValueError
@@ -138,9 +139,8 @@ def _along_line(system: RollingSystem, start: State, place: Place, turns: Any) -
     bent = abs(float(line.distance(line.high)) - float(line.distance(line.low)))
     searched = f"{_turns(line)} of the cylinder, {bent:.4g} m along the support, from the start"
     reason = "" if found else _why_none_on_line(line)
-    return Equilibria(
-        system, start, found, pulled, potential, searched, reason, repeats, line=line, marked=(*found, *pulled)
-    )
+    section = line, (*found, *pulled)
+    return Equilibria(system, start, found, pulled, potential, searched, lambda: section, reason, repeats)
 
 
 def _checked(turns: Any) -> float:
@@ -228,8 +228,8 @@ def _everywhere(system: RollingSystem, start: State, place: Place, turns: Any) -
     reason = ""
     if not found:
         reason = _why_no_place(system, start.time, nearest, torque, bool(families))
-    line, marked = _section(system, start.time, found[0] if found else None, nearest, at)
-    return Equilibria(system, start, found, pulled, potential, search.told, reason, line=line, marked=marked)
+    section = partial(_section, system, start.time, found[0] if found else None, nearest, at)
+    return Equilibria(system, start, found, pulled, potential, search.told, section, reason)
 
 
 def _kinds(system: RollingSystem, search: Search, family: Family, at: Callable[..., Equilibrium]) -> list[Equilibrium]:

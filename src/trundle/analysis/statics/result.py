@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from ...display import Displayed, Headline, Markup, pairs, paragraph, records
@@ -152,14 +153,14 @@ class Equilibria(Displayed):
         Whether every load that a body at rest feels has a potential.
     searched : str
         What was searched.
+    section : callable
+        Rolls the body along a line to draw the energy over: many times the work of the search.
     reason : str
         Where there are none: why.
     repeats : tuple of 2 floats, optional
         Where everything comes again with each turn: after how far, m, and how much higher, J.
     title : str
         For text and figure.
-    line : Line, optional
-        The line along which the energy is drawn.
 
     Examples
     --------
@@ -175,11 +176,24 @@ class Equilibria(Displayed):
     pulled: tuple[Equilibrium, ...]
     conservative: bool
     searched: str
+    section: Callable[[], tuple[Line | None, tuple[Equilibrium, ...]]] = field(repr=False)
     reason: str = ""
     repeats: tuple[float, float] | None = None
     title: str = ""
-    line: Line | None = field(default=None, repr=False)
-    marked: tuple[Equilibrium, ...] = field(default=(), repr=False)  # those on the line
+
+    @cached_property
+    def _drawn(self) -> tuple[Line | None, tuple[Equilibrium, ...]]:
+        return self.section()
+
+    @property
+    def line(self) -> Line | None:
+        """The line along which the energy is drawn, if there is one."""
+        return self._drawn[0]
+
+    @property
+    def marked(self) -> tuple[Equilibrium, ...]:
+        """The equilibria on that line."""
+        return self._drawn[1]
 
     def __iter__(self) -> Iterator[Equilibrium]:
         return iter(self.found)
