@@ -25,6 +25,7 @@ from .options import (
 
 if TYPE_CHECKING:
     from ..analysis.fit import Fit
+    from ..tracks import Example
 
 FIGURE, PAGE, DATA, SCENARIO = "fit.png", "fit.html", "fit.nc", "fit.toml"
 TABLES = {"markdown": "fit.md", "latex": "fit.tex", "csv": "fit.csv"}
@@ -35,7 +36,8 @@ def fit(
     tracks: Annotated[
         list[Path] | None,
         typer.Argument(
-            metavar="TRACK", help="Measured motion, as `trundle read` reads it; several share what is free."
+            metavar="TRACK",
+            help="Measured motion, as `trundle read` reads it, or example:NAME; several share what is free.",
         ),
     ] = None,
     scenario: WhatMoves = None,
@@ -83,18 +85,22 @@ def fit(
     Exit status: 0, a good fit; 2, bad input; 3, a bad fit; 4, these data cannot decide; 130, interrupted; 1, all else.
     """
     from ..analysis.fit import fit as fit_tracks
+    from ..tracks import example_of
 
-    if scenario is None:
+    known = example_of(tracks[0]) if tracks else None
+    if scenario is None and known is None:
         raise no_scenario()
     numbers = _pairs(camera or [], "--camera")
+    loaded = _load(scenario, known)
+    if known is not None and scenario is None:
+        free, noise = free or list(known.free), noise or known.noise
     if plan:
-        _plan(scenario, free or [], noise, numbers, quiet=quiet, as_json=as_json)
+        _plan(loaded, free or [], noise, numbers, quiet=quiet, as_json=as_json)
         return
     if not tracks:
         raise InvalidValueError("TRACK", "must name a file", "none", "Or plan a measurement: --plan.")
-    loaded = load(scenario)
     files = _names(table, figure=not no_figure)
-    folder = folder_for(output, tracks[0])
+    folder = folder_for(output, tracks[0] if known is None else Path(known.name))
     from .writing import check_folder, write_together
 
     check_folder(folder, tuple(files))
@@ -155,14 +161,23 @@ def _leave(found: Fit) -> None:
 
 
 def _plan(
-    scenario: str, free: list[str], noise: str | None, camera: dict[str, Any], *, quiet: bool, as_json: bool
+    scenario: object, free: list[str], noise: str | None, camera: dict[str, Any], *, quiet: bool, as_json: bool
 ) -> None:
     """Print how well each number would be known."""
     from ..analysis.fit import plan_fit
 
     noises = {} if noise is None else {"noises": [part.strip() for part in noise.split(",")]}
-    found = plan_fit(load(scenario), free, camera=camera, **noises)  # type: ignore[arg-type]
+    found = plan_fit(scenario, free, camera=camera, **noises)  # type: ignore[arg-type]
     screen.show(found, quiet=quiet, as_json=as_json)
+
+
+def _load(scenario: str | None, known: Example | None) -> Any:
+    """Return the scenario that is named, or the one that an example of a track begins with."""
+    if scenario is not None or known is None:
+        return load(str(scenario))
+    from ..simulation.simulate import Scenario
+
+    return Scenario.read(known.scenario, known.name)
 
 
 def _noise(text: str | None) -> Any:
