@@ -141,7 +141,7 @@ export function createChart(plot: Plot, look: Look, width: number, height: numbe
     d: pathOf(xs, ys, overTime),
     fill: 'none',
     stroke: look.line,
-    'stroke-width': look.width,
+    'stroke-width': overTime ? look.width : 0.6 * look.width,
     'stroke-linejoin': 'round',
   })
   const events = plot.events.map((when) => {

@@ -112,10 +112,10 @@ export function createFindings(derive: () => void): Findings {
 /** A sentence's first letter, large. */
 export const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1)
 
-/** The other number beside the headline: "predicted 3.681 cm/s", "by another way 2.85 s". */
+/** The other number beside the headline: "predicted 3.681 cm/s", "a second way gives 2.85 s". */
 export function beside({ other, predicted }: Headline): string {
   if (other === null) return ''
-  return predicted ? `predicted ${other}` : `by another way ${other}`
+  return predicted ? `predicted ${other}` : `a second way gives ${other}`
 }
 
 /** What the run shows, for a screen reader. */
