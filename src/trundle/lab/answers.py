@@ -103,7 +103,7 @@ def simulate(
 
         return Answer(pack(rolled_scene(path_from(data).run(), samples, card)), SCENE)
     run, seconds = run_of(scenario_from(data), limits.MOST_SAVED, samples, tolerance)
-    return Answer(pack(scene_of(run, samples, card, seconds=seconds)), SCENE)
+    return Answer(pack(scene_of(run, samples, card, seconds=seconds, curves=True)), SCENE)
 
 
 @answering

@@ -20,6 +20,21 @@ export interface Finding {
   note: string
 }
 
+/** What a run shows, in one sentence, and its number by theory or in another way. */
+export interface Headline {
+  text: string
+  other: string | null
+  predicted: boolean
+  how: string
+}
+
+/** A column over the samples that may be drawn. */
+export interface CurveHeader {
+  column: string
+  label: string
+  unit: string
+}
+
 export interface Formula {
   name: string
   source: string
@@ -77,6 +92,8 @@ export interface SceneHeader {
   support: SupportHeader
   events: SceneEvent[]
   findings?: Finding[]
+  headline?: Headline | null
+  curves?: CurveHeader[]
   formula?: Formula | null
   guiding_centre?: boolean
   card?: unknown

@@ -364,12 +364,12 @@ class CylinderOnCylinder(ClosedForm):
         period = float(self.period)
         finite = period if math.isfinite(period) else None
         if self.goes_round:
-            yield Finding("Time of one round", "T", finite, round_time(seen.time, angle), "s")
+            yield Finding("Time of one round", "T", finite, round_time(seen.time, angle), "s", said="goes round in {}")
             return
         measured, largest = swing(seen.time, angle)
         if finite is not None:
             note = "" if measured else "the run shows less than one"
-            yield Finding("Time of one swing", "T", period, measured, "s", note)
+            yield Finding("Time of one swing", "T", period, measured, "s", note, None, "swings to and fro in {}")
         pull = math.hypot(*map(float, self.force))
         if pull and seen.time[-1] >= 0.5 * period:
             heavy = float(self.mass) * float(self.length) * (1 + float(self.inertia_ratio))

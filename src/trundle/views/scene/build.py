@@ -11,8 +11,10 @@ from ...solve.exact.formula import formula_of
 from ...solve.samples import Samples
 from .body_mesh import body_mesh
 from .columns import UNITS, columns_of, guiding_centre, material, moves, pose_of
+from .curves import curves_of
 from .findings import findings_of
 from .header import header_of, radius_about_centre
+from .headline import headline_of
 from .instants import MOST, flying, shown
 from .support_mesh import Ground, ground_of
 from .wire import Scene
@@ -22,9 +24,14 @@ if TYPE_CHECKING:
 
 
 def scene_of(
-    run: Trajectory, samples: int | None = None, with_card: bool = False, *, seconds: float | None = None
+    run: Trajectory,
+    samples: int | None = None,
+    with_card: bool = False,
+    *,
+    seconds: float | None = None,
+    curves: bool = False,
 ) -> Scene:
-    """Return what a viewer needs to draw a run.
+    """Return what a viewer needs to draw a run; `curves`: and what may be drawn of it over time.
 
     Examples
     --------
@@ -46,10 +53,15 @@ def scene_of(
     columns |= guiding_centre(run, form, at)
     ground = _ground(run, at, material(at, state, at.contact), radius_about_centre(body.vertices))
     header = header_of(run, ground, radius_about_centre(body.vertices))
+    if curves:
+        header["curves"], more = curves_of(run.system, at)
+        columns |= more
     columns |= body.columns("body", "body_pattern") | ground.mesh.columns("support", "support_marks")
+    found = findings_of(run.system, run.start, run.samples, form)
     header |= {
         "seconds": seconds,
-        "findings": findings_of(run.system, run.start, run.samples, form),
+        "findings": [one.as_dict() for one in found],
+        "headline": headline_of(run.system, run.samples, found),
         "formula": formula_of(run.system, form),
         "guiding_centre": "guiding_centre" in columns,
         "card": run.card().as_dict() if with_card else None,
