@@ -4,6 +4,7 @@ import './controls.css'
 import './results.css'
 import './dialogs.css'
 import './phone.css'
+import './low.css'
 import { hide, say } from '../../viewer/elements'
 import { shortNumber } from '../../viewer/quantities'
 import { createAfterwards } from '../afterwards'
@@ -180,8 +181,8 @@ function _mount(host: HTMLElement, app: App): () => void {
     again.disabled = !store.canRedo
   }
 
-  /** On a phone the controls are one of the sheet's tabs. */
-  const narrow = matchMedia('(max-width: 56rem)')
+  /** On a phone, upright or on its side, and where the page is magnified, the controls are one of the tabs. */
+  const narrow = matchMedia('(max-width: 56rem), (max-width: 76rem) and (max-height: 36rem)')
   function arrange(): void {
     const slot = tabs.panels.querySelector('.controls-slot')!
     if (narrow.matches) slot.append(notes, controls.element)
