@@ -30,7 +30,7 @@ PAGES = {
     "holonomy-loop": "#/holonomy/loop",
     "compare": "#/compare",
     "fields": "#/fields",
-    "maps": "#/maps?name=shaken-bowl&at=12,9",
+    "maps": "#/maps?at=12,9&name=shaken-bowl",
 }
 
 

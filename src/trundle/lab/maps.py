@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 _GO = 0.7  # s, of work that one request asks for; the page asks again for more
 _FIRST, _TOGETHER = 8, 64  # members that go together: few at first, as nobody knows how long they take
+_COARSE = 5  # squares along the shorter side at first: something is to be seen soon
 _SHADES = 64
 
 
@@ -110,15 +111,14 @@ def draw_map(
     grid, everywhere = run.reshape(shape), not wanted.classes
     new: list[int] = []
     begun, together = time.perf_counter(), _FIRST
-    left, _ = next_places(grid, found.reshape(shape), everywhere=everywhere)
+    left, picture = next_places(grid, found.reshape(shape), everywhere=everywhere, coarse=_COARSE)
     while left.size and (not new or time.perf_counter() - begun < _GO):
         part = left[:together]
         columns = replace(plan.job, block=together).run(plan.table[part])
         found[part], run[part] = columns[wanted.name], True
         new += part.tolist()
         together = min(2 * together, _TOGETHER)
-        left, _ = next_places(grid, found.reshape(shape), everywhere=everywhere)
-    left, picture = next_places(grid, found.reshape(shape), everywhere=everywhere)
+        left, picture = next_places(grid, found.reshape(shape), everywhere=everywhere, coarse=_COARSE)
     return as_json(
         {
             "shape": list(shape),
@@ -163,7 +163,7 @@ def _plan(data: dict[str, Any], over: Sequence[dict[str, Any]], measure: str) ->
     if first["key"] == second["key"]:
         raise InvalidValueError("over", "must be two numbers", first["key"], "Choose another for one of the sides.")
     spans = {span["key"]: {name: part for name, part in span.items() if name != "key"} for span in over}
-    return read_plan({"over": spans, "measure": {"measured": measure}}, document=_rolling(data))
+    return read_plan({"over": spans, "measure": measure}, document=_rolling(data))
 
 
 def _rolling(data: dict[str, Any]) -> Scenario:

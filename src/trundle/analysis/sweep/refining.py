@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 Places = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
-_COARSE = 16  # fields along the shorter side, at least, that are looked at first
+_COARSE = 16
 
 
 def refine(shape: tuple[int, int], classes_of: Callable[[Places], Places]) -> tuple[Mask, Places]:
@@ -46,7 +46,7 @@ def refine(shape: tuple[int, int], classes_of: Callable[[Places], Places]) -> tu
         run.ravel()[places] = True
 
 
-def next_places(run: Mask, found: Any, *, everywhere: bool = False) -> tuple[Places, Any]:
+def next_places(run: Mask, found: Any, *, everywhere: bool = False, coarse: int = _COARSE) -> tuple[Places, Any]:
     """Return which fields to run next, none where all is known, and the grid as far as it is known.
 
     What was run may be a part of what was to be run: so a map can be filled in as many goes as you like, and go on.
@@ -59,6 +59,8 @@ def next_places(run: Mask, found: Any, *, everywhere: bool = False) -> tuple[Pla
         What was found there. What stands where nothing was run is returned where nothing is known yet.
     everywhere : bool
         Whether the squares are halved everywhere, as for numbers, and not near the boundary alone.
+    coarse : int
+        Into how many squares the shorter side is divided at first, at least.
 
     Examples
     --------
@@ -69,7 +71,7 @@ def next_places(run: Mask, found: Any, *, everywhere: bool = False) -> tuple[Pla
     (289, 0, 800)
     """
     shape = run.shape
-    step = 2 ** max(0, int(np.log2(max(min(shape) // _COARSE, 1))))
+    step = 2 ** max(0, int(np.log2(max(min(shape) // coarse, 1))))
     wanted, whole = _grid(shape, step), found
     while True:
         lower = [_nodes(count, step)[_below(count, step)] for count in shape]
