@@ -6,7 +6,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from . import units
+    from . import tracks, units
     from .analysis.analogy import ChargedParticle, Twin, to_turntable, twin
     from .analysis.chaos import (
         LyapunovExponents,
@@ -321,6 +321,7 @@ __all__ = [
     "sweep",
     "to_turntable",
     "tolerance",
+    "tracks",
     "twin",
     "units",
     "vakonomic_path",
@@ -330,8 +331,8 @@ __all__ = [
 def __getattr__(name: str) -> Any:
     if name in _HOME_OF:
         value = getattr(import_module(f".{_HOME_OF[name]}", __name__), name)
-    elif name == "units":
-        value = import_module(".units", __name__)
+    elif name in ("tracks", "units"):
+        value = import_module(f".{name}", __name__)
     elif name == "__version__":
         from importlib.metadata import version
 

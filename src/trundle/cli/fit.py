@@ -15,6 +15,7 @@ from .read import Angles, Columns, Decimal, Pixel, Rate, Sense, Time, Unit, Upwa
 
 if TYPE_CHECKING:
     from ..analysis.fit import Fit
+    from ..tracks import Example
 
 FIGURE, PAGE, DATA, SCENARIO = "fit.png", "fit.html", "fit.nc", "fit.toml"
 TABLES = {"markdown": "fit.md", "latex": "fit.tex", "csv": "fit.csv"}
@@ -24,7 +25,8 @@ def fit(
     tracks: Annotated[
         list[Path] | None,
         typer.Argument(
-            metavar="TRACK", help="Measured motion, as `trundle read` reads it; several share what is free."
+            metavar="TRACK",
+            help="Measured motion, as `trundle read` reads it, or example:NAME; several share what is free.",
         ),
     ] = None,
     scenario: Annotated[
@@ -86,20 +88,23 @@ def fit(
     Exit status: 0, a good fit; 2, bad input; 3, a bad fit; 4, these data cannot decide; 130, interrupted; 1, all else.
     """
     from ..analysis.fit import fit as fit_tracks
-    from ..tracks import read_track
+    from ..tracks import example_of, read_track
 
-    if scenario is None:
+    known = example_of(tracks[0]) if tracks else None
+    if scenario is None and known is None:
         remedy = "Name a shipped one (`trundle list`) or a TOML file."
         raise InvalidValueError("--scenario", "must say what moves", "none", remedy)
     numbers = _pairs(camera or [], "--camera")
+    loaded = _load(scenario, known)
+    if known is not None and scenario is None:
+        free, noise = free or list(known.free), noise or known.noise
     if plan:
-        _plan(scenario, free or [], noise, numbers, quiet=quiet, as_json=as_json)
+        _plan(loaded, free or [], noise, numbers, quiet=quiet, as_json=as_json)
         return
     if not tracks:
         raise InvalidValueError("TRACK", "must name a file", "none", "Or plan a measurement: --plan.")
-    loaded = _load(scenario)
     files = _names(table, figure=not no_figure)
-    folder = Path(tracks[0].stem) if output is None else output.expanduser()
+    folder = Path(tracks[0].stem if known is None else known.name) if output is None else output.expanduser()
     from .writing import check_folder, write_together
 
     check_folder(folder, tuple(files))
@@ -161,24 +166,27 @@ def _leave(found: Fit) -> None:
 
 
 def _plan(
-    scenario: str, free: list[str], noise: str | None, camera: dict[str, Any], *, quiet: bool, as_json: bool
+    scenario: object, free: list[str], noise: str | None, camera: dict[str, Any], *, quiet: bool, as_json: bool
 ) -> None:
     """Print how well each number would be known."""
     from ..analysis.fit import plan_fit
 
     noises = {} if noise is None else {"noises": [part.strip() for part in noise.split(",")]}
-    found = plan_fit(_load(scenario), free, camera=camera, **noises)  # type: ignore[arg-type]
+    found = plan_fit(scenario, free, camera=camera, **noises)  # type: ignore[arg-type]
     if as_json:
         screen.out(json.dumps(found.as_dict(), indent=2, ensure_ascii=False))
     elif not quiet:
         screen.out(str(found))
 
 
-def _load(scenario: str) -> object:
+def _load(scenario: str | None, known: Example | None) -> object:
+    """Return the scenario that is named, or the one that an example of a track begins with."""
     from ..scenario import files
     from ..simulation.simulate import Scenario
 
-    return Scenario.read(files.tables_of(scenario), scenario)
+    if known is not None and scenario is None:
+        return Scenario.read(known.scenario, known.name)
+    return Scenario.read(files.tables_of(str(scenario)), str(scenario))
 
 
 def _noise(text: str | None) -> Any:

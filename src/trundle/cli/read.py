@@ -13,7 +13,9 @@ from . import screen
 if TYPE_CHECKING:
     from ..tracks import Track
 
-File = Annotated[Path, typer.Argument(metavar="FILE", help="A measured track, from Tracker for instance.")]
+File = Annotated[
+    Path, typer.Argument(metavar="FILE", help="A measured track, from Tracker for instance; or example:NAME.")
+]
 Which = Annotated[str | None, typer.Option("--track", metavar="NAME", help="Which track, where there are several.")]
 Columns = Annotated[
     str | None, typer.Option("--columns", metavar="LIST", help="Names that do not tell: 't=frame_time, x=u, y=v'.")
