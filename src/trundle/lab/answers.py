@@ -116,9 +116,9 @@ def card(data: dict[str, Any]) -> Answer:
     True
     """
     if files.rolls_along_path(data):
-        return as_json(path_from(data).run().card().as_dict())
+        return _json(path_from(data).run().card().as_dict())
     run, _ = run_of(scenario_from(data), limits.MOST_SAMPLES)
-    return as_json(run.card().as_dict())
+    return _json(run.card().as_dict())
 
 
 @answering
@@ -132,7 +132,7 @@ def derivation(data: dict[str, Any]) -> Answer:
     """
     from .deriving import derivation_of
 
-    return as_json(derivation_of(scenario_from(data)))
+    return _json(derivation_of(scenario_from(data)))
 
 
 @answering
@@ -177,7 +177,7 @@ def catalogue() -> Answer:
     >>> [entry["exact"] for entry in json.loads(catalogue().body) if entry["name"] == "tilted-turntable"]
     [True]
     """
-    return as_json([_entry(name) for name in files.names()])
+    return _json([_entry(name) for name in files.names()])
 
 
 def _entry(name: str) -> dict[str, Any]:
@@ -215,7 +215,7 @@ def text_of(name: str) -> Answer:
         shown = ascii(name[:80])
         raise refused(404, f"There is no scenario {shown}. `/api/scenarios` lists them.", None, "NotFoundError")
     text = files.read(name)
-    return as_json({"name": name, "toml": text, "scenario": files.parse(text, name)})
+    return _json({"name": name, "toml": text, "scenario": files.parse(text, name)})
 
 
 @answering
@@ -229,7 +229,7 @@ def schema() -> Answer:
     """
     from ..scenario import ScenarioFile
 
-    return as_json(ScenarioFile.schema())
+    return _json(ScenarioFile.schema())
 
 
 @answering
@@ -243,7 +243,7 @@ def parts() -> Answer:
     """
     from .parts import all_parts
 
-    return as_json(all_parts())
+    return _json(all_parts())
 
 
 @answering
@@ -260,7 +260,7 @@ def start(
     """
     from .starts import start_by_hand
 
-    return as_json(start_by_hand(scenario_from(data), at, velocity, nudge))
+    return _json(start_by_hand(scenario_from(data), at, velocity, nudge))
 
 
 def told(scenario: Scenario | PathScenario) -> dict[str, Any]:
@@ -285,12 +285,5 @@ def warm(name: str) -> None:
     simulate(files.tables_of(name), samples=50)
 
 
-def as_json(value: Any) -> Answer:
-    """Return an answer in JSON.
-
-    Examples
-    --------
-    >>> as_json([1.5]).body
-    b'[1.5]'
-    """
+def _json(value: Any) -> Answer:
     return Answer(json.dumps(value, ensure_ascii=True, allow_nan=False).encode("ascii"), JSON)
