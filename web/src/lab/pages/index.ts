@@ -2,4 +2,5 @@
 export { compare } from './compare'
 export { fields } from './fields'
 export { holonomy } from './holonomy'
+export { maps } from './maps'
 export { tour } from './tour'
