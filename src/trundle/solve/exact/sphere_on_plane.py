@@ -94,7 +94,6 @@ class SphereOnPlane(ManySamples, ClosedForm):
         ),
     )
 
-    differentiable = True
     impossible_events = frozenset({"lift"})  # N is constant
 
     @classmethod
