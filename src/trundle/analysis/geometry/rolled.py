@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...display import Displayed, Headline, Markup, fold, joined
+from ...display import Headline, Markup, Plottable, fold, joined
 from ...errors import InvalidValueError, UnknownNameError
 from ...mechanics.algebra import Quaternion
 from ...mechanics.checks import positive
@@ -38,7 +38,7 @@ _ROUNDING = 8.0  # units in the last place lost for each radian, piece and step
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class RolledPath(Displayed):
+class RolledPath(Plottable):
     """A ball rolled along a path, as `roll_along` returns it.
 
     Parameters
