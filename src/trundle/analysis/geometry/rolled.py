@@ -16,7 +16,7 @@ from ...errors import InvalidValueError, UnknownNameError
 from ...mechanics.algebra import Quaternion
 from ...mechanics.checks import positive
 from . import bends
-from .development import Laid, lay
+from .development import Laid, develop
 from .pieces import Piece
 from .rotation import Rotation
 from .stages import Stages
@@ -75,7 +75,7 @@ class RolledPath(Plottable):
     _laid: Laid = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "_laid", lay(self.pieces, self.start, self.radius))
+        object.__setattr__(self, "_laid", develop(self.pieces, self.start, self.radius))
 
     def __repr__(self) -> str:
         return f"<RolledPath: {self._extent}>"
