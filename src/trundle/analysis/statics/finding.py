@@ -17,7 +17,7 @@ from ...mechanics.system import RollingSystem, State
 from ...scenario import ScenarioFile
 from . import rest
 from .examining import examine
-from .line import NEAR, ROOT, Line, lay
+from .line import NEAR, ROOT, Line, roll_line
 from .result import Equilibria, Equilibrium
 from .search import Family, Place, Search
 from .words import direction_names
@@ -155,10 +155,10 @@ def _laid(
 ) -> Line:
     """Roll along a line as far as it was asked for; else half way round a support, or some way where it is open."""
     first = asked or on_plane
-    line = lay(system, time, place.p, place.q, axis, (first, first))
+    line = roll_line(system, time, place.p, place.q, axis, (first, first))
     if asked is not None or line.straight:
         return line
-    return lay(system, time, place.p, place.q, axis, (OPEN, ROUND))
+    return roll_line(system, time, place.p, place.q, axis, (OPEN, ROUND))
 
 
 def _check_straight(line: Line) -> None:

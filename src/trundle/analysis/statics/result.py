@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from ...display import Displayed, Headline, Markup, pairs, paragraph, records
+from ...display import Headline, Markup, Plottable, Serializable, pairs, paragraph, records
 from ...mechanics.system import RollingSystem, State
 from .line import Line
 from .stability import Mode
@@ -20,7 +20,7 @@ Triple = tuple[float, float, float]
 
 
 @dataclass(frozen=True, repr=False)
-class Equilibrium(Displayed):
+class Equilibrium(Serializable):
     """A place where the body stays, put down at rest.
 
     Parameters
@@ -134,7 +134,7 @@ class Equilibrium(Displayed):
 
 
 @dataclass(frozen=True, repr=False)
-class Equilibria(Displayed):
+class Equilibria(Plottable, Serializable):
     """The equilibria of a system, and what was searched for them.
 
     It is a sequence: the lowest first where there is an energy, else the nearest to the start.
@@ -223,11 +223,6 @@ class Equilibria(Displayed):
     def as_dict(self) -> dict[str, Any]:
         """Return everything in SI units and plain types, for JSON.
 
-        Returns
-        -------
-        dict
-            What the command prints with ``--json``.
-
         Examples
         --------
         >>> import trundle as tr
@@ -247,11 +242,6 @@ class Equilibria(Displayed):
 
     def plot(self) -> Figure:
         """Draw the energy along the support beside the body at each equilibrium, with the forces on it.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            Needs neither a display nor pyplot.
 
         Examples
         --------

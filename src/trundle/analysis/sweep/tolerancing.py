@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...display import Displayed, Headline, Markup, paragraph, table
+from ...display import Headline, Markup, Plottable, Serializable, paragraph, table
 from ...errors import InvalidValueError
 from ...solve.samples import Progress
 from .api import sweep
@@ -25,7 +25,7 @@ _NOTHING = 1e-12  # of the largest value: so little spread is rounding
 
 
 @dataclass(frozen=True, repr=False)
-class Tolerance(Displayed):
+class Tolerance(Plottable, Serializable):
     """How widely a measure is spread when some numbers are only known within limits, and whose doing that is.
 
     Parameters
@@ -84,11 +84,6 @@ class Tolerance(Displayed):
     def as_dict(self) -> dict[str, Any]:
         """Return what is said, in SI units.
 
-        Returns
-        -------
-        dict
-            As JSON takes it.
-
         Examples
         --------
         >>> import trundle as tr
@@ -109,11 +104,6 @@ class Tolerance(Displayed):
 
     def plot(self) -> Figure:
         """Draw the measure over each number, and how it is distributed.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            Needs neither a display nor pyplot.
 
         Examples
         --------
