@@ -211,8 +211,7 @@ function _mount(host: HTMLElement, app: App): () => void {
       grid.toggleAttribute('data-right-folded', settings.projector)
     }),
     app.router.subscribe(() => {
-      if (app.route.page === 'bench' || app.route.page === '')
-        void linking.read(take, (scenario) => opened(scenario, 'url'))
+      if (app.route.page === 'bench') void linking.read(take, (scenario) => opened(scenario, 'url'))
     }),
     benchKeys(app, { stage, pick, fold: (side) => folds[side === 'left' ? 0 : 1].click() }),
     () => controls.dispose(),
