@@ -24,6 +24,7 @@ from .lab import lab
 from .map import draw_map
 from .options import Folder, Json, Name, Quiet, folder_for, load
 from .read import read
+from .score import score
 from .sensitivity import sensitivity
 from .steady import steady
 from .sweep import sweep
@@ -64,6 +65,7 @@ def command() -> Any:
     app.command("lab", short_help="Open the lab: the ball in a browser.")(lab)
     app.command("sweep", short_help="Run a scenario for many values of its numbers.")(sweep)
     app.command("map", short_help="Draw a sweep, and open the run behind a point of it.")(draw_map)
+    app.command("score", short_help="Score physics engines on exact rolling motions.")(score)
     app.command("tolerance", short_help="How far a run may be off within tolerances.")(tolerance)
     app.command("chaos", short_help="Lyapunov exponents, Poincaré sections, periodic orbits.")(chaos)
     app.command("steady", short_help="Steady motions, and whether they are stable.")(steady)
