@@ -1,5 +1,7 @@
 /** A run as the package packs it: a header, and columns of numbers over its samples. */
 
+import type { LiveHeader } from '../live/header'
+
 export type Triple = [number, number, number]
 export type Turn = [w: number, x: number, y: number, z: number]
 export type ColumnArray = Float32Array | Float64Array | Uint32Array | Uint8Array
@@ -75,6 +77,8 @@ export interface ColumnHeader {
 }
 
 export interface SceneHeader {
+  /** Of a page that computes the motion itself. */
+  live?: LiveHeader
   format: number
   title: string
   method: string
