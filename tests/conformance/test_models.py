@@ -119,6 +119,6 @@ def test_mujoco_reads_it_back(name: str) -> None:
     for part in ("position", "velocity", "angular_velocity", "orientation"):
         assert found[part] == pytest.approx(list(map(float, getattr(start, part))), rel=1e-9, abs=1e-12)
     assert found["gravity"] == pytest.approx(CASES[name].situation()["gravity"], rel=1e-12, abs=1e-12)
-    tensor = system.body.inertia_in_space(start.orientation.matrix())
+    tensor = system.body.inertia_in_space(Quaternion(*start.orientation).matrix())
     for axis, line in zip(np.eye(3), found["inertia"], strict=True):
         assert list(map(float, tensor @ Vector(*axis))) == pytest.approx(line, rel=1e-9, abs=1e-15)
