@@ -99,6 +99,7 @@ if TYPE_CHECKING:
     from .simulation.trajectory import Event, Trajectory
     from .solve.exact import ClosedForm
     from .tracks import Track, read_track
+    from .tracks.film import FilmTrack, track_film
     from .verify import Card
 
 # Public name -> module that holds it: `import trundle` loads nothing until a name is used.
@@ -195,6 +196,7 @@ _HOMES = {
     "analysis.sweep": ("sweep", "Sweep", "tolerance", "Tolerance"),
     "analysis.vakonomic": ("compare_vakonomic", "vakonomic_path", "VakonomicComparison", "VakonomicPath"),
     "tracks": ("read_track", "Track"),
+    "tracks.film": ("track_film", "FilmTrack"),
     "verify": ("Card",),
     "analysis.checking": ("check", "check_equations", "Check", "Mistake"),
 }
@@ -223,6 +225,7 @@ __all__ = [
     "Equilibria",
     "Equilibrium",
     "Event",
+    "FilmTrack",
     "Fixed",
     "Force",
     "FreeAxle",
@@ -323,6 +326,7 @@ __all__ = [
     "sweep",
     "to_turntable",
     "tolerance",
+    "track_film",
     "tracks",
     "twin",
     "units",

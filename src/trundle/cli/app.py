@@ -29,6 +29,7 @@ from .sensitivity import sensitivity
 from .steady import steady
 from .sweep import sweep
 from .tolerance import tolerance
+from .track import track
 from .twin import twin
 from .vakonomic import vakonomic
 
@@ -53,6 +54,7 @@ def command() -> Any:
     app.command("check", short_help="Check somebody else's trajectory, and name the likely mistake.")(check)
     app.command("fit", short_help="Fit numbers to measured motion, and say what it cannot show.")(fit)
     app.command("read", short_help="Say what is taken for what in a measured track.")(read)
+    app.command("track", short_help="Follow a ball through a film.")(track)
     app.command("derive", short_help="Derive a motion, each equation proved by the code.")(derive)
     app.command("schema", short_help="Print the JSON schema of scenario files, for editors.")(schema)
     app.command("twin", short_help="Find the charge in crossed fields that moves as the ball does.")(twin)
