@@ -15,7 +15,7 @@ from ..views.viewer.exports import FORMATS
 from . import answers, exports, pages
 from .errors import Refusal, RefusedError, of_validation
 from .lanes import LeftError
-from .requests import JSON, OPENED, AboutScenario, ToDraw, ToExport, ToRoll, ToSimulate, ToStart, described
+from .requests import JSON, OPENED, AboutScenario, ToDraw, ToExport, ToRoll, ToSimulate, ToStart, ToTry, described
 from .security import Guard
 from .service import Lab
 from .settings import Settings
@@ -111,6 +111,10 @@ def _asking(app: FastAPI, lab: Lab) -> None:
     async def start(request: Request, asked: ToStart) -> Response:
         at = asked.at.model_dump(exclude_none=True)
         return await lab.answer(request, answers.start, asked.scenario, at, asked.velocity, asked.nudge)
+
+    @app.post("/api/possible", **described("Of each scenario why it cannot start; null where it can."))
+    async def possible(request: Request, asked: ToTry) -> Response:
+        return await lab.answer(request, answers.possible, asked.scenarios)
 
     @app.post("/api/roll", **described("Roll a ball along a curve: a packed scene.", scene=True))
     async def roll(request: Request, asked: ToRoll) -> Response:

@@ -109,6 +109,12 @@ export interface StartRequest {
   nudge?: Triple
 }
 
+/** Why a scenario cannot start. */
+export interface Refused {
+  message: string
+  key: string | null
+}
+
 export interface Api {
   scenarios(options?: RequestOptions): Promise<ScenarioEntry[]>
   scenario(name: string, options?: RequestOptions): Promise<NamedScenario>
@@ -117,6 +123,8 @@ export interface Api {
   parts(options?: RequestOptions): Promise<Parts>
   /** A start made by hand, SI: what changes in it, null where a key goes. */
   start(scenario: Scenario, put: StartRequest, options?: RequestOptions): Promise<Table>
+  /** Of each scenario why it cannot start; null where it can. */
+  possible(scenarios: Scenario[], options?: RequestOptions): Promise<(Refused | null)[]>
   /** Has a worker answered yet, or are they starting? */
   ready(options?: RequestOptions): Promise<{ ready: boolean }>
   simulate(scenario: Scenario, options?: RunOptions): Promise<Simulated>
@@ -209,6 +217,8 @@ export function createApi(base = '', ask: typeof fetch = (input, init) => fetch(
     schema: (options) => get('/api/schema', options),
     parts: (options) => get('/api/parts', options),
     start: (scenario, put, options = {}) => post('/api/start', { scenario, ...put }, options, 'start', json<Table>),
+    possible: (scenarios, options = {}) =>
+      post('/api/possible', { scenarios }, options, 'possible', json<(Refused | null)[]>),
     ready: (options) => get('/api/ready', options),
     simulate: (scenario, { tolerance, ...options } = {}) =>
       packed('/api/simulate', { scenario, tolerance }, options, 'simulate'),

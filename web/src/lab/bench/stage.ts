@@ -79,7 +79,7 @@ export function createStage(app: App): Stage {
   const host = h('div', { class: 'stage-canvas' })
   const hint = h('p', { class: 'stage-hint', role: 'status', hidden: true })
   const time = h('p', { class: 'stage-took' })
-  const big = h('div', { class: 'stage-headline' })
+  const big = h('div', { class: 'stage-headline', hidden: true })
   const law = changing()
   const old = h('p', { class: 'stage-stale', hidden: true }, 'The last path that could be computed')
   const empty = h('p', { class: 'stage-empty working' }, 'Computing the motion …')
