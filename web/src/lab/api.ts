@@ -202,6 +202,12 @@ export interface MapPart {
   left: number
 }
 
+/** Why a scenario cannot start. */
+export interface Refused {
+  message: string
+  key: string | null
+}
+
 export interface Api {
   sweeps(options?: RequestOptions): Promise<Sweeps>
   mapNumbers(scenario: Scenario, options?: RequestOptions): Promise<ScenarioNumber[]>
@@ -224,6 +230,8 @@ export interface Api {
   tried(name: string, values: Values, body: string, options?: SimulateOptions): Promise<Simulated>
   /** Is the answer right? */
   judged(name: string, values: Values, answer: number | string | null, options?: RequestOptions): Promise<Judgement>
+  /** Of each scenario why it cannot start; null where it can. */
+  possible(scenarios: Scenario[], options?: RequestOptions): Promise<(Refused | null)[]>
   /** Has a worker answered yet, or are they starting? */
   ready(options?: RequestOptions): Promise<{ ready: boolean }>
   simulate(scenario: Scenario, options?: RunOptions): Promise<Simulated>
@@ -322,6 +330,8 @@ export function createApi(base = '', ask: typeof fetch = (input, init) => fetch(
     schema: (options) => get('/api/schema', options),
     parts: (options) => get('/api/parts', options),
     start: (scenario, put, options = {}) => post('/api/start', { scenario, ...put }, options, 'start', json<Table>),
+    possible: (scenarios, options = {}) =>
+      post('/api/possible', { scenarios }, options, 'possible', json<(Refused | null)[]>),
     ready: (options) => get('/api/ready', options),
     challenges: (options) => get('/api/challenges', options),
     tried: (name, values, body, options = {}) =>

@@ -5,12 +5,17 @@ import { type Scene, sameNumbers } from './scene'
 import type { Palette } from './theme'
 import { Track } from './track'
 
+const MOST_FLASHES = 24
+const FAINT = 0.35 // how much is seen of where it was
+
 export class BodyModel {
   readonly group = new Group()
   readonly mesh: Mesh<BufferGeometry, MeshPhysicalMaterial>
   scene: Scene
   track: Track
   private readonly paint: BodyPaint = newBodyPaint()
+  private readonly flashes: Mesh<BufferGeometry, MeshPhysicalMaterial>[] = []
+  private faintly: MeshPhysicalMaterial | null = null
 
   constructor(
     scene: Scene,
@@ -66,7 +71,35 @@ export class BodyModel {
     this.track.orientation(this.group.quaternion)
   }
 
+  /** Show where it was at the last flashes of a lamp, one every so many seconds; 0: no lamp. */
+  flash(time: number, every: number): void {
+    const begin = this.track.begin
+    const last = every > 0 ? Math.floor((Math.min(time, this.track.end) - begin) / every + 1e-9) : -1
+    const first = Math.max(0, last - MOST_FLASHES + 1)
+    const count = last < 0 ? 0 : last - first + 1
+    while (this.flashes.length < count) this.flashes.push(this.faint())
+    this.flashes.forEach((mesh, i) => {
+      mesh.visible = i < count
+      if (!mesh.visible) return
+      mesh.geometry = this.mesh.geometry
+      this.track.seek(begin + (first + i) * every)
+      this.track.position(mesh.position)
+      this.track.orientation(mesh.quaternion)
+    })
+    this.track.seek(time)
+  }
+
+  private faint(): Mesh<BufferGeometry, MeshPhysicalMaterial> {
+    this.faintly ??= new MeshPhysicalMaterial({ roughness: 0.6, transparent: true, opacity: FAINT, depthWrite: false })
+    if (this.flashes.length === 0) paintBody(this.faintly, this.paint)
+    const mesh = new Mesh(this.mesh.geometry, this.faintly)
+    this.group.parent?.add(mesh)
+    return mesh
+  }
+
   dispose(): void {
+    for (const mesh of this.flashes) mesh.removeFromParent()
+    this.faintly?.dispose()
     this.group.removeFromParent()
     this.mesh.geometry.dispose()
     this.mesh.material.dispose()

@@ -80,6 +80,8 @@ export interface Viewer {
   step(by: number): void
   speed: number
   loop: boolean
+  /** A stroboscope: so many flashes in a second of the run, of which each leaves a faint picture of the body; 0: none. */
+  flashes: number
   /** Begin at a speed at which the runs can be watched, again and again where they are short; returns that speed. */
   suit(): number
   readonly time: number

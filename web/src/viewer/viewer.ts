@@ -3,7 +3,7 @@ import './viewer.css'
 import { Vector3 } from 'three'
 import type { Frame, SceneOptions, Show, Theme, Tool, Viewer, ViewerEvents, ViewerOptions } from './contract'
 import { Controls, pressed } from './controls'
-import { element, leaveThePageItsWheel, pngOf, put, say } from './elements'
+import { element, leaveThePageItsSwipes, leaveThePageItsWheel, pngOf, put, say } from './elements'
 import { Emitter } from './emitter'
 import { Fallback } from './fallback'
 import { framesOf, nextFrame } from './frames'
@@ -109,6 +109,7 @@ class StageViewer implements Viewer {
     const { signal } = this.abort
     this.root.addEventListener('keydown', (event) => this.key(event), { signal })
     leaveThePageItsWheel(this.frameElement, this.canvas, signal)
+    leaveThePageItsSwipes(this.canvas, (x, y) => this.tools?.holds(x, y) ?? false, signal)
     this.canvas.addEventListener('webglcontextlost', (event) => event.preventDefault(), { signal })
     this.canvas.addEventListener('webglcontextrestored', () => this.invalidate(), { signal })
   }
@@ -219,6 +220,15 @@ class StageViewer implements Viewer {
   set loop(loop: boolean) {
     this.player.loop = loop
     this.controls?.refresh()
+  }
+
+  get flashes(): number {
+    return this.world?.flashes ?? 0
+  }
+  set flashes(flashes: number) {
+    if (this.world) this.world.flashes = Math.max(0, Number.isFinite(flashes) ? flashes : 0)
+    this.controls?.refresh()
+    this.invalidate()
   }
 
   get frame(): Frame {

@@ -24,6 +24,8 @@ export class World {
   readonly actors: Actor[] = []
   support: SupportModel | null = null
   frame: Frame = 'world'
+  /** Flashes of the lamp in a second of the run; 0: none. */
+  flashes = 0
   private fields: Fields | null = null
   private scales: Scales | null = null
   private duration = 0
@@ -123,7 +125,11 @@ export class World {
     this.before.copy(lead.body.group.position).applyMatrix4(this.stage.root.matrixWorld)
     this.stage.root.quaternion.copy(this.view.turn)
     this.stage.root.position.copy(this.view.place)
-    for (const actor of this.actors) actor.body.seek(time)
+    const every = this.flashes > 0 && this.frame !== 'corotating' ? 1 / this.flashes : 0
+    for (const actor of this.actors) {
+      actor.body.flash(time, every)
+      actor.body.seek(time)
+    }
     if (this.held) lead.body.group.position.copy(this.held)
     this.stage.space.updateMatrixWorld(true)
     if (follow)
