@@ -14,7 +14,9 @@ from .screenshots import OPENED, PAGES
 from .visiting import Visitor
 
 # The tour's steps are of one make: the first, one with choices, the guess, the one with two stages.
-JUDGED = [name for name in PAGES if name not in ("tour-2", "tour-3", "tour-5", "bench-coin")]
+# The front door, the challenges and what is printed are judged where they are used.
+STAGED = [name for name in PAGES if name not in ("start", "challenges", "challenge", "report", "notes")]
+JUDGED = [name for name in STAGED if name not in ("tour-2", "tour-3", "tour-5", "bench-coin")]
 
 
 # Where it opens, and what is in it once it is complete.
