@@ -245,7 +245,7 @@ export interface Api {
   cancel(lane?: string): void
 }
 
-const UNREACHABLE = 'The lab’s server does not answer. Is `trundle lab` still running?'
+const UNREACHABLE = 'The lab does not answer. Is it still running in its terminal?'
 
 async function failure(response: Response): Promise<ApiError> {
   try {

@@ -9,6 +9,7 @@ import { Fallback } from './fallback'
 import { framesOf, nextFrame } from './frames'
 import { LabelLayer } from './labels'
 import { Legend } from './legend'
+import { Narrator } from './narrator'
 import { Player, watchable } from './player'
 import { type Scene, saidOf, type Triple } from './scene'
 import { Sharpness } from './sharpness'
@@ -40,6 +41,7 @@ class StageViewer implements Viewer {
   private readonly world: World | null
   private readonly tools: Tools | null
   private readonly controls: Controls | null
+  private readonly narrator: Narrator
   private readonly watcher: ResizeObserver | null
   private readonly abort = new AbortController()
   private readonly live: Show
@@ -82,6 +84,9 @@ class StageViewer implements Viewer {
       new Tools(this.canvas, this.stage, this.world, this.events, { time: () => this.time, redraw })
     this.controls = options.controls === false ? null : new Controls(this)
     if (this.controls) this.root.append(this.controls.element)
+    this.narrator = new Narrator(this, () => this.scenes)
+    this.root.append(this.narrator.element)
+    this.controls?.element.append(this.narrator.choice)
     this.large = options.projector ?? false
     this.theme = options.theme ?? 'auto'
     this.watcher = this.watchSize()
@@ -406,6 +411,7 @@ class StageViewer implements Viewer {
     this.abort.abort()
     if (this.pending) cancelAnimationFrame(this.pending)
     this.sharpness?.dispose()
+    this.narrator.dispose()
     this.unwatch()
     this.watcher?.disconnect()
     this.tools?.dispose()

@@ -4,7 +4,7 @@ import type { Scene } from '../../../viewer/scene'
 import { createViewer, type Viewer } from '../../../viewer/viewer'
 import { ApiError, isAbort } from '../../api'
 import type { App } from '../../app'
-import { cleanup, h } from '../../dom'
+import { cleanup, h, plainly } from '../../dom'
 import { createRunner } from '../../runner'
 import type { Scenario } from '../../scenario'
 
@@ -50,7 +50,7 @@ export function createStage(app: App, { label, controls = true, kind = 'large' }
 }
 
 export function told(error: unknown): string {
-  if (error instanceof ApiError || error instanceof Error) return error.message
+  if (error instanceof ApiError || error instanceof Error) return plainly(error.message)
   return 'Something went wrong here.'
 }
 
