@@ -12,6 +12,7 @@ from ..errors import InvalidValueError
 from ..scenario import files
 from ..views.viewer import exports
 from . import screen, signals
+from .options import Quiet, load
 
 if TYPE_CHECKING:
     from ..views.scene import Scene
@@ -24,7 +25,17 @@ def export(
         list[str], typer.Argument(metavar="RUN", help="A run.nc, a scenario's name or a TOML file. .html: several.")
     ],
     file: Annotated[str, typer.Argument(metavar="FILE", help="The file to make.")],
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
+    live: Annotated[
+        bool, typer.Option("--live", help="A page that computes the motion itself, for other numbers, too.")
+    ] = False,
+    slider: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME[=FROM..TO]",
+            help="A number to be moved in a live page, such as body.radius=1 cm..3 cm; may stand several times.",
+        ),
+    ] = None,
+    quiet: Quiet = False,
 ) -> None:
     """Write a run in another form; the ending of FILE says which. A scenario is run first.
 
@@ -32,15 +43,21 @@ def export(
     .glb: an animated model. .gif: an animation. .png, .svg: the figure of the path. .csv: its numbers. .nc: all of
     it. .toml: its scenario. .fmu: the law as a unit of FMI 3.0, for other simulators.
 
+    With --live, a page with sliders and curves that computes the motion where it is opened, without a network and
+    without Python. What no page can compute is refused.
+
     Exit status: 0, all is well; 2, bad input; 130, interrupted; 1, all else.
     """
     from ..files import written_whole
 
     target = Path(file).expanduser()
     _check(runs, target)
+    _check_live(runs, target, slider or [], live=live)
     told = ""
     if target.suffix.lower() == _UNIT:
         content, told = _unit(runs[0])
+    elif live:
+        content = _live(runs[0], slider or [], bar=not quiet)
     else:
         content = _content(runs, target.suffix.lower(), bar=not quiet)
     with written_whole(target) as temporary:
@@ -68,6 +85,17 @@ def _check(names: list[str], target: Path) -> None:
         raise InvalidValueError("FILE", "must not be the run itself", str(target), "Choose another name.")
 
 
+def _check_live(names: list[str], target: Path, sliders: list[str], *, live: bool) -> None:
+    """Refuse what a live page cannot be made of."""
+    if sliders and not live:
+        raise InvalidValueError("--slider", "must stand beside --live", ", ".join(sliders), "Add --live.")
+    if live and target.suffix.lower() != _SEVERAL:
+        raise InvalidValueError("FILE", f"must end in {_SEVERAL} for --live", str(target))
+    if live and (len(names) > 1 or _is_run(names[0])):
+        remedy = "A run is numbers, and has no law; several have several."
+        raise InvalidValueError("RUN", "must be one scenario for --live", ", ".join(names), remedy)
+
+
 def _same(name: str, target: Path) -> bool:
     try:
         return Path(name).samefile(target)
@@ -92,11 +120,26 @@ def _unit(name: str) -> tuple[bytes, str]:
     """Return the law of a scenario as a unit of FMI, and a word about the binary in it."""
     from ..fields.fmi import fmu
 
+    scenario = load(name)
+    made, where = fmu(scenario.system(), scenario.start_state(), scenario.title)
+    return made, f", with a binary for {where}" if where else ", sources only: no C compiler is found here"
+
+
+def _live(name: str, sliders: list[str], *, bar: bool) -> bytes:
+    """Return a live page of a scenario."""
+    from ..errors import OutOfDomainError
+    from ..live import live_page
+
     scenario = _scenario(name)
     if hasattr(scenario, "path"):
         raise InvalidValueError("RUN", "must be a scenario with forces", name, "A path to roll along has no law.")
-    made, where = fmu(scenario.system(), scenario.start_state(), scenario.title)
-    return made, f", with a binary for {where}" if where else ", sources only: no C compiler is found here"
+    with screen.ProgressBar(wanted=bar) as progress:
+        try:
+            page = live_page(scenario, sliders, progress=progress)
+        except OutOfDomainError as error:
+            raise InvalidValueError("RUN", "must be one that a live page can compute", name, str(error)) from None
+    signals.check()
+    return page
 
 
 def _is_run(name: str) -> bool:
@@ -106,7 +149,6 @@ def _is_run(name: str) -> bool:
 def _scenario(name: str) -> Any:
     """Return a scenario, or a path to roll along."""
     from ..analysis.geometry import PathScenario
-    from .app import load
 
     tables = files.tables_of(name)
     return PathScenario.read(tables, name) if files.rolls_along_path(tables) else load(name, tables)

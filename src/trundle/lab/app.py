@@ -19,16 +19,19 @@ from .lanes import LeftError
 from .requests import (
     JSON,
     OPENED,
+    PICTURE,
     AboutScenario,
     HowToRead,
     ToDraw,
     ToExport,
     ToFit,
+    ToJudge,
     ToMap,
     ToPoint,
     ToRoll,
     ToSimulate,
     ToStart,
+    ToTry,
     described,
 )
 from .security import Guard
@@ -73,6 +76,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.lab = lab
     _reading(app, lab)
     _asking(app, lab)
+    _judging(app, lab)
     _mapping(app, lab)
     _measuring(app, lab)
     _files(app, lab)
@@ -92,6 +96,16 @@ def _reading(app: FastAPI, lab: Lab) -> None:
     @app.get("/api/scenarios/{name}", **described("One of them, as TOML and as JSON.", 404))
     async def scenario(request: Request, name: str) -> Response:
         return await lab.at_once(request, answers.text_of, name)
+
+    drawn = {PICTURE: {"schema": {"type": "string"}}}
+
+    @app.get("/api/scenarios/{name}/picture", **described("A small picture of it.", 404, content=drawn))
+    async def picture(request: Request, name: str) -> Response:
+        return await lab.shared(request, answers.picture_of, name)
+
+    @app.get("/api/challenges", **described("The challenges: all that a page may know of them."))
+    async def challenges(request: Request) -> Response:
+        return await lab.at_once(request, answers.challenges)
 
     @app.get("/api/ready", **described("Whether a worker has answered yet: until then they are starting."))
     async def ready() -> Response:
@@ -135,6 +149,18 @@ def _asking(app: FastAPI, lab: Lab) -> None:
     async def roll(request: Request, asked: ToRoll) -> Response:
         wanted = asked.radius, asked.curve, asked.samples, asked.card
         return await lab.answer(request, answers.roll, *wanted, slow=asked.card)
+
+
+def _judging(app: FastAPI, lab: Lab) -> None:
+    """Add the routes of the challenges."""
+
+    @app.post("/api/challenges/{name}/run", **described("Run what was chosen: a packed scene.", 404, scene=True))
+    async def run(request: Request, name: str, asked: ToTry) -> Response:
+        return await lab.answer(request, answers.tried, name, asked.values, asked.body, asked.samples)
+
+    @app.post("/api/challenges/{name}/answer", **described("Whether an answer is right.", 404))
+    async def judge(request: Request, name: str, asked: ToJudge) -> Response:
+        return await lab.answer(request, answers.judged, name, asked.values, asked.answer)
 
 
 def _mapping(app: FastAPI, lab: Lab) -> None:

@@ -12,8 +12,7 @@ import numpy as np
 from ..errors import InvalidValueError, TrundleError, UnknownNameError
 from ..scenario import files
 from . import limits
-from .answers import _json as as_json
-from .answers import answering, scenario_from
+from .answers import answering, as_json, scenario_from
 from .cache import Answer
 from .errors import refused
 from .exports import slug

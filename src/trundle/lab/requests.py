@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 else:
     Ending = Literal[tuple(ending.removeprefix(".") for ending in FORMATS)]
 
-SCENE, JSON = "application/octet-stream", "application/json"
+SCENE, JSON, PICTURE = "application/octet-stream", "application/json", "image/svg+xml"
 OPENED = ("text/plain", "application/octet-stream")  # and any other: what it is, its content tells
 
 
@@ -119,6 +119,24 @@ class ToExport(AboutScenario):
     """A scenario to be saved in some format."""
 
     format: Ending
+
+
+_Chosen = Annotated[dict[Annotated[str, Field(max_length=40)], _Finite], Field(max_length=20)]
+
+
+class ToTry(_Asked):
+    """What a learner chose in a challenge, to be run."""
+
+    values: _Chosen = Field(default={}, description="By the names of the challenge's controls, in their units.")
+    body: Annotated[str, Field(max_length=80)] = Field(default="", description="Which, where there are several.")
+    samples: Samples = None
+
+
+class ToJudge(_Asked):
+    """An answer to a challenge."""
+
+    values: _Chosen = {}
+    answer: _Finite | Annotated[str, Field(max_length=80)] | None = None
 
 
 _Word = Annotated[str, Field(max_length=200)]

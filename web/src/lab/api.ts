@@ -3,8 +3,10 @@
 import type { Scene, Triple, Turn } from '../viewer/scene'
 import { unpack } from '../viewer/scene'
 import { createLanes } from './lanes'
+import type { Found } from './notebook'
 import type { Parts } from './parts'
 import type { Json, Quantity, Scenario, Table } from './scenario'
+import type { TeacherNote } from './texts'
 
 /** What the package says is wrong, and at which key of the scenario ("support.tilt"). */
 export class ApiError extends Error {
@@ -34,7 +36,44 @@ export interface ScenarioEntry {
   body: string
   motion: string
   exact: boolean
+  /** 1 to 3: how much one must know. */
+  level: number
 }
+
+export interface ChallengeControl {
+  name: string
+  label: string
+  unit: string
+  least: number
+  most: number
+  step: number
+  first: number
+}
+
+/** A challenge, as far as a page may know it. */
+export interface Challenge {
+  name: string
+  title: string
+  level: number
+  summary: string
+  task: string
+  hints: string[]
+  explain: string
+  controls: ChallengeControl[]
+  prediction: { question: string; choices: string[] }
+  answer: { kind: 'run' } | { kind: 'number'; label: string } | { kind: 'choice'; choices: string[] }
+  teacher: TeacherNote
+  /** Those that move, by name, where there are several or one is hidden. */
+  bodies: string[]
+}
+
+export interface Judgement {
+  right: boolean
+  found: Found[]
+  explanation: string
+}
+
+export type Values = Record<string, number>
 
 export interface NamedScenario {
   name: string
@@ -250,6 +289,11 @@ export interface Api {
   parts(options?: RequestOptions): Promise<Parts>
   /** A start made by hand, SI: what changes in it, null where a key goes. */
   start(scenario: Scenario, put: StartRequest, options?: RequestOptions): Promise<Table>
+  challenges(options?: RequestOptions): Promise<Challenge[]>
+  /** Run what was chosen in a challenge. */
+  tried(name: string, values: Values, body: string, options?: SimulateOptions): Promise<Simulated>
+  /** Is the answer right? */
+  judged(name: string, values: Values, answer: number | string | null, options?: RequestOptions): Promise<Judgement>
   /** Has a worker answered yet, or are they starting? */
   ready(options?: RequestOptions): Promise<{ ready: boolean }>
   simulate(scenario: Scenario, options?: RunOptions): Promise<Simulated>
@@ -359,6 +403,11 @@ export function createApi(base = '', ask: typeof fetch = (input, init) => fetch(
     parts: (options) => get('/api/parts', options),
     start: (scenario, put, options = {}) => post('/api/start', { scenario, ...put }, options, 'start', json<Table>),
     ready: (options) => get('/api/ready', options),
+    challenges: (options) => get('/api/challenges', options),
+    tried: (name, values, body, options = {}) =>
+      packed(`/api/challenges/${name}/run`, { values, body }, options, 'challenge'),
+    judged: (name, values, answer, options = {}) =>
+      post(`/api/challenges/${name}/answer`, { values, answer }, options, 'judge', json<Judgement>),
     simulate: (scenario, { tolerance, ...options } = {}) =>
       packed('/api/simulate', { scenario, tolerance }, options, 'simulate'),
     card: (scenario, options = {}) => post('/api/card', { scenario }, options, 'card', json<Card>),

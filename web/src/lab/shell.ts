@@ -51,7 +51,8 @@ export function createShell(body: HTMLElement): Shell {
 
 export function startShell(shell: Shell, app: App, pages: Page[]): void {
   const head = document.querySelector<HTMLElement>('.head')!
-  const links = pages.map((page) => h('a', { href: `#/${page.id}`, 'data-page': page.id }, page.title))
+  const menued = pages.filter((page) => !page.aside)
+  const links = menued.map((page) => h('a', { href: `#/${page.id}`, 'data-page': page.id }, page.title))
   const nav = h('nav', { class: 'nav', id: 'nav', 'aria-label': 'Pages' }, links)
   const menu = h('button', {
     class: 'icon-button nav-toggle',
@@ -89,7 +90,7 @@ export function startShell(shell: Shell, app: App, pages: Page[]): void {
   help.append(icon('help'))
   const home = h(
     'a',
-    { class: 'wordmark', href: '#/bench' },
+    { class: 'wordmark', href: '#/' },
     mark(),
     h('span', {}, 'trundle'),
     h('span', { class: 'wordmark-lab' }, 'lab'),
