@@ -132,9 +132,9 @@ def card(data: dict[str, Any]) -> Answer:
     True
     """
     if files.rolls_along_path(data):
-        return _json(path_from(data).run().card().as_dict())
+        return as_json(path_from(data).run().card().as_dict())
     run, _ = run_of(scenario_from(data), limits.MOST_SAMPLES)
-    return _json(run.card().as_dict())
+    return as_json(run.card().as_dict())
 
 
 @answering
@@ -148,7 +148,7 @@ def derivation(data: dict[str, Any]) -> Answer:
     """
     from .deriving import derivation_of
 
-    return _json(derivation_of(scenario_from(data)))
+    return as_json(derivation_of(scenario_from(data)))
 
 
 @answering
@@ -193,7 +193,7 @@ def catalogue() -> Answer:
     >>> [entry["exact"] for entry in json.loads(catalogue().body) if entry["name"] == "tilted-turntable"]
     [True]
     """
-    return _json([_entry(name) for name in files.names()])
+    return as_json([_entry(name) for name in files.names()])
 
 
 def _entry(name: str) -> dict[str, Any]:
@@ -233,7 +233,7 @@ def text_of(name: str) -> Answer:
     """
     _check_name(name)
     text = files.read(name)
-    return _json({"name": name, "toml": text, "scenario": files.parse(text, name)})
+    return as_json({"name": name, "toml": text, "scenario": files.parse(text, name)})
 
 
 @answering
@@ -262,7 +262,7 @@ def challenges() -> Answer:
     """
     from .challenges import challenge, names
 
-    return _json([challenge(name).told(name) for name in names()])
+    return as_json([challenge(name).told(name) for name in names()])
 
 
 @answering
@@ -293,7 +293,7 @@ def judged(name: str, values: dict[str, float], answer: float | str | None) -> A
     from .challenges import challenge
     from .judging import judge
 
-    return _json(judge(challenge(name), values, answer))
+    return as_json(judge(challenge(name), values, answer))
 
 
 @answering
@@ -307,7 +307,7 @@ def schema() -> Answer:
     """
     from ..scenario import ScenarioFile
 
-    return _json(ScenarioFile.schema())
+    return as_json(ScenarioFile.schema())
 
 
 @answering
@@ -321,7 +321,7 @@ def parts() -> Answer:
     """
     from .parts import all_parts
 
-    return _json(all_parts())
+    return as_json(all_parts())
 
 
 @answering
@@ -338,7 +338,7 @@ def start(
     """
     from .starts import start_by_hand
 
-    return _json(start_by_hand(scenario_from(data), at, velocity, nudge))
+    return as_json(start_by_hand(scenario_from(data), at, velocity, nudge))
 
 
 @answering
@@ -402,5 +402,12 @@ def _check_name(name: str) -> None:
         raise refused(404, f"There is no scenario {shown}. `/api/scenarios` lists them.", None, "NotFoundError")
 
 
-def _json(value: Any) -> Answer:
+def as_json(value: Any) -> Answer:
+    """Return an answer in JSON.
+
+    Examples
+    --------
+    >>> as_json([1.5]).body
+    b'[1.5]'
+    """
     return Answer(json.dumps(value, ensure_ascii=True, allow_nan=False).encode("ascii"), JSON)

@@ -5,14 +5,15 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from typing import Annotated
 
-from fastapi import FastAPI, Request
+from fastapi import FastAPI, Query, Request
 from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
 from starlette.responses import JSONResponse, Response
 
 from ..views.viewer.exports import FORMATS
-from . import answers, exports, maps, pages
+from . import answers, exports, maps, measuring, pages
 from .errors import Refusal, RefusedError, of_validation
 from .lanes import LeftError
 from .requests import (
@@ -20,8 +21,10 @@ from .requests import (
     OPENED,
     PICTURE,
     AboutScenario,
+    HowToRead,
     ToDraw,
     ToExport,
+    ToFit,
     ToJudge,
     ToMap,
     ToPoint,
@@ -35,6 +38,8 @@ from .requests import (
 from .security import Guard
 from .service import Lab
 from .settings import Settings
+
+_BINARY = {"type": "string", "format": "binary"}
 
 
 def create_app(settings: Settings | None = None) -> FastAPI:
@@ -74,6 +79,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     _asking(app, lab)
     _judging(app, lab)
     _mapping(app, lab)
+    _measuring(app, lab)
     _files(app, lab)
     _refusing(app)
     pages.add_routes(app, chosen)
@@ -185,11 +191,30 @@ def _mapping(app: FastAPI, lab: Lab) -> None:
         return await lab.answer(request, maps.map_point, asked.scenario, spans, asked.place)
 
 
+def _measuring(app: FastAPI, lab: Lab) -> None:
+    """Add the routes that read measured motion and fit it."""
+    takes = {"requestBody": {"required": True, "content": {OPENED[-1]: {"schema": _BINARY}}}}
+
+    @app.get("/api/tracks", **described("Measured tracks to try a fit on: the truth is known."))
+    async def tracks(request: Request) -> Response:
+        return await lab.shared(request, measuring.examples)
+
+    @app.post("/api/track", **described("The track in a file, or what has to be said of it."), openapi_extra=takes)
+    async def track(request: Request, how: Annotated[HowToRead, Query()]) -> Response:
+        told = how.model_dump(exclude_none=True)
+        return await lab.with_folder(request, measuring.read, await request.body(), told)
+
+    @app.post("/api/fit", **described("Fit numbers of a scenario to measured motion."))
+    async def fit(request: Request, asked: ToFit) -> Response:
+        wanted = asked.columns, asked.free, asked.noise, asked.title
+        return await lab.answer(request, measuring.fitted, asked.scenario, *wanted, slow=True)
+
+
 def _files(app: FastAPI, lab: Lab) -> None:
     """Add the routes that give files and take them."""
     media_types = {form.media_type for form in FORMATS.values()}
-    kinds = {kind: {"schema": {"type": "string", "format": "binary"}} for kind in sorted(media_types)}
-    takes = {kind: {"schema": {"type": "string", "format": "binary"}} for kind in OPENED}
+    kinds = {kind: {"schema": _BINARY} for kind in sorted(media_types)}
+    takes = {kind: {"schema": _BINARY} for kind in OPENED}
 
     @app.post("/api/export", **described("A scenario, or its run, as a file.", content=kinds))
     async def export(request: Request, asked: ToExport) -> Response:

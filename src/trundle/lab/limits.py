@@ -17,6 +17,7 @@ MOST_LOADS = 20
 MOST_SIDE = 64  # fields along a side of a map
 MOST_FIELDS = MOST_SIDE**2
 MOST_OF_MEMBER = 5000  # samples of a run of a map
+MOST_ROWS = 4000  # of a track that is fitted
 MOST_PIECES = 500  # of a path
 _NO_MORE = "The lab computes no more for one request; `trundle run` does."
 _BOUNDS = Bounds(MOST_LOADS, MOST_PIECES, MOST_VALUES, deepest=12, remedy=_NO_MORE)

@@ -11,8 +11,7 @@ import numpy as np
 
 from ..errors import InvalidValueError
 from . import limits
-from .answers import _json as as_json
-from .answers import answering, scenario_from, told
+from .answers import answering, as_json, scenario_from, told
 from .cache import Answer
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from starlette.responses import Response
 
 from ..views.viewer.exports import FORMATS
-from .limits import MOST_FIELDS, MOST_SAMPLES, MOST_SIDE, MOST_TRIED
+from .limits import MOST_FIELDS, MOST_ROWS, MOST_SAMPLES, MOST_SIDE, MOST_TRIED
 
 if TYPE_CHECKING:
     Ending = str
@@ -145,6 +145,7 @@ class ToJudge(_Asked):
     answer: _Finite | Annotated[str, Field(max_length=80)] | None = None
 
 
+_Word = Annotated[str, Field(max_length=200)]
 _Spelt = _Finite | Annotated[str, Field(max_length=200)]
 Row = Annotated[list[_Finite | None], Field(max_length=MOST_FIELDS)]
 
@@ -181,6 +182,33 @@ class ToMap(AboutScenario):
         if len(self.places) != len(self.values):
             raise ValueError("places and values must be of one length")
         return self
+
+
+class ToFit(AboutScenario):
+    """Measured motion, and the numbers that are to be found from it."""
+
+    columns: dict[Annotated[str, Field(max_length=40)], Annotated[list[_Finite | None], Field(max_length=MOST_ROWS)]]
+    title: Annotated[str, Field(max_length=200)] = Field(default="data", description="Of the track.")
+    free: Annotated[list[Annotated[str, Field(max_length=200)]], Field(max_length=20)] = []
+    noise: Annotated[str, Field(max_length=40)] | None = Field(
+        default=None, description="Standard deviation of a value, with a unit; absent: estimated."
+    )
+
+
+class HowToRead(_Asked):
+    """What a file with a track does not say of itself; as of `trundle.read_track`."""
+
+    name: Annotated[str, Field(max_length=300)] = Field(description="Of the file: its ending says what it is.")
+    track: _Word | None = None
+    columns: _Word | None = Field(default=None, description="Names that do not tell: `t=frame_time, x=u`.")
+    units: _Word | None = Field(default=None, description="Of places, such as cm.")
+    time: _Word | None = Field(default=None, description="Unit of the time: ms, or frame.")
+    angles: _Word | None = None
+    rate: _Word | None = Field(default=None, description="Frames a second.")
+    pixel: _Word | None = Field(default=None, description="The size of one, such as 0.8 mm.")
+    y: Literal["up", "down"] | None = None
+    sense: Literal["clockwise", "anticlockwise"] | None = None
+    decimal: Literal["point", "comma"] | None = None
 
 
 class Told(BaseModel):

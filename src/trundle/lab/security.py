@@ -19,6 +19,7 @@ Scope = MutableMapping[str, Any]
 Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
 Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 
+UPLOADS = ("/api/open", "/api/track")  # these take files
 LOOPBACK_NAMES = ("127.0.0.1", "localhost", "::1")
 
 # No inline script, no inline style, nothing from elsewhere. Pictures and films that the page itself makes are blobs.
@@ -83,7 +84,7 @@ class Guard:
             check_host(headers.get("host", ""), self.settings)
             if scope["method"] not in ("GET", "HEAD", "OPTIONS"):
                 check_origin(headers, scope.get("scheme", "http"))
-            uploads = scope["path"] == "/api/open"
+            uploads = scope["path"] in UPLOADS
             most = self.settings.upload_bytes if uploads else self.settings.body_bytes
             check_length(headers.get("content-length"), most)
             client = (scope.get("client") or ("",))[0]

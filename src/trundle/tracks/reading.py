@@ -153,16 +153,32 @@ def _opened(path: Path, options: Options) -> File:
         raise InvalidValueError("file", "must be readable", str(path), f"{error.strerror}.") from None
 
 
+def track_names(path: Path) -> list[str]:
+    r"""Return what the tracks of a file are called.
+
+    Examples
+    --------
+    >>> _ = Path("two.txt").write_text("A;;B;\nt;x;t;x\n0;1;0;2\n1;1;1;2\n")
+    >>> track_names(Path("two.txt"))
+    ['A', 'B']
+    """
+    options = Options.asked()
+    return _names(read_file(_opened(path, options), options)[1])
+
+
+def _names(tables: Sequence[Table]) -> list[str]:
+    """Return the names of tracks, with their numbers where two are called the same."""
+    known = [table.name or str(i + 1) for i, table in enumerate(tables)]
+    return [f"{one} ({i + 1})" if known.count(one) > 1 else one for i, one in enumerate(known)]
+
+
 def _chosen(tables: Sequence[Table], name: str | None, source: str) -> Table:
     """Return the track that was asked for, or the only one."""
-    known = [table.name or str(i + 1) for i, table in enumerate(tables)]
+    known = _names(tables)
     if name is None and len(tables) == 1:
         return tables[0]
     if not tables:
         raise InvalidValueError("file", "must hold a track", source, "There is none in it.")
-    twice = next((one for one in known if known.count(one) > 1), None)
-    if twice is not None:  # by number, then
-        known = [f"{one} ({i + 1})" if known.count(one) > 1 else one for i, one in enumerate(known)]
     if name is None:
         shown = ", ".join(known[:_TRACKS]) + (f" and {len(known) - _TRACKS} more" if len(known) > _TRACKS else "")
         rule = "must be named where a file holds several"

@@ -208,7 +208,77 @@ export interface Refused {
   key: string | null
 }
 
+/** Columns of a track, SI: `t` and what was measured; null where there is no number. */
+export type TrackColumns = Record<string, (number | null)[]>
+
+export interface Track {
+  title: string
+  columns: TrackColumns
+  /** What was taken for what, and what was left out, a sentence each. */
+  said: string[]
+}
+
+/** What a file does not say of itself. */
+export interface Question {
+  key: string
+  rule: string
+  received: string
+  /** To choose from; others may be written. */
+  choices: string[]
+}
+
+export interface ExampleTrack {
+  name: string
+  title: string
+  about: string
+  file: string
+  content: string
+  scenario: Scenario
+  free: string[]
+  noise: string
+}
+
+export interface Fitted {
+  title: string
+  answer: 'good' | 'bad' | 'cannot decide'
+  verdict: string
+  /** Name, value with its error, unit, remark. */
+  rows: [string, string, string, string][]
+  /** What cannot be known, a sentence each, with the cure. */
+  unknown: string[]
+  remarks: string[]
+  card: boolean
+  scenario: Scenario
+  /** The scenario as TOML, with the errors as comments. */
+  commented: string
+  way: Way
+}
+
+/** The way that a fit went, its last frame where it ended. */
+export interface Way {
+  time: number[]
+  columns: string[]
+  frames: { reduced: number; share: number; columns: (number | null)[][] }[]
+}
+
+export interface FitRequest {
+  scenario: Scenario
+  columns: TrackColumns
+  title: string
+  free: string[]
+  noise: string | null
+}
+
 export interface Api {
+  exampleTracks(options?: RequestOptions): Promise<ExampleTrack[]>
+  /** Read a track; `how` says what the file does not. */
+  track(
+    file: Blob,
+    name: string,
+    how: Record<string, string>,
+    options?: RequestOptions,
+  ): Promise<Track | { asks: Question }>
+  fit(request: FitRequest, options?: RequestOptions): Promise<Fitted>
   sweeps(options?: RequestOptions): Promise<Sweeps>
   mapNumbers(scenario: Scenario, options?: RequestOptions): Promise<ScenarioNumber[]>
   /** Go on with a map for about a second. */
@@ -319,6 +389,16 @@ export function createApi(base = '', ask: typeof fetch = (input, init) => fetch(
   }
 
   return {
+    exampleTracks: (options) => get('/api/tracks', options),
+    track: (file, name, how, options = {}) =>
+      request(
+        `/api/track?${new URLSearchParams({ ...how, name })}`,
+        { method: 'POST', headers: { 'content-type': 'application/octet-stream' }, body: file },
+        laneOf(options, 'track'),
+        options.signal,
+        json<Track | { asks: Question }>,
+      ),
+    fit: (asked, options = {}) => post('/api/fit', asked, options, 'fit', json<Fitted>),
     sweeps: (options) => get('/api/sweeps', options),
     mapNumbers: (scenario, options = {}) =>
       post('/api/map/numbers', { scenario }, options, 'map-numbers', json<ScenarioNumber[]>),
