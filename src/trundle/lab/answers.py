@@ -350,7 +350,7 @@ def possible(scenarios: Sequence[dict[str, Any]]) -> Answer:
     >>> json.loads(possible([files.tables_of("tilted-turntable")]).body)
     [None]
     """
-    return _json([_why_not(data) for data in scenarios])
+    return as_json([_why_not(data) for data in scenarios])
 
 
 def _why_not(data: dict[str, Any]) -> dict[str, Any] | None:
