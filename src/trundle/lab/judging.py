@@ -79,10 +79,11 @@ def run(challenge: Challenge, values: Mapping[str, float], body: str = "", sampl
 def _concealed(scene: Scene, challenge: Challenge, name: str) -> Scene:
     """Return a scene that shows how a body moves, and says nothing of what it is."""
     body = {**scene.header["body"], "kind": "sphere", "name": name, "label": name, "mass": None}
-    nothing = dict.fromkeys(("scenario", "formula", "card", "seconds"))
-    silent: dict[str, Any] = {**nothing, "scenario_toml": "", "findings": [], "events": []}
+    nothing = dict.fromkeys(("scenario", "formula", "card", "seconds", "headline"))
+    silent: dict[str, Any] = {**nothing, "scenario_toml": "", "findings": [], "events": [], "curves": []}
     told = {**scene.header, **silent, "title": challenge.title, "body": body}
-    columns = scene.columns | {"contact_force": np.zeros_like(scene.columns["contact_force"])}
+    columns = {key: column for key, column in scene.columns.items() if not key.startswith("curve_")}
+    columns["contact_force"] = np.zeros_like(columns["contact_force"])
     return replace(scene, header=told, columns=columns)
 
 
