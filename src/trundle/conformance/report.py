@@ -19,6 +19,7 @@ from .measuring import (
     EXACT,
     FLOAT_FLOOR,
     NOT_RUN,
+    ONE_STEP,
     PLATEAUS,
     SILENT_LIMIT,
     SLOWLY,
@@ -37,6 +38,7 @@ _LOOKS = {
     DIVERGES: ("↑", "#EFB08A"),
     SILENT_LIMIT: ("⊤", "#E9CBDD"),
     FLOAT_FLOOR: ("▁", "#DDDDDD"),
+    ONE_STEP: ("·", "#FFFFFF"),
     CANNOT: ("–", "#F4F3EE"),
     NOT_RUN: ("✗", "#FFFFFF"),
 }

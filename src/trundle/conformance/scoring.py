@@ -64,7 +64,9 @@ class Entrant:
         if not words:
             raise InvalidValueError("--adapter", "must be a command", command, "Give a program and its arguments.")
         settings = tuple(Setting(name, {"profile": name}) for name in (SHIPPED, BEST))
-        return Entrant(words[0].rpartition("/")[2], settings, lambda limit: Adapter(words, None, limit))
+        return Entrant(
+            " ".join(word.rpartition("/")[2] for word in words), settings, lambda limit: Adapter(words, None, limit)
+        )
 
 
 def score(
