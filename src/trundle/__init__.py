@@ -6,7 +6,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from . import units
+    from . import conformance, tracks, units
     from .analysis.analogy import ChargedParticle, Twin, to_turntable, twin
     from .analysis.chaos import (
         LyapunovExponents,
@@ -71,11 +71,11 @@ if TYPE_CHECKING:
         Wobble,
     )
     from .mechanics.shapes import (
+        CylinderShape,
         Disc,
         Ellipsoid,
         HalfCylinder,
         Hemisphere,
-        Roller,
         Shape,
         Sphere,
         SupportFunction,
@@ -136,7 +136,7 @@ _HOMES = {
         "Ellipsoid",
         "HalfCylinder",
         "Hemisphere",
-        "Roller",
+        "CylinderShape",
         "Shape",
         "Sphere",
         "SupportFunction",
@@ -198,6 +198,7 @@ _HOMES = {
     "verify": ("Card",),
     "analysis.checking": ("check", "check_equations", "Check", "Mistake"),
 }
+_ROOMS = ("conformance", "tracks", "units")  # public as a whole
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 
 __all__ = [
@@ -213,6 +214,7 @@ __all__ = [
     "ConstraintAnalysis",
     "Curve",
     "Cylinder",
+    "CylinderShape",
     "Disc",
     "Dome",
     "Drag",
@@ -256,7 +258,6 @@ __all__ = [
     "Revolution",
     "Rock",
     "RolledPath",
-    "Roller",
     "RollingCouple",
     "RollingResistance",
     "RollingSystem",
@@ -303,6 +304,7 @@ __all__ = [
     "check",
     "check_equations",
     "compare_vakonomic",
+    "conformance",
     "derive",
     "equilibria",
     "lyapunov_exponents",
@@ -321,6 +323,7 @@ __all__ = [
     "sweep",
     "to_turntable",
     "tolerance",
+    "tracks",
     "twin",
     "units",
     "vakonomic_path",
@@ -330,8 +333,8 @@ __all__ = [
 def __getattr__(name: str) -> Any:
     if name in _HOME_OF:
         value = getattr(import_module(f".{_HOME_OF[name]}", __name__), name)
-    elif name == "units":
-        value = import_module(".units", __name__)
+    elif name in _ROOMS:
+        value = import_module(f".{name}", __name__)
     elif name == "__version__":
         from importlib.metadata import version
 

@@ -35,6 +35,7 @@ PAGES = {
     "holonomy-loop": "#/holonomy/loop",
     "compare": "#/compare",
     "fields": "#/fields",
+    "maps": "#/maps?at=12,9&name=shaken-bowl",
 }
 
 

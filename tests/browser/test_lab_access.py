@@ -24,7 +24,7 @@ JUDGED = [name for name in STAGED if name not in ("tour-2", "tour-3", "tour-5", 
 # Where it opens, and what is in it once it is complete.
 OPENED_PART = {
     "bench-numbers": (".tab-panels", ".katex"),
-    "bench-curves": (".tab-panels", ".curve canvas"),
+    "bench-curves": (".tab-panels", ".curve svg"),
     "bench-card": (".tab-panels", ".card-summary"),
     "bench-scenarios": ("dialog", "[data-scenario]"),
     "bench-help": ("dialog", ".help-row"),

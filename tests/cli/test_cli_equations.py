@@ -53,7 +53,7 @@ def test_c_comes_with_its_header(here: Command) -> None:
         ),
         (("tilted-turntable", "--phase", "sinking"), "There are: rolling, slipping, flight, rest"),
         (("tilted-turntable", "--inputs", "wind"), "There are: force, torque, support"),
-        (("roll-home-turned",), "A path to roll along has no law."),
+        (("roll-home-turned",), "must have a body that forces act on"),
         (("tilted-turntable", "-o", "."), "must be a file"),
     ],
 )
@@ -72,4 +72,4 @@ def test_a_unit_of_fmi(here: Command) -> None:
     with zipfile.ZipFile("ball.fmu") as held:
         assert "modelDescription.xml" in held.namelist()
     assert here("export", "ball.nc", "ball.fmu").status == 2
-    assert "has no law" in here("export", "roll-home-turned", "path.fmu").err
+    assert "must have a body that forces act on" in here("export", "roll-home-turned", "path.fmu").err

@@ -19,11 +19,11 @@ from trundle.errors import InvalidValueError
 from trundle.mechanics.algebra import Quaternion, Vector
 from trundle.mechanics.parameters import numbers, with_numbers
 from trundle.mechanics.shapes import (
+    CylinderShape,
     Disc,
     Ellipsoid,
     HalfCylinder,
     Hemisphere,
-    Roller,
     Shape,
     Sphere,
     SupportFunction,
@@ -57,7 +57,7 @@ class TestHemisphere(TestSphereOffCentre):
 
 
 class TestRoller(ShapeContract):
-    shape = Roller(0.3, centre=ACROSS)
+    shape = CylinderShape(0.3, centre=ACROSS)
 
     def level(self, x: Vector) -> Any:
         return (x - ACROSS).norm() - 0.3

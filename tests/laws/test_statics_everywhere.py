@@ -69,6 +69,22 @@ def test_a_body_stays_where_its_centre_of_mass_is_over_the_contact(
         assert np.linalg.norm(np.cross(arm, up)) < 1e-9 * np.linalg.norm(arm)
 
 
+@pytest.mark.parametrize("name", [*SURFACES][::4])
+def test_the_energy_drawn_along_a_line_is_that_of_the_height(name: str) -> None:
+    system = tr.RollingSystem(BALL, tr.Support(SURFACES[name], tilt=0.05))
+    found = tr.equilibria(system, system.place(ASIDE))
+    begun = time.process_time()
+    line = found.line
+    assert time.process_time() - begun < SECONDS
+    assert line is not None
+    up = np.array([-math.sin(0.05), 0.0, math.cos(0.05)])
+    low, high = (
+        np.array(system.place(tuple(map(float, line.place(end)[0]))[:2]).position) for end in (line.low, line.high)
+    )
+    rise = float(line.energy(line.high) - line.energy(line.low))
+    assert rise == pytest.approx(0.1 * G * float((high - low) @ up), rel=1e-9, abs=1e-9)
+
+
 @pytest.mark.parametrize("tilt", [0.0, 0.05, -0.1])
 @pytest.mark.parametrize("profile", ["x**2", "0.02*sin(5*x)", "0.3*hypot(x, 0.2)", "0.1*exp(x)", "0.1*abs(x)**3"])
 def test_a_cylinder_in_a_trough_without_end(profile: str, tilt: float) -> None:

@@ -178,7 +178,7 @@ def test_a_weight_moves_centre_of_mass_and_inertia_as_steiner_says() -> None:
     with pytest.raises(InvalidValueError, match="distance"):
         tr.Body.weighted_cylinder(a, M, m, 0.06)
     with pytest.raises(InvalidValueError, match="centre"):
-        tr.Roller(a, Vector(0.0, 0.0, 0.01))
+        tr.CylinderShape(a, Vector(0.0, 0.0, 0.01))
 
 
 def test_a_weighted_hoop_keeps_its_energy_and_passes() -> None:

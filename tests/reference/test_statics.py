@@ -417,13 +417,13 @@ def test_the_work_vanishes_exactly_where_the_law_gives_no_acceleration() -> None
 
 def test_the_work_is_the_slope_of_the_energy() -> None:
     """Along a line in a trough: the work integrated there, against the potential of each place."""
-    from trundle.analysis.statics.line import lay
+    from trundle.analysis.statics.line import roll_line
 
     system = in_trough(WEIGHTED, loads=(tr.Force((0.3, 0.4, 0.0)),))
     start = system.place((0.4, 0.0), roll=0.3)
     q = Quaternion(*start.orientation)
     p = contact_at(system, 0.0, Vector(0.5 * math.cos(0.4), 0.5 * math.sin(0.4), 0.0), q).point
-    line = lay(system, 0.0, p, q, q.matrix() @ Vector(0.0, 0.0, 1.0), (3.0, 40.0))
+    line = roll_line(system, 0.0, p, q, q.matrix() @ Vector(0.0, 0.0, 1.0), (3.0, 40.0))
     first = rest.potential(system, 0.0, p, q)
     for angle in np.linspace(line.low, line.high, 9):
         there = line.place(float(angle))

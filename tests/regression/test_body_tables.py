@@ -83,7 +83,7 @@ BODIES = [
     tr.Body(1, tr.Isotropic(0.3), tr.Sphere(1)),
     tr.Body(1, tr.Tensor(0.1, 0.2, 0.25, 0.01, 0.02, 0.03), tr.Sphere(1)),
     tr.Body.weighted_cylinder(0.05, 0.3, 0.1, 0.04),
-    tr.Body(1, tr.Isotropic(0.2), tr.Roller(1)),
+    tr.Body(1, tr.Isotropic(0.2), tr.CylinderShape(1)),
     tr.Body.hoop(0.3, 1),
     tr.Body.half_cylinder(0.1, 1, moment_of_inertia=0.005, centre=(0.06, 0, 0)),
     tr.Body.hemisphere(0.1, 1, moments=(0.004, 0.004, 0.005), centre=(0, 0, 0.05)),
@@ -109,7 +109,7 @@ def test_what_a_file_cannot_hold_is_refused() -> None:
 
     for body in (
         tr.Body(1, tr.Isotropic(1), Own()),
-        tr.Body(1, tr.Principal(1, 1, 1.5), tr.Roller(1)),  # to roll straight, it needs one moment only
+        tr.Body(1, tr.Principal(1, 1, 1.5), tr.CylinderShape(1)),  # to roll straight, it needs one moment only
     ):
         with pytest.raises(ScenarioError, match="kind that the scenario format has words for"):
             body_words(body)

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..errors import ScenarioError
 from ..scenario import files
 from . import CARD_FAILED, constraints, screen, signals
 from .chaos import chaos
@@ -23,7 +22,9 @@ from .export import export
 from .fit import fit
 from .lab import lab
 from .map import draw_map
+from .options import Folder, Json, Name, Quiet, folder_for, load
 from .read import read
+from .score import score
 from .sensitivity import sensitivity
 from .steady import steady
 from .sweep import sweep
@@ -64,24 +65,11 @@ def command() -> Any:
     app.command("lab", short_help="Open the lab: the ball in a browser.")(lab)
     app.command("sweep", short_help="Run a scenario for many values of its numbers.")(sweep)
     app.command("map", short_help="Draw a sweep, and open the run behind a point of it.")(draw_map)
+    app.command("score", short_help="Score physics engines on exact rolling motions.")(score)
     app.command("tolerance", short_help="How far a run may be off within tolerances.")(tolerance)
     app.command("chaos", short_help="Lyapunov exponents, Poincaré sections, periodic orbits.")(chaos)
     app.command("steady", short_help="Steady motions, and whether they are stable.")(steady)
     return typer.main.get_command(app)
-
-
-def _complete(incomplete: str) -> list[str]:
-    """Offer the shipped scenarios, and files and folders as a shell would."""
-    folder, _, start = incomplete.rpartition("/")
-    inside = Path(folder + "/" if folder or incomplete.startswith("/") else ".").expanduser()
-    try:
-        found = [path for path in inside.iterdir() if path.name.startswith(start)]
-    except OSError:
-        found = []
-    shown = [path for path in found if path.suffix == ".toml" or (path.is_dir() and path.name[0] != ".")]
-    ahead = incomplete[: len(incomplete) - len(start)]
-    paths = [f"{ahead}{path.name}{'/' if path.is_dir() else ''}" for path in sorted(shown)]
-    return [name for name in files.names() if name.startswith(incomplete)] + paths
 
 
 def _print_version(asked: bool) -> None:
@@ -90,12 +78,6 @@ def _print_version(asked: bool) -> None:
 
         screen.out(f"trundle {version('trundle')}")
         raise typer.Exit
-
-
-Name = Annotated[
-    str,
-    typer.Argument(metavar="SCENARIO", help="The name of a shipped one, or a TOML file.", autocompletion=_complete),
-]
 
 
 def _top(
@@ -111,10 +93,7 @@ def _top(
 
 def run(
     scenario: Name,
-    output: Annotated[
-        Path | None,
-        typer.Option("--output", "-o", metavar="FOLDER", help="Default: a folder of the scenario's name."),
-    ] = None,
+    output: Folder = None,
     method: Annotated[
         str | None,
         typer.Option(metavar="METHOD", help="auto, exact, taylor or runge-kutta.", autocompletion=lambda: METHODS),
@@ -132,8 +111,8 @@ def run(
         typer.Option(metavar="TIME", help="Time between samples, such as '10 ms', in place of the file's."),
     ] = None,
     no_figure: Annotated[bool, typer.Option("--no-figure", help="Draw no figures.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the card as JSON, and nothing else.")] = False,
+    quiet: Quiet = False,
+    as_json: Json = False,
 ) -> None:
     """Run a scenario, print its verification card, and write run.nc, path.png and series.png.
 
@@ -144,7 +123,7 @@ def run(
     from ..solve.methods import check_tolerance
     from .writing import check_folder
 
-    folder = Path(Path(scenario).stem) if output is None else output.expanduser()
+    folder = folder_for(output, scenario)
     tables = files.tables_of(scenario)
     if files.rolls_along_path(tables):
         from . import along_path
@@ -199,7 +178,7 @@ def report(card: Card, lines: list[str], written: list[Path], *, quiet: bool, as
             screen.show_card(card)
             for line in lines:
                 screen.out(line)
-            screen.out(f"Wrote {', '.join(str(path) for path in written)}")
+            screen.wrote(written)
     except KeyboardInterrupt:
         screen.note("trundle: interrupted; the files are written")
         raise SystemExit(signals.INTERRUPTED) from None
@@ -210,20 +189,6 @@ def report(card: Card, lines: list[str], written: list[Path], *, quiet: bool, as
 
 
 METHODS = ["auto", "exact", "taylor", "runge-kutta"]
-
-
-def load(scenario: str, tables: dict[str, Any] | None = None, **overrides: str | None) -> Any:
-    """Read a scenario, or its tables, with some keys of its [run] table replaced by options of the command line."""
-    from ..simulation.simulate import Scenario
-
-    given = {key: value for key, value in overrides.items() if value is not None}
-    tables = files.tables_of(scenario) if tables is None else dict(tables)
-    if isinstance(tables.get("run", {}), dict):
-        tables["run"] = {**tables.get("run", {}), **given}
-    try:
-        return Scenario.read(tables, scenario)
-    except ScenarioError as error:
-        raise error.naming({f"run.{key}": f"--{key}" for key in given}) from None
 
 
 def list_scenarios() -> None:
@@ -254,9 +219,7 @@ def schema(
     path: Annotated[bool, typer.Option("--path", help="That of paths to roll along, without forces.")] = False,
 ) -> None:
     """Print the JSON schema of scenario files, for editors that check and complete TOML."""
-    import json
-
     from ..scenario import ScenarioFile
     from ..scenario.path_file import PathFile
 
-    screen.out(json.dumps((PathFile if path else ScenarioFile).schema(), indent=2))
+    screen.show_json((PathFile if path else ScenarioFile).schema())

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..errors import InvalidValueError, ScenarioError
-from ..scenario import files
+from ..errors import InvalidValueError
 from . import CARD_FAILED, screen, signals
+from .options import Folder, Json, Name, Quiet, folder_for, load
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -21,22 +20,9 @@ EXPONENTS, SECTION, ORBITS = "lyapunov.png", "section.png", "orbits.png"
 SECTION_DATA = "section.nc"
 
 
-def _complete(incomplete: str) -> list[str]:
-    return [name for name in files.names() if name.startswith(incomplete)]
-
-
-Name = Annotated[
-    str,
-    typer.Argument(metavar="SCENARIO", help="The name of a shipped one, or a TOML file.", autocompletion=_complete),
-]
-
-
 def chaos(
     scenario: Name,
-    output: Annotated[
-        Path | None,
-        typer.Option("--output", "-o", metavar="FOLDER", help="Default: a folder of the scenario's name."),
-    ] = None,
+    output: Folder = None,
     duration: Annotated[
         str | None, typer.Option(metavar="TIME", help="How long to follow the motion, in place of the file's.")
     ] = None,
@@ -57,8 +43,8 @@ def chaos(
     lowest: Annotated[str | None, typer.Option("--from", metavar="VALUE", help="Where that ends below.")] = None,
     highest: Annotated[str | None, typer.Option("--to", metavar="VALUE", help="Where that ends above.")] = None,
     no_figure: Annotated[bool, typer.Option("--no-figure", help="Write no file.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the findings as JSON, and nothing else.")] = False,
+    quiet: Quiet = False,
+    as_json: Json = False,
 ) -> None:
     """Find the Lyapunov exponents of a scenario's motion, with errors, and write lyapunov.png.
 
@@ -74,8 +60,8 @@ def chaos(
     for name, given in (("--count", count if asked else None), ("--duration", duration if orbit else None)):
         if given is not None:
             raise InvalidValueError(name, f"has no meaning with {asked[0]}", given, "Leave it out.")
-    loaded = _loaded(scenario)
-    folder = Path(Path(scenario).stem) if output is None else output.expanduser()
+    loaded = load(scenario)
+    folder = folder_for(output, scenario)
     wanted: tuple[str, ...] = (EXPONENTS,)
     if asked:
         wanted = (ORBITS,) if along else () if orbit else (SECTION, SECTION_DATA)
@@ -91,16 +77,6 @@ def chaos(
             found = _followed(loaded, duration, count, section, strobe, bar)
     signals.check()
     _tell(found, folder, wanted, quiet=quiet, as_json=as_json)
-
-
-def _loaded(scenario: str) -> Scenario:
-    tables = files.tables_of(scenario)
-    if files.rolls_along_path(tables):
-        remedy = "A ball rolled along a path feels no forces; name a scenario with a body under gravity."
-        raise ScenarioError("path", "has no exponents", scenario, remedy)
-    from ..simulation.simulate import Scenario
-
-    return Scenario.read(tables, scenario)
 
 
 def _orbit(loaded: Scenario, period: str, along: str | None, lowest: str | None, highest: str | None) -> Any:
@@ -131,11 +107,6 @@ def _tell(found: Any, folder: Path, wanted: tuple[str, ...], *, quiet: bool, as_
         for name in wanted
     }
     written = write_together(folder, writers)
-    if as_json:
-        screen.out(json.dumps(found.as_dict(), indent=2, ensure_ascii=False))
-    elif not quiet:
-        screen.out(str(found))
-        if written:
-            screen.out(f"Wrote {', '.join(str(path) for path in written)}")
+    screen.show(found, written, quiet=quiet, as_json=as_json)
     if getattr(found, "passed", None) is False or getattr(found, "located", True) is False:
         raise typer.Exit(CARD_FAILED)

@@ -43,8 +43,6 @@ def constraints(
 
     found = PfaffianSystem.load(system).analyse()
     if as_json:
-        import json
-
-        screen.out(json.dumps(found.as_dict(), indent=2, ensure_ascii=False))
+        screen.show_json(found.as_dict())
     else:
         screen.out(found.latex() if as_latex else str(found))

@@ -58,9 +58,7 @@ def derive(
             raise
         raise InvalidValueError("--with-numbers", error.rule, error.received, error.remedy) from None
     if as_json:
-        import json
-
-        text = json.dumps(derivation.as_dict(), indent=2, ensure_ascii=False) + "\n"
+        text = screen.json_text(derivation.as_dict()) + "\n"
     else:
         text = derivation.markdown() if markdown else derivation.latex() if latex else derivation.text()
     if output is None:

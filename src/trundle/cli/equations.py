@@ -9,21 +9,14 @@ from typing import Annotated
 import typer
 
 from ..errors import InvalidValueError, UnknownNameError
-from ..scenario import files
 from . import screen
+from .options import Name, load
 
 FORMS = {"c": "c", "python": "numpy", "javascript": "javascript", "latex": "sympy", "jax": "jax"}  # and their backends
 
 
 def equations(
-    name: Annotated[
-        str,
-        typer.Argument(
-            metavar="NAME",
-            help="A shipped scenario or a TOML file.",
-            autocompletion=lambda incomplete: [name for name in files.names() if name.startswith(incomplete)],
-        ),
-    ],
+    scenario: Name,
     form: Annotated[
         str,
         typer.Option(
@@ -52,17 +45,13 @@ def equations(
     Exit status: 0, all is well; 2, bad input; 130, interrupted; 1, all else.
     """
     from ..files import written_whole
-    from .app import load
 
     if form not in FORMS:
         raise UnknownNameError("form", form, FORMS)
-    tables = files.tables_of(name)
-    if files.rolls_along_path(tables):
-        raise InvalidValueError("NAME", "must be a scenario with forces", name, "A path to roll along has no law.")
     if output is not None and output.expanduser().is_dir():
         raise InvalidValueError("--output", "must be a file", str(output), "That is a folder.")
-    scenario = load(name, tables)
-    system, start = scenario.system(), scenario.start_state()
+    loaded = load(scenario)
+    system, start = loaded.system(), loaded.start_state()
     groups: tuple[str, ...] = ("force", "torque", "support") if form != "latex" else ()
     if inputs is not None:
         groups = tuple(part.strip() for part in inputs.split(",") if part.strip())

@@ -2,44 +2,52 @@
 
 from __future__ import annotations
 
-import json
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ..errors import InvalidValueError
+from ..units import plus_minus
 from . import CANNOT_DECIDE, CARD_FAILED, screen, signals
-from .read import Angles, Columns, Decimal, Pixel, Rate, Sense, Time, Unit, Upwards, Which, pairs, units_of
+from .options import (
+    NOTHING_SAID,
+    FileFolder,
+    Json,
+    Quiet,
+    Reading,
+    WhatMoves,
+    folder_for,
+    load,
+    no_scenario,
+    reads_tracks,
+)
 
 if TYPE_CHECKING:
     from ..analysis.fit import Fit
+    from ..tracks import Example
 
 FIGURE, PAGE, DATA, SCENARIO = "fit.png", "fit.html", "fit.nc", "fit.toml"
 TABLES = {"markdown": "fit.md", "latex": "fit.tex", "csv": "fit.csv"}
 
 
+@reads_tracks
 def fit(
     tracks: Annotated[
         list[Path] | None,
         typer.Argument(
-            metavar="TRACK", help="Measured motion, as `trundle read` reads it; several share what is free."
+            metavar="TRACK",
+            help="Measured motion, as `trundle read` reads it, or example:NAME; several share what is free.",
         ),
     ] = None,
-    scenario: Annotated[
-        str | None,
-        typer.Option("--scenario", "-s", metavar="SCENARIO", help="What moves: a shipped scenario or a TOML file."),
-    ] = None,
+    scenario: WhatMoves = None,
     free: Annotated[
         list[str] | None,
         typer.Option(
             "--free", "-f", metavar="KEY", help="A number to fit, such as body.inertia_ratio; repeat for more."
         ),
     ] = None,
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="FOLDER", help="Default: a folder of the track's name.")
-    ] = None,
+    output: FileFolder = None,
     noise: Annotated[
         str | None,
         typer.Option(metavar="SIZE", help="Of a value, '0.5 mm', or 'x=0.5 mm, wz=1 deg/s'; else estimated."),
@@ -55,16 +63,7 @@ def fit(
         str, typer.Option(metavar="LOSS", help="linear; against outliers soft_l1, huber, cauchy.")
     ] = "linear",
     given_start: Annotated[bool, typer.Option("--given-start", help="Take the start from the scenario.")] = False,
-    track: Which = None,
-    columns: Columns = None,
-    unit: Unit = None,
-    time: Time = None,
-    angles: Angles = None,
-    rate: Rate = None,
-    pixel: Pixel = None,
-    y: Upwards = None,
-    sense: Sense = None,
-    decimal: Decimal = None,
+    reading: Reading = NOTHING_SAID,
     compare: Annotated[
         bool, typer.Option("--compare", help="Say what may be missing: drag, resistance, a lean …")
     ] = False,
@@ -76,8 +75,8 @@ def fit(
         str | None, typer.Option(metavar="FORM", help="Write the table too: markdown, latex or csv.")
     ] = None,
     no_figure: Annotated[bool, typer.Option("--no-figure", help="Draw no figure, and write no page.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON, and nothing else.")] = False,
+    quiet: Quiet = False,
+    as_json: Json = False,
 ) -> None:
     """Fit numbers of a scenario to measured motion, and say which of them the data fix, and how well.
 
@@ -86,27 +85,28 @@ def fit(
     Exit status: 0, a good fit; 2, bad input; 3, a bad fit; 4, these data cannot decide; 130, interrupted; 1, all else.
     """
     from ..analysis.fit import fit as fit_tracks
-    from ..tracks import read_track
+    from ..tracks import example_of
 
-    if scenario is None:
-        remedy = "Name a shipped one (`trundle list`) or a TOML file."
-        raise InvalidValueError("--scenario", "must say what moves", "none", remedy)
+    known = example_of(tracks[0]) if tracks else None
+    if scenario is None and known is None:
+        raise no_scenario()
     numbers = _pairs(camera or [], "--camera")
+    loaded = _load(scenario, known)
+    if known is not None and scenario is None:
+        free, noise = free or list(known.free), noise or known.noise
     if plan:
-        _plan(scenario, free or [], noise, numbers, quiet=quiet, as_json=as_json)
+        _plan(loaded, free or [], noise, numbers, quiet=quiet, as_json=as_json)
         return
     if not tracks:
         raise InvalidValueError("TRACK", "must name a file", "none", "Or plan a measurement: --plan.")
-    loaded = _load(scenario)
     files = _names(table, figure=not no_figure)
-    folder = Path(tracks[0].stem) if output is None else output.expanduser()
+    folder = folder_for(output, tracks[0] if known is None else Path(known.name))
     from .writing import check_folder, write_together
 
     check_folder(folder, tuple(files))
 
-    told: dict[str, Any] = {"rate": rate, "pixel": pixel, "y": y, "sense": sense, "decimal": decimal, "track": track}
     found = fit_tracks(
-        [read_track(one, columns=pairs(columns), units=units_of(unit, time, angles), **told) for one in tracks],
+        [reading.read(one) for one in tracks],
         loaded,
         free=free or [],
         priors=_priors(prior or []),
@@ -125,7 +125,7 @@ def fit(
     }
     written = write_together(folder, {name: writers[name] for name in files})
     if as_json:
-        screen.out(json.dumps(found.as_dict(), indent=2, ensure_ascii=False, allow_nan=False))
+        screen.show_json(found.as_dict())
     elif not quiet:
         _tell(found, draws, written, compare=compare)
     _leave(found)
@@ -147,7 +147,7 @@ def _tell(found: Fit, draws: int, written: list[Path], *, compare: bool) -> None
         screen.out(str(found.compare()))
     if draws:
         screen.out(str(found.sample(draws)))
-    screen.out(f"Wrote {', '.join(str(path) for path in written)}")
+    screen.wrote(written)
 
 
 def _leave(found: Fit) -> None:
@@ -161,24 +161,23 @@ def _leave(found: Fit) -> None:
 
 
 def _plan(
-    scenario: str, free: list[str], noise: str | None, camera: dict[str, Any], *, quiet: bool, as_json: bool
+    scenario: object, free: list[str], noise: str | None, camera: dict[str, Any], *, quiet: bool, as_json: bool
 ) -> None:
     """Print how well each number would be known."""
     from ..analysis.fit import plan_fit
 
     noises = {} if noise is None else {"noises": [part.strip() for part in noise.split(",")]}
-    found = plan_fit(_load(scenario), free, camera=camera, **noises)  # type: ignore[arg-type]
-    if as_json:
-        screen.out(json.dumps(found.as_dict(), indent=2, ensure_ascii=False))
-    elif not quiet:
-        screen.out(str(found))
+    found = plan_fit(scenario, free, camera=camera, **noises)  # type: ignore[arg-type]
+    screen.show(found, quiet=quiet, as_json=as_json)
 
 
-def _load(scenario: str) -> object:
-    from ..scenario import files
+def _load(scenario: str | None, known: Example | None) -> Any:
+    """Return the scenario that is named, or the one that an example of a track begins with."""
+    if scenario is not None or known is None:
+        return load(str(scenario))
     from ..simulation.simulate import Scenario
 
-    return Scenario.read(files.tables_of(scenario), scenario)
+    return Scenario.read(known.scenario, known.name)
 
 
 def _noise(text: str | None) -> Any:
@@ -187,33 +186,23 @@ def _noise(text: str | None) -> Any:
 
 
 def _pairs(texts: list[str], option: str) -> dict[str, Any]:
-    """Read KEY=VALUE; a number without a unit is one, a list in brackets is one."""
+    """Read KEY=VALUE; what stands in brackets is a list."""
     found: dict[str, Any] = {}
     for text in texts:
         key, sign, value = (part.strip() for part in text.partition("="))
         if not (key and sign and value):
             raise InvalidValueError(option, "must be pairs KEY=VALUE", text, "Write for instance scale=1.02.")
-        listed = [part.strip() for part in value[1:-1].split(";")] if value[:1] == "[" else None
-        found[key] = _number(value) if listed is None else [_number(part) for part in listed]
+        found[key] = [part.strip() for part in value[1:-1].split(";")] if value[:1] == "[" else value
     return found
 
 
 def _priors(texts: list[str]) -> dict[str, tuple[Any, Any]]:
     """Read KEY=VALUE±SIGMA; the unit of SIGMA may stand for both."""
     found = {}
-    for key, value in _pairs([text.replace("+-", "±").replace("+/-", "±") for text in texts], "--prior").items():
-        middle, sign, sigma = (part.strip() for part in str(value).partition("±"))
-        if not sign:
+    for key, value in _pairs(texts, "--prior").items():
+        parts = plus_minus(value) if isinstance(value, str) else None
+        if parts is None:
             remedy = "Write for instance body.inertia_ratio=0.4±0.01."
             raise InvalidValueError("--prior", "must be KEY=VALUE±SIGMA", f"{key}={value}", remedy)
-        unit = re.sub(r"^[+-]?[\d.]+([eE][+-]?\d+)?\s*", "", sigma)
-        bare = isinstance(_number(middle), float)
-        found[key] = (_number(f"{middle} {unit}") if unit and bare else _number(middle), _number(sigma))
+        found[key] = parts
     return found
-
-
-def _number(text: str) -> Any:
-    try:
-        return float(text)
-    except ValueError:
-        return text

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Iterable
+from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
@@ -23,6 +25,34 @@ def out(text: str = "", end: str = "\n") -> None:
 def note(text: str) -> None:
     """Print to standard error."""
     print(text, file=sys.stderr)  # noqa: T201
+
+
+def json_text(value: object) -> str:
+    """Return a value as JSON for people and programs."""
+    import json
+
+    return json.dumps(value, indent=2, ensure_ascii=False)
+
+
+def show(found: Any, written: Iterable[Path] = (), *, quiet: bool = False, as_json: bool = False) -> None:
+    """Print a result as JSON, and nothing else; or its text, and the names of the files."""
+    if as_json:
+        show_json(found.as_dict())
+    elif not quiet:
+        out(str(found))
+        wrote(written)
+
+
+def show_json(value: object) -> None:
+    """Print a value as JSON."""
+    out(json_text(value))
+
+
+def wrote(files: Iterable[Path]) -> None:
+    """Name the files that were written, if any."""
+    names = ", ".join(map(str, files))
+    if names:
+        out(f"Wrote {names}")
 
 
 def on_terminal() -> bool:

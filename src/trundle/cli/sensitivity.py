@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..errors import InvalidValueError
-from . import screen, signals
+from . import CARD_FAILED, screen, signals
+from .options import Folder, Json, Name, NoFigure, Quiet, folder_for, load
 
 if TYPE_CHECKING:
     from ..analysis.imperfections import Sensitivity
@@ -24,11 +25,8 @@ OPTIONS = {  # where they differ from Python's names
 
 
 def sensitivity(
-    scenario: Annotated[str, typer.Argument(metavar="SCENARIO", help="The name of a shipped one, or a TOML file.")],
-    output: Annotated[
-        Path | None,
-        typer.Option("--output", "-o", metavar="FOLDER", help="Default: a folder of the scenario's name."),
-    ] = None,
+    scenario: Name,
+    output: Folder = None,
     tilt: Annotated[str | None, typer.Option(metavar="ANGLE", help="Of the table, such as '0.1 deg'.")] = None,
     drag: Annotated[
         str | None, typer.Option(metavar="C", help="Of the air, at rest and turning, such as '0.1 g/s'.")
@@ -55,9 +53,9 @@ def sensitivity(
             metavar="KEY", help="A number to differentiate the run by, such as support.tilt; repeat for more."
         ),
     ] = None,
-    no_figure: Annotated[bool, typer.Option("--no-figure", help="Draw no figure.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the table as JSON, and nothing else.")] = False,
+    no_figure: NoFigure = False,
+    quiet: Quiet = False,
+    as_json: Json = False,
 ) -> None:
     """Vary one shortcoming of a turntable at a time, and rank them by how soon the ball is off; write sensitivity.png.
 
@@ -71,7 +69,7 @@ def sensitivity(
     from ..analysis.imperfections import sensitivity as vary
     from .writing import check_folder, write_together
 
-    folder = Path(Path(scenario).stem) if output is None else output.expanduser()
+    folder = folder_for(output, scenario)
     sizes: dict[str, Any] = {
         "tilt": tilt,
         "drag": drag,
@@ -86,7 +84,7 @@ def sensitivity(
         return
     names = () if no_figure else (FILE,)
     check_folder(folder, names)
-    loaded = _load(scenario)
+    loaded = load(scenario)
     try:
         with screen.ProgressBar(wanted=not quiet) as bar:
             table = vary(loaded, **sizes, horizon=HORIZON if horizon is None else horizon, progress=bar)
@@ -101,8 +99,7 @@ def sensitivity(
         screen.out(table.as_json())
     elif not quiet:
         _show(table)
-        if written:
-            screen.out(f"Wrote {', '.join(str(path) for path in written)}")
+        screen.wrote(written)
 
 
 def _refuse(sizes: dict[str, Any]) -> None:
@@ -118,16 +115,13 @@ def _differentiate(
     scenario: str, by: list[str], horizon: str | None, folder: Path, *, figure: bool, quiet: bool, as_json: bool
 ) -> None:
     """Show the derivatives of a run by some numbers, and write them."""
-    import json
-
     from ..analysis.sensitivities import sensitivities
     from ..simulation.netcdf import write_dataset
-    from .app import CARD_FAILED
     from .writing import check_folder, write_together
 
     data, picture = FILES
     check_folder(folder, FILES if figure else (data,))
-    loaded = _load(scenario)
+    loaded = load(scenario)
     try:
         with screen.ProgressBar(wanted=not quiet) as bar:
             found = sensitivities(loaded, by, duration=horizon, progress=bar)
@@ -139,20 +133,9 @@ def _differentiate(
     if figure:
         files[picture] = lambda path: found.plot().savefig(path)
     written = write_together(folder, files)
-    if as_json:
-        screen.out(json.dumps(found.as_dict(), indent=2, ensure_ascii=False))
-    elif not quiet:
-        screen.out(str(found))
-        screen.out(f"Wrote {', '.join(str(path) for path in written)}")
+    screen.show(found, written, quiet=quiet, as_json=as_json)
     if found.passed is False:
         raise typer.Exit(CARD_FAILED)
-
-
-def _load(scenario: str) -> object:
-    from ..scenario import files
-    from ..simulation.simulate import Scenario
-
-    return Scenario.read(files.tables_of(scenario), scenario)
 
 
 def _show(table: Sensitivity) -> None:

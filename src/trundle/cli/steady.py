@@ -2,30 +2,19 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..errors import InvalidValueError, ScenarioError, TrundleError
-from ..scenario import files
+from ..errors import InvalidValueError, TrundleError
 from . import screen
+from .options import Folder, Json, Name, NoFigure, folder_for, load
 
 if TYPE_CHECKING:
     from ..analysis.steady import SteadyMotions
 
 FILE = "steady.png"
-
-
-def _complete(incomplete: str) -> list[str]:
-    return [name for name in files.names() if name.startswith(incomplete)]
-
-
-Name = Annotated[
-    str,
-    typer.Argument(metavar="SCENARIO", help="The name of a shipped one, or a TOML file.", autocompletion=_complete),
-]
 
 
 def steady(
@@ -44,12 +33,9 @@ def steady(
     periodic: Annotated[
         bool, typer.Option("--periodic", help="Find the periodic motion next to the start, and its multipliers.")
     ] = False,
-    output: Annotated[
-        Path | None,
-        typer.Option("--output", "-o", metavar="FOLDER", help="Default: a folder of the scenario's name."),
-    ] = None,
-    no_figure: Annotated[bool, typer.Option("--no-figure", help="Draw no figure.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the findings as JSON, and nothing else.")] = False,
+    output: Folder = None,
+    no_figure: NoFigure = False,
+    as_json: Json = False,
 ) -> None:
     """Find the steady motion next to a scenario's start, say whether it is stable, and write steady.png.
 
@@ -57,14 +43,8 @@ def steady(
     """
     from .writing import check_folder
 
-    folder = Path(Path(scenario).stem) if output is None else output.expanduser()
-    tables = files.tables_of(scenario)
-    if files.rolls_along_path(tables):
-        remedy = "A ball rolled along a path feels no forces; name a scenario with a body under gravity."
-        raise ScenarioError("path", "has no steady motions", scenario, remedy)
-    from ..scenario import ScenarioFile
-
-    asked = ScenarioFile.read(tables, scenario)
+    folder = folder_for(output, scenario)
+    asked = load(scenario)
     if periodic:
         return _periodic(asked, as_json)
     from ..analysis.steady import steady_motions
@@ -93,7 +73,7 @@ def _periodic(asked: Any, as_json: bool) -> None:
 
     motion = periodic_motion(asked)
     if as_json:
-        screen.out(json.dumps(motion.as_dict(), indent=2, ensure_ascii=False))
+        screen.show_json(motion.as_dict())
     else:
         screen.out(f"{asked.title}\n{motion}")
 
@@ -118,10 +98,9 @@ def _report(
         written = write_together(folder, {FILE: lambda path: drawn.savefig(path)})
     if as_json:
         whole = found.as_dict() | {"sweep": None if sweep is None else sweep.as_dict()}
-        screen.out(json.dumps(whole, indent=2, ensure_ascii=False))
+        screen.show_json(whole)
         return
     screen.out(str(found))
     if sweep is not None:
         screen.out(f"along {sweep}")
-    if written:
-        screen.out(f"Wrote {', '.join(str(path) for path in written)}")
+    screen.wrote(written)

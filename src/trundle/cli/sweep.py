@@ -10,6 +10,7 @@ import typer
 
 from ..errors import InvalidValueError
 from . import screen, signals
+from .options import Quiet
 
 if TYPE_CHECKING:
     from ..analysis.sweep.engine import Engine
@@ -48,7 +49,7 @@ def sweep(
     ] = None,
     dry: Annotated[bool, typer.Option("--dry-run", help="Check it, say what it will take, and run nothing.")] = False,
     names: Annotated[bool, typer.Option("--list", help="Name the sweeps that ship with trundle.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Run a scenario for many values of its numbers, measure each run, and write a Zarr store.
 

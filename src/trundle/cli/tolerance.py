@@ -9,10 +9,11 @@ import typer
 
 from ..errors import InvalidValueError
 from . import screen, signals
+from .options import Json, Name
 
 
 def tolerance(
-    scenario: Annotated[str, typer.Argument(metavar="SCENARIO", help="The name of a shipped one, or a TOML file.")],
+    scenario: Name,
     limits: Annotated[
         list[str], typer.Argument(metavar="KEY=VALUE±LIMIT...", help="Such as 'support.tilt=0±0.1 deg'.")
     ],
@@ -27,7 +28,7 @@ def tolerance(
     normal: Annotated[bool, typer.Option("--normal", help="What stands after ± is a standard deviation.")] = False,
     seed: Annotated[int, typer.Option(metavar="N", help="Of the draws.")] = 0,
     figure: Annotated[Path | None, typer.Option("--figure", metavar="FILE", help="Draw it, as .png or .svg.")] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print it as JSON, and nothing else.")] = False,
+    as_json: Json = False,
 ) -> None:
     """Say how far a run may be off when some numbers are only known within limits, and which of them matters most.
 
@@ -36,8 +37,6 @@ def tolerance(
 
     Exit status: 0, all is well; 2, bad input; 130, interrupted; 1, all else.
     """
-    import json
-
     from ..analysis.sweep.tolerancing import tolerance as find
 
     over = dict(_limit(text) for text in limits)
@@ -50,7 +49,7 @@ def tolerance(
 
         check_folder(figure.parent, (figure.name,))
         write_together(figure.parent, {figure.name: lambda path: found.plot().savefig(path)})
-    screen.out(json.dumps(found.as_dict(), indent=2, ensure_ascii=False) if as_json else str(found))
+    screen.show(found, as_json=as_json)
 
 
 def _limit(text: str) -> tuple[str, str]:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ..errors import InvalidValueError
 from . import CARD_FAILED, screen
+from .options import Folder, Name, NoFigure, folder_for, load
 
 if TYPE_CHECKING:
     from ..analysis.analogy import Twin
@@ -17,11 +17,8 @@ FILE = "twin.png"
 
 
 def twin(
-    scenario: Annotated[str, typer.Argument(metavar="SCENARIO", help="The name of a shipped one, or a TOML file.")],
-    output: Annotated[
-        Path | None,
-        typer.Option("--output", "-o", metavar="FOLDER", help="Default: a folder of the scenario's name."),
-    ] = None,
+    scenario: Name,
+    output: Folder = None,
     electron: Annotated[
         bool, typer.Option("--electron", help="An electron, a million times as fast as the ball.")
     ] = False,
@@ -30,7 +27,7 @@ def twin(
     slow_motion: Annotated[
         float | None, typer.Option(metavar="TIMES", help="Seconds of the ball for one of the charge.")
     ] = None,
-    no_figure: Annotated[bool, typer.Option("--no-figure", help="Draw no figure.")] = False,
+    no_figure: NoFigure = False,
 ) -> None:
     """Find the charge in crossed electric and magnetic fields that moves as a ball on a turntable does.
 
@@ -38,17 +35,16 @@ def twin(
 
     Exit status: 0, all is well; 2, bad input; 3, the two paths differ by more than rounding; 1, all else.
     """
-    from .app import load
     from .writing import check_folder, write_together
 
-    folder = Path(Path(scenario).stem) if output is None else output.expanduser()
+    folder = folder_for(output, scenario)
     pair = _found(load(scenario), mass=mass, charge=charge, electron=electron, slow_motion=slow_motion)
     if not no_figure:
         check_folder(folder, (FILE,))
     screen.out(str(pair))
     if not no_figure:
         written = write_together(folder, {FILE: lambda path: pair.plot().savefig(path)})
-        screen.out(f"Wrote {written[0]}")
+        screen.wrote(written)
     if not pair.agrees:
         screen.note("trundle: the two paths differ by more than rounding")
         raise typer.Exit(CARD_FAILED)

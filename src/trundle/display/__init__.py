@@ -15,12 +15,14 @@ from .markup import (
     table,
     verdict,
 )
-from .result import Displayed, Headline
+from .result import Displayed, Headline, Plottable, Serializable
 
 __all__ = [
     "Displayed",
     "Headline",
     "Markup",
+    "Plottable",
+    "Serializable",
     "escaped",
     "fold",
     "joined",

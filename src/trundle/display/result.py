@@ -7,9 +7,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.resources import files
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .markup import Markup, escaped, joined, verdict
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -72,6 +75,34 @@ class Displayed:
         said = joined(filter(None, (Markup(name), verdict(head.good, head.words))), " · ")
         parts = joined(self._parts())
         return f'<div class="trundle-shown"><style>{_style()}</style><p class="trundle-head">{said}</p>{parts}</div>'
+
+
+class Plottable(Displayed):
+    """A result that can be drawn."""
+
+    def plot(self) -> Figure:
+        """Draw it.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            Needs neither a display nor pyplot: notebooks show it, and `savefig` saves it.
+        """
+        raise NotImplementedError
+
+
+class Serializable(Displayed):
+    """A result that says all of itself in plain types."""
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return what is said, in SI units.
+
+        Returns
+        -------
+        dict
+            As JSON takes it; the command prints it with ``--json``.
+        """
+        raise NotImplementedError
 
 
 @lru_cache(maxsize=1)

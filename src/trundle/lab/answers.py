@@ -119,7 +119,7 @@ def scene_from(
 
         return rolled_scene(path_from(data).run(), samples, card)
     run, seconds = run_of(scenario_from(data), limits.MOST_SAVED, samples, tolerance)
-    return scene_of(run, samples, card, seconds=seconds)
+    return scene_of(run, samples, card, seconds=seconds, curves=True)
 
 
 @answering

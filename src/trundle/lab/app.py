@@ -12,7 +12,7 @@ from starlette.exceptions import HTTPException
 from starlette.responses import JSONResponse, Response
 
 from ..views.viewer.exports import FORMATS
-from . import answers, exports, pages
+from . import answers, exports, maps, pages
 from .errors import Refusal, RefusedError, of_validation
 from .lanes import LeftError
 from .requests import (
@@ -23,6 +23,8 @@ from .requests import (
     ToDraw,
     ToExport,
     ToJudge,
+    ToMap,
+    ToPoint,
     ToRoll,
     ToSimulate,
     ToStart,
@@ -70,6 +72,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     _reading(app, lab)
     _asking(app, lab)
     _judging(app, lab)
+    _mapping(app, lab)
     _files(app, lab)
     _refusing(app)
     pages.add_routes(app, chosen)
@@ -152,6 +155,29 @@ def _judging(app: FastAPI, lab: Lab) -> None:
     @app.post("/api/challenges/{name}/answer", **described("Whether an answer is right.", 404))
     async def judge(request: Request, name: str, asked: ToJudge) -> Response:
         return await lab.answer(request, answers.judged, name, asked.values, asked.answer)
+
+
+def _mapping(app: FastAPI, lab: Lab) -> None:
+    """Add the routes that compute maps."""
+
+    @app.get("/api/sweeps", **described("The sweeps that ship with trundle, and what a map may measure."))
+    async def sweeps(request: Request) -> Response:
+        return await lab.shared(request, maps.sweeps)
+
+    @app.post("/api/map/numbers", **described("The numbers of a scenario that a map may go over."))
+    async def numbers(request: Request, asked: AboutScenario) -> Response:
+        return await lab.answer(request, maps.map_numbers, asked.scenario)
+
+    @app.post("/api/map", **described("Go on with a map for a second: what was run, and the picture."))
+    async def draw(request: Request, asked: ToMap) -> Response:
+        spans = [span.model_dump(by_alias=True) for span in asked.over]
+        known = asked.places, asked.values
+        return await lab.answer(request, maps.draw_map, asked.scenario, spans, asked.measure, *known, slow=True)
+
+    @app.post("/api/map/point", **described("The scenario of one field of a map."))
+    async def point(request: Request, asked: ToPoint) -> Response:
+        spans = [span.model_dump(by_alias=True) for span in asked.over]
+        return await lab.answer(request, maps.map_point, asked.scenario, spans, asked.place)
 
 
 def _files(app: FastAPI, lab: Lab) -> None:

@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from starlette.responses import Response
 
 from ..views.viewer.exports import FORMATS
-from .limits import MOST_SAMPLES
+from .limits import MOST_FIELDS, MOST_SAMPLES, MOST_SIDE
 
 if TYPE_CHECKING:
     Ending = str
@@ -137,6 +137,44 @@ class ToJudge(_Asked):
 
     values: _Chosen = {}
     answer: _Finite | Annotated[str, Field(max_length=80)] | None = None
+
+
+_Spelt = _Finite | Annotated[str, Field(max_length=200)]
+Row = Annotated[list[_Finite | None], Field(max_length=MOST_FIELDS)]
+
+
+class Span(_Asked):
+    """One side of a map: a number of the scenario, and how far it goes."""
+
+    key: str = Field(max_length=200, description="Of the number, such as `start.angular_velocity[2]`.")
+    start: _Spelt = Field(alias="from", description="SI, or a text with a unit.")
+    end: _Spelt = Field(alias="to")
+    count: int = Field(ge=2, le=MOST_SIDE)
+    scale: Literal["linear", "log"] = "linear"
+
+
+class ToPoint(AboutScenario):
+    """A point of a map: one member of a sweep over two numbers of a scenario."""
+
+    over: Annotated[list[Span], Field(min_length=2, max_length=2)]
+    place: int = Field(ge=0, lt=MOST_FIELDS, description="Of the field: the second number runs first.")
+
+
+class ToMap(AboutScenario):
+    """A map that is to be computed, or gone on with."""
+
+    over: Annotated[list[Span], Field(min_length=2, max_length=2)]
+    measure: str = Field(max_length=500, description="What is measured of each member, such as `max hypot(x, y)`.")
+    places: Annotated[list[Annotated[int, Field(ge=0, lt=MOST_FIELDS)]], Field(max_length=MOST_FIELDS)] = Field(
+        default=[], description="Fields that are known already."
+    )
+    values: Row = Field(default=[], description="What was found there; null: there is no value.")
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if len(self.places) != len(self.values):
+            raise ValueError("places and values must be of one length")
+        return self
 
 
 class Told(BaseModel):

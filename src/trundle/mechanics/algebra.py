@@ -9,11 +9,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from .records import frozen_record
 from .scalars import Scalar, is_number, is_zero, namespace
-from .values import value
 
 
-@value()
+@frozen_record()
 class Vector:
     """A vector in space, by its three components in one frame.
 
@@ -87,7 +87,7 @@ E_Y = Vector(0.0, 1.0, 0.0)
 E_Z = Vector(0.0, 0.0, 1.0)
 
 
-@value()
+@frozen_record()
 class Matrix:
     """A 3×3 matrix by its three rows.
 
@@ -193,7 +193,7 @@ class Matrix:
         return Vector(v.dot(qr), v.dot(r.cross(p)), v.dot(p.cross(q))) / p.dot(qr)
 
 
-@value()
+@frozen_record()
 class TangentialTensor(Matrix):
     """c P H P with P = 1 − n nᵀ: what is left of a symmetric H across a unit vector n.
 
@@ -241,7 +241,7 @@ class TangentialTensor(Matrix):
         return (along - self.normal * self.normal.dot(along)) * self.scale
 
 
-@value()
+@frozen_record()
 class RoundTensor(Matrix):
     """c(1 − n nᵀ): the same in all directions across a unit vector n, as the curvature of a sphere is.
 
@@ -283,7 +283,7 @@ class RoundTensor(Matrix):
         return self.size * other.trace
 
 
-@value()
+@frozen_record()
 class RotatedTensor:
     """A symmetric matrix known along other axes: Q M Qᵀ, applied without working out its elements.
 
@@ -366,7 +366,7 @@ def point_inertia(mass: Scalar, offset: Vector) -> Matrix:
     )
 
 
-@value()
+@frozen_record()
 class RoundInertia:
     """J 1 + m(ρ² 1 − ρ ρᵀ): of a body with the same moment J about every axis, about a point at −ρ from its centre.
 
@@ -399,7 +399,7 @@ def inertia_about(J: Matrix, mass: Scalar, offset: Vector) -> Matrix | RoundIner
     return J + point_inertia(mass, offset)
 
 
-@value()
+@frozen_record()
 class Quaternion:
     """A unit quaternion w + x i + y j + z k that takes body components to components in the support frame.
 

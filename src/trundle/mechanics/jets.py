@@ -11,11 +11,11 @@ from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any
 
+from .records import frozen_record
 from .scalars import Scalar, less, namespace
-from .values import value
 
 
-@value(eq=False)
+@frozen_record(eq=False)
 class Jet:
     """A value, its gradient and its Hessian in a few variables.
 

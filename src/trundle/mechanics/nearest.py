@@ -163,22 +163,51 @@ def _newton(
     coordinates: tuple[Scalar, ...],
 ) -> Contact | None:
     """Return the contact to which Newton's method leads from a first guess at p; None where it leads nowhere."""
-    last = math.inf
     try:
-        contact = contact_at(system, time, point, orientation, coordinates)
-        for step in range(_MOST_STEPS):
-            off, aside, down = beside(system, contact, centre, bent=step > 0)
-            size = point.norm() + contact.offset.norm()
-            left = max(off.norm(), down.norm()) / size
-            point = point + aside + down
-            contact = contact_at(system, time, point, orientation, coordinates)
-            # What is left now is less by as much again; or it was rounding.
-            if step > 0 and (left <= _ROUNDING or (left <= _CLOSE and left * left <= 0.1 * _ROUNDING * last)):
-                break
-            last = left
+        contact, left = followed(system, time, centre, point, orientation, coordinates)
     except (ArithmeticError, ValueError):  # outside a formula, or where it has no slope
         return None
     return contact if left <= _CLOSE else None
+
+
+def followed(
+    system: RollingSystem,
+    time: float,
+    centre: Vector,
+    point: Vector,
+    orientation: Quaternion,
+    coordinates: tuple[Scalar, ...],
+) -> tuple[Contact, Scalar]:
+    """Follow Newton's method from a first guess at p, of one body or of many: the contact, and its last step's share.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import trundle as tr
+    >>> bowl = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Bowl(0.5)))
+    >>> centre, still = Vector(np.array([0.0, 0.2]), 0.0, 0.2), Quaternion(1.0, 0.0, 0.0, 0.0)
+    >>> followed(bowl, 0.0, centre, centre, still, ())[0].point.x.round(12).tolist()
+    [0.0, 0.277350098113]
+    """
+    import numpy as np
+
+    last: Scalar = math.inf
+    arrived: Any = False
+    contact = contact_at(system, time, point, orientation, coordinates)
+    for step in range(_MOST_STEPS):
+        off, aside, down = beside(system, contact, centre, bent=step > 0)
+        left = (off.norm() + down.norm()) / (point.norm() + contact.offset.norm())
+        moved = aside + down
+        # Who has arrived stays, however far the others have to go.
+        point = point + (moved * (1.0 - arrived) if isinstance(arrived, np.ndarray) else moved)
+        contact = contact_at(system, time, point, orientation, coordinates)
+        if step > 0:  # what is left now is less by as much again; or it was rounding, or leads nowhere
+            near = (left <= _CLOSE) & (left * left <= 0.1 * _ROUNDING * last)
+            arrived = arrived | near | (left <= _ROUNDING) | (left != left)
+        if arrived.all() if isinstance(arrived, np.ndarray) else arrived:
+            break
+        last = left
+    return contact, left
 
 
 def _gap(contact: Contact, centre: Vector) -> float:

@@ -129,8 +129,10 @@ class Document(Displayed, Table):
         """
         files.Bounds().check(data, source)
         if files.rolls_along_path(data) and not cls.rolls_along_path:
-            remedy = "It rolls a ball along a path, without forces: load it with `tr.PathScenario`."
-            raise ScenarioError("path", "has no place in a file with forces and a start", data["path"], remedy, source)
+            remedy = "A ball rolled along a path feels no forces; in Python load it with `tr.PathScenario`."
+            raise ScenarioError(
+                "scenario", "must have a body that forces act on", "a path to roll along", remedy, source
+            )
         try:
             return cls.model_validate({"title": _title_from(source), **data})
         except ValidationError as error:

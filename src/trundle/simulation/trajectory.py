@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..display import Plottable
 from ..errors import InvalidValueError, TrundleError, UnknownNameError
 from ..mechanics.system import RollingSystem, State
 from ..solve import frames
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, repr=False)
-class Trajectory(Viewable):
+class Trajectory(Viewable, Plottable):
     """The motion of one body: a dataset over time, with the system and the start that gave it.
 
     Parameters

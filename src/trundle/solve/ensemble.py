@@ -18,8 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanics.algebra import Quaternion, Vector
-from ..mechanics.contact import Contact, contact_at
-from ..mechanics.nearest import beside
+from ..mechanics.nearest import followed
 from ..mechanics.parameters import numbers, with_numbers
 from ..mechanics.placing import SLIP_TOLERANCE
 from ..mechanics.system import RollingSystem, State
@@ -30,7 +29,6 @@ from .samples import AT_ONCE, Array, Samples
 
 LANES = 8  # doubles in the widest registers; where they are half as wide, two at a time still gain
 _MOST_CHUNKS = 10
-_MOST_STEPS = 30  # of Newton's method
 _COMPLETED = 4000  # samples that are completed at once, at least: of few, each costs more
 _PRESSED = 1e-9  # share of the weight with which a member must press on to be taken along
 
@@ -128,10 +126,11 @@ def rolling_from(systems: Sequence[RollingSystem], starts: Sequence[State]) -> t
         for name in ("position", "velocity", "angular_velocity", "orientation", "support")
     )
     with np.errstate(all="ignore"):  # a start far from the support converges to nothing, and is left out
-        contact = _settled(system, time, Vector.of(r), Quaternion.of(q), tuple(coordinates.T))
+        centre = Vector.of(r)
+        contact, _ = followed(system, time, centre, centre, Quaternion.of(q), tuple(coordinates.T))
         states = np.column_stack([contact.point.array(), q, Omega, coordinates])
         arm = contact.offset.norm()
-        touches = (contact.centre - Vector.of(r)).norm() <= SLIP_TOLERANCE * arm
+        touches = (contact.centre - centre).norm() <= SLIP_TOLERANCE * arm
         v, turning = Vector.of(V), Vector.of(Omega)
         u = contact.support.material_velocity(contact.point)
         speed = np.maximum(np.maximum(v.norm(), turning.norm() * arm), _norm(u))
@@ -142,21 +141,6 @@ def rolling_from(systems: Sequence[RollingSystem], starts: Sequence[State]) -> t
 
 def _norm(v: Vector) -> Any:
     return np.sqrt(np.asarray(v.dot(v), dtype=float))
-
-
-def _settled(system: RollingSystem, time: float, r: Vector, q: Quaternion, coordinates: tuple[Any, ...]) -> Contact:
-    """Return the contacts nearest to many bodies: `mechanics.nearest.settle` on arrays."""
-    point = r
-    contact = contact_at(system, time, point, q, coordinates)
-    for step in range(_MOST_STEPS):
-        off, aside, down = beside(system, contact, r, bent=step > 0)
-        moved = _norm(off) + _norm(down)
-        going = 1.0 if step == 0 else np.where(moved > 1e-15 * (point.norm() + contact.offset.norm()), 1.0, 0.0)
-        if not np.any(going):
-            break
-        point = point + (aside + down) * going  # who has arrived stays, however far the others have to go
-        contact = contact_at(system, time, point, q, coordinates)
-    return contact
 
 
 def _held(system: RollingSystem, time: float, states: Array) -> Any:

@@ -10,6 +10,7 @@ from typing import Any
 
 from ..errors import InvalidValueError, UnknownNameError
 from .arrays import table_of
+from .examples import example_of
 from .file import File
 from .formats import endings, read_file
 from .options import SI, Options
@@ -42,8 +43,8 @@ def read_track(
     Parameters
     ----------
     source : path, Track, Trajectory, pandas.DataFrame, xarray.Dataset or mapping of arrays
-        A file of one of the formats on the page "Read a measured track", or the track in memory. Numbers in memory
-        are in SI unless their names say a unit.
+        A file of one of the formats on the page "Read a measured track", an example such as
+        ``"example:ball-on-a-ramp"``, or the track in memory. Numbers in memory are in SI unless their names say a unit.
     track : str, optional
         Which one, where a file holds several.
     columns : mapping, optional
@@ -119,7 +120,8 @@ def read_track(
         title, table = table_of(source, options)
         filled = replace(options, units=SI | dict(options.units))
         return Reading(table, filled, title, "", frame, axes, film=False).track({"options": options.as_dict()})
-    path = Path(source)
+    known = example_of(source)
+    path = Path(source) if known is None else known.path
     file = _opened(path, options)
     kind, tables = read_file(file, options)
     provenance = {

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..display import Displayed, Headline, Markup, fold, pairs, paragraph, table
+from ..display import Headline, Markup, Plottable, fold, pairs, paragraph, table
 from ..errors import UnknownNameError
 from .table import Rejected
 
@@ -24,7 +24,7 @@ _HEADS = ("column", "unit", "from", "values", "without a number")
 
 
 @dataclass(frozen=True, repr=False)
-class Track(Displayed):
+class Track(Plottable):
     """What was measured of a moving body, and how it was read: what `read_track` returns.
 
     Parameters
@@ -126,11 +126,6 @@ class Track(Displayed):
 
     def plot(self) -> Figure:
         """Draw the path where x and y were measured, and each column over time.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            Needs neither a display nor pyplot.
 
         Examples
         --------

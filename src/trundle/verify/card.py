@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from ..display import Displayed, Headline, Markup, number, paragraph, table, verdict
+from ..display import Displayed, Headline, Markup, Serializable, number, paragraph, table, verdict
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ def checked(name: str, value: float, bound: float, note: str, unit: str = "") ->
 
 
 @dataclass(frozen=True, repr=False)
-class Card(Displayed):
+class Card(Serializable):
     """What was checked of a run, and how well it held.
 
     Parameters

@@ -148,7 +148,70 @@ export interface StartRequest {
   nudge?: Triple
 }
 
+/** One side of a map: a number of the scenario and how far it goes, as the file of a sweep says it. */
+export interface Span {
+  key: string
+  from: Quantity
+  to: Quantity
+  count: number
+  scale: 'linear' | 'log'
+}
+
+export interface MapRequest {
+  scenario: Scenario
+  over: [Span, Span]
+  measure: string
+}
+
+export interface ShippedSweep extends Omit<MapRequest, 'measure'> {
+  name: string
+  title: string
+  notes: string
+  /** By name, the first of them the one to begin with. */
+  measures: Record<string, string>
+}
+
+export interface Sweeps {
+  sweeps: ShippedSweep[]
+  /** What may be measured: some of it by a formula, of which this is an example. */
+  figures: string[]
+  colours: { numbers: string[]; classes: string[] }
+}
+
+/** A number of a scenario, SI. */
+export interface ScenarioNumber {
+  key: string
+  value: number
+  unit: string
+}
+
+/** A part of a map: fields are counted with the second number running first. */
+export interface MapPart {
+  shape: [number, number]
+  axes: { key: string; unit: string; values: number[] }[]
+  unit: string
+  /** What the values stand for where they are classes; else empty. */
+  classes: string[]
+  /** What was run now, and what was found; null: no value. */
+  places: number[]
+  values: (number | null)[]
+  /** Every field, as far as it is known. */
+  picture: (number | null)[]
+  run: number
+  /** How many fields are to be run before the picture gets finer; 0: it is finished. */
+  left: number
+}
+
 export interface Api {
+  sweeps(options?: RequestOptions): Promise<Sweeps>
+  mapNumbers(scenario: Scenario, options?: RequestOptions): Promise<ScenarioNumber[]>
+  /** Go on with a map for about a second. */
+  map(request: MapRequest & { places: number[]; values: (number | null)[] }, options?: RequestOptions): Promise<MapPart>
+  /** The scenario of one field. */
+  mapPoint(
+    request: Omit<MapRequest, 'measure'> & { place: number },
+    options?: RequestOptions,
+  ): Promise<{ scenario: Scenario; toml: string }>
   scenarios(options?: RequestOptions): Promise<ScenarioEntry[]>
   scenario(name: string, options?: RequestOptions): Promise<NamedScenario>
   schema(options?: RequestOptions): Promise<Json>
@@ -248,6 +311,12 @@ export function createApi(base = '', ask: typeof fetch = (input, init) => fetch(
   }
 
   return {
+    sweeps: (options) => get('/api/sweeps', options),
+    mapNumbers: (scenario, options = {}) =>
+      post('/api/map/numbers', { scenario }, options, 'map-numbers', json<ScenarioNumber[]>),
+    map: (asked, options = {}) => post('/api/map', asked, options, 'map', json<MapPart>),
+    mapPoint: (asked, options = {}) =>
+      post('/api/map/point', asked, options, 'map-point', json<{ scenario: Scenario; toml: string }>),
     scenarios: (options) => get('/api/scenarios', options),
     scenario: (name, options) => get(`/api/scenarios/${encodeURIComponent(name)}`, options),
     schema: (options) => get('/api/schema', options),

@@ -1,6 +1,6 @@
 /** The pages of the lab, in the order of the menu; the first is the front door. */
 import type { Page } from './app'
 import { bench } from './bench'
-import { challenges, compare, fields, holonomy, notes, report, start, tour } from './pages'
+import { challenges, compare, fields, holonomy, maps, notes, report, start, tour } from './pages'
 
-export const pages: Page[] = [start, bench, tour, challenges, compare, fields, holonomy, report, notes]
+export const pages: Page[] = [start, bench, tour, challenges, compare, fields, holonomy, maps, report, notes]

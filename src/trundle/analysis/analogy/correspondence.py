@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ...display import Displayed, Headline, Markup, paragraph
+from ...display import Headline, Markup, Plottable, paragraph
 from ...errors import InvalidValueError, OutOfDomainError
 from ...mechanics import checks
 from ...mechanics.bodies import Body
@@ -36,7 +36,7 @@ ELECTRON_SLOW_MOTION = 1e6  # the electron's microseconds are the ball's seconds
 
 
 @dataclass(frozen=True, repr=False)
-class Twin(Displayed):
+class Twin(Plottable):
     """A ball and the charge that moves as it does: the same path, and the same times but for slow motion.
 
     Examples

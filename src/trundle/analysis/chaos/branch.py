@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...display import Displayed, Headline, Markup, pairs, table
+from ...display import Headline, Markup, Plottable, Serializable, pairs, table
 from ...errors import InvalidValueError, SolverError
 from ...mechanics import checks
 from ...mechanics.parameters import parameters
@@ -29,7 +29,7 @@ _SHARP = 1e-13  # of a step
 
 
 @dataclass(frozen=True, repr=False)
-class OrbitBranch(Displayed):
+class OrbitBranch(Plottable, Serializable):
     """A family of periodic orbits, along one number of the system.
 
     Parameters
@@ -96,10 +96,6 @@ class OrbitBranch(Displayed):
         -------
         dict
             Without the states.
-
-        Examples
-        --------
-        See `PeriodicOrbit.along`.
         """
         return {
             "title": self.title,
@@ -115,17 +111,7 @@ class OrbitBranch(Displayed):
         }
 
     def plot(self) -> Figure:
-        """Draw the branch: where the orbits are at their start, what is stable drawn through, and the multipliers.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            Needs neither a display nor pyplot.
-
-        Examples
-        --------
-        See `PeriodicOrbit.along`.
-        """
+        """Draw the branch: where the orbits are at their start, what is stable drawn through, and the multipliers."""
         from matplotlib.figure import Figure
 
         from ...views.plots.sheet import BLUE, FAINT, VERMILION

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...display import Displayed, Headline, Markup, pairs
+from ...display import Headline, Markup, Plottable, pairs
 from ...errors import InvalidValueError, TrundleError
 from ...mechanics import checks
 from ...mechanics.duals import Dual, slopes_of
@@ -29,7 +29,7 @@ Place = Callable[..., State]
 
 
 @dataclass(frozen=True, repr=False)
-class StartMap(Displayed):
+class StartMap(Plottable):
     """A figure for each start of a grid.
 
     Parameters
@@ -85,17 +85,7 @@ class StartMap(Displayed):
         yield pairs(self._facts)
 
     def plot(self) -> Figure:
-        """Draw the map of two quantities, or the curve of one.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            Needs neither a display nor pyplot.
-
-        Examples
-        --------
-        See `lyapunov_map` and `basins_of_attraction`.
-        """
+        """Draw the map of two quantities, or the curve of one."""
         from matplotlib.colors import BoundaryNorm, ListedColormap
         from matplotlib.figure import Figure
 

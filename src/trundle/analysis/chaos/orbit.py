@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...display import Displayed, Headline, Markup, pairs
+from ...display import Headline, Markup, Serializable, pairs
 from ...errors import SolverError
 from ...mechanics.system import RollingSystem, State
 from ...solve.samples import Array
@@ -31,7 +31,7 @@ _ONE = 1e-4  # from 1: a multiplier that differs less is 1, for several of them 
 
 
 @dataclass(frozen=True, repr=False)
-class PeriodicOrbit(Displayed):
+class PeriodicOrbit(Serializable):
     """A motion that comes back to where it was, and what becomes of nudges in a period.
 
     Parameters

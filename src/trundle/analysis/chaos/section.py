@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...display import Displayed, Headline, Markup, number, pairs
+from ...display import Headline, Markup, Plottable, Serializable, number, pairs
 from ...errors import UnknownNameError
 from ...mechanics.system import RollingSystem
 from ...solve.samples import Array
@@ -22,7 +22,7 @@ LOCATED = 1e-12  # of the largest value of the function: what is left of it wher
 
 
 @dataclass(frozen=True, repr=False)
-class PoincareSection(Displayed):
+class PoincareSection(Plottable, Serializable):
     """The states of a motion where a condition holds.
 
     The variables of `data` are those of `Trajectory.data`, at the instants of the crossings, and `residual`, what is
@@ -177,11 +177,6 @@ class PoincareSection(Displayed):
 
     def as_dict(self) -> dict[str, Any]:
         """Return what is said of the section, and the instants, in SI units.
-
-        Returns
-        -------
-        dict
-            As JSON takes it.
 
         Examples
         --------

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...display import Displayed, Headline, Markup, number, pairs, paragraph, table
+from ...display import Headline, Markup, Plottable, Serializable, number, pairs, paragraph, table
 from ...mechanics.system import RollingSystem, State
 from ...solve.samples import Array
 from .asked import finite_or_none
@@ -24,7 +24,7 @@ HEADINGS = ("exponent, 1/s", "error, 1/s", "")
 
 
 @dataclass(frozen=True, repr=False)
-class LyapunovExponents(Displayed):
+class LyapunovExponents(Plottable, Serializable):
     """The Lyapunov exponents of a motion, the largest first, with errors and evidence.
 
     Parameters
@@ -216,11 +216,6 @@ class LyapunovExponents(Displayed):
 
     def plot(self) -> Figure:
         """Draw how the exponents converged: their running means over time.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            Needs neither a display nor pyplot.
 
         Examples
         --------

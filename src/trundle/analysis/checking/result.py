@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from ...display import Displayed, Headline, Markup, number, pairs, paragraph
+from ...display import Displayed, Headline, Markup, Plottable, number, pairs, paragraph
 from ...verify import Card
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ class Mistake(Displayed):
 
 
 @dataclass(frozen=True, repr=False)
-class Check(Card):
+class Check(Card, Plottable):
     """The card of somebody else's motion or equations.
 
     Parameters
@@ -168,11 +168,6 @@ class Check(Card):
 
     def plot(self) -> Figure:
         """Draw the residuals over time beside their bounds, and their path over ours.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            Needs neither a display nor pyplot.
 
         Raises
         ------

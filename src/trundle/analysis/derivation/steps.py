@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from ...display import Displayed, Headline, Markup, mathml
+from ...display import Displayed, Headline, Markup, Serializable, mathml
 from ...errors import TrundleError
 
 
@@ -108,7 +108,7 @@ class Number:
 
 
 @dataclass(frozen=True, repr=False)
-class Derivation(Displayed):
+class Derivation(Serializable):
     """How the motion of a rolling body follows from Newton's and Euler's laws, each line of it proved.
 
     Parameters

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...display import Displayed, Headline, Markup, paragraph, section, table
+from ...display import Headline, Markup, Serializable, paragraph, section, table
 from ...errors import InvalidValueError, UnknownNameError
 from ...scenario import ScenarioFile
 from ...simulation.simulate import Scenario
@@ -30,7 +30,7 @@ _MOST_ROWS = 50_000
 
 
 @dataclass(frozen=True, repr=False)
-class FitPlan(Displayed):
+class FitPlan(Serializable):
     """Standard deviations that a measurement would reach.
 
     Parameters
@@ -116,10 +116,6 @@ class FitPlan(Displayed):
         -------
         dict
             None where a number is not fixed.
-
-        Examples
-        --------
-        See `trundle.plan_fit`.
         """
         sigma = self.sigma.astype(object)
         sigma[np.isnan(self.sigma)] = None

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...display import Displayed, Headline, Markup, fold, paragraph, section, table
+from ...display import Headline, Markup, Plottable, Serializable, fold, paragraph, section, table
 from ...errors import UnknownNameError
 from ...scenario import ScenarioFile
 from ...simulation.simulate import Scenario
@@ -87,7 +87,7 @@ class Estimate:
 
 
 @dataclass(frozen=True, repr=False)
-class Fit(Displayed):
+class Fit(Plottable, Serializable):
     """Numbers of a scenario fitted to measured motion.
 
     `fit["body.inertia_ratio"]` is one of the estimates.
@@ -274,31 +274,11 @@ class Fit(Displayed):
         return report.dataset(self)
 
     def as_dict(self) -> dict[str, Any]:
-        """Return all that is said, in SI.
-
-        Returns
-        -------
-        dict
-            As JSON takes it.
-
-        Examples
-        --------
-        See `docs/fitting.md`.
-        """
+        """Return all that is said, in SI."""
         return report.as_dict(self)
 
     def plot(self) -> Figure:
-        """Draw data and fit, residuals over time, and how the numbers are correlated.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            Needs neither a display nor pyplot.
-
-        Examples
-        --------
-        See `docs/fitting.md`.
-        """
+        """Draw data and fit, residuals over time, and how the numbers are correlated."""
         from .figure import draw
 
         return draw(self)

@@ -50,12 +50,12 @@ class Laid:
     area: float
 
 
-def lay(pieces: tuple[Piece, ...], start: tuple[float, float], radius: float) -> Laid:
+def develop(pieces: tuple[Piece, ...], start: tuple[float, float], radius: float) -> Laid:
     """Lay pieces end to end.
 
     Examples
     --------
-    >>> lay((Straight(length=2.0), Arc(radius=1.0, angle=np.pi)), (0.0, 0.0), 0.1).places.round(9) + 0.0
+    >>> develop((Straight(length=2.0), Arc(radius=1.0, angle=np.pi)), (0.0, 0.0), 0.1).places.round(9) + 0.0
     array([[0., 0.],
            [2., 0.],
            [2., 2.]])

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...display import Displayed, Headline, Markup, fold, joined
+from ...display import Headline, Markup, Plottable, fold, joined
 from ...errors import InvalidValueError, UnknownNameError
 from ...mechanics.algebra import Quaternion
 from ...mechanics.checks import positive
 from . import bends
-from .development import Laid, lay
+from .development import Laid, develop
 from .pieces import Piece
 from .rotation import Rotation
 from .stages import Stages
@@ -38,7 +38,7 @@ _ROUNDING = 8.0  # units in the last place lost for each radian, piece and step
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class RolledPath(Displayed):
+class RolledPath(Plottable):
     """A ball rolled along a path, as `roll_along` returns it.
 
     Parameters
@@ -75,7 +75,7 @@ class RolledPath(Displayed):
     _laid: Laid = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "_laid", lay(self.pieces, self.start, self.radius))
+        object.__setattr__(self, "_laid", develop(self.pieces, self.start, self.radius))
 
     def __repr__(self) -> str:
         return f"<RolledPath: {self._extent}>"

@@ -9,7 +9,7 @@ from typing import Any
 
 import sympy as sp
 
-from ...display import Displayed, Headline, Markup
+from ...display import Headline, Markup, Serializable
 from ...errors import InvalidValueError
 from .flag import Span, Vector, bracket, flag, independent_rows, kernel, vanishes
 from .functions import prepare
@@ -33,7 +33,7 @@ class Field:
 
 
 @dataclass(frozen=True, repr=False)
-class ConstraintAnalysis(Displayed):
+class ConstraintAnalysis(Serializable):
     """The findings about a Pfaffian system.
 
     Examples

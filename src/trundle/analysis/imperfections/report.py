@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from trundle.wording import with_unit
 
-from ...display import Displayed, Headline, Markup, paragraph, table
+from ...display import Headline, Markup, Plottable, Serializable, paragraph, table
 from .rows import HEADINGS, Row, clock
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, repr=False)
-class Sensitivity(Displayed):
+class Sensitivity(Plottable, Serializable):
     """What each shortcoming alone does to a demonstration, the worst first.
 
     Parameters
@@ -91,17 +91,7 @@ class Sensitivity(Displayed):
         yield table(self.cells, HEADINGS)
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the table in SI units.
-
-        Returns
-        -------
-        dict
-            As JSON takes it.
-
-        Examples
-        --------
-        See `as_json`.
-        """
+        """Return the table in SI units."""
         return {
             "title": self.title,
             "rim": self.rim,
@@ -133,11 +123,6 @@ class Sensitivity(Displayed):
 
     def plot(self) -> Figure:
         """Draw the path under each shortcoming, and when the ball leaves.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            Needs neither a display nor pyplot.
 
         Examples
         --------

@@ -9,7 +9,7 @@ from typing import Any
 
 from trundle.wording import short, with_unit
 
-from ...display import Displayed, Headline, Markup, pairs
+from ...display import Headline, Markup, Serializable, pairs
 from ...simulation.trajectory import Trajectory
 from .measuring import CircleMotion
 
@@ -18,7 +18,7 @@ LEAST = 1e-5 / 60  # m/s: a circle that moves by less than a hundredth of a mill
 
 
 @dataclass(frozen=True, repr=False)
-class Row(Displayed):
+class Row(Serializable):
     """A demonstration with one shortcoming.
 
     Parameters
@@ -107,12 +107,7 @@ class Row(Displayed):
         yield pairs(list(zip(HEADINGS, self.cells, strict=True))[2:])
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the row in SI units, as JSON takes it.
-
-        Examples
-        --------
-        See `Sensitivity.as_json`.
-        """
+        """Return the row in SI units, as JSON takes it."""
         finite = self.theory_leaves is not None and math.isfinite(self.theory_leaves)
         return {
             "name": self.name,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...display import Displayed, Headline, Markup, paragraph, table
+from ...display import Headline, Markup, Plottable, Serializable, paragraph, table
 from ...errors import UnknownNameError
 from .comparing import Agreement
 
@@ -20,7 +20,7 @@ HEADINGS = ("number", "value", "its unit", "of the last position, m per unit", "
 
 
 @dataclass(frozen=True, repr=False)
-class Sensitivities(Displayed):
+class Sensitivities(Plottable, Serializable):
     """The first derivatives of a run by numbers of its scenario.
 
     The variables of `data` can be read off the result itself: `found.position` is `found.data.position`.
@@ -120,11 +120,6 @@ class Sensitivities(Displayed):
     def as_dict(self) -> dict[str, Any]:
         """Return what is said of the end of the run, and of the events, in SI units.
 
-        Returns
-        -------
-        dict
-            As JSON takes it.
-
         Examples
         --------
         >>> import trundle as tr
@@ -163,11 +158,6 @@ class Sensitivities(Displayed):
 
     def plot(self) -> Figure:
         """Draw the derivatives of the position over time, a panel for each parameter.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            Needs neither a display nor pyplot.
 
         Examples
         --------

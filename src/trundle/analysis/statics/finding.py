@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from ...errors import InvalidValueError
@@ -16,7 +17,7 @@ from ...mechanics.system import RollingSystem, State
 from ...scenario import ScenarioFile
 from . import rest
 from .examining import examine
-from .line import NEAR, ROOT, Line, lay
+from .line import NEAR, ROOT, Line, roll_line
 from .result import Equilibria, Equilibrium
 from .search import Family, Place, Search
 from .words import direction_names
@@ -138,9 +139,8 @@ def _along_line(system: RollingSystem, start: State, place: Place, turns: Any) -
     bent = abs(float(line.distance(line.high)) - float(line.distance(line.low)))
     searched = f"{_turns(line)} of the cylinder, {bent:.4g} m along the support, from the start"
     reason = "" if found else _why_none_on_line(line)
-    return Equilibria(
-        system, start, found, pulled, potential, searched, reason, repeats, line=line, marked=(*found, *pulled)
-    )
+    section = line, (*found, *pulled)
+    return Equilibria(system, start, found, pulled, potential, searched, lambda: section, reason, repeats)
 
 
 def _checked(turns: Any) -> float:
@@ -155,10 +155,10 @@ def _laid(
 ) -> Line:
     """Roll along a line as far as it was asked for; else half way round a support, or some way where it is open."""
     first = asked or on_plane
-    line = lay(system, time, place.p, place.q, axis, (first, first))
+    line = roll_line(system, time, place.p, place.q, axis, (first, first))
     if asked is not None or line.straight:
         return line
-    return lay(system, time, place.p, place.q, axis, (OPEN, ROUND))
+    return roll_line(system, time, place.p, place.q, axis, (OPEN, ROUND))
 
 
 def _check_straight(line: Line) -> None:
@@ -228,8 +228,8 @@ def _everywhere(system: RollingSystem, start: State, place: Place, turns: Any) -
     reason = ""
     if not found:
         reason = _why_no_place(system, start.time, nearest, torque, bool(families))
-    line, marked = _section(system, start.time, found[0] if found else None, nearest, at)
-    return Equilibria(system, start, found, pulled, potential, search.told, reason, line=line, marked=marked)
+    section = partial(_section, system, start.time, found[0] if found else None, nearest, at)
+    return Equilibria(system, start, found, pulled, potential, search.told, section, reason)
 
 
 def _kinds(system: RollingSystem, search: Search, family: Family, at: Callable[..., Equilibrium]) -> list[Equilibrium]:

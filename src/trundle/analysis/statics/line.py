@@ -153,7 +153,9 @@ class Line:
         return tuple(0.0 if abs(w) <= small else math.copysign(1.0, w) for w in (before, after))  # type: ignore[return-value]
 
 
-def lay(system: RollingSystem, time: float, p: Vector, q: Quaternion, axis: Vector, most: tuple[float, float]) -> Line:
+def roll_line(
+    system: RollingSystem, time: float, p: Vector, q: Quaternion, axis: Vector, most: tuple[float, float]
+) -> Line:
     """Roll a body both ways from a place, turning it about a fixed axis.
 
     Parameters
@@ -180,7 +182,7 @@ def lay(system: RollingSystem, time: float, p: Vector, q: Quaternion, axis: Vect
     >>> import trundle as tr
     >>> from trundle.mechanics.algebra import E_Y
     >>> level = tr.RollingSystem(tr.Body.hoop(0.1, 1.0), tr.Support(tr.Plane()))
-    >>> line = lay(level, 0.0, ZERO, Quaternion(1.0, 0.0, 0.0, 0.0), E_Y, (3.0, 3.0))
+    >>> line = roll_line(level, 0.0, ZERO, Quaternion(1.0, 0.0, 0.0, 0.0), E_Y, (3.0, 3.0))
     >>> round(float(line.distance(2.0)), 12), line.flat
     (0.2, True)
     """

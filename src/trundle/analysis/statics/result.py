@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from ...display import Displayed, Headline, Markup, pairs, paragraph, records
+from ...display import Headline, Markup, Plottable, Serializable, pairs, paragraph, records
 from ...mechanics.system import RollingSystem, State
 from .line import Line
 from .stability import Mode
@@ -19,7 +20,7 @@ Triple = tuple[float, float, float]
 
 
 @dataclass(frozen=True, repr=False)
-class Equilibrium(Displayed):
+class Equilibrium(Serializable):
     """A place where the body stays, put down at rest.
 
     Parameters
@@ -133,7 +134,7 @@ class Equilibrium(Displayed):
 
 
 @dataclass(frozen=True, repr=False)
-class Equilibria(Displayed):
+class Equilibria(Plottable, Serializable):
     """The equilibria of a system, and what was searched for them.
 
     It is a sequence: the lowest first where there is an energy, else the nearest to the start.
@@ -152,14 +153,14 @@ class Equilibria(Displayed):
         Whether every load that a body at rest feels has a potential.
     searched : str
         What was searched.
+    section : callable
+        Rolls the body along a line to draw the energy over: many times the work of the search.
     reason : str
         Where there are none: why.
     repeats : tuple of 2 floats, optional
         Where everything comes again with each turn: after how far, m, and how much higher, J.
     title : str
         For text and figure.
-    line : Line, optional
-        The line along which the energy is drawn.
 
     Examples
     --------
@@ -175,11 +176,24 @@ class Equilibria(Displayed):
     pulled: tuple[Equilibrium, ...]
     conservative: bool
     searched: str
+    section: Callable[[], tuple[Line | None, tuple[Equilibrium, ...]]] = field(repr=False)
     reason: str = ""
     repeats: tuple[float, float] | None = None
     title: str = ""
-    line: Line | None = field(default=None, repr=False)
-    marked: tuple[Equilibrium, ...] = field(default=(), repr=False)  # those on the line
+
+    @cached_property
+    def _drawn(self) -> tuple[Line | None, tuple[Equilibrium, ...]]:
+        return self.section()
+
+    @property
+    def line(self) -> Line | None:
+        """The line along which the energy is drawn, if there is one."""
+        return self._drawn[0]
+
+    @property
+    def marked(self) -> tuple[Equilibrium, ...]:
+        """The equilibria on that line."""
+        return self._drawn[1]
 
     def __iter__(self) -> Iterator[Equilibrium]:
         return iter(self.found)
@@ -209,11 +223,6 @@ class Equilibria(Displayed):
     def as_dict(self) -> dict[str, Any]:
         """Return everything in SI units and plain types, for JSON.
 
-        Returns
-        -------
-        dict
-            What the command prints with ``--json``.
-
         Examples
         --------
         >>> import trundle as tr
@@ -233,11 +242,6 @@ class Equilibria(Displayed):
 
     def plot(self) -> Figure:
         """Draw the energy along the support beside the body at each equilibrium, with the forces on it.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            Needs neither a display nor pyplot.
 
         Examples
         --------

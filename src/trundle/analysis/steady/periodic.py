@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...display import Displayed, Headline, Markup, pairs
+from ...display import Headline, Markup, Serializable, pairs
 from ...errors import SolverError
 from ...mechanics import checks
 from ...mechanics.system import RollingSystem, State
@@ -34,7 +34,7 @@ _OTHER_SIGN = np.diag([1.0] * 3 + [-1.0] * 4 + [1.0] * 4)  # q and −q are one 
 
 
 @dataclass(frozen=True, repr=False)
-class PeriodicMotion(Displayed):
+class PeriodicMotion(Serializable):
     """A motion that repeats after a period, seen after a shift and a turn that change nothing that matters.
 
     Parameters

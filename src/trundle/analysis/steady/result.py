@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from ...display import Displayed, Headline, Markup, pairs, paragraph, records
+from ...display import Headline, Markup, Plottable, Serializable, pairs, paragraph, records
 from ...mechanics.system import RollingSystem, State
 from .finding import Relative
 from .modes import Mode, Reduced
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, repr=False)
-class SteadyMotion(Displayed):
+class SteadyMotion(Serializable):
     """A motion in which all that matters stays as it is, and how it answers a nudge.
 
     Parameters
@@ -179,7 +179,7 @@ class SteadyMotion(Displayed):
 
 
 @dataclass(frozen=True, repr=False)
-class SteadyMotions(Displayed):
+class SteadyMotions(Plottable, Serializable):
     """The steady motions found, the nearest to the start first; a sequence.
 
     Parameters
@@ -245,11 +245,6 @@ class SteadyMotions(Displayed):
 
     def as_dict(self) -> dict[str, Any]:
         """Return everything in SI units and plain types, for JSON.
-
-        Returns
-        -------
-        dict
-            What the command prints with ``--json``.
 
         Examples
         --------

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...display import Displayed, Headline, Markup, fold, joined, number, table
+from ...display import Headline, Markup, Plottable, Serializable, fold, joined, number, table
 from ...errors import InvalidValueError, SolverError
 from ...mechanics import checks
 from ...mechanics.motions import Spin
@@ -44,7 +44,7 @@ _FROM_REST = 20.0  # scales of the rate, for a quantity that is zero
 
 
 @dataclass(frozen=True, repr=False)
-class Sweep(Displayed):
+class Sweep(Plottable, Serializable):
     """Growth and frequencies of a family of steady motions against one quantity.
 
     Parameters

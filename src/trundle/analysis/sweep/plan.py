@@ -198,8 +198,6 @@ def _with_run(document: Scenario, run: Any) -> Scenario:
 
 
 def _read(tables: dict[str, Any], run: Any, source: str) -> Scenario:
-    if files.rolls_along_path(tables):
-        raise InvalidValueError("scenario", "must have forces and a start", source, "This one rolls along a path.")
     if run is not None:
         if not isinstance(run, Mapping):
             raise InvalidValueError("run", "must be a table", run, 'Write for instance: [run] duration = "10 s".')

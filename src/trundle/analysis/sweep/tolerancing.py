@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...display import Displayed, Headline, Markup, paragraph, table
+from ...display import Headline, Markup, Plottable, Serializable, paragraph, table
 from ...errors import InvalidValueError
 from ...solve.samples import Progress
 from .api import sweep
 from .figure import in_print
 from .measures import DONE
 from .result import Sweep
-from .varying import halves
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -26,7 +25,7 @@ _NOTHING = 1e-12  # of the largest value: so little spread is rounding
 
 
 @dataclass(frozen=True, repr=False)
-class Tolerance(Displayed):
+class Tolerance(Plottable, Serializable):
     """How widely a measure is spread when some numbers are only known within limits, and whose doing that is.
 
     Parameters
@@ -85,11 +84,6 @@ class Tolerance(Displayed):
     def as_dict(self) -> dict[str, Any]:
         """Return what is said, in SI units.
 
-        Returns
-        -------
-        dict
-            As JSON takes it.
-
         Examples
         --------
         >>> import trundle as tr
@@ -110,11 +104,6 @@ class Tolerance(Displayed):
 
     def plot(self) -> Figure:
         """Draw the measure over each number, and how it is distributed.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            Needs neither a display nor pyplot.
 
         Examples
         --------
@@ -185,9 +174,9 @@ def tolerance(
     >>> list(found.shares)
     ['support.motion.rate', 'support.tilt']
     """
-    given = (
-        {key: _normal(spec) if normal else spec for key, spec in over.items()} if isinstance(over, Mapping) else over
-    )
+    given = over
+    if normal and isinstance(over, Mapping):
+        given = {key: {"normal": spec} if isinstance(spec, str) else spec for key, spec in over.items()}
     found = sweep(
         scenario,
         given,
@@ -212,11 +201,6 @@ def tolerance(
     quantiles = np.quantile(there, list(_QUANTILES.values())) if there.size else np.full(len(_QUANTILES), np.nan)
     spread = dict(zip(_QUANTILES, quantiles.tolist(), strict=True))
     return Tolerance(name, str(one.attrs["units"]), spread, _shares(found, one.values, members), found)
-
-
-def _normal(spec: Any) -> Any:
-    parts = halves(spec) if isinstance(spec, str) else None
-    return spec if parts is None else {"normal": list(parts)}
 
 
 def _shares(found: Sweep, values: Any, members: int) -> dict[str, tuple[float, float]]:

@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ...display import Displayed, Headline, Markup, paragraph, table
+from ...display import Headline, Markup, Serializable, paragraph, table
 from ...mechanics import checks
 from ...mechanics.system import RollingSystem
 from .equations import VakonomicPath, vakonomic_path
@@ -31,7 +31,7 @@ _SAME = 1e-9  # share of the distance from the axis, below which two paths are o
 
 
 @dataclass(frozen=True, repr=False)
-class VakonomicComparison(Displayed):
+class VakonomicComparison(Serializable):
     """A ball's path and the vakonomic ones from the same start.
 
     Parameters
@@ -104,13 +104,7 @@ class VakonomicComparison(Displayed):
         )
 
     def plot(self) -> Sheet:
-        """Draw both paths, and those from other initial multipliers.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            Needs neither a display nor pyplot.
-        """
+        """Draw both paths, and those from other initial multipliers."""
         from .figure import draw
 
         return draw(self)

@@ -13,11 +13,11 @@ from ..algebra import ZERO, Matrix, Vector
 from ..parts import POSITIVE, Formula, Number
 from ..scalars import Scalar, is_number, is_zero, namespace
 from ..shapes import (
+    CylinderShape,
     Disc,
     Ellipsoid,
     HalfCylinder,
     Hemisphere,
-    Roller,
     Shape,
     Sphere,
     SupportFunction,
@@ -388,7 +388,7 @@ class Body:
         return cls(m, inertia_of(own, products), Hemisphere(a, (0.0, 0.0, 3 / 8 * a) if centre is None else centre))
 
     @classmethod
-    @builder("cylinder", Roller)
+    @builder("cylinder", CylinderShape)
     def cylinder(cls, radius: Radius, mass: Mass, inertia_ratio: CylinderRatio = SOLID_CYLINDER) -> Self:
         """Make a cylinder that rolls straight on its round side.
 
@@ -410,10 +410,10 @@ class Body:
         >>> Body.cylinder("3 cm", "200 g").inertia_ratio
         0.5
         """
-        return cls(mass, RatioInertia(inertia_ratio), Roller(radius))
+        return cls(mass, RatioInertia(inertia_ratio), CylinderShape(radius))
 
     @classmethod
-    @builder("hoop", Roller)
+    @builder("hoop", CylinderShape)
     def hoop(cls, radius: Radius, mass: Mass) -> Self:
         """Make a hoop or a thin pipe that rolls straight, I = m a².
 
@@ -436,7 +436,7 @@ class Body:
         return cls.cylinder(radius, mass, HOOP)
 
     @classmethod
-    @builder("weighted-cylinder", Roller)
+    @builder("weighted-cylinder", CylinderShape)
     def weighted_cylinder(
         cls,
         radius: Radius,
@@ -478,10 +478,10 @@ class Body:
         total = mass + weight
         away = weight * distance / total
         moment = inertia_ratio * mass * radius**2 + mass * away**2 + weight * (distance - away) ** 2
-        return cls(total, Isotropic(moment), Roller(radius, Vector(-away, 0.0, 0.0)))
+        return cls(total, Isotropic(moment), CylinderShape(radius, Vector(-away, 0.0, 0.0)))
 
     @classmethod
-    @builder("eccentric-cylinder", Roller)
+    @builder("eccentric-cylinder", CylinderShape)
     def eccentric_cylinder(
         cls,
         radius: Radius,
@@ -523,7 +523,7 @@ class Body:
             if away >= radius:
                 remedy = f"It lies {away:g} m from a centre of mass that must be inside the cylinder."
                 raise InvalidValueError("centre", "must lie less than the radius away", centre, remedy)
-        return cls(mass, Isotropic(moment_of_inertia), Roller(radius, centre))
+        return cls(mass, Isotropic(moment_of_inertia), CylinderShape(radius, centre))
 
     @classmethod
     @builder("half-cylinder", HalfCylinder)

@@ -8,15 +8,15 @@ from __future__ import annotations
 from .base import Shape
 from .ellipsoid import Ellipsoid
 from .rims import Disc, Torus
-from .sphere import HalfCylinder, Hemisphere, Roller, Sphere, concentric_sphere
+from .sphere import CylinderShape, HalfCylinder, Hemisphere, Sphere, concentric_sphere
 from .support_function import SupportFunction
 
 __all__ = [
+    "CylinderShape",
     "Disc",
     "Ellipsoid",
     "HalfCylinder",
     "Hemisphere",
-    "Roller",
     "Shape",
     "Sphere",
     "SupportFunction",

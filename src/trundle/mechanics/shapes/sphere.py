@@ -83,7 +83,7 @@ class Hemisphere(Sphere):
 
 
 @dataclass(frozen=True)
-class Roller(Sphere):
+class CylinderShape(Sphere):
     """A cylinder or hoop that rolls straight, on its round side; its axis is the third of the body frame.
 
     It touches along a line, which keeps it upright, and moves as a sphere of the same radius would in the plane across
@@ -96,7 +96,7 @@ class Roller(Sphere):
 
     Examples
     --------
-    >>> Roller(0.05).axis
+    >>> CylinderShape(0.05).axis
     Vector(x=0.0, y=0.0, z=1.0)
     """
 
@@ -112,12 +112,12 @@ class Roller(Sphere):
 
 
 @dataclass(frozen=True)
-class HalfCylinder(Roller):
+class HalfCylinder(CylinderShape):
     """Half a cylinder, which rocks on its round side; the outward normal of its flat face is the first axis.
 
     Parameters
     ----------
-    radius, centre : see Roller
+    radius, centre : see CylinderShape
         Of the round side; of a solid one, the centre lies 4a/(3π) from the centre of mass, along the first axis.
 
     Examples

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...mechanics.algebra import Vector
 from ...mechanics.bodies import Body
-from ...mechanics.shapes import Disc, Roller, Shape, Torus
+from ...mechanics.shapes import CylinderShape, Disc, Shape, Torus
 from .mesh import Array, Mesh, grid_triangles, joined, oriented
 
 # Intervals of the grid from pole to pole, and round: the equator is a row of it, and each axis a column.
@@ -37,7 +37,7 @@ def body_mesh(body: Body) -> Mesh:
     True
     """
     shape = body.shape
-    if isinstance(shape, Roller):
+    if isinstance(shape, CylinderShape):
         return _roller(shape, hollow(body))
     if isinstance(shape, Torus) and hollow(body) and shape.rim_radius < shape.radius:
         return _torus(shape)
@@ -160,7 +160,7 @@ def _bulge(share: float, inner: float) -> float:
     return float((1.0 - share) / (1.0 - inner))
 
 
-def _roller(shape: Roller, pipe: bool) -> Mesh:
+def _roller(shape: CylinderShape, pipe: bool) -> Mesh:
     """Return a body that touches along a line: its profile across the axis, drawn out along it."""
     e = _circle(_AROUND)
     profile = points(shape, e)

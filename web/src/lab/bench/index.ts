@@ -35,7 +35,7 @@ function _mount(host: HTMLElement, app: App): () => void {
   const stage = createStage(app)
   const controls = createControls(app)
   const findings = createFindings(() => void openDerivation(api, store.scenario))
-  const curves = createCurves((time) => stage.viewer.seek(time))
+  const curves = createCurves(app, (time) => stage.viewer.seek(time))
   const card = createCard()
   const events = createEvents((time) => stage.viewer.seek(time))
   const linking = createLinking(app)

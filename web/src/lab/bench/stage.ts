@@ -12,7 +12,7 @@ import { changing } from '../math'
 import { show } from '../quantity'
 import { createRunner } from '../runner'
 import type { Change } from '../store'
-import { headline } from './findings'
+import { beside, capital } from './findings'
 import { instantAt, sampleAt } from './instant'
 import { goneOn, put, whyNotDragged, whyNotNudged } from './placing'
 
@@ -206,20 +206,16 @@ export function createStage(app: App): Stage {
   undo.add(viewer.on('play', drawAhead), viewer.on('pause', drawAhead))
 
   function drawHeadline(of: Scene): void {
-    const found = headline(of)
-    const said = of.header.method === 'exact' ? of.header.formula?.latex : undefined // the law itself is too long
+    const { headline, formula, method } = of.header
+    const said = method === 'exact' ? formula?.latex : undefined // the law itself is too long
     fill(
       big,
-      found && h('p', { class: 'headline-name' }, found.name),
-      found &&
-        h('p', { class: 'headline-number' }, show(found.measured), h('span', { class: 'unit' }, ` ${found.unit}`)),
-      found &&
-        found.predicted !== null &&
-        h('p', { class: 'headline-predicted' }, `predicted ${show(found.predicted)}`),
+      headline && h('p', { class: 'headline-text' }, capital(headline.text)),
+      headline?.other && h('p', { class: 'headline-other' }, beside(headline)),
       said && law.element,
     )
     if (said) law.set(said)
-    hide(big, !found && !said)
+    hide(big, !headline && !said)
   }
 
   undo.add(

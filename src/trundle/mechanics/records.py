@@ -1,4 +1,4 @@
-"""Small frozen values that are made millions of times in a run."""
+"""Small frozen records that are made millions of times in a run."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ T = TypeVar("T")
 
 
 @dataclass_transform(frozen_default=True)
-def value(*, eq: bool = True) -> Callable[[type[T]], type[T]]:
+def frozen_record(*, eq: bool = True) -> Callable[[type[T]], type[T]]:
     """Make a class a dataclass that type checkers hold to be frozen, and that is made at a plain one's price.
 
     A dataclass that Python itself keeps frozen takes four times as long to make, and the mechanics makes little else.
 
     Examples
     --------
-    >>> @value()
+    >>> @frozen_record()
     ... class Pair:
     ...     first: float
     ...     second: float
