@@ -26,6 +26,7 @@ from .options import Folder, Json, Name, Quiet, folder_for, load
 from .read import read
 from .score import score
 from .sensitivity import sensitivity
+from .site import site
 from .steady import steady
 from .sweep import sweep
 from .tolerance import tolerance
@@ -64,6 +65,7 @@ def command() -> Any:
     app.command("vakonomic", short_help="A negative control: the wrong path of stationary action.")(vakonomic)
     app.command("equations", short_help="Print the law as C, Python, JavaScript, LaTeX or JAX.")(equations)
     app.command("export", short_help="Write a run as a page, a model, a picture, a table.")(export)
+    app.command("site", short_help="Write a site of live pages, for any web host.")(site)
     app.command("lab", short_help="Open the lab: the ball in a browser.")(lab)
     app.command("sweep", short_help="Run a scenario for many values of its numbers.")(sweep)
     app.command("map", short_help="Draw a sweep, and open the run behind a point of it.")(draw_map)
