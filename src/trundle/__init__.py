@@ -9,12 +9,14 @@ if TYPE_CHECKING:
     from . import conformance, tracks, units
     from .analysis.analogy import ChargedParticle, Twin, to_turntable, twin
     from .analysis.chaos import (
+        BifurcationDiagram,
         LyapunovExponents,
         OrbitBranch,
         PeriodicOrbit,
         PoincareSection,
         StartMap,
         basins_of_attraction,
+        bifurcation_diagram,
         lyapunov_exponents,
         lyapunov_map,
         periodic_orbit,
@@ -115,6 +117,8 @@ _HOMES = {
         "OrbitBranch",
         "lyapunov_map",
         "basins_of_attraction",
+        "bifurcation_diagram",
+        "BifurcationDiagram",
         "StartMap",
     ),
     "errors": (
@@ -205,6 +209,7 @@ _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 
 __all__ = [
     "Arc",
+    "BifurcationDiagram",
     "Body",
     "Bowl",
     "Card",
@@ -304,6 +309,7 @@ __all__ = [
     "__version__",
     "air_drag",
     "basins_of_attraction",
+    "bifurcation_diagram",
     "check",
     "check_equations",
     "compare_vakonomic",
