@@ -1,6 +1,7 @@
 /** The bodies: their meshes, painted so that every turn of theirs is seen. */
 import { BufferAttribute, BufferGeometry, Group, Mesh, MeshPhysicalMaterial, SphereGeometry } from 'three'
 import { type BodyPaint, newBodyPaint, paintBody } from './paint'
+import { Pin } from './pin'
 import { type Scene, sameNumbers } from './scene'
 import type { Palette } from './theme'
 import { Track } from './track'
@@ -15,11 +16,13 @@ export class BodyModel {
   track: Track
   private readonly paint: BodyPaint = newBodyPaint()
   private readonly flashes: Mesh<BufferGeometry, MeshPhysicalMaterial>[] = []
+  private readonly pin: Pin | null
   private faintly: MeshPhysicalMaterial | null = null
 
   constructor(
     scene: Scene,
     readonly order: number,
+    poles = false,
   ) {
     this.scene = scene
     this.track = new Track(scene)
@@ -36,6 +39,9 @@ export class BodyModel {
     this.mesh = new Mesh(geometry, material)
     this.mesh.castShadow = true
     this.group.add(this.mesh)
+    this.pin = poles ? new Pin() : null
+    if (this.pin) this.group.add(this.pin.group)
+    this.pin?.group.scale.setScalar(this.radius)
   }
 
   /** Take another run: material and program stay, since to make these anew takes longer than all else. */
@@ -43,6 +49,7 @@ export class BodyModel {
     const before = this.scene.columns
     this.scene = scene
     this.track = new Track(scene)
+    this.pin?.group.scale.setScalar(this.radius)
     this.paint.plain.value = scene.header.body.kind === 'charge' ? 1 : 0
     if (sameNumbers(before.body_vertices, scene.columns.body_vertices)) return
     this.mesh.geometry.dispose()
@@ -63,6 +70,7 @@ export class BodyModel {
     this.paint.pale.value.set(palette.body.light)
     this.paint.ink.value.set(palette.body.ink)
     this.paint.pole.value.set(palette.body.pole)
+    this.pin?.look(palette)
   }
 
   seek(time: number): void {
@@ -98,6 +106,7 @@ export class BodyModel {
   }
 
   dispose(): void {
+    this.pin?.dispose()
     for (const mesh of this.flashes) mesh.removeFromParent()
     this.faintly?.dispose()
     this.group.removeFromParent()

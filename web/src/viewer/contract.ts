@@ -26,6 +26,10 @@ export interface ViewerOptions {
   projector?: boolean
   frame?: Frame
   show?: Partial<Show>
+  /** From where the camera looks at first, of the shown frame; absent: as it suits the scene. */
+  from?: Triple
+  /** For who watches the poles: a pin through those of each body, and a compass on the floor. */
+  poles?: boolean
 }
 
 export interface ViewerEvents {

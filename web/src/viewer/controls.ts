@@ -33,7 +33,7 @@ export class Controls {
   private readonly looping: HTMLButtonElement
   private readonly flashes = element('select', 'tr-speed tr-flashes', {
     'aria-label': 'Stroboscope',
-    title: 'Stroboscope: where the body was, so many times in a second of the run',
+    title: 'Stroboscope: flashes in a second of the run, each of which leaves a faint picture',
   })
   private readonly following: HTMLButtonElement
   private readonly frames = new Map<Frame, HTMLButtonElement>()
@@ -63,7 +63,7 @@ export class Controls {
       viewer.flashes = Number(this.flashes.value)
     })
     for (const rate of FLASHES)
-      this.flashes.append(element('option', '', { value: String(rate) }, rate ? `✦ ${rate}/s` : '✦'))
+      this.flashes.append(element('option', '', { value: String(rate) }, rate ? `✦${rate}` : '✦'))
     this.looping = this.toggle('loop', 'Repeat (L)', () => (viewer.loop = !viewer.loop))
     this.following = this.toggle('follow', 'Camera goes with the body (B)', () => (viewer.follow = !viewer.follow))
     this.element = element(
@@ -90,7 +90,6 @@ export class Controls {
       track,
       element('div', 'tr-reading', {}, this.clock, this.total),
       this.speed,
-      this.flashes,
       this.looping,
     )
   }
@@ -127,6 +126,7 @@ export class Controls {
       iconButton('home', 'Camera back to its place (C)', () => viewer.resetCamera()),
       iconButton('top', 'From above (T)', () => viewer.topView()),
       this.following,
+      this.flashes,
     )
     return element('div', 'tr-row tr-view', {}, frames, arrows, camera)
   }

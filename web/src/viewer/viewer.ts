@@ -76,7 +76,7 @@ class StageViewer implements Viewer {
     this.sharpness = this.stage && new Sharpness(this.stage, () => this.draw())
     this.fallback = this.stage ? null : new Fallback(document)
     if (this.fallback) this.frameElement.replaceChildren(this.fallback.element)
-    this.world = this.stage && new World(this.stage)
+    this.world = this.stage && new World(this.stage, options)
     const redraw = () => this.invalidate()
     this.tools =
       this.stage &&

@@ -1,7 +1,7 @@
 /** One number of the scenario: typed with its unit, dragged by a slider, stepped by the arrow keys. */
 import { hide, put, say } from '../../viewer/elements'
 import { h, uniqueId } from '../dom'
-import { brief, parse, rounded, siUnit, stepped, toSI, type Units, write } from '../quantity'
+import { brief, parse, rounded, siUnit, stepped, suited, toSI, type Units, write } from '../quantity'
 import type { Json, Path } from '../scenario'
 
 /** What a control shows of a number. */
@@ -113,7 +113,9 @@ export function createField(options: FieldOptions): Field {
   function shownUnit(): string {
     const written = parse(misfit() ? good?.now : value).unit
     if (written && !units.includes(written)) return written
-    return options.unit() ?? (written || (units[0] ?? ''))
+    const usual = written || (units[0] ?? '')
+    const { number } = parse(value)
+    return options.unit() ?? (number === null || !hasUnits ? usual : suited(number, usual, entry.units))
   }
 
   function fillUnits(): void {
@@ -188,6 +190,9 @@ export function createField(options: FieldOptions): Field {
     if (hasUnits) fillUnits()
     if (!typing) input.value = document.activeElement === input ? digits() : brief(digits())
     const si = toSI(value, entry.units)
+    const formula = si === null && typeof value === 'string'
+    element.toggleAttribute('data-formula', formula)
+    put(input, 'title', formula ? String(value) : '')
     slider.disabled = si === null
     if (si === null) return
     if (!slider.matches(':active')) widen(si)
