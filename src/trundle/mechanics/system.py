@@ -187,9 +187,10 @@ class RollingSystem:
         tilt = self.support.tilt
         xp = namespace(tilt)
         # The float nearest to a right angle means one: cos α as sin(π/2 − α) leaves no gravity along a level axis.
-        # Both sides of 0 have the same slope there.
-        size = xp.where(less(value_of(tilt), 0.0), -tilt, tilt)
-        normal = xp.cos(tilt) if getattr(xp, "exact", False) else xp.sin(0.5 * math.pi - size)
+        if getattr(xp, "exact", False):
+            normal = xp.cos(tilt)
+        else:  # both sides of 0 have the same slope there
+            normal = xp.sin(0.5 * math.pi - xp.where(less(value_of(tilt), 0.0), -tilt, tilt))
         return Gravity(self.gravity * xp.sin(tilt), 0.0, -(self.gravity * normal))
 
     @property
