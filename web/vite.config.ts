@@ -30,6 +30,18 @@ const viewer: UserConfig = {
   },
 }
 
+/** What runs in a live page's worker: a text that the page holds behind its law. */
+const live: UserConfig = {
+  build: {
+    outDir: output,
+    emptyOutDir: false,
+    rollupOptions: {
+      input: here('src/live/worker.ts'),
+      output: { entryFileNames: 'live-worker.js', format: 'iife' },
+    },
+  },
+}
+
 /** The lab page. Fonts stay files, since its policy forbids data: addresses for them. */
 const lab: UserConfig = {
   base: './',
@@ -46,10 +58,11 @@ export default defineConfig(({ mode }) => ({
   root: here('.'),
   plugins: [onlyWoff2],
   define: { 'process.env.NODE_ENV': '"production"' },
-  ...(mode === 'viewer' ? viewer : lab),
+  ...{ viewer, live, lab }[mode as 'viewer' | 'live' | 'lab'],
   test: {
     projects: [
       { extends: true, test: { name: 'viewer', include: ['src/viewer/**/*.test.ts'], environment: 'node' } },
+      { extends: true, test: { name: 'live', include: ['src/live/**/*.test.ts'], environment: 'node' } },
       { extends: true, test: { name: 'lab', include: ['src/lab/**/*.test.ts'], environment: 'happy-dom' } },
     ],
   },

@@ -6,15 +6,17 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from . import units
+    from . import conformance, tracks, units
     from .analysis.analogy import ChargedParticle, Twin, to_turntable, twin
     from .analysis.chaos import (
+        BifurcationDiagram,
         LyapunovExponents,
         OrbitBranch,
         PeriodicOrbit,
         PoincareSection,
         StartMap,
         basins_of_attraction,
+        bifurcation_diagram,
         lyapunov_exponents,
         lyapunov_map,
         periodic_orbit,
@@ -99,6 +101,7 @@ if TYPE_CHECKING:
     from .simulation.trajectory import Event, Trajectory
     from .solve.exact import ClosedForm
     from .tracks import Track, read_track
+    from .tracks.film import FilmTrack, track_film
     from .verify import Card
 
 # Public name -> module that holds it: `import trundle` loads nothing until a name is used.
@@ -114,6 +117,8 @@ _HOMES = {
         "OrbitBranch",
         "lyapunov_map",
         "basins_of_attraction",
+        "bifurcation_diagram",
+        "BifurcationDiagram",
         "StartMap",
     ),
     "errors": (
@@ -195,13 +200,16 @@ _HOMES = {
     "analysis.sweep": ("sweep", "Sweep", "tolerance", "Tolerance"),
     "analysis.vakonomic": ("compare_vakonomic", "vakonomic_path", "VakonomicComparison", "VakonomicPath"),
     "tracks": ("read_track", "Track"),
+    "tracks.film": ("track_film", "FilmTrack"),
     "verify": ("Card",),
     "analysis.checking": ("check", "check_equations", "Check", "Mistake"),
 }
+_ROOMS = ("conformance", "tracks", "units")  # public as a whole
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 
 __all__ = [
     "Arc",
+    "BifurcationDiagram",
     "Body",
     "Bowl",
     "Card",
@@ -222,6 +230,7 @@ __all__ = [
     "Equilibria",
     "Equilibrium",
     "Event",
+    "FilmTrack",
     "Fixed",
     "Force",
     "FreeAxle",
@@ -300,9 +309,11 @@ __all__ = [
     "__version__",
     "air_drag",
     "basins_of_attraction",
+    "bifurcation_diagram",
     "check",
     "check_equations",
     "compare_vakonomic",
+    "conformance",
     "derive",
     "equilibria",
     "lyapunov_exponents",
@@ -321,6 +332,8 @@ __all__ = [
     "sweep",
     "to_turntable",
     "tolerance",
+    "track_film",
+    "tracks",
     "twin",
     "units",
     "vakonomic_path",
@@ -330,8 +343,8 @@ __all__ = [
 def __getattr__(name: str) -> Any:
     if name in _HOME_OF:
         value = getattr(import_module(f".{_HOME_OF[name]}", __name__), name)
-    elif name == "units":
-        value = import_module(".units", __name__)
+    elif name in _ROOMS:
+        value = import_module(f".{name}", __name__)
     elif name == "__version__":
         from importlib.metadata import version
 

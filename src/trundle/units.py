@@ -40,7 +40,7 @@ OFFERED: dict[str, dict[str, float]] = {
     "angular velocity": {"rad/s": 1.0, "rpm": math.pi / 30, "turn/s": 2 * math.pi, "deg/s": math.pi / 180},
     "force": {"N": 1.0, "mN": 1e-3},
     "torque": {"N*m": 1.0, "mN*m": 1e-3},
-    "inertia": {"kg*m^2": 1.0, "g*cm^2": 1e-7},
+    "inertia": {"kg*m^2": 1.0, "g*m^2": 1e-3, "mg*m^2": 1e-6, "g*cm^2": 1e-7},
     "damping": {"kg/s": 1.0, "g/s": 1e-3},
     "quadratic damping": {"kg/m": 1.0, "g/m": 1e-3},
     "rotational damping": {"N*m*s": 1.0, "mN*m*s": 1e-3},
@@ -54,6 +54,7 @@ _NUMBER = re.compile(
     r"|[+-]?(?:nan|inf(?:inity)?)(?![a-z]))\s*(\D.*)?",
     re.DOTALL | re.ASCII | re.IGNORECASE,
 )
+_PLUS_MINUS = re.compile(r"±|\+/-|\+-")
 _UNIT = re.compile(r"[A-Za-z°µμΩ%²³·/*^() \-\d]{0,40}")
 _LARGE_POWER = re.compile(r"\d{2,}|(?:\^|\*\*)[^0-9-]*-?\d{2,}|(?:\^|\*\*).*(?:\^|\*\*).*(?:\^|\*\*)")
 
@@ -82,6 +83,24 @@ def to_si(value: Any, kind: str, key: str) -> Any:
     if hasattr(value, "to") and hasattr(value, "magnitude"):
         return finite(_convert(value, kind, key, value), key, value)
     return value
+
+
+def plus_minus(text: str) -> tuple[str, str] | None:
+    """Return the two parts of "33.3 ± 0.3 rpm", a unit that stands once with both; None where it is written otherwise.
+
+    Examples
+    --------
+    >>> plus_minus("33.3 ± 0.3 rpm"), plus_minus("33.3 rpm +- 0.3"), plus_minus("33.3 rpm")
+    (('33.3 rpm', '0.3 rpm'), ('33.3 rpm', '0.3 rpm'), None)
+    """
+    parts = [part.strip() for part in _PLUS_MINUS.split(text)]
+    if len(parts) != 2 or not all(parts):
+        return None
+    found = [_NUMBER.fullmatch(part) for part in parts]
+    units = [(match[2] or "").strip() if match else "" for match in found]
+    either = zip(parts, found, strict=True)
+    middle, half = (f"{part} {max(units)}".strip() if match and not match[2] else part for part, match in either)
+    return middle, half
 
 
 def finite(number: Any, key: str, received: Any) -> Any:

@@ -34,7 +34,7 @@ class Visitor:
 
     def open(
         self,
-        route: str = "",
+        route: str = "#/bench",
         *,
         size: Any = SMALL,
         reduced_motion: Any = "reduce",

@@ -33,6 +33,8 @@ every = "50 ms"
 """
 T = np.arange(200) / 20.0
 ASKED = ("-s", "table.toml", "-f", "body.inertia_ratio")
+RATE = "support.motion.rate"
+RATED = ("track.csv", *ASKED, "-f", RATE)
 
 
 @pytest.fixture(autouse=True)
@@ -100,6 +102,7 @@ def test_a_prior_a_camera_and_a_plan(here: Command) -> None:
         (("absent.csv", *ASKED), "must exist"),
         (("track.csv", *ASKED, "-f", "body.inertia"), "Did you mean 'body.inertia_ratio'"),
         (("track.csv", *ASKED, "--noise", "0 mm"), "`noise` must be positive"),
+        ((*RATED, "--prior", f"{RATE}=3.4±0.1"), "must be an angular velocity with its unit"),
         (("track.csv", *ASKED, "--prior", "body.inertia_ratio=0.4"), "`--prior` must be KEY=VALUE±SIGMA"),
         (("track.csv", *ASKED, "--camera", "scale"), "`--camera` must be pairs KEY=VALUE"),
         (("track.csv", *ASKED, "--table", "word"), "unknown form of table"),

@@ -127,6 +127,23 @@ def test_tolerances_in_one_command(folder: Path, here: Command) -> None:
     assert here("tolerance", "tilted-turntable", "support.tilt", "-m", "end x").status == 2
 
 
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ("support.tilt=0.3±0.1", "must be an angle with its unit; got '0.3±0.1'"),
+        ("support.tilt=0.3±0 deg", "must have something above 0 after ±; got '0.3±0 deg'"),
+        ("support.tilt=0.3±-0.1 deg", "must have something above 0 after ±"),
+        ("support.tilt=3±1 m", "must be an angle; got '3±1 m'"),
+        ("body.inertia_ratio=0.4±0.01", "must be a number of the scenario"),
+    ],
+)
+def test_limits_that_say_nothing_are_refused(given: str, said: str, here: Command) -> None:
+    for more in ([], ["--normal"]):
+        done = here("tolerance", "tilted-turntable", given, "-m", "end x", *more)
+        assert done.status == 2
+        assert said in done.err
+
+
 def test_ctrl_c_leaves_what_is_done_and_says_how_to_go_on(sweep: Path, folder: Path) -> None:
     long = SWEEP.replace('"1 s"', '"60 s"').replace('"0.5 s"', '"1 ms"').replace("count = 4", "count = 99")
     sweep.write_text(long)

@@ -86,7 +86,7 @@ def test_scenes_show_its_formula_and_its_findings(form: type[ClosedForm]) -> Non
         assert text.count("{") == text.count("}")
     assert re.search(r"\d", formula["numbers_latex"])
     predicted = [row for row in header["findings"] if row["predicted"] is not None]
-    of_run = {row["name"] for row in findings_of(run.system, run.start, run.samples, None)}
+    of_run = {row.name for row in findings_of(run.system, run.start, run.samples, None)}
     assert {row["name"] for row in predicted} - of_run
     assert all(row["difference"] is None or row["difference"] < 1e-5 for row in predicted)
 

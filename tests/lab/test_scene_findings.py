@@ -1,6 +1,7 @@
 """What a scene promises and what it measures: each right by itself, and a fault in one seen against the other."""
 
 import math
+import re
 from dataclasses import replace
 
 import mpmath
@@ -21,7 +22,7 @@ def found(run, samples=None):
     """Return the findings of a run by name, of samples of its own unless others are given."""
     form = closed_form(run.system, run.start)
     rows = findings_of(run.system, run.start, run.samples if samples is None else samples, form)
-    return {row["name"]: row for row in rows}
+    return {row.name: row.as_dict() for row in rows}
 
 
 def simulated(support, start, body="solid", loads=(), duration=10.0, every=0.01, method="auto"):
@@ -234,6 +235,9 @@ def test_every_shipped_scenario_agrees_with_its_predictions(name):
             assert row[key] is None or math.isfinite(row[key])
         assert row["difference"] is None or row["difference"] < 1e-5, row
     assert len({row["name"] for row in header["findings"]}) == len(header["findings"])
+    said, other = header["headline"]["text"], header["headline"]["other"]
+    first, second = (float(re.search(r"[\d.]+", text)[0]) for text in (said, other))
+    assert first == pytest.approx(second, rel=2e-3), said
     assert header["formula"]["latex"].count("{") == header["formula"]["latex"].count("}")
     assert header["formula"]["numbers_latex"].count("{") == header["formula"]["numbers_latex"].count("}")
 

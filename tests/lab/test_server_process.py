@@ -184,7 +184,7 @@ def test_six_that_take_long_keep_nobody_waiting_and_ctrl_c_ends_them_too() -> No
                 time.sleep(0.5)
                 asked = time.monotonic()
                 assert lab.ask("/api/simulate", {"scenario": {**quick, "title": f"{i}"}, "samples": 50})[0] == 200
-                assert time.monotonic() - asked < 6.0  # on a busy machine; it was half a minute, and a refusal
+                assert time.monotonic() - asked < 15.0  # on a busy machine; it was half a minute, and a refusal
             os.killpg(lab.process.pid, signal.SIGINT)
             told, _ = lab.process.communicate(timeout=60)
         assert lab.gone(20)

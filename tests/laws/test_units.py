@@ -16,7 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from trundle.errors import InvalidValueError
-from trundle.units import UNITS, _exact_factor, to_si, unit_registry
+from trundle.units import UNITS, _exact_factor, plus_minus, to_si, unit_registry
 
 ULP = np.finfo(float).eps
 
@@ -209,8 +209,29 @@ def test_any_text_is_a_finite_float_or_refused(text: str, kind: str) -> None:
     assert math.isfinite(number)
 
 
+@pytest.mark.parametrize("sign", ["±", "+-", "+/-", " ± "])
+@pytest.mark.parametrize(
+    ("middle", "half", "both"),
+    [
+        ("33.3", "0.3 rpm", ("33.3 rpm", "0.3 rpm")),
+        ("33.3 rpm", "0.3", ("33.3 rpm", "0.3 rpm")),
+        ("33.3 rpm", "0.01 rad/s", ("33.3 rpm", "0.01 rad/s")),
+        ("-4e-1", "1E-2", ("-4e-1", "1E-2")),
+        ("1e-3", "5% ", ("1e-3 %", "5%")),
+        ("what", "ever", ("what", "ever")),
+    ],
+)
+def test_a_unit_that_stands_once_stands_for_both(middle: str, half: str, both: tuple[str, str], sign: str) -> None:
+    assert plus_minus(f"{middle}{sign}{half}") == both
+
+
+@pytest.mark.parametrize("text", ["", "3 rpm", "±", "± 3", "3 ±", "3 ± 4 ± 5"])
+def test_what_has_no_two_parts_is_no_value_with_its_error(text: str) -> None:
+    assert plus_minus(text) is None
+
+
 def test_common_units_leave_pint_alone() -> None:
-    code = "import sys; from trundle.units import to_si; to_si('3 rpm', 'angular velocity', 'x')"
+    code = "import sys; from trundle.units import plus_minus, to_si; to_si('3 rpm', 'angular velocity', 'x')"
     code += "; print('pint' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)  # noqa: S603
     assert done.stdout == "False\n"

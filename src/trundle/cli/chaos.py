@@ -16,8 +16,9 @@ if TYPE_CHECKING:
 
     from ..simulation.simulate import Scenario
 
-EXPONENTS, SECTION, ORBITS = "lyapunov.png", "section.png", "orbits.png"
+EXPONENTS, SECTION, ORBITS, BIFURCATIONS = "lyapunov.png", "section.png", "orbits.png", "bifurcations.png"
 SECTION_DATA = "section.nc"
+MOST_VALUES = 10_000  # of a number along which a section is followed
 
 
 def chaos(
@@ -38,25 +39,37 @@ def chaos(
         str | None, typer.Option(metavar="TIME", help="Find the periodic orbit next to the start; about its period.")
     ] = None,
     along: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Follow that orbit along a number, such as support.tilt.")
+        str | None,
+        typer.Option(metavar="NAME", help="Follow that orbit, or that section, along a number such as support.tilt."),
     ] = None,
     lowest: Annotated[str | None, typer.Option("--from", metavar="VALUE", help="Where that ends below.")] = None,
     highest: Annotated[str | None, typer.Option("--to", metavar="VALUE", help="Where that ends above.")] = None,
+    values: Annotated[int, typer.Option(metavar="NUMBER", help="Of the number, between, for a section.")] = 40,
+    observe: Annotated[
+        str, typer.Option(metavar="NAME", help="What a section along a number shows, such as velocity.z.")
+    ] = "velocity.z",
+    settle: Annotated[
+        str | None, typer.Option(metavar="TIME", help="How long to settle at each value. Default: half of --duration.")
+    ] = None,
     no_figure: Annotated[bool, typer.Option("--no-figure", help="Write no file.")] = False,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
     """Find the Lyapunov exponents of a scenario's motion, with errors, and write lyapunov.png.
 
-    With --section or --strobe, a Poincaré section in section.png and section.nc; with --orbit, the periodic orbit next
-    to the start with its Floquet multipliers, and with --along its branch in orbits.png.
+    With --section or --strobe, a Poincaré section in section.png and section.nc; with --along, where it settles while a
+    number goes up and down again, in bifurcations.png. With --orbit, the periodic orbit next to the start with its
+    Floquet multipliers, and with --along its branch in orbits.png.
     """
     asked = [name for name, value in (("--section", section), ("--strobe", strobe), ("--orbit", orbit)) if value]
     if len(asked) > 1:
         raise InvalidValueError(asked[1], f"must not stand beside {asked[0]}", scenario, "Ask one after the other.")
     for name, value in (("--along", along), ("--from", lowest), ("--to", highest)):
-        if value is not None and not (orbit and along):
-            raise InvalidValueError(name, "needs --orbit and --along", value, "Give the period of the orbit.")
+        if value is not None and not (asked and along):
+            rule = "needs --along, and --orbit, --section or --strobe"
+            raise InvalidValueError(name, rule, value, "Say what to follow.")
+    if along and not orbit and None in (lowest, highest):
+        raise InvalidValueError("--from", "must be given, as well as --to", lowest, "Say how far the number goes.")
     for name, given in (("--count", count if asked else None), ("--duration", duration if orbit else None)):
         if given is not None:
             raise InvalidValueError(name, f"has no meaning with {asked[0]}", given, "Leave it out.")
@@ -64,7 +77,8 @@ def chaos(
     folder = folder_for(output, scenario)
     wanted: tuple[str, ...] = (EXPONENTS,)
     if asked:
-        wanted = (ORBITS,) if along else () if orbit else (SECTION, SECTION_DATA)
+        section_files = (BIFURCATIONS,) if along else (SECTION, SECTION_DATA)
+        wanted = ((ORBITS,) if along else ()) if orbit else section_files
     wanted = () if no_figure else wanted
     if wanted:
         from .writing import check_folder
@@ -74,7 +88,11 @@ def chaos(
         found = _orbit(loaded, orbit, along, lowest, highest)
     else:
         with screen.ProgressBar(wanted=not (quiet or as_json)) as bar:
-            found = _followed(loaded, duration, count, section, strobe, bar)
+            if along:
+                ends = str(lowest), str(highest)
+                found = _diagram(loaded, along, ends, values, observe, section, strobe, settle, duration, bar)
+            else:
+                found = _followed(loaded, duration, count, section, strobe, bar)
     signals.check()
     _tell(found, folder, wanted, quiet=quiet, as_json=as_json)
 
@@ -84,6 +102,54 @@ def _orbit(loaded: Scenario, period: str, along: str | None, lowest: str | None,
 
     orbit = periodic_orbit(loaded, period=period)
     return orbit if along is None else orbit.along(along, lowest, highest)
+
+
+def _diagram(
+    loaded: Scenario,
+    along: str,
+    ends: tuple[str, str],
+    count: int,
+    observe: str,
+    section: str | None,
+    strobe: str | None,
+    settle: str | None,
+    duration: str | None,
+    bar: Any,
+) -> Any:
+    """Return where a section settles while a number goes up and down again."""
+    import numpy as np
+
+    from ..analysis.chaos import bifurcation_diagram
+    from ..analysis.chaos.returning import number_of
+    from ..mechanics import checks
+    from ..mechanics.parameters import parameters
+
+    if not 2 <= count <= MOST_VALUES:
+        raise InvalidValueError("--values", f"must be 2 to {MOST_VALUES}", count)
+    system = loaded.system()
+    dimension = parameters(system)[number_of(system, along)[0]].dimension
+    first, last = (
+        float(checks.real(_bare(end), dimension, key)) for key, end in zip(("--from", "--to"), ends, strict=True)
+    )
+    return bifurcation_diagram(
+        loaded,
+        along,
+        np.linspace(first, last, count).tolist(),
+        observe,
+        section,
+        period=strobe,
+        settle=settle,
+        duration=duration,
+        progress=bar,
+    )
+
+
+def _bare(text: str) -> str | float:
+    """Return a number without a unit as one: it is SI."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 def _followed(

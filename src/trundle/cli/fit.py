@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ..errors import InvalidValueError
+from ..units import plus_minus
 from . import CANNOT_DECIDE, CARD_FAILED, screen, signals
 from .options import (
     NOTHING_SAID,
@@ -25,6 +25,7 @@ from .options import (
 
 if TYPE_CHECKING:
     from ..analysis.fit import Fit
+    from ..tracks import Example
 
 FIGURE, PAGE, DATA, SCENARIO = "fit.png", "fit.html", "fit.nc", "fit.toml"
 TABLES = {"markdown": "fit.md", "latex": "fit.tex", "csv": "fit.csv"}
@@ -35,7 +36,8 @@ def fit(
     tracks: Annotated[
         list[Path] | None,
         typer.Argument(
-            metavar="TRACK", help="Measured motion, as `trundle read` reads it; several share what is free."
+            metavar="TRACK",
+            help="Measured motion, as `trundle read` reads it, or example:NAME; several share what is free.",
         ),
     ] = None,
     scenario: WhatMoves = None,
@@ -83,18 +85,22 @@ def fit(
     Exit status: 0, a good fit; 2, bad input; 3, a bad fit; 4, these data cannot decide; 130, interrupted; 1, all else.
     """
     from ..analysis.fit import fit as fit_tracks
+    from ..tracks import example_of
 
-    if scenario is None:
+    known = example_of(tracks[0]) if tracks else None
+    if scenario is None and known is None:
         raise no_scenario()
     numbers = _pairs(camera or [], "--camera")
+    loaded = _load(scenario, known)
+    if known is not None and scenario is None:
+        free, noise = free or list(known.free), noise or known.noise
     if plan:
-        _plan(scenario, free or [], noise, numbers, quiet=quiet, as_json=as_json)
+        _plan(loaded, free or [], noise, numbers, quiet=quiet, as_json=as_json)
         return
     if not tracks:
         raise InvalidValueError("TRACK", "must name a file", "none", "Or plan a measurement: --plan.")
-    loaded = load(scenario)
     files = _names(table, figure=not no_figure)
-    folder = folder_for(output, tracks[0])
+    folder = folder_for(output, tracks[0] if known is None else Path(known.name))
     from .writing import check_folder, write_together
 
     check_folder(folder, tuple(files))
@@ -155,14 +161,23 @@ def _leave(found: Fit) -> None:
 
 
 def _plan(
-    scenario: str, free: list[str], noise: str | None, camera: dict[str, Any], *, quiet: bool, as_json: bool
+    scenario: object, free: list[str], noise: str | None, camera: dict[str, Any], *, quiet: bool, as_json: bool
 ) -> None:
     """Print how well each number would be known."""
     from ..analysis.fit import plan_fit
 
     noises = {} if noise is None else {"noises": [part.strip() for part in noise.split(",")]}
-    found = plan_fit(load(scenario), free, camera=camera, **noises)  # type: ignore[arg-type]
+    found = plan_fit(scenario, free, camera=camera, **noises)  # type: ignore[arg-type]
     screen.show(found, quiet=quiet, as_json=as_json)
+
+
+def _load(scenario: str | None, known: Example | None) -> Any:
+    """Return the scenario that is named, or the one that an example of a track begins with."""
+    if scenario is not None or known is None:
+        return load(str(scenario))
+    from ..simulation.simulate import Scenario
+
+    return Scenario.read(known.scenario, known.name)
 
 
 def _noise(text: str | None) -> Any:
@@ -171,33 +186,23 @@ def _noise(text: str | None) -> Any:
 
 
 def _pairs(texts: list[str], option: str) -> dict[str, Any]:
-    """Read KEY=VALUE; a number without a unit is one, a list in brackets is one."""
+    """Read KEY=VALUE; what stands in brackets is a list."""
     found: dict[str, Any] = {}
     for text in texts:
         key, sign, value = (part.strip() for part in text.partition("="))
         if not (key and sign and value):
             raise InvalidValueError(option, "must be pairs KEY=VALUE", text, "Write for instance scale=1.02.")
-        listed = [part.strip() for part in value[1:-1].split(";")] if value[:1] == "[" else None
-        found[key] = _number(value) if listed is None else [_number(part) for part in listed]
+        found[key] = [part.strip() for part in value[1:-1].split(";")] if value[:1] == "[" else value
     return found
 
 
 def _priors(texts: list[str]) -> dict[str, tuple[Any, Any]]:
     """Read KEY=VALUE±SIGMA; the unit of SIGMA may stand for both."""
     found = {}
-    for key, value in _pairs([text.replace("+-", "±").replace("+/-", "±") for text in texts], "--prior").items():
-        middle, sign, sigma = (part.strip() for part in str(value).partition("±"))
-        if not sign:
+    for key, value in _pairs(texts, "--prior").items():
+        parts = plus_minus(value) if isinstance(value, str) else None
+        if parts is None:
             remedy = "Write for instance body.inertia_ratio=0.4±0.01."
             raise InvalidValueError("--prior", "must be KEY=VALUE±SIGMA", f"{key}={value}", remedy)
-        unit = re.sub(r"^[+-]?[\d.]+([eE][+-]?\d+)?\s*", "", sigma)
-        bare = isinstance(_number(middle), float)
-        found[key] = (_number(f"{middle} {unit}") if unit and bare else _number(middle), _number(sigma))
+        found[key] = parts
     return found
-
-
-def _number(text: str) -> Any:
-    try:
-        return float(text)
-    except ValueError:
-        return text

@@ -14,7 +14,9 @@ from .options import NOTHING_SAID, Reading, reads_tracks
 if TYPE_CHECKING:
     from ..tracks import Track
 
-File = Annotated[Path, typer.Argument(metavar="FILE", help="A measured track, from Tracker for instance.")]
+File = Annotated[
+    Path, typer.Argument(metavar="FILE", help="A measured track, from Tracker for instance; or example:NAME.")
+]
 
 
 @reads_tracks

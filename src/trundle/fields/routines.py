@@ -7,16 +7,36 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..errors import OutOfDomainError
+from ..mechanics.algebra import Vector
 from ..mechanics.contact import contact_at
 from ..mechanics.invariants.powers import energies
 from ..mechanics.parameters import parameters, with_numbers
-from ..mechanics.scalars import Scalar, is_number
+from ..mechanics.scalars import Scalar, is_number, namespace
 from ..mechanics.system import RollingSystem
 from ..solve.laws import FlightLaw, Law, RestingLaw, RollingLaw, RollingWithResistance, SlidingFreely, SlippingLaw
 from ..solve.tape import Dialect, Node, Tape
 from .inputs import inputs_of, with_inputs
 from .resets import RESETS, Follows, event_parameters
 
+# What a picture of a motion is made from, and its curves.
+FILM = (
+    *((f"{name}_{axis}", unit) for name, unit in (("position", "m"), ("contact", "m")) for axis in "xyz"),
+    *((f"orientation_{part}", "") for part in "wxyz"),
+    *((f"velocity_{axis}", "m/s") for axis in "xyz"),
+    *((f"angular_velocity_{axis}", "rad/s") for axis in "xyz"),
+    *((f"contact_force_{axis}", "N") for axis in "xyz"),
+    *((f"support_position_{axis}", "m") for axis in "xyz"),
+    *((f"support_rotation_{row}{column}", "") for row in "xyz" for column in "xyz"),
+    ("speed", "m/s"),
+    ("spin about the normal", "rad/s"),
+    ("distance from the axis", "m"),
+    ("height", "m"),
+    ("kinetic energy", "J"),
+    ("energy", "J"),
+    ("normal force", "N"),
+    ("slip", "m/s"),
+)
+CURVES = range(len(FILM) - 8, len(FILM))  # which of it are numbers to be drawn over the time
 OUTPUTS = (
     *((f"{name}_{axis}", unit) for name, unit in (("position", "m"), ("velocity", "m/s")) for axis in "xyz"),
     *((f"contact_force_{axis}", "N") for axis in "xyz"),
@@ -140,6 +160,30 @@ class PhaseRoutines:
         energy = sum(energies(self.system, motion), 0.0)
         said = "Position, velocity, contact force and energy."
         return self._routine("outputs", said, [*motion.position, *motion.velocity, *R, energy])
+
+    def film(self) -> Routine:
+        """Return what a picture of the motion is made from, and its curves, in the order of `FILM`."""
+        system, law, t, y = self.system, self.law, self._time, self._state
+        p, q, coordinates = self._place()
+        contact, motion = contact_at(system, t, p, q, coordinates), law.motion(system, t, y)
+        R, support, there = law.reaction(system, t, y), contact.support, contact.support.local(motion.position)
+        n, tilt, V, Omega = contact.normal, system.support.tilt, motion.velocity, motion.angular_velocity
+        xp = namespace(t, tilt)
+        up = Vector(-xp.sin(tilt), 0.0, xp.cos(tilt))
+        orbit, turning, *others = energies(system, motion)
+        curves = [
+            V.norm(),
+            Omega.dot(n),
+            xp.hypot(there.x, there.y),
+            motion.position.dot(up),
+            orbit + turning,
+            sum(others, orbit + turning),
+            R.dot(n),
+            contact.slip_velocity(V, Omega).norm() if self.phase == "slipping" else 0.0,
+        ]
+        turn = [part for row in support.rotation.rows for part in row]
+        found = [*motion.position, *p, *q.unit, *V, *Omega, *R, *support.origin, *turn, *curves]
+        return self._routine("film", "What a picture of the motion is made from, and its curves.", found)
 
     def resets(self) -> list[str]:
         """Return the events after which another phase follows."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import logging
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
 from typing import TYPE_CHECKING, Any, ParamSpec
 
@@ -13,12 +13,13 @@ from ..scenario import files
 from . import limits
 from .cache import Answer
 from .errors import Refusal, refusal_of, refused
-from .requests import JSON, SCENE
+from .requests import JSON, PICTURE, SCENE
 
 if TYPE_CHECKING:
     from ..analysis.geometry import PathScenario
     from ..simulation.simulate import Scenario
     from ..simulation.trajectory import Trajectory
+    from ..views.scene import Scene
 
 P = ParamSpec("P")
 
@@ -96,14 +97,29 @@ def simulate(
     >>> simulate(files.tables_of("tilted-turntable"), samples=100).body[:8]
     b'TRUNDLE1'
     """
-    from ..views.scene import pack, scene_of
+    from ..views.scene import pack
+
+    return Answer(pack(scene_from(data, samples, card, tolerance)), SCENE)
+
+
+def scene_from(
+    data: dict[str, Any], samples: int | None = None, card: bool = False, tolerance: float | None = None
+) -> Scene:
+    """Run what a visitor sent, under forces or along a path, and return it as a scene.
+
+    Examples
+    --------
+    >>> scene_from(files.tables_of("roll-x-then-y"), 50).header["closed"]
+    False
+    """
+    from ..views.scene import scene_of
 
     if files.rolls_along_path(data):
         from ..analysis.geometry.scene import rolled_scene
 
-        return Answer(pack(rolled_scene(path_from(data).run(), samples, card)), SCENE)
+        return rolled_scene(path_from(data).run(), samples, card)
     run, seconds = run_of(scenario_from(data), limits.MOST_SAVED, samples, tolerance)
-    return Answer(pack(scene_of(run, samples, card, seconds=seconds)), SCENE)
+    return scene_of(run, samples, card, seconds=seconds, curves=True)
 
 
 @answering
@@ -116,9 +132,9 @@ def card(data: dict[str, Any]) -> Answer:
     True
     """
     if files.rolls_along_path(data):
-        return _json(path_from(data).run().card().as_dict())
+        return as_json(path_from(data).run().card().as_dict())
     run, _ = run_of(scenario_from(data), limits.MOST_SAMPLES)
-    return _json(run.card().as_dict())
+    return as_json(run.card().as_dict())
 
 
 @answering
@@ -132,7 +148,7 @@ def derivation(data: dict[str, Any]) -> Answer:
     """
     from .deriving import derivation_of
 
-    return _json(derivation_of(scenario_from(data)))
+    return as_json(derivation_of(scenario_from(data)))
 
 
 @answering
@@ -177,10 +193,11 @@ def catalogue() -> Answer:
     >>> [entry["exact"] for entry in json.loads(catalogue().body) if entry["name"] == "tilted-turntable"]
     [True]
     """
-    return _json([_entry(name) for name in files.names()])
+    return as_json([_entry(name) for name in files.names()])
 
 
 def _entry(name: str) -> dict[str, Any]:
+    from ..mechanics.symmetry import ball_of
     from ..simulation.simulate import Scenario
     from ..solve.exact import closed_form
 
@@ -189,16 +206,19 @@ def _entry(name: str) -> dict[str, Any]:
     summary = notes[: notes.index(". ") + 1] if ". " in notes else notes
     told = {"name": name, "title": tables["title"], "group": tables.get("group", ""), "summary": summary}
     if files.rolls_along_path(tables):
-        return {**told, "support": "plane", "body": "sphere", "motion": "path", "exact": True}
+        return {**told, "support": "plane", "body": "sphere", "motion": "path", "exact": True, "level": 1}
     scenario = Scenario.read(tables, name)
-    exact = closed_form(scenario.system(), scenario.start_state()) is not None
+    system = scenario.system()
+    exact = closed_form(system, scenario.start_state()) is not None
     motion = tables["support"].get("motion", {}).get("kind", "fixed")
+    harder = (not exact, not system.support.surface.flat or ball_of(system.body) is None)
     return {
         **told,
         "support": tables["support"]["kind"],
         "body": tables["body"]["kind"],
         "motion": motion,
         "exact": exact,
+        "level": 1 + sum(harder),
     }
 
 
@@ -211,11 +231,69 @@ def text_of(name: str) -> Answer:
     >>> json.loads(text_of("tilted-turntable").body)["scenario"]["body"]["kind"]
     'solid-sphere'
     """
-    if name not in files.names():
-        shown = ascii(name[:80])
-        raise refused(404, f"There is no scenario {shown}. `/api/scenarios` lists them.", None, "NotFoundError")
+    _check_name(name)
     text = files.read(name)
-    return _json({"name": name, "toml": text, "scenario": files.parse(text, name)})
+    return as_json({"name": name, "toml": text, "scenario": files.parse(text, name)})
+
+
+@answering
+def picture_of(name: str) -> Answer:
+    """Draw a scenario that ships with the package, small.
+
+    Examples
+    --------
+    >>> picture_of("roll-x-then-y").media_type
+    'image/svg+xml'
+    """
+    from .pictures import SAMPLES, picture
+
+    _check_name(name)
+    return Answer(picture(scene_from(files.tables_of(name), SAMPLES)).encode("ascii"), PICTURE)
+
+
+@answering
+def challenges() -> Answer:
+    """List the challenges, with all that a page may know of them.
+
+    Examples
+    --------
+    >>> json.loads(challenges().body)[0]["level"]
+    1
+    """
+    from .challenges import challenge, names
+
+    return as_json([challenge(name).told(name) for name in names()])
+
+
+@answering
+def tried(name: str, values: dict[str, float], body: str, samples: int | None = None) -> Answer:
+    """Run what a learner chose in a challenge, and pack what a viewer needs.
+
+    Examples
+    --------
+    >>> tried("home-turned", {"east": 80.0}, "", 50).body[:8]
+    b'TRUNDLE1'
+    """
+    from ..views.scene import pack
+    from .challenges import challenge
+    from .judging import run
+
+    return Answer(pack(run(challenge(name), values, body, samples)), SCENE)
+
+
+@answering
+def judged(name: str, values: dict[str, float], answer: float | str | None) -> Answer:
+    """Say whether an answer to a challenge is right.
+
+    Examples
+    --------
+    >>> json.loads(judged("which-is-hollow", {}, "Ball B").body)["right"]
+    False
+    """
+    from .challenges import challenge
+    from .judging import judge
+
+    return as_json(judge(challenge(name), values, answer))
 
 
 @answering
@@ -229,7 +307,7 @@ def schema() -> Answer:
     """
     from ..scenario import ScenarioFile
 
-    return _json(ScenarioFile.schema())
+    return as_json(ScenarioFile.schema())
 
 
 @answering
@@ -243,7 +321,7 @@ def parts() -> Answer:
     """
     from .parts import all_parts
 
-    return _json(all_parts())
+    return as_json(all_parts())
 
 
 @answering
@@ -260,7 +338,39 @@ def start(
     """
     from .starts import start_by_hand
 
-    return _json(start_by_hand(scenario_from(data), at, velocity, nudge))
+    return as_json(start_by_hand(scenario_from(data), at, velocity, nudge))
+
+
+@answering
+def possible(scenarios: Sequence[dict[str, Any]]) -> Answer:
+    """Say of each of several scenarios why it cannot start, or None where it can.
+
+    Examples
+    --------
+    >>> json.loads(possible([files.tables_of("tilted-turntable")]).body)
+    [None]
+    """
+    return as_json([_why_not(data) for data in scenarios])
+
+
+def _why_not(data: dict[str, Any]) -> dict[str, Any] | None:
+    """Return the refusal of a scenario, without running it: by its tables, its start, and the phase that follows."""
+    from ..solve import transitions
+
+    try:
+        if files.rolls_along_path(data):
+            path_from(data)
+            return None
+        scenario = scenario_from(data)
+        limits.check_timing(float(scenario.timing.duration), float(scenario.timing.every), limits.MOST_SAVED)
+        system, start = scenario.system(), scenario.start_state()
+        transitions.slipping(system, transitions.at_start(system, start))
+    except Exception as error:
+        refusal = refusal_of(error)
+        if refusal is None:
+            raise
+        return {"message": refusal.message, "key": refusal.key}
+    return None
 
 
 def told(scenario: Scenario | PathScenario) -> dict[str, Any]:
@@ -285,5 +395,19 @@ def warm(name: str) -> None:
     simulate(files.tables_of(name), samples=50)
 
 
-def _json(value: Any) -> Answer:
+def _check_name(name: str) -> None:
+    """Refuse a name that no shipped scenario has."""
+    if name not in files.names():
+        shown = ascii(name[:80])
+        raise refused(404, f"There is no scenario {shown}. `/api/scenarios` lists them.", None, "NotFoundError")
+
+
+def as_json(value: Any) -> Answer:
+    """Return an answer in JSON.
+
+    Examples
+    --------
+    >>> as_json([1.5]).body
+    b'[1.5]'
+    """
     return Answer(json.dumps(value, ensure_ascii=True, allow_nan=False).encode("ascii"), JSON)

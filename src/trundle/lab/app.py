@@ -5,20 +5,41 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from typing import Annotated
 
-from fastapi import FastAPI, Request
+from fastapi import FastAPI, Query, Request
 from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
 from starlette.responses import JSONResponse, Response
 
 from ..views.viewer.exports import FORMATS
-from . import answers, exports, pages
+from . import answers, exports, maps, measuring, pages
 from .errors import Refusal, RefusedError, of_validation
 from .lanes import LeftError
-from .requests import JSON, OPENED, AboutScenario, ToDraw, ToExport, ToRoll, ToSimulate, ToStart, described
+from .requests import (
+    JSON,
+    OPENED,
+    PICTURE,
+    AboutScenario,
+    HowToRead,
+    ToDraw,
+    ToExport,
+    ToFit,
+    ToJudge,
+    ToMap,
+    ToPoint,
+    ToRoll,
+    ToSimulate,
+    ToStart,
+    ToStartAny,
+    ToTry,
+    described,
+)
 from .security import Guard
 from .service import Lab
 from .settings import Settings
+
+_BINARY = {"type": "string", "format": "binary"}
 
 
 def create_app(settings: Settings | None = None) -> FastAPI:
@@ -56,6 +77,9 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.lab = lab
     _reading(app, lab)
     _asking(app, lab)
+    _judging(app, lab)
+    _mapping(app, lab)
+    _measuring(app, lab)
     _files(app, lab)
     _refusing(app)
     pages.add_routes(app, chosen)
@@ -73,6 +97,16 @@ def _reading(app: FastAPI, lab: Lab) -> None:
     @app.get("/api/scenarios/{name}", **described("One of them, as TOML and as JSON.", 404))
     async def scenario(request: Request, name: str) -> Response:
         return await lab.at_once(request, answers.text_of, name)
+
+    drawn = {PICTURE: {"schema": {"type": "string"}}}
+
+    @app.get("/api/scenarios/{name}/picture", **described("A small picture of it.", 404, content=drawn))
+    async def picture(request: Request, name: str) -> Response:
+        return await lab.shared(request, answers.picture_of, name)
+
+    @app.get("/api/challenges", **described("The challenges: all that a page may know of them."))
+    async def challenges(request: Request) -> Response:
+        return await lab.at_once(request, answers.challenges)
 
     @app.get("/api/ready", **described("Whether a worker has answered yet: until then they are starting."))
     async def ready() -> Response:
@@ -112,17 +146,75 @@ def _asking(app: FastAPI, lab: Lab) -> None:
         at = asked.at.model_dump(exclude_none=True)
         return await lab.answer(request, answers.start, asked.scenario, at, asked.velocity, asked.nudge)
 
+    @app.post("/api/possible", **described("Of each scenario why it cannot start; null where it can."))
+    async def possible(request: Request, asked: ToStartAny) -> Response:
+        return await lab.answer(request, answers.possible, asked.scenarios)
+
     @app.post("/api/roll", **described("Roll a ball along a curve: a packed scene.", scene=True))
     async def roll(request: Request, asked: ToRoll) -> Response:
         wanted = asked.radius, asked.curve, asked.samples, asked.card
         return await lab.answer(request, answers.roll, *wanted, slow=asked.card)
 
 
+def _judging(app: FastAPI, lab: Lab) -> None:
+    """Add the routes of the challenges."""
+
+    @app.post("/api/challenges/{name}/run", **described("Run what was chosen: a packed scene.", 404, scene=True))
+    async def run(request: Request, name: str, asked: ToTry) -> Response:
+        return await lab.answer(request, answers.tried, name, asked.values, asked.body, asked.samples)
+
+    @app.post("/api/challenges/{name}/answer", **described("Whether an answer is right.", 404))
+    async def judge(request: Request, name: str, asked: ToJudge) -> Response:
+        return await lab.answer(request, answers.judged, name, asked.values, asked.answer)
+
+
+def _mapping(app: FastAPI, lab: Lab) -> None:
+    """Add the routes that compute maps."""
+
+    @app.get("/api/sweeps", **described("The sweeps that ship with trundle, and what a map may measure."))
+    async def sweeps(request: Request) -> Response:
+        return await lab.shared(request, maps.sweeps)
+
+    @app.post("/api/map/numbers", **described("The numbers of a scenario that a map may go over."))
+    async def numbers(request: Request, asked: AboutScenario) -> Response:
+        return await lab.answer(request, maps.map_numbers, asked.scenario)
+
+    @app.post("/api/map", **described("Go on with a map for a second: what was run, and the picture."))
+    async def draw(request: Request, asked: ToMap) -> Response:
+        spans = [span.model_dump(by_alias=True) for span in asked.over]
+        known = asked.places, asked.values
+        return await lab.answer(request, maps.draw_map, asked.scenario, spans, asked.measure, *known, slow=True)
+
+    @app.post("/api/map/point", **described("The scenario of one field of a map."))
+    async def point(request: Request, asked: ToPoint) -> Response:
+        spans = [span.model_dump(by_alias=True) for span in asked.over]
+        return await lab.answer(request, maps.map_point, asked.scenario, spans, asked.place)
+
+
+def _measuring(app: FastAPI, lab: Lab) -> None:
+    """Add the routes that read measured motion and fit it."""
+    takes = {"requestBody": {"required": True, "content": {OPENED[-1]: {"schema": _BINARY}}}}
+
+    @app.get("/api/tracks", **described("Measured tracks to try a fit on: the truth is known."))
+    async def tracks(request: Request) -> Response:
+        return await lab.shared(request, measuring.examples)
+
+    @app.post("/api/track", **described("The track in a file, or what has to be said of it."), openapi_extra=takes)
+    async def track(request: Request, how: Annotated[HowToRead, Query()]) -> Response:
+        told = how.model_dump(exclude_none=True)
+        return await lab.with_folder(request, measuring.read, await request.body(), told)
+
+    @app.post("/api/fit", **described("Fit numbers of a scenario to measured motion."))
+    async def fit(request: Request, asked: ToFit) -> Response:
+        wanted = asked.columns, asked.free, asked.noise, asked.title
+        return await lab.answer(request, measuring.fitted, asked.scenario, *wanted, slow=True)
+
+
 def _files(app: FastAPI, lab: Lab) -> None:
     """Add the routes that give files and take them."""
     media_types = {form.media_type for form in FORMATS.values()}
-    kinds = {kind: {"schema": {"type": "string", "format": "binary"}} for kind in sorted(media_types)}
-    takes = {kind: {"schema": {"type": "string", "format": "binary"}} for kind in OPENED}
+    kinds = {kind: {"schema": _BINARY} for kind in sorted(media_types)}
+    takes = {kind: {"schema": _BINARY} for kind in OPENED}
 
     @app.post("/api/export", **described("A scenario, or its run, as a file.", content=kinds))
     async def export(request: Request, asked: ToExport) -> Response:

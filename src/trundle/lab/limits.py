@@ -10,9 +10,14 @@ from ..scenario.files import Bounds
 
 MOST_SAMPLES = 10_000  # of a scene; what a screen can show
 MOST_SAVED = 200_000  # of a file
+MOST_TRIED = 100  # scenarios at once of which it is asked whether they can start
 LONGEST = 3600.0  # s
 MOST_VALUES = 20_000  # numbers and texts in a scenario; a height field of 100 by 100 fits
 MOST_LOADS = 20
+MOST_SIDE = 64  # fields along a side of a map
+MOST_FIELDS = MOST_SIDE**2
+MOST_OF_MEMBER = 5000  # samples of a run of a map
+MOST_ROWS = 4000  # of a track that is fitted
 MOST_PIECES = 500  # of a path
 _NO_MORE = "The lab computes no more for one request; `trundle run` does."
 _BOUNDS = Bounds(MOST_LOADS, MOST_PIECES, MOST_VALUES, deepest=12, remedy=_NO_MORE)

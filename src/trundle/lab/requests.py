@@ -8,14 +8,14 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from starlette.responses import Response
 
 from ..views.viewer.exports import FORMATS
-from .limits import MOST_SAMPLES
+from .limits import MOST_FIELDS, MOST_ROWS, MOST_SAMPLES, MOST_SIDE, MOST_TRIED
 
 if TYPE_CHECKING:
     Ending = str
 else:
     Ending = Literal[tuple(ending.removeprefix(".") for ending in FORMATS)]
 
-SCENE, JSON = "application/octet-stream", "application/json"
+SCENE, JSON, PICTURE = "application/octet-stream", "application/json", "image/svg+xml"
 OPENED = ("text/plain", "application/octet-stream")  # and any other: what it is, its content tells
 
 
@@ -51,6 +51,12 @@ class AboutScenario(_Asked):
     """A question about one scenario."""
 
     scenario: Tables
+
+
+class ToStartAny(_Asked):
+    """Scenarios of which it is asked whether they can start."""
+
+    scenarios: Annotated[list[Tables], Field(min_length=1, max_length=MOST_TRIED)]
 
 
 class ToDraw(AboutScenario):
@@ -119,6 +125,90 @@ class ToExport(AboutScenario):
     """A scenario to be saved in some format."""
 
     format: Ending
+
+
+_Chosen = Annotated[dict[Annotated[str, Field(max_length=40)], _Finite], Field(max_length=20)]
+
+
+class ToTry(_Asked):
+    """What a learner chose in a challenge, to be run."""
+
+    values: _Chosen = Field(default={}, description="By the names of the challenge's controls, in their units.")
+    body: Annotated[str, Field(max_length=80)] = Field(default="", description="Which, where there are several.")
+    samples: Samples = None
+
+
+class ToJudge(_Asked):
+    """An answer to a challenge."""
+
+    values: _Chosen = {}
+    answer: _Finite | Annotated[str, Field(max_length=80)] | None = None
+
+
+_Word = Annotated[str, Field(max_length=200)]
+_Spelt = _Finite | Annotated[str, Field(max_length=200)]
+Row = Annotated[list[_Finite | None], Field(max_length=MOST_FIELDS)]
+
+
+class Span(_Asked):
+    """One side of a map: a number of the scenario, and how far it goes."""
+
+    key: str = Field(max_length=200, description="Of the number, such as `start.angular_velocity[2]`.")
+    start: _Spelt = Field(alias="from", description="SI, or a text with a unit.")
+    end: _Spelt = Field(alias="to")
+    count: int = Field(ge=2, le=MOST_SIDE)
+    scale: Literal["linear", "log"] = "linear"
+
+
+class ToPoint(AboutScenario):
+    """A point of a map: one member of a sweep over two numbers of a scenario."""
+
+    over: Annotated[list[Span], Field(min_length=2, max_length=2)]
+    place: int = Field(ge=0, lt=MOST_FIELDS, description="Of the field: the second number runs first.")
+
+
+class ToMap(AboutScenario):
+    """A map that is to be computed, or gone on with."""
+
+    over: Annotated[list[Span], Field(min_length=2, max_length=2)]
+    measure: str = Field(max_length=500, description="What is measured of each member, such as `max hypot(x, y)`.")
+    places: Annotated[list[Annotated[int, Field(ge=0, lt=MOST_FIELDS)]], Field(max_length=MOST_FIELDS)] = Field(
+        default=[], description="Fields that are known already."
+    )
+    values: Row = Field(default=[], description="What was found there; null: there is no value.")
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if len(self.places) != len(self.values):
+            raise ValueError("places and values must be of one length")
+        return self
+
+
+class ToFit(AboutScenario):
+    """Measured motion, and the numbers that are to be found from it."""
+
+    columns: dict[Annotated[str, Field(max_length=40)], Annotated[list[_Finite | None], Field(max_length=MOST_ROWS)]]
+    title: Annotated[str, Field(max_length=200)] = Field(default="data", description="Of the track.")
+    free: Annotated[list[Annotated[str, Field(max_length=200)]], Field(max_length=20)] = []
+    noise: Annotated[str, Field(max_length=40)] | None = Field(
+        default=None, description="Standard deviation of a value, with a unit; absent: estimated."
+    )
+
+
+class HowToRead(_Asked):
+    """What a file with a track does not say of itself; as of `trundle.read_track`."""
+
+    name: Annotated[str, Field(max_length=300)] = Field(description="Of the file: its ending says what it is.")
+    track: _Word | None = None
+    columns: _Word | None = Field(default=None, description="Names that do not tell: `t=frame_time, x=u`.")
+    units: _Word | None = Field(default=None, description="Of places, such as cm.")
+    time: _Word | None = Field(default=None, description="Unit of the time: ms, or frame.")
+    angles: _Word | None = None
+    rate: _Word | None = Field(default=None, description="Frames a second.")
+    pixel: _Word | None = Field(default=None, description="The size of one, such as 0.8 mm.")
+    y: Literal["up", "down"] | None = None
+    sense: Literal["clockwise", "anticlockwise"] | None = None
+    decimal: Literal["point", "comma"] | None = None
 
 
 class Told(BaseModel):

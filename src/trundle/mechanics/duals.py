@@ -10,11 +10,19 @@ with jets to the jets, so that the two kinds of slope are never mixed up.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import fields, is_dataclass
 from typing import Any
 
 from .scalars import Scalar, is_number, is_zero, less, namespace
+
+_STRICT: ContextVar[bool] = ContextVar("strict", default=False)  # whether comparisons must hold beside the value, too
+
+
+class NoSlopeError(TypeError):
+    """Something was asked of a dual that has no slope: a float, or a decision that its slopes would turn."""
 
 
 class Dual:
@@ -102,34 +110,66 @@ class Dual:
 
     def __float__(self) -> float:
         if not all(map(is_zero, self.slopes)):
-            raise TypeError("A float has no slopes: take `value_of` to decide something by a number, or keep the dual.")
+            raise NoSlopeError(
+                "A float has no slopes: take `value_of` to decide something by a number, or keep the dual."
+            )
         return float(self.value)
 
     def __format__(self, spec: str) -> str:
         return format(self.value, spec)
 
+    def _compared(self, other: Any) -> Any:
+        """Return the value of what it is compared with; strictly, refuse what is equal here and nowhere beside."""
+        value = value_of(other)
+        if _STRICT.get():
+            equal = self.value == value
+            if _any(equal) and any(_any(equal & (slope != 0)) for slope in (self - other).slopes):
+                raise NoSlopeError("A case of a formula holds for this very number, and for none beside it.")
+        return value
+
     def __bool__(self) -> bool:
-        return bool(self.value)
+        return bool(self.value != self._compared(0.0))
 
     def __eq__(self, other: Any) -> Any:
-        return self.value == value_of(other)
+        return self.value == self._compared(other)
 
     def __ne__(self, other: Any) -> Any:
-        return self.value != value_of(other)
+        return self.value != self._compared(other)
 
     __hash__ = None  # type: ignore[assignment]
 
     def __lt__(self, other: Any) -> Any:
-        return self.value < value_of(other)
+        return self.value < self._compared(other)
 
     def __le__(self, other: Any) -> Any:
-        return self.value <= value_of(other)
+        return self.value <= self._compared(other)
 
     def __gt__(self, other: Any) -> Any:
-        return self.value > value_of(other)
+        return self.value > self._compared(other)
 
     def __ge__(self, other: Any) -> Any:
-        return self.value >= value_of(other)
+        return self.value >= self._compared(other)
+
+
+@contextmanager
+def strictly() -> Iterator[None]:
+    """Refuse, within, comparisons that hold for the values alone: slopes that follow from them are not those beside.
+
+    Examples
+    --------
+    >>> (x,) = duals((0.0,))
+    >>> x == 0.0
+    True
+    >>> with strictly():
+    ...     x == 0.0
+    Traceback (most recent call last):
+    trundle.mechanics.duals.NoSlopeError: A case of a formula holds for this very number, and for none beside it.
+    """
+    token = _STRICT.set(True)
+    try:
+        yield
+    finally:
+        _STRICT.reset(token)
 
 
 class DualFunctions:
@@ -186,7 +226,7 @@ class DualFunctions:
     @staticmethod
     def abs(x: Any) -> Any:
         """Return |x|; its slope at 0 is that to the right."""
-        return _of(x, "abs", lambda xp, v, _f: xp.where(less(v, 0.0), -1.0, 1.0))
+        return _of(x, "abs", lambda xp, v, _f: xp.where(less(v, x._compared(0.0)), -1.0, 1.0))
 
     @staticmethod
     def hypot(x: Any, y: Any) -> Any:
@@ -248,11 +288,27 @@ def values_of(thing: Any) -> Any:
     >>> values_of((Dual(1.0, (2.0,)), 3.0))
     (1.0, 3.0)
     """
+    return _with(thing, value_of)
+
+
+def beside(thing: Any, j: int, step: float) -> Any:
+    """Return a structure in duals with the values that follow from a step of one parameter, to first order.
+
+    Examples
+    --------
+    >>> beside((Dual(1.0, (2.0,)), 3.0), 0, 0.5)
+    (2.0, 3.0)
+    """
+    return _with(thing, lambda x: x.value + step * x.slopes[j] if isinstance(x, Dual) else x)
+
+
+def _with(thing: Any, other: Callable[[Any], Any]) -> Any:
+    """Return a structure with other scalars in it."""
     if is_dataclass(thing) and not isinstance(thing, type):
-        return type(thing)(**{field.name: values_of(getattr(thing, field.name)) for field in fields(thing)})
+        return type(thing)(**{field.name: _with(getattr(thing, field.name), other) for field in fields(thing)})
     if isinstance(thing, tuple):
-        return tuple(map(values_of, thing))
-    return value_of(thing)
+        return tuple(_with(part, other) for part in thing)
+    return other(thing)
 
 
 def has_duals(thing: Any) -> bool:
@@ -268,6 +324,23 @@ def has_duals(thing: Any) -> bool:
     if is_dataclass(thing) and not isinstance(thing, type):
         return any(has_duals(getattr(thing, field.name)) for field in fields(thing))
     return isinstance(thing, Dual)
+
+
+def converted(x: Any, number: Callable[[Any], Any]) -> Any:
+    """Return a scalar of another kind; of a dual its value and its slopes, which may be arrays.
+
+    Examples
+    --------
+    >>> converted(Dual(1, (2,)), float), converted(3, float)
+    (Dual(1.0, (2.0,)), 3.0)
+    """
+    if isinstance(x, Dual):
+        return Dual(number(x.value), tuple(converted(slope, number) for slope in x.slopes))
+    if getattr(x, "shape", ()):
+        import numpy as np
+
+        return np.array([number(one) for one in x.ravel().tolist()]).reshape(x.shape)
+    return number(x)
 
 
 def slopes_of(x: Any, count: int) -> tuple[Any, ...]:
@@ -312,6 +385,11 @@ def _of(x: Any, name: str, slope: Callable[[Any, Any, Any], Any]) -> Any:
     return x.through(f, slope(xp, x.value, f))
 
 
+def _any(holds: Any) -> bool:
+    """Tell whether something holds of a number, or anywhere in an array."""
+    return bool(holds.any()) if hasattr(holds, "any") else bool(holds)
+
+
 def _pairs(x: Any, y: Any) -> Any:
     count = len((x if isinstance(x, Dual) else y).slopes) if isinstance(x, Dual) or isinstance(y, Dual) else 0
     return zip(slopes_of(x, count), slopes_of(y, count), strict=True)
@@ -319,7 +397,9 @@ def _pairs(x: Any, y: Any) -> Any:
 
 def _is_scalar(x: Any) -> bool:
     """Tell a scalar from vectors, matrices and jets, which know better what a dual times them is."""
-    return is_number(x) or hasattr(x, "__array_namespace__") or hasattr(type(x), "scalar_functions")
+    if is_number(x) or hasattr(x, "__array_namespace__") or hasattr(type(x), "scalar_functions"):
+        return True
+    return type(x).__module__.partition(".")[0] == "mpmath"
 
 
 def _times(slope: Any, factor: Any) -> Any:

@@ -51,6 +51,10 @@ class Placing:
 
     def state(self, *, checked: bool = True) -> State:
         """Return the start, checked; or as its numbers have it, where those of a start like it were checked before."""
+        return self.at_contact(checked=checked)[0]
+
+    def at_contact(self, *, checked: bool = True) -> tuple[State, Contact]:
+        """Return the same, and the contact at or over which it is."""
         from .system import State
 
         system, surface = self.system, self.system.support.surface
@@ -82,7 +86,7 @@ class Placing:
         start = State(_triple(centre), _triple(V), _triple(Omega), tuple(q), time, tuple(map(as_float, coordinates)))
         if checked:
             line_contact.check_start(system, start)
-        return start
+        return start, contact
 
     @cached_property
     def _now(self) -> float:

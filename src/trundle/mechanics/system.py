@@ -13,10 +13,11 @@ from . import checks
 from .algebra import E_Z, ZERO, Vector
 from .bodies import Body
 from .contact import Contact
+from .duals import value_of
 from .loads import Acting, BodyMotion, Gravity, Load
 from .motions import Fixed, Motion
 from .parts import Number
-from .scalars import Scalar, is_number, namespace
+from .scalars import Scalar, is_number, less, namespace
 from .surfaces import Surface
 
 if TYPE_CHECKING:
@@ -186,7 +187,9 @@ class RollingSystem:
         tilt = self.support.tilt
         xp = namespace(tilt)
         # The float nearest to a right angle means one: cos α as sin(π/2 − α) leaves no gravity along a level axis.
-        normal = xp.cos(tilt) if getattr(xp, "exact", False) else xp.sin(0.5 * math.pi - xp.abs(tilt))
+        # Both sides of 0 have the same slope there.
+        size = xp.where(less(value_of(tilt), 0.0), -tilt, tilt)
+        normal = xp.cos(tilt) if getattr(xp, "exact", False) else xp.sin(0.5 * math.pi - size)
         return Gravity(self.gravity * xp.sin(tilt), 0.0, -(self.gravity * normal))
 
     @property

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from .examples import Example, example, example_names, example_of
 from .reading import read_track
 from .table import Rejected
 from .track import Track
 
-__all__ = ["Rejected", "Track", "read_track"]
+__all__ = ["Example", "Rejected", "Track", "example", "example_names", "example_of", "read_track"]

@@ -10,6 +10,7 @@ from typing import Any
 
 from ..errors import InvalidValueError, UnknownNameError
 from .arrays import table_of
+from .examples import example_of
 from .file import File
 from .formats import endings, read_file
 from .options import SI, Options
@@ -42,8 +43,8 @@ def read_track(
     Parameters
     ----------
     source : path, Track, Trajectory, pandas.DataFrame, xarray.Dataset or mapping of arrays
-        A file of one of the formats on the page "Read a measured track", or the track in memory. Numbers in memory
-        are in SI unless their names say a unit.
+        A file of one of the formats on the page "Read a measured track", an example such as
+        ``"example:ball-on-a-ramp"``, or the track in memory. Numbers in memory are in SI unless their names say a unit.
     track : str, optional
         Which one, where a file holds several.
     columns : mapping, optional
@@ -119,7 +120,8 @@ def read_track(
         title, table = table_of(source, options)
         filled = replace(options, units=SI | dict(options.units))
         return Reading(table, filled, title, "", frame, axes, film=False).track({"options": options.as_dict()})
-    path = Path(source)
+    known = example_of(source)
+    path = Path(source) if known is None else known.path
     file = _opened(path, options)
     kind, tables = read_file(file, options)
     provenance = {
@@ -151,16 +153,32 @@ def _opened(path: Path, options: Options) -> File:
         raise InvalidValueError("file", "must be readable", str(path), f"{error.strerror}.") from None
 
 
+def track_names(path: Path) -> list[str]:
+    r"""Return what the tracks of a file are called.
+
+    Examples
+    --------
+    >>> _ = Path("two.txt").write_text("A;;B;\nt;x;t;x\n0;1;0;2\n1;1;1;2\n")
+    >>> track_names(Path("two.txt"))
+    ['A', 'B']
+    """
+    options = Options.asked()
+    return _names(read_file(_opened(path, options), options)[1])
+
+
+def _names(tables: Sequence[Table]) -> list[str]:
+    """Return the names of tracks, with their numbers where two are called the same."""
+    known = [table.name or str(i + 1) for i, table in enumerate(tables)]
+    return [f"{one} ({i + 1})" if known.count(one) > 1 else one for i, one in enumerate(known)]
+
+
 def _chosen(tables: Sequence[Table], name: str | None, source: str) -> Table:
     """Return the track that was asked for, or the only one."""
-    known = [table.name or str(i + 1) for i, table in enumerate(tables)]
+    known = _names(tables)
     if name is None and len(tables) == 1:
         return tables[0]
     if not tables:
         raise InvalidValueError("file", "must hold a track", source, "There is none in it.")
-    twice = next((one for one in known if known.count(one) > 1), None)
-    if twice is not None:  # by number, then
-        known = [f"{one} ({i + 1})" if known.count(one) > 1 else one for i, one in enumerate(known)]
     if name is None:
         shown = ", ".join(known[:_TRACKS]) + (f" and {len(known) - _TRACKS} more" if len(known) > _TRACKS else "")
         rule = "must be named where a file holds several"

@@ -3,8 +3,10 @@
 import type { Scene, Triple, Turn } from '../viewer/scene'
 import { unpack } from '../viewer/scene'
 import { createLanes } from './lanes'
+import type { Found } from './notebook'
 import type { Parts } from './parts'
 import type { Json, Quantity, Scenario, Table } from './scenario'
+import type { TeacherNote } from './texts'
 
 /** What the package says is wrong, and at which key of the scenario ("support.tilt"). */
 export class ApiError extends Error {
@@ -34,7 +36,44 @@ export interface ScenarioEntry {
   body: string
   motion: string
   exact: boolean
+  /** 1 to 3: how much one must know. */
+  level: number
 }
+
+export interface ChallengeControl {
+  name: string
+  label: string
+  unit: string
+  least: number
+  most: number
+  step: number
+  first: number
+}
+
+/** A challenge, as far as a page may know it. */
+export interface Challenge {
+  name: string
+  title: string
+  level: number
+  summary: string
+  task: string
+  hints: string[]
+  explain: string
+  controls: ChallengeControl[]
+  prediction: { question: string; choices: string[] }
+  answer: { kind: 'run' } | { kind: 'number'; label: string } | { kind: 'choice'; choices: string[] }
+  teacher: TeacherNote
+  /** Those that move, by name, where there are several or one is hidden. */
+  bodies: string[]
+}
+
+export interface Judgement {
+  right: boolean
+  found: Found[]
+  explanation: string
+}
+
+export type Values = Record<string, number>
 
 export interface NamedScenario {
   name: string
@@ -109,7 +148,146 @@ export interface StartRequest {
   nudge?: Triple
 }
 
+/** One side of a map: a number of the scenario and how far it goes, as the file of a sweep says it. */
+export interface Span {
+  key: string
+  from: Quantity
+  to: Quantity
+  count: number
+  scale: 'linear' | 'log'
+}
+
+export interface MapRequest {
+  scenario: Scenario
+  over: [Span, Span]
+  measure: string
+}
+
+export interface ShippedSweep extends Omit<MapRequest, 'measure'> {
+  name: string
+  title: string
+  notes: string
+  /** By name, the first of them the one to begin with. */
+  measures: Record<string, string>
+}
+
+export interface Sweeps {
+  sweeps: ShippedSweep[]
+  /** What may be measured: some of it by a formula, of which this is an example. */
+  figures: string[]
+  colours: { numbers: string[]; classes: string[] }
+}
+
+/** A number of a scenario, SI. */
+export interface ScenarioNumber {
+  key: string
+  value: number
+  unit: string
+}
+
+/** A part of a map: fields are counted with the second number running first. */
+export interface MapPart {
+  shape: [number, number]
+  axes: { key: string; unit: string; values: number[] }[]
+  unit: string
+  /** What the values stand for where they are classes; else empty. */
+  classes: string[]
+  /** What was run now, and what was found; null: no value. */
+  places: number[]
+  values: (number | null)[]
+  /** Every field, as far as it is known. */
+  picture: (number | null)[]
+  run: number
+  /** How many fields are to be run before the picture gets finer; 0: it is finished. */
+  left: number
+}
+
+/** Why a scenario cannot start. */
+export interface Refused {
+  message: string
+  key: string | null
+}
+
+/** Columns of a track, SI: `t` and what was measured; null where there is no number. */
+export type TrackColumns = Record<string, (number | null)[]>
+
+export interface Track {
+  title: string
+  columns: TrackColumns
+  /** What was taken for what, and what was left out, a sentence each. */
+  said: string[]
+}
+
+/** What a file does not say of itself. */
+export interface Question {
+  key: string
+  rule: string
+  received: string
+  /** To choose from; others may be written. */
+  choices: string[]
+}
+
+export interface ExampleTrack {
+  name: string
+  title: string
+  about: string
+  file: string
+  content: string
+  scenario: Scenario
+  free: string[]
+  noise: string
+}
+
+export interface Fitted {
+  title: string
+  answer: 'good' | 'bad' | 'cannot decide'
+  verdict: string
+  /** Name, value with its error, unit, remark. */
+  rows: [string, string, string, string][]
+  /** What cannot be known, a sentence each, with the cure. */
+  unknown: string[]
+  remarks: string[]
+  card: boolean
+  scenario: Scenario
+  /** The scenario as TOML, with the errors as comments. */
+  commented: string
+  way: Way
+}
+
+/** The way that a fit went, its last frame where it ended. */
+export interface Way {
+  time: number[]
+  columns: string[]
+  frames: { reduced: number; share: number; columns: (number | null)[][] }[]
+}
+
+export interface FitRequest {
+  scenario: Scenario
+  columns: TrackColumns
+  title: string
+  free: string[]
+  noise: string | null
+}
+
 export interface Api {
+  exampleTracks(options?: RequestOptions): Promise<ExampleTrack[]>
+  /** Read a track; `how` says what the file does not. */
+  track(
+    file: Blob,
+    name: string,
+    how: Record<string, string>,
+    options?: RequestOptions,
+  ): Promise<Track | { asks: Question }>
+  fit(request: FitRequest, options?: RequestOptions): Promise<Fitted>
+  sweeps(options?: RequestOptions): Promise<Sweeps>
+  mapNumbers(scenario: Scenario, options?: RequestOptions): Promise<ScenarioNumber[]>
+  /** Go on with a map for about a second. */
+  map(request: MapRequest & { places: number[]; values: (number | null)[] }, options?: RequestOptions): Promise<MapPart>
+  /** The scenario of one field. */
+  mapPoint(
+    request: Omit<MapRequest, 'measure'> & { place: number },
+    options?: RequestOptions,
+  ): Promise<{ scenario: Scenario; toml: string }>
   scenarios(options?: RequestOptions): Promise<ScenarioEntry[]>
   scenario(name: string, options?: RequestOptions): Promise<NamedScenario>
   schema(options?: RequestOptions): Promise<Json>
@@ -117,6 +295,13 @@ export interface Api {
   parts(options?: RequestOptions): Promise<Parts>
   /** A start made by hand, SI: what changes in it, null where a key goes. */
   start(scenario: Scenario, put: StartRequest, options?: RequestOptions): Promise<Table>
+  challenges(options?: RequestOptions): Promise<Challenge[]>
+  /** Run what was chosen in a challenge. */
+  tried(name: string, values: Values, body: string, options?: SimulateOptions): Promise<Simulated>
+  /** Is the answer right? */
+  judged(name: string, values: Values, answer: number | string | null, options?: RequestOptions): Promise<Judgement>
+  /** Of each scenario why it cannot start; null where it can. */
+  possible(scenarios: Scenario[], options?: RequestOptions): Promise<(Refused | null)[]>
   /** Has a worker answered yet, or are they starting? */
   ready(options?: RequestOptions): Promise<{ ready: boolean }>
   simulate(scenario: Scenario, options?: RunOptions): Promise<Simulated>
@@ -130,7 +315,7 @@ export interface Api {
   cancel(lane?: string): void
 }
 
-const UNREACHABLE = 'The lab’s server does not answer. Is `trundle lab` still running?'
+const UNREACHABLE = 'The lab does not answer. Is it still running in its terminal?'
 
 async function failure(response: Response): Promise<ApiError> {
   try {
@@ -204,12 +389,35 @@ export function createApi(base = '', ask: typeof fetch = (input, init) => fetch(
   }
 
   return {
+    exampleTracks: (options) => get('/api/tracks', options),
+    track: (file, name, how, options = {}) =>
+      request(
+        `/api/track?${new URLSearchParams({ ...how, name })}`,
+        { method: 'POST', headers: { 'content-type': 'application/octet-stream' }, body: file },
+        laneOf(options, 'track'),
+        options.signal,
+        json<Track | { asks: Question }>,
+      ),
+    fit: (asked, options = {}) => post('/api/fit', asked, options, 'fit', json<Fitted>),
+    sweeps: (options) => get('/api/sweeps', options),
+    mapNumbers: (scenario, options = {}) =>
+      post('/api/map/numbers', { scenario }, options, 'map-numbers', json<ScenarioNumber[]>),
+    map: (asked, options = {}) => post('/api/map', asked, options, 'map', json<MapPart>),
+    mapPoint: (asked, options = {}) =>
+      post('/api/map/point', asked, options, 'map-point', json<{ scenario: Scenario; toml: string }>),
     scenarios: (options) => get('/api/scenarios', options),
     scenario: (name, options) => get(`/api/scenarios/${encodeURIComponent(name)}`, options),
     schema: (options) => get('/api/schema', options),
     parts: (options) => get('/api/parts', options),
     start: (scenario, put, options = {}) => post('/api/start', { scenario, ...put }, options, 'start', json<Table>),
+    possible: (scenarios, options = {}) =>
+      post('/api/possible', { scenarios }, options, 'possible', json<(Refused | null)[]>),
     ready: (options) => get('/api/ready', options),
+    challenges: (options) => get('/api/challenges', options),
+    tried: (name, values, body, options = {}) =>
+      packed(`/api/challenges/${name}/run`, { values, body }, options, 'challenge'),
+    judged: (name, values, answer, options = {}) =>
+      post(`/api/challenges/${name}/answer`, { values, answer }, options, 'judge', json<Judgement>),
     simulate: (scenario, { tolerance, ...options } = {}) =>
       packed('/api/simulate', { scenario, tolerance }, options, 'simulate'),
     card: (scenario, options = {}) => post('/api/card', { scenario }, options, 'card', json<Card>),

@@ -30,6 +30,8 @@ export interface Page {
   /** Its word in the hash: "bench", "tour", "holonomy", "compare", "fields". */
   readonly id: string
   readonly title: string
+  /** Not in the menu: other pages lead there. */
+  readonly aside?: boolean
   /** Build the page inside the host; returns how to take it down (dispose viewers, listeners, requests). */
   mount(host: HTMLElement, app: App): () => void
 }

@@ -6,6 +6,7 @@ import './tokens.css'
 import './base.css'
 import './inputs.css'
 import './shell.css'
+import './low.css'
 import { createApi } from './api'
 import type { App } from './app'
 import { FIRST } from './first'
@@ -15,6 +16,7 @@ import { createSettings } from './settings'
 import { createShell, startShell } from './shell'
 import { tellWhileStarting } from './starting'
 import { createStore } from './store'
+import './forced.css'
 
 const settings = createSettings()
 const router = createRouter()

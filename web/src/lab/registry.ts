@@ -1,6 +1,6 @@
-/** The pages of the lab, in the order of the menu. */
+/** The pages of the lab, in the order of the menu; the first is the front door. */
 import type { Page } from './app'
 import { bench } from './bench'
-import { compare, fields, holonomy, tour } from './pages'
+import { challenges, compare, fields, holonomy, maps, measure, notes, report, start, tour } from './pages'
 
-export const pages: Page[] = [bench, tour, compare, fields, holonomy]
+export const pages: Page[] = [start, bench, tour, challenges, compare, fields, holonomy, maps, measure, report, notes]

@@ -50,25 +50,29 @@ function fromBase64Url(text: string): Uint8Array<ArrayBuffer> {
   return Uint8Array.from(plain, (c) => c.charCodeAt(0))
 }
 
-/** The code of a scenario for the URL. */
-export async function encode(scenario: Scenario): Promise<string> {
-  const bytes = new TextEncoder().encode(JSON.stringify(scenario))
+/** The code of a scenario, or of whatever else a page is about, for the URL. */
+export async function encode(value: unknown): Promise<string> {
+  const bytes = new TextEncoder().encode(JSON.stringify(value))
   return toBase64Url(await piped(bytes, new CompressionStream('deflate-raw')))
 }
 
 /** The scenario of a code; throws a LinkError that says what is wrong with the link. */
 export async function decode(code: string): Promise<Scenario> {
+  const found = await decodeAny(code)
+  if (!isScenario(found)) throw new LinkError('The link holds no scenario.')
+  return found
+}
+
+/** The same of whatever it holds: what that is, the caller has to see. */
+export async function decodeAny(code: string): Promise<unknown> {
   if (code.length > LONGEST) throw new LinkError('The link is too long to be a scenario.')
-  let found: unknown
   try {
     const bytes = await piped(fromBase64Url(code.trim()), new DecompressionStream('deflate-raw'), LARGEST)
-    found = JSON.parse(new TextDecoder('utf-8', { fatal: true }).decode(bytes))
+    return JSON.parse(new TextDecoder('utf-8', { fatal: true }).decode(bytes))
   } catch (error) {
     if (error instanceof LinkError) throw error
     throw new LinkError('The link is damaged: a part of it is missing or was changed on its way.')
   }
-  if (!isScenario(found)) throw new LinkError('The link holds no scenario.')
-  return found
 }
 
 function isTable(value: unknown): value is Record<string, unknown> {

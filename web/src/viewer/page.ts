@@ -1,4 +1,5 @@
 /** A saved page: its scenes lie in it, compressed, and so does this script. */
+import { startLive } from '../live/page'
 import type { Theme } from './contract'
 import { type Scene, unpack } from './scene'
 import { createViewer } from './viewer'
@@ -31,6 +32,8 @@ function show(root: Document, stage: HTMLElement, scenes: Scene[]): void {
   offerThemes(root, (theme) => {
     viewer.theme = theme
   })
+  const live = scenes[0]?.header.live
+  if (live) startLive(root, stage, viewer, scenes[0] as Scene, live)
   if (!matchMedia('(prefers-reduced-motion: reduce)').matches) viewer.play()
 }
 

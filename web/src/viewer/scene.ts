@@ -1,5 +1,7 @@
 /** A run as the package packs it: a header, and columns of numbers over its samples. */
 
+import type { LiveHeader } from '../live/header'
+
 export type Triple = [number, number, number]
 export type Turn = [w: number, x: number, y: number, z: number]
 export type ColumnArray = Float32Array | Float64Array | Uint32Array | Uint8Array
@@ -18,6 +20,21 @@ export interface Finding {
   unit: string
   difference: number | null
   note: string
+}
+
+/** What a run shows, in one sentence, and its number by theory or in another way. */
+export interface Headline {
+  text: string
+  other: string | null
+  predicted: boolean
+  how: string
+}
+
+/** A column over the samples that may be drawn. */
+export interface CurveHeader {
+  column: string
+  label: string
+  unit: string
 }
 
 export interface Formula {
@@ -60,6 +77,8 @@ export interface ColumnHeader {
 }
 
 export interface SceneHeader {
+  /** Of a page that computes the motion itself. */
+  live?: LiveHeader
   format: number
   title: string
   method: string
@@ -77,6 +96,8 @@ export interface SceneHeader {
   support: SupportHeader
   events: SceneEvent[]
   findings?: Finding[]
+  headline?: Headline | null
+  curves?: CurveHeader[]
   formula?: Formula | null
   guiding_centre?: boolean
   card?: unknown

@@ -102,24 +102,16 @@ def poincare_section(
     if (section is None) == (period is None):
         rule = "must be given, or `period` instead"
         raise InvalidValueError("section", rule, section, 'Write for instance "position.z rising through 0".')
-    motion = _Motion(asked, length, method, tolerance)
+    motion = PoincareMotion(asked, length, method, tolerance)
     if period is not None:
         step = float(checks.positive(period, "time", "period"))
         if step > length:
             raise InvalidValueError("period", f"must not be longer than the motion ({length:g} s)", period)
-        times = np.array(asked.start.time + step * np.arange(1, int(length / step * (1 + 1e-12)) + 1), dtype=float)
-        samples = motion.at(times)
-        return motion.told(samples, np.zeros(samples.time.size), f"once in {step:.9g} s", 0)
-    condition = Condition.of(section, asked.system, way)
-    if condition.event:
-        return motion.told_of_events(condition)
-    step = asked.moment / _STEPS_OF_MOMENT if every is None else float(checks.positive(every, "time", "every"))
-    if length / step > _MOST:
-        raise InvalidValueError("every", f"must leave at most {_MOST:,} looks", every, "Look less often.")
-    return _crossings(motion, condition, min(step, length / 20), progress)
+        return motion.strobed(step)
+    return motion.crossings(Condition.of(section, asked.system, way), every, progress)
 
 
-class _Motion:
+class PoincareMotion:
     """A motion that is gone through once, and read at any instants."""
 
     def __init__(self, asked: Asked, length: float, method: str, tolerance: float | None) -> None:
@@ -140,6 +132,27 @@ class _Motion:
             method = "taylor" if system.support.surface.analytic else "runge-kutta"
         chosen = Method.of(methods.choose(method, system, start), tolerance)
         return chosen, chosen.dense(system, start, self.end)
+
+    def strobed(self, step: float) -> PoincareSection:
+        """Return the section once in each period."""
+        count = int(self.length / step * (1 + 1e-12))
+        samples = self.at(np.array(self.asked.start.time + step * np.arange(1, count + 1), dtype=float))
+        return self.told(samples, np.zeros(samples.time.size), f"once in {step:.9g} s", 0)
+
+    def crossings(self, condition: Condition, every: Any, progress: Progress | None = None) -> PoincareSection:
+        """Return the section of a condition."""
+        if condition.event:
+            return self.told_of_events(condition)
+        given = every is not None
+        step = float(checks.positive(every, "time", "every")) if given else self.asked.moment / _STEPS_OF_MOMENT
+        if self.length / step > _MOST:
+            raise InvalidValueError("every", f"must leave at most {_MOST:,} looks", every, "Look less often.")
+        return _crossings(self, condition, min(step, self.length / 20), progress)
+
+    @property
+    def last(self) -> State:
+        """The state at the end of the motion, or at its last event where that ended it."""
+        return self.at(np.array([self.asked.start.time, self.end])).state(-1)
 
     def at(self, times: Array) -> Samples:
         """Return the samples at ascending instants that the motion has come to, s."""
@@ -201,7 +214,7 @@ class _Motion:
         )
 
 
-def _crossings(motion: _Motion, condition: Condition, step: float, progress: Progress | None) -> PoincareSection:
+def _crossings(motion: PoincareMotion, condition: Condition, step: float, progress: Progress | None) -> PoincareSection:
     """Look for where the function passes zero, and locate each place."""
     begin, count = motion.asked.start.time, int(np.ceil(motion.length / step))
     edges = np.linspace(begin, motion.end, count + 1)
@@ -238,7 +251,7 @@ def _passes(before: Array, behind: Array, way: str) -> Any:
     return rises if way == "rising" else falls if way == "falling" else rises | falls
 
 
-def _closer(motion: _Motion, condition: Condition, times: Array, values: Array) -> tuple[Array, Array]:
+def _closer(motion: PoincareMotion, condition: Condition, times: Array, values: Array) -> tuple[Array, Array]:
     """Look more closely where the function turns round near zero between two looks."""
     sizes = np.abs(values)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -257,7 +270,7 @@ def _closer(motion: _Motion, condition: Condition, times: Array, values: Array) 
     return together, motion.value(condition, together)
 
 
-def _located(motion: _Motion, condition: Condition, lows: Array, highs: Array) -> tuple[Array, Array]:
+def _located(motion: PoincareMotion, condition: Condition, lows: Array, highs: Array) -> tuple[Array, Array]:
     """Locate the zero between each two instants, all at once: false position that halves the end which stays."""
     a, fa, b, fb = *lows.T, *highs.T
     if not a.size:

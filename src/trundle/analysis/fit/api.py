@@ -22,7 +22,7 @@ from .judging import judge
 from .minimising import LOSSES, Minimum, look, minimise
 from .model import RunModel
 from .observations import Observations, noise_for, observe
-from .problem import Prior, Problem, names_of
+from .problem import Prior, Problem, Watch, names_of
 from .result import Estimate, Fit
 from .undetermined import preference, undetermined
 from .unknowns import Unknown, changed, limit, of_run, prepared, unknowns
@@ -136,12 +136,15 @@ def fit_observed(
     *,
     start: bool,
     cures: bool = True,
+    watch: Watch | None = None,
 ) -> Fit:
-    """Fit what was read already."""
+    """Fit what was read already; `watch` is told where the fit comes by."""
     loaded = scenario if isinstance(scenario, ScenarioFile) else Scenario.load(scenario)
     problem = pose(seen, loaded, free, priors, noise, camera, start=start)
     guess = first_guess(problem)
+    problem.watch = watch
     solved = _solved(problem, guess, loss)
+    problem.watch = None
     return _told(problem, solved, loaded, loss, cures=cures)
 
 

@@ -14,11 +14,11 @@ from ...mechanics.duals import Dual, slopes_of, value_of
 from ...mechanics.scalars import namespace
 from ...mechanics.system import RollingSystem, State
 from ...scenario import ScenarioFile
-from ...solve import closed_form, methods, transitions
-from ...solve.exact import ClosedForm, form_of_phase
+from ...solve import methods, transitions
+from ...solve.exact import ClosedForm
 from ...solve.samples import Array, Samples
-from ...solve.transitions import PhaseStart
 from ..sensitivities import by_formula, keys
+from ..sensitivities.by_formula import Moved
 from ..sensitivities.following import Followed, check_brink, follow
 from .camera import Camera
 from .observations import Observations
@@ -120,7 +120,7 @@ class RunModel:
         """Return the motion in floats."""
         system, start = keys.moved(self.scenario, dict(numbers))
         times = self.times(rows, float(camera.time_offset))
-        form, _ = (None, None) if self._turned else form_throughout(system, start, float(times[-1]))
+        form, _ = (None, None) if self._turned else by_formula.form_throughout(system, start, float(times[-1]))
         if form is not None:
             parts, grown = form.motion_and_support_at(times - start.time)
             support = tuple(first + gone for first, gone in zip(start.support, grown, strict=True))
@@ -138,10 +138,9 @@ class RunModel:
         listed = [keys.Key(name, number, "") for name, number in numbers.items()]
         duals = keys.varied(self.scenario, listed)  # names that it does not have only make room for slopes
         times = self.times(rows, float(value_of(camera.time_offset)))
-        form = self._formula(numbers, float(times[-1]))
-        if form is not None:
-            varied = gathered(form.of(*duals))
-            (r, V, Omega, _), grown = varied.motion_and_support_at(times - float(duals[1].time))
+        found = self._by_formula(numbers, duals, times, count)
+        if found is not None:
+            (r, V, Omega, _), grown = found
             support = tuple(first + gone for first, gone in zip(gathered(duals[1].support), grown, strict=True))
             motion = Motion(r, V, Omega, None, self._moving(duals[0]), times, support)
         else:
@@ -166,22 +165,29 @@ class RunModel:
         own = any(name == "angle" or name.startswith("mark_") for name in self.seen.columns)
         return gathered(system) if own else system
 
-    def _formula(self, numbers: Mapping[str, float], end: float) -> type[ClosedForm] | None:
-        """Return the closed form that has derivatives and covers all of the run.
+    def _by_formula(
+        self, numbers: Mapping[str, float], duals: tuple[RollingSystem, State], times: Array, count: int
+    ) -> Moved | None:
+        """Return the motion in duals by the closed form that covers all of the run, if it has derivatives.
 
-        Where no event can come, whatever the numbers, it is asked for once.
+        Where no event can come, whatever the numbers, that is asked once.
         """
-        if self._turned or self._form:
-            return None if self._turned else self._form[0]
+        if self._turned:
+            return None
+        since = times - float(duals[1].time)
+        if self._form:
+            return by_formula.motion_in_duals(gathered(self._form[0].of(*duals)), since)
         system, start = keys.moved(self.scenario, dict(numbers))
-        form, now = form_throughout(system, start, end)
-        if form is None or not form.differentiable:
+        form, now = by_formula.form_throughout(system, start, float(times[-1]))
+        if form is None:
             return None
         check_brink(system, now)
+        varied = by_formula.form_in_duals(type(form), duals[0], transitions.at_start(*duals), count)
+        moved = None if varied is None else by_formula.motion_in_duals(gathered(varied), since)
         names = now.law.event_functions(system, now.time, now.state_vector, now.event_parameters)
-        if set(names) <= form.impossible_events:
+        if moved is not None and set(names) <= form.impossible_events:
             self._form.append(type(form))
-        return type(form)
+        return moved
 
     @property
     def _turned(self) -> bool:
@@ -247,15 +253,6 @@ def gathered(thing: Any) -> Any:
     if is_dataclass(thing) and not isinstance(thing, type):
         return type(thing)(**{part.name: gathered(getattr(thing, part.name)) for part in fields(thing)})
     return tuple(map(gathered, thing)) if type(thing) is tuple else thing
-
-
-def form_throughout(system: RollingSystem, start: State, end: float) -> tuple[ClosedForm | None, PhaseStart]:
-    """Return the closed form of all of a run and how it begins; no form where none covers it, or an event comes."""
-    now = transitions.at_start(system, start)
-    form = form_of_phase(now.law.code, system, now.start, now.state_vector)
-    if form is None or now.events or closed_form._first_stop(system, now, form, end - now.time) is not None:
-        return None, now
-    return form, now
 
 
 def _held(samples: Samples, times: Array) -> Any:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -12,6 +12,8 @@ from ...solve.samples import Array
 from .model import RunModel
 from .observations import Noise
 from .unknowns import Unknown, limit, of_run
+
+Watch = Callable[[Array, Array, float], None]
 
 _ASIDE = 1e-9
 _NOWHERE = 1e8  # standard deviations, of a trial that has no motion
@@ -41,6 +43,8 @@ class Problem:
         By place of the unknown.
     until : float
         Share of each run that counts, of its time.
+    watch : callable, optional
+        Told the values, their residuals and the share that counts, wherever the fit comes by.
     """
 
     unknowns: list[Unknown]
@@ -48,6 +52,7 @@ class Problem:
     noises: list[Noise]
     priors: dict[int, Prior] = field(default_factory=dict)
     until: float = 1.0
+    watch: Watch | None = None
     limits: dict[int, tuple[float, float]] = field(default_factory=dict)  # those that a trial has come to
     last: tuple[bytes, float, Array, Array] | None = None  # residuals and derivatives
     recent: tuple[bytes, float, Array] | None = None  # residuals alone
@@ -81,6 +86,8 @@ class Problem:
             except (SolverError, ArithmeticError):  # an event that hangs on a rounding does not a little aside
                 found = self._stacked(values * (1 + _ASIDE), slopes=True)
             self.last = (values.tobytes(), self.until, *found)
+            if self.watch is not None:
+                self.watch(values, found[0], self.until)
         return self.last[2], self.last[3]
 
     @property

@@ -11,12 +11,14 @@ from ...solve.exact.finding import Finding
 from ...solve.exact.formula import quantity
 from ...views.scene import Scene
 from ...views.scene.header import tables
+from ...views.scene.headline import Headline
 from ...views.scene.instants import MOST
 from ...views.scene.sphere import sphere_scene
 from .rolled import RolledPath
 
 _FINEST = math.radians(3.0)  # turned between two samples: what an eye takes for smooth
 _FEWEST = 200
+_SMALL = 0.3  # rad of a turn up to which the formula for small loops says something
 _PACE = 0.25  # turns of the ball in a second, unless that makes a scene too short or too long
 _SHORTEST, _LONGEST = 2.0, 30.0  # s
 
@@ -48,7 +50,8 @@ def rolled_scene(rolled: RolledPath, samples: int | None = None, with_card: bool
         "title": rolled.title,
         "scenario": tables(rolled.scenario),
         "scenario_toml": rolled.scenario,
-        "findings": _findings(rolled),
+        "findings": [one.as_dict() for one in _findings(rolled)],
+        "headline": _headline(rolled).as_dict(),
         "formula": _formula(rolled),
         "card": rolled.card().as_dict() if with_card else None,
         **_turned(rolled, pace),
@@ -83,14 +86,23 @@ def _turned(rolled: RolledPath, pace: float) -> dict[str, Any]:
     }
 
 
-def _findings(rolled: RolledPath) -> list[dict[str, Any]]:
+def _findings(rolled: RolledPath) -> list[Finding]:
     small, turn = rolled.small_loop_angle, rolled.rotation
     found = [Finding("Angle by which the ball is turned", r"\theta", None, turn.angle, "rad", "about one axis")]
     if small is not None:
         note = "predicted for a loop that is small beside the ball"
         found.append(Finding("Of it, about the normal", r"\psi", small, turn.about_normal, "rad", note))
         found.append(Finding("Enclosed area", "A", None, rolled.enclosed_area, "m²", "anticlockwise is positive"))
-    return [one.as_dict() for one in found]
+    return found
+
+
+def _headline(rolled: RolledPath) -> Headline:
+    small, turn = rolled.small_loop_angle, rolled.rotation
+    if small is None:
+        return Headline("turns the ball by {}", "rad", turn.angle, None, False, "about one axis")
+    how = "about the normal: by the area that a small loop encloses; and by all turns one after the other"
+    small = small if abs(small) < _SMALL else None
+    return Headline("comes home turned by {}", "rad", turn.about_normal, small, True, how)
 
 
 def _formula(rolled: RolledPath) -> dict[str, str] | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, get_args
@@ -126,14 +126,27 @@ def varied(scenario: ScenarioFile, wanted: Sequence[Key]) -> tuple[RollingSystem
     duals = {
         key.name: Dual(key.value, tuple(float(i == j) for j in range(len(wanted)))) for i, key in enumerate(wanted)
     }
-    model: Any = _replaced(scenario, "", lambda name, value: duals.get(name, value))
-    system: RollingSystem = model.system()
+    model = replaced(scenario, duals)
+    system = model.system()
     return system, Placing(system, **model.start.arguments()).state(checked=False)
+
+
+def replaced(scenario: ScenarioFile, values: Mapping[str, Any]) -> ScenarioFile:
+    """Return a scenario with other scalars in the places of its numbers; they are not checked again.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> replaced(tr.Scenario.load("tilted-turntable"), {"body.radius": 0.03}).system().body.radius
+    0.03
+    """
+    model: ScenarioFile = _replaced(scenario, "", lambda name, value: values.get(name, value))
+    return model
 
 
 def moved(scenario: ScenarioFile, values: dict[str, float]) -> tuple[RollingSystem, State]:
     """Return the system and the start of a scenario with other numbers."""
-    model: Any = _replaced(scenario, "", lambda name, value: values.get(name, value))
+    model = replaced(scenario, values)
     return model.system(), model.start_state()
 
 

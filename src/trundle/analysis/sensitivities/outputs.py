@@ -49,7 +49,10 @@ def slopes_of_samples(
 
 def stacked_slopes(found: dict[str, Any], samples: int, count: int) -> Slopes:
     """Return the slopes of each quantity as an array."""
-    return {name: _array(parts, samples, count) for name, parts in found.items()}
+    return {
+        name: np.full((samples, 3, count), np.nan) if parts is None else _array(parts, samples, count)
+        for name, parts in found.items()
+    }
 
 
 def _motion(system: RollingSystem, law: Law, time: Any, state: Any) -> dict[str, Any]:
@@ -86,7 +89,7 @@ def sampled(
     u: Vector,
     coordinates: tuple[Any, ...],
 ) -> dict[str, Any]:
-    """Return what is sampled by its names, with the slip V + Ω×ρ − u where it touches."""
+    """Return what is sampled by its names, with the slip V + Ω×ρ − u; in flight there is none."""
     slip = V + Omega.cross(point - r) - u
     return {
         "position": r,
@@ -94,7 +97,7 @@ def sampled(
         "velocity": V,
         "angular_velocity": Omega,
         "contact_force": R,
-        "slip_velocity": slip * np.nan if law.code == FLIGHT else slip,
+        "slip_velocity": None if law.code == FLIGHT else slip,
         "orientation": q,
         "support": coordinates,
     }

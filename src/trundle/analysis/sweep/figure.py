@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from .result import Sweep
 
+NUMBERS = "cividis"  # the colour map of what is a number
 _MOST_PANELS = 6
 _PANEL = 2.6  # inches
 _POWERS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -208,17 +209,17 @@ def _drawable(measured: Shown) -> Any:
 
 def _style(measured: Shown) -> dict[str, Any]:
     if not measured.classes:
-        return {"cmap": "cividis"}
+        return {"cmap": NUMBERS}
     from matplotlib.colors import BoundaryNorm, ListedColormap
 
     known = [value for value, _ in measured.classes if value >= 0]
     return {
-        "cmap": ListedColormap(_palette(len(known))),
+        "cmap": ListedColormap(palette(len(known))),
         "norm": BoundaryNorm(np.arange(len(known) + 1) - 0.5, len(known)),
     }
 
 
-def _palette(count: int) -> list[str]:
+def palette(count: int) -> list[str]:
     """Return the colours of classes: Okabe and Ito's, the darkest and lightest of them first."""
     from ...views.plots.sheet import BLUE, GREEN, INK, ORANGE, PURPLE, SKY, VERMILION
 
@@ -234,6 +235,6 @@ def _key(figure: Figure, panel: Axes, drawn: Any, measured: Shown) -> None:
 
     values = set(np.unique(_drawable(measured).compressed()).astype(int).tolist())
     known = [(value, word) for value, word in measured.classes if value >= 0]
-    colours = _palette(len(known))
+    colours = palette(len(known))
     patches = [Patch(color=colours[value], label=word) for value, word in known if value in values]
     figure.legend(handles=patches, title=measured.name, loc="outside right upper")

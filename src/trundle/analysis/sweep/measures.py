@@ -254,6 +254,7 @@ _WHOLE: dict[str, tuple[Callable[[Sampled], Array], str, tuple[str, ...]]] = {
 
 
 _FUNCTION = "function"
+_EXAMPLES = {"end": "hypot(vx, vy)", "max": "hypot(x, y)", "min": "z", "first": "wz", "mean": "energy"}
 
 
 @dataclass(frozen=True)
@@ -392,6 +393,18 @@ def read_measures(given: Any) -> list[Measure]:
 def _named(text: Any) -> str:
     """Return the name of a figure that was given none: its text, with no slash, which parts folders in a store."""
     return text.strip().replace("/", "÷") if isinstance(text, str) else getattr(text, "__name__", str(text))
+
+
+def figures() -> list[str]:
+    """Return figures to choose from: all that need no formula, and each of the others with a simple one.
+
+    Examples
+    --------
+    >>> figures()[:2], "time slip" in figures(), "max hypot(x, y)" in figures()
+    (['energy-lost', 'turned-over'], True, True)
+    """
+    of_events = [f"{figure} {kind}" for figure in _OF_EVENT for kind in KINDS]
+    return [*_WHOLE, *(f"{figure} {_EXAMPLES.get(figure, 'x')}" for figure in _OF_FORMULA), *of_events]
 
 
 def _formulas(figure: str) -> str:

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 Places = NDArray[np.int64]
+Mask = NDArray[np.bool_]
 
-_COARSE = 16  # fields along the shorter side, at least, that are looked at first
+_COARSE = 16
 
 
-def refine(shape: tuple[int, int], classes_of: Callable[[Places], Places]) -> tuple[NDArray[np.bool_], Places]:
+def refine(shape: tuple[int, int], classes_of: Callable[[Places], Places]) -> tuple[Mask, Places]:
     """Return of which fields of a grid the class was found by a run, and the class of every field.
 
     A field that was not run lies in a square of fields whose corners, and those of all squares about it, are of one
@@ -36,19 +38,50 @@ def refine(shape: tuple[int, int], classes_of: Callable[[Places], Places]) -> tu
     """
     run = np.zeros(shape, dtype=bool)
     found = np.zeros(shape, dtype=np.int64)
-    step = 2 ** max(0, int(np.log2(max(min(shape) // _COARSE, 1))))
-    wanted = np.zeros(shape, dtype=bool)
-    wanted[np.ix_(*(_nodes(count, step) for count in shape))] = True
     while True:
-        places = np.flatnonzero(wanted & ~run)
-        if places.size:
-            found.ravel()[places] = classes_of(places)
-            run.ravel()[places] = True
+        places, whole = next_places(run, found)
+        if not places.size:
+            return run, whole
+        found.ravel()[places] = classes_of(places)
+        run.ravel()[places] = True
+
+
+def next_places(run: Mask, found: Any, *, everywhere: bool = False, coarse: int = _COARSE) -> tuple[Places, Any]:
+    """Return which fields to run next, none where all is known, and the grid as far as it is known.
+
+    What was run may be a part of what was to be run: so a map can be filled in as many goes as you like, and go on.
+
+    Parameters
+    ----------
+    run : array of bool (fields, fields)
+        Which fields have been run.
+    found : array (fields, fields)
+        What was found there. What stands where nothing was run is returned where nothing is known yet.
+    everywhere : bool
+        Whether the squares are halved everywhere, as for numbers, and not near the boundary alone.
+    coarse : int
+        Into how many squares the shorter side is divided at first, at least.
+
+    Examples
+    --------
+    >>> run, found = np.zeros((64, 64), dtype=bool), np.zeros((64, 64))
+    >>> places, _ = next_places(run, found)
+    >>> run.ravel()[places] = True
+    >>> places.size, next_places(run, found)[0].size, next_places(run, found, everywhere=True)[0].size
+    (289, 0, 800)
+    """
+    shape = run.shape
+    step = 2 ** max(0, int(np.log2(max(min(shape) // coarse, 1))))
+    wanted, whole = _grid(shape, step), found
+    while True:
         lower = [_nodes(count, step)[_below(count, step)] for count in shape]
-        found = np.where(run, found, found[np.ix_(*lower)])
-        if step == 1:
-            return run, found
-        wanted = _near(found, step) & _grid(shape, step // 2)
+        whole = np.where(run, found, whole[np.ix_(*lower)])
+        places = np.flatnonzero(wanted & ~run)
+        if places.size or step == 1:
+            return places, whole
+        wanted = _grid(shape, step // 2)
+        if not everywhere:
+            wanted &= _near(whole, step)
         step //= 2
 
 
@@ -62,13 +95,13 @@ def _below(count: int, step: int) -> Places:
     return np.searchsorted(_nodes(count, step), np.arange(count), side="right") - 1
 
 
-def _grid(shape: tuple[int, int], step: int) -> NDArray[np.bool_]:
+def _grid(shape: tuple[int, ...], step: int) -> Mask:
     chosen = np.zeros(shape, dtype=bool)
     chosen[np.ix_(*(_nodes(count, step) for count in shape))] = True
     return chosen
 
 
-def _near(found: Places, step: int) -> NDArray[np.bool_]:
+def _near(found: Places, step: int) -> Mask:
     """Return which fields lie in a square whose corners are of several classes, or beside such a square."""
     corners = found[np.ix_(*(_nodes(count, step) for count in found.shape))]
     parts = [corners[i : len(corners) - 1 + i, j : corners.shape[1] - 1 + j] for i in (0, 1) for j in (0, 1)]

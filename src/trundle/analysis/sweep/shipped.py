@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from ...errors import InvalidValueError, did_you_mean
 from ...scenario import files
@@ -19,8 +20,19 @@ def titles() -> list[tuple[str, str]]:
     >>> [name for name, _ in titles()]
     ['rattleback', 'shaken-bowl', 'tippe-top']
     """
-    paths = sorted(FOLDER.glob("*.toml"))
-    return [(path.stem, str(files.parse(path.read_text("utf-8"), path.name)["title"])) for path in paths]
+    return [(path.stem, str(tables_of(path.stem)["title"])) for path in sorted(FOLDER.glob("*.toml"))]
+
+
+def tables_of(name: str) -> dict[str, Any]:
+    """Return a sweep that ships with the package as its file has it.
+
+    Examples
+    --------
+    >>> tables_of("tippe-top")["scenario"]
+    'tippe-top'
+    """
+    path = FOLDER / f"{name}.toml"
+    return files.parse(path.read_text("utf-8"), path.name)
 
 
 def load(name_or_path: str) -> Plan:

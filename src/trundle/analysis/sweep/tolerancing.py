@@ -15,7 +15,6 @@ from .api import sweep
 from .figure import in_print
 from .measures import DONE
 from .result import Sweep
-from .varying import halves
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -175,9 +174,9 @@ def tolerance(
     >>> list(found.shares)
     ['support.motion.rate', 'support.tilt']
     """
-    given = (
-        {key: _normal(spec) if normal else spec for key, spec in over.items()} if isinstance(over, Mapping) else over
-    )
+    given = over
+    if normal and isinstance(over, Mapping):
+        given = {key: {"normal": spec} if isinstance(spec, str) else spec for key, spec in over.items()}
     found = sweep(
         scenario,
         given,
@@ -202,11 +201,6 @@ def tolerance(
     quantiles = np.quantile(there, list(_QUANTILES.values())) if there.size else np.full(len(_QUANTILES), np.nan)
     spread = dict(zip(_QUANTILES, quantiles.tolist(), strict=True))
     return Tolerance(name, str(one.attrs["units"]), spread, _shares(found, one.values, members), found)
-
-
-def _normal(spec: Any) -> Any:
-    parts = halves(spec) if isinstance(spec, str) else None
-    return spec if parts is None else {"normal": list(parts)}
 
 
 def _shares(found: Sweep, values: Any, members: int) -> dict[str, tuple[float, float]]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ...errors import InvalidValueError, did_you_mean
 from ...scenario import ScenarioFile
 from ...scenario.together import each_checked, tell_all
-from ...units import UNITS, to_si
+from ...units import UNITS, plus_minus, to_si
 from ..sensitivities.keys import leaves
 
 Array = NDArray[np.float64]
@@ -27,8 +27,6 @@ SHAPES = (
     '{ normal = [1.5, 0.1] } or "1.5 ± 0.1" with a unit.'
 )
 _KIND_OF = {unit: kind for kind, (unit, _) in UNITS.items()}
-_PLUS_MINUS = re.compile(r"\s*([^±]+?)\s*(?:±|\+/-|\+-)\s*([^±]+?)\s*")
-_NUMBER = re.compile(r"[+\-−]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?")
 
 
 @dataclass(frozen=True)
@@ -142,8 +140,9 @@ def _texts(key: str, spec: Any, where: str) -> Axis:
 
 def _numeric(key: str, spec: Any, where: str, unit: str) -> Axis:
     convert = partial(_si, kind=_KIND_OF[unit])
-    if isinstance(spec, str) and halves(spec) is not None:
-        return _uniform(key, unit, *_limits(spec, convert, where), where)
+    if isinstance(spec, str) and plus_minus(spec) is not None:
+        middle, half = _about(spec, convert, where)
+        return _uniform(key, unit, middle - half, middle + half, where)
     if isinstance(spec, Mapping):
         return _spaced(key, spec, where, unit, convert)
     if hasattr(spec, "tolist"):
@@ -160,35 +159,23 @@ def _si(value: Any, key: str, kind: str) -> float:
     return float(to_si(value, kind, key))
 
 
-def halves(text: str) -> tuple[str, str] | None:
-    """Return the two parts of "33.3 ± 0.3 rpm", each with the unit; None where it is written otherwise.
-
-    Examples
-    --------
-    >>> halves("33.3 ± 0.3 rpm"), halves("33.3 rpm")
-    (('33.3 rpm', '0.3 rpm'), None)
-    """
-    about = _PLUS_MINUS.fullmatch(text)
-    if about is None:
-        return None
-    middle, half = about[1], about[2]
-    unit = _NUMBER.sub("", half, count=1)
-    return (f"{middle}{unit}" if _NUMBER.fullmatch(middle) else middle), half
-
-
-def _limits(text: str, convert: Any, where: str) -> tuple[float, float]:
-    """Return the limits of "33.3 ± 0.3 rpm": a unit stands for both where it stands once."""
-    middle, half = halves(text) or (text, text)
+def _about(text: str, convert: Any, where: str) -> tuple[float, float]:
+    """Return the two numbers of "33.3 ± 0.3 rpm"."""
+    parts = plus_minus(text)
+    if parts is None:
+        raise InvalidValueError(where, "must be a value with its limit", text, "Write for instance '33.3 ± 0.3 rpm'.")
     try:
-        centre, reach = (
-            float(convert(part if not _NUMBER.fullmatch(part) else float(part), where)) for part in (middle, half)
-        )
+        middle, half = (float(convert(part, where)) for part in parts)
     except InvalidValueError as error:
         raise InvalidValueError(where, error.rule, text, error.remedy) from None
-    return centre - reach, centre + reach
+    if not half > 0:
+        raise InvalidValueError(where, "must have something above 0 after ±", text, "Leave out what is known exactly.")
+    return middle, half
 
 
 def _spaced(key: str, spec: Mapping[str, Any], where: str, unit: str, convert: Any) -> Axis:
+    if set(spec) == {"normal"} and isinstance(spec["normal"], str):
+        return _normal(key, unit, *_about(spec["normal"], convert, where), where)
     for name in ("uniform", "normal"):
         if name in spec:
             if set(spec) != {name} or not isinstance(spec[name], (list, tuple)) or len(spec[name]) != 2:

@@ -233,7 +233,8 @@ class BallInUprightCylinder(ClosedForm):
         yield Finding("Rate of bobbing", r"\nu", abs(float(self.bobbing_rate)), found, "rad/s")
         ratio = None if found is None else found / abs(round_)
         note = "of bobbing to going round, whatever the radii"
-        yield Finding("Ratio of the two", r"\sqrt{k/(1+k)}", float(self.frequency_ratio), ratio, "", note)
+        predicted = float(self.frequency_ratio)
+        yield Finding("Ratio of the two", r"\sqrt{k/(1+k)}", predicted, ratio, "", note, None, "bobs {} times a round")
         if found is not None and found * seen.time[-1] >= 2 * math.pi:
             wave = found * seen.time
             design = np.column_stack([np.ones_like(wave), np.cos(wave), np.sin(wave)])

@@ -10,6 +10,7 @@ import numpy as np
 
 from ...errors import OutOfDomainError, SolverError
 from ...mechanics.algebra import Quaternion, Vector
+from ...mechanics.duals import has_duals, values_of
 from ...mechanics.system import RollingSystem, State
 from ..samples import ROLLING
 from .circle import Circle
@@ -56,7 +57,6 @@ class ClosedForm:
     conditions: ClassVar[tuple[Condition, ...]]  # of which the domain is put together
     phases: ClassVar[tuple[int, ...]] = (ROLLING,)  # of contact that it covers
     of_arrays: ClassVar[bool] = False  # whether its numbers may be arrays, one element for each time asked for
-    differentiable: ClassVar[bool] = False  # whether its numbers may be duals, and all of its motion follows from them
     impossible_events: ClassVar[frozenset[str]] = frozenset()  # events of the phase that cannot come
 
     @classmethod
@@ -127,8 +127,11 @@ class ClosedForm:
         Returns
         -------
         list of str
-            Empty inside. Forces are looked at where all parts fit, the start where the forces fit, too.
+            Empty inside. Forces are looked at where all parts fit, the start where the forces fit, too. Of duals the
+            values are asked.
         """
+        if has_duals((system, start)):
+            system, start = values_of((system, start))
         for about in (PARTS, FORCES, START)[: 2 if start is None else 3]:
             asked = [condition for condition in cls.conditions if condition.about == about]
             if found := [failure for condition in asked for failure in condition.failures(system, start)]:

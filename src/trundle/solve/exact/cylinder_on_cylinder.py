@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ...mechanics.algebra import E_Z, Vector
+from ...mechanics.duals import Dual, converted, value_of
 from ...mechanics.scalars import Scalar, is_number, less, namespace
 from ...mechanics.surfaces import Cylinder
 from ...mechanics.system import RollingSystem, State
@@ -140,7 +141,7 @@ class CylinderOnCylinder(ClosedForm):
             side=surface.sign,
             rate=system.support.motion.steady_rate,
             angle=angle,
-            angular_rate=(r.x * V.y - r.y * V.x) / (math.hypot(r.x, r.y) * length),
+            angular_rate=(r.x * V.y - r.y * V.x) / (namespace(r.x, r.y).hypot(r.x, r.y) * length),
             height=r.z,
             force=(fx, fy),
             from_top=from_top,
@@ -158,6 +159,8 @@ class CylinderOnCylinder(ClosedForm):
         """Worked out with many digits; for arrays of members, one by one."""
         sizes = (self.track_radius, self.side, self.radius)
         given = (self.mass, self.inertia_ratio, *sizes, self.angle, self.angular_rate, *self.force, self.from_top)
+        if any(isinstance(value, Dual) for value in given):
+            return _Constants(*(converted(constant, float) for constant in _constants(*given)))
         if all(is_number(value) for value in given):
             return _Constants(*map(float, _constants(*given)))
         if any(type(value).__module__.partition(".")[0] == "mpmath" for value in given):
@@ -364,12 +367,12 @@ class CylinderOnCylinder(ClosedForm):
         period = float(self.period)
         finite = period if math.isfinite(period) else None
         if self.goes_round:
-            yield Finding("Time of one round", "T", finite, round_time(seen.time, angle), "s")
+            yield Finding("Time of one round", "T", finite, round_time(seen.time, angle), "s", said="goes round in {}")
             return
         measured, largest = swing(seen.time, angle)
         if finite is not None:
             note = "" if measured else "the run shows less than one"
-            yield Finding("Time of one swing", "T", period, measured, "s", note)
+            yield Finding("Time of one swing", "T", period, measured, "s", note, None, "swings to and fro in {}")
         pull = math.hypot(*map(float, self.force))
         if pull and seen.time[-1] >= 0.5 * period:
             heavy = float(self.mass) * float(self.length) * (1 + float(self.inertia_ratio))
@@ -409,33 +412,46 @@ class _Constants:
 
 
 def _constants(*given: Any) -> tuple[Any, ...]:
-    """Return the fields of `_Constants` as mpmath numbers."""
+    """Return the fields of `_Constants` as mpmath numbers, or duals of them."""
     import mpmath
 
+    mpf = mpmath.mpf
     with mpmath.workdps(max(_DIGITS, mpmath.mp.dps)):
-        m, k, track, side, radius, angle, angular_rate, fx, fy, from_top = map(mpmath.mpf, given)
+        m, k, track, side, radius, angle, angular_rate, fx, fy, from_top = (converted(one, mpf) for one in given)
+        xp = namespace(*given, mpf(0))
         length = track + side * radius
-        G, sine, cosine, v = mpmath.hypot(fx, fy), mpmath.sin(angle / 2), mpmath.cos(angle / 2), angular_rate / 2
-        if not mpmath.isnan(from_top):  # from −π to π round the pull, cos(θ/2) is positive
-            sine, cosine = mpmath.cos(from_top / 2) * (-1 if from_top > 0 else 1), abs(mpmath.sin(from_top / 2))
-        pull = (fx / G, fy / G) if G else (mpmath.mpf(1), mpmath.mpf(0))
+        G, sine, cosine, v = namespace(fx, fy).hypot(fx, fy), xp.sin(angle / 2), xp.cos(angle / 2), angular_rate / 2
+        if not mpmath.isnan(value_of(from_top)):  # from −π to π round the pull, cos(θ/2) is positive
+            sine, cosine = xp.cos(from_top / 2) * (-1 if from_top > 0 else 1), abs(xp.sin(from_top / 2))
+        pull = (fx / G, fy / G) if G else (mpf(1), mpf(0))
         pendulum = G / (m * (1 + k) * length)
         energy, short = v * v + pendulum * sine**2, pendulum * cosine**2 - v * v  # of the height at the top
         rotates = short < 0
         square = energy if rotates else pendulum
-        scale = mpmath.sqrt(square) if v or cosine else mpmath.mpf(0)  # at rest on the top it stays
-        complement = (abs(short) / square) if square else mpmath.mpf(1)
-        sense = mpmath.mpf(-1 if rotates and v < 0 else 1)
-        sn_rate = v * sense / scale if scale else mpmath.mpf(1)
+        scale = xp.sqrt(square) if cosine or v else mpf(0)  # at rest on the top it stays
+        complement = (abs(short) / square) if square else mpf(1)
+        sense = mpf(-1 if rotates and v < 0 else 1)
+        sn_rate = v * sense / scale if scale else mpf(1)
         still = energy == 0 or complement == 0 or scale == 0
-        quarter = mpmath.pi / (2 * mpmath.agm(1, mpmath.sqrt(complement))) if complement else mpmath.mpf(1)
-        phase_rate = mpmath.mpf(0) if complement == 0 else mpmath.pi * scale / (2 * quarter)
+        quarter = mpmath.pi / (2 * _mean(mpf(1), xp.sqrt(complement))) if complement else mpf(1)
+        phase_rate = mpf(0) if complement == 0 else mpmath.pi * scale / (2 * quarter)
         period = mpmath.inf if still else (2 if rotates else 4) * quarter / scale
-        high = mpmath.mpf(float(phase_rate)) if mpmath.isfinite(phase_rate) else phase_rate
+        high = converted(phase_rate, lambda x: mpf(float(x))) if mpmath.isfinite(value_of(phase_rate)) else phase_rate
         return (
-            mpmath.mpf(int(rotates)), sense, complement, 1 - complement, scale, 2 * quarter / mpmath.pi,
+            mpf(int(rotates)), sense, complement, 1 - complement, scale, 2 * quarter / mpmath.pi,
             high, phase_rate - high, period, sine, cosine, sn_rate, pendulum, *pull,
         )  # fmt: skip
+
+
+def _mean(a: Any, b: Any) -> Any:
+    """Return the arithmetic-geometric mean: of duals, whose slopes are a step behind, too."""
+    import mpmath
+
+    done = False
+    while not done:
+        done = abs(value_of(a) - value_of(b)) <= mpmath.sqrt(mpmath.eps) * value_of(a)
+        a, b = (a + b) / 2, namespace(a, b).sqrt(a * b)
+    return (a + b) / 2
 
 
 def angles(along: float, across: float) -> tuple[float, float]:
@@ -446,4 +462,5 @@ def angles(along: float, across: float) -> tuple[float, float]:
     >>> angles(-1.0, 1e-20)
     (3.141592653589793, -1e-20)
     """
-    return math.atan2(across, along), math.atan2(-across, -along) if along < 0 else math.nan
+    xp = namespace(along, across)
+    return xp.atan2(across, along), xp.atan2(-across, -along) if along < 0 else math.nan

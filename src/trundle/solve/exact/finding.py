@@ -25,6 +25,8 @@ class Finding:
         What it means, or how it was measured.
     scale : float, optional
         Against which a difference is small or not; absent: the size of what was predicted.
+    said : str
+        What happens, in a sentence with `{}` for the number and its unit; empty of a number that is not what one sees.
 
     Examples
     --------
@@ -39,6 +41,7 @@ class Finding:
     unit: str = ""
     note: str = ""
     scale: float | None = None
+    said: str = ""
 
     @property
     def difference(self) -> float | None:

@@ -19,8 +19,8 @@ Path = NDArray[np.complex128]
 
 _FITTED = 240  # points, about
 TOO_LITTLE = "the run shows too little of it to measure"
-BEGINS_TO_SLIP = ("Angle from the top where it begins to slip", r"\theta_s")
-COMES_OFF = ("Angle from the top where it comes off", r"\theta_l")
+BEGINS_TO_SLIP = ("Angle from the top where it begins to slip", r"\theta_s", "begins to slip {} from the top")
+COMES_OFF = ("Angle from the top where it comes off", r"\theta_l", "comes off {} from the top")
 _PHASE = 0.5  # rad of the motion's own pace between two points of a fit
 
 
@@ -210,13 +210,14 @@ def conic(seen: Seen) -> tuple[complex, float | None]:
     return complex(middle + size * complex(*centre)), math.sqrt(max(0.0, 1.0 - float(along / across)))
 
 
-def angle_where(what: tuple[str, str], predicted: float, time: Array, angle: Array, falling: Array) -> Finding:
+def angle_where(what: tuple[str, str, str], predicted: float, time: Array, angle: Array, falling: Array) -> Finding:
     """Compare the angle where a force that falls reaches 0, rad, both drawn on behind the last samples before."""
     end, measured = zero_ahead(time, falling), None
     if end is not None:
         course = np.polynomial.polynomial.polyfit(time[-3:] - time[-1], angle[-3:], 2)
         measured = math.degrees(float(np.polynomial.polynomial.polyval(end - time[-1], course)))
-    return Finding(*what, math.degrees(predicted), measured, "°", "drawn on behind the last samples before")
+    (name, symbol, said), note = what, "drawn on behind the last samples before"
+    return Finding(name, symbol, math.degrees(predicted), measured, "°", note, None, said)
 
 
 def needed_friction(predicted: float | None, at: Samples, friction: Any = None, normals: Any = None) -> Finding:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from ...mechanics.duals import Dual, value_of
 from ...mechanics.scalars import Scalar, is_number, less, namespace
 
 _MOST_STEPS = 40
@@ -53,13 +54,14 @@ def elliptic(u: Scalar, complement: Scalar) -> tuple[Scalar, Scalar, Scalar]:
 
 def _means(xp: Any, complement: Scalar) -> list[tuple[Scalar, Scalar, Scalar]]:
     """Return the steps (a, b, (a + b)/2) of the arithmetic-geometric mean of 1 and √m₁."""
-    near = 1e-9 if not hasattr(xp, "exact") else 1e-16  # the next step squares it
+    # The next step squares it; slopes are as far off as what is left times theirs.
+    near = 1e-16 if hasattr(xp, "exact") or isinstance(complement, Dual) else 1e-9
     a, b = complement * 0 + 1, xp.sqrt(complement)
     steps = []
     for _ in range(_MOST_STEPS):
         mean = (a + b) / 2
         steps.append((a, b, mean))
-        apart = abs(a - b) <= near * a
+        apart = abs(value_of(a) - value_of(b)) <= near * value_of(a)
         if apart if is_number(apart) or isinstance(apart, bool) else bool(apart.all()):
             break
         a, b = mean, xp.sqrt(a * b)

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from ...mechanics.algebra import E_Z, Vector
+from ...mechanics.duals import value_of
 from ...mechanics.scalars import Scalar, is_number, namespace
 from ...mechanics.surfaces import Cylinder
 from ...mechanics.system import RollingSystem, State
@@ -27,10 +28,10 @@ def pull(system: RollingSystem) -> tuple[float, float, float]:
     (0.0, 0.0, 9.80665)
     """
     fx, fy, fz = constant_forces(system)[0]
-    across = math.hypot(fx, fy)
-    if across <= _ASIDE * abs(fz):
+    across = math.hypot(value_of(fx), value_of(fy))
+    if across <= _ASIDE * abs(value_of(fz)):
         return 0.0, 0.0, fz
-    return fx, fy, 0.0 if abs(fz) <= _ASIDE * across else fz
+    return fx, fy, 0.0 if abs(value_of(fz)) <= _ASIDE * across else fz
 
 
 def numbers_of(system: RollingSystem, start: State) -> dict[str, Any]:
@@ -45,7 +46,8 @@ def numbers_of(system: RollingSystem, start: State) -> dict[str, Any]:
     """
     surface: Any = system.support.surface
     r, V, Omega = Vector(*start.position), Vector(*start.velocity), Vector(*start.angular_velocity)
-    distance = math.hypot(r.x, r.y)
+    xp = namespace(r.x, r.y)
+    distance = xp.hypot(r.x, r.y)
     length = surface.radius + surface.sign * system.body.radius
     return {
         "radius": system.body.radius,
@@ -54,7 +56,7 @@ def numbers_of(system: RollingSystem, start: State) -> dict[str, Any]:
         "track_radius": surface.radius,
         "side": surface.sign,
         "rate": system.support.motion.steady_rate,
-        "angle": math.atan2(r.y, r.x),
+        "angle": xp.atan2(r.y, r.x),
         "angular_rate": (r.x * V.y - r.y * V.x) / (distance * length),
         "height": r.z,
         "climb": V.z,

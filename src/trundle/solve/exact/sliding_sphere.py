@@ -214,7 +214,8 @@ class SlidingSphere(ClosedForm):
         slip = np.broadcast_to((V + carried - u).norm(), part.time.shape)
         time = part.time - samples.time[0]
         gripped = zero_ahead(time, slip) if slips.size > count or slip[-1] < 0.5 * slip[0] else None
-        yield Finding("Time at which it grips", "t_g", predicted, gripped, "s", "where the slip, drawn on, ends")
+        note = "where the slip, drawn on, ends"
+        yield Finding("Time at which it grips", "t_g", predicted, gripped, "s", note, None, "slips for {}, then rolls")
         if gripped is None or slips.size <= count:
             return
         r, velocity, _, _ = self.motion_at(predicted)
@@ -244,7 +245,9 @@ class SlidingSphere(ClosedForm):
             return
         held = float(self.friction) * -float(self.force[2]) * slip / abs(slip)
         predicted, measured = abs(pull - held) / float(self.mass), abs(acceleration(Seen.of(system, part)))
-        yield Finding("Acceleration while it slips", r"\dot v", predicted, measured, "m/s²")
+        yield Finding(
+            "Acceleration while it slips", r"\dot v", predicted, measured, "m/s²", said="slips, accelerating at {}"
+        )
 
 
 @dataclass(frozen=True)

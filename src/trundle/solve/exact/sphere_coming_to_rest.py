@@ -298,7 +298,7 @@ class SphereComingToRest(ClosedForm):
         speed = np.hypot(part.velocity[:, 0], part.velocity[:, 1])
         if math.isfinite(predicted) and count < rolls.size:
             stops, note = zero_ahead(time, speed), "where its speed, drawn on, ends"
-            yield Finding("Time at which it stops", "t_s", predicted, stops, "s", note)
+            yield Finding("Time at which it stops", "t_s", predicted, stops, "s", note, None, "comes to rest after {}")
             gone = float(np.linalg.norm(samples.position[-1, :2] - samples.position[0, :2]))
             yield Finding("Way to there", "d_s", float(self.way), gone, "m")
         elif count > 3:

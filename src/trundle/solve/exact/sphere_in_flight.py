@@ -219,7 +219,8 @@ class SphereInFlight(ClosedForm):
         course = np.polynomial.polynomial.polyfit(seen.time, seen.at.position, 2)
         heights = course[:, 2] - np.array([float(self.radius), 0.0, 0.0])
         lands = float(np.max(np.polynomial.polynomial.polyroots(heights).real))
-        yield Finding("Time at which it lands", "t_l", predicted, lands, "s", "by the parabola through its heights")
+        note = "by the parabola through its heights"
+        yield Finding("Time at which it lands", "t_l", predicted, lands, "s", note, None, "lands after {}")
         ahead = self.motion_at(predicted)[0]
         way = math.hypot(float(ahead.x) - float(self.position[0]), float(ahead.y) - float(self.position[1]))
         if way:

@@ -187,11 +187,15 @@ class SphereOnFreePlane(ClosedForm):
         square = float(self.axle_inertia) + float(self.mass) * share * abs(complex(*self.position)) ** 2
         drive = math.hypot(*map(float, self.drive)) * math.sqrt(float(self.mass) / share)
         eccentricity = drive / (abs(float(self.rate)) * math.sqrt(square))
-        yield Finding(f"Eccentricity of the {self.path}", "e", eccentricity, measured, "", "", max(eccentricity, 0.1))
+        scale = max(eccentricity, 0.1)
+        said = "" if math.isfinite(self.period) else f"follows a {self.path} of eccentricity {{}}"
+        yield Finding(f"Eccentricity of the {self.path}", "e", eccentricity, measured, "", "", scale, said)
         if math.isfinite(self.period):
             angle = np.unwrap(np.angle(seen.zeta - centre))
             measured = None if measured is None else round_time(seen.time, angle)
-            yield Finding("Time round the ellipse", "T", float(self.period), measured, "s")
+            yield Finding(
+                "Time round the ellipse", "T", float(self.period), measured, "s", said="rounds its ellipse in {}"
+            )
 
 
 @dataclass(frozen=True)

@@ -94,7 +94,6 @@ class SphereOnPlane(ManySamples, ClosedForm):
         ),
     )
 
-    differentiable = True
     impossible_events = frozenset({"lift"})  # N is constant
 
     @classmethod
@@ -416,10 +415,11 @@ class SphereOnPlane(ManySamples, ClosedForm):
             if not drift:
                 note = "put down gently, it stays while the table turns away under it"
                 scale = max(abs(centre), self.radius)
-                yield Finding("Distance that it moves", r"\varrho", 0.0, moved, "m", note, scale)
+                yield Finding("Distance that it moves", r"\varrho", 0.0, moved, "m", note, scale, "stays, to within {}")
                 return
             speed = abs(zeta[-1] - zeta[0]) / float(seen.time[-1])
-            yield Finding("Drift speed", r"|v_d|", abs(drift), speed, "m/s", "straight, without loops")
+            note = "straight, without loops"
+            yield Finding("Drift speed", r"|v_d|", abs(drift), speed, "m/s", note, None, _drifts(drift, seen.system))
             yield _direction(drift, zeta[-1] - zeta[0], seen.system)
             return
         found = circle(seen, abs(kappa))
@@ -428,14 +428,16 @@ class SphereOnPlane(ManySamples, ClosedForm):
         yield Finding("Angular rate of the circle", r"\kappa", kappa, rate, "rad/s", note)
         of_table = f"{as_ratio(share)} of the table's rate, whatever its size and mass"
         measured = rate and rate / float(self.rate)
-        yield Finding("Share of the table's rate", r"\kappa/\omega", share, measured, "", of_table)
+        said = "" if drift else "circles at {} of the table's rate"
+        yield Finding("Share of the table's rate", r"\kappa/\omega", share, measured, "", of_table, None, said)
         yield Finding("Radius of the circle", r"\varrho", radius, abs(found.arm) if found else None, "m", note)
         if not drift:
             name, scale = "Distance of its centre from the axis", max(abs(centre), radius)
             measured = abs(found.centre) if found else None
             yield Finding(name, r"|\zeta_c|", abs(centre), measured, "m", note, scale)
             return
-        yield Finding("Drift speed", r"|v_d|", abs(drift), abs(found.drift) if found else None, "m/s", note)
+        measured, said = abs(found.drift) if found else None, _drifts(drift, seen.system)
+        yield Finding("Drift speed", r"|v_d|", abs(drift), measured, "m/s", note, None, said)
         yield _direction(drift, found.drift if found else None, seen.system)
 
     def _pushed(self, seen: Seen) -> Iterator[Finding]:
@@ -444,10 +446,11 @@ class SphereOnPlane(ManySamples, ClosedForm):
         if not push:
             gone = float(np.abs(seen.zeta[-1] - seen.zeta[0]) / seen.time[-1])
             note = "nothing pushes it: it keeps its speed"
-            yield Finding("Speed", "v", math.hypot(*map(float, self.velocity)), gone, "m/s", note)
+            speed = math.hypot(*map(float, self.velocity))
+            yield Finding("Speed", "v", speed, gone, "m/s", note, None, "rolls straight at {}")
             return
         found = acceleration(seen)
-        yield Finding("Acceleration", r"|\varphi|", abs(push), abs(found), "m/s²")
+        yield Finding("Acceleration", r"|\varphi|", abs(push), abs(found), "m/s²", said="accelerates at {}")
         slide = float(system.gravity) * math.sin(abs(float(system.support.tilt)))
         if slide and not system.loads:
             share = 1 / (1 + float(self.inertia_ratio))
@@ -472,11 +475,15 @@ class SphereOnPlane(ManySamples, ClosedForm):
         yield Finding("Rate at which air slows it", r"\gamma", gamma, None if rate is None else -rate.real, "1/s", note)
         if kappa:
             measured = None if rate is None else rate.imag
-            yield Finding("Angular rate of the spiral", r"\kappa", kappa, measured, "rad/s", note)
+            yield Finding(
+                "Angular rate of the spiral", r"\kappa", kappa, measured, "rad/s", note, None, "spirals at {}"
+            )
         if push:
             final = abs(push / complex(-gamma, kappa))
             measured = abs(found[1] / found[0]) if found else None
-            yield Finding("Speed that it comes to", r"|\varphi/\lambda|", final, measured, "m/s", note)
+            yield Finding(
+                "Speed that it comes to", r"|\varphi/\lambda|", final, measured, "m/s", note, None, "comes to {}"
+            )
 
     def _friction_needed(self, seen: Seen) -> Iterator[Finding]:
         """Compare the friction that rolling takes with T5f, where no torque acts."""
@@ -497,6 +504,12 @@ class SphereOnPlane(ManySamples, ClosedForm):
 
 def _degrees(angle: float) -> str:
     return quantity(math.degrees(angle), "deg")
+
+
+def _drifts(drift: complex, system: RollingSystem) -> str:
+    """Say that it drifts, and where to if that is level on a slope."""
+    level = float(system.support.tilt) != 0 and abs(drift.real) <= _STILL * abs(drift)
+    return "drifts {} along the slope's level" if level else "drifts {}"
 
 
 def _direction(predicted: complex, measured: complex | None, system: RollingSystem) -> Finding:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ...mechanics.algebra import E_X, E_Y, E_Z, Vector
+from ...mechanics.duals import value_of
 from ...mechanics.scalars import Scalar
 from ...mechanics.surfaces import Bowl, Dome
 from ...mechanics.system import RollingSystem, State
@@ -274,5 +275,5 @@ def _plane(arm: Vector, V: Vector, first: Vector) -> Vector:
 
 def _rounding(a: Vector, b: Vector) -> float:
     """Return how large a cross product may be that is nothing but rounding: by the size of what it subtracts."""
-    (ax, ay, az), (bx, by, bz) = map(abs, a), map(abs, b)
+    (ax, ay, az), (bx, by, bz) = (tuple(abs(value_of(part)) for part in one) for one in (a, b))
     return _ROUNDING * float(Vector(ay * bz + az * by, az * bx + ax * bz, ax * by + ay * bx).norm())

@@ -139,5 +139,7 @@ class SteadyChaplyginBall(ClosedForm):
         gone = float(np.abs(seen.zeta[-1] - seen.zeta[0]) / seen.time[-1])
         scale = float(self.radius) * math.hypot(p, q, r)
         note = "it turns about the same axis and keeps its speed"
-        yield Finding("Speed", "v", float(self.radius) * math.hypot(p, q), gone, "m/s", note, scale)
+        yield Finding(
+            "Speed", "v", float(self.radius) * math.hypot(p, q), gone, "m/s", note, scale, "rolls straight at {}"
+        )
         yield needed_friction(0.0, seen.at)

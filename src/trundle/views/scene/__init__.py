@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .build import scene_of
+from .build import ground_under, places_of, scene_of
 from .wire import Scene, pack, unpack
 
-__all__ = ["Scene", "pack", "scene_of", "unpack"]
+__all__ = ["Scene", "ground_under", "pack", "places_of", "scene_of", "unpack"]

@@ -7,12 +7,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...errors import InvalidValueError
+from ...mechanics.motions import SupportState
+from ...mechanics.system import RollingSystem
 from ...solve.exact.formula import formula_of
 from ...solve.samples import Samples
 from .body_mesh import body_mesh
 from .columns import UNITS, columns_of, guiding_centre, material, moves, pose_of
+from .curves import curves_of
 from .findings import findings_of
 from .header import header_of, radius_about_centre
+from .headline import headline_of
 from .instants import MOST, flying, shown
 from .support_mesh import Ground, ground_of
 from .wire import Scene
@@ -22,9 +26,17 @@ if TYPE_CHECKING:
 
 
 def scene_of(
-    run: Trajectory, samples: int | None = None, with_card: bool = False, *, seconds: float | None = None
+    run: Trajectory,
+    samples: int | None = None,
+    with_card: bool = False,
+    *,
+    seconds: float | None = None,
+    curves: bool = False,
+    places: np.ndarray | None = None,
 ) -> Scene:
     """Return what a viewer needs to draw a run.
+
+    `curves`: and what may be drawn of it over time. `places`: where other runs touch the ground, if they share it.
 
     Examples
     --------
@@ -44,12 +56,18 @@ def scene_of(
     if moves(run.system):
         columns |= pose_of(run.system, at, state)
     columns |= guiding_centre(run, form, at)
-    ground = _ground(run, at, material(at, state, at.contact), radius_about_centre(body.vertices))
+    places = _places(run, at, state) if places is None else places
+    ground = ground_under(run.system, places, radius_about_centre(body.vertices))
     header = header_of(run, ground, radius_about_centre(body.vertices))
+    if curves:
+        header["curves"], more = curves_of(run.system, at)
+        columns |= more
     columns |= body.columns("body", "body_pattern") | ground.mesh.columns("support", "support_marks")
+    found = findings_of(run.system, run.start, run.samples, form)
     header |= {
         "seconds": seconds,
-        "findings": findings_of(run.system, run.start, run.samples, form),
+        "findings": [one.as_dict() for one in found],
+        "headline": headline_of(run.system, run.samples, found),
         "formula": formula_of(run.system, form),
         "guiding_centre": "guiding_centre" in columns,
         "card": run.card().as_dict() if with_card else None,
@@ -57,9 +75,27 @@ def scene_of(
     return Scene(header, columns, {name: unit for name, unit in UNITS.items() if name in columns})
 
 
-def _ground(run: Trajectory, at: Samples, contact: np.ndarray, radius: float) -> Ground:
-    support, touching = run.system.support, ~flying(at)
-    turns = moves(run.system) and support.motion.turns
+def places_of(run: Trajectory) -> np.ndarray:
+    """Return where a run needs its ground, (n, 3), in the support's own frame, m.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> places_of(tr.Scenario.load("level-turntable-nudged").run()).shape[1]
+    3
+    """
+    run = run.in_frame("support")
+    at = shown(run, MOST)
+    return _places(run, at, at.support(run.system))
+
+
+def _places(run: Trajectory, at: Samples, state: SupportState) -> np.ndarray:
+    contact, touching = material(at, state, at.contact), ~flying(at)
     # Below a flight there is a plane too, seen to be flown over.
-    some = touching.any() and not support.surface.flat
-    return ground_of(support.surface, turns, contact[touching] if some else contact, radius)
+    return contact[touching] if touching.any() and not run.system.support.surface.flat else contact
+
+
+def ground_under(system: RollingSystem, places: np.ndarray, radius: float) -> Ground:
+    """Return the ground of a system about some places, for a body of some size."""
+    support = system.support
+    return ground_of(support.surface, moves(system) and support.motion.turns, places, radius)

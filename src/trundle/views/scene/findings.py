@@ -24,14 +24,14 @@ _SEVERAL = (ROUTH_PAIR.name, LEGENDRE_PAIR.name)  # two numbers each, and slow t
 _SYMBOLS = {"energy": "E", "moving energy": r"\tilde E", "spin about the normal": r"\Omega_n"}
 
 
-def findings_of(system: RollingSystem, start: State, samples: Samples, form: ClosedForm | None) -> list[dict[str, Any]]:
+def findings_of(system: RollingSystem, start: State, samples: Samples, form: ClosedForm | None) -> list[Finding]:
     """Return predicted and measured numbers of a run: those of its closed form, and those that every run has."""
     seen = Seen.of(system, samples)
     found = list(form.findings(seen)) if form is not None and seen.time.size > 3 else []
     if not any(one.name == "Friction needed" for one in found):
         found += [*_friction(seen), *_sliding_friction(seen)]
     found += _integrals(system, start, samples)
-    return [one.as_dict() for one in found]
+    return found
 
 
 def _friction(seen: Seen) -> Iterator[Finding]:

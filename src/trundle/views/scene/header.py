@@ -68,6 +68,8 @@ def header_with(
         "support": support,
         "events": [],
         "findings": [],
+        "headline": None,
+        "curves": [],
         "formula": None,
         "guiding_centre": False,
         "card": None,

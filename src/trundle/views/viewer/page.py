@@ -18,11 +18,12 @@ from ..scene import Scene, pack
 from .bundle import built
 from .words import card_of, findings_of, formula_of, names_of, scenario_of, summary_of
 
+_ENDS_A_SCRIPT = re.compile(r"<(?=/script|script|!--)", re.IGNORECASE)
 MOST_SCENES = 5  # bodies that can be told apart on one stage
 
 
-def page_of(scenes: Sequence[Scene]) -> bytes:
-    """Return a self-contained page that shows scenes on one stage.
+def page_of(scenes: Sequence[Scene], law: str = "") -> bytes:
+    """Return a self-contained page that shows scenes on one stage; or a live one, with the law as a script.
 
     Examples
     --------
@@ -37,7 +38,7 @@ def page_of(scenes: Sequence[Scene]) -> bytes:
     title = title_of(scenes)
     names = names_of(scenes) if len(scenes) > 1 else [""]
     parts = {
-        "policy": _policy(script, style),
+        "policy": _policy(script, style, workers=bool(law)),
         "version": escape(version("trundle")),
         "title": escape(title),
         "summary": summary_of(scenes),
@@ -45,7 +46,8 @@ def page_of(scenes: Sequence[Scene]) -> bytes:
         "findings": findings_of(scenes),
         "cards": "".join(map(card_of, scenes, names)),
         "scenarios": "".join(map(scenario_of, scenes, names)),
-        "scenes": "\n".join(_data(scene) for scene in scenes),
+        "scenes": "\n".join([*map(_data, scenes), *([_held(law)] if law else [])]),
+        "kind": " trundle-live" if law else "",
         "style": style,
         "script": script,
     }
@@ -76,10 +78,21 @@ def _data(scene: Scene) -> str:
     return f'<script type="application/gzip" data-trundle-scene>{base64.b64encode(packed).decode()}</script>'
 
 
-def _policy(script: str, style: str) -> str:
-    """Return a policy under which nothing runs but the page's own script, and nothing is asked for."""
+def _held(law: str) -> str:
+    """Return a script that the page does not run itself: the text of its worker."""
+    if _ENDS_A_SCRIPT.search(law):
+        raise ValueError("the text of a law ends its element")
+    return f'<script type="text/plain" data-trundle-law>{law}</script>'
+
+
+def _policy(script: str, style: str, *, workers: bool) -> str:
+    """Return a policy under which nothing runs but the page's own script, and nothing is asked for.
+
+    A worker runs what the page makes a blob of; nothing is evaluated from text in either.
+    """
     own = (f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'" for text in (script, style))
     allowed = "default-src 'none'; script-src {}; style-src {}".format(*own)
+    allowed += "; worker-src blob:" if workers else ""
     return f"{allowed}; img-src data: blob:; font-src data:; base-uri 'none'; form-action 'none'"
 
 
@@ -87,7 +100,7 @@ def _policy(script: str, style: str) -> str:
 def _script(module: str) -> str:
     """Return a module as it may stand within a page: nothing in it ends the element, or opens a comment."""
     text = module.replace("\r\n", "\n").replace("\r", "\\r")
-    return re.sub(r"<(?=/script|script|!--)", r"\\x3C", text, flags=re.IGNORECASE)
+    return _ENDS_A_SCRIPT.sub(r"\\x3C", text)
 
 
 @lru_cache(maxsize=2)

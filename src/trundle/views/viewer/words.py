@@ -11,7 +11,12 @@ from ...verify import Card
 from ...verify.card import table_of
 from ..scene import Scene
 
-_METHODS = {"exact": "closed form", "taylor": "Taylor integration", "runge-kutta": "Runge-Kutta integration"}
+_METHODS = {
+    "exact": "closed form",
+    "taylor": "Taylor integration",
+    "runge-kutta": "Runge-Kutta integration",
+    "page": "computed in this page",
+}
 
 
 def names_of(scenes: Sequence[Scene]) -> list[str]:

@@ -1,184 +1,219 @@
-/** Curves over time, by uPlot: two of them, each of a quantity that is chosen; a click goes to that instant. */
-import uPlot from 'uplot'
-import 'uplot/dist/uPlot.min.css'
+/** Curves: two of them, any quantity over time or against any other; a click goes to that instant. */
 import type { Scene } from '../../viewer/scene'
+import type { App } from '../app'
 import { fill, h } from '../dom'
 import { show } from '../quantity'
-import { QUANTITIES, type Quantity } from './series'
+import { type Chart, createChart, indexBefore, type Look, type Plot, title } from './chart'
+import { baseName, save } from './files'
+import { type Quantity, quantitiesOf } from './series'
 
 export interface Curves {
   element: HTMLElement
   update(scene: Scene): void
-  /** Where the film is: a line across the curves. */
+  /** Where the film is: a mark on the curves. */
   at(time: number): void
   /** Theme or size of type have changed. */
   restyle(): void
   dispose(): void
 }
 
-interface Chart {
+interface Figure {
   element: HTMLElement
   draw(scene: Scene): void
   at(time: number): void
   dispose(): void
 }
 
-function colours(
-  element: HTMLElement,
-): Record<'ink' | 'grid' | 'line' | 'event', string> & { width: number; font: string; size: number } {
+const SAVED = { width: 720, height: 420 } // of a picture that stands alone, px
+
+function lookOf(element: HTMLElement): Look {
   const style = getComputedStyle(element)
   const read = (name: string) => style.getPropertyValue(name).trim()
-  const size = parseFloat(getComputedStyle(document.documentElement).fontSize) * 0.75
   return {
     ink: read('--ink-2'),
     grid: read('--line'),
     line: read('--series-1'),
     event: read('--series-2'),
+    paper: read('--surface'),
     width: Number(read('--plot-line')) || 1.5,
-    font: `${size}px ${read('--font-number')}`,
-    size,
+    font: read('--font-number'),
+    size: parseFloat(getComputedStyle(document.documentElement).fontSize) * 0.75,
   }
 }
 
-/** A range with room above and below; one that is almost level is shown as level. */
-function range(low: number | null, high: number | null): [number, number] {
-  const from = low ?? 0
-  const to = high ?? 1
-  const middle = (from + to) / 2
-  const spread = Math.max(to - from, Math.abs(middle) * 1e-3, 1e-9)
-  return [middle - spread * 0.58, middle + spread * 0.58]
+/** The numbers of a plot as a table, every sample a line. */
+export function csvOf({ x, y, time }: Plot): string {
+  const others = x.values === time ? [y] : [x, y]
+  const cell = (value: number | undefined) => (value !== undefined && Number.isFinite(value) ? String(value) : '')
+  const heads = ['Time (s)', ...others.map(title)].map((text) => (text.includes(',') ? `"${text}"` : text))
+  const rows = Array.from(time, (when, i) => [when, ...others.map(({ values }) => values[i])].map(cell).join(','))
+  return `${[heads.join(','), ...rows].join('\n')}\n`
 }
 
-function createChart(first: string, seek: (time: number) => void): Chart {
-  let chosen = first
+/** A plot as an SVG that stands alone, in a file or within a page. */
+export function svgOf(plot: Plot, look: Look): string {
+  const { element } = createChart(plot, look, SAVED.width, SAVED.height, true)
+  element.setAttribute('xmlns', 'http://www.w3.org/2000/svg')
+  element.setAttribute('role', 'img')
+  element.setAttribute('aria-label', `${title(plot.y)} over ${title(plot.x)}`)
+  return new XMLSerializer().serializeToString(element)
+}
+
+async function pngOf(plot: Plot, look: Look): Promise<Blob> {
+  const url = URL.createObjectURL(new Blob([svgOf(plot, look)], { type: 'image/svg+xml' }))
+  try {
+    const picture = new Image()
+    picture.src = url
+    await picture.decode()
+    const canvas = h('canvas', { width: 2 * SAVED.width, height: 2 * SAVED.height })
+    canvas.getContext('2d')?.drawImage(picture, 0, 0, canvas.width, canvas.height)
+    const blob = await new Promise<Blob | null>((done) => canvas.toBlob(done))
+    if (!blob) throw new Error('This browser makes no PNG of a curve. Take the SVG.')
+    return blob
+  } finally {
+    URL.revokeObjectURL(url)
+  }
+}
+
+function createFigure(app: App, first: string, seek: (time: number) => void): Figure {
+  const chosen = { y: first, x: 'time' }
   let scene: Scene | undefined
-  let plot: uPlot | undefined
+  let chart: Chart | undefined
+  let plot: Plot | undefined
   let time = 0
-  const select = h('select', { class: 'curve-choice', 'aria-label': 'Quantity of this curve' })
+  let offered = ''
+  const choice = (axis: 'x' | 'y', name: string) =>
+    h('select', {
+      class: 'curve-choice',
+      'aria-label': name,
+      onchange: (event) => {
+        chosen[axis] = (event.currentTarget as HTMLSelectElement).value
+        if (scene) draw(scene)
+      },
+    })
+  const [up, across] = [choice('y', 'Quantity of this curve'), choice('x', 'Against what it is drawn')]
   const reading = h('output', { class: 'curve-reading' })
   const place = h('div', { class: 'curve-place', role: 'img' })
-  const head = h('div', { class: 'curve-head' }, select, reading)
-  const element = h('figure', { class: 'curve' }, head, place)
-  const line = h('div', { class: 'playhead', 'aria-hidden': 'true' })
-  let values: (number | null)[] = []
-  let now: Quantity | undefined
-
-  select.addEventListener('change', () => {
-    chosen = select.value
-    if (scene) draw(scene)
+  const take = h('select', { class: 'curve-take', 'aria-label': 'Take this curve with you' })
+  fill(
+    take,
+    [
+      ['', 'Save …'],
+      ['svg', 'SVG'],
+      ['png', 'PNG'],
+      ['csv', 'CSV'],
+      ['embed', 'Copy as HTML'],
+    ].map(([value, text]) => h('option', { value: value! }, text)),
+  )
+  take.addEventListener('change', () => {
+    const { value } = take
+    take.value = ''
+    void taken(value).catch((error: unknown) => app.toast(error instanceof Error ? error.message : String(error)))
   })
+  const element = h(
+    'figure',
+    { class: 'curve' },
+    h('div', { class: 'curve-head' }, up, take),
+    place,
+    h('div', { class: 'curve-foot' }, h('span', {}, 'over ', across), reading),
+  )
+
+  async function taken(format: string): Promise<void> {
+    if (!plot || !scene) return
+    const name = `${baseName(scene.header.title)}-${chosen.y}-over-${chosen.x}`
+    const look = lookOf(element)
+    if (format === 'csv') save(new Blob([csvOf(plot)], { type: 'text/csv' }), `${name}.csv`)
+    if (format === 'svg') save(new Blob([svgOf(plot, look)], { type: 'image/svg+xml' }), `${name}.svg`)
+    if (format === 'png') save(await pngOf(plot, look), `${name}.png`)
+    if (format !== 'embed') return
+    const caption = h('figcaption', {}, `${scene.header.title}: ${title(plot.y)} over ${title(plot.x)}`).outerHTML
+    await navigator.clipboard.writeText(`<figure>${svgOf(plot, look)}${caption}</figure>\n`)
+    app.toast('Copied: HTML that shows this curve in a page of yours.')
+  }
 
   function draw(next: Scene): void {
     scene = next
-    const there = QUANTITIES.filter((one) => one.has(next))
-    now = there.find((one) => one.id === chosen) ?? there[0]
-    if (!now) return
-    fill(
-      select,
-      there.map((one) => h('option', { value: one.id }, one.label)),
-    )
-    select.value = now.id
-    values = now.values(next)
-    const data: uPlot.AlignedData = [Array.from(next.columns.time), values]
-    plot?.destroy()
-    plot = new uPlot(options(next, now), data, place)
-    plot.over.append(line)
-    plot.over.addEventListener('click', () => {
-      const left = plot?.cursor.left
-      if (plot && left !== undefined && left >= 0) seek(plot.posToVal(left, 'x'))
-    })
-    const known = values.filter((value): value is number => value !== null)
-    const least = known.reduce((a, b) => Math.min(a, b), Infinity)
-    const most = known.reduce((a, b) => Math.max(a, b), -Infinity)
-    place.setAttribute('aria-label', `${now.label} over time: from ${show(least)} to ${show(most)} ${now.unit}`)
+    const there = quantitiesOf(next)
+    offer(there)
+    const axis = (id: string, otherwise: string) =>
+      there.find((one) => one.id === id) ?? there.find((one) => one.id === otherwise) ?? there[0]!
+    const [y, x] = [axis(chosen.y, 'x'), axis(chosen.x, 'time')]
+    up.value = y.id
+    across.value = x.id
+    const told = ({ label, unit, values }: Quantity) => ({ label, unit, values: values() })
+    plot = { x: told(x), y: told(y), time: next.columns.time, events: next.header.events.map((event) => event.time) }
+    redraw()
+    const known = Array.from(plot.y.values).filter(Number.isFinite)
+    const [least, most] = [
+      known.reduce((a, b) => Math.min(a, b), Infinity),
+      known.reduce((a, b) => Math.max(a, b), -Infinity),
+    ]
+    const over = x.id === 'time' ? 'over time' : `against ${x.label}`
+    place.setAttribute('aria-label', `${y.label} ${over}: from ${show(least)} to ${show(most)} ${y.unit}`)
+  }
+
+  /** The lists are filled anew only where others are on offer: an open one stays open. */
+  function offer(there: Quantity[]): void {
+    const now = there.map((one) => one.id + one.label).join()
+    if (now === offered) return
+    offered = now
+    for (const select of [up, across])
+      fill(
+        select,
+        there.map((one) => h('option', { value: one.id }, one.label)),
+      )
+  }
+
+  function redraw(): void {
+    if (!plot) return
+    const look = lookOf(element)
+    chart = createChart(plot, look, Math.max(160, place.clientWidth || 300), Math.round(look.size * 14))
+    fill(place, chart.element)
     at(time)
   }
 
-  function options(of: Scene, quantity: Quantity): uPlot.Options {
-    const { ink, grid, line: stroke, event, width, font, size } = colours(element)
-    const axis = { stroke: ink, font, grid: { stroke: grid, width: 1 }, ticks: { show: false }, gap: 4 }
-    const short = (_: uPlot, splits: number[]) => splits.map((value) => show(value, 4))
-    return {
-      width: Math.max(160, place.clientWidth || 300),
-      height: Math.round(size * 14),
-      padding: [size * 0.6, size * 0.8, 0, 0],
-      legend: { show: false },
-      cursor: { points: { size: 7 }, drag: { x: false, y: false }, y: false },
-      scales: { x: { time: false }, y: { range: (_, low, high) => range(low, high) } },
-      axes: [
-        { ...axis, size: size * 2, space: size * 6, values: short },
-        { ...axis, size: size * 5, space: size * 2.6, values: short },
-      ],
-      series: [{}, { label: quantity.label, stroke, width, points: { show: false } }],
-      hooks: {
-        draw: [(u) => drawEvents(u, of, event)],
-        setCursor: [(u) => read(u.cursor.idx ?? null)],
-      },
-    }
-  }
-
-  function drawEvents(u: uPlot, of: Scene, colour: string): void {
-    const { ctx, bbox } = u
-    ctx.save()
-    ctx.strokeStyle = colour
-    ctx.setLineDash([4, 4])
-    for (const { time: when } of of.header.events) {
-      const x = Math.round(u.valToPos(when, 'x', true))
-      ctx.beginPath()
-      ctx.moveTo(x, bbox.top)
-      ctx.lineTo(x, bbox.top + bbox.height)
-      ctx.stroke()
-    }
-    ctx.restore()
-  }
-
-  function read(index: number | null): void {
-    const { columns } = scene ?? {}
-    if (!columns || !now) return
-    const shown = index ?? nearest(columns.time, time)
-    reading.textContent = `${show(values[shown] ?? null)} ${now.unit}`
+  function read(index: number): void {
+    if (!plot) return
+    const told = ({ values, unit }: Plot['x']) => `${show(values[index])} ${unit}`.trim()
+    reading.textContent = plot.x.values === plot.time ? told(plot.y) : `${told(plot.y)} at ${told(plot.x)}`
   }
 
   function at(next: number): void {
     time = next
-    if (!plot) return
-    line.style.transform = `translateX(${plot.valToPos(next, 'x')}px)`
-    if (plot.cursor.idx === null || plot.cursor.idx === undefined) read(null)
+    if (!plot || !chart) return
+    const index = indexBefore(plot.time, next)
+    chart.at(index)
+    if (!place.matches(':hover')) read(index)
   }
+
+  function under(event: MouseEvent): number | undefined {
+    const box = place.getBoundingClientRect()
+    return chart?.nearest(event.clientX - box.left, event.clientY - box.top)
+  }
+  place.addEventListener('pointermove', (event) => {
+    const index = under(event)
+    if (index !== undefined) read(index)
+  })
+  place.addEventListener('pointerleave', () => at(time))
+  place.addEventListener('click', (event) => {
+    const index = under(event)
+    if (plot && index !== undefined) seek(plot.time[index]!)
+  })
 
   const watch = new ResizeObserver(() => {
-    if (plot && place.clientWidth > 0) plot.setSize({ width: place.clientWidth, height: plot.height })
-    at(time)
+    if (place.clientWidth > 0 && chart && Number(chart.element.getAttribute('width')) !== place.clientWidth) redraw()
   })
   watch.observe(place)
-  return {
-    element,
-    draw,
-    at,
-    dispose() {
-      watch.disconnect()
-      plot?.destroy()
-    },
-  }
+  return { element, draw, at, dispose: () => watch.disconnect() }
 }
 
-function nearest(times: Float64Array, time: number): number {
-  const last = times.length - 1
-  const span = (times[last] ?? 1) - (times[0] ?? 0)
-  let index = Math.round(((time - (times[0] ?? 0)) / (span || 1)) * last)
-  index = Math.min(last, Math.max(0, index))
-  while (index < last && (times[index] ?? 0) < time) index += 1
-  while (index > 0 && (times[index] ?? 0) > time) index -= 1
-  return index
-}
-
-export function createCurves(seek: (time: number) => void): Curves {
-  const charts = [createChart('speed', seek), createChart('friction', seek)]
+export function createCurves(app: App, seek: (time: number) => void): Curves {
+  const figures = [createFigure(app, 'speed', seek), createFigure(app, 'spin_normal', seek)]
   const element = h(
     'div',
     { class: 'curves' },
-    charts.map((chart) => chart.element),
-    h('p', { class: 'hint' }, 'Click a curve to go to that instant. Time in s.'),
+    figures.map((figure) => figure.element),
+    h('p', { class: 'hint' }, 'Click a curve to go to that instant. Dashed lines and rings are events.'),
   )
   let scene: Scene | undefined
   let dirty = false
@@ -190,13 +225,13 @@ export function createCurves(seek: (time: number) => void): Curves {
   function drawIfSeen(): void {
     if (!scene || !dirty || !visible) return
     dirty = false
-    for (const chart of charts) chart.draw(scene)
+    for (const figure of figures) figure.draw(scene)
   }
   const watch = new ResizeObserver(([entry]) => {
     const appears = !visible && entry !== undefined && entry.contentRect.width > 0
     visible = entry !== undefined && entry.contentRect.width > 0
     drawIfSeen()
-    if (appears) for (const chart of charts) chart.at(now)
+    if (appears) for (const figure of figures) figure.at(now)
   })
   watch.observe(element)
   return {
@@ -208,7 +243,7 @@ export function createCurves(seek: (time: number) => void): Curves {
     },
     at(time) {
       now = time
-      if (visible) for (const chart of charts) chart.at(time)
+      if (visible) for (const figure of figures) figure.at(time)
     },
     restyle() {
       dirty = true
@@ -216,7 +251,7 @@ export function createCurves(seek: (time: number) => void): Curves {
     },
     dispose() {
       watch.disconnect()
-      for (const chart of charts) chart.dispose()
+      for (const figure of figures) figure.dispose()
     },
   }
 }

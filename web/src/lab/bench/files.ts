@@ -44,8 +44,9 @@ export function save(blob: Blob, name: string): void {
   setTimeout(() => URL.revokeObjectURL(url), 60_000)
 }
 
-function baseName(scenario: Scenario): string {
-  const words = (scenario.title ?? 'trundle').toLowerCase().normalize('NFKD')
+/** A file's name from a title. */
+export function baseName(title = 'trundle'): string {
+  const words = title.toLowerCase().normalize('NFKD')
   return (
     words
       .replace(/[^a-z0-9]+/g, '-')
@@ -100,7 +101,7 @@ export function createDownloads(app: App, snapshot: () => Promise<Blob>): { elem
   async function take(format: Choice, item: HTMLButtonElement): Promise<void> {
     item.setAttribute('aria-busy', 'true')
     try {
-      if (format === 'stage') save(await snapshot(), `${baseName(app.store.scenario)}-stage.png`)
+      if (format === 'stage') save(await snapshot(), `${baseName(app.store.scenario.title)}-stage.png`)
       else {
         const { blob, name } = await app.api.export(app.store.scenario, format)
         save(blob, name)

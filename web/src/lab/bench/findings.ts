@@ -1,6 +1,6 @@
 /** Predicted beside measured: a table, and the formula with the numbers put in. */
 import { put, say } from '../../viewer/elements'
-import type { Finding, Scene } from '../../viewer/scene'
+import type { Finding, Headline, Scene } from '../../viewer/scene'
 import { fill, h } from '../dom'
 import { changing, formula } from '../math'
 import { show } from '../quantity'
@@ -68,7 +68,10 @@ export function createFindings(derive: () => void): Findings {
   const button = h('button', { class: 'link', type: 'button', onclick: derive }, 'How does this follow?')
   const formulas = h('div', { class: 'formula-lines' }, said.element, worked.element)
   const law = h('div', { class: 'formula-card', hidden: true }, name, formulas, button)
-  const element = h('div', { class: 'findings' }, law, table)
+  const shown = h('p', { class: 'shown' })
+  const other = h('p', { class: 'shown-other' })
+  const phenomenon = h('div', { class: 'phenomenon', hidden: true }, shown, other)
+  const element = h('div', { class: 'findings' }, phenomenon, law, table)
   let rows: Row[] = []
   let told = ''
 
@@ -85,34 +88,39 @@ export function createFindings(derive: () => void): Findings {
   }
 
   function update({ header }: Scene): void {
-    const { findings = [], formula: shown = null } = header
+    const { findings = [], formula: follows = null, headline } = header
     updateTable(findings)
-    law.hidden = shown === null
-    if (!shown) return
-    if (name.textContent !== shown.name + (shown.source ?? ''))
-      fill(name, shown.name, shown.source ? h('span', { class: 'source' }, shown.source) : null)
-    said.set(shown.latex)
-    worked.set(shown.numbers_latex ?? '')
-    worked.element.hidden = !shown.numbers_latex
+    phenomenon.hidden = !headline
+    if (headline) {
+      say(shown, capital(headline.text))
+      say(other, beside(headline))
+      put(phenomenon, 'title', headline.how)
+    }
+    law.hidden = follows === null
+    if (!follows) return
+    if (name.textContent !== follows.name + (follows.source ?? ''))
+      fill(name, follows.name, follows.source ? h('span', { class: 'source' }, follows.source) : null)
+    said.set(follows.latex)
+    worked.set(follows.numbers_latex ?? '')
+    worked.element.hidden = !follows.numbers_latex
     // A path rolled without forces is geometry: there is no law of motion to derive.
     button.hidden = header.scenario !== undefined && !('support' in Object(header.scenario))
   }
   return { element, update }
 }
 
-/** One sentence for a screen reader, and for the projector: the first finding that says something. */
-export function headline(
-  scene: Scene,
-): { name: string; symbol: string; unit: string; measured: number; predicted: number | null } | null {
-  const found = scene.header.findings?.find((one) => one.measured !== null)
-  if (!found || found.measured === null) return null
-  const { name, symbol, unit, measured, predicted } = found
-  return { name, symbol, unit, measured, predicted }
+/** A sentence's first letter, large. */
+export const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1)
+
+/** The other number beside the headline: "predicted 3.681 cm/s", "a second way gives 2.85 s". */
+export function beside({ other, predicted }: Headline): string {
+  if (other === null) return ''
+  return predicted ? `predicted ${other}` : `a second way gives ${other}`
 }
 
-export function sentence(scene: Scene): string {
-  const found = headline(scene)
-  if (!found) return `${scene.header.title}: ${show(scene.header.duration, 3)} s computed`
-  const predicted = found.predicted === null ? '' : `, predicted ${show(found.predicted)}`
-  return `${found.name} ${show(found.measured)} ${found.unit}${predicted}`
+/** What the run shows, for a screen reader. */
+export function sentence({ header }: Scene): string {
+  const { headline, title, duration } = header
+  if (!headline) return `${title}: ${show(duration, 3)} s computed`
+  return [`${title}: ${headline.text}`, beside(headline)].filter(Boolean).join(', ')
 }

@@ -4,6 +4,7 @@ import './controls.css'
 import './results.css'
 import './dialogs.css'
 import './phone.css'
+import './low.css'
 import { hide, say } from '../../viewer/elements'
 import { shortNumber } from '../../viewer/quantities'
 import { createAfterwards } from '../afterwards'
@@ -34,7 +35,7 @@ function _mount(host: HTMLElement, app: App): () => void {
   const stage = createStage(app)
   const controls = createControls(app)
   const findings = createFindings(() => void openDerivation(api, store.scenario))
-  const curves = createCurves((time) => stage.viewer.seek(time))
+  const curves = createCurves(app, (time) => stage.viewer.seek(time))
   const card = createCard()
   const events = createEvents((time) => stage.viewer.seek(time))
   const linking = createLinking(app)
@@ -72,13 +73,18 @@ function _mount(host: HTMLElement, app: App): () => void {
         stage.working(!idle)
       })
     },
-    settled: (scene) => app.announce(sentence(scene)),
+    settled: (scene) => {
+      app.announce(sentence(scene))
+      controls.findEnds().catch((error: unknown) => {
+        if (!isAbort(error)) app.toast(error instanceof Error ? error.message : String(error), 'error')
+      })
+    },
     failed(error) {
       if (isAbort(error)) return
       const told = error instanceof ApiError ? error : new ApiError(String(error), null, 'Error', 0)
-      controls.complain(told)
-      stage.stale(told.message)
-      app.announce(told.message)
+      const said = controls.complain(told)
+      stage.stale(said)
+      app.announce(said)
     },
     busy(is) {
       idle = !is
@@ -180,8 +186,8 @@ function _mount(host: HTMLElement, app: App): () => void {
     again.disabled = !store.canRedo
   }
 
-  /** On a phone the controls are one of the sheet's tabs. */
-  const narrow = matchMedia('(max-width: 56rem)')
+  /** On a phone, upright or on its side, and where the page is magnified, the controls are one of the tabs. */
+  const narrow = matchMedia('(max-width: 56rem), (max-width: 76rem) and (max-height: 36rem)')
   function arrange(): void {
     const slot = tabs.panels.querySelector('.controls-slot')!
     if (narrow.matches) slot.append(notes, controls.element)
@@ -210,8 +216,7 @@ function _mount(host: HTMLElement, app: App): () => void {
       grid.toggleAttribute('data-right-folded', settings.projector)
     }),
     app.router.subscribe(() => {
-      if (app.route.page === 'bench' || app.route.page === '')
-        void linking.read(take, (scenario) => opened(scenario, 'url'))
+      if (app.route.page === 'bench') void linking.read(take, (scenario) => opened(scenario, 'url'))
     }),
     benchKeys(app, { stage, pick, fold: (side) => folds[side === 'left' ? 0 : 1].click() }),
     () => controls.dispose(),

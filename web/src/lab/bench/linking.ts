@@ -22,7 +22,7 @@ export function createLinking(app: App): Linking {
   async function write(scenario: Scenario): Promise<void> {
     const same = origin?.text === JSON.stringify(scenario)
     const params: Record<string, string> = same && origin ? { name: origin.name } : { s: await encode(scenario) }
-    if (app.route.page !== 'bench' && app.route.page !== '') return
+    if (app.route.page !== 'bench') return
     written = params.s ?? params.name ?? ''
     app.router.replace('bench', params)
   }

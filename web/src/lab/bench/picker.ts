@@ -2,6 +2,8 @@
 import type { Api, ScenarioEntry } from '../api'
 import { fill, h } from '../dom'
 import { icon } from '../icons'
+import { pictureOf } from '../pictures'
+import { LEVELS } from '../texts'
 
 /** The entries under their headings: the largest group first. */
 export function grouped(entries: ScenarioEntry[]): [string, ScenarioEntry[]][] {
@@ -73,9 +75,15 @@ export async function pickScenario(api: Api, choose: (name: string) => void): Pr
       h(
         'button',
         { class: 'picker-card', type: 'button', onclick: take, 'data-scenario': entry.name },
+        pictureOf(entry.name),
         h('strong', {}, entry.title),
         h('span', { class: 'picker-summary' }, entry.summary.replaceAll('`', '')),
-        h('span', { class: 'picker-tags' }, entry.exact ? h('span', { class: 'tag tag-exact' }, 'closed form') : null),
+        h(
+          'span',
+          { class: 'picker-tags' },
+          h('span', { class: 'level' }, LEVELS[entry.level] ?? ''),
+          entry.exact && h('span', { class: 'tag tag-exact' }, 'closed form'),
+        ),
       ),
     )
   }

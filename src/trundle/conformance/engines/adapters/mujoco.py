@@ -1,0 +1,144 @@
+"""MuJoCo: a model written in MJCF, stepped by mj_step."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .serving import CannotError, Task, march, refuse, rotation, serve, turned
+
+# What MuJoCo does where nothing is said; a setting names what differs.
+SHIPPED = {
+    "cone": "pyramidal",
+    "integrator": "Euler",
+    "impratio": 1,
+    "noslip_iterations": 0,
+    "iterations": 100,
+    "tolerance": 1e-8,
+    "solref": [0.02, 1.0],
+    "solimp": [0.9, 0.95, 0.001],
+}
+
+
+def model(task: Task, *, moving: bool = True) -> str:
+    """Write the task as MJCF; not moving, it is what the bodies settle on: no forces, gravity along the normal."""
+    chosen = SHIPPED | {key: value for key, value in task["setting"].items() if key in SHIPPED}
+    if "solref_steps" in task["setting"]:  # a time constant tied to the step
+        chosen["solref"] = [task["setting"]["solref_steps"] * task["dt"], 1.0]
+    soft = f'solref="{_row(chosen["solref"])}" solimp="{_row(chosen["solimp"])}" condim="3"'
+    support, motion = task["support"], task["support"]["motion"]
+    ground = {
+        "plane": '<geom name="ground" type="plane" size="100 100 1" contype="0" conaffinity="0"/>',
+        "dome": f'<geom name="ground" type="sphere" size="{support.get("radius", 1)!r}" '
+        f'pos="0 0 {-support.get("radius", 1)!r}" contype="0" conaffinity="0"/>',
+    }[support["kind"]]
+    if motion["kind"] == "hinge" and moving:  # a plane may not move here: a disc of 50 m does
+        ground = (
+            '<body><joint name="hinge" type="hinge" axis="0 0 1"/>'
+            f'<inertial pos="0 0 0" mass="1" diaginertia="1 1 {motion["inertia"]!r}"/>'
+            '<geom name="ground" type="cylinder" size="50 0.5" pos="0 0 -0.5" contype="0" conaffinity="0"/></body>'
+        )
+    bodies = "".join(_body(i, body) for i, body in enumerate(task["bodies"]))
+    pairs = f'<pair geom1="g0" geom2="ground" friction="{_friction(task["friction"])}" {soft}/>' + "".join(
+        f'<pair geom1="g{i}" geom2="g0" friction="{_friction(task["friction_between"])}" {soft}/>'
+        for i in range(1, len(task["bodies"]))
+    )
+    gravity = task["gravity"] if moving else [0.0, 0.0, task["gravity"][2]]
+    option = (
+        f'<option timestep="{task["dt"]!r}" gravity="{_row(gravity)}" cone="{chosen["cone"]}" '
+        f'impratio="{chosen["impratio"]!r}" integrator="{chosen["integrator"]}" tolerance="{chosen["tolerance"]!r}" '
+        f'iterations="{chosen["iterations"]}" noslip_iterations="{chosen["noslip_iterations"]}"/>'
+    )
+    exact = '<compiler balanceinertia="false" boundmass="0" boundinertia="0"/>'
+    return f"<mujoco>{exact}{option}<worldbody>{ground}{bodies}</worldbody><contact>{pairs}</contact></mujoco>"
+
+
+def run(task: Task) -> Task:
+    """Answer one task."""
+    import mujoco
+
+    refuse(
+        task,
+        {
+            "restitution": "it has no coefficient of restitution: contacts are damped springs",
+            "driven": "it has no body of prescribed velocity that contacts know of",
+        },
+    )
+    world = mujoco.MjModel.from_xml_string(model(task))
+    data = mujoco.MjData(world)
+    heights = settled(mujoco, task)
+    hinged = task["support"]["motion"]["kind"] == "hinge"
+    if hinged:
+        data.joint("hinge").qvel = task["support"]["motion"]["rate"]
+    names = [f"b{i}" for i in range(len(task["bodies"]))]
+    for i, (name, body) in enumerate(zip(names, task["bodies"], strict=True)):
+        joint = data.joint(name)
+        x, y, z = body["position"]
+        joint.qpos = [x, y, z if heights is None else heights[i], *body["orientation"]]
+        back = [list(column) for column in zip(*rotation(body["orientation"]), strict=True)]  # Ω in body axes
+        spin = [sum(a * b for a, b in zip(row, body["angular_velocity"], strict=True)) for row in back]
+        joint.qvel = [*body["velocity"], *spin]
+        data.xfrc_applied[world.body(name).id, :3] = body["force"]
+    joints = [data.joint(name) for name in names]
+    hinge = data.joint("hinge") if hinged else None
+
+    def read() -> list[Any]:
+        """Return the state of each body, the angular velocity turned to space axes."""
+        return [(j.qpos[:3], j.qpos[3:], j.qvel[:3], turned(j.qpos[3:], j.qvel[3:])) for j in joints]
+
+    return march(
+        task,
+        f"MuJoCo {mujoco.__version__}",
+        lambda count: mujoco.mj_step(world, data, count),
+        read,
+        None if hinge is None else lambda: (hinge.qpos[0], hinge.qvel[0]),
+    )
+
+
+def settled(mujoco: Any, task: Task) -> list[float] | None:
+    """Return the heights at which balls and boxes come to rest: contacts are springs, and start in balance."""
+    shapes = {body["shape"]["kind"] for body in task["bodies"]} | {task["support"]["kind"]}
+    if not shapes <= {"sphere", "box", "plane"} or any(any(body["offset"]) for body in task["bodies"]):
+        return None
+    world = mujoco.MjModel.from_xml_string(model(task, moving=False))
+    data = mujoco.MjData(world)
+    for i, body in enumerate(task["bodies"]):
+        data.joint(f"b{i}").qpos = [*body["position"], 1.0, 0.0, 0.0, 0.0]
+    mujoco.mj_step(world, data, round(1.0 / task["dt"]))
+    return [float(data.joint(f"b{i}").qpos[2]) for i in range(len(task["bodies"]))]
+
+
+def _body(i: int, body: Task) -> str:
+    """Write one body that moves freely, its frame at the centre of mass."""
+    shape = body["shape"]
+    sizes = {
+        "sphere": ("sphere", [shape.get("radius")]),
+        "disc": ("cylinder", [shape.get("radius"), 1e-5]),
+        "ellipsoid": ("ellipsoid", shape.get("semi_axes")),
+        "box": ("box", shape.get("half_widths")),
+    }
+    if shape["kind"] not in sizes:
+        raise CannotError(f"this adapter has no {shape['kind']}")
+    kind, size = sizes[shape["kind"]]
+    (xx, xy, xz), (_, yy, yz), (_, _, zz) = body["inertia"]
+    inertia = f'mass="{body["mass"]!r}" fullinertia="{_row([xx, yy, zz, xy, xz, yz])}"'
+    if not (xy or xz or yz):
+        inertia = f'mass="{body["mass"]!r}" diaginertia="{_row([xx, yy, zz])}"'
+    return (
+        f'<body name="b{i}"><freejoint name="b{i}"/><inertial pos="0 0 0" {inertia}/>'
+        f'<geom name="g{i}" type="{kind}" size="{_row(size)}" pos="{_row(body["offset"])}" '
+        'contype="0" conaffinity="0"/></body>'
+    )
+
+
+def _row(numbers: Any) -> str:
+    """Write numbers as MJCF does."""
+    return " ".join(repr(float(number)) for number in numbers)
+
+
+def _friction(mu: float) -> str:
+    """Write a coefficient for the two directions of slipping, and none for spinning and rolling."""
+    return f"{mu!r} {mu!r} 0 0 0"
+
+
+if __name__ == "__main__":
+    serve(run)

@@ -1,0 +1,187 @@
+"""One body on one support: a case that a scenario says."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..errors import ScenarioError
+from ..mechanics.algebra import Quaternion, Vector
+from ..mechanics.scalars import Scalar
+from ..mechanics.shapes import Disc, Ellipsoid, Shape, Sphere
+from ..mechanics.surfaces import Dome, Plane, Surface
+from ..simulation.simulate import Scenario
+from .case import PARTS, Array, Case, Motion, Task
+
+_SHAPES: dict[type[Shape], str] = {Sphere: "sphere", Disc: "disc", Ellipsoid: "ellipsoid"}
+_SURFACES: dict[type[Surface], str] = {Plane: "plane", Dome: "dome"}
+_FINEST = 1e-14  # of a second route by DOP853
+_FOR = "for a physics engine"
+_MOTIONS = {"fixed": "fixed", "free-axle": "hinge", "spin": "driven"}
+
+
+@dataclass(frozen=True)
+class Rolling(Case):
+    """A case made of a scenario: the exact motion is its run.
+
+    Parameters
+    ----------
+    name, title, about : str
+        As those of `Case`.
+    scenario : Scenario
+        Body, support, start and timing.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> case = tr.conformance.Rolling.of("swerve", tr.Scenario.load("billiard-swerve"))
+    >>> case.exact().position[-1, 0].round(3).tolist()
+    [0.939, -1.313, 0.029]
+    """
+
+    scenario: Scenario
+
+    @classmethod
+    def of(cls, name: str, scenario: Scenario) -> Rolling:
+        """Make a case of a scenario, and refuse what the task has no words for.
+
+        Parameters
+        ----------
+        name : str
+            For the table of results.
+        scenario : Scenario
+            Of one body on a plane or a dome, with a coefficient of friction and without loads.
+
+        Returns
+        -------
+        Rolling
+            The case.
+
+        Raises
+        ------
+        ScenarioError
+            If the task has no words for a part of the scenario.
+        """
+        case = cls(name, scenario.title, scenario.notes.strip(), scenario)
+        case.situation()
+        return case
+
+    @classmethod
+    def read(cls, name: str, tables: Mapping[str, Any], source: str) -> Rolling:
+        """Make a case of the tables of a scenario file."""
+        return cls.of(name, Scenario.read(dict(tables), source))
+
+    @property
+    def duration(self) -> float:
+        """Length of the run, s."""
+        return float(self.scenario.timing.duration)
+
+    @property
+    def every(self) -> float:
+        """Time between samples, s."""
+        return float(self.scenario.timing.every)
+
+    def situation(self) -> Task:
+        """Return bodies, support, friction and gravity, as the task tells them."""
+        system, start = self.scenario.system(), self.scenario.start_state()
+        body, support = system.body, system.support
+        self._check()
+        shape: Task = {"kind": _SHAPES[type(body.shape)]}
+        shape |= {key: _plain(value) for key, value in body.shape.parameters().items() if key != "centre"}
+        ground: Task = {"kind": _SURFACES[type(support.surface)], "motion": {"kind": _MOTIONS[support.motion.kind]}}
+        if isinstance(support.surface, Dome):
+            ground["radius"] = float(support.surface.radius)
+        ground["motion"] |= {
+            key: float(getattr(support.motion, key)) for key in ("inertia", "rate") if hasattr(support.motion, key)
+        }
+        inertia = body.inertia_in_space(Quaternion(1.0, 0.0, 0.0, 0.0).matrix())
+        weight = system.weight
+        told: Task = {
+            "shape": shape,
+            "offset": _plain(getattr(body.shape, "centre", None) or Vector(0.0, 0.0, 0.0)),
+            "mass": float(body.mass),
+            "inertia": [[float(e.dot(inertia @ f)) for f in _AXES] for e in _AXES],
+            "force": [0.0, 0.0, 0.0],
+            **{part: list(map(float, getattr(start, part))) for part in PARTS},
+        }
+        return {
+            "gravity": [float(weight.x), float(weight.y), float(weight.z)],
+            "bodies": [told],
+            "support": ground,
+            "friction": float(support.friction or 0.0),
+            "friction_between": 0.0,
+            "restitution": float(support.restitution),
+        }
+
+    def _check(self) -> None:
+        """Refuse what the task has no words for."""
+        system = self.scenario.system()
+        support, surface, shape = system.support, system.support.surface, system.body.shape
+        motion = support.motion.kind
+        for key, word, received, words in (
+            ("body.kind", _SHAPES.get(type(shape)), type(shape).__name__, _SHAPES.values()),
+            ("support.kind", _SURFACES.get(type(surface)), type(surface).__name__, _SURFACES.values()),
+            ("support.motion.kind", _MOTIONS.get(motion), motion, _MOTIONS),
+        ):
+            if word is None:
+                raise ScenarioError(key, f"must be one of {', '.join(words)} {_FOR}", received, "", self.name)
+        if support.friction is None:
+            raise ScenarioError("support.friction", f"must be given {_FOR}", None, "Engines need it.", self.name)
+        if system.loads:
+            raise ScenarioError("loads", f"must be absent {_FOR}", len(system.loads), "", self.name)
+
+    def exact(self, method: str = "auto") -> Motion:
+        """Return the run of the scenario."""
+        run = self.scenario.run(method=method, tolerance=_FINEST if method == "runge-kutta" else None)
+        data = run.data.sel(time=self.times(), method="nearest", tolerance=1e-9)
+        arrays = {part: data[part].values[:, None, :] for part in PARTS}
+        turning = [data[name].values for name in ("support_angle", "support_rate") if name in data]
+        support = np.stack(turning, axis=-1) if turning else None
+        return Motion(time=data.time.values, support=support, **arrays)
+
+    def slip(self, motion: Motion) -> Array:
+        """Return V + Ω×ρ − ω×p at the point of the body that is nearest to the support."""
+        system = self.scenario.system()
+        r, V, Omega, q = self._vectors(motion)
+        Q = q.matrix()
+        n = system.support.surface.normal(r)
+        rho, _ = system.body.shape.contact(Q, n)
+        p, rate = r + rho, self._rate(motion)
+        moved = V + Omega.cross(rho) - Vector(-rate * p.y, rate * p.x, 0.0 * rate)
+        return np.stack([part + 0 * motion.time for part in moved], axis=-1)[:, None, :]
+
+    def energy(self, motion: Motion) -> Array:
+        """Return T + U with that of a table on a hinge; E − ωL on a driven one, which is constant there."""
+        situation, system = self.situation(), self.scenario.system()
+        r, V, Omega, q = self._vectors(motion)
+        m = system.body.mass
+        E = self.kinetic_energy(motion) - m * motion.position[:, 0] @ np.array(situation["gravity"])
+        told, rate = situation["support"]["motion"], self._rate(motion)
+        if told["kind"] == "hinge":
+            return E + 0.5 * told["inertia"] * rate**2
+        spun = system.body.inertia_in_space(q.matrix()) @ Omega
+        return E - rate * (m * (r.x * V.y - r.y * V.x) + spun.z)
+
+    def _rate(self, motion: Motion) -> Array:
+        """Return the rate of the support at each sample, rad/s."""
+        told = self.situation()["support"]["motion"]
+        if told["kind"] == "hinge":
+            return np.full(motion.time.shape, np.nan) if motion.support is None else motion.support[:, 1]
+        return np.full(motion.time.shape, told.get("rate", 0.0))
+
+    @staticmethod
+    def _vectors(motion: Motion) -> tuple[Vector, Vector, Vector, Quaternion]:
+        """Return position, velocity, angular velocity and orientation with arrays for components."""
+        r, V, Omega = (Vector(*each[:, 0].T) for each in (motion.position, motion.velocity, motion.angular_velocity))
+        return r, V, Omega, Quaternion(*motion.orientation[:, 0].T)
+
+
+_AXES = (Vector(1.0, 0.0, 0.0), Vector(0.0, 1.0, 0.0), Vector(0.0, 0.0, 1.0))
+
+
+def _plain(value: Scalar | Vector | tuple[Scalar, ...]) -> Any:
+    """Return a number, or a list of numbers."""
+    return list(map(float, value)) if isinstance(value, (tuple, Vector)) else float(value)

@@ -1,0 +1,173 @@
+"""Adapters run: each in a process of its own, one task at a time, ended when it is late."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import selectors
+import signal
+import subprocess
+import tempfile
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+from .answers import FAILED, Answer, read_answer
+from .case import Case
+
+TOO_SLOW = "too slow"
+LIMIT = 60.0  # s for an answer
+STARTING = 60.0  # s more for the first one, in which the engine is imported
+_MOST_BYTES = 256 * 2**20  # of an answer
+_ONE_THREAD = dict.fromkeys(
+    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS", "RAYON_NUM_THREADS"), "1"
+)
+
+
+class Adapter:
+    """A program that answers tasks: lines of JSON to its standard input, lines of JSON from its standard output.
+
+    It is started with the first task, again when it has ended, and killed when it is late. What is wrong with it is
+    said in the answer.
+
+    Parameters
+    ----------
+    command : sequence of str
+        The program and its arguments.
+    folder : path, optional
+        Where it runs; absent: here.
+    limit : float
+        s for an answer; the first one may take a minute more.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> case = tr.conformance.cases()[0]
+    >>> with Adapter(["no-such-program"]) as adapter:
+    ...     print(adapter.answer(case, dt=1e-2).message)
+    no-such-program cannot be started: No such file or directory
+    """
+
+    def __init__(
+        self,
+        command: Sequence[str],
+        folder: Path | None = None,
+        limit: float = LIMIT,
+        environment: dict[str, str] | None = None,
+    ) -> None:
+        self.command, self.folder, self.limit = list(command), folder, limit
+        self._environment = os.environ | _ONE_THREAD | (environment or {})
+        self._process: subprocess.Popen[bytes] | None = None
+        self._complaints: Any = None
+        self._left = b""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.end()
+
+    def answer(self, case: Case, dt: float, setting: dict[str, Any] | None = None) -> Answer:
+        """Give it one task, and return what came of it.
+
+        Parameters
+        ----------
+        case : Case
+            The motion.
+        dt : float
+            The engine's step, s.
+        setting : dict, optional
+            What the adapter is to set beside it.
+
+        Returns
+        -------
+        Answer
+            Whatever happens.
+        """
+        task = json.dumps(case.task(dt, setting)).encode() + b"\n"
+        fresh = self._process is None or self._process.poll() is not None
+        try:
+            if fresh:
+                self.end()
+                self._start()
+            line = self._exchange(task, self.limit + STARTING * fresh)
+        except OSError as error:
+            self.end()
+            return Answer(FAILED, f"{self.command[0]} cannot be started: {error.strerror or error}")
+        except TimeoutError:  # an OSError where the system raises it, ours where we do
+            line = None
+        if isinstance(line, Answer):
+            return line
+        if line is None:
+            self.end()
+            return Answer(TOO_SLOW, f"no answer within {self.limit:g} s")
+        return read_answer(line.decode(errors="replace"), case)
+
+    def end(self) -> None:
+        """Kill the process, with those that it has started, if it is still there."""
+        process, self._process, self._left = self._process, None, b""
+        streams = [self._complaints]
+        if process is not None:
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                os.killpg(process.pid, signal.SIGKILL)
+            streams += [process.stdin, process.stdout]
+            process.wait()
+        for stream in filter(None, streams):
+            with contextlib.suppress(OSError):
+                stream.close()
+
+    def _start(self) -> None:
+        self._complaints = tempfile.TemporaryFile()  # noqa: SIM115  closed in `end`
+        self._process = subprocess.Popen(  # noqa: S603  the user's own command
+            self.command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._complaints,
+            cwd=self.folder,
+            env=self._environment,
+            start_new_session=True,
+        )
+
+    def _exchange(self, task: bytes, limit: float) -> bytes | Answer | None:
+        """Return the line that answers a task; an answer where there is none; None where it is late."""
+        process = self._process
+        assert process is not None and process.stdin is not None and process.stdout is not None  # noqa: PT018, S101
+        with contextlib.suppress(BrokenPipeError):  # it has ended, and will say so
+            process.stdin.write(task)
+            process.stdin.flush()
+        until, pieces = time.monotonic() + limit, [self._left]
+        with selectors.DefaultSelector() as waiting:
+            waiting.register(process.stdout, selectors.EVENT_READ)
+            while b"\n" not in pieces[-1]:
+                left = until - time.monotonic()
+                if left <= 0 or not waiting.select(left):
+                    return None
+                piece = os.read(process.stdout.fileno(), 2**20)
+                if not piece:
+                    return self._ended(b"".join(pieces))
+                pieces.append(piece)
+                if sum(map(len, pieces)) > _MOST_BYTES:
+                    self.end()
+                    return Answer(FAILED, f"an answer of more than {_MOST_BYTES // 2**20} MiB")
+        line, _, self._left = b"".join(pieces).partition(b"\n")
+        return line
+
+    def _ended(self, said: bytes) -> bytes | Answer:
+        """Return what the process said last, or how it ended."""
+        process = self._process
+        assert process is not None  # noqa: S101
+        if said.strip():  # a program that forgets the end of its line
+            self.end()
+            return said
+        code = process.wait()
+        self._complaints.seek(0, os.SEEK_END)
+        self._complaints.seek(max(0, self._complaints.tell() - 4096))
+        lines = self._complaints.read().decode(errors="replace").strip().splitlines()
+        self.end()
+        how = f"it was killed by signal {-code}" if code < 0 else f"it ended with status {code}"
+        return Answer(FAILED, f"no answer: {how}{f' ({lines[-1][:200]})' if lines else ''}")

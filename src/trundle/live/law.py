@@ -1,0 +1,149 @@
+"""The law of a scenario as the script of a page: its phases, what follows what, and the start placed anew."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Sequence
+from typing import Any
+
+from ..analysis.sensitivities.keys import Key
+from ..errors import OutOfDomainError
+from ..fields.printers import javascript
+from ..fields.resets import CODES, HELD
+from ..fields.routines import PhaseRoutines, Routine, check_analytic, phases_of
+from ..mechanics.kinks import kinks_and_jolts
+from ..mechanics.system import RollingSystem
+from ..scenario import ScenarioFile
+from ..solve.contact_state import ContactState, moment
+from ..solve.phases import ENDS
+from .start import Placed
+
+TOLERANCE = 1e-13  # relative, of each step
+
+# What is said where a phase gives way to another, by its event and that which follows.
+_SAID = {
+    "grip": {"rolling": "Gripped and rolled", "slipping": "Slipped on the other way"},
+    "stop": {"rest": "Came to rest", "rolling": "Stood for an instant"},
+    "start": {"rolling": "Began to roll"},
+    "slip": {"slipping": "Began to slip"},
+    "lift": {"flight": "Came off the support"},
+    "land": {"flight": "Bounced", "slipping": "Landed and slipped", "rolling": "Landed and rolled"},
+}
+_HELD = "Slips while resistance keeps it from turning, which a live page does not follow"
+_JAM = "Friction would jam the body: the rigid law has no answer"
+
+
+def check(scenario: ScenarioFile) -> None:
+    """Refuse a scenario whose law no page can hold.
+
+    Raises
+    ------
+    OutOfDomainError
+        With the reason and the remedy.
+    """
+    system = scenario.system()
+    check_analytic(system)
+    begin = float(scenario.start.time)
+    bends = kinks_and_jolts(system, begin, begin + float(scenario.timing.duration))
+    if bends:
+        raise OutOfDomainError(
+            f"At t = {bends[0].time:.6g} s a formula in the time has a kink, and a live page has no law for what comes "
+            "across it. Export it without --live, or take a formula that is smooth."
+        )
+
+
+def script_of(scenario: ScenarioFile, wanted: Sequence[Key], placed: Placed) -> str:
+    """Return the law as text: functions, and `law`, which names them.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> from trundle.analysis.sensitivities.keys import chosen
+    >>> scenario = tr.Scenario.load("tilted-turntable")
+    >>> radius = chosen(scenario, ["body.radius"])
+    >>> "function rolling_film(" in script_of(scenario, radius, Placed.of(scenario, radius))
+    True
+    """
+    system = scenario.system()
+    phases = {phase: PhaseRoutines(system, phase, ()) for phase in phases_of(system)}
+    printed: list[Routine] = [placed.routine]
+    told = {phase: _phase(routines, printed) for phase, routines in phases.items()}
+    start = scenario.start_state()
+    arm = float(ContactState.of(system, start).arm)
+    law = {
+        "begin": float(start.time),
+        "duration": float(scenario.timing.duration),
+        "phase": placed.phase,
+        "size": placed.size,
+        "defaults": [key.value for key in wanted],
+        "arm": arm,
+        "moment": moment(system, start),
+        "tolerance": TOLERANCE,
+        "codes": CODES,
+        "said": _SAID,
+        "ends": _ends(system),
+        "method": _method(),
+    }
+    listed = ",\n".join(f"  {json.dumps(phase)}: {text}" for phase, text in told.items())
+    said = "The law of this motion, as trundle wrote it. All numbers are in SI."
+    # A worker's script is no module.
+    text = re.sub(r"^export ", "", javascript.module(printed, said), flags=re.MULTILINE)
+    return f"{text}\nconst law = {{...{json.dumps(law)}, placed, phases: {{\n{listed}\n}}}};\n"
+
+
+def _phase(routines: PhaseRoutines, printed: list[Routine]) -> str:
+    """Return one phase as an object of JavaScript, and add what it names to what is printed."""
+    names, events = routines.events()
+    own = {"rates": routines.rates(), "events": events, "film": routines.film()}
+    if routines.law.event_parameters:
+        own["eventParameters"] = routines.event_parameters()
+    printed += own.values()
+    parts = [f"{key}: {routine.name}" for key, routine in own.items()]
+    parts += [f"names: {json.dumps(names)}", f"groups: {json.dumps(_groups(routines))}"]
+    resets = []
+    for event in routines.resets():
+        following = list(routines.after(event))
+        printed += following
+        known = {
+            each.name.removeprefix(f"{routines.phase}_").removesuffix(f"_after_{event}"): each.name
+            for each in following
+        }
+        choice = known.pop("phase", "null")
+        states = ", ".join(f"{phase}: {name}" for phase, name in known.items())
+        resets.append(f"{event}: {{choice: {choice}, states: {{{states}}}}}")
+    return f"{{{', '.join(parts)}, resets: {{{', '.join(resets)}}}}}"
+
+
+def _groups(routines: PhaseRoutines) -> list[list[Any]]:
+    """Return which numbers of a state belong together: where they begin and end, and what they are."""
+    names = routines.law.names(routines.system)
+    heads = [name.partition("_")[0] for name in names]
+    begins = [i for i, head in enumerate(heads) if i == 0 or head != heads[i - 1] or head == "support"]
+    return [[i, j, heads[i]] for i, j in zip(begins, [*begins[1:], len(heads)], strict=True)]
+
+
+def _ends(system: RollingSystem) -> dict[str, str]:
+    """Return what is said where a motion ends, by event."""
+    surface, shape = system.support.surface, system.body.shape
+    known = {name: text.format(rim=0.0, end=surface.domain_end, left=shape.validity_end) for name, text in ENDS.items()}
+    plain = {name: re.sub(r" \(.*?\)", "", text) for name, text in known.items()}
+    held = {f"{phase} {event}": _HELD for phase, event in HELD}
+    return {name: text[:1].upper() + text[1:] for name, text in (plain | held | {"jam": _JAM}).items()}
+
+
+def _method() -> dict[str, Any]:
+    """Return the coefficients of DOP853, with those of its dense output."""
+    from scipy.integrate import DOP853
+
+    rows = [*DOP853.A[1:].tolist(), DOP853.B.tolist(), *DOP853.A_EXTRA.tolist()]
+    return {
+        "c": [*DOP853.C[1:].tolist(), 1.0, *DOP853.C_EXTRA.tolist()],
+        "a": rows,
+        "e3": DOP853.E3.tolist(),
+        "e5": DOP853.E5.tolist(),
+        "d": DOP853.D.tolist(),
+    }
+
+
+__all__ = ["TOLERANCE", "check", "script_of"]

@@ -1,0 +1,156 @@
+"""From a track to numbers in the lab: what is found is the truth, what cannot be is said, what has to be is asked."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from playwright.sync_api import Page, expect
+
+import trundle as tr
+from trundle.lab.links import encode
+
+from .axe import violations
+from .bench import decoded, eventually, number
+from .launching import LAPTOP, PHONE
+from .visiting import Visitor
+
+
+def take(page: Page, name: str, text: str) -> None:
+    """Give the page a file."""
+    page.get_by_test_id("file").set_input_files({"name": name, "mimeType": "text/plain", "buffer": text.encode()})
+
+
+def table(columns: str, rows: np.ndarray) -> str:
+    return "\n".join([columns, *(";".join(f"{value:.6g}" for value in row) for row in rows)]) + "\n"
+
+
+def fit(page: Page) -> None:
+    eventually(page, lambda: expect(page.get_by_test_id("fit")).to_be_enabled())
+    page.get_by_test_id("fit").click()
+    expect(page.get_by_test_id("verdict")).to_be_visible()
+
+
+def found(page: Page, name: str) -> tuple[float, float]:
+    """Value and error of a number, as the page has them."""
+    row = page.get_by_test_id("fitted").get_by_role("row").filter(has_text=name)
+    value, error = row.get_by_role("cell").first.inner_text().split("±")
+    return number(value), number(error)
+
+
+def test_the_truth_is_found_and_goes_to_the_bench(visitor: Visitor) -> None:
+    truth = tr.tracks.example("ball-on-a-turntable").truth
+    page = visitor.open("#/measure", size=LAPTOP, drawn=False)
+    page.get_by_role("button", name="A ball on a record player").click()
+    expect(page.get_by_test_id("said")).to_contain_text("597 rows")
+    fit(page)
+    expect(page.get_by_test_id("verdict")).to_contain_text("good fit")
+    value, error = found(page, "body.inertia_ratio")
+    assert 0 < error < 1e-4
+    assert abs(value - truth["body.inertia_ratio"]) < 4 * error
+    expect(page.get_by_test_id("fit-said")).to_contain_text("the end")
+    page.get_by_test_id("fit-step").fill("0")
+    expect(page.get_by_test_id("fit-said")).to_contain_text("1 of")
+    expect(page.get_by_test_id("fit-said")).to_contain_text("of the first")
+    assert not violations(page)
+    page.get_by_test_id("fit-bench").click()
+    expect(page).to_have_url(re.compile(r"#/bench\?s="))
+    sent = tr.Scenario.read(decoded(page.url.split("s=")[1]))
+    assert sent.body.inertia_ratio == pytest.approx(value, abs=1e-6)
+
+
+def test_what_cannot_be_known_is_said_with_the_cure(visitor: Visitor) -> None:
+    page = visitor.open("#/measure?example=ball-on-a-turntable", drawn=False)
+    expect(page.get_by_test_id("said")).to_contain_text("597 rows")
+    page.get_by_role("checkbox", name="support.motion.rate").check()
+    fit(page)
+    expect(page.get_by_test_id("verdict")).to_contain_text("cannot decide")
+    expect(page.get_by_test_id("unknown")).to_contain_text("rate·body.inertia_ratio/(1 + body.inertia_ratio)")
+    expect(page.get_by_test_id("unknown")).to_contain_text("film a mark on the support")
+    assert not violations(page, ".measure")
+
+
+def test_what_the_file_does_not_say_is_asked(visitor: Visitor) -> None:
+    """Which track, which unit, and how an angle grows."""
+    page = visitor.open("#/measure", drawn=False)
+    expect(page.get_by_role("button", name="A ball on a ramp")).to_be_visible()
+    t = np.arange(60) / 30
+    body = np.column_stack([t, 10 * t, 0 * t, t, 20 * t, 0 * t])
+    take(page, "two balls.txt", "red;;;blue;;\n" + table("t;x;y;t;x;y", body))
+    asked = page.get_by_test_id("question")
+    expect(asked).to_contain_text("several tracks. Which one?")
+    assert not violations(page, ".measure")
+    asked.get_by_role("button", name="blue").click()
+    expect(asked).to_contain_text("In which unit are the places?")
+    asked.get_by_role("button", name="cm", exact=True).click()
+    expect(asked).to_be_hidden()
+    expect(page.get_by_test_id("said")).to_contain_text("x, y in cm, 60 rows")
+    page.get_by_text("How the file is read").click()
+    expect(page.get_by_label("Unit of places")).to_have_value("cm")
+    page.get_by_label("Unit of places").fill("px")
+    page.get_by_label("Unit of places").press("Tab")
+    expect(asked).to_contain_text("How large is a pixel?")
+    asked.get_by_role("textbox").fill("0.5 mm")
+    asked.get_by_role("textbox").press("Enter")
+    expect(page.get_by_test_id("said")).to_contain_text("a pixel of 0.5 mm")
+
+
+def test_a_ball_of_ones_own_on_the_scenario_of_the_bench(visitor: Visitor) -> None:
+    """Down an incline by hand: x = 5/7 g sin(tilt) t²/2."""
+    tables = {
+        "body": {"kind": "solid-sphere", "radius": "20 mm", "mass": "100 g"},
+        "support": {"kind": "plane", "tilt": "1 deg"},
+        "start": {"position": [0, 0], "velocity": [0, 0]},
+        "run": {"duration": "1 s", "every": "20 ms"},
+    }
+    page = visitor.open(f"#/bench?s={encode(tables)}", drawn=False, cards=False)
+    expect(page.locator('[data-bodies="1"]')).to_be_attached()
+    page.get_by_role("link", name="Measure").click()
+    t = np.arange(120) / 60
+    draw = np.random.default_rng(5).normal(scale=0.05, size=t.size)  # cm
+    x = 100 * 5 / 7 * 9.80665 * np.sin(0.04) * t**2 / 2
+    transfer = page.evaluate_handle(
+        """text => {
+            const transfer = new DataTransfer()
+            transfer.items.add(new File([text], 'incline.csv'))
+            return transfer
+        }""",
+        table("t (s);x (cm)", np.column_stack([t, x + draw])),
+    )
+    page.dispatch_event("main", "drop", {"dataTransfer": transfer})
+    expect(page.get_by_test_id("said")).to_contain_text("120 rows")
+    page.get_by_role("checkbox", name="support.tilt").check()
+    page.get_by_test_id("noise").fill("0.5 kg")
+    visitor.watch.allow("status of 422")
+    page.get_by_test_id("fit").click()
+    expect(page.get_by_test_id("wrong")).to_contain_text("noise")
+    page.get_by_test_id("noise").fill("0.5 mm")
+    fit(page)
+    value, error = found(page, "support.tilt")
+    assert abs(value - 0.04) < 4 * error < 4e-3
+    expect(page.get_by_test_id("wrong")).to_be_hidden()
+
+
+def test_what_is_no_track_is_refused_in_words(visitor: Visitor) -> None:
+    visitor.watch.allow("status of 422")
+    page = visitor.open("#/measure", drawn=False)
+    expect(page.get_by_role("button", name="A ball on a ramp")).to_be_visible()
+    take(page, "film.mov", "x")
+    expect(page.get_by_test_id("wrong")).to_contain_text("'film.mov'. Export it as CSV.")
+    take(page, "sheet.xlsx", "so long, and thanks")
+    expect(page.get_by_test_id("wrong")).to_contain_text("sheet.xlsx")
+    expect(page.get_by_test_id("wrong")).not_to_contain_text("/")  # no folder of the server's
+    take(page, "words.csv", "so long\nand thanks\n")
+    expect(page.get_by_test_id("question")).to_contain_text("Which column is which?")
+    expect(page.get_by_test_id("wrong")).to_be_hidden()
+    expect(page.get_by_test_id("fit")).to_be_disabled()
+
+
+@pytest.mark.parametrize("size", [LAPTOP, PHONE], ids=["laptop", "phone"])
+def test_it_fits_and_axe_finds_nothing(size: dict[str, int], visitor: Visitor) -> None:
+    page = visitor.open("#/measure?example=ball-on-a-ramp", size=size, drawn=False)
+    expect(page.get_by_test_id("said")).to_contain_text("180 rows")
+    fit(page)
+    assert page.evaluate("document.documentElement.scrollWidth - innerWidth") <= 0
+    assert not violations(page)

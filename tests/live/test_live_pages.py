@@ -1,0 +1,137 @@
+"""Live pages: their motions are those of `simulate`, and what no page can compute is refused in words."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import trundle as tr
+from trundle.analysis.sensitivities.keys import chosen, moved
+from trundle.cli import run as command
+from trundle.errors import InvalidValueError, OutOfDomainError
+from trundle.live import law, live_page
+from trundle.live.sliders import sliders_of
+from trundle.live.start import Placed
+
+from .accuracy import BOUND, compared
+
+# Of every kind: closed forms and numerical runs, rolling, slipping, flight, the rim, a support that turns by itself.
+SAMPLE = {
+    "tilted-turntable": ["body.radius", "support.tilt"],
+    "ball-in-a-turning-bowl": ["support.radius"],
+    "billiard-swerve": ["support.friction"],
+    "superball": ["start.height"],
+    "off-the-rim": ["support.motion.rate"],
+    "free-turntable-ellipse": ["support.motion.inertia"],
+    "coin-in-a-circle": ["start.attitude[1]"],
+    "tippe-top": [],
+}
+
+
+@pytest.mark.parametrize("name", SAMPLE)
+def test_the_motion_in_the_page_is_the_run(name: str) -> None:
+    """`python -m tests.live.accuracy` compares all scenarios at the ends of all sliders that are offered."""
+    scenario = tr.Scenario.load(name)
+    asked = SAMPLE[name] or ["start.angular_velocity[2]=150..160"]
+    for one in compared(scenario, asked):
+        assert not one.refused
+        assert one.apart <= BOUND, one.where
+        assert one.alike, one.where
+
+
+def test_where_friction_gives_way_the_film_stops_and_says_so() -> None:
+    _, low, _ = compared(tr.Scenario.load("ball-in-a-trough"), ["support.tilt=45 deg..90 deg"])
+    assert low.run is not None
+    slip = next(event for event in low.run.events if event.kind == "slip")
+    assert low.told["ended"]["kind"] == "slip"
+    assert low.told["ended"]["time"] == pytest.approx(slip.time, rel=1e-9)
+    assert "slip" in low.told["ended"]["text"]
+    assert low.apart <= BOUND
+
+
+@pytest.mark.parametrize("name", ["rattleback", "ball-in-a-funnel", "eulers-disc", "turntable-drop"])
+def test_a_moved_slider_places_the_start_anew(name: str) -> None:
+    """Placed on the tape at other numbers, the start is that of a scenario with these numbers."""
+    scenario = tr.Scenario.load(name)
+    sliders, placed = sliders_of(scenario, [])
+    draw = np.random.default_rng(seed=7)
+    for _ in range(5):
+        values = {one.key.name: float(draw.uniform(one.low, one.high)) for one in sliders}
+        system, start = moved(scenario, values)
+        wanted = system.vector_field("numpy", placed.phase).pack(start)
+        found = placed.at(list(values.values()))
+        assert np.allclose(found[: placed.size], wanted, rtol=1e-12, atol=1e-12)
+        assert np.allclose(found[placed.size :], system.vector_field("numpy").parameters, rtol=1e-14, atol=0)
+
+
+def test_a_start_that_would_be_decided_otherwise_is_refused() -> None:
+    """What is decided by numbers on the way holds for those of the file; elsewhere the two are compared."""
+    scenario = tr.Scenario.load("weighted-cylinder-on-incline")
+    placed = Placed.of(scenario, chosen(scenario, ["start.roll"]))
+    with pytest.raises(OutOfDomainError, match="placed otherwise"):
+        placed.check(scenario, {"start.roll": 0.5 * float(scenario.start.roll)})
+
+
+REFUSED = {
+    "a path has no law": ["roll-figure-eight", "page.html", "--live"],
+    "another form": ["tilted-turntable", "page.glb", "--live"],
+    "several": ["tilted-turntable", "rattleback", "page.html", "--live"],
+    "no page to move it in": ["tilted-turntable", "page.html", "--slider", "body.radius"],
+    "no such number": ["tilted-turntable", "page.html", "--live", "--slider", "body.redius"],
+    "a formula": ["turntable-starting-up", "page.html", "--live", "--slider", "support.motion.rate"],
+    "downwards": ["tilted-turntable", "page.html", "--live", "--slider", "support.tilt=1deg..0deg"],
+    "half a span": ["tilted-turntable", "page.html", "--live", "--slider", "support.tilt=1deg"],
+    "without its value": ["tilted-turntable", "page.html", "--live", "--slider", "support.tilt=1deg..2deg"],
+    "beyond the rim": ["tilted-turntable", "page.html", "--live", "--slider", "start.position[0]=-1 m..0 m"],
+    "no length": ["tilted-turntable", "page.html", "--live", "--slider", "body.radius=1 s..2 s"],
+}
+
+
+@pytest.mark.parametrize("arguments", REFUSED.values(), ids=REFUSED)
+def test_what_no_page_can_compute_is_refused_in_words(
+    arguments: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert command(["export", *arguments]) == 2
+    assert list(tmp_path.iterdir()) == []
+    told = capsys.readouterr().err
+    assert told.startswith("trundle: ")
+    assert "Traceback" not in told
+
+
+def test_a_kink_in_the_time_is_refused() -> None:
+    scenario = tr.Scenario.load("turntable-starting-up")
+    motion = {"kind": "spin-by", "rate": "abs(t - 1)"}
+    tables = {**scenario.model_dump(exclude_unset=True, exclude_none=True, by_alias=True)}
+    tables["support"] = {**tables["support"], "motion": motion}
+    with pytest.raises(OutOfDomainError, match="kink"):
+        law.check(tr.Scenario.read(tables))
+
+
+def test_the_page_evaluates_nothing_and_asks_for_nothing() -> None:
+    page = live_page(tr.Scenario.load("off-the-rim"), ["support.motion.rate=10 rpm..80 rpm"]).decode()
+    policy = re.search(r'Content-Security-Policy" content="([^"]*)"', page)
+    assert policy is not None
+    assert "default-src 'none'" in policy[1]
+    assert "worker-src blob:" in policy[1]
+    assert "unsafe" not in policy[1]
+    assert len(page.encode()) < 1_500_000
+    held = page.partition("data-trundle-law>")[2].partition("</script>")[0]
+    assert "const law =" in held
+    assert not re.search(r"\beval\(|\bFunction\(|importScripts|fetch\(", held)
+    assert not re.search(r"""(?:src|href)=["']?(?:https?:)?//""", page)
+
+
+def test_the_labels_are_those_of_the_file() -> None:
+    (one,), _ = sliders_of(tr.Scenario.load("tilted-turntable"), ["support.motion.rate=20 rpm..45 rpm"])
+    assert (one.label, one.group, one.unit) == ("Rate", "support motion", "rpm")
+    assert one.low / one.factor == pytest.approx(20.0, rel=1e-14)
+
+
+def test_too_many_sliders_are_refused() -> None:
+    scenario = tr.Scenario.load("rattleback")
+    with pytest.raises(InvalidValueError, match="at most 8"):
+        sliders_of(scenario, ["body.semi_axes", "start.angular_velocity", "start.attitude"])

@@ -1,0 +1,399 @@
+/** From a track that was measured to numbers with errors, and what they cannot tell. */
+import { ApiError, type ExampleTrack, type Fitted, isAbort, type ScenarioEntry, type Track } from '../../api'
+import type { Page } from '../../app'
+import { save } from '../../bench/files'
+import { cleanup, fill, h, listen, uniqueId } from '../../dom'
+import { createRunner } from '../../runner'
+import type { Scenario } from '../../scenario'
+import { encode } from '../../share'
+import { button } from '../parts/controls'
+import { createStage, playUnlessCalm, told } from '../parts/stage'
+import { createPlot } from './plot'
+import { createReading, type How } from './reading'
+import { marked, report } from './report'
+import '../pages.css'
+import '../maps/maps.css'
+import './measure.css'
+
+const BENCH = '(bench)'
+const OF_EXAMPLE = '(example)'
+
+interface Given {
+  file: Blob
+  name: string
+  how: How
+}
+
+export const measure: Page = {
+  id: 'measure',
+  title: 'Measure',
+  mount(host, app) {
+    const undo = cleanup()
+    const leaving = new AbortController()
+    undo.add(() => leaving.abort())
+    const stage = createStage(app, { label: 'What was measured, on its support' })
+    const plot = createPlot()
+    undo.add(
+      () => stage.dispose(),
+      () => plot.dispose(),
+      app.watchSettings(() => requestAnimationFrame(() => plot.restyle())),
+    )
+    let given: Given | null = null
+    let track: Track | null = null
+    let example: ExampleTrack | null = null
+    let scenario: Scenario = app.store.scenario
+    let fitted: Fitted | null = null
+    let examples: ExampleTrack[] = []
+
+    // 1. The track
+    const said = h('div', { class: 'measure-said', role: 'status', 'data-testid': 'said' })
+    const wrong = h('p', { class: 'map-wrong', role: 'alert', hidden: true, 'data-testid': 'wrong' })
+    const reading = createReading((how) => given && take({ ...given, how }))
+    const picker = createPicker((file) => take({ file, name: file.name, how: {} }, null))
+    const offered = h('div', { class: 'buttons measure-examples', role: 'group', 'aria-label': 'Example tracks' })
+
+    // 2. What moved
+    const moved = createScenarios((name) => void choose(name))
+    const free = createFree()
+
+    // 3. The fit
+    const go = button('Fit', () => fitting.ask(null), 'primary', 'fit')
+    go.disabled = true
+    const results = h('div', { class: 'measure-results', role: 'status', 'aria-label': 'What was found' })
+    const bench = button('Open the fitted scenario on the bench', () => void openBench(), 'plain', 'fit-bench')
+    const file = button('Save fit.toml', () => fitted && save(new Blob([fitted.commented]), 'fit.toml'), 'plain')
+    const after = h('div', { class: 'buttons', hidden: true }, bench, file)
+
+    function tell(error: unknown): void {
+      wrong.hidden = error === null
+      wrong.textContent = error === null ? '' : told(error)
+      free.wrong(error instanceof ApiError && error.key === 'noise')
+    }
+
+    function forget(): void {
+      fitted = null
+      after.hidden = true
+      fill(results)
+      plot.way(null, true)
+    }
+
+    const reader = createRunner<Given, Awaited<ReturnType<typeof app.api.track>>>({
+      run: ({ file, name, how }, signal) => app.api.track(file, name, how, { lane: null, signal }),
+      done(answer, asked) {
+        if (asked !== given) return
+        if ('asks' in answer) {
+          reading.ask(answer.asks)
+          fill(said)
+          return
+        }
+        track = answer
+        reading.ask(null)
+        fill(
+          said,
+          h('p', {}, h('strong', {}, answer.title), ': ', ...marked(answer.said[0] ?? '')),
+          answer.said.slice(1).map((sentence) => h('p', { class: 'map-hint' }, ...marked(sentence))),
+        )
+        go.disabled = false
+        plot.measured(answer.columns)
+        sketch()
+      },
+      failed: (error) => tell(error),
+      state: (busy) => host.firstElementChild?.toggleAttribute('data-busy', busy),
+    })
+
+    /** Read a file, or read it again in another way. */
+    function take(next: Given, of: ExampleTrack | null = example): void {
+      given = next
+      example = of
+      track = null
+      go.disabled = true
+      tell(null)
+      forget()
+      reading.ask(null)
+      reading.set(next.how)
+      reader.ask(next)
+      if (!of && moved.value === OF_EXAMPLE) void choose(BENCH)
+    }
+
+    function takeExample(one: ExampleTrack): void {
+      take({ file: new Blob([one.content]), name: one.file, how: {} }, one)
+      void choose(OF_EXAMPLE)
+      app.router.replace('measure', { example: one.name })
+    }
+
+    async function choose(name: string): Promise<void> {
+      tell(null)
+      forget()
+      try {
+        if (name === OF_EXAMPLE && example) scenario = example.scenario
+        else if (name === BENCH) scenario = app.store.scenario
+        else if (name !== OF_EXAMPLE) scenario = (await app.api.scenario(name, { signal: leaving.signal })).scenario
+        moved.show(name, example)
+        const numbers = await app.api.mapNumbers(scenario, { signal: leaving.signal })
+        const asked = name === OF_EXAMPLE && example ? example : { free: [], noise: '' }
+        free.show(
+          numbers.map(({ key }) => key).filter((key) => !key.startsWith('start.')),
+          asked.free,
+          asked.noise,
+        )
+        staging.ask(scenario)
+      } catch (error) {
+        if (!isAbort(error)) tell(error)
+      }
+    }
+
+    const staging = createRunner<Scenario, Scenario>({
+      run: async (shown, signal) => {
+        const { scene } = await app.api.simulate(shown, { lane: null, signal, samples: 1500 })
+        if (signal.aborted) return shown
+        stage.viewer.setScenes([scene])
+        sketch()
+        stage.viewer.suit()
+        if (fitted) playUnlessCalm(app, stage.viewer)
+        return shown
+      },
+      done: () => stage.problem(null),
+      failed: (error) => stage.problem(error),
+      state: (busy) => stage.element.toggleAttribute('data-busy', busy),
+    })
+
+    function sketch(): void {
+      stage.viewer.setSketch(track ? placesOf(track) : null, 'measured', 'support')
+    }
+
+    const fitting = createRunner<null, Fitted>({
+      patience: 20_000,
+      run: (_, signal) => {
+        tell(null)
+        if (!track) throw new Error('There is no track yet.')
+        const { keys, noise } = free.value
+        return app.api.fit(
+          { scenario, columns: track.columns, title: track.title, free: keys, noise },
+          { lane: null, signal },
+        )
+      },
+      done(answer) {
+        fitted = answer
+        report(results, answer)
+        after.hidden = false
+        plot.way(answer.way, app.settings.reducedMotion)
+        staging.ask(answer.scenario)
+      },
+      failed: (error) => tell(error),
+      state(busy) {
+        go.textContent = busy ? 'Fitting …' : 'Fit'
+        go.disabled = busy || track === null
+        host.firstElementChild?.toggleAttribute('data-busy', busy)
+      },
+    })
+    undo.add(
+      () => reader.stop(),
+      () => staging.stop(),
+      () => fitting.stop(),
+    )
+
+    async function openBench(): Promise<void> {
+      if (fitted) app.navigate('bench', { s: await encode(fitted.scenario) })
+    }
+
+    fill(
+      host,
+      h(
+        'div',
+        { class: 'lesson measure' },
+        h(
+          'div',
+          { class: 'measure-text' },
+          h('p', { class: 'kicker' }, 'From a film to numbers'),
+          h('h1', {}, 'Measure'),
+          h(
+            'section',
+            { 'aria-labelledby': 'measure-1' },
+            h('h2', { id: 'measure-1' }, 'Your track'),
+            picker.element,
+            h('p', { class: 'map-hint' }, 'Or one of these, made with noise of which the truth is known:'),
+            offered,
+            said,
+            wrong,
+            reading.element,
+          ),
+          h(
+            'section',
+            { 'aria-labelledby': 'measure-2' },
+            h('h2', { id: 'measure-2' }, 'What moved'),
+            moved.element,
+            free.element,
+            go,
+          ),
+        ),
+        h('div', { class: 'measure-seen' }, stage.element, plot.element, results, after),
+      ),
+    )
+    undo.add(dropping(host, (dropped) => take({ file: dropped, name: dropped.name, how: {} }, null)))
+
+    async function begin(): Promise<void> {
+      try {
+        const [found, shipped] = await Promise.all([
+          app.api.exampleTracks({ signal: leaving.signal }),
+          app.api.scenarios({ signal: leaving.signal }),
+        ])
+        examples = found
+        moved.offer(shipped.filter(({ motion }) => motion !== 'path'))
+        fill(
+          offered,
+          examples.map((one) => {
+            const chosen = button(one.title, () => takeExample(one), 'plain')
+            chosen.title = one.about
+            return chosen
+          }),
+        )
+        const named = examples.find(({ name }) => name === app.route.params.example)
+        if (named) takeExample(named)
+        else await choose(BENCH)
+      } catch (error) {
+        if (!isAbort(error)) tell(error)
+      }
+    }
+    void begin()
+    return () => undo.run()
+  },
+}
+
+/** Where the body was seen, on the support: along x where only that was measured. */
+function placesOf({ columns: { t = [], x, y, z } }: Track): [number, number][] | [number, number, number][] {
+  if (!x && !y) return []
+  const rows = t.map((_, i): (number | null)[] => [x ? x[i]! : 0, y ? y[i]! : 0, ...(z ? [z[i]!] : [])])
+  return rows.filter((row) => row.every((part) => part !== null)) as [number, number][]
+}
+
+interface Picker {
+  readonly element: HTMLElement
+}
+
+function createPicker(chosen: (file: File) => void): Picker {
+  const input = h('input', { type: 'file', class: 'sr-only', 'data-testid': 'file' })
+  input.addEventListener('change', () => {
+    const file = input.files?.[0]
+    input.value = ''
+    if (file) chosen(file)
+  })
+  return {
+    element: h(
+      'label',
+      { class: 'measure-drop' },
+      input,
+      h('strong', {}, 'Choose a file, or drop it here'),
+      h(
+        'span',
+        {},
+        'Tracker (.trk, .trz, a copied table), Logger Pro, Capstone, Vernier, Phyphox, DeepLabCut, CSV, Excel',
+      ),
+    ),
+  }
+}
+
+/** Files may be dropped anywhere on the page. */
+function dropping(host: HTMLElement, dropped: (file: File) => void): () => void {
+  const hasFiles = (event: DragEvent) => event.dataTransfer?.types.includes('Files') ?? false
+  const mark = (over: boolean) => host.firstElementChild?.toggleAttribute('data-over', over)
+  const undo = cleanup()
+  undo.add(
+    listen(window, 'dragover', (event: DragEvent) => {
+      if (!hasFiles(event)) return
+      event.preventDefault()
+      mark(true)
+    }),
+    listen(window, 'dragleave', (event: DragEvent) => {
+      if (event.relatedTarget === null) mark(false)
+    }),
+    listen(window, 'drop', (event: DragEvent) => {
+      if (!hasFiles(event)) return
+      event.preventDefault()
+      mark(false)
+      const file = event.dataTransfer?.files[0]
+      if (file) dropped(file)
+    }),
+  )
+  return () => undo.run()
+}
+
+interface Scenarios {
+  readonly element: HTMLElement
+  readonly value: string
+  offer(shipped: readonly ScenarioEntry[]): void
+  show(name: string, example: ExampleTrack | null): void
+}
+
+function createScenarios(chosen: (name: string) => void): Scenarios {
+  const id = uniqueId('moved')
+  const own = h('option', { value: OF_EXAMPLE, hidden: true }, 'As the example says')
+  const select = h(
+    'select',
+    { id, 'data-testid': 'moved', onchange: () => chosen(select.value) },
+    own,
+    h('option', { value: BENCH }, 'The scenario on the bench'),
+  )
+  return {
+    element: h('div', { class: 'map-field' }, h('label', { for: id }, 'A scenario that may be like it'), select),
+    get value() {
+      return select.value
+    },
+    offer(shipped) {
+      select.append(...shipped.map(({ name, title }) => h('option', { value: name }, title)))
+    },
+    show(name, example) {
+      own.hidden = example === null
+      own.textContent = example ? `${example.title}, as the example says` : ''
+      select.value = name
+    },
+  }
+}
+
+interface Free {
+  readonly element: HTMLElement
+  readonly value: { keys: string[]; noise: string | null }
+  show(keys: readonly string[], chosen: readonly string[], noise: string): void
+  wrong(now: boolean): void
+}
+
+/** Which numbers are to be found, and how large the noise is. */
+function createFree(): Free {
+  const list = h('div', { class: 'measure-free' })
+  const noise = h('input', {
+    type: 'text',
+    placeholder: 'as the data scatter',
+    autocomplete: 'off',
+    'data-testid': 'noise',
+  })
+  let boxes: HTMLInputElement[] = []
+  return {
+    element: h(
+      'div',
+      { class: 'measure-asks' },
+      h(
+        'fieldset',
+        {},
+        h('legend', {}, 'Numbers to be found'),
+        list,
+        h('p', { class: 'map-hint' }, 'The start is found besides.'),
+      ),
+      h('label', { class: 'map-field' }, h('span', {}, 'Noise of a measured place'), noise),
+    ),
+    get value() {
+      const keys = boxes.filter(({ checked }) => checked).map(({ value }) => value)
+      return { keys, noise: noise.value.trim() || null }
+    },
+    show(keys, chosen, given) {
+      boxes = keys.map((key) => h('input', { type: 'checkbox', value: key, checked: chosen.includes(key) }))
+      fill(
+        list,
+        boxes.map((box) => h('label', { class: 'toggle' }, box, h('code', {}, box.value))),
+      )
+      noise.value = given
+    },
+    wrong(now) {
+      if (now) noise.setAttribute('aria-invalid', 'true')
+      else noise.removeAttribute('aria-invalid')
+    },
+  }
+}

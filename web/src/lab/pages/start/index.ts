@@ -1,0 +1,48 @@
+/** The front door: what this is, six pictures to begin with, and the ways on. */
+import type { Page } from '../../app'
+import { fill, h } from '../../dom'
+import { pictureOf } from '../../pictures'
+import { SIX, START } from '../../texts'
+import '../pages.css'
+import './start.css'
+
+export const start: Page = {
+  id: 'start',
+  title: START.title,
+  aside: true,
+  mount(host) {
+    fill(
+      host,
+      h(
+        'div',
+        { class: 'lesson start' },
+        h('header', { class: 'start-head' }, h('h1', {}, START.heading), h('p', { class: 'lead' }, START.lead)),
+        h(
+          'nav',
+          { class: 'start-ways', 'aria-label': START.heading },
+          way('tour', START.tour, START.tourSaid, true),
+          way('challenges', START.challenges, START.challengesSaid),
+          way('bench', START.bench, START.benchSaid),
+        ),
+        h('h2', { class: 'start-six' }, START.pictures),
+        h('ul', { class: 'start-pictures' }, SIX.map(one)),
+        h('p', {}, h('a', { href: '#/notes' }, START.teachers)),
+      ),
+    )
+    return () => {}
+  },
+}
+
+function way(route: string, words: string, said: string, first = false): HTMLElement {
+  return h(
+    'a',
+    { class: first ? 'start-way start-first' : 'start-way', href: `#/${route}` },
+    h('strong', {}, words),
+    h('span', {}, said),
+  )
+}
+
+function one([name, caption]: (typeof SIX)[number]): HTMLElement {
+  const link = h('a', { class: 'start-picture', href: `#/bench?name=${name}` }, pictureOf(name), h('span', {}, caption))
+  return h('li', {}, link)
+}

@@ -1,0 +1,35 @@
+/** What a live page's scene says besides: which sliders there are, and how its pictures change along them. */
+
+export interface SliderHeader {
+  name: string
+  value: number
+  low: number
+  high: number
+  label: string
+  group: string
+  unit: string
+  /** Of the unit, in SI. */
+  factor: number
+}
+
+export interface Variant {
+  slider: number
+  nodes: number[]
+  /** Of each column that changes, the step of which its changes are whole numbers. */
+  steps: Record<string, number>
+}
+
+export interface Curve {
+  name: string
+  unit: string
+  column: number
+}
+
+export interface LiveHeader {
+  sliders: SliderHeader[]
+  variants: Variant[]
+  curves: Curve[]
+  /** What a row of a course holds, and what its parameters are called. */
+  film: string[]
+  parameters: string[]
+}

@@ -1,0 +1,47 @@
+/** The law of one motion as the package prints it into a page: `trundle.live.law`. */
+
+export type Numbers = readonly number[]
+
+export interface Reset {
+  /** The code of the phase that follows; null where only one may. */
+  choice: ((t: number, y: Numbers, p: Numbers, u: Numbers) => number[]) | null
+  states: Record<string, (t: number, y: Numbers, p: Numbers, u: Numbers) => number[]>
+}
+
+export interface Phase {
+  rates: (t: number, y: Numbers, p: Numbers, u: Numbers) => number[]
+  events: (t: number, y: Numbers, p: Numbers, u: Numbers, e: Numbers) => number[]
+  film: (t: number, y: Numbers, p: Numbers, u: Numbers) => number[]
+  /** What `events` takes as e, of the state in which the phase begins. */
+  eventParameters?: (t: number, y: Numbers, p: Numbers, u: Numbers) => number[]
+  names: string[]
+  /** Which numbers of the state belong together: first, behind the last, and what they are. */
+  groups: [number, number, string][]
+  resets: Record<string, Reset>
+}
+
+/** Coefficients of an explicit Runge-Kutta method of order 8, with errors of orders 5 and 3 and a dense output. */
+export interface Method {
+  c: number[]
+  a: number[][]
+  e3: number[]
+  e5: number[]
+  d: number[][]
+}
+
+export interface Law {
+  begin: number
+  duration: number
+  phase: string
+  size: number
+  defaults: number[]
+  arm: number
+  moment: number
+  tolerance: number
+  codes: Record<string, number>
+  said: Record<string, Record<string, string>>
+  ends: Record<string, string>
+  method: Method
+  placed: (w: Numbers) => number[]
+  phases: Record<string, Phase>
+}
