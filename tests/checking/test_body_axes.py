@@ -23,12 +23,12 @@ def names(checked: tr.Check) -> list[set[str]]:
 @pytest.mark.parametrize("parts", ["w", "vw", "vwq"])
 @pytest.mark.parametrize("sigma", [1e-4, 1e-3])
 def test_it_is_named_under_noise(sigma: float, parts: str, omega: float, g: float) -> None:
-    for seed in (1, 2):
-        seen = shaken(data(omega, TILT, BODY, g=g, parts=parts), sigma, seed)
-        checked = tr.check(seen, system(omega, TILT))
-        assert names(checked), checked.verdict
-        assert BODY in names(checked)[0] <= {BODY, "wrong-gravity"}, checked.verdict
-        assert checked.likely[0].named
+    seed = 1 + len(parts) + (omega > 0)  # another noise in each
+    seen = shaken(data(omega, TILT, BODY, g=g, parts=parts), sigma, seed)
+    checked = tr.check(seen, system(omega, TILT))
+    assert names(checked), checked.verdict
+    assert BODY in names(checked)[0] <= {BODY, "wrong-gravity"}, checked.verdict
+    assert checked.likely[0].named
 
 
 @pytest.mark.parametrize("other", OTHERS)

@@ -14,6 +14,22 @@ from .bounds import Array
 _ROUNDING = 1e-14  # of Ω and ω, that may be left of their difference along the support
 
 
+def cross(a: Array, b: Array) -> Array:
+    """Return the vector products of rows, many times as fast as NumPy's own where there are few.
+
+    Examples
+    --------
+    >>> cross(np.array([[1.0, 0.0, 0.0], [0.0, 2.0, 0.0]]), np.array([0.0, 0.0, 1.0])).tolist()
+    [[0.0, -1.0, 0.0], [2.0, 0.0, 0.0]]
+    """
+    x, y, z = a[..., 0], a[..., 1], a[..., 2]
+    u, v, w = b[..., 0], b[..., 1], b[..., 2]
+    first = y * w - z * v
+    found = np.empty((*first.shape, 3), dtype=first.dtype)
+    found[..., 0], found[..., 1], found[..., 2] = first, z * u - x * w, x * v - y * u
+    return found
+
+
 def rotated(q: Array, v: Array) -> Array:
     """Return vectors turned by unit quaternions, v + 2w(u×v) + 2u×(u×v).
 
@@ -22,8 +38,8 @@ def rotated(q: Array, v: Array) -> Array:
     >>> rotated(np.array([[0.0, 0.0, 0.0, 1.0]]), np.array([[1.0, 2.0, 3.0]])).tolist()
     [[-1.0, -2.0, 3.0]]
     """
-    across = 2 * np.cross(q[:, 1:], v)
-    return v + q[:, :1] * across + np.cross(q[:, 1:], across)
+    across = 2 * cross(q[:, 1:], v)
+    return v + q[:, :1] * across + cross(q[:, 1:], across)
 
 
 def inertia_of(system: RollingSystem, q: Array) -> Array:
@@ -40,7 +56,7 @@ def acting(system: RollingSystem, at: Samples) -> tuple[Array, Array, Array, Arr
     F, K, _ = exerted(system, at)
     J = inertia_of(system, at.orientation)
     JOmega = np.einsum("nij,nj->ni", J, at.angular_velocity)
-    return F + weight, K, J, np.cross(at.angular_velocity, JOmega)
+    return F + weight, K, J, cross(at.angular_velocity, JOmega)
 
 
 def unturning(system: RollingSystem, at: Samples) -> Any:

@@ -22,7 +22,7 @@ from ..mechanics.slipping import slip
 from ..mechanics.system import RollingSystem, State
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Event, Samples
 from ..solve.transitions import JOLT
-from .acting import acting
+from .acting import acting, cross
 from .bounds import A_STEP, SOLVER, Array, largest, sizes_of
 from .card import CardFigure
 from .each_sample import EachSample, Shares, worst_of
@@ -169,7 +169,7 @@ class AtEvents:
         R, V, Omega, sizes = at.contact_force[0], at.velocity[0], at.angular_velocity[0], self._sizes
         pace = np.linalg.norm(V) / sizes["position"] + np.linalg.norm(Omega)
         moment = span + np.spacing(abs(float(at.time[0]))) + A_STEP * self.bound / SOLVER / max(float(pace), 1e-300)
-        turned = np.linalg.solve(J, K - gyroscopic + np.cross(at.contact[0] - at.position[0], R))
+        turned = np.linalg.solve(J, K - gyroscopic + cross(at.contact[0] - at.position[0], R))
         rates = {"velocity": (F + R) / float(self.system.body.mass), "angular_velocity": turned}
         motion = self.system.support.motion
         if motion.free:

@@ -13,7 +13,7 @@ from ..mechanics.contact import contact_at
 from ..mechanics.system import RollingSystem
 from ..solve.contact_state import WEIGHTLESS
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
-from .acting import acting
+from .acting import acting, cross
 from .bounds import Array, largest, sizes_of
 from .card import CardFigure, checked
 from .each_sample import Shares, worst_of
@@ -158,7 +158,7 @@ def holding(system: RollingSystem, held: Samples) -> tuple[Array, Array]:
     """Return the couple along the support that keeps a body from turning over it, N m, and the normal force."""
     _, K, J, gyroscopic = acting(system, held)
     n = held.normals(system)
-    torque = K - gyroscopic + np.cross(held.contact - held.position, held.contact_force)
+    torque = K - gyroscopic + cross(held.contact - held.position, held.contact_force)
     whole = np.einsum("nij,nj->ni", J, _carried_along(system, held)) - torque
     about = np.einsum("nij,nj->ni", J, n)  # about the normal nothing holds a body that slips
     spins = (held.phase == SLIPPING) * (whole * n).sum(axis=1) / (about * n).sum(axis=1)

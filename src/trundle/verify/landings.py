@@ -20,7 +20,7 @@ from ..mechanics.slipping import unpushed
 from ..mechanics.system import RollingSystem, State
 from ..solve.samples import Event
 from ..solve.transitions import JOLT
-from .acting import inertia_of
+from .acting import cross, inertia_of
 from .bounds import EXACT, Array
 from .card import CardFigure
 from .course import Course
@@ -119,7 +119,7 @@ class Landing:
     @cached_property
     def course(self) -> Course:
         """What its slip went through; it has run its course."""
-        turn = np.cross(np.eye(3), self.rho)  # row i is e_i×ρ, and ρ×P is turn P
+        turn = cross(np.eye(3), self.rho)  # row i is e_i×ρ, and ρ×P is turn P
         M = np.eye(3) / float(self.system.body.mass) + turn.T @ np.linalg.solve(self.J, turn)
         if self.lever is not None:
             M = M + np.outer(self.lever, self.lever) / float(self.system.support.motion.inertia)

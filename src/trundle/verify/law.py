@@ -15,7 +15,7 @@ from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import contact_at
 from ..mechanics.system import RollingSystem
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
-from .acting import acting, exerted, rotated, unturning
+from .acting import acting, cross, exerted, rotated, unturning
 from .bounds import Array, largest
 
 WINDOWS = 24
@@ -236,10 +236,10 @@ class _Windows:
         if self.phase == ROLLING:  # what holds the body to the support is not asked for, but found
             u = np.broadcast_to(self.all.speeds(self.system)[2].array(), self.all.position.shape)
             rho_rate = self.slope(self.all.contact - self.all.position)
-            solved = newton_euler(m, J, rho, F, K - gyroscopic, self.slope(u) - np.cross(Omega, rho_rate))
+            solved = newton_euler(m, J, rho, F, K - gyroscopic, self.slope(u) - cross(Omega, rho_rate))
         else:
-            K = K + self._holding(J @ Omega_rate[:, :, None], K - gyroscopic + np.cross(rho, R))
-            turned = Omega_rate if self.phase == RESTING else _euler(J, K - gyroscopic + np.cross(rho, R))
+            K = K + self._holding(J @ Omega_rate[:, :, None], K - gyroscopic + cross(rho, R))
+            turned = Omega_rate if self.phase == RESTING else _euler(J, K - gyroscopic + cross(rho, R))
             solved = (F + R) / m, turned, R
         a_size = self._acceleration(F, V_rate)
         lever = m * a_size * largest(rho) / np.trace(J, axis1=1, axis2=2).min()  # what R may turn
@@ -299,7 +299,7 @@ class _Windows:
         parts = [np.broadcast_to(np.asarray(motion.axle_torque(at.time, own), dtype=float), at.time.shape)]
         if self.phase != FLIGHT:
             from_support = exerted(self.system, at)[2]
-            parts += [-(axle * np.cross(arm, R)).sum(axis=1), -(axle * from_support).sum(axis=1)]
+            parts += [-(axle * cross(arm, R)).sum(axis=1), -(axle * from_support).sum(axis=1)]
         change, rate = self.slope(self.all.support_coordinates), at.support_coordinates[:, -1]
         # Of a force that presses on past the axle, and of a slope, no smaller moment is told from none.
         pressing = _PRODUCT * largest(arm) * largest(R) / self.bound
@@ -321,7 +321,7 @@ class _Windows:
         force = m * V_rate - F
         torque = np.einsum("nij,nj->ni", J, Omega_rate) + gyroscopic - K
         power = [
-            np.abs((force * np.cross(rho, turn)).sum(axis=1) + torque @ turn).max()  # δV = −δΩ×ρ = ρ×δΩ
+            np.abs((force * cross(rho, turn)).sum(axis=1) + torque @ turn).max()  # δV = −δΩ×ρ = ρ×δΩ
             for turn in np.eye(3)
         ]
         turning = np.abs(J).max() * max(np.abs(at.angular_velocity).max() * self.rate, self._sharp_turn)

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...mechanics.algebra import Quaternion, Vector
 from ...mechanics.system import RollingSystem
+from ...verify.acting import cross
 from .laws import Rates
 from .motion import Instants, Motion
 from .record import Array, ExternalTrajectory
@@ -73,7 +74,7 @@ def sensitivity_of(
 def _scales(system: RollingSystem, at: Motion) -> dict[str, float]:
     """Return the parts of the state that the law depends on, with the size of each."""
     extent = max(float(np.ptp(at.position, axis=0).max()), at.arm)
-    speed = max(_largest(at.velocity, np.cross(at.angular_velocity, at.offset)), 1e-3 * at.arm)
+    speed = max(_largest(at.velocity, cross(at.angular_velocity, at.offset)), 1e-3 * at.arm)
     turning = speed / at.arm
     scales = {"position": extent, "velocity": speed, "angular_velocity": turning, "orientation": 1.0, "spin": turning}
     if system.body.is_isotropic_sphere:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ...mechanics.algebra import Vector
 from ...mechanics.system import RollingSystem, State
+from ...verify.acting import cross
 from .chance import longest
 from .comparisons import (
     ACCELERATION,
@@ -162,7 +163,7 @@ def _size(name: str, system: RollingSystem, at: Motion, slope: Array, rates: Rat
     """Return what a residual is small beside, or not; never nothing, where something might move."""
     if name == TURN:
         return _largest(at.angular_velocity, slope)
-    speed = _largest(at.velocity, np.cross(at.angular_velocity, at.offset), at.carried)
+    speed = _largest(at.velocity, cross(at.angular_velocity, at.offset), at.carried)
     if name == PATH:
         return speed
     weight = 1e-3 * float(np.max(Vector(*system.weight.acceleration).norm()))
@@ -176,7 +177,7 @@ def _contact(
     system: RollingSystem, theirs: ExternalTrajectory, at: Motion, some: Index, tolerance: float, reacts: Sensitivity
 ) -> Iterator[Series]:
     """Yield gap and slip at some instants."""
-    speed = _largest(at.velocity, np.cross(at.angular_velocity, at.offset), at.carried)
+    speed = _largest(at.velocity, cross(at.angular_velocity, at.offset), at.carried)
     if theirs.height_given:
         gap = gap_of(system, at.contact)[:, None]
         yield _at_instants(GAP, gap, at.arm, LIFTS, at, some, tolerance, reacts, "gap, share of the radius")

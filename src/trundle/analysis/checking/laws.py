@@ -15,6 +15,7 @@ from ...mechanics.loads import Force, Load
 from ...mechanics.motions import Fixed, Motion, Spin, SupportState
 from ...mechanics.slipping import slip
 from ...mechanics.system import RollingSystem
+from ...verify.acting import cross
 from ...verify.law import applied, newton_euler
 from .motion import Instants, instants
 from .record import Array
@@ -30,7 +31,7 @@ def independent_law(system: RollingSystem, at: Instants) -> Rates:
     p_rate, rho_rate = (np.broadcast_to(v.array(), at.position.shape) for v in at.contact.rates(slip, Omega, V))
     samples = at.samples()
     F, K, J, gyroscopic, u_rate = applied(system, samples, p_rate)
-    constraint = u_rate - np.cross(at.angular_velocity, rho_rate)
+    constraint = u_rate - cross(at.angular_velocity, rho_rate)
 
     def solved(moment: Array) -> tuple[Array, Array, Array]:
         return newton_euler(float(system.body.mass), J, at.offset, F, moment - gyroscopic, constraint)

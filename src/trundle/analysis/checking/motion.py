@@ -11,6 +11,7 @@ from ...mechanics.algebra import Quaternion, Vector
 from ...mechanics.contact import Contact
 from ...mechanics.system import RollingSystem, State
 from ...solve.samples import Samples
+from ...verify.acting import cross
 from .doubts import Doubt, doubt_of
 from .record import Array, ExternalTrajectory, contact_of, orientation_from
 from .slopes import Estimate, Index
@@ -43,7 +44,7 @@ class Instants:
     @property
     def slip(self) -> Array:
         """Slip s = V + Ω×ρ − u, (m, 3), m/s."""
-        return self.velocity + np.cross(self.angular_velocity, self.offset) - self.carried
+        return self.velocity + cross(self.angular_velocity, self.offset) - self.carried
 
     @property
     def arm(self) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -30,12 +31,12 @@ class Series:
     # what it would be a share of if the size were no more than what moves; absent: the size
     motion: float | None = None
 
-    @property
+    @cached_property
     def length(self) -> Array:
         """The residual's length at each instant."""
         return np.asarray(np.linalg.norm(self.residual, axis=1), dtype=float)
 
-    @property
+    @cached_property
     def ratio(self) -> Array:
         """The residual over its bound."""
         return self.length / self.bound
@@ -55,12 +56,12 @@ class Series:
         """The bound as a share of the size, at the same instant."""
         return float(self.bound[np.argmax(self.ratio)] / self.size)
 
-    @property
+    @cached_property
     def typical(self) -> float:
         """The root mean square residual as a share of what moves."""
         return float(np.sqrt((self.length**2).mean()) / (self.motion or self.size))
 
-    @property
+    @cached_property
     def room(self) -> float:
         """What is usually allowed, as a share of the size."""
         return float(np.median(self.bound) / self.size)

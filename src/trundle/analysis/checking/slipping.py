@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ...mechanics.algebra import Quaternion
 from ...mechanics.system import RollingSystem
+from ...verify.acting import cross
 from ...verify.law import applied
 from .case import Case
 from .comparisons import ACCELERATION, PATH, TURN, TURNING
@@ -130,7 +131,7 @@ def _reaction(system: RollingSystem, slopes: _Slopes) -> tuple[Array, Array, Arr
     at = slopes.at
     F, K, J, gyroscopic, _ = applied(system, at.samples(), at.velocity)
     R = float(system.body.mass) * slopes.V_rate.values - F
-    torque = np.einsum("nij,nj->ni", J, slopes.Omega_rate.values) + gyroscopic - K - np.cross(at.offset, R)
+    torque = np.einsum("nij,nj->ni", J, slopes.Omega_rate.values) + gyroscopic - K - cross(at.offset, R)
     n = np.broadcast_to(at.contact.normal.array(), R.shape)
     N = (R * n).sum(axis=1)
     return np.linalg.solve(J, torque[..., None])[..., 0], R - N[:, None] * n, N
