@@ -7,7 +7,7 @@ from tests.fitting.measured import RADIUS, in_hollow, scenario, seen
 
 import trundle as tr
 
-T = np.arange(50) / 25.0
+T = np.arange(100) / 40.0
 
 
 def test_the_height_shows_where_the_ball_rises_and_falls() -> None:
