@@ -24,6 +24,8 @@ from trundle import verify
 from trundle.analysis.checking import Mistake
 from trundle.analysis.fit import Alternative, Alternatives
 from trundle.display import Displayed, Headline, markup
+from trundle.tracks.film.calibration import Calibration, Turning
+from trundle.tracks.film.pinhole import PinholeCamera
 from trundle.verify import CardFigure
 
 TITLE = "<script>alert('½ & \"two\"')</script>"
@@ -99,6 +101,15 @@ def comparison() -> tr.VakonomicComparison:
 @cache
 def derivatives() -> tr.Sensitivities:
     return tr.sensitivities(scenario("level-turntable-nudged"), "start.velocity", duration=1.0)
+
+
+@cache
+def filmed() -> tr.FilmTrack:
+    track = tr.read_track(run())
+    camera = PinholeCamera(380.0, (160.0, 120.0), np.zeros(3), np.array([0.0, 0.0, 0.5]))
+    turning = Turning(3.4907, 1e-4, 0.0, 0.11, 0.05)
+    calibration = Calibration(camera, 0.1, turning, "the rim", track.time, np.zeros((len(track), 2)))
+    return tr.FilmTrack(**vars(track), calibration=calibration)
 
 
 @cache
@@ -187,6 +198,7 @@ RESULTS: tuple[Callable[[], Displayed], ...] = (
         (tr.conformance.Row(TITLE, "", "as shipped", "", "incline", 0.01, "failed", TITLE, *[math.nan] * 7),)
     ),
     lambda: tr.read_track(run()),
+    filmed,
 )
 
 

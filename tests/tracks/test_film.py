@@ -219,7 +219,7 @@ def test_a_slow_film_is_told_by_the_table_or_by_its_file(table_film: Path, tmp_p
     short = {**SEEN, "end": "2 s"}
     with pytest.raises(InvalidValueError, match=r"If it is in slow motion: slow=8"):
         tr.track_film(table_film, table_rate=8 * RATE, **short)
-    found = tr.track_film(table_film, slow=8, table_rate=8 * RATE, **short)
+    found = tr.track_film(table_film, slow=8, table_rate=f"{8 * RATE} rad/s", **short)
     assert abs(found.rate[0] / (8 * RATE) - 1) < 1e-3
     assert abs(found.time[-1] - 60 / 240) < 1e-9
     same = tr.track_film(table_film, frame_rate=240, **short)

@@ -242,7 +242,7 @@ def _check_turning(found: Calibration, table_rate: Any, speed: str) -> None:
         raise InvalidValueError("mark_colour", "must be of a mark that turns evenly", received, remedy)
     if table_rate is None:
         return
-    rate = abs(float(to_si(table_rate, "rate", "table_rate")))
+    rate = abs(float(to_si(table_rate, "angular velocity", "table_rate")))
     ratio = rate / abs(turning.rate)
     if abs(ratio - 1) > _ASTRAY:
         whole = round(ratio)
