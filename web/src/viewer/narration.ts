@@ -44,6 +44,11 @@ function length(metres: number): string {
   return `${Number((metres * scale).toPrecision(2))} ${unit}`
 }
 
+/** Does the support turn, so that it has an axis to speak of? */
+function turns(orientation: Float32Array | undefined): boolean {
+  return orientation?.some((value, i) => Math.abs(value - orientation[i % 4]!) > 1e-6) ?? false
+}
+
 /** Where the body of a run is at a time, where it goes, and how. */
 export function described(scene: Scene, time: number): string {
   const { columns, header } = scene
@@ -51,9 +56,10 @@ export function described(scene: Scene, time: number): string {
   let at = 0
   while (at + 1 < times.length && (times[at + 1] ?? 0) <= time) at += 1
   const speeds = Array.from(times, (_, i) => Math.hypot(...row(velocity, i)))
-  const most = Math.max(...speeds)
+  const most = speeds.reduce((one, other) => Math.max(one, other), 0)
   const speed = speeds[at] ?? 0
-  const round = header.support.moves || header.support.rim !== null || header.support.deep
+  const { support } = header
+  const round = support.rim !== null || (support.flat && turns(columns.support_orientation))
   const from = round ? 'axis' : 'start'
   const home: Triple = round ? [0, 0, 0] : row(position, 0)
   const [x, y, z] = row(position, at).map((value, i) => value - home[i]!) as Triple
