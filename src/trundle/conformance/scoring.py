@@ -11,15 +11,14 @@ from typing import Any
 from ..errors import InvalidValueError
 from . import engines as shipped
 from .answers import CANNOT as CANNOT_OUTCOME
-from .answers import NOT_FINITE, OK, Answer
+from .answers import NOT_FINITE, NOT_INSTALLED, OK, TOO_SLOW, Answer
 from .case import Case, Motion
 from .engines import BEST, SHIPPED, CannotInstallError, Setting
 from .measuring import cut_off, errors_of
 from .results import Row, Score
-from .running import LIMIT, TOO_SLOW, Adapter
+from .running import LIMIT, Adapter
 
 STEPS = (1e-2, 1e-3, 1e-4)  # s
-NOT_INSTALLED = "not installed"
 Told = Callable[[str], object]
 
 
