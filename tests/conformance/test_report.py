@@ -184,3 +184,21 @@ def test_an_engine_that_is_installed_rolls_down_an_incline(name: str) -> None:
     assert answer.engine.startswith(engine.title)
     assert answer.motion is not None
     assert errors_of(CASES["incline"], CASES["incline"].exact(), answer.motion).position < 0.02
+
+
+def test_what_is_done_is_kept_when_it_is_interrupted(
+    program: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The program answers the first task, and sends the signal with the second."""
+    monkeypatch.chdir(tmp_path)
+    mine = program(
+        "mark = pathlib.Path('mark'); there = mark.exists(); mark.touch()\n"
+        "    if there:\n"
+        "        os.kill(os.getppid(), signal.SIGINT); time.sleep(3600)\n"
+        '    print(\'{"cannot": "no balls"}\', flush=True)'
+    )
+    arguments = ["--case", "incline", "--case", "dome", "--step", "1 ms"]
+    with pytest.raises(SystemExit, match="130"):
+        trundle(["score", "--adapter", " ".join(mine), *arguments])
+    assert "trundle: interrupted; 1 of the runs written" in capsys.readouterr().err
+    assert [row.case for row in Score.load("score/score.nc").rows] == ["incline"]

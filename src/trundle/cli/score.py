@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..errors import InvalidValueError, UnknownNameError
-from . import CARD_FAILED, screen
+from . import CARD_FAILED, screen, signals
 
 if TYPE_CHECKING:
-    from ..conformance import Case, Entrant, Score
+    from ..conformance import Case, Entrant, Row, Score
 
 DATA, TABLE, PAGE = "score.nc", "score.md", "score.html"
 
@@ -143,7 +143,7 @@ def _run(
     quiet: bool,
 ) -> Score:
     """Score, and add the rows to those of the file; say what has changed. Without entrants, return what is there."""
-    from ..conformance import Score, score, scoring
+    from ..conformance import Score, scoring
     from ..conformance import report as reports
     from ..mechanics import checks
     from .writing import check_folder, write_together
@@ -152,13 +152,16 @@ def _run(
     patience = checks.positive(limit, "time", "--limit")
     check_folder(folder, (DATA, TABLE, PAGE))
     older = Score.load(folder / DATA) if (folder / DATA).exists() else Score(())
-    found = (
-        older
-        if not entrants
-        else score(
-            entrants, cases, dts, limit=patience, tell=lambda line: None if quiet else screen.note(f"{line} ...")
-        )
-    )
+    rows: list[Row] = [] if entrants else list(older.rows)
+    stopped: int | str | None = None
+    try:
+        for row in scoring.runs(entrants, cases, dts, limit=patience, tell=partial(_tell, quiet)):
+            rows.append(row)  # noqa: PERF402  those that are there are kept, whatever stops it
+    except KeyboardInterrupt:
+        stopped = signals.INTERRUPTED
+    except SystemExit as end:
+        stopped = end.code
+    found = Score(tuple(rows))
     for line in found.changes_from(older):
         if not quiet:
             screen.note(f"changed: {line}")
@@ -167,5 +170,14 @@ def _run(
     if report:
         files[TABLE] = partial(_put, reports.markdown(everything))
         files[PAGE] = partial(_put, reports.page(everything, cases))
-    write_together(folder, files)
+    if rows or stopped is None:
+        write_together(folder, files)
+    if stopped is not None:
+        screen.note(f"trundle: interrupted; {len(rows)} of the runs written" if rows else "trundle: interrupted")
+        raise SystemExit(stopped)
     return found
+
+
+def _tell(quiet: bool, line: str) -> None:
+    if not quiet:
+        screen.note(f"{line} ...")

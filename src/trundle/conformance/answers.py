@@ -12,6 +12,7 @@ import numpy as np
 from .case import PARTS, Array, Case, Motion, extent, in_body_axes
 
 OK, CANNOT, FAILED, NOT_FINITE, BAD = "ok", "cannot", "failed", "not finite", "bad answer"
+TOO_SLOW, NOT_INSTALLED = "too slow", "not installed"
 _LOOSE = 1e-3  # of a unit quaternion's length, and of a start relative to its size: float32 is far inside
 _SMALL_TURN = 0.5  # rad between samples: up to there differences of orientations tell Ω
 _AGREES, _DISAGREES = 0.1, 0.5  # of the rate of turning, in the middle of all samples
@@ -24,7 +25,7 @@ class Answer:
     Parameters
     ----------
     outcome : str
-        "ok", "cannot", "failed", "not finite", "bad answer" or "too slow".
+        "ok", "cannot", "failed", "not finite", "bad answer", "too slow" or "not installed".
     message : str
         The reason where it is not "ok".
     motion : Motion, optional

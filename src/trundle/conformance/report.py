@@ -10,6 +10,7 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
 from ..display import Markup, escaped, joined
+from .answers import NOT_INSTALLED
 from .case import Case
 from .measuring import (
     CANNOT,
@@ -48,7 +49,7 @@ body { font: 16px/1.5 system-ui, sans-serif; color: #1a1a1a; background: #fff; m
 h1 { font-size: 1.6rem } h2 { font-size: 1.25rem; margin-top: 2.5rem } h3 { font-size: 1.05rem; margin-bottom: .3rem }
 table { border-collapse: collapse; font-size: .9rem } .wide { overflow-x: auto }
 th, td { border: 1px solid #d9d9d9; padding: .3rem .5rem; text-align: left; vertical-align: top }
-th { background: #f4f3ee; font-weight: 600 } td small { color: #5f5f5f; display: block }
+th { background: #f4f3ee; font-weight: 600 } td small { color: #4a4a4a; display: block } td span { white-space: nowrap }
 svg { max-width: 100%; height: auto } figure { margin: 1rem 0 } p { max-width: 46rem }
 """
 
@@ -183,18 +184,21 @@ def _table(
 
 
 def _cell(cell: Cell | None) -> str:
+    """Return one field of the matrix; why an engine cannot is said with the case, and in the field's own title."""
     if cell is None:
         return "<td></td>"
     sign, colour = _LOOKS[cell.name]
-    last = cell.finest
-    numbers = f"{_number(last.worst)} at {last.step:g} s" if math.isfinite(last.worst) else ""
-    why = (
-        f"falls with: {cell.cause}"
-        if cell.cause
-        else "; ".join(dict.fromkeys(r.message for r in cell.rows if r.message))
-    )
-    small = "".join(f"<small>{escaped(line)}</small>" for line in (numbers, why) if line)
-    return f'<td style="background:{colour}">{sign} {escaped(cell.name)}{small}</td>'
+    last, why = cell.finest, _reason(cell)
+    lines = [f"{_number(last.worst)} at {1e3 * last.step:g} ms"] if math.isfinite(last.worst) else []
+    lines += [f"falls with: {cell.cause}"] if cell.cause else []
+    small = "".join(f"<small>{escaped(line)}</small>" for line in lines)
+    told = f' title="{escaped(why)}"' if why else ""
+    return f'<td style="background:{colour}"{told}><span>{sign} {escaped(cell.name)}</span>{small}</td>'
+
+
+def _reason(cell: Cell) -> str:
+    """Return what was said where there are no numbers at some step."""
+    return "; ".join(dict.fromkeys(row.message for row in cell.rows if row.message))
 
 
 def _section(name: str, case: Case | None, cells: Sequence[Cell]) -> Markup:
@@ -202,9 +206,11 @@ def _section(name: str, case: Case | None, cells: Sequence[Cell]) -> Markup:
     title = f"<h3>{escaped(case.title if case else name)} <small>({escaped(name)})</small></h3>"
     about = _p(" ".join(case.about.split())) if case else ""
     drawn = [cell for cell in cells if any(math.isfinite(row.worst) for row in cell.rows)]
-    if not drawn:
-        return joined([Markup(title), about, _p("No engine came to numbers.")])
-    return joined([Markup(title), about, Markup(f"<figure>{_svg(curves(drawn))}</figure>")])
+    picture = Markup(f"<figure>{_svg(curves(drawn))}</figure>") if drawn else _p("No engine came to numbers.")
+    said = [cell for cell in cells if _reason(cell) and cell.rows[0].outcome != NOT_INSTALLED]
+    reasons = dict.fromkeys(f"{cell.engine}: {_reason(cell)}" for cell in said)
+    left_out = Markup(f"<ul>{''.join(f'<li>{escaped(line)}</li>' for line in reasons)}</ul>") if reasons else Markup()
+    return joined([Markup(title), about, picture, left_out])
 
 
 def curves(cells: Sequence[Cell]) -> Figure:

@@ -15,10 +15,9 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-from .answers import FAILED, Answer, read_answer
+from .answers import FAILED, TOO_SLOW, Answer, read_answer
 from .case import Case
 
-TOO_SLOW = "too slow"
 LIMIT = 60.0  # s for an answer
 STARTING = 60.0  # s more for the first one, in which the engine is imported
 _MOST_BYTES = 256 * 2**20  # of an answer

@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import math
 import shlex
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from ..errors import InvalidValueError
 from . import engines as shipped
 from .answers import CANNOT as CANNOT_OUTCOME
-from .answers import NOT_FINITE, OK, Answer
+from .answers import NOT_FINITE, NOT_INSTALLED, OK, TOO_SLOW, Answer
 from .case import Case, Motion
 from .engines import BEST, SHIPPED, CannotInstallError, Setting
 from .measuring import cut_off, errors_of
 from .results import Row, Score
-from .running import LIMIT, TOO_SLOW, Adapter
+from .running import LIMIT, Adapter
 
 STEPS = (1e-2, 1e-3, 1e-4)  # s
-NOT_INSTALLED = "not installed"
 Told = Callable[[str], object]
 
 
@@ -105,37 +104,45 @@ def score(
     >>> [(row.outcome, row.message) for row in found.rows][:1]
     [('failed', 'no-such-program cannot be started: No such file or directory')]
     """
+    return Score(tuple(runs(entrants, cases, steps, limit=limit, tell=tell)))
+
+
+def runs(
+    entrants: Iterable[Entrant],
+    cases: Sequence[Case],
+    steps: Sequence[float] = STEPS,
+    *,
+    limit: float = LIMIT,
+    tell: Told = lambda _: None,
+) -> Iterator[Row]:
+    """Yield the rows of `score` as they come, so that those that are there can be kept."""
     exact = {case.name: case.exact() for case in cases}
-    rows: list[Row] = []
     for entrant in entrants:
         try:
             adapter = entrant.start(limit)
         except CannotInstallError as error:
             reason = Answer(NOT_INSTALLED, str(error))
             cells = [(setting, case, dt) for setting in entrant.settings for case in cases for dt in steps]
-            rows += [_row(entrant, *cell, reason, None) for cell in cells if not cell[0].of]
+            yield from (_row(entrant, *cell, reason, None) for cell in cells if not cell[0].of)
             continue
         with adapter:
             for setting in entrant.settings:
                 tell(f"{entrant.name}, {setting.name}")
                 for case in cases:
-                    rows += _runs(adapter, entrant, setting, case, steps, exact[case.name])
-    return Score(tuple(rows))
+                    yield from _runs(adapter, entrant, setting, case, steps, exact[case.name])
 
 
 def _runs(
     adapter: Adapter, entrant: Entrant, setting: Setting, case: Case, steps: Sequence[float], exact: Motion
-) -> list[Row]:
+) -> Iterator[Row]:
     """Run one case at all steps, the coarsest first: where one cannot or is late, the finer ones are not tried."""
-    rows: list[Row] = []
     answer: Answer | None = None
     for dt in sorted(steps, reverse=True):
         if answer is None or answer.outcome not in (CANNOT_OUTCOME, TOO_SLOW):
             answer = adapter.answer(case, dt, dict(setting.values))
         elif answer.outcome == TOO_SLOW:
             answer = Answer(TOO_SLOW, "not tried: a longer step is too slow already")
-        rows.append(_row(entrant, setting, case, dt, answer, exact))
-    return rows
+        yield _row(entrant, setting, case, dt, answer, exact)
 
 
 def _row(entrant: Entrant, setting: Setting, case: Case, dt: float, answer: Answer, exact: Motion | None) -> Row:
