@@ -90,6 +90,7 @@ export class Controls {
       track,
       element('div', 'tr-reading', {}, this.clock, this.total),
       this.speed,
+      this.flashes,
       this.looping,
     )
   }
@@ -126,7 +127,6 @@ export class Controls {
       iconButton('home', 'Camera back to its place (C)', () => viewer.resetCamera()),
       iconButton('top', 'From above (T)', () => viewer.topView()),
       this.following,
-      this.flashes,
     )
     return element('div', 'tr-row tr-view', {}, frames, arrows, camera)
   }
