@@ -35,7 +35,7 @@ demo: .venv/installed
 
 # The web part first: it fetches what the browser tests put into a page to judge it. Lint and types are judged beside it.
 test: .venv/installed-test
-	@if [ -f .ci/chromium ]; then sh .ci/chromium; fi
+	@for program in chromium ffmpeg; do if [ -f .ci/$$program ]; then sh .ci/$$program; fi; done
 	@$(MAKE) --no-print-directory -j 2 lint-python check-web
 	$(PYTEST)
 

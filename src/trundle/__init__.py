@@ -101,6 +101,7 @@ if TYPE_CHECKING:
     from .simulation.trajectory import Event, Trajectory
     from .solve.exact import ClosedForm
     from .tracks import Track, read_track
+    from .tracks.film import FilmTrack, track_film
     from .verify import Card
 
 # Public name -> module that holds it: `import trundle` loads nothing until a name is used.
@@ -199,6 +200,7 @@ _HOMES = {
     "analysis.sweep": ("sweep", "Sweep", "tolerance", "Tolerance"),
     "analysis.vakonomic": ("compare_vakonomic", "vakonomic_path", "VakonomicComparison", "VakonomicPath"),
     "tracks": ("read_track", "Track"),
+    "tracks.film": ("track_film", "FilmTrack"),
     "verify": ("Card",),
     "analysis.checking": ("check", "check_equations", "Check", "Mistake"),
 }
@@ -228,6 +230,7 @@ __all__ = [
     "Equilibria",
     "Equilibrium",
     "Event",
+    "FilmTrack",
     "Fixed",
     "Force",
     "FreeAxle",
@@ -329,6 +332,7 @@ __all__ = [
     "sweep",
     "to_turntable",
     "tolerance",
+    "track_film",
     "tracks",
     "twin",
     "units",

@@ -14,6 +14,7 @@ MODULES = {  # what each brings, as it is imported
     "numba": ("numba",),
     "parquet": ("pyarrow",),
     "sweep": ("dask", "distributed", "zarr"),
+    "video": ("cv2",),
 }
 
 

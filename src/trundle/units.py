@@ -40,7 +40,7 @@ OFFERED: dict[str, dict[str, float]] = {
     "angular velocity": {"rad/s": 1.0, "rpm": math.pi / 30, "turn/s": 2 * math.pi, "deg/s": math.pi / 180},
     "force": {"N": 1.0, "mN": 1e-3},
     "torque": {"N*m": 1.0, "mN*m": 1e-3},
-    "inertia": {"kg*m^2": 1.0, "g*cm^2": 1e-7},
+    "inertia": {"kg*m^2": 1.0, "g*m^2": 1e-3, "mg*m^2": 1e-6, "g*cm^2": 1e-7},
     "damping": {"kg/s": 1.0, "g/s": 1e-3},
     "quadratic damping": {"kg/m": 1.0, "g/m": 1e-3},
     "rotational damping": {"N*m*s": 1.0, "mN*m*s": 1e-3},

@@ -18,9 +18,14 @@ from playwright.sync_api import Error as BrowserError
 from . import serving
 from .launching import ARGUMENTS, NAMES
 
-SIZES = {"phone": (390, 844), "laptop": (1366, 768), "projector": (1920, 1080)}
+SIZES = {"phone": (390, 844), "sideways": (844, 390), "laptop": (1366, 768), "projector": (1920, 1080)}
 SCHEMES = ("light", "dark")
 PAGES = {
+    "start": "#/",
+    "challenges": "#/challenges",
+    "challenge": "#/challenges/which-is-hollow",
+    "report": "#/report",
+    "notes": "#/notes",
     "bench": "#/bench",
     "bench-bowl": "#/bench?name=ball-in-a-turning-bowl",
     "bench-coin": "#/bench?name=coin-in-a-circle",

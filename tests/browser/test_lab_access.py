@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from playwright.sync_api import Page, expect
 
+import trundle as tr
 from trundle.scenario import files
 
 from .axe import OF_COLOURS, violations
@@ -14,7 +16,9 @@ from .screenshots import OPENED, PAGES
 from .visiting import Visitor
 
 # The tour's steps are of one make: the first, one with choices, the guess, the one with two stages.
-JUDGED = [name for name in PAGES if name not in ("tour-2", "tour-3", "tour-5", "bench-coin")]
+# The front door, the challenges and what is printed are judged where they are used.
+STAGED = [name for name in PAGES if name not in ("start", "challenges", "challenge", "report", "notes")]
+JUDGED = [name for name in STAGED if name not in ("tour-2", "tour-3", "tour-5", "bench-coin")]
 
 
 # Where it opens, and what is in it once it is complete.
@@ -233,6 +237,89 @@ def test_the_keys_of_the_film(visitor: Visitor) -> None:
     eventually(page, lambda: at_time(stage, 0.02))
     page.keyboard.press("End")
     eventually(page, lambda: at_time(stage, 20.0))
+
+
+# Of everything that is on or off, chosen or not: its kind, whether it is on, and how it looks.
+STATES = """() => [...document.querySelectorAll('[aria-pressed], [aria-checked], [aria-selected], input[role=switch]')]
+    .filter((one) => one.checkVisibility() && !one.disabled).map((one) => {
+        const { backgroundColor, borderBottomColor, color } = getComputedStyle(one)
+        const on = one.matches(':checked, [aria-pressed=true], [aria-checked=true], [aria-selected=true]')
+        const kind = one.getAttribute('class') ?? one.getAttribute('role')
+        return [kind, on, `${backgroundColor} ${borderBottomColor} ${color}`]
+    })"""
+
+
+def test_forced_colours_keep_every_state(visitor: Visitor) -> None:
+    page = visitor.open("#/bench?name=level-turntable-nudged", cards=False, size=LAPTOP, forced_colors="active")
+    settle(page)
+    come_to_rest(page)
+    looks: dict[str, dict[bool, set[str]]] = {}
+    for kind, on, look in page.evaluate(STATES):
+        looks.setdefault(kind, {True: set(), False: set()})[on].add(look)
+    both = {kind: found for kind, found in looks.items() if found[True] and found[False]}
+    assert {"tool", "tab", "tr-segment", "tr-switch", "switch"} <= set(both)
+    for kind, found in both.items():
+        assert not found[True] & found[False], f"{kind} looks the same on and off"
+    for slider in (page.locator(".controls .slider").first, page.locator(".tr-slider")):
+        box = slider.bounding_box()
+        assert box
+        middle = {"x": box["x"] + 12, "y": box["y"] + box["height"] / 2 - 1, "width": box["width"] - 24, "height": 2}
+        row = Stage(page, page).picture(middle)[0]
+        assert (np.abs(row - row[-1]).sum(axis=1) == 0).mean() > 0.1, "no track right of the thumb"
+        beside = Stage(page, page).picture({**middle, "y": box["y"] - 3})[0]
+        assert (row[-1] != beside[-1]).any(), "the track is of the colour of the page"
+    current = page.locator(".nav [aria-current]").evaluate("one => getComputedStyle(one).backgroundColor")
+    other = page.locator(".nav a:not([aria-current])").first.evaluate("one => getComputedStyle(one).backgroundColor")
+    assert current != other
+    assert violations(page) == []
+
+
+def test_the_motion_is_told_in_words_at_a_pace_that_one_can_set(visitor: Visitor) -> None:
+    bench = Bench(visitor.open("#/bench?name=level-turntable-nudged", drawn=False, cards=False))
+    page = bench.page
+    said = page.get_by_test_id("narration")
+    page.keyboard.press("End")
+    run = tr.Scenario.load("level-turntable-nudged").run()
+    x, y, _ = run.data.position.values[-1]
+    far = f"{float(f'{100 * np.hypot(x, y):.2g}'):g} cm from the axis"
+    expect(said).to_contain_text(f"20.0 s: ball {far}")
+    expect(said).to_contain_text("at an even speed")
+    assert said.get_attribute("aria-live") == "polite"
+    pace = page.get_by_role("combobox", name="Describe the motion")
+    pace.focus()
+    box = pace.bounding_box()
+    assert box
+    assert box["width"] > 20, "the choice is seen while it has the focus"
+    pace.select_option("not at all")
+    expect(said).to_have_text("")
+    page.locator("[data-testid=stage]").first.focus()
+    page.keyboard.press("Home")
+    page.wait_for_timeout(700)
+    expect(said).to_have_text("")
+    page.reload()
+    bench.settle()
+    expect(pace).to_have_value("0")
+    pace.select_option("every 3 seconds")
+    expect(said).to_contain_text("0.0 s: ball 20 cm from the axis")
+
+
+def test_a_challenge_by_keyboard_alone(visitor: Visitor) -> None:
+    page = visitor.open("#/challenges", drawn=False, cards=False)
+    expect(page.locator("[data-challenge]").first).to_be_visible()
+    tab_to(page, "One round in five seconds", "A")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("heading", level=1)).to_have_text("One round in five seconds")
+    tab_to(page, "Half as long", "INPUT")
+    page.keyboard.press("ArrowDown")
+    expect(page.get_by_role("radio", name="Just as long")).to_be_checked()
+    tab_to(page, "Rate of the table", "INPUT")
+    page.keyboard.press("End")
+    for _ in range(4):
+        page.keyboard.press("PageDown")
+    expect(page.get_by_test_id("control-rate")).not_to_have_value("78")
+    tab_to(page, "Check", "BUTTON")
+    page.keyboard.press("Enter")
+    expect(page.get_by_test_id("result")).to_contain_text("Direction has turned by")
 
 
 @pytest.mark.parametrize("route", ["#/bench", "#/compare"])

@@ -16,6 +16,12 @@ from .bench import Bench, as_shown, circle_rate, drift, eventually, linked
 from .visiting import Visitor
 
 RATE = "support.motion.rate"
+LABELS = {
+    "body.radius": "Radius",
+    "support.tilt": "Tilt",
+    RATE: "Rate",
+    "run.duration": "Duration",
+}
 
 
 @pytest.fixture(scope="module")
@@ -181,7 +187,7 @@ def check(bench: Bench, place: tuple[float, ...]) -> None:
 
 
 def words_for(path: str, typed: str) -> str:
-    """The package's own words for a bad value at a key of the scenario."""
+    """The package's own words for a bad value at a key of the scenario, and the label for the key."""
     import tomllib
 
     tables = tomllib.loads(files.read("level-turntable-nudged"))
@@ -192,7 +198,8 @@ def words_for(path: str, typed: str) -> str:
     table[key] = typed
     with pytest.raises(tr.TrundleError) as caught:
         tr.Scenario.read(tables)
-    return str(caught.value).removeprefix("scenario: ")
+    # The page has the label of the control where the package has the key.
+    return re.sub(r"`[^`]*`", f"“{LABELS[path]}”", str(caught.value).removeprefix("scenario: "))
 
 
 def test_undo_and_redo_go_along_the_changes(visitor: Visitor) -> None:

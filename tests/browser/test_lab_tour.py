@@ -90,7 +90,7 @@ def ball(page: Page) -> None:
 
 
 def push(page: Page) -> None:
-    for share, remark in ((0.0, "Higher!"), (1.0, "Lower!"), (0.4, "Neither")):
+    for share, remark in ((0.0, "Higher!"), (1.0, "Lower!"), (0.4, "Neither:")):
         page.get_by_test_id("push-height").fill(str(share))
         expect(page.get_by_text(remark)).to_be_visible()
         loads = (tr.Force((0.1, 0.0, 0.0)), tr.Torque((0.0, 0.1 * share * 0.025, 0.0)))

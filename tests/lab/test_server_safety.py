@@ -11,6 +11,7 @@ from starlette.testclient import TestClient
 from tests.lab.conftest import shipped
 
 import trundle as tr
+from trundle.cli import run as command
 from trundle.lab import Settings, create_app
 from trundle.lab.limits import MOST_LOADS, MOST_SAMPLES, MOST_SAVED
 
@@ -92,6 +93,21 @@ def test_every_answer_says_what_a_page_may_load(lab: TestClient, path: str) -> N
     assert headers["referrer-policy"] == "no-referrer"
     assert headers["cross-origin-opener-policy"] == headers["cross-origin-resource-policy"] == "same-origin"
     assert "server" not in headers
+
+
+def test_only_hosts_that_are_named_may_hold_it_in_a_frame(lab: TestClient) -> None:
+    named = TestClient(create_app(Settings(embed_from=("moodle.example.org", "https://wiki.example.org:8443"))))
+    for client, wanted in ((lab, "'none'"), (named, "moodle.example.org https://wiki.example.org:8443")):
+        headers = client.get("/no-such-page", headers={"host": "localhost"}).headers
+        policy = dict(part.split(" ", 1) for part in headers["content-security-policy"].split("; "))
+        assert policy["frame-ancestors"] == wanted
+        assert policy["default-src"] == "'none'"
+
+
+@pytest.mark.parametrize("host", ["*", "https://*.example.org", "a b", "a;b", "'self'", "", "ftp://a", "https://a/b"])
+def test_what_is_no_host_may_not_embed(host: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert command(["lab", "--embed-from", host]) == 2
+    assert "must be a host" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("path", ["/docs", "/redoc", "/openapi.json"])

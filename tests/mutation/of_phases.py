@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from trundle.solve.samples import ROLLING
+from trundle.solve.samples import SLIPPING as SLIPPING_CODE
+
 from .planting import Mutant
 
 SLIPPING = "mechanics.slipping"
@@ -15,11 +18,11 @@ LATE = "            found = path.t_old + 1.01 * (fall - path.t_old), which"
 EARLY = "            found = path.t_old + 0.99 * (fall - path.t_old), which"
 RECORDED = """now = self._recorded(system, time, states)
         turning = self._turns(now.contact, Vector.of(Omega))
-        centre, V, R, Omega = _arrays(p, now.contact.centre, now.velocity, now.reaction, turning)
+        centre, V, R, Omega = arrays(p, now.contact.centre, now.velocity, now.reaction, turning)
         return Samples(
-            time, centre, p, V, Omega, q, R + 0.0, phase=_phase(time, self.code), support_coordinates=coordinates
+            time, centre, p, V, Omega, q, R + 0.0, phase=phase_of(time, self.code), support_coordinates=coordinates
 """
-RECORDED_ROLLING = """phase=_phase(time, self.code), support_coordinates=coordinates
+RECORDED_ROLLING = """phase=phase_of(time, self.code), support_coordinates=coordinates
         )
 
 
@@ -31,31 +34,43 @@ LIFT_OF_SLIP = 'found = {"lift": now.normal_force + self._floor(event_parameters
 PHASES = (
     Mutant(
         "lift 1 % late",
-        LAWS,
+        f"{LAWS}.friction",
         LIFT,
         'found = {"lift": N + floor + 0.01 * system.body.mass * system.gravity}',
         "ball_off_dome",
     ),
     Mutant(
         "lift 1 % early",
-        LAWS,
+        f"{LAWS}.friction",
         LIFT,
         'found = {"lift": N + floor - 0.01 * system.body.mass * system.gravity}',
         "ball_off_dome",
     ),
-    Mutant("lift missed", LAWS, LIFT, 'found = {"lift": 1.0 + 0.0 * N}', "ball_off_dome"),
+    Mutant("lift missed", f"{LAWS}.friction", LIFT, 'found = {"lift": 1.0 + 0.0 * N}', "ball_off_dome"),
     Mutant(
         "lift from slipping 1 % late",
-        LAWS,
+        f"{LAWS}.slipping",
         LIFT_OF_SLIP,
         'found = {"lift": now.normal_force + 0.01 * system.body.mass * system.gravity}',
         DOME,
     ),
-    Mutant("lift from slipping missed", LAWS, LIFT_OF_SLIP, 'found = {"lift": 1.0 + 0.0 * now.normal_force}', DOME),
-    Mutant("slip 1 % late", LAWS, CONE, CONE.replace("N, system", "N, 1.01 * system"), "ball_on_rocking_table"),
+    Mutant(
+        "lift from slipping missed",
+        f"{LAWS}.slipping",
+        LIFT_OF_SLIP,
+        'found = {"lift": 1.0 + 0.0 * now.normal_force}',
+        DOME,
+    ),
+    Mutant(
+        "slip 1 % late",
+        f"{LAWS}.friction",
+        CONE,
+        CONE.replace("N, system", "N, 1.01 * system"),
+        "ball_on_rocking_table",
+    ),
     Mutant(
         "slip 1 % early",
-        LAWS,
+        f"{LAWS}.friction",
         CONE,
         CONE.replace("N, system", "N, 0.99 * system"),
         "ball_on_rocking_table",
@@ -63,7 +78,7 @@ PHASES = (
     ),
     Mutant(
         "slip missed",
-        LAWS,
+        f"{LAWS}.friction",
         "if system.support.friction is not None:\n        " + CONE,
         "if False:\n        " + CONE,
         "ball_on_rocking_table",
@@ -103,19 +118,19 @@ PHASES = (
     ),
     Mutant(
         "landing late, 10 μm deep",
-        LAWS,
+        f"{LAWS}.flight",
         'return {"land": rest[3], **',
         'return {"land": rest[3] + 1e-5, **',
         "ball_lands_on_ice",
     ),
     Mutant(
         "landing early, 10 μm over it",
-        LAWS,
+        f"{LAWS}.flight",
         'return {"land": rest[3], **',
         'return {"land": rest[3] - 1e-5, **',
         "ball_bounces",
     ),
-    Mutant("landing missed", LAWS, 'return {"land": rest[3], **', "return {**", "ball_bounces"),
+    Mutant("landing missed", f"{LAWS}.flight", 'return {"land": rest[3], **', "return {**", "ball_bounces"),
     Mutant(
         "set down without its slip",
         FOLLOWING,
@@ -126,14 +141,14 @@ PHASES = (
     Mutant("bounces cut at a thousandth of the body", FOLLOWING, "SETTLED = 1e-6", "SETTLED = 1e-3", "ball_bounces"),
     Mutant(
         "rest left 1 % late",
-        LAWS,
+        f"{LAWS}.friction",
         "most = system.resistance * normal_force",
         "most = 1.01 * system.resistance * normal_force",
         "ball_comes_to_rest",
     ),
     Mutant(
         "rest left 1 % early",
-        LAWS,
+        f"{LAWS}.friction",
         "most = system.resistance * normal_force",
         "most = 0.99 * system.resistance * normal_force",
         "ball_comes_to_rest",
@@ -141,19 +156,19 @@ PHASES = (
     ),
     Mutant(
         "rest: R 1 % too large",
-        LAWS,
+        f"{LAWS}.resting",
         "R = support.material_acceleration(contact.centre, V) * m - F",
         "R = (support.material_acceleration(contact.centre, V) * m - F) * 1.01",
         "ball_comes_to_rest",
     ),
     Mutant(
         "the rim 1 % further out",
-        LAWS,
+        f"{LAWS}.law",
         'found["rim"] = surface.rim * surface.rim -',
         'found["rim"] = 1.02 * surface.rim * surface.rim -',
         "off_the_rim",
     ),
-    Mutant("the edge of the shape missed", LAWS, 'found["edge"] = covered', "pass", "over_its_edge"),
+    Mutant("the edge of the shape missed", f"{LAWS}.law", 'found["edge"] = covered', "pass", "over_its_edge"),
     Mutant(
         "V jumps by 1e-6 where it grips",
         FOLLOWING,
@@ -161,17 +176,23 @@ PHASES = (
         'Omega = at.Omega * (1 + 1e-6) if stop == "grip" else',
         "billiard",
     ),
-    Mutant("recorded as rolling while it slips", LAWS, RECORDED, RECORDED.replace("self.code", "ROLLING"), "billiard"),
+    Mutant(
+        "recorded as rolling while it slips",
+        f"{LAWS}.slipping",
+        RECORDED,
+        RECORDED.replace("self.code", str(ROLLING)),
+        "billiard",
+    ),
     Mutant(
         "recorded as slipping while it rolls",
-        LAWS,
+        f"{LAWS}.rolling",
         RECORDED_ROLLING,
-        RECORDED_ROLLING.replace("self.code", "SLIPPING"),
+        RECORDED_ROLLING.replace("self.code", str(SLIPPING_CODE)),
         "ball_on_rocking_table",
     ),
     Mutant(
         "flight: r moves a millionth too fast",
-        LAWS,
+        f"{LAWS}.flight",
         "moving = (*now.acceleration, now.gap_rate, *rest[:3])",
         "moving = (*now.acceleration, now.gap_rate, *(part * (1 + 1e-6) for part in rest[:3]))",
         AIR,
@@ -185,7 +206,7 @@ PHASES = (
     ),
     Mutant(
         "flight recorded with a force",
-        LAWS,
+        f"{LAWS}.flight",
         "np.zeros_like(p),\n            phase=phase,",
         "np.ones_like(p),\n            phase=phase,",
         "ball_bounces",

@@ -56,7 +56,13 @@ ORIENTATION = (
         EGG,
         refused="hold the body down",
     ),
-    Mutant("q not made a unit", LAWS, "return q / np.linalg.norm(q, axis=-1, keepdims=True)", "return q * 1.001", BOWL),
+    Mutant(
+        "q not made a unit",
+        f"{LAWS}.columns",
+        "return q / np.linalg.norm(q, axis=-1, keepdims=True)",
+        "return q * 1.001",
+        BOWL,
+    ),
     Mutant(
         "closed form: q by Ω of a moment later",
         "solve.closed_form",

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from ..views.scene import Scene
 
 _SEVERAL, _UNIT = ".html", ".fmu"
+_MODELS = (".xml", ".sdf", ".urdf")
 
 
 def export(
@@ -41,7 +42,8 @@ def export(
 
     .html: a page that plays it in any browser, without a network, to be mailed; of several runs, all on one stage.
     .glb: an animated model. .gif: an animation. .png, .svg: the figure of the path. .csv: its numbers. .nc: all of
-    it. .toml: its scenario. .fmu: the law as a unit of FMI 3.0, for other simulators.
+    it. .toml: its scenario. .fmu: the law as a unit of FMI 3.0, for other simulators. .xml, .sdf, .urdf: body, support
+    and start as MJCF, SDFormat or URDF, for physics engines.
 
     With --live, a page with sliders and curves that computes the motion where it is opened, without a network and
     without Python. What no page can compute is refused.
@@ -53,9 +55,11 @@ def export(
     target = Path(file).expanduser()
     _check(runs, target)
     _check_live(runs, target, slider or [], live=live)
-    told = ""
+    told = unsaid = ""
     if target.suffix.lower() == _UNIT:
         content, told = _unit(runs[0])
+    elif target.suffix.lower() in _MODELS:
+        content, unsaid = _model(runs[0], target.suffix)
     elif live:
         content = _live(runs[0], slider or [], bar=not quiet)
     else:
@@ -64,20 +68,23 @@ def export(
         temporary.write_bytes(content)
     if not quiet:
         screen.out(f"Wrote {target} ({_size(len(content))}{told})")
+        if unsaid:
+            screen.out(unsaid)
 
 
 def _check(names: list[str], target: Path) -> None:
     """Refuse what cannot be meant before anything is computed."""
-    formats = (*exports.FORMATS, _UNIT)
+    formats = (*exports.FORMATS, _UNIT, *_MODELS)
     if target.suffix.lower() not in formats:
         raise InvalidValueError("FILE", f"must end in one of {', '.join(formats)}", str(target))
     if target.is_dir() or not target.parent.is_dir():
         rule = "must not be a folder" if target.is_dir() else "must lie in a folder that exists"
         raise InvalidValueError("FILE", rule, str(target))
-    if target.suffix.lower() != _UNIT:
+    if target.suffix.lower() in exports.FORMATS:
         exports.check_installed(target.suffix, str(target))
     elif _is_run(names[0]):
-        raise InvalidValueError("RUN", f"must be a scenario for {_UNIT}", names[0], "A run is numbers, and has no law.")
+        rule = f"must be a scenario for {target.suffix}"
+        raise InvalidValueError("RUN", rule, names[0], "A run is numbers, and has no law.")
     if len(names) > 1 and target.suffix.lower() != _SEVERAL:
         remedy = f"Only {_SEVERAL} can hold several."
         raise InvalidValueError("RUN", "must be one", ", ".join(names), remedy)
@@ -123,6 +130,14 @@ def _unit(name: str) -> tuple[bytes, str]:
     scenario = load(name)
     made, where = fmu(scenario.system(), scenario.start_state(), scenario.title)
     return made, f", with a binary for {where}" if where else ", sources only: no C compiler is found here"
+
+
+def _model(name: str, ending: str) -> tuple[bytes, str]:
+    """Return a scenario as a model for physics engines, and what they must be told besides."""
+    from ..conformance.models import engine_model
+
+    text, unsaid = engine_model(load(name), ending)
+    return text.encode(), unsaid
 
 
 def _live(name: str, sliders: list[str], *, bar: bool) -> bytes:

@@ -25,6 +25,10 @@ def lab(
     network: Annotated[
         bool, typer.Option("--network", help="Let others on the network in, where --host is not this machine alone.")
     ] = False,
+    embed_from: Annotated[
+        list[str] | None,
+        typer.Option(metavar="HOST", help="Whose pages may show the lab in a frame; may stand several times."),
+    ] = None,
 ) -> None:
     """Serve the lab on this machine and open it in a browser: a turntable to spin and tilt, a ball to put down.
 
@@ -36,9 +40,12 @@ def lab(
     from contextlib import suppress
 
     from ..lab.links import page_of
+    from ..lab.security import check_embedder
     from ..lab.serving import is_loopback, serve
     from ..lab.settings import DEFAULT_PORT, Settings
 
+    for each in embed_from or []:
+        check_embedder(each)
     exposed = not is_loopback(host)
     if exposed and not network:
         remedy = "Anyone on the network could then use this machine to compute; add --network if that is meant."
@@ -55,7 +62,8 @@ def lab(
         if page and no_open:
             screen.out(f"{scenario} is at {address}{page}")
 
+    settings = Settings(host=host, exposed=exposed, embed_from=tuple(embed_from or ()))
     gc.enable()  # unlike other commands, this one lasts
     with suppress(KeyboardInterrupt):
-        serve(Settings(host=host, exposed=exposed), port, page=page, open_browser=not no_open, told=told)
+        serve(settings, port, page=page, open_browser=not no_open, told=told)
     screen.out("The lab has ended.")

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -14,7 +16,7 @@ from . import CARD_FAILED, screen
 if TYPE_CHECKING:
     from ..conformance import Case, Entrant, Score
 
-DATA = "score.nc"
+DATA, TABLE, PAGE = "score.nc", "score.md", "score.html"
 
 
 def score(
@@ -45,6 +47,18 @@ def score(
     order: Annotated[
         float | None, typer.Option(metavar="NUMBER", help="Fail where the error falls at a lower order.")
     ] = None,
+    report: Annotated[
+        bool, typer.Option("--report", help="Write score.md and score.html too; without an engine, of the rows there.")
+    ] = False,
+    junit: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the outcome as JUnit XML.")] = None,
+    repro: Annotated[
+        tuple[str, str] | None,
+        typer.Option(metavar="ENGINE CASE", help="Print a script that shows one finding without trundle."),
+    ] = None,
+    cases: Annotated[
+        Path | None,
+        typer.Option(metavar="FOLDER", help="Write cases and exact runs as JSON and CSV, with a scorer of one file."),
+    ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the rows as JSON, and nothing else.")] = False,
 ) -> None:
@@ -55,29 +69,49 @@ def score(
 
     Exit status: 0, all is well; 2, bad input; 3, an engine fails --at-most or --order; 130, interrupted; 1, all else.
     """
-    from ..conformance import cases, engines
+    from ..conformance import cases as known
+    from ..conformance import engines, portable
 
-    if "list" in (engine or ()):
+    if repro is not None:
+        screen.out(portable.script(*repro), end="")
+    elif "list" in (engine or ()):
         screen.show_names([(name, engines.engine(name).title) for name in engines.names()], "engine")
-        return
-    if "list" in (case or ()):
-        screen.show_names([(each.name, each.title) for each in cases()], "case")
-        return
-    entrants = _entrants(engine, adapter, ablations=ablations)
-    if not entrants:
-        remedy = "Name one with --engine, or give a program of yours with --adapter."
-        raise InvalidValueError("--engine", "must name what is to be scored", None, remedy)
-    found = _run(entrants, _cases(case), step, limit, output, quiet=quiet or as_json)
-    if as_json:
-        screen.out(json.dumps(found.as_dict(), indent=2, ensure_ascii=False))
-    elif not quiet:
-        screen.out(str(found))
-        screen.out(f"Wrote {output / DATA}")
-    failures = found.failures(at_most, order)
-    for line in failures:
-        screen.note(f"trundle: {line}")
-    if failures:
-        raise typer.Exit(CARD_FAILED)
+    elif "list" in (case or ()):
+        screen.show_names([(each.name, each.title) for each in known()], "case")
+    elif cases is not None:
+        _write(cases, portable.case_files(_cases(case)), quiet=quiet or as_json)
+    else:
+        entrants = _entrants(engine, adapter, ablations=ablations)
+        if not entrants and not (report and (output / DATA).exists()):
+            remedy = "Name one with --engine, or give a program of yours with --adapter."
+            raise InvalidValueError("--engine", "must name what is to be scored", None, remedy)
+        found = _run(entrants, _cases(case), step, limit, output, report=report, quiet=quiet or as_json)
+        if as_json:
+            screen.out(json.dumps(found.as_dict(), indent=2, ensure_ascii=False))
+        elif not quiet:
+            screen.out(str(found))
+            screen.out(f"Wrote {', '.join(str(output / name) for name in (DATA, *([TABLE, PAGE] if report else [])))}")
+        if junit is not None:
+            _write(junit.parent, {junit.name: portable.junit(found, at_most, order)}, quiet=quiet or as_json)
+        failures = found.failures(at_most, order)
+        for line in failures:
+            screen.note(f"trundle: {line}")
+        if failures:
+            raise typer.Exit(CARD_FAILED)
+
+
+def _write(folder: Path, texts: dict[str, str], *, quiet: bool) -> None:
+    """Write texts as files of a folder."""
+    from .writing import check_folder, write_together
+
+    check_folder(folder, tuple(texts))
+    written = write_together(folder, {name: partial(_put, text) for name, text in texts.items()})
+    if not quiet:
+        screen.out(f"Wrote {written[0] if len(written) == 1 else f'{len(written)} files to {folder}'}")
+
+
+def _put(text: str, path: Path) -> None:
+    path.write_text(text, encoding="utf-8")
 
 
 def _entrants(names: list[str] | None, commands: list[str] | None, *, ablations: bool) -> list[Entrant]:
@@ -99,21 +133,39 @@ def _cases(names: list[str] | None) -> list[Case]:
 
 
 def _run(
-    entrants: list[Entrant], cases: list[Case], steps: list[str] | None, limit: str, folder: Path, *, quiet: bool
+    entrants: list[Entrant],
+    cases: list[Case],
+    steps: list[str] | None,
+    limit: str,
+    folder: Path,
+    *,
+    report: bool,
+    quiet: bool,
 ) -> Score:
-    """Score, and add the rows to those of the file; say what has changed."""
+    """Score, and add the rows to those of the file; say what has changed. Without entrants, return what is there."""
     from ..conformance import Score, score, scoring
+    from ..conformance import report as reports
     from ..mechanics import checks
     from .writing import check_folder, write_together
 
     dts = [checks.positive(step, "time", "--step") for step in steps] if steps else scoring.STEPS
     patience = checks.positive(limit, "time", "--limit")
-    check_folder(folder, (DATA,))
+    check_folder(folder, (DATA, TABLE, PAGE))
     older = Score.load(folder / DATA) if (folder / DATA).exists() else Score(())
-    found = score(entrants, cases, dts, limit=patience, tell=lambda line: None if quiet else screen.note(f"{line} ..."))
+    found = (
+        older
+        if not entrants
+        else score(
+            entrants, cases, dts, limit=patience, tell=lambda line: None if quiet else screen.note(f"{line} ...")
+        )
+    )
     for line in found.changes_from(older):
         if not quiet:
             screen.note(f"changed: {line}")
     everything = found.with_rows_of(older)
-    write_together(folder, {DATA: everything.save})
+    files: dict[str, Callable[[Path], object]] = {DATA: everything.save}
+    if report:
+        files[TABLE] = partial(_put, reports.markdown(everything))
+        files[PAGE] = partial(_put, reports.page(everything, cases))
+    write_together(folder, files)
     return found

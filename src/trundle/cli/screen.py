@@ -152,6 +152,8 @@ class ProgressBar:
         Whether there may be a bar at all.
     members : int
         Of a sweep: how many are run, to say how many a second; 0 of one run.
+    doing : str
+        What takes so long, in a word.
 
     Examples
     --------
@@ -159,8 +161,8 @@ class ProgressBar:
     ...     bar(0.5)
     """
 
-    def __init__(self, *, wanted: bool, members: int = 0) -> None:
-        self.wanted, self.members = wanted and sys.stderr.isatty(), members
+    def __init__(self, *, wanted: bool, members: int = 0, doing: str = "rolling") -> None:
+        self.wanted, self.members, self.doing = wanted and sys.stderr.isatty(), members, doing
         self._began = time.monotonic()
         self._bar: Any = None
 
@@ -185,7 +187,7 @@ class ProgressBar:
     def _begin(self) -> None:
         from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
-        columns = [TextColumn("rolling"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn()]
+        columns = [TextColumn(self.doing), BarColumn(), TaskProgressColumn(), TimeRemainingColumn()]
         if self.members:
             columns.append(TextColumn("{task.fields[rate]}"))
         self._bar = Progress(*columns, console=_console(stderr=True), transient=True)

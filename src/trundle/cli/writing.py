@@ -17,7 +17,7 @@ class CannotWriteError(TrundleError):
     """The files of a run could not be written."""
 
 
-def check_folder(folder: Path, names: tuple[str, ...]) -> None:
+def check_folder(folder: Path, names: tuple[str, ...], key: str = "--output") -> None:
     """Find out, before the work is done, whether files can be written to a folder that may not exist yet.
 
     Examples
@@ -30,15 +30,13 @@ def check_folder(folder: Path, names: tuple[str, ...]) -> None:
         allowed = os.access(above, os.W_OK | os.X_OK)
     except (OSError, ValueError) as error:  # a name too long, for one
         remedy = f"The system says: {_reason(error)}."
-        raise InvalidValueError("--output", "must be a folder", str(folder), remedy) from None
+        raise InvalidValueError(key, "must be a folder", str(folder), remedy) from None
     if not above.is_dir():
-        raise InvalidValueError("--output", "must be a folder", str(folder), f"'{above}' is a file.")
+        raise InvalidValueError(key, "must be a folder", str(folder), f"'{above}' is a file.")
     if taken:
-        raise InvalidValueError("--output", "must leave room for files", str(folder), f"'{taken}' is a folder there.")
+        raise InvalidValueError(key, "must leave room for files", str(folder), f"'{taken}' is a folder there.")
     if not allowed:
-        raise CannotWriteError(
-            f"'{above}' may not be written to: name another folder with --output. Nothing was written."
-        )
+        raise CannotWriteError(f"'{above}' may not be written to: name another folder for {key}. Nothing was written.")
 
 
 def write_together(folder: Path, files: Mapping[str, Callable[[Path], object]]) -> list[Path]:

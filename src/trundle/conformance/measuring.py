@@ -11,7 +11,8 @@ import numpy as np
 from .case import Array, Case, Motion, extent
 
 EXACT, CONVERGES, SLOWLY, PLATEAUS, DIVERGES = "exact", "converges", "converges slowly", "plateaus", "diverges"
-SILENT_LIMIT, FLOAT_FLOOR, CANNOT, NOT_RUN = "silent limit", "float32 floor", "cannot", "no result"
+SILENT_LIMIT, FLOAT_FLOOR, ONE_STEP = "silent limit", "float32 floor", "one step"
+CANNOT, NOT_RUN = "cannot", "no result"
 CLASSES = {  # each with what it means
     EXACT: "at rounding, whatever the step",
     CONVERGES: "the error falls at least as the step to the power 0.9",
@@ -20,6 +21,7 @@ CLASSES = {  # each with what it means
     DIVERGES: "a smaller step makes it worse, or no numbers come out",
     SILENT_LIMIT: "a speed is cut off at a fixed value, and nothing says so",
     FLOAT_FLOOR: "what is left is the rounding of single precision: the same run in double falls on",
+    ONE_STEP: "numbers at one step only, which tell nothing of how they fall",
     CANNOT: "the engine has no words for it, and says so",
     NOT_RUN: "it failed, took too long, or could not be installed",
 }
@@ -129,7 +131,7 @@ def classify(errors: Mapping[float, float]) -> str:
         return DIVERGES
     p = order(np.array(list(known)), np.array(list(known.values())))
     if math.isnan(p):
-        return NOT_RUN
+        return ONE_STEP
     if known[min(known)] <= _ROUNDING:
         return CONVERGES
     return CONVERGES if p >= _FAST else SLOWLY if p >= _FLAT else PLATEAUS if p > _WORSE else DIVERGES

@@ -179,7 +179,9 @@ class Score(Displayed):
             shown = [f"{row.worst:.1e}" if row.outcome == "ok" else row.outcome for row in cell.rows]
             p = "" if math.isnan(cell.order) or cell.name == EXACT else f"{cell.order:.1f}"
             why = cell.cause or next((row.message for row in cell.rows if row.message), "")
-            yield (cell.engine, cell.setting, cell.case, cell.name, p, ", ".join(dict.fromkeys(shown)), why)
+            ran = any(row.outcome == "ok" for row in cell.rows)
+            errors = ", ".join(shown if ran else dict.fromkeys(shown))
+            yield (cell.engine, cell.setting, cell.case, cell.name, p, errors, why)
 
     def _merged(self) -> Iterator[tuple[str, ...]]:
         """Yield `lines`, one for all cases of an engine of which nothing could be run."""

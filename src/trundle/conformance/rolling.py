@@ -19,6 +19,7 @@ from .case import PARTS, Array, Case, Motion, Task
 _SHAPES: dict[type[Shape], str] = {Sphere: "sphere", Disc: "disc", Ellipsoid: "ellipsoid"}
 _SURFACES: dict[type[Surface], str] = {Plane: "plane", Dome: "dome"}
 _FINEST = 1e-14  # of a second route by DOP853
+_FOR = "for a physics engine"
 _MOTIONS = {"fixed": "fixed", "free-axle": "hinge", "spin": "driven"}
 
 
@@ -119,20 +120,18 @@ class Rolling(Case):
         """Refuse what the task has no words for."""
         system = self.scenario.system()
         support, surface, shape = system.support, system.support.surface, system.body.shape
-        for key, kind, known in (
-            ("body.kind", type(shape), _SHAPES),
-            ("support.kind", type(surface), _SURFACES),
+        motion = support.motion.kind
+        for key, word, received, words in (
+            ("body.kind", _SHAPES.get(type(shape)), type(shape).__name__, _SHAPES.values()),
+            ("support.kind", _SURFACES.get(type(surface)), type(surface).__name__, _SURFACES.values()),
+            ("support.motion.kind", _MOTIONS.get(motion), motion, _MOTIONS),
         ):
-            if kind not in known:
-                rule = f"must be one of {', '.join(each.__name__ for each in known)} to be scored"
-                raise ScenarioError(key, rule, kind.__name__, "", self.name)
-        if support.motion.kind not in _MOTIONS:
-            rule = f"must be one of {', '.join(_MOTIONS)} to be scored"
-            raise ScenarioError("support.motion.kind", rule, support.motion.kind, "", self.name)
+            if word is None:
+                raise ScenarioError(key, f"must be one of {', '.join(words)} {_FOR}", received, "", self.name)
         if support.friction is None:
-            raise ScenarioError("support.friction", "must be given to be scored", None, "Engines need it.", self.name)
+            raise ScenarioError("support.friction", f"must be given {_FOR}", None, "Engines need it.", self.name)
         if system.loads:
-            raise ScenarioError("loads", "must be absent to be scored", len(system.loads), "", self.name)
+            raise ScenarioError("loads", f"must be absent {_FOR}", len(system.loads), "", self.name)
 
     def exact(self, method: str = "auto") -> Motion:
         """Return the run of the scenario."""

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ..errors import InvalidValueError
 from . import engines as shipped
 from .answers import CANNOT as CANNOT_OUTCOME
 from .answers import NOT_FINITE, OK, Answer
@@ -56,9 +57,16 @@ class Entrant:
     @staticmethod
     def of_command(command: str) -> Entrant:
         """Return a program of somebody's: its settings are the two profiles, told by name."""
-        words = shlex.split(command)
+        try:
+            words = shlex.split(command)
+        except ValueError:  # a quotation mark without its other
+            words = []
+        if not words:
+            raise InvalidValueError("--adapter", "must be a command", command, "Give a program and its arguments.")
         settings = tuple(Setting(name, {"profile": name}) for name in (SHIPPED, BEST))
-        return Entrant(words[0].rpartition("/")[2], settings, lambda limit: Adapter(words, None, limit))
+        return Entrant(
+            " ".join(word.rpartition("/")[2] for word in words), settings, lambda limit: Adapter(words, None, limit)
+        )
 
 
 def score(

@@ -46,27 +46,14 @@ OUTPUTS = (
 
 @dataclass(frozen=True)
 class Routine:
-    """One function on a tape.
+    """One function on a tape."""
 
-    Parameters
-    ----------
-    name : str
-        What it is called.
-    said : str
-        What it returns, as a sentence.
-    arguments : tuple of (str, int or None)
-        Its arguments in the order of the tape's inputs: how many numbers each has; None, a number.
-    outputs : tuple of (Node or number)
-        What it returns.
-    tape : Tape
-        Holds them.
-    """
-
-    name: str
-    said: str
+    name: str  # what it is called
+    said: str  # what it returns, as a sentence
+    # its arguments in the order of the tape's inputs: how many numbers each has; None, a number
     arguments: tuple[tuple[str, int | None], ...]
-    outputs: tuple[Any, ...]
-    tape: Tape
+    outputs: tuple[Any, ...]  # what it returns
+    tape: Tape  # holds them
 
     def written(self, dialect: Callable[[Callable[[int], str]], Dialect], element: str) -> Any:
         """Return the steps and the results as `Tape.written`, the elements of an argument as the language has them."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import logging
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
 from typing import TYPE_CHECKING, Any, ParamSpec
 
@@ -339,6 +339,38 @@ def start(
     from .starts import start_by_hand
 
     return as_json(start_by_hand(scenario_from(data), at, velocity, nudge))
+
+
+@answering
+def possible(scenarios: Sequence[dict[str, Any]]) -> Answer:
+    """Say of each of several scenarios why it cannot start, or None where it can.
+
+    Examples
+    --------
+    >>> json.loads(possible([files.tables_of("tilted-turntable")]).body)
+    [None]
+    """
+    return as_json([_why_not(data) for data in scenarios])
+
+
+def _why_not(data: dict[str, Any]) -> dict[str, Any] | None:
+    """Return the refusal of a scenario, without running it: by its tables, its start, and the phase that follows."""
+    from ..solve import transitions
+
+    try:
+        if files.rolls_along_path(data):
+            path_from(data)
+            return None
+        scenario = scenario_from(data)
+        limits.check_timing(float(scenario.timing.duration), float(scenario.timing.every), limits.MOST_SAVED)
+        system, start = scenario.system(), scenario.start_state()
+        transitions.slipping(system, transitions.at_start(system, start))
+    except Exception as error:
+        refusal = refusal_of(error)
+        if refusal is None:
+            raise
+        return {"message": refusal.message, "key": refusal.key}
+    return None
 
 
 def told(scenario: Scenario | PathScenario) -> dict[str, Any]:

@@ -31,6 +31,7 @@ from .requests import (
     ToRoll,
     ToSimulate,
     ToStart,
+    ToStartAny,
     ToTry,
     described,
 )
@@ -144,6 +145,10 @@ def _asking(app: FastAPI, lab: Lab) -> None:
     async def start(request: Request, asked: ToStart) -> Response:
         at = asked.at.model_dump(exclude_none=True)
         return await lab.answer(request, answers.start, asked.scenario, at, asked.velocity, asked.nudge)
+
+    @app.post("/api/possible", **described("Of each scenario why it cannot start; null where it can."))
+    async def possible(request: Request, asked: ToStartAny) -> Response:
+        return await lab.answer(request, answers.possible, asked.scenarios)
 
     @app.post("/api/roll", **described("Roll a ball along a curve: a packed scene.", scene=True))
     async def roll(request: Request, asked: ToRoll) -> Response:

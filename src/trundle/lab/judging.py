@@ -21,6 +21,10 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 _MANY = 2000  # samples of a run that is judged
 _FACTORS = {unit: factor for units in OFFERED.values() for unit, factor in units.items()}
+# What is left of the scene of a mystery: how it moves, and over what.
+_MOTION = ("time", "position", "contact", "velocity", "angular_velocity", "orientation", "phase", "guiding_centre")
+_GROUNDS = ("support_", "body_")  # columns that begin so: poses and meshes
+_TOLD = ("gravity", "tilt", "to_world", "guiding_centre", "method")
 _OF: dict[str, Callable[[Array], float]] = {
     "largest": lambda values: float(values.max()),
     "smallest": lambda values: float(values.min()),
@@ -77,13 +81,16 @@ def run(challenge: Challenge, values: Mapping[str, float], body: str = "", sampl
 
 
 def _concealed(scene: Scene, challenge: Challenge, name: str) -> Scene:
-    """Return a scene that shows how a body moves, and says nothing of what it is."""
-    body = {**scene.header["body"], "kind": "sphere", "name": name, "label": name, "mass": None}
-    nothing = dict.fromkeys(("scenario", "formula", "card", "seconds"))
-    silent: dict[str, Any] = {**nothing, "scenario_toml": "", "findings": [], "events": []}
-    told = {**scene.header, **silent, "title": challenge.title, "body": body}
-    columns = scene.columns | {"contact_force": np.zeros_like(scene.columns["contact_force"])}
-    return replace(scene, header=told, columns=columns)
+    """Return a scene that shows how a body moves, and nothing else: what is not named here is left out."""
+    from ..views.scene.header import header_with
+
+    given = scene.header
+    body = {**given["body"], "kind": "sphere", "name": name, "label": name, "mass": None}
+    told = {key: given[key] for key in _TOLD}
+    header = header_with(challenge.title, given["duration"], body, given["support"], **told)
+    columns = {key: column for key, column in scene.columns.items() if key in _MOTION or key.startswith(_GROUNDS)}
+    columns["contact_force"] = np.zeros_like(scene.columns["contact_force"])
+    return replace(scene, header=header, columns=columns)
 
 
 def judge(challenge: Challenge, values: Mapping[str, float], answer: float | str | None) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from ..scenario.files import Bounds
 
 MOST_SAMPLES = 10_000  # of a scene; what a screen can show
 MOST_SAVED = 200_000  # of a file
+MOST_TRIED = 100  # scenarios at once of which it is asked whether they can start
 LONGEST = 3600.0  # s
 MOST_VALUES = 20_000  # numbers and texts in a scenario; a height field of 100 by 100 fits
 MOST_LOADS = 20

@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from starlette.responses import Response
 
 from ..views.viewer.exports import FORMATS
-from .limits import MOST_FIELDS, MOST_ROWS, MOST_SAMPLES, MOST_SIDE
+from .limits import MOST_FIELDS, MOST_ROWS, MOST_SAMPLES, MOST_SIDE, MOST_TRIED
 
 if TYPE_CHECKING:
     Ending = str
@@ -51,6 +51,12 @@ class AboutScenario(_Asked):
     """A question about one scenario."""
 
     scenario: Tables
+
+
+class ToStartAny(_Asked):
+    """Scenarios of which it is asked whether they can start."""
+
+    scenarios: Annotated[list[Tables], Field(min_length=1, max_length=MOST_TRIED)]
 
 
 class ToDraw(AboutScenario):

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import asyncio
 import ipaddress
+import re
 import socket
 from collections import Counter
-from collections.abc import Awaitable, Callable, MutableMapping
+from collections.abc import Awaitable, Callable, MutableMapping, Sequence
 from typing import Any
 from urllib.parse import urlsplit
 
 from starlette.exceptions import HTTPException
 
+from ..errors import InvalidValueError
 from .errors import Refusal, RefusedError, refused
 from .settings import Settings
 
@@ -36,19 +38,44 @@ CONTENT_SECURITY_POLICY = "; ".join(
         "manifest-src 'self'",
         "base-uri 'none'",
         "form-action 'none'",
-        "frame-ancestors 'none'",
     )
 )
 
 HEADERS = {
-    "content-security-policy": CONTENT_SECURITY_POLICY,
     "x-content-type-options": "nosniff",
     "referrer-policy": "no-referrer",
     "cross-origin-opener-policy": "same-origin",
     "cross-origin-resource-policy": "same-origin",
     "permissions-policy": "camera=(), microphone=(), geolocation=()",
 }
-_RAW_HEADERS = [(name.encode(), value.encode()) for name, value in HEADERS.items()]
+_EMBEDDER = re.compile(r"(https?://)?[a-z0-9-]+(\.[a-z0-9-]+)*(:\d{1,5})?", re.IGNORECASE)
+
+
+def policy(embed_from: Sequence[str] = ()) -> str:
+    """Return what a page of the lab may load, and which pages of others may hold it.
+
+    Examples
+    --------
+    >>> policy(("moodle.example.org",)).rpartition("; ")[2], policy().rpartition("; ")[2]
+    ('frame-ancestors moodle.example.org', "frame-ancestors 'none'")
+    """
+    return f"{CONTENT_SECURITY_POLICY}; frame-ancestors {' '.join(embed_from) or repr('none')}"
+
+
+def check_embedder(host: str) -> None:
+    """Refuse what is no host that pages come from.
+
+    Examples
+    --------
+    >>> check_embedder("https://moodle.example.org")
+    >>> check_embedder("*")
+    Traceback (most recent call last):
+    ...
+    trundle.errors.InvalidValueError: `--embed-from` must be a host; got '*'. Write for instance moodle.example.org...
+    """
+    if not _EMBEDDER.fullmatch(host):
+        remedy = "Write for instance moodle.example.org or https://moodle.example.org; name each host by itself."
+        raise InvalidValueError("--embed-from", "must be a host", host, remedy)
 
 
 class Guard:
@@ -68,6 +95,8 @@ class Guard:
 
     def __init__(self, app: Any, settings: Settings) -> None:
         self.app, self.settings = app, settings
+        headers = {"content-security-policy": policy(settings.embed_from), **HEADERS}
+        self._headers = [(name.encode(), value.encode()) for name, value in headers.items()]
         self._uploads: Counter[str] = Counter()  # files that are being sent or read, by who sent them
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -79,7 +108,7 @@ class Guard:
             await self.app(scope, receive, send)
             return
         headers = {name.decode("latin-1").lower(): value.decode("latin-1") for name, value in scope["headers"]}
-        sent = _with_headers(send)
+        sent = _with_headers(send, self._headers)
         try:
             check_host(headers.get("host", ""), self.settings)
             if scope["method"] not in ("GET", "HEAD", "OPTIONS"):
@@ -208,11 +237,11 @@ def _too_long(most: int) -> RefusedError:
     return refused(413, f"The request is longer than the {size} that are read. Send less.")
 
 
-def _with_headers(send: Send) -> Send:
+def _with_headers(send: Send, headers: list[tuple[bytes, bytes]]) -> Send:
     async def sent(message: MutableMapping[str, Any]) -> None:
         if message["type"] == "http.response.start":
             there = {name.lower() for name, _ in message.get("headers", [])}
-            added = [(name, value) for name, value in _RAW_HEADERS if name not in there]
+            added = [(name, value) for name, value in headers if name not in there]
             message = {**message, "headers": [*message.get("headers", []), *added]}
         await send(message)
 

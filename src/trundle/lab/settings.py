@@ -39,6 +39,8 @@ class Settings:
         The port that a Host header must name; absent: any.
     exposed : bool
         Whether others on the network may come: they then reach it by the machine's address or name.
+    embed_from : tuple of str
+        Hosts whose pages may hold the lab in a frame.
     workers, slow_workers : int
         Processes that answer what takes milliseconds, and what takes seconds.
     quick_time : float
@@ -75,6 +77,7 @@ class Settings:
     host: str = "127.0.0.1"
     port: int | None = None
     exposed: bool = False
+    embed_from: tuple[str, ...] = ()
     workers: int = field(default_factory=_processors)
     slow_workers: int = 2
     quick_time: float = 1.0

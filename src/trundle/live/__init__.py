@@ -1,7 +1,8 @@
-"""Pages that compute a motion where they are opened: the law printed into them, a method, sliders and curves."""
+"""Pages that compute a motion where they are opened, by the law printed into them, and sites of such pages."""
 
 from __future__ import annotations
 
 from .page import live_page
+from .site import site_of
 
-__all__ = ["live_page"]
+__all__ = ["live_page", "site_of"]

@@ -21,6 +21,7 @@ from ..solve.samples import Progress
 from ..views.scene import Scene as Drawn
 from ..views.scene import ground_under, places_of, scene_of
 from ..views.scene.body_mesh import body_mesh
+from ..views.scene.header import radius_about_centre
 from ..views.viewer.bundle import built
 from ..views.viewer.page import page_of
 from . import law
@@ -28,6 +29,7 @@ from .sliders import Slider, sliders_of
 
 _FIRST = 600  # samples of the motion that is shown until the page has its own
 _LOOKED_AT = 300  # samples of a run at the end of a slider: it says where the ground is needed
+_FAR = 1.5  # sizes of the motion in the file, up to which the ground is shown where other motions go
 _PICTURES = (3, 5, 7)  # meshes along a slider, as few as do
 _NEAR = 1e-3  # of a mesh's size: between them it is drawn so near
 _MOST_BYTES = 1_500_000
@@ -66,6 +68,11 @@ def live_page(scenario: Scenario, asked: Sequence[str] = (), *, progress: Progre
     >>> b"worker-src blob:" in page, len(page) < 1_500_000
     (True, True)
     """
+    return made(scenario, asked, progress=progress)[0]
+
+
+def made(scenario: Scenario, asked: Sequence[str] = (), *, progress: Progress | None = None) -> tuple[bytes, Drawn]:
+    """Return a live page, and what is drawn there first."""
     law.check(scenario)
     sliders, placed = sliders_of(scenario, asked)
     scene = _scene(scenario, sliders, progress or (lambda _: None))
@@ -76,7 +83,7 @@ def live_page(scenario: Scenario, asked: Sequence[str] = (), *, progress: Progre
             f"The page would have {len(page) / 1e6:.1f} MB, and a live page has at most {_MOST_BYTES / 1e6:g} MB: "
             "take fewer sliders that change the shape of body or support."
         )
-    return page
+    return page, scene
 
 
 def _scene(scenario: Scenario, sliders: Sequence[Slider], progress: Progress) -> Drawn:
@@ -89,10 +96,10 @@ def _scene(scenario: Scenario, sliders: Sequence[Slider], progress: Progress) ->
             if at is not None:
                 places.append(places_of(at))
         progress((i + 2) / (len(sliders) + 1))
-    ground = np.concatenate(places)
+    radius = radius_about_centre(body_mesh(run.system.body).vertices)
+    ground = np.concatenate([places[0], *(_near(places[0], other, radius) for other in places[1:])])
     scene = scene_of(run, samples=_FIRST, with_card=True, places=ground)
     columns, variants = dict(scene.columns), []
-    radius = float(scene.header["body"]["radius"])
     for i, one in enumerate(sliders):
         for kind, picture in (("body", _body), ("support", _support(ground, radius))):
             found = _variants(scenario, one, kind, picture)
@@ -111,6 +118,13 @@ def _scene(scenario: Scenario, sliders: Sequence[Slider], progress: Progress) ->
         "parameters": [name for name, _ in parameters(run.system)],
     }
     return Drawn({**scene.header, "method": "page", "live": live}, columns, scene.units)
+
+
+def _near(here: Any, others: Any, radius: float) -> Any:
+    """Return those of other places that are not so far away that nothing would be seen of what is here."""
+    low, high = here.min(axis=0), here.max(axis=0)
+    reach = _FAR * max(float(np.max(high - low)), 4 * radius)
+    return others[np.all(np.abs(others - 0.5 * (low + high)) <= reach, axis=1)]
 
 
 def _ended_at(scenario: ScenarioFile, values: dict[str, float]) -> Trajectory | None:
@@ -203,4 +217,4 @@ def _squeezed(change: Any, step: float) -> Any:
     return np.concatenate([less & 255, less >> 8]).astype(np.uint8)
 
 
-__all__ = ["live_page"]
+__all__ = ["live_page", "made"]

@@ -289,13 +289,6 @@ class RotatedTensor:
 
     To apply it takes 27 products; to work out the elements, 45.
 
-    Parameters
-    ----------
-    turn : Matrix
-        Q, from those axes to the axes of the vectors that it is applied to.
-    own : Matrix
-        M, symmetric, along those axes.
-
     Examples
     --------
     >>> quarter = Matrix(-E_Y, E_X, E_Z)  # about the third axis
@@ -303,8 +296,8 @@ class RotatedTensor:
     Vector(x=2.0, y=0.0, z=0.0)
     """
 
-    turn: Matrix
-    own: Matrix
+    turn: Matrix  # Q, from those axes to the axes of the vectors that it is applied to
+    own: Matrix  # M, symmetric, along those axes
 
     def __matmul__(self, v: Vector) -> Vector:
         return self.turn @ (self.own @ (self.turn.transpose @ v))

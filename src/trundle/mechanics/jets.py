@@ -19,15 +19,6 @@ from .scalars import Scalar, less, namespace
 class Jet:
     """A value, its gradient and its Hessian in a few variables.
 
-    Parameters
-    ----------
-    value : Scalar
-        f.
-    gradient : tuple of n Scalar
-        ∂f/∂x_i.
-    hessian : tuple of n(n + 1)/2 Scalar
-        ∂²f/∂x_i∂x_j for i ≤ j, row by row.
-
     Examples
     --------
     >>> x, y = jets((3.0, 2.0))
@@ -35,9 +26,9 @@ class Jet:
     (18.0, (12.0, 9.0), (4.0, 6.0, 0.0))
     """
 
-    value: Scalar
-    gradient: tuple[Scalar, ...]
-    hessian: tuple[Scalar, ...]
+    value: Scalar  # f
+    gradient: tuple[Scalar, ...]  # ∂f/∂x_i
+    hessian: tuple[Scalar, ...]  # ∂²f/∂x_i∂x_j for i ≤ j, row by row
 
     __array_ufunc__ = None  # so that array * Jet asks Jet
 

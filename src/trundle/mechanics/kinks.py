@@ -34,22 +34,12 @@ _ANY_TURN = 0.7391  # of a support's own coordinates, at which the jumps of two 
 
 @dataclass(frozen=True)
 class Kink:
-    """An instant at which a formula in the time has a kink, as exactly as floats can tell it.
+    """An instant at which a formula in the time has a kink, as exactly as floats can tell it."""
 
-    Parameters
-    ----------
-    before, behind : float
-        What stands between the bars is surely not zero at either, nor beyond them, s.
-    time : float
-        The first float at which it is evaluated as it is behind the kink, s.
-    jolts : bool
-        Whether the velocity of the support jumps there.
-    """
-
-    before: float
-    time: float
-    behind: float
-    jolts: bool = False
+    before: float  # s; what stands between the bars is surely not zero there or at `behind`, nor beyond them
+    time: float  # the first float at which it is evaluated as it is behind the kink, s
+    behind: float  # s
+    jolts: bool = False  # whether the velocity of the support jumps there
 
 
 def kinks(thing: Any, begin: float, end: float) -> list[Kink]:

@@ -39,37 +39,21 @@ class Placed:
 class ManyPlacing:
     """Starts as the user describes them, in SI: each part an array over members, or absent.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Its numbers may be arrays over members.
-    free : array (members,) of bool
-        Whether the body is known to lie below the surface nowhere.
-    position : array (members, 2)
-    velocity : array (members, 2 or 3), "co-rotating" or "rolling", optional
-    spin : array (members,), optional
-    angular_velocity : array (members, 3), optional
-    orientation : array (members, 4), optional
-    attitude : array (members, 3), optional
-    time : float
-    support : sequence of array (members,) or float
-        As of `RollingSystem.place`.
-
     Examples
     --------
     See `trundle.place_many`.
     """
 
-    system: RollingSystem
-    free: Mask
-    position: Array
-    velocity: Array | str | None
-    spin: Array | None
-    angular_velocity: Array | None
-    orientation: Array | None
-    attitude: Array | None
+    system: RollingSystem  # its numbers may be arrays over members
+    free: Mask  # (members,): whether the body is known to lie below the surface nowhere
+    position: Array  # (members, 2)
+    velocity: Array | str | None  # (members, 2 or 3)
+    spin: Array | None  # (members,)
+    angular_velocity: Array | None  # (members, 3)
+    orientation: Array | None  # (members, 4)
+    attitude: Array | None  # (members, 3)
     time: float
-    support: Sequence[Any]
+    support: Sequence[Any]  # (members,): as of `RollingSystem.place`
 
     @property
     def _rough(self) -> bool:

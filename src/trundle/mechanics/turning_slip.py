@@ -24,30 +24,16 @@ _ROUNDING = 2.0**-52
 
 @dataclass(frozen=True)
 class TurningSlip:
-    """Slip at an instant of a landing.
+    """Slip at an instant of a landing."""
 
-    Parameters
-    ----------
-    M : sequence of 3 sequences of 3 scalars
-        By how much an impulse changes the slip, along two tangents and n.
-    mu : float
-        Coefficient of friction.
-    size, c, s : float
-        σ, and ŝ along the two tangents.
-    up : float
-        Its third component, along n.
-    work, taken : float
-        What the normal impulse did so far, and what friction took.
-    """
-
-    M: Sequence[Sequence[Scalar]]
-    mu: Scalar
-    size: Scalar
-    c: Scalar
-    s: Scalar
-    up: Scalar
-    work: Scalar
-    taken: Scalar
+    M: Sequence[Sequence[Scalar]]  # by how much an impulse changes the slip, along two tangents and n
+    mu: Scalar  # coefficient of friction
+    size: Scalar  # σ
+    c: Scalar  # ŝ along the first tangent
+    s: Scalar  # ŝ along the second
+    up: Scalar  # of the slip along n
+    work: Scalar  # what the normal impulse did so far
+    taken: Scalar  # what friction took so far
 
     def followed(self, least: float, aim: Scalar | None) -> tuple[TurningSlip, bool] | None:
         """Follow it until it is all but nothing, or the landing's part is over, and tell whether the first came.

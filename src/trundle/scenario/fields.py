@@ -83,21 +83,11 @@ def bare(value: Any) -> Any:
 
 @dataclass(frozen=True)
 class Diameter:
-    """What a user wrote for a diameter, on its way to the radius of the same table.
+    """What a user wrote for a diameter, on its way to the radius of the same table."""
 
-    Parameters
-    ----------
-    key : str
-        ``"diameter"``, or ``"ring_diameter"`` of a ``"ring_radius"``.
-    value : object
-        What stands there.
-    radius : object
-        What stands beside it as the radius; None where nothing does.
-    """
-
-    key: str
-    value: Any
-    radius: Any = None
+    key: str  # ``"diameter"``, or ``"ring_diameter"`` of a ``"ring_radius"``
+    value: Any  # what stands there
+    radius: Any = None  # what stands beside it as the radius; None where nothing does
 
     def __repr__(self) -> str:
         return repr(self.value)
@@ -137,27 +127,17 @@ Check = Callable[[float, Any], None]
 class Measure:
     """The type of one number of a scenario file, for use in ``Annotated``.
 
-    Parameters
-    ----------
-    kind : str
-        One of `trundle.units.UNITS`.
-    sign : str
-        ``"positive"``, ``"not negative"`` or ``"any"``.
-    check : callable, optional
-        A further check of (number in SI, value as it came); it raises `InvalidValueError`, its key ``""``.
-    example : str, optional
-        What an error message offers; the kind's own example where it is absent.
-
     Examples
     --------
     >>> Measure("length", "positive")("25 mm")
     0.025
     """
 
-    kind: str
-    sign: str = "any"
+    kind: str  # one of `trundle.units.UNITS`
+    sign: str = "any"  # ``"positive"``, ``"not negative"`` or ``"any"``
+    # a further check of (number in SI, value as it came); it raises `InvalidValueError`, its key ``""``
     check: Check | None = None
-    example: str | None = None
+    example: str | None = None  # what an error message offers; the kind's own example where it is absent
 
     def __call__(self, value: Any, key: str = "") -> Quantity:
         """Return the checked number; `key` is its place inside its own field, such as ``"[1]"``."""
@@ -259,30 +239,17 @@ class Varying(Measure):
 class Measures:
     """The type of a list of numbers of one kind, for use in ``Annotated``.
 
-    Parameters
-    ----------
-    each : Measure
-        What each number is.
-    size : int
-        How many.
-    words : tuple of str
-        Texts that may stand instead of the list.
-    most : int, optional
-        How many there may be at most, where some may be left out at the end; absent: `size`.
-    names : tuple of str
-        What tells one from the other at their controls; absent: the axes.
-
     Examples
     --------
     >>> Measures(Measure("length"), 2)(["10 cm", 0])
     (0.1, 0.0)
     """
 
-    each: Measure
-    size: int
-    words: tuple[str, ...] = ()
-    most: int | None = None
-    names: tuple[str, ...] = ("x", "y", "z")
+    each: Measure  # what each number is
+    size: int  # how many
+    words: tuple[str, ...] = ()  # texts that may stand instead of the list
+    most: int | None = None  # how many there may be at most, where some may be left out at the end; absent: `size`
+    names: tuple[str, ...] = ("x", "y", "z")  # what tells one from the other at their controls; absent: the axes
 
     def __call__(self, value: Any) -> tuple[Quantity, ...] | str:
         """Return the checked numbers, or the word."""

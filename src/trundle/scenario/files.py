@@ -182,17 +182,6 @@ def parse(text: str, source: str) -> dict[str, Any]:
 class Bounds:
     """How much a scenario may hold, so that nobody waits for what is none.
 
-    Parameters
-    ----------
-    loads, path : int
-        Entries of these lists.
-    values : int
-        Numbers, texts, lists and tables, all together.
-    deepest : int
-        Levels of lists and tables.
-    remedy : str
-        What a message says besides.
-
     Examples
     --------
     >>> Bounds().check({"loads": [{"kind": "force"}]})
@@ -202,11 +191,11 @@ class Bounds:
     trundle.errors.ScenarioError: `loads` must have at most 100 parts; got 101. Is this a scenario?
     """
 
-    loads: int = 100  # to check a run with 300 of them by a second method takes a minute
-    path: int = 10_000
-    values: int = 1_000_000
-    deepest: int = 20
-    remedy: str = "Is this a scenario?"
+    loads: int = 100  # entries: to check a run with 300 of them by a second method takes a minute
+    path: int = 10_000  # entries
+    values: int = 1_000_000  # numbers, texts, lists and tables, all together
+    deepest: int = 20  # levels of lists and tables
+    remedy: str = "Is this a scenario?"  # what a message says besides
 
     def check(self, tables: Mapping[str, Any], source: str = "") -> None:
         """Refuse tables that hold more, before anything looks closely at each of them."""

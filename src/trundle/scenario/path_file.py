@@ -21,21 +21,14 @@ from .validation_errors import Kinds, Nothing
 class Several:
     """The type of a list of points, each with its own numbers, for use in ``Annotated``.
 
-    Parameters
-    ----------
-    each : Measures
-        What each point is.
-    least : int
-        How many there must be.
-
     Examples
     --------
     >>> Several(Measures(Measure("length"), 2), 2)([[0, 0], ["10 cm", 0]])
     ((0.0, 0.0), (0.1, 0.0))
     """
 
-    each: Measures
-    least: int
+    each: Measures  # what each point is
+    least: int  # how many there must be
 
     def __call__(self, value: Any) -> tuple[tuple[Quantity, ...], ...]:
         """Return the checked points."""

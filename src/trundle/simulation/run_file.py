@@ -37,25 +37,6 @@ _AGAIN = "Save the run again."
 class RunFile:
     """What the file of a run holds.
 
-    Parameters
-    ----------
-    name : str
-        Of the file, without its folder.
-    data : xarray.Dataset
-        Checked; its attributes are those of a run in memory.
-    system : RollingSystem
-        What moved.
-    start : State
-        Where it started.
-    events : tuple of Event
-        What happened.
-    scenario : str
-        As TOML text.
-    card : Card
-        As it was saved.
-    changed : tuple of str, optional
-        The parts that are not as they were saved; absent: an older file without digests, so nobody can tell.
-
     Examples
     --------
     >>> import trundle as tr
@@ -64,13 +45,14 @@ class RunFile:
     ()
     """
 
-    name: str
-    data: xarray.Dataset
-    system: RollingSystem
-    start: State
-    events: tuple[Event, ...]
-    scenario: str
-    card: Card
+    name: str  # of the file, without its folder
+    data: xarray.Dataset  # checked; its attributes are those of a run in memory
+    system: RollingSystem  # what moved
+    start: State  # where it started
+    events: tuple[Event, ...]  # what happened
+    scenario: str  # as TOML text
+    card: Card  # as it was saved
+    # the parts that are not as they were saved; absent: an older file without digests, so nobody can tell
     changed: tuple[str, ...] | None
 
     @property

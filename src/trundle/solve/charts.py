@@ -35,36 +35,19 @@ Numbers = Sequence[Scalar]
 
 @dataclass(frozen=True)
 class Traced:
-    """A law in a chart.
+    """A law in a chart."""
 
-    Parameters
-    ----------
-    rates : list of Scalar
-        Of the chart's numbers.
-    event_functions : dict of str to Scalar
-        Those of the law, and where the chart ends.
-    normal : Vector
-        n, of length 1, along the chart's axes.
-    positive : tuple of Scalar
-        What is known to be positive.
-    """
-
-    rates: list[Scalar]
-    event_functions: dict[str, Scalar]
-    normal: Vector
-    positive: tuple[Scalar, ...] = ()
+    rates: list[Scalar]  # of the chart's numbers
+    event_functions: dict[str, Scalar]  # those of the law, and where the chart ends
+    normal: Vector  # n, of length 1, along the chart's axes
+    positive: tuple[Scalar, ...] = ()  # what is known to be positive
 
 
 @dataclass(frozen=True)
 class Chart:
-    """The law's own coordinates, along the axes of the support frame; each other chart is a change from these.
+    """The law's own coordinates, along the axes of the support frame; each other chart is a change from these."""
 
-    Parameters
-    ----------
-    flat : bool
-        Whether the support is a plane across the third axis for good, so that the height of the contact is known.
-    """
-
+    # whether the support is a plane across the third axis for good, so that the height of the contact is known
     flat: bool = False
 
     def names(self, system: RollingSystem, law: Law) -> tuple[str, ...]:

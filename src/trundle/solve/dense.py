@@ -21,43 +21,21 @@ _MARKS = 10_000  # states on the way through a stretch of more
 
 @dataclass(frozen=True)
 class Leg:
-    """One law's part of a run.
+    """One law's part of a run."""
 
-    Parameters
-    ----------
-    states : callable
-        Takes instants of it, ascending, s; returns the states, (n, variables).
-    stop : Stop or None
-        Where it ended; None at the end of the run.
-    steps : int
-        That it took.
-    """
-
-    states: Callable[[Array], Array]
-    stop: ZeroCrossing | None
-    steps: int
+    states: Callable[[Array], Array]  # takes instants of it, ascending, s; returns the states, (n, variables)
+    stop: ZeroCrossing | None  # where it ended; None at the end of the run
+    steps: int  # that it took
 
 
 @dataclass(frozen=True)
 class TooMany:
-    """A stretch of more steps than are kept.
+    """A stretch of more steps than are kept."""
 
-    Parameters
-    ----------
-    states : callable
-        Takes instants up to where the kept steps led, as `Leg` does.
-    steps : int
-        So many.
-    time : float
-        How far they led, s.
-    state_vector : array
-        There.
-    """
-
-    states: Callable[[Array], Array]
-    steps: int
-    time: float
-    state_vector: Array
+    states: Callable[[Array], Array]  # takes instants up to where the kept steps led, as `Leg` does
+    steps: int  # so many
+    time: float  # how far they led, s
+    state_vector: Array  # there
 
 
 Keep = Callable[[RollingSystem, PhaseStart, float, float, int], Leg | TooMany]

@@ -35,22 +35,12 @@ _PRESSED = 1e-9  # share of the weight with which a member must press on to be t
 
 @dataclass(frozen=True)
 class Block:
-    """What some members did, or a part of it.
+    """What some members did, or a part of it."""
 
-    Parameters
-    ----------
-    members, rows : array (n,) of int
-        Of each sample: whose it is, and at which instant; those of a member ascend.
-    samples : Samples
-        n of them.
-    system : RollingSystem
-        Its numbers are arrays as long as the samples where members differ.
-    """
-
-    members: NDArray[np.int64]
-    rows: NDArray[np.int64]
-    samples: Samples
-    system: RollingSystem
+    members: NDArray[np.int64]  # (n,): whose each sample is
+    rows: NDArray[np.int64]  # (n,): at which instant it is; those of a member ascend
+    samples: Samples  # n of them
+    system: RollingSystem  # its numbers are arrays as long as the samples where members differ
 
 
 @dataclass(frozen=True)

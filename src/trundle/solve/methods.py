@@ -24,21 +24,14 @@ _FINEST, _COARSEST = 1e-15, 1e-6  # tolerances that can be asked for
 class Method:
     """A method and how finely it works.
 
-    Parameters
-    ----------
-    name : str
-        One of `METHODS`.
-    tolerance : float
-        Relative, of each step; 0 for a closed form.
-
     Examples
     --------
     >>> Method.of("taylor", 1e-9), Method.of("exact", 1e-9).tolerance
     (Method(name='taylor', tolerance=1e-09), 0.0)
     """
 
-    name: str
-    tolerance: float
+    name: str  # one of `METHODS`
+    tolerance: float  # relative, of each step; 0 for a closed form
 
     @classmethod
     def of(cls, name: str, tolerance: float | None = None) -> Method:

@@ -24,15 +24,6 @@ _HALF_TURN_A_STEP = 6.0  # rad of half the angle: the series of order 60 leaves 
 class Monodromy:
     """The rotation over one period, kept to about 30 digits so that its millionth power has lost none that shows.
 
-    Parameters
-    ----------
-    period, period_remainder : float
-        Their sum is the period, s.
-    axis : array (3,)
-        Unit axis of the rotation, support frame.
-    half_turns, half_turns_remainder : float
-        Their sum is the rotation's half angle, in full turns (half angle / 2π).
-
     Examples
     --------
     A ball whose Ω = (0, 0, 1) never changes has turned by 2π after 2π seconds, as after a million times that:
@@ -42,11 +33,11 @@ class Monodromy:
     [1.0, 0.0, 0.0, 0.0]
     """
 
-    period: float
-    period_remainder: float
-    axis: Array
-    half_turns: float
-    half_turns_remainder: float
+    period: float  # s
+    period_remainder: float  # s; the period is the sum of the two
+    axis: Array  # (3,): unit axis of the rotation, support frame
+    half_turns: float  # the rotation's half angle, in full turns (half angle / 2π)
+    half_turns_remainder: float  # to be added to it
 
     def power(self, n: Array) -> Array:
         """Return the rotation of n periods, shape (4, len(n)): the angle is reduced with 32 digits first."""

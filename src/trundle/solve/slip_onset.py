@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -10,9 +10,9 @@ from ..errors import SolverError
 from ..mechanics.algebra import E_X, E_Y, E_Z, ZERO, Matrix, Vector
 from ..mechanics.contact import Contact, Rolling, roll
 from ..mechanics.creep import SlipRates, slip_rates
-from ..mechanics.duals import has_duals, values_of
+from ..mechanics.duals import has_duals, value_of, values_of
 from ..mechanics.onset import onset
-from ..mechanics.scalars import as_float
+from ..mechanics.scalars import Scalar, as_float
 from ..mechanics.slipping import HeldInertia, Response, response
 from ..mechanics.system import RollingSystem
 from .contact_state import WEIGHTLESS, ContactState, floats
@@ -21,7 +21,7 @@ from .laws import Held, Law, RestingLaw, RollingLaw, SlippingLaw
 from .samples import RESTING
 from .tracing import python_law
 
-_FIRST = 1e-6  # share of |ρ| over its speed that the first moment of slip takes
+_FIRST = 1e-6  # share of the time in which the motion changes that the first moment of slip takes
 _SEEN = 1e-4  # the same, over which one sees how its direction turns
 
 
@@ -52,7 +52,8 @@ def slip_onset(system: RollingSystem, at: ContactState, law: Law | None = None) 
     """
     law = RollingLaw() if law is None else law
     time, numbers = at.state.time, law.state_vector(at)
-    moment, rates = _FIRST * at.arm / at.scale(system), python_law(system, law).rates
+    rates = python_law(system, law).rates
+    moment = _FIRST / _pace(system, at, law, rates(time, numbers))
 
     def later(wait: float) -> tuple[ContactState, _Growth | None]:
         moved = law.rk4_step(system, time, numbers, wait, rates)
@@ -118,6 +119,13 @@ def _growth(system: RollingSystem, at: ContactState, law: Law) -> _Growth | None
                 rate = _rate(rates, c, s)
             return _Growth(rates.direction(c, s), rate, 0.0)
     return None
+
+
+def _pace(system: RollingSystem, at: ContactState, law: Law, rates: Sequence[Scalar]) -> float:
+    """Return how fast the motion changes, 1/s: also where the contact runs round all but equal curvatures."""
+    point, _, turning, *_ = law.split(values_of(tuple(rates)))
+    scale, arm = at.scale(system), value_of(at.arm)
+    return float(max(scale / arm, point.norm() / arm, turning.norm() * arm / scale))
 
 
 def _rate(rates: SlipRates, c: float, s: float) -> float:

@@ -21,65 +21,34 @@ _LONGEST = 300  # characters of an expression: Python reads no more than 200 bra
 
 @dataclass(frozen=True)
 class Dialect:
-    """How a language writes what a tape holds.
+    """How a language writes what a tape holds."""
 
-    Parameters
-    ----------
-    variable : callable
-        The name of an input, by its place.
-    functions : mapping
-        What the functions are called whose name in the language is not that on the tape.
-    choice : str
-        One of two values, with places for the condition and the two.
-    number : callable
-        A number as it is written.
-    """
-
-    variable: Callable[[int], str] = "x[{}]".format
+    variable: Callable[[int], str] = "x[{}]".format  # the name of an input, by its place
+    # what the functions are called whose name in the language is not that on the tape
     functions: Mapping[str, str] = field(default_factory=dict)
-    choice: str = "where({}, {}, {})"
-    number: Callable[[float], str] = repr
+    choice: str = "where({}, {}, {})"  # one of two values, with places for the condition and the two
+    number: Callable[[float], str] = repr  # a number as it is written
 
 
 @dataclass(frozen=True)
 class Loop:
-    """What is done again and again, on a tape of its own.
+    """What is done again and again, on a tape of its own."""
 
-    Parameters
-    ----------
-    tape : Tape
-        Its inputs are the numbers that change, and then those that stay.
-    outputs : tuple
-        What becomes of the numbers that change; as long as the first is above 0 it goes on.
-    """
-
-    tape: Tape
-    outputs: tuple[Any, ...]
+    tape: Tape  # its inputs are the numbers that change, and then those that stay
+    outputs: tuple[Any, ...]  # what becomes of the numbers that change; as long as the first is above 0 it goes on
 
 
 @dataclass(frozen=True)
 class WrittenLoop:
-    """The same as text, with names that do not depend on where it stands.
+    """The same as text, with names that do not depend on where it stands."""
 
-    Parameters
-    ----------
-    targets : tuple of str
-        What the numbers that change are called afterwards.
-    start, given : tuple of str
-        How these begin, and those that stay.
-    changing, staying : tuple of str
-        What both are called within.
-    lines, results : list
-        One pass, as `Tape.written` has it.
-    """
-
-    targets: tuple[str, ...]
-    start: tuple[str, ...]
-    given: tuple[str, ...]
-    changing: tuple[str, ...]
-    staying: tuple[str, ...]
-    lines: list[Any]
-    results: list[str]
+    targets: tuple[str, ...]  # what the numbers that change are called afterwards
+    start: tuple[str, ...]  # how these begin
+    given: tuple[str, ...]  # how those that stay are given
+    changing: tuple[str, ...]  # what the former are called within
+    staying: tuple[str, ...]  # what the latter are called within
+    lines: list[Any]  # one pass, as `Tape.written` has it
+    results: list[str]  # of it
 
 
 class Tape:

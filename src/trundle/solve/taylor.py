@@ -110,15 +110,9 @@ def _in_another_chart(system: RollingSystem, now: PhaseStart, stop: ZeroCrossing
 
 @dataclass
 class Shared:
-    """What the stretches of one run share.
+    """What the stretches of one run share."""
 
-    Parameters
-    ----------
-    hasty : dict
-        How many steps each law has made in haste so far.
-    """
-
-    hasty: dict[str, int] = field(default_factory=dict)
+    hasty: dict[str, int] = field(default_factory=dict)  # how many steps each law has made in haste so far
     _patience: Patience | None = None
 
     def patience(self, begin: float, end: float) -> Patience:

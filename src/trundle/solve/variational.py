@@ -49,13 +49,6 @@ class Template:
 class VariedSystem(RollingSystem):
     """A system with the slopes of its numbers, which are numbers of it too.
 
-    Parameters
-    ----------
-    slopes : tuple of tuple
-        Of each of the numbers, by each parameter; None where it does not depend on that.
-    template : Template
-        The system, to tell which of its scalars are numbers where these stand for others.
-
     Examples
     --------
     >>> import trundle as tr
@@ -67,8 +60,9 @@ class VariedSystem(RollingSystem):
     (0.1, (1.0,))
     """
 
+    # of each of the numbers, by each parameter; None where it does not depend on that
     slopes: tuple[tuple[Scalar | None, ...], ...] = ()
-    template: Any = None
+    template: Any = None  # the system, to tell which of its scalars are numbers where these stand for others
 
     @classmethod
     def of(cls, system: RollingSystem) -> VariedSystem:
@@ -222,22 +216,12 @@ def in_duals(system: RollingSystem) -> RollingSystem:
 
 @dataclass(frozen=True)
 class ChartWithSlopes(Chart):
-    """A chart for a law and its derivatives: the numbers of another chart, each with its slopes.
+    """A chart for a law and its derivatives: the numbers of another chart, each with its slopes."""
 
-    Parameters
-    ----------
-    chart : Chart
-        Of the law itself.
-    own : int
-        How many numbers that has.
-    size, count : int
-        How many numbers the law has, and how many parameters there are.
-    """
-
-    chart: Chart = LAWS_OWN
-    own: int = 0
-    size: int = 0
-    count: int = 0
+    chart: Chart = LAWS_OWN  # of the law itself
+    own: int = 0  # how many numbers that has
+    size: int = 0  # how many numbers the law has
+    count: int = 0  # how many parameters there are
 
     @property
     def bounded(self) -> bool:

@@ -35,17 +35,6 @@ _SHORTEST = 1e-9  # of what the clock shows: in less, instants have too few digi
 class Again:
     """A run followed once more by its own method.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        What moved.
-    start : State
-        Where it started.
-    at : Samples
-        The run.
-    method : Method
-        That made it.
-
     Examples
     --------
     >>> import trundle as tr
@@ -55,10 +44,10 @@ class Again:
     ['no slip', 'velocity is the slope of the path']
     """
 
-    system: RollingSystem
-    start: State
-    at: Samples
-    method: Method
+    system: RollingSystem  # what moved
+    start: State  # where it started
+    at: Samples  # the run
+    method: Method  # that made it
 
     @cached_property
     def _run(self) -> Callable[[Array], Samples]:

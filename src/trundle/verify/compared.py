@@ -99,35 +99,17 @@ def cross_check(
 
 @dataclass(frozen=True)
 class Compared:
-    """Two runs from one start at the same times.
+    """Two runs from one start at the same times."""
 
-    Parameters
-    ----------
-    system, start : RollingSystem, State
-        What moved, and from where.
-    ours, theirs : Samples
-        At the same times.
-    method : Method
-        The coarser of the two.
-    follower : Method
-        Follows changed starts.
-    sizes : dict
-        Against what a difference of each quantity is small or not.
-    turned : float
-        By about how many radians the body turned.
-    kept : Dense, optional
-        One of them, where the other is the same method's.
-    """
-
-    system: RollingSystem
-    start: State
+    system: RollingSystem  # what moved
+    start: State  # from where
     ours: Samples
-    theirs: Samples
-    method: Method
-    follower: Method
-    sizes: dict[str, float]
-    turned: float
-    kept: Dense | None = None
+    theirs: Samples  # at the same times
+    method: Method  # the coarser of the two
+    follower: Method  # follows changed starts
+    sizes: dict[str, float]  # against what a difference of each quantity is small or not
+    turned: float  # by about how many radians the body turned
+    kept: Dense | None = None  # one of them, where the other is the same method's
 
     @property
     def bound(self) -> float:

@@ -28,19 +28,6 @@ _PRECISION = 1e-17
 class Course:
     """A landing from the slip with which it begins, along two tangents and n.
 
-    Parameters
-    ----------
-    M : array (3, 3)
-        By how much an impulse at the contact changes s, 1/kg.
-    mu : float or None
-        Coefficient of friction; None: no limit.
-    restitution : float
-        e.
-    slip : array (3,)
-        s just before, m/s, its third component negative.
-    tangential : float
-        e_t: the share e_t² of what friction took comes back where the contact holds.
-
     Examples
     --------
     A ball of 1 kg that comes down at 2 m/s, slips at 1 m/s, and grips on the way:
@@ -50,11 +37,11 @@ class Course:
     [-0.285714285714, 0.0, 3.0]
     """
 
-    M: Array
-    mu: float | None
-    restitution: float
-    slip: Array
-    tangential: float = 0.0
+    M: Array  # (3, 3): by how much an impulse at the contact changes s, 1/kg
+    mu: float | None  # coefficient of friction; None: no limit
+    restitution: float  # e
+    slip: Array  # (3,): s just before, m/s, its third component negative
+    tangential: float = 0.0  # e_t: the share e_t² of what friction took comes back where the contact holds
     work: float = 0.0  # of the normal impulse, J
     aim: float | None = None  # the work at which it ends, known once compression is over
     taken: float = 0.0  # by friction, J: a difference of other works would lose it where it is small

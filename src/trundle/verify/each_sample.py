@@ -59,15 +59,6 @@ def worst_of(name: str, conditions: list[Shares], time: Array, said: str) -> Car
 class EachSample:
     """Samples of a run, each looked at by itself.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        What moved.
-    at : Samples
-        Any of a run.
-    bound : float
-        The share that the method may be off.
-
     Examples
     --------
     >>> import trundle as tr
@@ -77,9 +68,9 @@ class EachSample:
     [True, True]
     """
 
-    system: RollingSystem
-    at: Samples
-    bound: float
+    system: RollingSystem  # what moved
+    at: Samples  # any of a run
+    bound: float  # the share that the method may be off
 
     @cached_property
     def flies(self) -> Any:

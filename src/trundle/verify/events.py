@@ -74,26 +74,15 @@ def _looked_at(events: tuple[Event, ...]) -> tuple[Event, ...]:
 class AtEvents:
     """The events of a run beside the method's states at their instants.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        What moved.
-    again : Samples
-        The method run again, at `instants_of` its events and at other times.
-    bound : float
-        The share that the method may be off.
-    kinks : sequence of Kink
-        Of the support's motion.
-
     Examples
     --------
     See `trundle.verify.card`.
     """
 
-    system: RollingSystem
-    again: Samples
-    bound: float
-    kinks: Sequence[Kink] = ()
+    system: RollingSystem  # what moved
+    again: Samples  # the method run again, at `instants_of` its events and at other times
+    bound: float  # the share that the method may be off
+    kinks: Sequence[Kink] = ()  # of the support's motion
 
     def figures(self) -> Iterator[CardFigure]:
         """Yield the figure, if anything happened."""

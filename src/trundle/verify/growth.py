@@ -38,31 +38,16 @@ _INSTANT = 1e-6  # of the time in which the motion changes
 
 @dataclass(frozen=True)
 class Growth:
-    """How many times larger than in the start a small change shows later in a motion.
+    """How many times larger than in the start a small change shows later in a motion."""
 
-    Parameters
-    ----------
-    times : array (n,)
-        s.
-    magnified : array (n,)
-        The most up to each of them, of a change in the start or at any instant since: as shares of the sizes for each
-        share of Ω.
-    shifted : array (k,)
-        The same of the times of the first k events, as shares of the run.
-    until : float
-        s, up to which the response is small and as large as the change; beyond it nothing can be told.
-    carried : float
-        By how much two runs differ already where this begins, as a share.
-    skipped : int
-        How many events lie before that.
-    """
-
-    times: Array
+    times: Array  # (n,): s
+    # (n,): the most up to each of them, of a change in the start or at any instant since: as shares of the sizes for
+    # each share of Ω
     magnified: Array
-    shifted: Array
-    until: float
-    carried: float = 0.0
-    skipped: int = 0
+    shifted: Array  # (k,): the same of the times of the first k events, as shares of the run
+    until: float  # s, up to which the response is small and as large as the change; beyond it nothing can be told
+    carried: float = 0.0  # by how much two runs differ already where this begins, as a share
+    skipped: int = 0  # how many events lie before that
 
     def widened(self, bound: float, steps: float, magnified: Array) -> Array:
         """Return a bound by what the motion makes of a method's errors in so many steps, and of what was before."""

@@ -38,13 +38,6 @@ _SET_DOWN = 4 * _ROUNDING  # of them, by which the contact of a body that stays 
 class Landing:
     """One landing, or one jolt: where, with what momentum, and what its impulse should have been.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        What landed.
-    event : Event
-        With the states before and after, and the contact.
-
     Examples
     --------
     >>> import trundle as tr
@@ -54,8 +47,8 @@ class Landing:
     True
     """
 
-    system: RollingSystem
-    event: Event
+    system: RollingSystem  # what landed
+    event: Event  # with the states before and after, and the contact
 
     @property
     def before(self) -> State:

@@ -26,25 +26,13 @@ _ASIDE = 1e-6  # of a stretch, at its ends, over which the energy is not balance
 
 @dataclass(frozen=True)
 class SmoothSegment:
-    """A part of a run in which one law holds, smooth in the time.
+    """A part of a run in which one law holds, smooth in the time."""
 
-    Parameters
-    ----------
-    begin, end : float
-        s.
-    pace : float
-        The fastest rate in it, 1/s.
-    slips : bool
-        Whether the body slips in it.
-    settling : float
-        How long its first moment lasts, in which slip may begin, s.
-    """
-
-    begin: float
-    end: float
-    pace: float
-    slips: bool = False
-    settling: float = 0.0
+    begin: float  # s
+    end: float  # s
+    pace: float  # the fastest rate in it, 1/s
+    slips: bool = False  # whether the body slips in it
+    settling: float = 0.0  # how long its first moment lasts, in which slip may begin, s
 
     @property
     def length(self) -> float:

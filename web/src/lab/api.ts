@@ -202,6 +202,12 @@ export interface MapPart {
   left: number
 }
 
+/** Why a scenario cannot start. */
+export interface Refused {
+  message: string
+  key: string | null
+}
+
 /** Columns of a track, SI: `t` and what was measured; null where there is no number. */
 export type TrackColumns = Record<string, (number | null)[]>
 
@@ -294,6 +300,8 @@ export interface Api {
   tried(name: string, values: Values, body: string, options?: SimulateOptions): Promise<Simulated>
   /** Is the answer right? */
   judged(name: string, values: Values, answer: number | string | null, options?: RequestOptions): Promise<Judgement>
+  /** Of each scenario why it cannot start; null where it can. */
+  possible(scenarios: Scenario[], options?: RequestOptions): Promise<(Refused | null)[]>
   /** Has a worker answered yet, or are they starting? */
   ready(options?: RequestOptions): Promise<{ ready: boolean }>
   simulate(scenario: Scenario, options?: RunOptions): Promise<Simulated>
@@ -307,7 +315,7 @@ export interface Api {
   cancel(lane?: string): void
 }
 
-const UNREACHABLE = 'The lab’s server does not answer. Is `trundle lab` still running?'
+const UNREACHABLE = 'The lab does not answer. Is it still running in its terminal?'
 
 async function failure(response: Response): Promise<ApiError> {
   try {
@@ -402,6 +410,8 @@ export function createApi(base = '', ask: typeof fetch = (input, init) => fetch(
     schema: (options) => get('/api/schema', options),
     parts: (options) => get('/api/parts', options),
     start: (scenario, put, options = {}) => post('/api/start', { scenario, ...put }, options, 'start', json<Table>),
+    possible: (scenarios, options = {}) =>
+      post('/api/possible', { scenarios }, options, 'possible', json<(Refused | null)[]>),
     ready: (options) => get('/api/ready', options),
     challenges: (options) => get('/api/challenges', options),
     tried: (name, values, body, options = {}) =>

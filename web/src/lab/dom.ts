@@ -44,6 +44,11 @@ function nodes(children: (Child | Child[])[]): (Node | string)[] {
     .map((child) => (child instanceof Node ? child : String(child)))
 }
 
+/** A message of the package without the marks of code, which nobody at the page writes. */
+export function plainly(message: string): string {
+  return message.replaceAll('`', '')
+}
+
 /** Put these in place of whatever is inside. */
 export function fill(host: Element, ...children: (Child | Child[])[]): void {
   host.replaceChildren(...nodes(children))

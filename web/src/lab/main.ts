@@ -16,6 +16,7 @@ import { createSettings } from './settings'
 import { createShell, startShell } from './shell'
 import { tellWhileStarting } from './starting'
 import { createStore } from './store'
+import './forced.css'
 
 const settings = createSettings()
 const router = createRouter()

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest'
 import { PARTS } from './parts.fixture'
-import { brief, parse, show, stepped, toSI, write } from './quantity'
+import { brief, parse, show, stepped, suited, toSI, write } from './quantity'
 
 const { length = {}, velocity = {}, density = {}, number = {}, angle = {} } = PARTS.units
 const turning = PARTS.units['angular velocity'] ?? {}
@@ -67,4 +67,23 @@ it.each([
   ['', ''],
 ])('shows %s as %s in a small box', (digits, shown) => {
   expect(brief(digits)).toBe(shown)
+})
+
+it('takes a prefix where a number would need a power of ten, and leaves others as they are written', () => {
+  const inertia = { 'kg*m^2': 1, 'g*m^2': 1e-3, 'mg*m^2': 1e-6, 'g*cm^2': 1e-7 }
+  expect(suited(2.9942857e-6, 'kg*m^2', inertia)).toBe('mg*m^2')
+  expect(suited(2e-4, 'kg*m^2', inertia)).toBe('mg*m^2')
+  expect(suited(0.0016, 'kg*m^2', inertia)).toBe('kg*m^2')
+  expect(suited(0, 'kg*m^2', inertia)).toBe('kg*m^2')
+  expect(suited(2e-6, 'slug', inertia)).toBe('slug')
+})
+
+it('knows a unit however it is spelt', () => {
+  expect(['3 kg m²', '3 mN m', '3 kg m^2', '3 g/cm³', '3 °'].map((text) => parse(text).unit)).toEqual([
+    'kg*m^2',
+    'mN*m',
+    'kg*m^2',
+    'g/cm^3',
+    'deg',
+  ])
 })

@@ -12,12 +12,18 @@ const SPELLINGS: Record<string, string> = {
   '"': 'in',
   inch: 'in',
   inches: 'in',
-  'm/s²': 'm/s^2',
-  'kg/m³': 'kg/m^3',
-  'g/cm³': 'g/cm^3',
   '1/s': 'rad/s',
-  'N m': 'N*m',
-  'mN m': 'mN*m',
+}
+
+/** A unit as the table of units writes it: "mN m" as "mN*m", "kg m²" as "kg*m^2". */
+function spelt(unit: string): string {
+  return (
+    SPELLINGS[unit] ??
+    unit
+      .replace('²', '^2')
+      .replace('³', '^3')
+      .replace(/(\w) (?=\w)/g, '$1*')
+  )
 }
 
 export interface Written {
@@ -38,7 +44,7 @@ export function parse(value: Json | undefined): Written {
   const written = match[2] ?? ''
   // What begins otherwise is a formula: 3.5*(1 - exp(-t)).
   if (!/^([\p{L}°"%]|1\/s)?/u.exec(written)?.[0] && written) return { number: null, digits: value, unit: '' }
-  return { number: Number(digits.replaceAll('_', '')), digits, unit: SPELLINGS[written] ?? written }
+  return { number: Number(digits.replaceAll('_', '')), digits, unit: spelt(written) }
 }
 
 /** The SI unit, which a bare number has. */
@@ -53,6 +59,16 @@ export function toSI(value: Json | undefined, units: Units): number | null {
   if (typeof value === 'number') return number
   const factor = units[unit] // of text without a unit only where none is missing: "45" may be rad/s or rpm
   return factor === undefined ? null : number * factor
+}
+
+/** The unit in which a number has few digits before and behind its point, where its own gives it a power of ten. */
+export function suited(number: number, unit: string, units: Units): string {
+  const size = Math.abs(number)
+  const own = units[unit]
+  if (own === undefined || size === 0 || (size >= 1e-3 && size < 1e5)) return unit
+  const counted = (name: string) => (size * own) / units[name]!
+  const fit = Object.keys(units).filter((name) => counted(name) >= 1)
+  return fit.reduce((best, name) => (counted(name) < counted(best) ? name : best), fit[0] ?? unit)
 }
 
 /** A quantity in words: 3.487 rad/s as "33.3 rpm". Without a unit it stays a bare number. */

@@ -1,6 +1,6 @@
 /** What is round every page: header, menu, theme, projector, help, messages, and which page is shown. */
 import type { App, Page } from './app'
-import { fill, h } from './dom'
+import { fill, h, plainly } from './dom'
 import { openHelp } from './help'
 import { type IconName, icon, mark } from './icons'
 import type { Theme } from './settings'
@@ -34,7 +34,7 @@ export function createShell(body: HTMLElement): Shell {
   return {
     main,
     announce(text) {
-      live.textContent = text
+      live.textContent = plainly(text)
     },
     hold(text) {
       const one = h('p', { class: 'toast working' }, text)
@@ -42,7 +42,7 @@ export function createShell(body: HTMLElement): Shell {
       return () => one.remove()
     },
     toast(text, kind = 'info') {
-      const one = h('p', { class: `toast toast-${kind}` }, text)
+      const one = h('p', { class: `toast toast-${kind}` }, plainly(text))
       toasts.append(one)
       setTimeout(() => one.remove(), kind === 'error' ? 9000 : 3500)
     },

@@ -28,13 +28,13 @@ const STILL = 1e-12 // of the speeds at hand: less has ended
 const FIRST = 1e-4 // share of that time for a first step
 const LOOKS = [0.25, 0.5, 0.75, 1]
 const FORCES = ['lift', 'slip', 'start', 'jam'] // may be broken as a phase begins
-// The laws that are printed begin these with a first billionth, which is too much where they are to be exact.
+// The laws that are printed begin these with a first billionth: too much where what holds the body gives way slowly.
 const BEGINS = ['slip', 'start']
 const GIVES_WAY = 'What holds the body gives way, and it begins to slip or to turn'
 const NOT_FOLLOWED = 'Changes too quickly to be followed here'
 const NO_ANSWER = 'Comes where the law has no answer'
 const PULLED = 'Friction without limit would have to hold the body down, which no support does'
-const BEYOND = 'Starts where body and support do not touch in one point: move a slider back'
+const BEYOND = 'Starts beyond where the law holds: move a slider back'
 const CHATTERS = 'Chatters: more events than can be followed'
 
 /** Follow a motion; at some instants, or at as many as a film needs. */
@@ -96,7 +96,7 @@ class Follower {
     let here = this.events(this.t, this.y)
     const broken = phase.names.findIndex((name, i) => FORCES.includes(name) && here[i]! < 0)
     if (broken >= 0) {
-      this.pass(phase.names[broken] as string)
+      this.pass(phase.names[broken] as string, true)
       return
     }
     const stepper = new Stepper(
@@ -181,15 +181,15 @@ class Follower {
     return b
   }
 
-  /** Follow what comes after an event: another phase, the same again, or nothing. */
-  private pass(event: string): void {
+  /** Follow what comes after an event, or where a phase cannot begin at all: another, the same again, or nothing. */
+  private pass(event: string, atOnce = false): void {
     const { law, phase, p, u } = this
     const name = event.replace('near ', '')
     if (this.goesOn(name)) {
       this.begin()
       return
     }
-    if (BEGINS.includes(name) && this.t > law.begin) {
+    if (BEGINS.includes(name) && !atOnce) {
       this.stop(name, GIVES_WAY)
       return
     }
@@ -254,7 +254,7 @@ class Follower {
   }
 
   private stop(kind: string, text: string): void {
-    const event = { time: this.t, kind, text: timed(text, this.t) }
+    const event = { time: this.t, kind, text: this.t > this.law.begin ? timed(text, this.t) : text }
     this.put(this.t, this.y)
     this.found.events.push(event)
     this.found.ended = event

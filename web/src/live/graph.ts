@@ -19,7 +19,7 @@ export class Graph {
   private readonly least = element('span', 'live-least')
   private readonly begin = element('span', 'live-begin')
   private readonly end = element('span', 'live-end')
-  private readonly now = element('output', 'live-now')
+  private readonly now = element('span', 'live-now')
   private course: Course | null = null
   private span: [number, number] = [0, 1]
   private time = 0

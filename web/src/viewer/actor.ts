@@ -19,8 +19,8 @@ export class Actor {
   private readonly ahead = new Line(2)
   private readonly guide = new Line(2)
 
-  constructor(scene: Scene, order: number, root: Object3D) {
-    this.body = new BodyModel(scene, order)
+  constructor(scene: Scene, order: number, root: Object3D, poles = false) {
+    this.body = new BodyModel(scene, order, poles)
     this.arrows = new BodyArrows(this.body)
     root.add(this.body.group, this.arrows.group, this.ahead.mesh, this.trail.mesh, this.guide.mesh)
   }

@@ -1,9 +1,13 @@
 /** The bodies: their meshes, painted so that every turn of theirs is seen. */
 import { BufferAttribute, BufferGeometry, Group, Mesh, MeshPhysicalMaterial, SphereGeometry } from 'three'
 import { type BodyPaint, newBodyPaint, paintBody } from './paint'
+import { Pin } from './pin'
 import { type Scene, sameNumbers } from './scene'
 import type { Palette } from './theme'
 import { Track } from './track'
+
+const MOST_FLASHES = 24
+const FAINT = 0.35 // how much is seen of where it was
 
 export class BodyModel {
   readonly group = new Group()
@@ -11,10 +15,14 @@ export class BodyModel {
   scene: Scene
   track: Track
   private readonly paint: BodyPaint = newBodyPaint()
+  private readonly flashes: Mesh<BufferGeometry, MeshPhysicalMaterial>[] = []
+  private readonly pin: Pin | null
+  private faintly: MeshPhysicalMaterial | null = null
 
   constructor(
     scene: Scene,
     readonly order: number,
+    poles = false,
   ) {
     this.scene = scene
     this.track = new Track(scene)
@@ -31,6 +39,9 @@ export class BodyModel {
     this.mesh = new Mesh(geometry, material)
     this.mesh.castShadow = true
     this.group.add(this.mesh)
+    this.pin = poles ? new Pin() : null
+    if (this.pin) this.group.add(this.pin.group)
+    this.pin?.group.scale.setScalar(this.radius)
   }
 
   /** Take another run: material and program stay, since to make these anew takes longer than all else. */
@@ -38,6 +49,7 @@ export class BodyModel {
     const before = this.scene.columns
     this.scene = scene
     this.track = new Track(scene)
+    this.pin?.group.scale.setScalar(this.radius)
     this.paint.plain.value = scene.header.body.kind === 'charge' ? 1 : 0
     if (sameNumbers(before.body_vertices, scene.columns.body_vertices)) return
     this.mesh.geometry.dispose()
@@ -58,6 +70,7 @@ export class BodyModel {
     this.paint.pale.value.set(palette.body.light)
     this.paint.ink.value.set(palette.body.ink)
     this.paint.pole.value.set(palette.body.pole)
+    this.pin?.look(palette)
   }
 
   seek(time: number): void {
@@ -66,7 +79,36 @@ export class BodyModel {
     this.track.orientation(this.group.quaternion)
   }
 
+  /** Show where it was at the last flashes of a lamp, one every so many seconds; 0: no lamp. */
+  flash(time: number, every: number): void {
+    const begin = this.track.begin
+    const last = every > 0 ? Math.floor((Math.min(time, this.track.end) - begin) / every + 1e-9) : -1
+    const first = Math.max(0, last - MOST_FLASHES + 1)
+    const count = last < 0 ? 0 : last - first + 1
+    while (this.flashes.length < count) this.flashes.push(this.faint())
+    this.flashes.forEach((mesh, i) => {
+      mesh.visible = i < count
+      if (!mesh.visible) return
+      mesh.geometry = this.mesh.geometry
+      this.track.seek(begin + (first + i) * every)
+      this.track.position(mesh.position)
+      this.track.orientation(mesh.quaternion)
+    })
+    this.track.seek(time)
+  }
+
+  private faint(): Mesh<BufferGeometry, MeshPhysicalMaterial> {
+    this.faintly ??= new MeshPhysicalMaterial({ roughness: 0.6, transparent: true, opacity: FAINT, depthWrite: false })
+    if (this.flashes.length === 0) paintBody(this.faintly, this.paint)
+    const mesh = new Mesh(this.mesh.geometry, this.faintly)
+    this.group.parent?.add(mesh)
+    return mesh
+  }
+
   dispose(): void {
+    this.pin?.dispose()
+    for (const mesh of this.flashes) mesh.removeFromParent()
+    this.faintly?.dispose()
     this.group.removeFromParent()
     this.mesh.geometry.dispose()
     this.mesh.material.dispose()

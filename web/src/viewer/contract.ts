@@ -26,6 +26,10 @@ export interface ViewerOptions {
   projector?: boolean
   frame?: Frame
   show?: Partial<Show>
+  /** From where the camera looks at first, of the shown frame; absent: as it suits the scene. */
+  from?: Triple
+  /** For who watches the poles: a pin through those of each body, and a compass on the floor. */
+  poles?: boolean
 }
 
 export interface ViewerEvents {
@@ -80,6 +84,8 @@ export interface Viewer {
   step(by: number): void
   speed: number
   loop: boolean
+  /** A stroboscope: so many flashes in a second of the run, of which each leaves a faint picture of the body; 0: none. */
+  flashes: number
   /** Begin at a speed at which the runs can be watched, again and again where they are short; returns that speed. */
   suit(): number
   readonly time: number

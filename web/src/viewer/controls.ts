@@ -7,6 +7,7 @@ import { nextSpeed, SPEEDS } from './player'
 import { shortNumber } from './quantities'
 import type { Scene, SceneEvent } from './scene'
 
+const FLASHES = [0, 1, 2, 5, 10, 20, 50, 100] as const
 const SLIDER_STEPS = 10_000
 
 const SWITCHES: readonly { show: keyof Show; symbol: string; name: string }[] = [
@@ -30,6 +31,10 @@ export class Controls {
   private readonly marks: HTMLElement[] = []
   private readonly speed: HTMLSelectElement
   private readonly looping: HTMLButtonElement
+  private readonly flashes = element('select', 'tr-speed tr-flashes', {
+    'aria-label': 'Stroboscope',
+    title: 'Stroboscope: flashes in a second of the run, each of which leaves a faint picture',
+  })
   private readonly following: HTMLButtonElement
   private readonly frames = new Map<Frame, HTMLButtonElement>()
   private readonly switches = new Map<keyof Show, HTMLButtonElement>()
@@ -54,6 +59,11 @@ export class Controls {
     this.total = element('span', 'tr-total')
     this.ticks = element('div', 'tr-ticks', { 'aria-hidden': 'true' })
     this.speed = this.speeds()
+    this.flashes.addEventListener('change', () => {
+      viewer.flashes = Number(this.flashes.value)
+    })
+    for (const rate of FLASHES)
+      this.flashes.append(element('option', '', { value: String(rate) }, rate ? `✦${rate}` : '✦'))
     this.looping = this.toggle('loop', 'Repeat (L)', () => (viewer.loop = !viewer.loop))
     this.following = this.toggle('follow', 'Camera goes with the body (B)', () => (viewer.follow = !viewer.follow))
     this.element = element(
@@ -116,6 +126,7 @@ export class Controls {
       iconButton('home', 'Camera back to its place (C)', () => viewer.resetCamera()),
       iconButton('top', 'From above (T)', () => viewer.topView()),
       this.following,
+      this.flashes,
     )
     return element('div', 'tr-row tr-view', {}, frames, arrows, camera)
   }
@@ -188,6 +199,7 @@ export class Controls {
     for (const [show, button] of this.switches) put(button, 'aria-pressed', String(viewer.show[show]))
     const known = SPEEDS.some((speed) => speed === viewer.speed)
     if (known) this.speed.value = String(viewer.speed)
+    this.flashes.value = String(viewer.flashes)
     this.update()
   }
 }

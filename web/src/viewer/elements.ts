@@ -64,11 +64,32 @@ export function iconButton(name: Icon, label: string, pressed: () => void): HTML
 /** On a page that scrolls, the wheel scrolls it until somebody has taken hold of the stage. */
 export function leaveThePageItsWheel(frame: HTMLElement, stage: HTMLElement, signal: AbortSignal): void {
   const heard = (event: WheelEvent) => {
-    const page = document.scrollingElement
-    const scrolls = page !== null && page.scrollHeight > page.clientHeight + 1
-    if (scrolls && document.activeElement !== stage && !event.ctrlKey) event.stopPropagation()
+    if (scrolls() && document.activeElement !== stage && !event.ctrlKey) event.stopPropagation()
   }
   frame.addEventListener('wheel', heard, { signal, capture: true })
+}
+
+/** Is the page longer than its window? */
+function scrolls(): boolean {
+  const page = document.scrollingElement
+  return page !== null && page.scrollHeight > page.clientHeight + 1
+}
+
+/** On a page that scrolls, a finger scrolls it up and down, unless it takes hold of something. */
+export function leaveThePageItsSwipes(
+  stage: HTMLElement,
+  holds: (x: number, y: number) => boolean,
+  signal: AbortSignal,
+): void {
+  const heard = (event: TouchEvent) => {
+    const [finger] = event.touches
+    const box = stage.getBoundingClientRect()
+    if (!finger || event.touches.length > 1) return
+    stage.style.touchAction = scrolls() ? 'pan-y' : 'none' // over what the camera's controls set
+    if (holds(finger.clientX - box.left, finger.clientY - box.top)) event.preventDefault()
+  }
+  stage.style.touchAction = 'pan-y'
+  stage.addEventListener('touchstart', heard, { signal, passive: false })
 }
 
 /** What a canvas shows, as a PNG file. */

@@ -38,10 +38,11 @@ export class Axes {
     thick: number,
     labels: LabelLayer,
     toSupport: (place: Vector3) => Vector3,
+    names: readonly string[] = AXES.map(([name]) => name),
   ): void {
-    AXES.forEach(([name, axis], i) => {
-      const arrow = this.arrows[i]!
-      if (!shown) {
+    AXES.forEach(([, axis], i) => {
+      const [arrow, name] = [this.arrows[i]!, names[i]]
+      if (!shown || name === undefined) {
         arrow.hide()
         return
       }

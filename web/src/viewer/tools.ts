@@ -63,6 +63,11 @@ export class Tools {
     return this.tool !== 'orbit' || (this.grabs && this.world.frame !== 'corotating')
   }
 
+  /** Does a gesture that begins here do something with the body, or draw? */
+  holds(x: number, y: number): boolean {
+    return this.acts && (this.tool === 'draw' || this.nearBall(x, y))
+  }
+
   private begin(x: number, y: number): Gesture | null {
     if (this.tool === 'draw') return this.draw(x, y)
     if (!this.nearBall(x, y)) return null
@@ -73,7 +78,7 @@ export class Tools {
   private move(event: PointerEvent): void {
     const [x, y] = this.at(event)
     if (!this.gesture) {
-      this.canvas.dataset.near = String(this.acts && (this.tool === 'draw' || this.nearBall(x, y)))
+      this.canvas.dataset.near = String(this.holds(x, y))
       return
     }
     event.stopPropagation()

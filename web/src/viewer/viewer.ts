@@ -3,12 +3,13 @@ import './viewer.css'
 import { Vector3 } from 'three'
 import type { Frame, SceneOptions, Show, Theme, Tool, Viewer, ViewerEvents, ViewerOptions } from './contract'
 import { Controls, pressed } from './controls'
-import { element, leaveThePageItsWheel, pngOf, put, say } from './elements'
+import { element, leaveThePageItsSwipes, leaveThePageItsWheel, pngOf, put, say } from './elements'
 import { Emitter } from './emitter'
 import { Fallback } from './fallback'
 import { framesOf, nextFrame } from './frames'
 import { LabelLayer } from './labels'
 import { Legend } from './legend'
+import { Narrator } from './narrator'
 import { Player, watchable } from './player'
 import { type Scene, saidOf, type Triple } from './scene'
 import { Sharpness } from './sharpness'
@@ -40,6 +41,7 @@ class StageViewer implements Viewer {
   private readonly world: World | null
   private readonly tools: Tools | null
   private readonly controls: Controls | null
+  private readonly narrator: Narrator
   private readonly watcher: ResizeObserver | null
   private readonly abort = new AbortController()
   private readonly live: Show
@@ -74,7 +76,7 @@ class StageViewer implements Viewer {
     this.sharpness = this.stage && new Sharpness(this.stage, () => this.draw())
     this.fallback = this.stage ? null : new Fallback(document)
     if (this.fallback) this.frameElement.replaceChildren(this.fallback.element)
-    this.world = this.stage && new World(this.stage)
+    this.world = this.stage && new World(this.stage, options)
     const redraw = () => this.invalidate()
     this.tools =
       this.stage &&
@@ -82,6 +84,9 @@ class StageViewer implements Viewer {
       new Tools(this.canvas, this.stage, this.world, this.events, { time: () => this.time, redraw })
     this.controls = options.controls === false ? null : new Controls(this)
     if (this.controls) this.root.append(this.controls.element)
+    this.narrator = new Narrator(this, () => this.scenes)
+    this.root.append(this.narrator.element)
+    this.controls?.element.append(this.narrator.choice)
     this.large = options.projector ?? false
     this.theme = options.theme ?? 'auto'
     this.watcher = this.watchSize()
@@ -109,6 +114,7 @@ class StageViewer implements Viewer {
     const { signal } = this.abort
     this.root.addEventListener('keydown', (event) => this.key(event), { signal })
     leaveThePageItsWheel(this.frameElement, this.canvas, signal)
+    leaveThePageItsSwipes(this.canvas, (x, y) => this.tools?.holds(x, y) ?? false, signal)
     this.canvas.addEventListener('webglcontextlost', (event) => event.preventDefault(), { signal })
     this.canvas.addEventListener('webglcontextrestored', () => this.invalidate(), { signal })
   }
@@ -219,6 +225,15 @@ class StageViewer implements Viewer {
   set loop(loop: boolean) {
     this.player.loop = loop
     this.controls?.refresh()
+  }
+
+  get flashes(): number {
+    return this.world?.flashes ?? 0
+  }
+  set flashes(flashes: number) {
+    if (this.world) this.world.flashes = Math.max(0, Number.isFinite(flashes) ? flashes : 0)
+    this.controls?.refresh()
+    this.invalidate()
   }
 
   get frame(): Frame {
@@ -396,6 +411,7 @@ class StageViewer implements Viewer {
     this.abort.abort()
     if (this.pending) cancelAnimationFrame(this.pending)
     this.sharpness?.dispose()
+    this.narrator.dispose()
     this.unwatch()
     this.watcher?.disconnect()
     this.tools?.dispose()

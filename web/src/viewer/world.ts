@@ -3,7 +3,7 @@ import { Vector3 } from 'three'
 import { Actor } from './actor'
 import { type LegendRow, type Scales, scalesOf, steadyScales } from './arrows'
 import type { BodyModel } from './bodies'
-import type { Frame, Show } from './contract'
+import type { Frame, Show, ViewerOptions } from './contract'
 import { newPose, seen, viewOf } from './frames'
 import { directionFor, extent, placesToShow } from './framing'
 import { Axes, Fields, Sketch } from './guides'
@@ -24,6 +24,8 @@ export class World {
   readonly actors: Actor[] = []
   support: SupportModel | null = null
   frame: Frame = 'world'
+  /** Flashes of the lamp in a second of the run; 0: none. */
+  flashes = 0
   private fields: Fields | null = null
   private scales: Scales | null = null
   private duration = 0
@@ -37,7 +39,10 @@ export class World {
   private palette!: Palette
   private widths!: Widths
 
-  constructor(private readonly stage: Stage) {
+  constructor(
+    private readonly stage: Stage,
+    private readonly options: Pick<ViewerOptions, 'from' | 'poles'> = {},
+  ) {
     stage.space.add(this.axes.group, this.sketch.line.mesh)
   }
 
@@ -65,7 +70,7 @@ export class World {
     this.support.load(scenes)
     if (!keepScale) this.scales = null
     scenes.forEach((scene, i) => {
-      this.actors[i] ??= new Actor(scene, i, this.stage.root)
+      this.actors[i] ??= new Actor(scene, i, this.stage.root, this.options.poles)
       this.actors[i]!.body.load(scene)
     })
     this.fields?.dispose()
@@ -104,7 +109,9 @@ export class World {
   resetCamera(top = false): void {
     const { scenes } = this
     if (!scenes[0]) return
-    const direction = top ? new Vector3(0, -1e-4, 1) : directionFor(scenes[0], this.frame)
+    const { from } = this.options
+    const usual = from ? new Vector3(...from) : directionFor(scenes[0], this.frame)
+    const direction = top ? new Vector3(0, -1e-4, 1) : usual
     this.stage.frame(placesToShow(scenes, this.frame), direction)
     this.stage.shineOn(this.stage.orbit.target)
   }
@@ -123,7 +130,11 @@ export class World {
     this.before.copy(lead.body.group.position).applyMatrix4(this.stage.root.matrixWorld)
     this.stage.root.quaternion.copy(this.view.turn)
     this.stage.root.position.copy(this.view.place)
-    for (const actor of this.actors) actor.body.seek(time)
+    const every = this.flashes > 0 && this.frame !== 'corotating' ? 1 / this.flashes : 0
+    for (const actor of this.actors) {
+      actor.body.flash(time, every)
+      actor.body.seek(time)
+    }
     if (this.held) lead.body.group.position.copy(this.held)
     this.stage.space.updateMatrixWorld(true)
     if (follow)
@@ -153,12 +164,22 @@ export class World {
     })
     for (let i = this.actors.length; i < MOST_TOUCHES; i++) this.support?.shade(i, 0, 0, 0, 0)
     const toSupport = (place: Vector3) => this.toSupport(place)
-    this.axes.update(show.axes, 0.35 * this.unit, 0.7 * thick, labels, toSupport)
+    if (this.options.poles && this.actors[0]) this.compass(this.actors[0].body, thick, labels)
+    else this.axes.update(show.axes, 0.35 * this.unit, 0.7 * thick, labels, toSupport)
     this.fields?.update(thick, labels, this.palette)
     const lies = (this.sketch.frame === 'corotating') === (this.frame === 'corotating')
     this.placeSketch()
     this.sketch.update(lies, labels, this.palette, (place) => (this.frame === 'corotating' ? toSupport(place) : place))
     labels.end()
+  }
+
+  /** East and north on the floor, from where the first body begins. */
+  private compass(body: BodyModel, thick: number, labels: LabelLayer): void {
+    const { contact, position } = body.scene.columns
+    const origin = this.axes.group.position.fromArray(contact ?? position)
+    if (!contact) origin.z -= body.radius
+    const toSupport = (place: Vector3) => place.add(origin)
+    this.axes.update(true, 2.6 * body.radius, 0.7 * thick, labels, toSupport, ['E', 'N'])
   }
 
   /** Several bodies are named; one that is too small to be seen gets a ring round it. */

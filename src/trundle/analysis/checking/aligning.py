@@ -23,21 +23,11 @@ _UNIT = (1.0, 0.0, 0.0, 0.0)
 
 @dataclass(frozen=True)
 class Aligned:
-    """Where the sum of Ω along the body's axes starts.
+    """Where the sum of Ω along the body's axes starts."""
 
-    Parameters
-    ----------
-    start : Quaternion
-        Body frame to support frame.
-    given : bool
-        Whether it is the one that a run is taken to start with; else it was fitted.
-    unsure : float
-        By what a fit may be off, rad.
-    """
-
-    start: Quaternion
-    given: bool
-    unsure: float = 0.0
+    start: Quaternion  # body frame to support frame
+    given: bool  # whether it is the one that a run is taken to start with; else it was fitted
+    unsure: float = 0.0  # by what a fit may be off, rad
 
 
 def aligned(case: Case) -> Aligned:

@@ -14,33 +14,15 @@ from .series import Series
 
 @dataclass(frozen=True)
 class Case:
-    """What was found.
+    """What was found."""
 
-    Parameters
-    ----------
-    system : RollingSystem
-        What is said to move.
-    theirs : Theirs
-        Their samples, checked.
-    tolerance : float
-        As for `examine`.
-    start : State or None
-        Of the scenario.
-    view : View
-        How their motion was looked at.
-    series : mapping from str to Series
-        All that was found.
-    motion : Motion
-        Theirs.
-    """
-
-    system: RollingSystem
-    theirs: ExternalTrajectory
-    tolerance: float
-    start: State | None
-    view: View
-    series: Mapping[str, Series]
-    motion: Motion
+    system: RollingSystem  # what is said to move
+    theirs: ExternalTrajectory  # their samples, checked
+    tolerance: float  # as for `examine`
+    start: State | None  # of the scenario
+    view: View  # how their motion was looked at
+    series: Mapping[str, Series]  # all that was found
+    motion: Motion  # theirs
 
     @property
     def failing(self) -> list[Series]:

@@ -83,31 +83,16 @@ def _scales(system: RollingSystem, at: Motion) -> dict[str, float]:
 
 @dataclass(frozen=True)
 class Comparison:
-    """One slope of what they wrote, and what it should be.
+    """One slope of what they wrote, and what it should be."""
 
-    Parameters
-    ----------
-    name : str
-        Of the figure.
-    array, order : str, int
-        Which of their arrays, and which derivative of it.
-    rate : callable
-        (motion, rates of the law) -> what it should be, (m, c).
-    gains : callable
-        (motion, sensitivity) -> what errors of each part of the state do to that.
-    which : int or None
-        `ACCELERATES` or `TURNS`, where it takes the one or the other from the law.
-    turning : bool
-        Whether it is a slope of quaternions: twice the mismatch, times q*, is one of vectors.
-    """
-
-    name: str
-    array: str
-    order: int
-    rate: Callable[[Motion, Rates], Array]
+    name: str  # of the figure
+    array: str  # which of theirs
+    order: int  # which derivative of it
+    rate: Callable[[Motion, Rates], Array]  # (motion, rates of the law) -> what it should be, (m, c)
+    # (motion, sensitivity) -> what errors of each part of the state do to that
     gains: Callable[[Motion, Sensitivity], Gains]
-    which: int | None = None
-    turning: bool = False
+    which: int | None = None  # `ACCELERATES` or `TURNS`, where it takes the one or the other from the law
+    turning: bool = False  # whether it is a slope of quaternions: twice the mismatch, times q*, is one of vectors
 
     def vectors(self, at: Motion, place: Index, mismatch: Array) -> Array:
         """Return the mismatch of each window as a vector, (k, 3)."""

@@ -19,17 +19,11 @@ _WINDOWS = 16
 
 @dataclass(frozen=True)
 class Power:
-    """What data could show.
+    """What data could show."""
 
-    Parameters
-    ----------
-    shown, blind : dict from a mistake's name to what it says
-        Those that the data exclude, and those that they agree with as well as with the truth. Mistakes that make no
-        difference to such a motion are in neither.
-    """
-
-    shown: dict[str, str]
-    blind: dict[str, str]
+    # Of each mistake what it says. Those that make no difference to such a motion are in neither.
+    shown: dict[str, str]  # those that the data exclude
+    blind: dict[str, str]  # those that they agree with as well as with the truth
 
     @property
     def decides(self) -> bool:

@@ -18,23 +18,14 @@ _SLOPE = np.sqrt(1.2)  # standard deviation of the slope of a line fitted to a r
 class Doubt:
     """The angle by which an orientation may be off, in two parts, rad.
 
-    Parameters
-    ----------
-    turning : array (n,)
-        What changes about as fast as the body turns: nobody told Ω between the samples.
-    walking : array (n,)
-        What noise has added up to, a random walk.
-    drift : float
-        How fast it walks: over a span its mean rate is this over the root of the span.
-
     Examples
     --------
     See `trundle.analysis.checking.motion.added_up`.
     """
 
-    turning: Array
-    walking: Array
-    drift: float
+    turning: Array  # (n,): what changes about as fast as the body turns: nobody told Ω between the samples
+    walking: Array  # (n,): what noise has added up to, a random walk
+    drift: float  # how fast it walks: over a span its mean rate is this over the root of the span
 
     @property
     def angle(self) -> Array:

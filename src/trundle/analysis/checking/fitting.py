@@ -24,26 +24,14 @@ _TINY = 1e-6  # of a number: its doubt is not worth a word
 
 @dataclass(frozen=True)
 class Family:
-    """Systems that differ from the one in hand by a number or two.
+    """Systems that differ from the one in hand by a number or two."""
 
-    Parameters
-    ----------
-    applies : callable
-        Whether a system has such numbers.
-    guess : callable
-        The numbers of a system, to start a fit from.
-    system : callable
-        (system, numbers) -> the system with these numbers.
-    named : callable
-        (system, fitted numbers, doubt) -> what is then suspected.
-    law : callable, optional
-        (system, numbers) -> the law with these numbers, where it is no system that has them.
-    """
-
-    applies: Callable[[RollingSystem], bool]
-    guess: Callable[[RollingSystem], list[float]]
-    system: Callable[[RollingSystem, Array], RollingSystem]
+    applies: Callable[[RollingSystem], bool]  # whether a system has such numbers
+    guess: Callable[[RollingSystem], list[float]]  # the numbers of a system, to start a fit from
+    system: Callable[[RollingSystem, Array], RollingSystem]  # (system, numbers) -> the system with these numbers
+    # (system, fitted numbers, doubt) -> what is then suspected
     named: Callable[[RollingSystem, Array, Array], Iterator[Suspect]]
+    # (system, numbers) -> the law with these numbers, where it is no system that has them
     law: Callable[[RollingSystem, Array], Law] | None = None
 
     def suspect(self, numbers: Array) -> Suspect:

@@ -30,51 +30,24 @@ _SLIPS = frozenset({SLIP})
 
 @dataclass(frozen=True)
 class Suspect:
-    """One mistake, as it can be tried.
+    """One mistake, as it can be tried."""
 
-    Parameters
-    ----------
-    name : str
-        Short, for programs.
-    says : str
-        What the mistake is, as a sentence.
-    touches : frozenset of str
-        What it changes; two that touch the same are not tried together.
-    system : callable, optional
-        The system that they had by mistake, from the right one.
-    law : callable, optional
-        The law that they had by mistake.
-    theirs : callable, optional
-        Their samples without the mistake, from what they gave.
-    excused : frozenset of str
-        Checks that the mistake itself spoils.
-    begins : frozenset of str
-        Of these, the ones that hold at the first instant.
-    further : callable, optional
-        Further checks that the mistake must pass, of a system.
-    numbers : dict
-        What the mistake makes of a number.
-    named : bool
-        Whether its number has a reason.
-    textbook : bool
-        Whether data that cannot tell it from the truth tell little.
-    whole : bool
-        Whether integrals, and the distance from a run of ours, must come out right, too.
-    """
-
-    name: str
-    says: str
-    touches: frozenset[str]
+    name: str  # short, for programs
+    says: str  # what the mistake is, as a sentence
+    touches: frozenset[str]  # what it changes; two that touch the same are not tried together
+    # the system that they had by mistake, from the right one
     system: Callable[[RollingSystem], RollingSystem] | None = None
-    law: Law | None = None
+    law: Law | None = None  # the law that they had by mistake
+    # their samples without the mistake, from what they gave
     theirs: Callable[[ExternalTrajectory], ExternalTrajectory] | None = None
-    excused: frozenset[str] = frozenset()
-    begins: frozenset[str] = frozenset()
+    excused: frozenset[str] = frozenset()  # checks that the mistake itself spoils
+    begins: frozenset[str] = frozenset()  # of these, the ones that hold at the first instant
+    # further checks that the mistake must pass, of a system
     further: Callable[[RollingSystem], tuple[Series, ...]] | None = None
-    numbers: dict[str, float] = field(default_factory=dict)
-    named: bool = True
-    textbook: bool = False
-    whole: bool = True
+    numbers: dict[str, float] = field(default_factory=dict)  # what the mistake makes of a number
+    named: bool = True  # whether its number has a reason
+    textbook: bool = False  # whether data that cannot tell it from the truth tell little
+    whole: bool = True  # whether integrals, and the distance from a run of ours, must come out right, too
 
 
 def together(suspects: Sequence[Suspect]) -> bool:

@@ -35,32 +35,17 @@ _CUT = 0.45  # of a step: noise above it hides that digits were cut off
 class Noise:
     """What samples scatter by about a smooth curve.
 
-    Parameters
-    ----------
-    index : int array (m,)
-        Some of the samples.
-    spread : array (m,)
-        Standard deviation of one sample there, the worst component.
-    freedom : float
-        Degrees of freedom that this is known with.
-    alike : float
-        Times the variance of a mean that noise makes which is not independent from one sample to the next.
-    step : float
-        What all samples are multiples of, where no noise hides it; else 0.
-    rounding : float
-        Of the largest of the samples, as they are kept.
-
     Examples
     --------
     See `noise_of`.
     """
 
-    index: Index
-    spread: Array
-    freedom: float
-    alike: float
-    step: float
-    rounding: float
+    index: Index  # (m,): some of the samples
+    spread: Array  # (m,): standard deviation of one sample there, the worst component
+    freedom: float  # degrees of freedom that this is known with
+    alike: float  # times the variance of a mean that noise makes which is not independent from one sample to the next
+    step: float  # what all samples are multiples of, where no noise hides it; else 0
+    rounding: float  # of the largest of the samples, as they are kept
 
     def at(self, index: Index) -> Array:
         """Return the standard deviation of one sample at other samples."""

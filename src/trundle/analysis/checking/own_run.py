@@ -32,27 +32,14 @@ OWN_RUN = "our own run from the same start"
 
 @dataclass(frozen=True)
 class OwnRun:
-    """Trundle's run from their start, at the instants that were looked at.
+    """Trundle's run from their start, at the instants that were looked at."""
 
-    Parameters
-    ----------
-    position : array (m, 3)
-        Where our body is, m; the last instants are missing where ours runs off a rim.
-    method : str
-        That made it.
-    remark : str
-        Why there is none, where there is none.
-    after, distance, angle : float
-        How far apart the two are at the last instant: after s, by m, and turned by rad; the angle is not a number where
-        they gave no orientation.
-    """
-
-    position: Array
-    method: str = ""
-    remark: str = ""
-    after: float = float("nan")
-    distance: float = float("nan")
-    angle: float = float("nan")
+    position: Array  # (m, 3): where our body is, m; the last instants are missing where ours runs off a rim
+    method: str = ""  # that made it
+    remark: str = ""  # why there is none, where there is none
+    after: float = float("nan")  # when the last instant is, s
+    distance: float = float("nan")  # how far apart the two are then, m
+    angle: float = float("nan")  # how far turned, rad; not a number where they gave no orientation
 
 
 @dataclass(frozen=True)

@@ -25,40 +25,24 @@ AXES, ORDERS, DIRECTIONS = ("space", "body"), ("wxyz", "xyzw"), ("body-to-space"
 class Conventions:
     """How their numbers are to be read.
 
-    Parameters
-    ----------
-    columns : mapping, optional
-        Trundle's name (t, x, y, z, vx, ..., wx, ..., qw, ...) -> their heading, where the name alone does not tell.
-    axes : str
-        "space": Ω has its components along the axes of the frame; "body": along those of the body.
-    angles : str
-        Unit of angles, "rad" or "deg"; rates per second.
-    quaternion : str
-        Order of the parts, "wxyz" or "xyzw"; matters where columns are numbered or come as one array.
-    orientation : str
-        "body-to-space", or "space-to-body" for the inverse.
-    euler : str
-        For columns e1, e2, e3: the axes, as SciPy has them: "xyz" about fixed axes, "ZXZ" about those of the body.
-    frame : str
-        One of `trundle.solve.frames.FRAMES`.
-    time, length : str
-        Units of time and length where the headings have none.
-
     Examples
     --------
     >>> Conventions(angles="deg").angles
     'deg'
     """
 
+    # trundle's name (t, x, y, z, vx, ..., wx, ..., qw, ...) -> their heading, where the name alone does not tell
     columns: Mapping[str, str] = field(default_factory=dict)
-    axes: str = "space"
-    angles: str = "rad"
+    axes: str = "space"  # "space": Ω has its components along the axes of the frame; "body": along those of the body
+    angles: str = "rad"  # unit of angles, "rad" or "deg"; rates per second
+    # order of the parts, "wxyz" or "xyzw"; matters where columns are numbered or come as one array
     quaternion: str = "wxyz"
-    orientation: str = "body-to-space"
+    orientation: str = "body-to-space"  # "body-to-space", or "space-to-body" for the inverse
+    # for columns e1, e2, e3: the axes, as SciPy has them: "xyz" about fixed axes, "ZXZ" about those of the body
     euler: str = "xyz"
-    frame: str = "support"
-    time: str = "s"
-    length: str = "m"
+    frame: str = "support"  # one of `trundle.solve.frames.FRAMES`
+    time: str = "s"  # its unit, where the heading has none
+    length: str = "m"  # the same
 
     def __post_init__(self) -> None:
         for name, value, allowed in (

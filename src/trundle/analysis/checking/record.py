@@ -31,29 +31,6 @@ _SEARCH = 50  # steps at most to the place of contact; spheres on planes and cyl
 class ExternalTrajectory:
     """A trajectory to be checked, in the inertial support frame; what was not given is None.
 
-    Parameters
-    ----------
-    time : array (n,)
-        Ascending, s.
-    position : array (n, 3)
-        Centre of mass, m.
-    velocity : array (n, 3), optional
-        m/s.
-    angular_velocity : array (n, 3), optional
-        Ω, rad/s.
-    orientation : array (n, 4), optional
-        Quaternions (w, x, y, z), body frame to support frame.
-    height_given : bool
-        Whether the third component of the position is theirs, or follows from touching the plane.
-    doubts : mapping from str to Doubt
-        Of an orientation that was added up from Ω, or of an Ω that such a one turned.
-    spin : float, optional
-        Ω·n at the first sample, where nothing that was given tells it, rad/s.
-    remarks : tuple of str
-        What was left out in reading.
-    source : str
-        Where it comes from, for titles.
-
     Examples
     --------
     >>> t = np.linspace(0.0, 1.0, 20)
@@ -61,16 +38,18 @@ class ExternalTrajectory:
     'position'
     """
 
-    time: Array
-    position: Array
-    velocity: Array | None = None
-    angular_velocity: Array | None = None
-    orientation: Array | None = None
+    time: Array  # (n,): ascending, s
+    position: Array  # (n, 3): centre of mass, m
+    velocity: Array | None = None  # (n, 3): m/s
+    angular_velocity: Array | None = None  # (n, 3): Ω, rad/s
+    orientation: Array | None = None  # (n, 4): quaternions (w, x, y, z), body frame to support frame
+    # whether the third component of the position is theirs, or follows from touching the plane
     height_given: bool = True
+    # of an orientation that was added up from Ω, or of an Ω that such a one turned
     doubts: Mapping[str, Doubt] = field(default_factory=dict)
-    spin: float | None = None
-    remarks: tuple[str, ...] = ()
-    source: str = ""
+    spin: float | None = None  # Ω·n at the first sample, where nothing that was given tells it, rad/s
+    remarks: tuple[str, ...] = ()  # what was left out in reading
+    source: str = ""  # where it comes from, for titles
     # What was worked out goes on to changed copies, by the arrays that it was worked out of.
     _windows: Known = field(default_factory=dict, compare=False, repr=False)
     _kept: dict[Any, Any] = field(default_factory=dict, compare=False, repr=False)

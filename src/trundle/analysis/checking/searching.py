@@ -20,30 +20,14 @@ SHOWN = 5  # mistakes
 
 @dataclass(frozen=True)
 class Tried:
-    """Mistakes, tried together.
+    """Mistakes, tried together."""
 
-    Parameters
-    ----------
-    suspects : tuple of Suspect
-        One or more.
-    left : float
-        What is off with them undone, as a share of what is off as it is.
-    explains : bool
-        Whether nothing is left beyond its bound.
-    found : Any
-        What whoever tried them wants to keep.
-    mended : int
-        How many checks that failed hold with them undone.
-    tells : bool
-        Whether anything changes with them undone.
-    """
-
-    suspects: tuple[Suspect, ...]
-    left: float
-    explains: bool
-    found: Any = None
-    mended: int = 0
-    tells: bool = True
+    suspects: tuple[Suspect, ...]  # one or more
+    left: float  # what is off with them undone, as a share of what is off as it is
+    explains: bool  # whether nothing is left beyond its bound
+    found: Any = None  # what whoever tried them wants to keep
+    mended: int = 0  # how many checks that failed hold with them undone
+    tells: bool = True  # whether anything changes with them undone
 
     @property
     def named(self) -> bool:

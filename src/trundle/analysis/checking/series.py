@@ -13,25 +13,6 @@ from .slopes import Array
 class Series:
     """One residual over time beside its bound.
 
-    Parameters
-    ----------
-    name : str
-        Of the check.
-    time : array (m,)
-        s.
-    residual : array (m, c)
-        As vectors.
-    size : float
-        Beside which a residual is small or not: the shares are shares of it.
-    bound : array (m,)
-        The longest vector allowed.
-    asked : float
-        The part of the bound that the tolerance makes; the rest is what the data themselves leave open.
-    note : str
-        How it was measured.
-    motion : float, optional
-        What it would be a share of if the size were no more than what moves; absent: the size.
-
     Examples
     --------
     >>> one = Series("no slip", np.arange(2.0), np.array([[0.0], [0.5]]), 1.0, np.array([0.25, 0.25]), 0.1, "")
@@ -39,13 +20,14 @@ class Series:
     (2.0, 0.5, 1.0)
     """
 
-    name: str
-    time: Array
-    residual: Array
-    size: float
-    bound: Array
-    asked: float
-    note: str
+    name: str  # of the check
+    time: Array  # (m,): s
+    residual: Array  # (m, c): as vectors
+    size: float  # beside which a residual is small or not: the shares are shares of it
+    bound: Array  # (m,): the longest vector allowed
+    asked: float  # the part of the bound that the tolerance makes; the rest is what the data themselves leave open
+    note: str  # how it was measured
+    # what it would be a share of if the size were no more than what moves; absent: the size
     motion: float | None = None
 
     @property

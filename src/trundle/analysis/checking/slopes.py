@@ -30,38 +30,20 @@ _DOUBT = 2.0  # standard deviations by which a truncation must stand out of the 
 class Estimate:
     """Values, or a derivative, at some of the samples.
 
-    Parameters
-    ----------
-    values : array (m, c)
-        What was estimated.
-    spread : array (m,)
-        Standard deviation of the worst of its components.
-    bias : array (m,)
-        What too few samples for so much bending may add, as the length of a vector.
-    noise : array (m,)
-        Standard deviation of one sample about a smooth curve, the worst component.
-    freedom : float
-        Degrees of freedom from which the noise was estimated.
-    alike : float
-        Times the variance of a mean over many samples that noise makes which is not independent from one to the next.
-    index : int array (m, w), optional
-        The samples that each was taken from.
-    row : array (m, w), optional
-        Their weights.
-
     Examples
     --------
     See `derivative`.
     """
 
-    values: Array
-    spread: Array
-    bias: Array
-    noise: Array
-    freedom: float = np.inf
+    values: Array  # (m, c): what was estimated
+    spread: Array  # (m,): standard deviation of the worst of its components
+    bias: Array  # (m,): what too few samples for so much bending may add, as the length of a vector
+    noise: Array  # (m,): standard deviation of one sample about a smooth curve, the worst component
+    freedom: float = np.inf  # degrees of freedom from which the noise was estimated
+    # times the variance of a mean over many samples that noise makes which is not independent from one to the next
     alike: float = 1.0
-    index: Any = field(default=None, repr=False)
-    row: Any = field(default=None, repr=False)
+    index: Any = field(default=None, repr=False)  # (m, w): the samples that each was taken from
+    row: Any = field(default=None, repr=False)  # (m, w): their weights
 
     @property
     def error(self) -> Array:

@@ -38,24 +38,12 @@ _CRUDE = 0.02  # a residual, as a share, that is more likely a matter of steps t
 
 @dataclass(frozen=True)
 class Drawn:
-    """What the figure shows.
+    """What the figure shows."""
 
-    Parameters
-    ----------
-    system : RollingSystem
-        For the title's numbers.
-    motion : Motion
-        Theirs, at the instants looked at.
-    series : tuple of Series
-        All residuals.
-    ours : OwnRun
-        Our run.
-    """
-
-    system: RollingSystem
-    motion: Motion
-    series: tuple[Series, ...]
-    ours: OwnRun
+    system: RollingSystem  # for the title's numbers
+    motion: Motion  # theirs, at the instants looked at
+    series: tuple[Series, ...]  # all residuals
+    ours: OwnRun  # our run
 
 
 def check(

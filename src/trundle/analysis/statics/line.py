@@ -33,28 +33,14 @@ NEAR = 1e-6  # rad: roots nearer than this are one
 
 @dataclass(frozen=True)
 class Line:
-    """The line along which a body rolls when it turns about one axis, fixed in space.
+    """The line along which a body rolls when it turns about one axis, fixed in space."""
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Its support at rest.
-    time : float
-        s.
-    q : Quaternion
-        The orientation at angle 0.
-    axis : Vector
-        Unit vector; positive angles turn about it.
-    low, high : float
-        The angles between which it is known, rad.
-    """
-
-    system: RollingSystem
-    time: float
-    q: Quaternion
-    axis: Vector
-    low: float
-    high: float
+    system: RollingSystem  # its support at rest
+    time: float  # s
+    q: Quaternion  # the orientation at angle 0
+    axis: Vector  # unit vector; positive angles turn about it
+    low: float  # the angle from which it is known, rad
+    high: float  # the angle up to which
     _numbers: Callable[[Any], Array] = field(repr=False)
 
     def place(self, angle: Any) -> tuple[Vector, Quaternion]:

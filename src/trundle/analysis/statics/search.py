@@ -42,24 +42,12 @@ class Place:
 
 @dataclass(frozen=True)
 class Family:
-    """An equilibrium and what may be changed about it without leaving equilibrium.
+    """An equilibrium and what may be changed about it without leaving equilibrium."""
 
-    Parameters
-    ----------
-    place : Place
-        One member, the one found nearest the start.
-    dimension : int
-        Of the family, among the ways to lie that are told apart.
-    free : tuple of int
-        Those of the searched directions (two coordinates, three turns) that alone stay in it.
-    members : tuple of Place
-        Those that the search has hit upon, in order of their distance from the start.
-    """
-
-    place: Place
-    dimension: int
-    free: tuple[int, ...]
-    members: tuple[Place, ...] = ()
+    place: Place  # one member, the one found nearest the start
+    dimension: int  # of the family, among the ways to lie that are told apart
+    free: tuple[int, ...]  # those of the searched directions (two coordinates, three turns) that alone stay in it
+    members: tuple[Place, ...] = ()  # those that the search has hit upon, in order of their distance from the start
 
 
 class Search:

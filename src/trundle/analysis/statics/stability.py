@@ -19,24 +19,16 @@ PARALLEL = 1e-6  # two ways of moving that differ less are one
 class Mode:
     """One way to move about an equilibrium, growing or oscillating as exp(λt).
 
-    Parameters
-    ----------
-    rate : complex
-        λ, 1/s: of the two that belong together the one with the larger real, else the positive imaginary part.
-    turn : tuple of 3 floats
-        The axis about which the body turns, a unit vector of the support frame.
-    moves : tuple of 3 floats
-        How far the contact moves for one radian of that turn, m.
-
     Examples
     --------
     >>> Mode(2j, (0.0, 1.0, 0.0), (0.1, 0.0, 0.0)).frequency
     2.0
     """
 
+    # λ, 1/s: of the two that belong together the one with the larger real, else the positive imaginary part
     rate: complex
-    turn: tuple[float, float, float]
-    moves: tuple[float, float, float]
+    turn: tuple[float, float, float]  # the axis about which the body turns, a unit vector of the support frame
+    moves: tuple[float, float, float]  # how far the contact moves for one radian of that turn, m
 
     @property
     def frequency(self) -> float:

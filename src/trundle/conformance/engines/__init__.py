@@ -102,6 +102,11 @@ class Engine:
         return cache_folder() / "engines" / f"{self.name}-{hashlib.sha256(said.encode()).hexdigest()[:12]}"
 
     @property
+    def python(self) -> Path:
+        """Its interpreter."""
+        return _python(self.environment) if self.packages else Path(sys.executable)
+
+    @property
     def installed(self) -> bool:
         """Whether its environment is there."""
         return not self.packages or (self.environment / _READY).exists()
@@ -163,10 +168,9 @@ class Engine:
             Not started yet.
         """
         own = not self.packages
-        python = Path(sys.executable) if own else _python(self.environment)
         ours = str(_HERE.parents[2]) if own else ""  # trundle itself is imported from where this file is
         path = {"PYTHONPATH": os.pathsep.join(filter(None, (ours, os.environ.get("PYTHONPATH", "") if own else "")))}
-        return Adapter([str(python), "-m", f"adapters.{self.name}"], _HERE, limit, path)
+        return Adapter([str(self.python), "-m", f"adapters.{self.name}"], _HERE, limit, path)
 
 
 def _python(environment: Path) -> Path:

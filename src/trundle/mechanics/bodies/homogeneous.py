@@ -22,15 +22,6 @@ _ROUNDING = 1e-12
 class Homogeneous:
     """Volume, centre of mass and second moments of a homogeneous body.
 
-    Parameters
-    ----------
-    volume : float
-        m³.
-    centre : Vector
-        Of mass, from the origin of the shape, m.
-    second : tuple of 6 floats
-        ∫x xᵀ dV/V about the centre of mass, its elements xx, yy, zz, xy, xz, yz, m².
-
     Examples
     --------
     >>> from trundle.mechanics.shapes import Sphere
@@ -38,9 +29,9 @@ class Homogeneous:
     2.0
     """
 
-    volume: float
-    centre: Vector
-    second: tuple[float, ...]
+    volume: float  # m³
+    centre: Vector  # of mass, from the origin of the shape, m
+    second: tuple[float, ...]  # ∫x xᵀ dV/V about the centre of mass, its elements xx, yy, zz, xy, xz, yz, m²
 
     def inertia(self, mass: Any) -> tuple[tuple[Any, Any, Any], tuple[Any, Any, Any]]:
         """Return J_xx, J_yy, J_zz and J_xy, J_xz, J_yz about the centre of mass, kg m²."""

@@ -28,25 +28,13 @@ _EQUAL = 1e-12
 
 @dataclass(frozen=True)
 class Rim:
-    """A body that touches along a sharp circular rim about its centre of mass, and is alike about the rim's axis.
+    """A body that touches along a sharp circular rim about its centre of mass, and is alike about the rim's axis."""
 
-    Parameters
-    ----------
-    axis : Vector
-        Of the rim, in the body frame, a unit vector.
-    radius : float
-        a, m.
-    across, along : float
-        Moments of inertia A about a diameter, C about the axis, kg m².
-    mass : float
-        m, kg.
-    """
-
-    axis: Vector
-    radius: float
-    across: float
-    along: float
-    mass: float
+    axis: Vector  # of the rim, in the body frame, a unit vector
+    radius: float  # a, m
+    across: float  # A, moment of inertia about a diameter, kg m²
+    along: float  # C, moment of inertia about the axis, kg m²
+    mass: float  # m, kg
 
     @property
     def share(self) -> float:

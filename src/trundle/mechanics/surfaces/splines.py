@@ -22,13 +22,6 @@ _QUINTIC = 6
 class Pieces:
     """A function that is a polynomial between any two of its knots, on a line or a grid.
 
-    Parameters
-    ----------
-    x, y : tuple of float
-        Where its pieces begin along either axis; on a line y is (0,).
-    terms : nested tuple of float
-        terms[i][j][a][b] for each piece: the coefficients, counted from where it begins, the highest powers first.
-
     Examples
     --------
     >>> square = Pieces((0.0, 1.0), (0.0,), ((((1.0,), (0.0,), (0.0,)),), (((1.0,), (2.0,), (1.0,)),)))
@@ -36,8 +29,9 @@ class Pieces:
     (9.0, 1.0)
     """
 
-    x: tuple[float, ...]
-    y: tuple[float, ...]
+    x: tuple[float, ...]  # where its pieces begin along this axis
+    y: tuple[float, ...]  # and along this; on a line (0,)
+    # terms[i][j][a][b] for each piece: the coefficients, counted from where it begins, the highest powers first
     terms: tuple[Any, ...]
 
     @staticmethod

@@ -75,18 +75,13 @@ class Direction(Measures):
 class ListOfLengths:
     """The type of a list of lengths of any size, or of a list of such lists, for use in ``Annotated``.
 
-    Parameters
-    ----------
-    rows : bool
-        Whether it is a list of lists.
-
     Examples
     --------
     >>> ListOfLengths()(["1 cm", 0]), ListOfLengths(rows=True)([[0, "1 mm"], []])
     ((0.01, 0.0), ((0.0, 0.001), ()))
     """
 
-    rows: bool = False
+    rows: bool = False  # whether it is a list of lists
 
     def __call__(self, value: Any, key: str = "") -> tuple[Any, ...]:
         """Return the checked numbers."""
@@ -114,18 +109,13 @@ class ListOfLengths:
 class FormulaText:
     """The type of a formula in named variables, for use in ``Annotated``.
 
-    Parameters
-    ----------
-    formula : Formula
-        What the part says about it.
-
     Examples
     --------
     >>> FormulaText(Formula(("x", "y")))("x*y")
     'x*y'
     """
 
-    formula: Formula
+    formula: Formula  # what the part says about it
 
     @property
     def offer(self) -> str:

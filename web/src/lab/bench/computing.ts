@@ -89,6 +89,7 @@ export function createComputing(app: App, listener: Listener): Computing {
   return {
     ask(scenario, change) {
       app.api.cancel('card')
+      app.api.cancel('possible')
       listener.card({ state: 'waiting' })
       runner.ask({ scenario, enough: change?.gesture === undefined ? QUICK : MOVING })
       later(scenario)

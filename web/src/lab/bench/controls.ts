@@ -6,6 +6,7 @@ import { cleanup, fill, h, uniqueId } from '../dom'
 import type { Parts } from '../parts'
 import type { Json, Path, Scenario } from '../scenario'
 import { valueAt, withValue } from '../scenario'
+import { endsOf } from './ends'
 import type { Field } from './field'
 import { createField } from './field'
 import { type Item, layout, type Option, rollingAgain, type Section } from './layout'
@@ -14,8 +15,10 @@ export interface Controls {
   element: HTMLElement
   /** How far the sliders of the position reach, in m: the size of the support. */
   setReach(metres: number): void
-  /** Show what the package says is wrong at its control, or take it away. */
-  complain(error: ApiError | null): void
+  /** Show what is wrong at the control in hand, or else at the one that is meant; returns it in the words of labels. */
+  complain(error: ApiError | null): string
+  /** Ask where the sliders end, with the scenario as it is. */
+  findEnds(): Promise<void>
   dispose(): void
 }
 
@@ -40,11 +43,16 @@ export function createControls(app: App): Controls {
   let wrong: ApiError | null = null
   let parts: Parts | undefined
 
+  /** The control that was changed last. */
+  let hand: Path | null = null
+  const changes = new Map<Path, (now: Scenario, value: Json) => Scenario>()
+
   const put = (next: Scenario, gesture?: string) => store.set(rollingAgain(next), { source: 'control', gesture })
   const unitKey = (path: Path) => path.replace(/\.\d+$/, '').replace(/\.\d+\./, '.')
 
   function makeField(item: Extract<Item, { type: 'field' }>): HTMLElement {
     const { path, entry, fallback } = item
+    const changed = (now: Scenario, value: Json) => (item.set ? item.set(now, value) : withValue(now, path, value))
     const field = createField({
       path,
       entry,
@@ -58,10 +66,11 @@ export function createControls(app: App): Controls {
         update(store.scenario)
       },
       change: (value, gesture) => {
-        const next = item.set ? item.set(store.scenario, value) : withValue(store.scenario, path, value)
-        put(next, gesture)
+        hand = path
+        put(changed(store.scenario, value), gesture)
       },
     })
+    changes.set(path, changed)
     fields.push(field)
     return field.element
   }
@@ -191,11 +200,29 @@ export function createControls(app: App): Controls {
   /** The error at the control of its key, or of the nearest one; above all where none fits. */
   function place(): void {
     const key = wrong?.key?.replace(/\[(\d+)\]/g, '.$1') ?? null
-    const hit = key === null ? undefined : nearest(key)
-    for (const field of fields) field.complain(field === hit ? (wrong?.message ?? null) : null)
-    hide(alert, wrong === null || hit !== undefined)
-    say(alert, wrong && !hit ? wrong.message : '')
+    const hit = fields.find((field) => field.path === hand) ?? (key === null ? undefined : nearest(key))
+    const said = wrong ? inWords(wrong.message) : null
+    for (const field of fields) field.complain(field === hit ? said : null)
+    hide(alert, said === null || hit !== undefined)
+    say(alert, said && !hit ? said : '')
     hit?.element.closest('details')?.setAttribute('open', '')
+  }
+
+  /** A message of the package with labels for its keys. */
+  function inWords(message: string): string {
+    return message.replace(/`([^`]*)`/g, (_, key: string) => {
+      const place = key.replace(/\[(\d+)\]/g, '.$1')
+      const at = ({ path }: Field) => places.get(path) ?? path
+      const field = fields.find((one) => at(one) === place) ?? fields.find((one) => at(one).split('.').at(-1) === place)
+      if (field) return `“${field.label}”`
+      const word = /^[a-z_.\d]+$/.test(place)
+        ? (place
+            .split('.')
+            .filter((part) => /\D/.test(part))
+            .at(-1) ?? '')
+        : key
+      return `“${word.replaceAll('_', ' ')}”`
+    })
   }
 
   function nearest(key: string): Field | undefined {
@@ -207,7 +234,15 @@ export function createControls(app: App): Controls {
     )
   }
 
-  undo.add(store.subscribe(update))
+  undo.add(
+    store.subscribe((scenario, { source }) => {
+      if (source !== 'control') {
+        hand = null
+        for (const field of fields) field.limit({ low: null, high: null })
+      }
+      update(scenario)
+    }),
+  )
   app.parts().then(
     (found) => {
       parts = found
@@ -231,6 +266,21 @@ export function createControls(app: App): Controls {
       wrong = error
       place()
       if (error === null) for (const field of fields) field.accept()
+      return error ? inWords(error.message) : ''
+    },
+    async findEnds() {
+      element.removeAttribute('data-ends')
+      const [scenario, asked] = [store.scenario, fields]
+      const sliding = asked.map((field) => ({
+        now: field.now,
+        at: field.at,
+        share: field.share,
+        with: (value: Json) => rollingAgain(changes.get(field.path)!(scenario, value)),
+      }))
+      const ends = await endsOf(sliding, (scenarios) => app.api.possible(scenarios), inWords)
+      if (store.scenario !== scenario || fields !== asked) return
+      for (const [i, field] of asked.entries()) field.limit(ends[i]!)
+      element.dataset.ends = scenario.title ?? '' // for tests: known of this scenario
     },
     dispose: () => undo.run(),
   }

@@ -209,3 +209,25 @@ it('keeps a unit that only the package knows, once it was accepted', () => {
   set.field.accept()
   expect([set.input.value, set.unit.value]).toEqual(['2', 'revolution/hour'])
 })
+
+it('ends where it was found to end, says why, and gives no more', () => {
+  const { field, change, slider } = setUp('2 rad/s')
+  const why = '“Rate” must be at most 5.'
+  field.limit({ low: null, high: { value: '5 rad/s', why } })
+  slider.value = '1000'
+  slider.dispatchEvent(new Event('input'))
+  expect(change.mock.calls.at(-1)?.[0]).toBe('5 rad/s')
+  const said = field.element.querySelector<HTMLElement>('.field-end')!
+  expect([said.hidden, said.textContent]).toEqual([false, `It ends here. ${why}`])
+  expect(field.at(1)).toBe('10 rad/s')
+})
+
+it('can go nowhere where both ends are where it stands', () => {
+  const { field, slider } = setUp('2 rad/s')
+  const here = { value: '2 rad/s', why: 'It must roll straight.' }
+  field.limit({ low: here, high: here })
+  expect([slider.disabled, slider.title]).toEqual([true, 'It must roll straight.'])
+  expect(field.element.querySelector('.field-end')?.textContent).toContain('It must roll straight.')
+  field.limit({ low: null, high: null })
+  expect([slider.disabled, slider.title]).toEqual([false, ''])
+})

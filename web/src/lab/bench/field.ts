@@ -1,7 +1,7 @@
 /** One number of the scenario: typed with its unit, dragged by a slider, stepped by the arrow keys. */
 import { hide, put, say } from '../../viewer/elements'
 import { h, uniqueId } from '../dom'
-import { brief, parse, rounded, siUnit, stepped, toSI, type Units, write } from '../quantity'
+import { brief, parse, rounded, siUnit, stepped, suited, toSI, type Units, write } from '../quantity'
 import type { Json, Path } from '../scenario'
 
 /** What a control shows of a number. */
@@ -30,12 +30,27 @@ export interface FieldOptions {
   change(value: Json, gesture?: string): void
 }
 
+/** The last value of a slider that can be computed, and why there is no more. */
+export interface Limit {
+  value: Json
+  why: string
+}
+
 export interface Field {
   element: HTMLElement
   path: Path
+  label: string
   update(value: Json | undefined): void
   /** Show the package's message at the control, or take it away. */
   complain(message: string | null): void
+  /** What it holds now. */
+  now(): Json
+  /** What the slider would say at a share of its length; null where it says nothing. */
+  at(share: number): Json | null
+  /** Where the slider stands, as a share of its length. */
+  share(): number
+  /** Where it ends before its own end: the last value that can start, and why no more; null: nowhere. */
+  limit(ends: Record<'low' | 'high', Limit | null>): void
   /** What the control holds could be computed: the value to go back to from one that is refused. */
   accept(): void
   focus(): void
@@ -56,6 +71,7 @@ export function createField(options: FieldOptions): Field {
   /** The last value that was accepted, and the one before it, since an answer may be that of an older value. */
   let good: { now: Json | undefined; earlier: Json | undefined } | undefined
   let refused = false
+  let limits: Record<'low' | 'high', Limit | null> = { low: null, high: null }
 
   const input = h('input', {
     id,
@@ -76,6 +92,7 @@ export function createField(options: FieldOptions): Field {
     'aria-label': `${entry.label}, slider`,
   })
   const message = h('p', { class: 'field-message', id: `${id}-message`, hidden: true })
+  const end = h('p', { class: 'field-end', hidden: true, 'aria-live': 'polite' })
   const hasUnits = units.length > 1 || units[0] !== ''
   const element = h(
     'div',
@@ -83,6 +100,7 @@ export function createField(options: FieldOptions): Field {
     h('label', { class: 'field-label', for: id, title: entry.hint ?? null }, entry.label),
     h('div', { class: 'field-value' }, input, hasUnits && unit),
     slider,
+    end,
     message,
   )
 
@@ -95,7 +113,9 @@ export function createField(options: FieldOptions): Field {
   function shownUnit(): string {
     const written = parse(misfit() ? good?.now : value).unit
     if (written && !units.includes(written)) return written
-    return options.unit() ?? (written || (units[0] ?? ''))
+    const usual = written || (units[0] ?? '')
+    const { number } = parse(value)
+    return options.unit() ?? (number === null || !hasUnits ? usual : suited(number, usual, entry.units))
   }
 
   function fillUnits(): void {
@@ -125,31 +145,59 @@ export function createField(options: FieldOptions): Field {
     return from === undefined || to === undefined ? found.digits : String(rounded((found.number * from) / to, 6))
   }
 
-  function place(si: number): number {
-    const { min, max } = range
+  function place(si: number, { min, max } = range): number {
     if (entry.decades) return Math.log(Math.max(si, min) / min) / Math.log(max / min)
     return (si - min) / (max - min)
   }
 
-  function amountAt(place: number): number {
-    const { min, max } = range
+  function amountAt(place: number, { min, max } = range): number {
     return entry.decades ? min * (max / min) ** place : min + (max - min) * place
   }
 
+  /** All that the slider is to go through, as far as nobody has found that it ends before. */
+  function whole(si: number): { min: number; max: number } {
+    return {
+      min: si < entry.min ? (entry.decades ? Math.max(si / 2, 1e-12) : si * 1.5) : entry.min,
+      max: si > entry.max ? si * 1.5 : entry.max,
+    }
+  }
+
   function widen(si: number): void {
-    range = { min: entry.min, max: entry.max }
-    if (si > range.max) range.max = si * 1.5
-    if (si < range.min) range.min = entry.decades ? Math.max(si / 2, 1e-12) : si * 1.5
+    range = whole(si)
+    const [low, high] = [limitOf('low'), limitOf('high')]
+    if (low !== null) range.min = Math.min(low, si)
+    if (high !== null) range.max = Math.max(high, si)
+  }
+
+  const limitOf = (end: 'low' | 'high') => {
+    const limit = limits[end]
+    return limit && toSI(limit.value, entry.units)
+  }
+
+  /** At an end beyond which there is no motion it says why. */
+  function drawEnd(si: number): void {
+    const [low, high] = [limitOf('low'), limitOf('high')]
+    const stuck = low !== null && high !== null && !(high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high)))
+    const near = (end: number | null) => end !== null && Math.abs(si - end) <= 1e-9 * Math.abs(end)
+    const at = near(high) ? limits.high : near(low) ? limits.low : null
+    slider.disabled = stuck
+    put(slider, 'title', (stuck ? (limits.high ?? limits.low) : at)?.why ?? '')
+    hide(end, refused || (at === null && !stuck))
+    say(end, stuck ? `Nothing else goes. ${limits.high!.why}` : at ? `It ends here. ${at.why}` : '')
   }
 
   function draw(): void {
     if (hasUnits) fillUnits()
     if (!typing) input.value = document.activeElement === input ? digits() : brief(digits())
     const si = toSI(value, entry.units)
+    const formula = si === null && typeof value === 'string'
+    element.toggleAttribute('data-formula', formula)
+    put(input, 'title', formula ? String(value) : '')
     slider.disabled = si === null
     if (si === null) return
     if (!slider.matches(':active')) widen(si)
-    const at = Math.min(1, Math.max(0, place(si)))
+    drawEnd(si)
+    const at = range.max > range.min ? Math.min(1, Math.max(0, place(si))) : 0.5
     slider.value = String(Math.round(at * NOTCHES))
     const zero = entry.decades ? 0 : Math.min(1, Math.max(0, place(0)))
     slider.style.setProperty('--from', `${Math.min(zero, at) * 100}%`)
@@ -231,16 +279,26 @@ export function createField(options: FieldOptions): Field {
     gesture += 1
   })
   slider.addEventListener('input', () => {
-    const shown = hasUnits ? shownUnit() : ''
-    const factor = entry.units[shown] ?? 1
-    const raw = amountAt(Number(slider.value) / NOTCHES) / factor
-    const next = entry.decades ? rounded(raw, 3) : rounded(Math.round(raw / grid(factor)) * grid(factor), 9)
-    commit(write(next * factor, entry.units, shown, 9), `slide${gesture}`)
+    const next = amountSaid(Number(slider.value) / NOTCHES, range)
+    const si = toSI(next, entry.units) ?? 0
+    const [low, high] = [limitOf('low'), limitOf('high')]
+    const kept = high !== null && si >= high ? limits.high : low !== null && si <= low ? limits.low : null
+    commit(kept?.value ?? next, `slide${gesture}`)
   })
 
+  /** The round number that a place of the slider stands for. */
+  function amountSaid(share: number, within: typeof range): Json {
+    const shown = hasUnits ? shownUnit() : ''
+    const factor = entry.units[shown] ?? 1
+    const raw = amountAt(share, within) / factor
+    const fine = grid(factor, within)
+    const next = entry.decades ? rounded(raw, 3) : rounded(Math.round(raw / fine) * fine, 9)
+    return write(next * factor, entry.units, shown, 9)
+  }
+
   /** Round numbers for the slider: 1, 2 or 5 in some decade, two hundred or more of them over its range. */
-  function grid(factor: number): number {
-    const fine = (range.max - range.min) / Math.abs(factor) / 200
+  function grid(factor: number, { min, max }: typeof range): number {
+    const fine = (max - min) / Math.abs(factor) / 200
     const decade = 10 ** Math.floor(Math.log10(fine))
     return decade * ([5, 2].find((part) => part * decade <= fine) ?? 1)
   }
@@ -256,12 +314,26 @@ export function createField(options: FieldOptions): Field {
   return {
     element,
     path,
+    label: entry.label,
     update(next) {
       const said = next ?? options.fallback
       if (said !== value) typing = false
       value = said
       good ??= { now: said, earlier: said }
       draw()
+    },
+    now: () => value ?? null,
+    at(share) {
+      const si = toSI(value, entry.units)
+      return si === null ? null : amountSaid(share, whole(si))
+    },
+    share() {
+      const si = toSI(value, entry.units) ?? 0
+      return place(si, whole(si))
+    },
+    limit(ends) {
+      limits = ends
+      if (!typing) draw()
     },
     accept() {
       if (!typing && good?.now !== value) good = { now: value, earlier: good?.now }

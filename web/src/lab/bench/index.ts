@@ -73,13 +73,18 @@ function _mount(host: HTMLElement, app: App): () => void {
         stage.working(!idle)
       })
     },
-    settled: (scene) => app.announce(sentence(scene)),
+    settled: (scene) => {
+      app.announce(sentence(scene))
+      controls.findEnds().catch((error: unknown) => {
+        if (!isAbort(error)) app.toast(error instanceof Error ? error.message : String(error), 'error')
+      })
+    },
     failed(error) {
       if (isAbort(error)) return
       const told = error instanceof ApiError ? error : new ApiError(String(error), null, 'Error', 0)
-      controls.complain(told)
-      stage.stale(told.message)
-      app.announce(told.message)
+      const said = controls.complain(told)
+      stage.stale(said)
+      app.announce(said)
     },
     busy(is) {
       idle = !is

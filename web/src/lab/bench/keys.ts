@@ -52,6 +52,7 @@ function toViewer(event: KeyboardEvent, stage: Stage): boolean {
   const canvas = stage.element.querySelector<HTMLElement>('[data-testid="stage"]')
   if (!canvas || stage.element.contains(event.target as Node)) return false
   const { key, code, shiftKey } = event
+  if (key === 'Enter' && event.target !== document.body) return false // which has a button pressed
   const again = new KeyboardEvent('keydown', { key, code, shiftKey, bubbles: true, cancelable: true })
   return !canvas.dispatchEvent(again)
 }

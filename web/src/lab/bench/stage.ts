@@ -4,7 +4,7 @@ import { hide } from '../../viewer/elements'
 import type { Scene, Triple } from '../../viewer/scene'
 import type { Tool, Viewer } from '../../viewer/viewer'
 import { createViewer } from '../../viewer/viewer'
-import { isAbort, type StartRequest } from '../api'
+import { type Instant, isAbort, type StartRequest } from '../api'
 import type { App } from '../app'
 import { cleanup, fill, h } from '../dom'
 import { type IconName, icon } from '../icons'
@@ -23,6 +23,9 @@ function duration(seconds: number): string {
 
 type BenchTool = Exclude<Tool, 'draw'>
 
+const AGAIN = 1500 // ms: an arrow key pressed later begins from what is there then
+const THROWN = 0.02 // m/s that an arrow key adds
+const NUDGED = 0.05 // m/s by which an arrow key nudges
 const SOON = 250 // ms: an answer that comes sooner needs no sign that one works at it, which would only flicker
 
 const TOOLS: { tool: BenchTool; icon: IconName; word: string; label: string; key: string; hint: string }[] = [
@@ -40,7 +43,7 @@ const TOOLS: { tool: BenchTool; icon: IconName; word: string; label: string; key
     word: 'Move',
     label: 'Move the ball',
     key: 'D',
-    hint: 'Drag the ball to where it should start.',
+    hint: 'Drag the ball to where it should start, or move it by the arrow keys. Enter lets it go.',
   },
   {
     tool: 'velocity',
@@ -48,7 +51,7 @@ const TOOLS: { tool: BenchTool; icon: IconName; word: string; label: string; key
     word: 'Throw',
     label: 'Draw its velocity',
     key: 'V',
-    hint: 'Drag from the ball: the arrow is its first velocity.',
+    hint: 'Drag from the ball: the arrow is its first velocity. Arrow keys change it, Enter throws.',
   },
   {
     tool: 'nudge',
@@ -56,7 +59,7 @@ const TOOLS: { tool: BenchTool; icon: IconName; word: string; label: string; key
     word: 'Nudge',
     label: 'Nudge it',
     key: 'N',
-    hint: 'Drag from the ball while it runs: it goes on from there.',
+    hint: 'Drag from the ball while it runs, or press an arrow key: it goes on from there.',
   },
 ]
 
@@ -73,13 +76,24 @@ export interface Stage {
   dispose(): void
 }
 
+/** A direction of the support frame, laid along the surface where a body touches it. */
+function tangent([x, y]: [number, number], { position, contact }: Instant): Triple {
+  const up = position.map((part, axis) => part - contact[axis]!) as Triple
+  const size = Math.hypot(...up) || 1
+  const [nx, ny, nz] = up.map((part) => part / size) as Triple
+  const off = x * nx + y * ny
+  const along: Triple = [x - off * nx, y - off * ny, -off * nz]
+  const length = Math.hypot(...along)
+  return length > 1e-6 ? (along.map((part) => part / length) as Triple) : [0, 0, 1]
+}
+
 export function createStage(app: App): Stage {
   const undo = cleanup()
   const { store } = app
   const host = h('div', { class: 'stage-canvas' })
   const hint = h('p', { class: 'stage-hint', role: 'status', hidden: true })
   const time = h('p', { class: 'stage-took' })
-  const big = h('div', { class: 'stage-headline' })
+  const big = h('div', { class: 'stage-headline', hidden: true })
   const law = changing()
   const old = h('p', { class: 'stage-stale', hidden: true }, 'The last path that could be computed')
   const empty = h('p', { class: 'stage-empty working' }, 'Computing the motion …')
@@ -198,6 +212,64 @@ export function createStage(app: App): Stage {
     const done = `Nudged at ${show(at.time, 3)} s by ${show(Math.hypot(...by), 2)} m/s: this is the new start.`
     starts.ask({ by: [{ at, nudge: by }], change: { source: 'nudge' }, done })
   }
+
+  /** What the arrow keys have made of the start, or of the velocity, since they were pressed first. */
+  let moving: { at: StartRequest['at']; velocity: Triple; pressed: number } | null = null
+
+  /** By the keyboard: the arrows move the start, or change its velocity, or nudge; Enter lets it go. */
+  function press(event: KeyboardEvent): void {
+    const { tool } = viewer
+    const own = !(event.target as Element).matches('[data-testid="stage"]')
+    if (own || tool === 'orbit' || tool === 'draw' || !scene || event.ctrlKey || event.metaKey || event.altKey) return
+    const way = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key]
+    if (event.key === 'Enter' && tool !== 'nudge') {
+      viewer.seek(0)
+      viewer.play()
+    } else if (way) moveBy(scene, tool, way as [number, number], event.shiftKey ? 5 : 1, performance.now())
+    else return
+    event.preventDefault()
+    event.stopPropagation()
+  }
+
+  function moveBy(of: Scene, tool: BenchTool, way: [number, number], times: number, now: number): void {
+    const begin = of.columns.time[0] ?? 0
+    const here = instantAt(of, tool === 'nudge' ? viewer.time : begin)
+    const along = tangent(way, here)
+    if (tool === 'nudge') {
+      nudge(along.map((part) => part * NUDGED * times) as Triple, viewer.time)
+      return
+    }
+    if (!moving || now - moving.pressed > AGAIN) {
+      moving = { at: { position: here.position, contact: here.contact }, velocity: here.velocity, pressed: now }
+      gestures += 1
+    }
+    moving.pressed = now
+    const plus = (one: Triple, by: number) => one.map((part, axis) => part + by * along[axis]!) as Triple
+    const change: Change = { source: 'drag', gesture: `keys${gestures}` }
+    if (tool === 'velocity') {
+      moving.velocity = plus(moving.velocity, THROWN * times)
+      app.announce(
+        `Velocity ${moving.velocity
+          .slice(0, 2)
+          .map((part) => show(100 * part, 3))
+          .join(', ')} cm/s`,
+      )
+      starts.ask({ by: [{ at: moving.at, velocity: moving.velocity }], change })
+      return
+    }
+    // On what is hollow or round no further than the body reaches: the surface is looked for near there.
+    const step = of.header.body.radius * (of.header.support.flat ? 0.2 * times : Math.min(0.2 * times, 0.4))
+    const { position, contact } = moving.at
+    moving.at = { position: plus(position, step), contact: plus(contact, step) }
+    app.announce(
+      `Start ${moving.at.contact
+        .slice(0, 2)
+        .map((part) => show(100 * part, 3))
+        .join(', ')} cm`,
+    )
+    starts.ask({ by: [{ at: moving.at }], change })
+  }
+  element.addEventListener('keydown', press, { capture: true })
 
   /** While it stands still the whole path is there; while it runs the ball draws it. */
   function drawAhead(): void {

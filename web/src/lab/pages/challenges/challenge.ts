@@ -79,8 +79,10 @@ export function mountChallenge(host: HTMLElement, app: App, challenge: Challenge
     }),
   )
   const answering = answerOf(challenge)
-  const result = h('div', { class: 'tour-remark', role: 'status', 'data-testid': 'result' })
+  const result = h('div', { class: 'tour-remark', 'data-testid': 'result' })
   const says = h('p', { class: 'hint', hidden: before?.prediction !== undefined }, CHALLENGE.first)
+  const verdict = h('p', { class: 'judgement', role: 'status', 'data-testid': 'verdict' })
+  const explanation = h('p', { class: 'explanation', 'data-testid': 'explanation', hidden: true })
   const check = button(CHALLENGE.check, () => void judge(), 'primary', 'check')
   const does = h(
     'fieldset',
@@ -94,13 +96,13 @@ export function mountChallenge(host: HTMLElement, app: App, challenge: Challenge
       dials.map(({ element }) => element),
       answering.element,
     ),
-    h('div', { class: 'buttons' }, check),
+    h('div', { class: 'buttons' }, check, verdict),
   )
 
   async function judge(): Promise<void> {
     const answer = answering.value()
     if (answer === undefined) {
-      fill(result, h('p', { class: 'judgement' }, answering.missing))
+      verdict.textContent = answering.missing
       return
     }
     check.disabled = true
@@ -113,13 +115,15 @@ export function mountChallenge(host: HTMLElement, app: App, challenge: Challenge
     check.disabled = false
   }
 
-  async function judgedTo({ right, found, explanation }: Judgement, answer: string | number | null): Promise<void> {
-    fill(
-      result,
-      h('p', { class: 'judgement', 'data-right': String(right) }, right ? CHALLENGE.right : CHALLENGE.notYet),
-      found.length > 0 && findings(found),
-      explanation !== '' && h('p', {}, explanation),
-    )
+  async function judgedTo(
+    { right, found, explanation: why }: Judgement,
+    answer: string | number | null,
+  ): Promise<void> {
+    verdict.textContent = right ? CHALLENGE.right : CHALLENGE.notYet
+    verdict.dataset.right = String(right)
+    fill(result, found.length > 0 && findings(found))
+    explanation.hidden = !right
+    explanation.textContent = why
     const tries = (readNotebook().entries[name]?.tries ?? 0) + 1
     const { scenario } = scenes[0]?.header ?? {}
     keep({
@@ -147,6 +151,7 @@ export function mountChallenge(host: HTMLElement, app: App, challenge: Challenge
     h('label', { for: id }, challenge.explain),
     words,
     h('p', { class: 'hint', id: `${id}-hint` }, CHALLENGE.explainHint),
+    explanation,
   )
 
   // Hints
@@ -305,7 +310,7 @@ function readingOf(scene: Scene, time: number, named: boolean): string {
   while (at < times.length - 1 && (times[at + 1] ?? 0) <= time) at += 1
   const place = vectorAt(column(scene, 'position'), at)
   const speed = Math.hypot(...vectorAt(column(scene, 'velocity'), at))
-  const centimetres = (value: number) => (100 * value).toFixed(1).replace('-', '−')
+  const centimetres = (value: number) => (Math.round(1000 * value) / 10 + 0).toFixed(1).replace('-', '−')
   const said = CHALLENGE.reading(time.toFixed(2), centimetres(place[0]), centimetres(place[1]), centimetres(speed))
   return named ? `${scene.header.body.label}: ${said}` : said
 }

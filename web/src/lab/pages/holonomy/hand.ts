@@ -8,7 +8,7 @@ import { isTyping } from '../../shell'
 import { button } from '../parts/controls'
 import { createNumbers, type Row } from '../parts/numbers'
 import { paragraph } from '../parts/prose'
-import { createStage } from '../parts/stage'
+import { createStage, FROM_ABOVE } from '../parts/stage'
 import { createPoleMap } from './pole'
 import { componentsOf, degrees, directionInWords, poleWhile, RADIUS, type Rolled, roll, rolledOf } from './rolling'
 import { type Piece, type Place, piecesOf, TURN_NAMES, type Turn } from './turns'
@@ -28,7 +28,12 @@ const KEYS: Readonly<Record<string, Turn>> = { ArrowRight: 'E', ArrowUp: 'N', Ar
 
 export function mountHand(host: HTMLElement, app: App): () => void {
   const undo = cleanup()
-  const stage = createStage(app, { label: 'A ball with its north pole marked, on a level plane', controls: false })
+  const stage = createStage(app, {
+    label: 'A ball with its north pole marked, on a level plane',
+    controls: false,
+    poles: true,
+    from: FROM_ABOVE,
+  })
   const { viewer } = stage
   const pole = createPoleMap()
   const numbers = createNumbers('Turned since the start')

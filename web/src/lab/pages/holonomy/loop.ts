@@ -7,7 +7,7 @@ import { createRunner } from '../../runner'
 import { button, choice, slider } from '../parts/controls'
 import { createNumbers } from '../parts/numbers'
 import { paragraph } from '../parts/prose'
-import { createStage } from '../parts/stage'
+import { createStage, FROM_ABOVE } from '../parts/stage'
 import { createAngles } from './angles'
 import { createPoleMap } from './pole'
 import { degrees, poleWhile, RADIUS, roll, rolledOf } from './rolling'
@@ -24,7 +24,11 @@ interface Wanted {
 
 export function mountLoop(host: HTMLElement, app: App): () => void {
   const undo = cleanup()
-  const stage = createStage(app, { label: 'A ball rolled once round a loop, home again', controls: true })
+  const stage = createStage(app, {
+    label: 'A ball rolled once round a loop, home again',
+    poles: true,
+    from: FROM_ABOVE,
+  })
   const { viewer } = stage
   const pole = createPoleMap()
   const numbers = createNumbers('The angle turned, and the area enclosed')

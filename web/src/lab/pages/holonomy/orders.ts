@@ -3,7 +3,7 @@ import type { Scene } from '../../../viewer/scene'
 import type { App } from '../../app'
 import { cleanup, h } from '../../dom'
 import { button } from '../parts/controls'
-import { createStage, type Stage } from '../parts/stage'
+import { createStage, FROM_ABOVE, type Stage } from '../parts/stage'
 import { createTransport } from '../parts/transport'
 import { createPoleMap, type PoleMap } from './pole'
 import { poleWhile, type Rolled, roll, rolledOf } from './rolling'
@@ -31,7 +31,7 @@ interface Side {
 }
 
 function createSide(app: App, label: string): Side & { element: HTMLElement } {
-  const stage = createStage(app, { label, controls: false, kind: 'half' })
+  const stage = createStage(app, { label, controls: false, kind: 'half', poles: true, from: FROM_ABOVE })
   const heading = h('h2', { class: 'side-heading' }, label)
   const pole = createPoleMap()
   const element = h('section', { class: 'side' }, heading, stage.element, pole.element)

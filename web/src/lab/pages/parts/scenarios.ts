@@ -8,9 +8,9 @@ const TURNING = { kind: 'spin', rate: '33.3 rpm' }
 export const CYLINDER: Scenario = {
   title: 'Cylinder down an incline',
   body: { kind: 'cylinder', radius: '30 mm', mass: '200 g' },
-  support: { kind: 'plane', tilt: '3 deg' },
+  support: { kind: 'plane', tilt: '12 deg' },
   start: { position: ['0 m', '0 m'], velocity: ['0 m/s', '0 m/s'] },
-  run: { duration: '1.6 s', every: '5 ms', method: 'auto' },
+  run: { duration: '0.8 s', every: '2.5 ms', method: 'auto' },
 }
 
 const TORQUE = 2.5 // mN*m, of a push at the top

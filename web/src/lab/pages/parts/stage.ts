@@ -1,10 +1,10 @@
 /** A viewer in its frame, told of theme and projector, with a place for what went wrong. */
 
-import type { Scene } from '../../../viewer/scene'
-import { createViewer, type Viewer } from '../../../viewer/viewer'
+import type { Scene, Triple } from '../../../viewer/scene'
+import { createViewer, type Viewer, type ViewerOptions } from '../../../viewer/viewer'
 import { ApiError, isAbort } from '../../api'
 import type { App } from '../../app'
-import { cleanup, h } from '../../dom'
+import { cleanup, h, plainly } from '../../dom'
 import { createRunner } from '../../runner'
 import type { Scenario } from '../../scenario'
 
@@ -16,7 +16,7 @@ export interface Stage {
   dispose(): void
 }
 
-export interface StageOptions {
+export interface StageOptions extends Pick<ViewerOptions, 'from' | 'poles'> {
   /** What is seen, for who does not see it. */
   label: string
   /** The viewer's own bar of controls; default yes. */
@@ -24,12 +24,15 @@ export interface StageOptions {
   kind?: 'large' | 'half'
 }
 
-export function createStage(app: App, { label, controls = true, kind = 'large' }: StageOptions): Stage {
+/** From where a pole is seen on whichever upper side it lies, with north upwards. */
+export const FROM_ABOVE: Triple = [0.2, -0.75, 1]
+
+export function createStage(app: App, { label, controls = true, kind = 'large', ...seen }: StageOptions): Stage {
   const undo = cleanup()
   const view = h('div', { class: 'theatre-view' })
   const message = h('p', { class: 'theatre-problem', role: 'alert', hidden: true })
   const element = h('div', { class: `theatre theatre-${kind}`, role: 'group', 'aria-label': label }, view, message)
-  const viewer = createViewer(view, { theme: app.appearance, controls, projector: app.settings.projector })
+  const viewer = createViewer(view, { theme: app.appearance, controls, projector: app.settings.projector, ...seen })
   undo.add(() => viewer.dispose())
   undo.add(
     app.watchSettings((settings) => {
@@ -50,7 +53,7 @@ export function createStage(app: App, { label, controls = true, kind = 'large' }
 }
 
 export function told(error: unknown): string {
-  if (error instanceof ApiError || error instanceof Error) return error.message
+  if (error instanceof ApiError || error instanceof Error) return plainly(error.message)
   return 'Something went wrong here.'
 }
 

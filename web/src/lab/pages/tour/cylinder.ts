@@ -1,6 +1,6 @@
 /** Step 1: a cylinder on a slope. Where it is tells how it lies. */
 
-import type { Scene } from '../../../viewer/scene'
+import type { Scene, Triple } from '../../../viewer/scene'
 import { slider } from '../parts/controls'
 import { column, markAngles, sampleAt, vectorAt } from '../parts/measure'
 import { CYLINDER } from '../parts/scenarios'
@@ -8,9 +8,11 @@ import { createStage, simulating } from '../parts/stage'
 import type { StepMount } from './place'
 
 const RADIUS = 0.03
+const FROM_THE_SIDE: Triple = [0.12, -1, 0.16] // so that the slope is seen to fall
 
 export const mountCylinder: StepMount = ({ app, stage: host, controls, numbers, offer }) => {
-  const stage = createStage(app, { label: 'A cylinder with a mark on a slope', controls: false })
+  const stage = createStage(app, { label: 'A cylinder with a mark on a slope', controls: false, from: FROM_THE_SIDE })
+  stage.viewer.show = { gravity: true } // what is upright beside a slope
   host.append(stage.element)
   let scene: Scene | null = null
   let angles: Float64Array = new Float64Array()

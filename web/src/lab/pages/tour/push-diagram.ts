@@ -16,7 +16,7 @@ export function createPushDiagram(): PushDiagram {
   const answer = arrow('reaction')
   const level = svg('line', { class: 'push-level' })
   const pushName = svg('text', { class: 'push-name' }, 'F')
-  const answerName = svg('text', { class: 'push-name reaction' }, 'R')
+  const answerName = svg('text', { class: 'push-name reaction' }, 'Rₓ')
   const element = svg(
     'svg',
     { viewBox: '-104 -52 200 108', class: 'push-diagram', role: 'img', 'aria-label': 'The ball from the side' },
@@ -45,7 +45,7 @@ export function createPushDiagram(): PushDiagram {
       answer.setAttribute('d', Math.abs(reach) < 0.5 ? '' : path(0, reach, RADIUS + 8))
       answerName.setAttribute('x', String(reach + (reach < 0 ? -10 : 8)))
       answerName.setAttribute('y', String(RADIUS + 12))
-      answerName.textContent = Math.abs(reach) < 0.5 ? 'R = 0' : 'R'
+      answerName.textContent = Math.abs(reach) < 0.5 ? 'Rₓ = 0' : 'Rₓ'
     },
   }
 }

@@ -1,4 +1,5 @@
 /** Step 3: a level push, at a height that can be chosen. */
+import { h } from '../../dom'
 import { slider } from '../parts/controls'
 import { column, finding, vectorAt } from '../parts/measure'
 import { rowOf } from '../parts/numbers'
@@ -18,7 +19,7 @@ export const mountPush: StepMount = ({ app, stage: host, controls, numbers, work
 
   const live = simulating(app, stage, (scene, asked) => {
     stage.viewer.setScenes([scene], { keepTime: !first, keepCamera: !first })
-    stage.viewer.show = { ...stage.viewer.show, contactForce: true, velocity: true }
+    stage.viewer.show = { ...stage.viewer.show, velocity: true }
     if (first) playUnlessCalm(app, stage.viewer)
     first = false
     const sideways = vectorAt(column(scene, 'contact_force'), 0)[0]
@@ -44,7 +45,12 @@ export const mountPush: StepMount = ({ app, stage: host, controls, numbers, work
     testid: 'push-height',
   })
   const diagram = createPushDiagram()
-  controls.append(height.element, diagram.element)
+  const scale = h(
+    'p',
+    { class: 'push-scale' },
+    'Magnified: F and Rₓ to one scale, 100 mN and less. The weight and the normal force, 5 N, would be fifty times as long.',
+  )
+  controls.append(height.element, h('figure', { class: 'push-figure' }, diagram.element, scale))
 
   function ask(share: number): void {
     const scenario = pushed(share)

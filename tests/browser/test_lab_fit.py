@@ -1,0 +1,122 @@
+"""The lab fits windows of every size: measured as boxes, from a phone to a wall, at 200 % and 400 %."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from .launching import LAPTOP, PHONE
+from .screenshots import PAGES
+from .test_lab_access import STAGED, come_to_rest, settle
+from .visiting import Visitor
+
+SIDEWAYS = {"width": 844, "height": 390}
+TABLET = {"width": 768, "height": 1024}
+HALL = {"width": 1920, "height": 1080}
+# A laptop's window as its page sees it when it is magnified: to the page a zoom is a smaller window.
+TWICE = {"width": 683, "height": 384}
+TWICE_HALL = {"width": 960, "height": 540}
+FOUR_TIMES = {"width": 341, "height": 192}
+NARROW: tuple[Any, ...] = (PHONE, SIDEWAYS, TABLET, TWICE, TWICE_HALL, FOUR_TIMES)
+LOW: tuple[Any, ...] = (SIDEWAYS, TWICE, TWICE_HALL)
+
+# What reaches beyond the window's right edge, unless something that scrolls or clips holds it; and each table that is
+# wider than what is seen of it.
+TOO_WIDE = """() => {
+    const wide = document.documentElement.clientWidth
+    const root = document.documentElement.scrollWidth - wide
+    const cut = [...document.querySelectorAll('main table')].filter((table) => {
+        const seen = table.checkVisibility() && table.getBoundingClientRect()
+        if (!seen || !seen.width) return false
+        let right = wide
+        for (let at = table.parentElement; at; at = at.parentElement) {
+            if (getComputedStyle(at).overflowX !== 'visible') right = Math.min(right, at.getBoundingClientRect().right)
+        }
+        return seen.right > right + 1
+    })
+    return [root, cut.map((table) => table.className)]
+}"""
+
+
+@pytest.fixture(scope="module")
+def kept(staying: Visitor) -> Page:
+    return staying.open(drawn=False, cards=False)
+
+
+def at(page: Page, route: str, size: Any) -> None:
+    page.set_viewport_size(size)
+    page.evaluate("route => { location.hash = route }", route)
+    page.evaluate("window.scrollTo(0, 0)")
+    if route in [PAGES[name] for name in STAGED]:
+        settle(page)
+    expect(page.locator("main > *").first).to_be_visible()
+    come_to_rest(page, calm=60.0)
+
+
+def box(page: Page, selector: str) -> dict[str, float]:
+    found = page.locator(selector).first.bounding_box()
+    assert found, f"{selector} is not shown"
+    return {**found, "right": found["x"] + found["width"], "bottom": found["y"] + found["height"]}
+
+
+@pytest.mark.parametrize("step", range(1, 8))
+def test_a_step_of_the_tour_is_seen_at_once_on_a_laptop(step: int, kept: Page) -> None:
+    for size in (LAPTOP, HALL):
+        at(kept, f"#/tour/{step}", size)
+        high = size["height"]
+        stage, onward = box(kept, "[data-testid=stage]"), box(kept, ".tour-nav :is(.primary, .button):last-child")
+        assert stage["y"] >= 0
+        assert stage["height"] >= 0.2 * high
+        assert onward["bottom"] <= high
+        nav = box(kept, ".tour-nav")
+        # Before the guess of step 6 there are no numbers; else they stand between the stage and the way on.
+        last = ".tour-do" if step == 6 else "[data-testid=numbers]"
+        numbers = box(kept, last)
+        assert numbers["y"] >= stage["bottom"] - 1
+        assert numbers["bottom"] <= nav["y"] + 1
+
+
+@pytest.mark.parametrize("size", LOW, ids=str)
+def test_the_stage_keeps_half_of_a_low_window(size: Any, kept: Page) -> None:
+    at(kept, "#/bench", size)
+    canvas, results = box(kept, "[data-testid=stage]"), box(kept, ".panel-right")
+    assert canvas["height"] >= 0.6 * size["height"]
+    assert canvas["width"] >= 0.55 * size["width"]
+    assert results["x"] >= canvas["right"] - 1
+    assert results["bottom"] <= size["height"] + 1
+    kept.get_by_role("tab", name="Controls").click()
+    assert box(kept, ".controls")["y"] < size["height"]
+    for step in (1, 4, 6):
+        at(kept, f"#/tour/{step}", size)
+        before = box(kept, "[data-testid=stage]")
+        assert before["height"] >= 0.5 * size["height"]
+        assert before["width"] >= 0.45 * size["width"]
+        kept.locator(".tour-do").scroll_into_view_if_needed()
+        assert box(kept, "[data-testid=stage]")["y"] >= -1, "the stage stays while the rest is scrolled"
+
+
+def test_at_four_times_the_size_everything_is_reached(kept: Page) -> None:
+    at(kept, "#/bench", FOUR_TIMES)
+    canvas = box(kept, "[data-testid=stage]")
+    assert canvas["height"] >= 0.5 * FOUR_TIMES["height"]
+    kept.get_by_role("tab", name="Controls").click()
+    field = kept.locator('.controls [data-path="body.radius"]')
+    field.scroll_into_view_if_needed()
+    shown = box(kept, '.controls [data-path="body.radius"]')
+    assert 0 <= shown["y"] < FOUR_TIMES["height"]
+
+
+FITTED = [name for name in PAGES if name not in ("bench-bowl", "bench-coin", "tour-1", "tour-2", "tour-5", "tour-6")]
+
+
+@pytest.mark.parametrize("name", FITTED)
+def test_nothing_must_be_scrolled_to_the_side_and_tables_keep_their_last_column(name: str, kept: Page) -> None:
+    found = []
+    for size in NARROW:
+        at(kept, PAGES[name], size)
+        root, cut = kept.evaluate(TOO_WIDE)
+        if root > 0 or cut:
+            found.append(f"{size}: {root} pixels to the side, tables {cut}")
+    assert not found, "\n".join(found)

@@ -1,0 +1,128 @@
+"""A live page, opened from its file without a network: a moved slider gives the motion that `simulate` gives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, Locator, Page, expect
+
+import trundle as tr
+from trundle.analysis.sensitivities.keys import moved
+from trundle.live import live_page, site_of
+
+from .axe import violations
+from .bench import Stage, eventually
+from .launching import PATIENCE, PHONE, SMALL
+from .watching import Watch
+
+OpenPage = Callable[..., Page]
+SCENARIO = "off-the-rim"
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("live") / "page.html"
+    path.write_bytes(live_page(tr.Scenario.load(SCENARIO), ["support.motion.rate=10 rpm..80 rpm", "body.radius"]))
+    return path
+
+
+@pytest.fixture
+def opened(browser: Browser) -> Iterator[OpenPage]:
+    """Open a file, cut off from every network; nothing may go wrong, and only files beside it be asked for."""
+    contexts, watches = [], []
+
+    def open_file(path: Path, **options: Any) -> Page:
+        context = browser.new_context(**{"viewport": SMALL, "reduced_motion": "reduce", "offline": True, **options})
+        context.set_default_timeout(PATIENCE)
+        watch = Watch((path.parent.as_uri(), "blob:"))
+        watch.over(context)
+        contexts.append(context)
+        watches.append(watch)
+        page = context.new_page()
+        page.goto(path.as_uri())
+        return page
+
+    yield open_file
+    for context in contexts:
+        context.close()
+    for watch in watches:
+        assert watch.left() == []
+
+
+def headline(page: Page) -> Locator:
+    return page.locator(".live-headline")
+
+
+def test_a_slider_moves_the_motion_of_the_law(file: Path, opened: OpenPage) -> None:
+    page = opened(file)
+    expect(headline(page)).to_contain_text("Ran off the rim")
+    stage = Stage(page, page)
+    scenario = tr.Scenario.load(SCENARIO)
+    name, low = "support.motion.rate", 2 * np.pi * 10 / 60
+    system, start = moved(scenario, {name: low})
+    run = tr.simulate(system, start, float(scenario.timing.duration), float(scenario.timing.every))
+    first = headline(page).inner_text()
+    slider = page.get_by_role("slider", name="Rate")
+    slider.press("Home")
+    expect(headline(page)).not_to_have_text(first)
+    expect(page.get_by_label("Rate, rpm")).to_have_value("10")
+    page.get_by_role("slider", name="Time").press("End")
+
+    def ended() -> None:
+        drawn = stage.drawn()
+        place = run.in_frame(drawn.frame).at([min(drawn.time, float(run.data.time[-1]))]).data.position[0]
+        assert drawn.time == pytest.approx(float(run.data.time[-1]), abs=1e-3)
+        assert drawn.place == pytest.approx(tuple(place.values), abs=2e-4)
+
+    eventually(page, ended)
+    page.get_by_role("button", name="As in the file").click()
+    expect(headline(page)).to_have_text(first)
+
+
+def test_a_number_is_typed_and_kept_within_the_slider(file: Path, opened: OpenPage) -> None:
+    page = opened(file)
+    expect(headline(page)).to_contain_text("Ran off")
+    field = page.get_by_label("Rate, rpm")
+    field.fill("200")
+    field.press("Enter")
+    expect(field).to_have_value("80")
+    field.fill("much")
+    field.press("Enter")
+    expect(field).to_have_value("80")
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_axe_finds_nothing_grave(file: Path, opened: OpenPage, scheme: str) -> None:
+    page = opened(file, color_scheme=scheme)
+    expect(headline(page)).to_contain_text("Ran off")
+    assert violations(page) == []
+
+
+def test_on_a_phone_nothing_runs_over_the_edge(file: Path, opened: OpenPage) -> None:
+    page = opened(file, viewport=PHONE)
+    expect(headline(page)).to_contain_text("Ran off")
+    assert page.evaluate("document.documentElement.scrollWidth <= document.documentElement.clientWidth")
+
+
+def test_a_site_is_walked_from_the_gallery_through_the_tour(opened: OpenPage, tmp_path: Path) -> None:
+    for name, content in site_of(["cylinder-on-incline", "level-turntable-put-down", "roll-x-then-y"]).items():
+        (tmp_path / name).write_bytes(content)
+    page = opened(tmp_path / "index.html")
+    expect(page.get_by_role("listitem")).to_have_count(3)
+    page.get_by_text("Embed").first.click()
+    code = page.locator("textarea").first
+    address = (tmp_path / "cylinder-on-incline.html").as_uri()
+    assert f'src="{address}"' in code.input_value()
+    assert violations(page) == []
+    page.get_by_role("link", name="Tour").click()
+    frame = page.frame_locator("iframe")
+    expect(frame.locator(".live-headline")).to_contain_text("Goes on for all of")
+    page.get_by_role("link", name="On: ").click()
+    expect(page.get_by_role("heading", level=1)).to_have_text(tr.Scenario.load("level-turntable-put-down").title)
+    page.get_by_role("link", name="Gallery").click()
+    page.get_by_role("link", name="Cylinder down an incline").click()
+    expect(headline(page)).to_contain_text("Goes on for all of")

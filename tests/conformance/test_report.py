@@ -1,0 +1,186 @@
+"""The report, the files for elsewhere, and the command."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.conformance.conftest import Make
+from tests.conformance.test_score import rows
+
+from trundle.cli import run as trundle
+from trundle.conformance import Score, cases, engines, portable
+from trundle.conformance.measuring import errors_of
+from trundle.conformance.report import markdown, page
+
+CASES = {case.name: case for case in cases()}
+MIXED = Score(
+    rows(1e-2, 1e-3, 1e-4)
+    + rows(1e-2, 1e-2, 1e-2, case="dome", engine="<b>Other</b>")
+    + rows(1e-2, 1e-3, 1e-4, case="dome", engine="<b>Other</b>", setting="double precision", of="as shipped")
+    + tuple(
+        replace(row, engine="None", outcome="not installed", message="no wheel", position=np.nan, turning=np.nan)
+        for row in rows(1e-2, 1e-3)
+    )
+)
+
+
+class _Checker(HTMLParser):
+    """Notes addresses outside the page, and tags that are not closed."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.outside: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        if tag not in ("meta", "br", "use", "path", "rect", "circle"):
+            self.open.append(tag)
+        self.outside += [v for k, v in attrs if k in ("src", "href") and v and not v.startswith("#")]
+
+    def handle_endtag(self, tag: str) -> None:
+        if tag in self.open:
+            while self.open.pop() != tag:
+                pass
+
+
+def test_the_page_needs_nothing_but_itself() -> None:
+    text = page(MIXED, list(CASES.values()))
+    checker = _Checker()
+    checker.feed(text)
+    assert checker.open == []
+    assert checker.outside == []
+    assert "<b>Other</b>" not in text  # it is escaped
+    assert text.count("<svg") == 2
+    for words in ("Ball rolling down an incline", "float32 floor", "falls with: double precision", "no wheel", "E 1"):
+        assert words in text
+
+
+def test_the_table_has_a_row_for_each_profile() -> None:
+    lines = markdown(MIXED).splitlines()
+    assert lines[0] == "| engine | setting | incline | dome |"
+    assert lines[2] == "| E | as shipped | converges, 1.0e-4 |  |"
+    assert len(lines) == 5
+
+
+def test_junit_says_what_fails_and_what_cannot() -> None:
+    cannot = tuple(replace(row, engine="H", outcome="cannot", position=np.nan, turning=np.nan) for row in rows(1e-2))
+    suite = ET.fromstring(portable.junit(Score(MIXED.rows + cannot), 1e-3, None))  # noqa: S314  our own
+    assert suite.attrib == {"name": "trundle score", "tests": "4", "failures": "2", "skipped": "1"}
+
+
+def test_the_one_file_scorer_measures_as_we_do(tmp_path: Path) -> None:
+    case = CASES["coin-in-a-circle"]
+    exact = case.exact()
+    moved = replace(exact, position=exact.position + np.array([0.0, 1e-3, 0.0]))
+    for name, text in portable.case_files([case]).items():
+        (tmp_path / name).write_text(text)
+    (tmp_path / "mine.csv").write_text(portable.table(moved))
+    command = [sys.executable, "-I", "-S", str(tmp_path / "score.py"), case.name]
+
+    def scored(*arguments: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(  # noqa: S603  our own program
+            [*command, *arguments], capture_output=True, text=True, check=False, cwd=tmp_path
+        )
+
+    found = scored("mine.csv", "1e-6")
+    assert found.returncode == 1
+    assert f"position {errors_of(case, exact, moved).position:.2e}" in found.stdout
+    assert scored("mine.csv", "1").returncode == 0
+    (tmp_path / "mine.csv").write_text(portable.table(moved).replace("0.01,0", "0.011,0", 1))
+    assert scored("mine.csv").returncode == 2
+    task = json.loads((tmp_path / f"{case.name}.json").read_text())
+    assert task["bodies"][0]["shape"] == {"kind": "disc", "radius": 0.012}
+
+
+def test_every_script_stands_alone_and_is_short() -> None:
+    for engine, case in portable.scripts():
+        text = portable.script(engine, case)
+        assert len(text.splitlines()) <= 40, (engine, case)
+        assert "trundle" not in text
+        assert case in CASES
+        assert engine in engines.names()
+        compile(text, case, "exec")
+
+
+def test_a_program_is_scored_reported_and_compared(
+    program: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    mine = " ".join(program('print(\'{"cannot": "no balls"}\', flush=True)'))
+    options = ["--case", "incline", "--step", "10 ms", "--step", "1 ms"]
+    assert trundle(["score", "--adapter", mine, *options, "--report", "--junit", "junit.xml", "--at-most", "1"]) == 0
+    printed = capsys.readouterr()
+    assert "no balls" in printed.out
+    assert "Wrote score/score.nc, score/score.md, score/score.html" in printed.out
+    assert {path.name for path in Path("score").iterdir()} == {"score.nc", "score.md", "score.html"}
+    assert "skipped" in Path("junit.xml").read_text()
+    worse = " ".join(program("print('what?', flush=True)"))
+    assert trundle(["score", "--adapter", worse, *options, "--at-most", "1", "-q"]) == 3
+    assert "bad answer, not JSON: 'what?'" in capsys.readouterr().err
+    assert trundle(["score", "--report", "--json"]) == 0
+    assert {row["outcome"] for row in json.loads(capsys.readouterr().out)} == {"bad answer"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ([], "`--engine` must name what is to be scored"),
+        (["--engine", "mujoko"], "Did you mean 'mujoco'?"),
+        (["--engine", "mujoco", "--case", "inclin"], "Did you mean 'incline'?"),
+        (["--adapter", "x", "--step", "-1 ms"], "`--step` must be"),
+        (["--repro", "mujoco", "dome"], "There are: "),
+        (["--report"], "`--engine` must name what is to be scored"),
+        (["--adapter", ""], "`--adapter` must be a command"),
+        (["--adapter", "'x"], "`--adapter` must be a command"),
+    ],
+)
+def test_what_is_wrong_is_said(
+    arguments: list[str],
+    words: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert trundle(["score", *arguments]) == 2
+    assert words in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_lists_scripts_and_cases_are_printed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert trundle(["score", "--engine", "list"]) == 0
+    assert "MuJoCo" in capsys.readouterr().out
+    assert trundle(["score", "--case", "list"]) == 0
+    assert "incline" in capsys.readouterr().out
+    assert trundle(["score", "--repro", "mujoco", "pushed-box-diagonal"]) == 0
+    assert capsys.readouterr().out.startswith('"""MuJoCo 4.0.0')
+    assert trundle(["score", "--cases", "cases", "--case", "dome"]) == 0
+    assert {path.name for path in Path("cases").iterdir()} == {"README.txt", "score.py", "dome.csv", "dome.json"}
+
+
+INSTALLED = [name for name in engines.names() if (engine := engines.engine(name)).packages and engine.installed]
+
+
+@pytest.mark.skipif(not INSTALLED, reason="no engine is installed: `trundle score --engine NAME` does it")
+@pytest.mark.parametrize("name", INSTALLED)
+def test_an_engine_that_is_installed_rolls_down_an_incline(name: str) -> None:
+    """Every engine there is gets that within a fiftieth, once its documentation is followed."""
+    engine = engines.engine(name)
+    best = next(each for each in engine.profiles if each.name == "best")
+    with engine.adapter(60.0) as adapter:
+        answer = adapter.answer(CASES["incline"], 1e-3, dict(best.values))
+    assert (answer.outcome, answer.message) == ("ok", "")
+    assert answer.engine.startswith(engine.title)
+    assert answer.motion is not None
+    assert errors_of(CASES["incline"], CASES["incline"].exact(), answer.motion).position < 0.02
