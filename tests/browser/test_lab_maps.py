@@ -14,7 +14,7 @@ from trundle.lab.links import encode
 
 from .axe import violations
 from .bench import as_shown, decoded, eventually, number
-from .launching import LAPTOP, PHONE
+from .launching import LAPTOP, PATIENCE, PHONE
 from .visiting import Visitor
 
 # A ball on an incline that rolls off at the end of it, or does not get there in time.
@@ -37,7 +37,7 @@ def linked(measure: str, **more: str) -> str:
 
 
 def finished(page: Page) -> None:
-    expect(page.get_by_test_id("map-progress")).to_have_text(re.compile(r"\d+ runs"))
+    expect(page.get_by_test_id("map-progress")).to_have_text(re.compile(r"\d+ runs"), timeout=4 * PATIENCE)
 
 
 def reading(page: Page) -> str:

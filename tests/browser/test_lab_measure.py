@@ -12,8 +12,8 @@ import trundle as tr
 from trundle.lab.links import encode
 
 from .axe import violations
-from .bench import decoded, eventually, number
-from .launching import LAPTOP, PHONE
+from .bench import decoded, number
+from .launching import LAPTOP, PATIENCE, PHONE
 from .visiting import Visitor
 
 
@@ -27,9 +27,9 @@ def table(columns: str, rows: np.ndarray) -> str:
 
 
 def fit(page: Page) -> None:
-    eventually(page, lambda: expect(page.get_by_test_id("fit")).to_be_enabled())
+    expect(page.get_by_test_id("fit")).to_be_enabled(timeout=4 * PATIENCE)
     page.get_by_test_id("fit").click()
-    expect(page.get_by_test_id("verdict")).to_be_visible()
+    expect(page.get_by_test_id("verdict")).to_be_visible(timeout=4 * PATIENCE)
 
 
 def found(page: Page, name: str) -> tuple[float, float]:

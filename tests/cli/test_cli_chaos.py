@@ -50,6 +50,23 @@ def test_it_finds_a_section_and_writes_it(here: Command) -> None:
     assert json.loads(done.out)["located"]
 
 
+def test_it_follows_a_section_along_a_number_and_draws_where_it_settles(here: Command) -> None:
+    """The harder a bowl is shaken, the farther out the ball is seen, once in each period."""
+    shaken = SWING.replace(
+        "[start]", '[support.motion]\nkind = "shake"\namplitude = ["1 mm", 0, 0]\nrate = 10\n[start]'
+    )
+    Path("shaken.toml").write_text(shaken + '[[loads]]\nkind = "drag"\ncoefficient = 0.5\n')
+    seen = "--observe", "position.x", "--json"
+    along = "--along", "support.motion.amplitude.x", "--from", "1 mm", "--to", "3 mm", "--values", "3"
+    told = here("chaos", "shaken.toml", "--strobe", "0.62831853 s", *along, "--duration", "20 s", *seen)
+    found = json.loads(told.out)
+    assert found["values"] == pytest.approx([1e-3, 2e-3, 3e-3])
+    assert found["periods"] == {"up": [1, 1, 1], "down": [1, 1, 1]}
+    ends = [abs(points[-1]) for points in found["points"]["up"]]
+    assert ends == pytest.approx([ends[0], 2 * ends[0], 3 * ends[0]], rel=0.01)  # it is all but linear
+    assert Path("shaken/bifurcations.png").is_file()
+
+
 def test_it_finds_the_orbit_next_to_the_start(here: Command) -> None:
     done = here("chaos", "swing.toml", "--orbit", "1.7 s", "--no-figure")
     assert (done.status, done.err) == (0, "")

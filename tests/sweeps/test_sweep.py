@@ -33,6 +33,20 @@ def refusing(run: Any) -> str:
 # --- figures --------------------------------------------------------------------------------------------------------
 
 
+def test_the_lyapunov_exponent_of_a_ball_on_top_of_a_dome_is_that_of_its_fall() -> None:
+    """It falls as exp λt, λ² = 5g/7(R + a); in a finite time λ is that but for a part of 1/λt."""
+    tables = {
+        "body": {"kind": "solid-sphere", "radius": "2 cm", "mass": "100 g"},
+        "support": {"kind": "dome", "radius": "0.5 m"},
+        "start": {"position": [0, 0], "velocity": [0, 0]},
+        "run": {"duration": "4 s", "every": "50 ms"},
+    }
+    radii = np.array([0.4, 0.6])
+    found = tr.sweep(tr.Scenario.read(tables), {"support.radius": radii}, "lyapunov")
+    assert np.allclose(found.lyapunov, np.sqrt(5 / 7 * 9.80665 / (radii + 0.02)), rtol=5e-3)
+    assert found.lyapunov.attrs["units"] == "s-1"
+
+
 def test_the_period_on_a_level_turntable_is_three_and_a_half_turns() -> None:
     """A solid ball's guiding circle: ω = 2Ω/7, theory (T1); found between samples."""
     rates = [2.0, 3.0, 4.5]

@@ -66,7 +66,7 @@ def chaos(
         raise InvalidValueError(asked[1], f"must not stand beside {asked[0]}", scenario, "Ask one after the other.")
     for name, value in (("--along", along), ("--from", lowest), ("--to", highest)):
         if value is not None and not (asked and along):
-            rule = "needs --along, and --orbit, --section or --strobe"
+            rule = "needs --orbit, --section or --strobe" if name == "--along" else "needs --along"
             raise InvalidValueError(name, rule, value, "Say what to follow.")
     if along and not orbit and None in (lowest, highest):
         raise InvalidValueError("--from", "must be given, as well as --to", lowest, "Say how far the number goes.")

@@ -15,7 +15,7 @@ from ...mechanics.parameters import parameters
 from ...mechanics.system import RollingSystem, State
 from ...solve.contact_state import ContactState
 from ...solve.samples import Array, Progress
-from .asked import Asked, finite_or_none
+from .asked import Asked
 from .conditions import Condition, quantities, quantity_of
 from .crossings import PoincareMotion
 from .returning import number_of, put_down, with_number
@@ -171,7 +171,7 @@ class BifurcationDiagram(Plottable, Serializable):
         See `bifurcation_diagram`.
         """
         points = {
-            way: [finite_or_none(row) for row in self.data.points.sel(way=way).values.tolist()] for way in self.ways
+            way: [row[np.isfinite(row)].tolist() for row in self.data.points.sel(way=way).values] for way in self.ways
         }
         return {
             "title": self.title,

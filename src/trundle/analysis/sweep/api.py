@@ -56,9 +56,9 @@ def sweep(
         ``{"normal": [mean, deviation]}`` or ``"33.3 ± 0.3 rpm"``; with units, or in SI.
     measure : str, callable, or list or mapping of these
         What is measured of each member: ``"turned-over"``, ``"energy-lost"``, ``"end-time"``, ``"ending"``,
-        ``"events"``; ``"count slip"`` or ``"time slip"`` for a kind of event; ``"end"``, ``"start"``, ``"max"``,
-        ``"min"``, ``"mean"``, ``"first"`` (when it is first 0) or ``"period"`` and a formula in what is sampled, such
-        as ``"max hypot(x, y)"``; or a function of the dataset of one run that returns a number.
+        ``"lyapunov"``, ``"events"``; ``"count slip"`` or ``"time slip"`` for a kind of event; ``"end"``, ``"start"``,
+        ``"max"``, ``"min"``, ``"mean"``, ``"first"`` (when it is first 0) or ``"period"`` and a formula in what is
+        sampled, such as ``"max hypot(x, y)"``; or a function of the dataset of one run that returns a number.
     design : str, optional
         "grid": each value with each. "boundary": the same over two numbers, of which only members near the boundary
         between the classes of the first measure are run, and the others inferred. "together": the first of each, then

@@ -113,7 +113,7 @@ class Job:
         """Run members of one structure, and put down what is measured of them."""
         timing = self.document.timing
         runs = run_members(systems, starts, float(timing.duration), float(timing.every), method=timing.method)
-        sampled = Sampled(systems, runs)
+        sampled = Sampled(systems, runs, starts)
         for measure in self.measures:
             columns[measure.name][group] = measure.of(sampled)
         if self.keep:

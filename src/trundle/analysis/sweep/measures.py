@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 
 from ...errors import InvalidValueError, TrundleError, did_you_mean
 from ...mechanics.expressions import FUNCTIONS, Expression
-from ...mechanics.system import RollingSystem
+from ...mechanics.system import RollingSystem, State
 from ...scenario.together import tell_all
 from ...simulation import labels
 from ...solve.ensemble import together
@@ -53,10 +54,13 @@ class Sampled:
         One for each member.
     runs : Runs
         Their arrays.
+    starts : sequence of State
+        From where.
     """
 
     systems: Sequence[RollingSystem]
     runs: Runs
+    starts: Sequence[State]
     _kept: dict[str, Array] = field(default_factory=dict, compare=False)
 
     @property
@@ -243,12 +247,25 @@ def _ending(sampled: Sampled) -> Array:
     return np.array([1 + ENDS.index(kind) if kind in ENDS else 0 for kind in sampled.runs.ending])
 
 
+def _lyapunov(sampled: Sampled) -> Array:
+    """Return the largest Lyapunov exponent of each member, over the time of the run; none where it ends in rest."""
+    from ..chaos import lyapunov_exponents
+
+    found = np.full(len(sampled.systems), np.nan)
+    for member, (system, start) in enumerate(zip(sampled.systems, sampled.starts, strict=True)):
+        length = float(sampled.times[-1]) - start.time
+        with suppress(TrundleError):
+            found[member] = lyapunov_exponents(system, start, length, count=1).exponents[0]
+    return found
+
+
 # Name -> (what finds it, unit, what its values stand for where they are classes)
 _WHOLE: dict[str, tuple[Callable[[Sampled], Array], str, tuple[str, ...]]] = {
     "energy-lost": (_energy_lost, "J", ()),
     "turned-over": (_turned_over, "", ("no", "yes")),
     "end-time": (lambda sampled: sampled.runs.end, "s", ()),
     "events": (lambda sampled: sampled.runs.events.astype(float), "", ()),
+    "lyapunov": (_lyapunov, "s-1", ()),
     "ending": (_ending, "", ("none", *ENDS)),
 }
 
