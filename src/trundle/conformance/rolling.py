@@ -11,13 +11,11 @@ import numpy as np
 from ..errors import ScenarioError
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.scalars import Scalar
-from ..mechanics.shapes import Disc, Ellipsoid, Shape, Sphere
-from ..mechanics.surfaces import Dome, Plane, Surface
 from ..simulation.simulate import Scenario
 from .case import PARTS, Array, Case, Motion, Task
 
-_SHAPES: dict[type[Shape], str] = {Sphere: "sphere", Disc: "disc", Ellipsoid: "ellipsoid"}
-_SURFACES: dict[type[Surface], str] = {Plane: "plane", Dome: "dome"}
+_SHAPES = {"ball": "sphere", "disc": "disc", "ellipsoid": "ellipsoid"}
+_SURFACES = ("plane", "dome")
 _FINEST = 1e-14  # of a second route by DOP853
 _FOR = "for a physics engine"
 _MOTIONS = {"fixed": "fixed", "free-axle": "hinge", "spin": "driven"}
@@ -89,10 +87,10 @@ class Rolling(Case):
         system, start = self.scenario.system(), self.scenario.start_state()
         body, support = system.body, system.support
         self._check()
-        shape: Task = {"kind": _SHAPES[type(body.shape)]}
+        shape: Task = {"kind": _SHAPES[body.shape.noun]}
         shape |= {key: _plain(value) for key, value in body.shape.parameters().items() if key != "centre"}
-        ground: Task = {"kind": _SURFACES[type(support.surface)], "motion": {"kind": _MOTIONS[support.motion.kind]}}
-        if isinstance(support.surface, Dome):
+        ground: Task = {"kind": support.surface.kind, "motion": {"kind": _MOTIONS[support.motion.kind]}}
+        if hasattr(support.surface, "radius"):
             ground["radius"] = float(support.surface.radius)
         ground["motion"] |= {
             key: float(getattr(support.motion, key)) for key in ("inertia", "rate") if hasattr(support.motion, key)
@@ -120,13 +118,12 @@ class Rolling(Case):
         """Refuse what the task has no words for."""
         system = self.scenario.system()
         support, surface, shape = system.support, system.support.surface, system.body.shape
-        motion = support.motion.kind
-        for key, word, received, words in (
-            ("body.kind", _SHAPES.get(type(shape)), type(shape).__name__, _SHAPES.values()),
-            ("support.kind", _SURFACES.get(type(surface)), type(surface).__name__, _SURFACES.values()),
-            ("support.motion.kind", _MOTIONS.get(motion), motion, _MOTIONS),
+        for key, received, words in (
+            ("body.kind", _SHAPES.get(shape.noun, shape.noun), _SHAPES.values()),
+            ("support.kind", surface.kind, _SURFACES),
+            ("support.motion.kind", support.motion.kind, _MOTIONS),
         ):
-            if word is None:
+            if received not in words:
                 raise ScenarioError(key, f"must be one of {', '.join(words)} {_FOR}", received, "", self.name)
         if support.friction is None:
             raise ScenarioError("support.friction", f"must be given {_FOR}", None, "Engines need it.", self.name)
