@@ -220,7 +220,7 @@ def test_no_permission(here: Command, folder: Path, monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(os, "access", lambda *_: False)
     done = here("run", "ball-under-force", "-o", "out")
     assert (done.status, done.out, done.files) == (1, "", set())
-    said = "may not be written to: name another folder with --output. Nothing was written."
+    said = "may not be written to: name another folder by --output. Nothing was written."
     assert done.err == f"trundle: '{folder}' {said}\n"
 
 

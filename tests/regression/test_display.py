@@ -94,6 +94,13 @@ def swing() -> tr.PeriodicOrbit:
 
 
 @cache
+def branched() -> tr.BifurcationDiagram:
+    section = "velocity.x falling through 0"
+    table = scenario("tilted-turntable")
+    return tr.bifurcation_diagram(table, "support.tilt", [0.005, 0.006], "position.x", section, duration=60.0)
+
+
+@cache
 def comparison() -> tr.VakonomicComparison:
     return tr.compare_vakonomic(scenario("level-turntable-nudged"))
 
@@ -166,6 +173,7 @@ RESULTS: tuple[Callable[[], Displayed], ...] = (
     lambda: swing().along("gravity", 9.5, 10.0),
     lambda: tr.lyapunov_exponents(scenario("tilted-turntable"), duration=2.0, count=2),
     lambda: tr.poincare_section(scenario("tilted-turntable"), "velocity.x falling through 0", duration=10.0),
+    branched,
     lambda: tr.lyapunov_map(swing().system, {"x": [0.1]}, lambda x: swing().system.place(position=(x, 0.0)), 1.0),
     lambda: tr.twin(scenario("tilted-turntable")),
     lambda: tr.twin(scenario("tilted-turntable"), electron=True).particle,

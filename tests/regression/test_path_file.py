@@ -118,7 +118,7 @@ def test_what_is_wrong_is_said_in_one_line(data: dict[str, Any], said: str) -> N
 
 
 def test_a_path_is_no_motion_and_a_motion_no_path() -> None:
-    with pytest.raises(ScenarioError, match=r"roll-x-then-y: `path` has no place .* `tr.PathScenario`"):
+    with pytest.raises(ScenarioError, match=r"roll-x-then-y: `scenario` must have a body .* `tr.PathScenario`"):
         tr.Scenario.load("roll-x-then-y")
     with pytest.raises(ScenarioError, match=r"tilted-turntable: "):
         tr.PathScenario.load("tilted-turntable")

@@ -334,7 +334,10 @@ DAMAGED: dict[str, tuple[Callable[[Any], object], str]] = {
     ),
     "scenario: no TOML": (becomes("scenario", "[body"), "is not valid TOML"),
     "scenario: no scenario": (attribute("scenario", lambda text: text.replace("[body]", "[bdy]", 1)), "body"),
-    "scenario: a path": (becomes("scenario", '[[path]]\nkind = "straight"'), "`path` has no place"),
+    "scenario: a path": (
+        becomes("scenario", '[[path]]\nkind = "straight"'),
+        "`scenario` must have a body that forces act on",
+    ),
     "method: unknown": (becomes("method", "euler"), "`method` must be one of exact, taylor, runge-kutta"),
     "method: a number": (becomes("method", 3), "`method`"),
     "frame: unknown": (becomes("frame", "moon"), "`frame` must be one of support, world, corotating"),

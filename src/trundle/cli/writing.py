@@ -36,7 +36,7 @@ def check_folder(folder: Path, names: tuple[str, ...], key: str = "--output") ->
     if taken:
         raise InvalidValueError(key, "must leave room for files", str(folder), f"'{taken}' is a folder there.")
     if not allowed:
-        raise CannotWriteError(f"'{above}' may not be written to: name another folder for {key}. Nothing was written.")
+        raise CannotWriteError(f"'{above}' may not be written to: name another folder by {key}. Nothing was written.")
 
 
 def write_together(folder: Path, files: Mapping[str, Callable[[Path], object]]) -> list[Path]:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from ..errors import InvalidValueError
 from . import limits
@@ -34,6 +33,7 @@ def sweeps() -> Answer:
     >>> [one["name"] for one in json.loads(sweeps().body)["sweeps"]]
     ['rattleback', 'shaken-bowl', 'tippe-top']
     """
+    import numpy as np
     from matplotlib import colormaps
     from matplotlib.colors import to_hex
 
@@ -99,6 +99,8 @@ def draw_map(
     >>> found["places"], found["left"], len(found["picture"])
     ([0, 1, 2, 3, 4, 5], 0, 6)
     """
+    import numpy as np
+
     from ..analysis.sweep.refining import next_places
 
     plan = _plan(data, over, measure)
@@ -184,4 +186,4 @@ def _check_places(places: Sequence[int], members: int) -> None:
 
 def _listed(values: Any, none: float) -> list[float | None]:
     """Return numbers as JSON has them: null for none."""
-    return [float(value) if np.isfinite(value) and value != none else None for value in values]
+    return [float(value) if math.isfinite(value) and value != none else None for value in values]

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from ..errors import InvalidValueError, TrundleError, UnknownNameError
 from ..scenario import files
@@ -155,6 +154,8 @@ def fitted(
     >>> found["answer"], found["rows"][0][1]
     ('good', '0.6502 ± 0.0014')
     """
+    import numpy as np
+
     from ..analysis.fit.api import fit_observed
     from ..analysis.fit.camera import Camera
     from ..analysis.fit.observations import observe
@@ -188,6 +189,8 @@ def fitted(
 
 def _way(found: Fit, way: Sequence[tuple[Array, float, float]]) -> dict[str, Any]:
     """Return the path of some of the values that the fit came by, the last the fitted one."""
+    import numpy as np
+
     model = found.problem.models[0]
     chosen = np.unique(np.linspace(0, len(way) - 1, min(len(way), _FRAMES)).astype(int))
     rows = np.unique(np.linspace(0, model.seen.time.size - 1, _POINTS).astype(int))
@@ -203,4 +206,4 @@ def _way(found: Fit, way: Sequence[tuple[Array, float, float]]) -> dict[str, Any
 
 def _listed(values: Any) -> list[float | None]:
     """Return numbers as JSON has them: null for none."""
-    return [float(value) if np.isfinite(value) else None for value in values]
+    return [float(value) if math.isfinite(value) else None for value in values]

@@ -48,7 +48,7 @@ export const mountPush: StepMount = ({ app, stage: host, controls, numbers, work
   const scale = h(
     'p',
     { class: 'push-scale' },
-    'Magnified: F and Rₓ to one scale, 100 mN and less. The weight and the normal force, 5 N, would be fifty times as long.',
+    'Magnified: F and Rₓ to one scale. Weight and normal force, 5 N, are fifty times as long.',
   )
   controls.append(height.element, h('figure', { class: 'push-figure' }, diagram.element, scale))
 
