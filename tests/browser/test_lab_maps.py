@@ -11,6 +11,7 @@ from playwright.sync_api import Page, expect
 import trundle as tr
 from trundle.analysis.sweep import shipped
 from trundle.lab.links import encode
+from trundle.scenario import files
 
 from .axe import violations
 from .bench import as_shown, decoded, eventually, number
@@ -118,7 +119,8 @@ def test_another_map_is_asked_for_and_a_wrong_value_told_of(visitor: Visitor) ->
 
 
 def test_what_is_on_the_bench_has_a_map(visitor: Visitor) -> None:
-    page = visitor.open("#/bench?name=rattleback", drawn=False, cards=False)  # whose map takes long
+    slow = {**files.tables_of("rattleback"), "run": {"duration": "4 s", "every": "10 ms"}}  # whose map takes long
+    page = visitor.open(f"#/bench?s={encode(slow)}", drawn=False, cards=False)
     expect(page.locator('[data-bodies="1"]')).to_be_attached()
     page.get_by_role("link", name="Maps").click()
     page.get_by_test_id("map-choice").select_option(label="The scenario on the bench")
