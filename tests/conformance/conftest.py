@@ -29,7 +29,7 @@ def program(tmp_path: Path) -> Make:
 
     def make(body: str) -> list[str]:
         path = tmp_path / "mine.py"
-        path.write_text(f"import os, pathlib, signal, sys, time\nfor line in sys.stdin:\n    {body}\n")
+        path.write_text(f"import json, os, pathlib, signal, sys, time\nfor line in sys.stdin:\n    {body}\n")
         return [sys.executable, "-I", "-S", str(path)]
 
     return make

@@ -116,6 +116,21 @@ def test_however_a_program_ends_it_is_said(body: str, program: Make) -> None:
             assert words in answer.message
 
 
+SAYS = """print(json.dumps({"cannot": f"step {json.loads(line)['dt']}"}), flush=True)"""
+TWICE = f"{SAYS}; {SAYS}"
+BANNER = f'print("Welcome", flush=True); {SAYS}'
+FIRST = f'("begun" in globals()) or print("Welcome", flush=True); begun = True; {SAYS}'
+
+
+@pytest.mark.parametrize("body", [TWICE, BANNER, FIRST], ids=["twice", "before each", "before all"])
+def test_no_answer_is_taken_for_that_to_another_task(body: str, program: Make) -> None:
+    """A program that says more than it was asked would be one task behind for good, and nobody would see it."""
+    with Adapter(program(body)) as adapter:
+        for dt in (1e-2, 1e-3, 1e-4):
+            answer = adapter.answer(DRAW, dt)
+            assert (answer.outcome, answer.message) in (("cannot", f"step {dt}"), ("bad answer", "not JSON: 'Welcome'"))
+
+
 def test_one_that_is_late_is_killed_and_started_again(
     program: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -15,7 +15,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-from .answers import FAILED, TOO_SLOW, Answer, read_answer
+from .answers import BAD, FAILED, TOO_SLOW, Answer, read_answer
 from .case import Case
 
 LIMIT = 60.0  # s for an answer
@@ -89,7 +89,7 @@ class Adapter:
             Whatever happens.
         """
         task = json.dumps(case.task(dt, setting)).encode() + b"\n"
-        fresh = self._process is None or self._process.poll() is not None
+        fresh = self._process is None or self._process.poll() is not None or self._speaks()
         try:
             if fresh:
                 self.end()
@@ -98,14 +98,23 @@ class Adapter:
         except OSError as error:
             self.end()
             return Answer(FAILED, f"{self.command[0]} cannot be started: {error.strerror or error}")
-        except TimeoutError:  # an OSError where the system raises it, ours where we do
-            line = None
         if isinstance(line, Answer):
             return line
         if line is None:
             self.end()
             return Answer(TOO_SLOW, f"no answer within {self.limit:g} s")
-        return read_answer(line.decode(errors="replace"), case)
+        answer = read_answer(line.decode(errors="replace"), case)
+        if answer.outcome == BAD:  # the answer itself may follow, and would be taken for that to the next task
+            self.end()
+        return answer
+
+    def _speaks(self) -> bool:
+        """Tell whether it says more than it was asked: nobody knows to which task that belongs."""
+        if self._left or self._process is None or self._process.stdout is None:
+            return bool(self._left)
+        with selectors.DefaultSelector() as waiting:
+            waiting.register(self._process.stdout, selectors.EVENT_READ)
+            return bool(waiting.select(0))
 
     def end(self) -> None:
         """Kill the process, with those that it has started, if it is still there."""
