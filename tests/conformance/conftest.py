@@ -13,6 +13,10 @@ from trundle.conformance import Case
 from trundle.conformance.case import PARTS
 
 Make = Callable[[str], list[str]]
+_HEAD = """import json, os, pathlib, signal, sys, time
+def say(**words):
+    print(json.dumps({"task": task["task"]} | words), flush=True)
+"""
 
 
 def good_answer(case: Case) -> dict[str, Any]:
@@ -20,16 +24,16 @@ def good_answer(case: Case) -> dict[str, Any]:
     motion = case.exact()
     answer: dict[str, Any] = {name: getattr(motion, name).tolist() for name in ("time", *PARTS)}
     answer["support"] = None if motion.support is None else motion.support.tolist()
-    return answer | {"seconds": 0.5, "engine": "mine 1.0"}
+    return answer | {"task": 1, "seconds": 0.5, "engine": "mine 1.0"}
 
 
 @pytest.fixture
 def program(tmp_path: Path) -> Make:
-    """Makes a program that does this with each line of its input."""
+    """Makes a program that does this with each task: `say(cannot="...")` answers it."""
 
     def make(body: str) -> list[str]:
         path = tmp_path / "mine.py"
-        path.write_text(f"import json, os, pathlib, signal, sys, time\nfor line in sys.stdin:\n    {body}\n")
+        path.write_text(f"{_HEAD}for line in sys.stdin:\n    task = json.loads(line)\n    {body}\n")
         return [sys.executable, "-I", "-S", str(path)]
 
     return make

@@ -45,8 +45,8 @@ FAULTS: list[tuple[Change, str, str]] = [
     (altered("velocity", lambda x: x[..., [1, 0, 2]]), "bad answer", "`velocity` at the start is off by 2"),
     (altered("position", lambda x: x + np.array([0, 0, 1])), "bad answer", "`position` at the start is off by 1"),
     (altered("angular_velocity", lambda x: -x), "bad answer", "`angular_velocity` at the start is off"),
-    (lambda _: {"cannot": "it has no balls"}, "cannot", "it has no balls"),
-    (lambda _: {"failed": "it fell over"}, "failed", "it fell over"),
+    (lambda _: {"task": 1, "cannot": "it has no balls"}, "cannot", "it has no balls"),
+    (lambda _: {"task": 1, "failed": "it fell over"}, "failed", "it fell over"),
     (lambda _: [1, 2], "bad answer", "not an object of JSON"),
     (lambda told: told | {"seconds": "long"}, "bad answer", "`seconds` must be an array of numbers"),
 ]
@@ -54,7 +54,7 @@ FAULTS: list[tuple[Change, str, str]] = [
 
 @pytest.mark.parametrize(("change", "outcome", "words"), FAULTS, ids=[words for _, _, words in FAULTS])
 def test_a_fault_is_named(change: Change, outcome: str, words: str) -> None:
-    answer = read_answer(json.dumps(change(good_answer(DRAW))), DRAW)
+    answer = read_answer(json.dumps(change(good_answer(DRAW))), DRAW, 1)
     assert answer.outcome == outcome
     assert words in answer.message
     assert answer.motion is None
@@ -75,14 +75,14 @@ AXES: list[tuple[Change, str]] = [
 
 @pytest.mark.parametrize(("change", "words"), AXES, ids=[words for _, words in AXES])
 def test_wrong_axes_are_named(change: Change, words: str) -> None:
-    answer = read_answer(json.dumps(change(good_answer(COIN))), COIN)
+    answer = read_answer(json.dumps(change(good_answer(COIN))), COIN, 1)
     assert answer.outcome == "bad answer"
     assert words in answer.message
 
 
 def test_turning_that_the_orientations_contradict_is_named() -> None:
     """A ball starts with its axes those of space, so that only the motion tells."""
-    answer = read_answer(json.dumps(to_body(good_answer(TABLE))), TABLE)
+    answer = read_answer(json.dumps(to_body(good_answer(TABLE))), TABLE, 1)
     assert answer.outcome == "bad answer"
     assert "is not how the body turns: it is in the axes of the body" in answer.message
 
@@ -90,7 +90,7 @@ def test_turning_that_the_orientations_contradict_is_named() -> None:
 @pytest.mark.parametrize("name", ["billiard-draw", "coin-in-a-circle", "hinged-turntable", "pushed-box"])
 def test_a_good_answer_is_taken_and_measured(name: str) -> None:
     case = CASES[name]
-    answer = read_answer(json.dumps(good_answer(case)), case)
+    answer = read_answer(json.dumps(good_answer(case)), case, 1)
     assert (answer.outcome, answer.message, answer.engine, answer.seconds) == ("ok", "", "mine 1.0", 0.5)
     assert answer.motion is not None
     assert errors_of(case, case.exact(), answer.motion).worst == pytest.approx(0.0, abs=1e-15)
@@ -101,7 +101,13 @@ ENDINGS = {
     "sys.exit(7)": ("failed", "no answer: it ended with status 7"),
     "os.kill(os.getpid(), signal.SIGKILL)": ("failed", "no answer: it was killed by signal 9"),
     'raise ValueError("no ground")': ("failed", "no answer: it ended with status 1 (ValueError: no ground)"),
-    'sys.stdout.write(\'{"cannot": "end a line"}\'); sys.exit()': ("cannot", "end a line"),
+    'sys.stdout.write(json.dumps({"task": task["task"], "cannot": "end a line"})); sys.exit()': (
+        "cannot",
+        "end a line",
+    ),
+    'print(json.dumps({"cannot": "count"}), flush=True)': ("bad answer", "`task` must be that of the task, "),
+    'say(**{"task": [7], "cannot": "count"})': ("bad answer", "it is [7]"),
+    "print(flush=True)": ("bad answer", "not JSON: ''"),
     "sys.stdout.buffer.write(b'\\xff\\xfe\\n'); sys.stdout.flush()": ("bad answer", "not JSON"),
 }
 
@@ -116,7 +122,7 @@ def test_however_a_program_ends_it_is_said(body: str, program: Make) -> None:
             assert words in answer.message
 
 
-SAYS = """print(json.dumps({"cannot": f"step {json.loads(line)['dt']}"}), flush=True)"""
+SAYS = """say(cannot=f"step {task['dt']}")"""
 TWICE = f"{SAYS}; {SAYS}"
 BANNER = f'print("Welcome", flush=True); {SAYS}'
 FIRST = f'("begun" in globals()) or print("Welcome", flush=True); begun = True; {SAYS}'
@@ -128,7 +134,19 @@ def test_no_answer_is_taken_for_that_to_another_task(body: str, program: Make) -
     with Adapter(program(body)) as adapter:
         for dt in (1e-2, 1e-3, 1e-4):
             answer = adapter.answer(DRAW, dt)
-            assert (answer.outcome, answer.message) in (("cannot", f"step {dt}"), ("bad answer", "not JSON: 'Welcome'"))
+            assert (answer.outcome, answer.message) in (
+                ("cannot", f"step {dt}"),
+                ("bad answer", "not JSON: 'Welcome'"),
+                *(("bad answer", f"`task` must be that of the task, {n + 1}; it is {n}") for n in (1, 2)),
+            )
+
+
+def test_a_program_may_end_after_its_answer(program: Make) -> None:
+    """Soon after it, or late: whether it has ended when the next task comes is chance."""
+    with Adapter(program(f"{SAYS}; time.sleep(task['dt']); sys.exit()")) as adapter:
+        for dt in (1e-3, 1e-2, 5e-2, 1e-1, 2e-1):
+            answer = adapter.answer(DRAW, dt)
+            assert (answer.outcome, answer.message) == ("cannot", f"step {dt}")
 
 
 def test_one_that_is_late_is_killed_and_started_again(
@@ -139,7 +157,7 @@ def test_one_that_is_late_is_killed_and_started_again(
     body = (
         f"late = pathlib.Path({str(mark)!r}); there = late.exists(); late.touch()\n"
         "    time.sleep(0 if there else 3600)\n"
-        '    print(\'{"cannot": "it is tired"}\', flush=True)'
+        '    say(cannot="it is tired")'
     )
     monkeypatch.setattr(running, "STARTING", 0.0)
     with Adapter(program(body), limit=0.01) as adapter:

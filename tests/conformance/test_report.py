@@ -114,7 +114,7 @@ def test_a_program_is_scored_reported_and_compared(
     program: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    mine = " ".join(program('print(\'{"cannot": "no balls"}\', flush=True)'))
+    mine = " ".join(program('say(cannot="no balls")'))
     options = ["--case", "incline", "--step", "10 ms", "--step", "1 ms"]
     assert trundle(["score", "--adapter", mine, *options, "--report", "--junit", "junit.xml", "--at-most", "1"]) == 0
     printed = capsys.readouterr()
@@ -195,7 +195,7 @@ def test_what_is_done_is_kept_when_it_is_interrupted(
         "mark = pathlib.Path('mark'); there = mark.exists(); mark.touch()\n"
         "    if there:\n"
         "        os.kill(os.getppid(), signal.SIGINT); time.sleep(3600)\n"
-        '    print(\'{"cannot": "no balls"}\', flush=True)'
+        '    say(cannot="no balls")'
     )
     arguments = ["--case", "incline", "--case", "dome", "--step", "1 ms"]
     with pytest.raises(SystemExit, match="130"):

@@ -47,13 +47,13 @@ class _BadAnswerError(ValueError):
     """What is wrong with an answer."""
 
 
-def read_answer(line: str, case: Case) -> Answer:
-    """Read the line that an adapter wrote; whatever is wrong with it is said in the answer, and never raised.
+def read_answer(line: str, case: Case, number: int) -> Answer:
+    """Read the line that answers the task of this number; whatever is wrong is said in the answer, and never raised.
 
     Examples
     --------
     >>> import trundle as tr
-    >>> read_answer("Hello, world!", tr.conformance.cases()[0])
+    >>> read_answer("Hello, world!", tr.conformance.cases()[0], 1)
     Answer(outcome='bad answer', message="not JSON: 'Hello, world!'", motion=None, seconds=nan, engine='')
     """
     try:
@@ -63,6 +63,9 @@ def read_answer(line: str, case: Case) -> Answer:
     if not isinstance(told, dict):
         return Answer(BAD, f"not an object of JSON: {_cut(line)!r}")
     engine = str(told.get("engine", ""))
+    if told.get("task") != number:
+        said = f"it is {json.dumps(told['task'])}" if "task" in told else "it is missing"
+        return Answer(BAD, f"`task` must be that of the task, {number}; {_cut(said)}", engine=engine)
     for outcome in (CANNOT, FAILED):
         if outcome in told:
             return Answer(outcome, _cut(str(told[outcome])), engine=engine)

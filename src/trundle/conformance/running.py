@@ -62,6 +62,7 @@ class Adapter:
         self._process: subprocess.Popen[bytes] | None = None
         self._complaints: Any = None
         self._left = b""
+        self._number = 0
 
     def __enter__(self) -> Self:
         return self
@@ -88,33 +89,27 @@ class Adapter:
         Answer
             Whatever happens.
         """
-        task = json.dumps(case.task(dt, setting)).encode() + b"\n"
-        fresh = self._process is None or self._process.poll() is not None or self._speaks()
+        self._number += 1
+        task = json.dumps({"task": self._number, **case.task(dt, setting)}).encode() + b"\n"
+        running = self._process is not None and self._process.poll() is None
         try:
-            if fresh:
+            line = self._exchange(task, self.limit) if running else b""
+            if not line:  # it may have ended after its last answer, unseen
                 self.end()
                 self._start()
-            line = self._exchange(task, self.limit + STARTING * fresh)
+                line = self._exchange(task, self.limit + STARTING)
         except OSError as error:
             self.end()
             return Answer(FAILED, f"{self.command[0]} cannot be started: {error.strerror or error}")
+        if not line:
+            return self._ended()
         if isinstance(line, Answer):
-            return line
-        if line is None:
             self.end()
-            return Answer(TOO_SLOW, f"no answer within {self.limit:g} s")
-        answer = read_answer(line.decode(errors="replace"), case)
-        if answer.outcome == BAD:  # the answer itself may follow, and would be taken for that to the next task
+            return line
+        answer = read_answer(line.decode(errors="replace"), case, self._number)
+        if answer.outcome == BAD:  # it may say more, which would be late for the next task
             self.end()
         return answer
-
-    def _speaks(self) -> bool:
-        """Tell whether it says more than it was asked: nobody knows to which task that belongs."""
-        if self._left or self._process is None or self._process.stdout is None:
-            return bool(self._left)
-        with selectors.DefaultSelector() as waiting:
-            waiting.register(self._process.stdout, selectors.EVENT_READ)
-            return bool(waiting.select(0))
 
     def end(self) -> None:
         """Kill the process, with those that it has started, if it is still there."""
@@ -141,8 +136,8 @@ class Adapter:
             start_new_session=True,
         )
 
-    def _exchange(self, task: bytes, limit: float) -> bytes | Answer | None:
-        """Return the line that answers a task; an answer where there is none; None where it is late."""
+    def _exchange(self, task: bytes, limit: float) -> bytes | Answer:
+        """Return the line that answers a task, empty where the program ends; an answer where there is none to come."""
         process = self._process
         assert process is not None and process.stdin is not None and process.stdout is not None  # noqa: PT018, S101
         with contextlib.suppress(BrokenPipeError):  # it has ended, and will say so
@@ -154,24 +149,20 @@ class Adapter:
             while b"\n" not in pieces[-1]:
                 left = until - time.monotonic()
                 if left <= 0 or not waiting.select(left):
-                    return None
+                    return Answer(TOO_SLOW, f"no answer within {self.limit:g} s")
                 piece = os.read(process.stdout.fileno(), 2**20)
-                if not piece:
-                    return self._ended(b"".join(pieces))
+                if not piece:  # a program may forget the end of its line
+                    return b"".join(pieces).strip()
                 pieces.append(piece)
                 if sum(map(len, pieces)) > _MOST_BYTES:
-                    self.end()
                     return Answer(FAILED, f"an answer of more than {_MOST_BYTES // 2**20} MiB")
         line, _, self._left = b"".join(pieces).partition(b"\n")
-        return line
+        return line or b" "  # an empty line is an answer, and a bad one
 
-    def _ended(self, said: bytes) -> bytes | Answer:
-        """Return what the process said last, or how it ended."""
+    def _ended(self) -> Answer:
+        """Return how the process ended."""
         process = self._process
         assert process is not None  # noqa: S101
-        if said.strip():  # a program that forgets the end of its line
-            self.end()
-            return said
         code = process.wait()
         self._complaints.seek(0, os.SEEK_END)
         self._complaints.seek(max(0, self._complaints.tell() - 4096))

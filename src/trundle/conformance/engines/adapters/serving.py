@@ -28,13 +28,14 @@ def serve(run: Callable[[Task], Task]) -> None:
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)
     for line in sys.stdin:
+        task = json.loads(line)
         try:
-            answer = run(json.loads(line))
+            answer = run(task)
         except CannotError as error:
             answer = {"cannot": str(error)}
         except Exception as error:  # noqa: BLE001  whatever an engine raises is what it answers
             answer = {"failed": f"{type(error).__name__}: {error}"}
-        answers.write(json.dumps(answer) + "\n")
+        answers.write(json.dumps({"task": task["task"], **answer}) + "\n")
         answers.flush()
 
 
