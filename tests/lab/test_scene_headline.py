@@ -53,6 +53,18 @@ def test_what_turns_over_by_hand():
     assert number(told["text"]) == pytest.approx(math.pi / 2, rel=1e-3)
 
 
+def test_what_passes_its_middle_at_a_sample_is_told_too():
+    """An axis in steps of 45° is level at a sample, and a height of 0, ±1, 0 m is in its middle at every other."""
+    time = np.linspace(0.0, 4.0, 5)
+    turning = turned(time, 0.25 * math.pi * time, np.full(5, 0.25 * math.pi), (1, 0, 0))
+    assert number(headline_of(TOP, turning, ())["text"]) == pytest.approx(2.0, abs=1e-12)
+    time = np.arange(17.0)
+    place = np.outer(np.round(np.sin(0.5 * math.pi * time)), [0.0, 0.0, 1.0]) + [1.0, 0.0, 0.0]
+    still = np.zeros((time.size, 3))
+    rising = Samples(time, place, still, still, still, np.tile([1.0, 0, 0, 0], (time.size, 1)), still)
+    assert headline_of(TOP, rising, ())["text"] == "rises and falls every 4 s"
+
+
 def test_a_coin_on_its_circle_goes_round_as_often_as_its_spin_says():
     run = tr.Scenario.load("coin-in-a-circle").run()
     told = headline_of(run.system, run.samples, ())

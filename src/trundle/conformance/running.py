@@ -5,15 +5,16 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import selectors
+import queue
 import signal
 import subprocess
+import sys
 import tempfile
-import time
+import threading
 from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import IO, Any, Self
 
 from .answers import BAD, FAILED, TOO_SLOW, Answer, read_answer
 from .case import Case
@@ -61,7 +62,6 @@ class Adapter:
         self._environment = os.environ | _ONE_THREAD | (environment or {})
         self._process: subprocess.Popen[bytes] | None = None
         self._complaints: Any = None
-        self._left = b""
         self._number = 0
 
     def __enter__(self) -> Self:
@@ -113,16 +113,16 @@ class Adapter:
 
     def end(self) -> None:
         """Kill the process, with those that it has started, if it is still there."""
-        process, self._process, self._left = self._process, None, b""
-        streams = [self._complaints]
+        process, self._process = self._process, None
         if process is not None:
-            with contextlib.suppress(ProcessLookupError, PermissionError):
-                os.killpg(process.pid, signal.SIGKILL)
-            streams += [process.stdin, process.stdout]
-            process.wait()
-        for stream in filter(None, streams):
-            with contextlib.suppress(OSError):
-                stream.close()
+            _kill(process)
+            while self._listener.is_alive():  # it may wait for a place for what it heard
+                with contextlib.suppress(queue.Empty):
+                    self._heard.get(timeout=0.1)
+        for stream in (process.stdin if process else None, self._complaints):
+            if stream is not None:
+                with contextlib.suppress(OSError):
+                    stream.close()
 
     def _start(self) -> None:
         self._complaints = tempfile.TemporaryFile()  # noqa: SIM115  closed in `end`
@@ -135,29 +135,24 @@ class Adapter:
             env=self._environment,
             start_new_session=True,
         )
+        self._heard: queue.Queue[bytes] = queue.Queue(maxsize=2)
+        self._listener = threading.Thread(target=_listen, args=(self._process.stdout, self._heard), daemon=True)
+        self._listener.start()
 
     def _exchange(self, task: bytes, limit: float) -> bytes | Answer:
         """Return the line that answers a task, empty where the program ends; an answer where there is none to come."""
         process = self._process
-        assert process is not None and process.stdin is not None and process.stdout is not None  # noqa: PT018, S101
-        with contextlib.suppress(BrokenPipeError):  # it has ended, and will say so
+        assert process is not None and process.stdin is not None  # noqa: PT018, S101
+        with contextlib.suppress(OSError):  # it has ended, and will say so
             process.stdin.write(task)
             process.stdin.flush()
-        until, pieces = time.monotonic() + limit, [self._left]
-        with selectors.DefaultSelector() as waiting:
-            waiting.register(process.stdout, selectors.EVENT_READ)
-            while b"\n" not in pieces[-1]:
-                left = until - time.monotonic()
-                if left <= 0 or not waiting.select(left):
-                    return Answer(TOO_SLOW, f"no answer within {self.limit:g} s")
-                piece = os.read(process.stdout.fileno(), 2**20)
-                if not piece:  # a program may forget the end of its line
-                    return b"".join(pieces).strip()
-                pieces.append(piece)
-                if sum(map(len, pieces)) > _MOST_BYTES:
-                    return Answer(FAILED, f"an answer of more than {_MOST_BYTES // 2**20} MiB")
-        line, _, self._left = b"".join(pieces).partition(b"\n")
-        return line or b" "  # an empty line is an answer, and a bad one
+        try:
+            line = self._heard.get(timeout=limit)
+        except queue.Empty:
+            return Answer(TOO_SLOW, f"no answer within {self.limit:g} s")
+        if len(line) > _MOST_BYTES:
+            return Answer(FAILED, f"an answer of more than {_MOST_BYTES // 2**20} MiB")
+        return line
 
     def _ended(self) -> Answer:
         """Return how the process ended."""
@@ -170,3 +165,21 @@ class Adapter:
         self.end()
         how = f"it was killed by signal {-code}" if code < 0 else f"it ended with status {code}"
         return Answer(FAILED, f"no answer: {how}{f' ({lines[-1][:200]})' if lines else ''}")
+
+
+def _kill(process: subprocess.Popen[bytes]) -> None:
+    """End a process with those that it has started."""
+    with contextlib.suppress(ProcessLookupError, PermissionError):
+        if sys.platform != "win32":
+            os.killpg(process.pid, signal.SIGKILL)
+        else:
+            process.kill()
+    process.wait()
+
+
+def _listen(said: IO[bytes], heard: queue.Queue[bytes]) -> None:
+    """Hand on what a program says, line by line, and nothing once it has ended."""
+    with said:
+        while line := said.readline(_MOST_BYTES + 1):
+            heard.put(line)
+    heard.put(b"")

@@ -314,7 +314,7 @@ def _oscillation(system: RollingSystem, at: Samples) -> Iterator[Headline]:
 def _rises(time: Array, values: Array) -> Array:
     """Return when a signal rises through its middle."""
     off = values - 0.5 * (np.max(values) + np.min(values))
-    return _crossings(time, off)[np.sign(off[np.flatnonzero(off[1:] * off[:-1] < 0)]) < 0]
+    return _crossings(time, off, rising=True)
 
 
 def _peaks(time: Array, values: Array) -> Array:
@@ -353,9 +353,10 @@ def _integral(time: Array, rate: Array) -> Array:
     return np.concatenate([[0.0], np.cumsum(steps)])
 
 
-def _crossings(time: Array, values: Array) -> Array:
-    """Return when values pass through zero."""
-    at = np.flatnonzero(values[1:] * values[:-1] < 0)
+def _crossings(time: Array, values: Array, *, rising: bool = False) -> Array:
+    """Return when values pass through zero; a sample may be zero itself."""
+    steps = np.diff((values >= 0).astype(int))
+    at = np.flatnonzero(steps > 0 if rising else steps)
     share = values[at] / (values[at] - values[at + 1])
     return np.asarray(time[at] + share * (time[at + 1] - time[at]), dtype=float)
 
