@@ -309,6 +309,11 @@ class _Run:
             done += len(found)
             if not self._is_cut(outcome, steps):
                 return np.vstack(parts), _event(self, outcome)
+            while done < since.size and since[done] <= self.integrator.time:  # a rounding before a step's end
+                parts.append(self.integrator.state[None].copy())
+                done += 1
+            if done == since.size:
+                return np.vstack(parts), None
 
     def _at_once(self) -> dict[str, Any]:
         """Return how many steps to make before anything else is looked at, and how long they may be.
