@@ -1,7 +1,7 @@
 # Everything from a bare machine: Python 3.11 or newer and make are all it needs.
 .POSIX:
 .DELETE_ON_ERROR:
-.PHONY: help demo test check fuzz mutation dispatch bench check-web lint lint-python format clean always
+.PHONY: help demo test check fuzz mutation dispatch tables bench check-web lint lint-python format clean always
 
 # make PYTHON=/some/python3.12 demo  chooses the interpreter; otherwise the first of these that is new enough.
 PYTHON =
@@ -21,6 +21,7 @@ help:
 	@echo 'make fuzz    run 60 random scenarios of each class, and say which end badly: five minutes; COUNT=2000 for more'
 	@echo 'make mutation  plant faults in the package and print which figure of the card tells'
 	@echo 'make dispatch  count where the package asks which concrete surface, shape, body, motion, load or form it has'
+	@echo 'make tables  write the tables of parts in docs/ anew, from what the parts say of themselves'
 	@echo 'make bench   install the peers too, then print the ratios of one benchmark run'
 	@echo 'make lint    only ruff, mypy, the order of the layers, and types and lint of the web part'
 	@echo 'make format  let ruff and biome write their format into the sources'
@@ -74,6 +75,10 @@ mutation: .venv/installed-test
 # --each prints every one of the places, too.
 dispatch: .venv/installed-test
 	$(PLAIN) $(BIN)/python -m tests.dispatch
+
+# From what the parts say of themselves; a test says when they are not as the parts are.
+tables: .venv/installed-test
+	$(PLAIN) $(BIN)/python -m tests.documents.tables
 
 bench: .venv/installed-bench
 	$(PLAIN) $(BIN)/python benchmarks/run.py

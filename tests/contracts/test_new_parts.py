@@ -397,6 +397,21 @@ def test_new_parts_are_known_in_files_figures_and_scenes(copy: Path) -> None:
         assert word in found["schema"]
 
 
+def test_new_parts_are_in_the_tables_of_the_documents(copy: Path) -> None:
+    shutil.copy(Path(__file__).parents[1] / "documents" / "tables.py", copy)
+    done = run(copy, "-c", "from tables import TABLES; print(*(make() for make in TABLES.values()))")
+    assert done.returncode == 0, done.stderr
+    for row in (
+        "| `spheroid` | `spheroid` | A homogeneous ellipsoid of revolution. | `equator`, `pole`, `mass`, `density` |",
+        "| `pole` | `spheroid` | Half its height. | m | required | positive |",
+        "| `first` | `elliptic-funnel` | Along the first axis. | m | required | positive |",
+        "| `stiffness` | `tether` | k, N/m. | 1 | required | 0 or more |",
+        "| `heave` | `Heave` | A support that goes up and down, A sin νt. | `amplitude`, `rate` |",
+        "| D1 | disc rolling upright | a disc, on a plane",
+    ):
+        assert row in done.stdout
+
+
 def test_new_parts_run_on_the_command_line(copy: Path) -> None:
     done = run(copy, "-m", "trundle", "run", "new.toml", "-o", "out")
     assert done.returncode == 0, done.stderr

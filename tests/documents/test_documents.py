@@ -8,6 +8,7 @@ import unicodedata
 from pathlib import Path
 
 import pytest
+from tests.documents.tables import PLACE, TABLES, written_anew
 
 ROOT = Path(__file__).parents[2]
 DOCUMENTS = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")] + sorted(
@@ -27,6 +28,12 @@ def text_of(path: Path) -> str:
 def prose_of(path: Path) -> str:
     """Return a document without its code blocks."""
     return re.sub(r"^```.*?^```", "", text_of(path), flags=re.DOTALL | re.MULTILINE)
+
+
+def test_the_tables_of_parts_are_as_the_parts_say() -> None:
+    pages = [path for path in DOCUMENTS if written_anew(text_of(path)) != text_of(path)]
+    assert not pages, f"`make tables` writes them anew: {', '.join(path.name for path in pages)}"
+    assert sorted(name for path in DOCUMENTS for _, name, _ in PLACE.findall(text_of(path))) == sorted(TABLES)
 
 
 def anchors_of(path: Path) -> set[str]:

@@ -24,18 +24,11 @@ _UNIT_OF = {"p": "m", "q": "", "Omega": "rad/s", "s": "m/s", "V": "m/s", "g": "m
 
 @dataclass(frozen=True)
 class FieldReset:
-    """What follows an event.
+    """What follows an event."""
 
-    Parameters
-    ----------
-    phase : callable or None
-        (t, y, p, u) -> the code of the phase that follows, an array of one number; None where only one may.
-    states : mapping of str to callable
-        For each phase that may follow, (t, y, p, u) -> the state with which it begins.
-    """
-
+    # (t, y, p, u) -> the code of the phase that follows, an array of one number; None where only one may
     phase: Function | None
-    states: Mapping[str, Function]
+    states: Mapping[str, Function]  # for each phase that may follow, (t, y, p, u) -> the state with which it begins
 
 
 @dataclass(frozen=True, repr=False)

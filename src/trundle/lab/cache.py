@@ -14,24 +14,15 @@ from typing import Any
 class Answer:
     """A whole answer, as a worker made it.
 
-    Parameters
-    ----------
-    body : bytes
-        What is sent.
-    media_type : str
-        Its type.
-    filename : str, optional
-        The name under which a browser saves it.
-
     Examples
     --------
     >>> Answer(b"{}", "application/json").filename is None
     True
     """
 
-    body: bytes
-    media_type: str
-    filename: str | None = None
+    body: bytes  # what is sent
+    media_type: str  # its type
+    filename: str | None = None  # the name under which a browser saves it
 
 
 def key_of(*asked: Any) -> str:

@@ -13,30 +13,17 @@ from ..errors import TrundleError
 class Refusal:
     """An answer that is an error, as a worker sends it.
 
-    Parameters
-    ----------
-    status : int
-        Of HTTP.
-    message : str
-        For the reader.
-    key : str, optional
-        The key of the scenario that is meant.
-    kind : str
-        The kind of error.
-    headers : tuple of pairs
-        That the answer carries besides.
-
     Examples
     --------
     >>> Refusal(422, "`support.tilt` must be an angle", "support.tilt").body
     b'{"error": {"message": "`support.tilt` must be an angle", "key": "support.tilt", "kind": "RequestError"}}'
     """
 
-    status: int
-    message: str
-    key: str | None = None
-    kind: str = "RequestError"
-    headers: tuple[tuple[str, str], ...] = ()
+    status: int  # of HTTP
+    message: str  # for the reader
+    key: str | None = None  # the key of the scenario that is meant
+    kind: str = "RequestError"  # the kind of error
+    headers: tuple[tuple[str, str], ...] = ()  # that the answer carries besides
 
     @property
     def body(self) -> bytes:

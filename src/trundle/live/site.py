@@ -42,27 +42,15 @@ _TITLE = "Bodies that roll"
 
 @dataclass(frozen=True)
 class Entry:
-    """A scenario of the site.
+    """A scenario of the site."""
 
-    Parameters
-    ----------
-    name, title, group, notes : str
-        As its file has them.
-    page : bytes
-        That shows it.
-    scene : Scene
-        What is drawn there first.
-    live : bool
-        Whether the page computes the motion itself.
-    """
-
-    name: str
-    title: str
-    group: str
-    notes: str
-    page: bytes
-    scene: Drawn
-    live: bool
+    name: str  # as its file has them
+    title: str  # as its file has them
+    group: str  # as its file has them
+    notes: str  # as its file has them
+    page: bytes  # that shows it
+    scene: Drawn  # what is drawn there first
+    live: bool  # whether the page computes the motion itself
 
     @property
     def file(self) -> str:

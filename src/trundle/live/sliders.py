@@ -28,27 +28,16 @@ _NOT_OFFERED = ("gravity", "body.mass", "start.orientation", "body.moments", "bo
 
 @dataclass(frozen=True)
 class Slider:
-    """One slider.
+    """One slider."""
 
-    Parameters
-    ----------
-    key : Key
-        The number.
-    low, high : float
-        Its ends, SI.
-    label, group, unit : str
-        What it is called, of what it is a number, and the unit in which it is shown.
-    factor : float
-        Of that unit, in SI.
-    """
-
-    key: Key
-    low: float
-    high: float
+    key: Key  # the number
+    low: float  # its ends, SI
+    high: float  # its ends, SI
+    # `label`, `group`, `unit`: what it is called, of what it is a number, and the unit in which it is shown
     label: str
     group: str
     unit: str
-    factor: float
+    factor: float  # of that unit, in SI
 
     @property
     def told(self) -> dict[str, Any]:

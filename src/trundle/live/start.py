@@ -27,21 +27,11 @@ _APART = 1e-12  # of a start's numbers by their size: what is placed on a tape i
 
 @dataclass(frozen=True)
 class Placed:
-    """The start of a scenario as a function of some of its numbers.
+    """The start of a scenario as a function of some of its numbers."""
 
-    Parameters
-    ----------
-    phase : str
-        In which it begins.
-    routine : Routine
-        (w) -> the numbers of the state and then all those of the system.
-    size : int
-        How many are of the state.
-    """
-
-    phase: str
-    routine: Routine
-    size: int
+    phase: str  # in which it begins
+    routine: Routine  # (w) -> the numbers of the state and then all those of the system
+    size: int  # how many are of the state
 
     @staticmethod
     def of(scenario: ScenarioFile, wanted: Sequence[Key]) -> Placed:

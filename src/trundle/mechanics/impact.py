@@ -32,22 +32,13 @@ _MOST_PIECES = 20
 
 @dataclass(frozen=True)
 class Impact:
-    """What a landing does.
+    """What a landing does."""
 
-    Parameters
-    ----------
-    impulse : Vector
-        P on the body, N s, in the inertial support frame.
-    velocity_change, angular_velocity_change : Vector
-        Of the body, m/s and rad/s.
-    axle_rate_change : float
-        Of a free axle, rad/s.
-    """
-
-    impulse: Vector
+    impulse: Vector  # p on the body, N s, in the inertial support frame
+    # `velocity_change`, `angular_velocity_change`: of the body, m/s and rad/s
     velocity_change: Vector
     angular_velocity_change: Vector
-    axle_rate_change: float
+    axle_rate_change: float  # of a free axle, rad/s
 
 
 def land(system: RollingSystem, contact: Contact, orientation: Quaternion, slip: Vector) -> Impact:

@@ -29,9 +29,9 @@ class Document(Displayed, Table):
     kinds: ClassVar[Kinds]  # which class stands for which table, so that an error can list the keys that it has
     rolls_along_path: ClassVar[bool] = False  # whether it has [[path]] tables: they tell the kinds of file apart
 
-    title: str = ""
+    title: str = Field(default="", description="Heads the card and the figures; absent: the name of the file.")
     group: str = Field(default="", description="The heading under which a list of scenarios has it.")
-    notes: str = Field(default="", description="What a lecturer says about it.")
+    notes: str = Field(default="", description="What a lecturer says about it; `trundle show` prints it.")
 
     # --- reading -----------------------------------------------------------------------------------------
 

@@ -39,7 +39,7 @@ class ScenarioFile(Document):
 
     kinds: ClassVar[Kinds] = KINDS
 
-    gravity: Gravity = Field(default=9.80665, description="g; 0 turns it off.")
+    gravity: Gravity = Field(default=9.80665, description="Acceleration of free fall, g; 0 turns it off.")
     body: Bodies
     support: Supports
     start: Start

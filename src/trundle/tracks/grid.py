@@ -64,25 +64,6 @@ def is_missing(cell: str) -> bool:
 class Grid:
     r"""Lines of a text that is a table.
 
-    Parameters
-    ----------
-    head : tuple of (int, tuple of str)
-        The lines above the first row of numbers that are not empty, with their numbers: names, units.
-    rows : sequence of str
-        The lines from there on.
-    lines : sequence of int
-        Their numbers.
-    separator : str or None
-        Between cells; None: white space.
-    decimal : str
-        "." or ",".
-    notes : tuple of str
-        Lines that begin with #.
-    asked : bool
-        Whether somebody said which sign is the decimal one: the other may then stand between thousands.
-    counted : str
-        What the numbers of lines count.
-
     Examples
     --------
     >>> grid = grid_of("t;x\n0,0;1,5\n0,1;1,6\n")
@@ -90,14 +71,16 @@ class Grid:
     (['t', 'x'], ',', [[0.0, 0.1], [1.5, 1.6]])
     """
 
+    # the lines above the first row of numbers that are not empty, with their numbers: names, units
     head: tuple[tuple[int, tuple[str, ...]], ...]
-    rows: Sequence[str]
-    lines: Sequence[int]
-    separator: str | None
-    decimal: str
-    notes: tuple[str, ...] = ()
+    rows: Sequence[str]  # the lines from there on
+    lines: Sequence[int]  # their numbers
+    separator: str | None  # between cells; None: white space
+    decimal: str  # "." or ","
+    notes: tuple[str, ...] = ()  # lines that begin with #
+    # whether somebody said which sign is the decimal one: the other may then stand between thousands
     asked: bool = False
-    counted: str = "line"
+    counted: str = "line"  # what the numbers of lines count
 
     @property
     def names(self) -> list[str]:

@@ -28,24 +28,12 @@ METHODS = ("auto", "taylor", "runge-kutta")
 
 @dataclass(frozen=True)
 class Asked:
-    """A system and a start, from a scenario or by themselves.
+    """A system and a start, from a scenario or by themselves."""
 
-    Parameters
-    ----------
-    title : str
-        Of the scenario; empty where there is none.
-    system : RollingSystem
-        What moves.
-    start : State
-        From where.
-    scenario : ScenarioFile or None
-        Where they come from.
-    """
-
-    title: str
-    system: RollingSystem
-    start: State
-    scenario: ScenarioFile | None = None
+    title: str  # of the scenario; empty where there is none
+    system: RollingSystem  # what moves
+    start: State  # from where
+    scenario: ScenarioFile | None = None  # where they come from
 
     @classmethod
     def of(cls, given: Any, start: State | None) -> Asked:

@@ -26,24 +26,13 @@ _EXAMPLE = 'Write for instance "position.z rising through 10 mm", or name a kind
 
 @dataclass(frozen=True)
 class Condition:
-    """Where a motion is noted: where a function of its samples passes zero, or where events of a kind are.
+    """Where a motion is noted: where a function of its samples passes zero, or where events of a kind are."""
 
-    Parameters
-    ----------
-    text : str
-        As it was asked for.
-    function : callable or None
-        Takes a dataset like `Trajectory.data`, returns a number for each instant; None where events are asked for.
-    way : str
-        "rising", "falling" or "crossing": either way.
-    event : str
-        The kind of event; empty where there is a function.
-    """
-
-    text: str
+    text: str  # as it was asked for
+    # takes a dataset like `Trajectory.data`, returns a number for each instant; None where events are asked for
     function: Callable[[xarray.Dataset], Array] | None
-    way: str = "rising"
-    event: str = ""
+    way: str = "rising"  # "rising", "falling" or "crossing": either way
+    event: str = ""  # the kind of event; empty where there is a function
 
     @classmethod
     def of(cls, given: Any, system: RollingSystem, way: str) -> Condition:

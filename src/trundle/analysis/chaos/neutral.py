@@ -32,27 +32,13 @@ _SHIFTS, _TURNS = (
 
 @dataclass(frozen=True)
 class Neutral:
-    """The exponents that must be zero.
+    """The exponents that must be zero."""
 
-    Parameters
-    ----------
-    count : int
-        How many at least.
-    flow : bool
-        Whether one is along the flow.
-    symmetries : int
-        How many more directions the symmetries have.
-    integrals : tuple of str
-        The first integrals that count.
-    lost : int
-        How many exponents are −∞, by which there may be fewer.
-    """
-
-    count: int
-    flow: bool
-    symmetries: int
-    integrals: tuple[str, ...]
-    lost: int = 0
+    count: int  # how many at least
+    flow: bool  # whether one is along the flow
+    symmetries: int  # how many more directions the symmetries have
+    integrals: tuple[str, ...]  # the first integrals that count
+    lost: int = 0  # how many exponents are −∞, by which there may be fewer
 
     def __str__(self) -> str:
         said = ["the flow itself"] if self.flow else []

@@ -28,42 +28,18 @@ _KNOWS = 1e-11
 
 @dataclass(frozen=True)
 class Returned:
-    """What has become of a start after a period, in units of the scale.
+    """What has become of a start after a period, in units of the scale."""
 
-    Parameters
-    ----------
-    start : State
-        From where.
-    phase : PhaseStart
-        How it starts.
-    scale : array (size,)
-        What is large of each number of the state.
-    basis : array (size, d)
-        Of what may be different at the start.
-    residual : array (d,)
-        How far it is from the start, along the basis.
-    monodromy : array (d, d)
-        How differences at the start are there.
-    flow : array (d,)
-        How fast it moves there, for a period one unit of time longer.
-    by_number : array (d,)
-        How it changes with the number of the system that is varied.
-    by_number_at_start : array (size,)
-        How the state at the start changes with it, to stay on the support.
-    events : int
-        On the way.
-    """
-
-    start: State
-    phase: PhaseStart
-    scale: Array
-    basis: Array
-    residual: Array
-    monodromy: Array
-    flow: Array
-    by_number: Array
-    by_number_at_start: Array
-    events: int
+    start: State  # from where
+    phase: PhaseStart  # how it starts
+    scale: Array  # (size,): what is large of each number of the state
+    basis: Array  # (size, d): of what may be different at the start
+    residual: Array  # (d,): how far it is from the start, along the basis
+    monodromy: Array  # (d, d): how differences at the start are there
+    flow: Array  # (d,): how fast it moves there, for a period one unit of time longer
+    by_number: Array  # (d,): how it changes with the number of the system that is varied
+    by_number_at_start: Array  # (size,): how the state at the start changes with it, to stay on the support
+    events: int  # on the way
 
     @property
     def numbers(self) -> Array:

@@ -37,20 +37,12 @@ _WAITING = 500  # stretches, whose integrals are worked out together
 
 @dataclass(frozen=True)
 class Growth:
-    """How much the differences have grown by an instant: logarithms, since the start.
+    """How much the differences have grown by an instant: logarithms, since the start."""
 
-    Parameters
-    ----------
-    time : float
-        s.
-    logs : array (count,)
-        Of each difference, orthogonal to those before it.
-    between, across : float
-        Their sum: between events, and across these. What an event takes away altogether is not counted.
-    """
-
-    time: float
-    logs: Array
+    time: float  # s
+    logs: Array  # (count,): of each difference, orthogonal to those before it
+    # `between`, `across`: their sum: between events, and across these. What an event takes away altogether is not
+    # counted.
     between: float
     across: float
 

@@ -32,31 +32,15 @@ _LEFT_OUT, _FALLS = 1e-9, 16 / 7
 
 @dataclass(frozen=True)
 class Stretch:
-    """States of a law with their differences at the nodes of a quadrature over some time.
+    """States of a law with their differences at the nodes of a quadrature over some time."""
 
-    Parameters
-    ----------
-    law : Law
-        That holds there.
-    begin, end : float
-        s.
-    states : array (n, size · (1 + count))
-        At the nodes: the state and its differences, as `VariationalLaw` has them.
-    alive : array of bool (count,)
-        Which differences no event has taken away.
-    scale : array (size,)
-        What is large of each number of the state.
-    at : callable
-        Takes instants, s; returns the states there.
-    """
-
-    law: Law
-    begin: float
-    end: float
-    states: Array
-    alive: Any
-    scale: Array
-    at: Callable[[Array], Array]
+    law: Law  # that holds there
+    begin: float  # s
+    end: float  # s
+    states: Array  # (n, size · (1 + count)): at the nodes: the state and its differences, as `VariationalLaw` has them
+    alive: Any  # (count,): which differences no event has taken away
+    scale: Array  # (size,): what is large of each number of the state
+    at: Callable[[Array], Array]  # takes instants, s; returns the states there
 
     @property
     def times(self) -> Array:

@@ -54,27 +54,19 @@ COSINE, SENSE = sp.symbols("c_0 sigma", real=True)
 class Case:
     """One of the three motions of a pendulum.
 
-    Parameters
-    ----------
-    name : str
-        What it does.
-    rotates, parameter, complement, pendulum : see solve.exact.cylinder_on_cylinder
-        As the closed form's own constants.
-    squares : mapping
-        What joins the symbols of the start.
-
     Examples
     --------
     >>> CASES[0].name
     'It swings'
     """
 
-    name: str
+    name: str  # what it does
+    # `rotates`, `parameter`, `complement`, `pendulum`: as the closed form's own constants
     rotates: int
     parameter: Any
     complement: Any
     pendulum: Any
-    squares: Mapping[Any, Any]
+    squares: Mapping[Any, Any]  # what joins the symbols of the start
     period: float = 1.0
 
 

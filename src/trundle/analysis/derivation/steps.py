@@ -18,13 +18,6 @@ class DerivationError(TrundleError):
 class Equation(Displayed):
     """An equation as it is printed, and its residual.
 
-    Parameters
-    ----------
-    formula : sympy.Eq
-        Both sides, as they are printed.
-    residual : sympy.Expr or sympy.Matrix
-        Left side minus right side with the rolling law's own expressions put in, in normal form: 0 is a proof.
-
     Examples
     --------
     >>> import sympy
@@ -32,7 +25,8 @@ class Equation(Displayed):
     True
     """
 
-    formula: Any
+    formula: Any  # both sides, as they are printed
+    # left side minus right side with the rolling law's own expressions put in, in normal form: 0 is a proof
     residual: Any = field(repr=False)
 
     @property
@@ -54,27 +48,16 @@ class Equation(Displayed):
 class Step(Displayed):
     """One step: what is done, in a sentence, and the equations that come of it.
 
-    Parameters
-    ----------
-    title : str
-        A few words.
-    sentence : str
-        What is done; `{name}` stands for an expression of `words`.
-    equations : tuple of Equation
-        In order.
-    words : mapping, optional
-        The expressions of the sentence.
-
     Examples
     --------
     >>> Step("Newton", "The law of momentum.", ()).residuals
     ()
     """
 
-    title: str
-    sentence: str
-    equations: tuple[Equation, ...]
-    words: Mapping[str, Any] = field(default_factory=dict)
+    title: str  # a few words
+    sentence: str  # what is done; `{name}` stands for an expression of `words`
+    equations: tuple[Equation, ...]  # in order
+    words: Mapping[str, Any] = field(default_factory=dict)  # the expressions of the sentence
 
     @property
     def residuals(self) -> tuple[Any, ...]:

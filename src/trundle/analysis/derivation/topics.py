@@ -10,27 +10,16 @@ from typing import Any
 class Topic:
     """A derivation by name.
 
-    Parameters
-    ----------
-    title : str
-        Its heading.
-    introduction : str
-        What is derived.
-    form : str
-        Name of the closed form's module, in `trundle.solve.exact` and here alike.
-    setting : mapping
-        What the module's `Setting` is made from.
-
     Examples
     --------
     >>> TOPICS["turntable"].form
     'sphere_on_plane'
     """
 
-    title: str
-    introduction: str
-    form: str
-    setting: dict[str, Any]
+    title: str  # its heading
+    introduction: str  # what is derived
+    form: str  # name of the closed form's module, in `trundle.solve.exact` and here alike
+    setting: dict[str, Any]  # what the module's `Setting` is made from
 
 
 _ALL = (True, True, True)

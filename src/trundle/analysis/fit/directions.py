@@ -20,24 +20,12 @@ EXACT = 1e-7  # of the largest: below it the data do not change at all along a d
 
 @dataclass(frozen=True)
 class Directions:
-    """The directions of a Jacobian.
+    """The directions of a Jacobian."""
 
-    Parameters
-    ----------
-    basis : array (p, r)
-        What the data fix: columns in the numbers' own units, each one standard deviation long.
-    free : array (p, f)
-        Along which nothing measured changes.
-    weak : array (p, w)
-        Along which it changes by less than the noise, however far one goes.
-    values : array (p,)
-        The singular values, the largest first.
-    """
-
-    basis: Array
-    free: Array
-    weak: Array
-    values: Array
+    basis: Array  # (p, r): what the data fix: columns in the numbers' own units, each one standard deviation long
+    free: Array  # (p, f): along which nothing measured changes
+    weak: Array  # (p, w): along which it changes by less than the noise, however far one goes
+    values: Array  # (p,): the singular values, the largest first
 
     @property
     def covariance(self) -> Array:

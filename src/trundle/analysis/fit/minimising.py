@@ -25,27 +25,13 @@ _STAGE, _LAST = 20, 60  # trials
 
 @dataclass(frozen=True)
 class Minimum:
-    """Where the sum of squares is least.
+    """Where the sum of squares is least."""
 
-    Parameters
-    ----------
-    values : array (p,)
-        Of the unknowns.
-    directions : Directions
-        There.
-    covariance : array (p, p)
-        Of the unknowns along the directions fixed, by lmfit; not scaled.
-    result : lmfit.minimizer.MinimizerResult or None
-        Of the last round; None where nothing is fixed.
-    evaluations : int
-        Of the model.
-    """
-
-    values: Array
-    directions: Directions
-    covariance: Array
-    result: Any
-    evaluations: int
+    values: Array  # (p,): of the unknowns
+    directions: Directions  # there
+    covariance: Array  # (p, p): of the unknowns along the directions fixed, by lmfit; not scaled
+    result: Any  # of the last round; None where nothing is fixed
+    evaluations: int  # of the model
 
 
 def minimise(

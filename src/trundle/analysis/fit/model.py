@@ -43,24 +43,12 @@ class Motion:
 
 @dataclass(frozen=True)
 class RunModel:
-    """The model of one run.
+    """The model of one run."""
 
-    Parameters
-    ----------
-    scenario : ScenarioFile
-        With the start at the time of the first row.
-    seen : Observations
-        Of the run.
-    unknowns : tuple of Unknown
-        What it depends on.
-    camera : Camera
-        Where its numbers are not free.
-    """
-
-    scenario: ScenarioFile
-    seen: Observations
-    unknowns: tuple[Unknown, ...]
-    camera: Camera
+    scenario: ScenarioFile  # with the start at the time of the first row
+    seen: Observations  # of the run
+    unknowns: tuple[Unknown, ...]  # what it depends on
+    camera: Camera  # where its numbers are not free
     _form: list[type[ClosedForm]] = field(
         default_factory=list, init=False, compare=False, repr=False
     )  # once it is known to do

@@ -24,30 +24,14 @@ _DEGREE = 3
 
 @dataclass(frozen=True)
 class Observations:
-    """The measured values of one run.
+    """The measured values of one run."""
 
-    Parameters
-    ----------
-    time : array (n,)
-        Ascending, s.
-    columns : tuple of str
-        Names of `COLUMNS`.
-    values : array (n, c)
-        SI; not a number where there is none.
-    rows : array (n,)
-        What the data call each row: the line of a file, or the place in the table, from 1.
-    label : str
-        The file's name, or "data".
-    read : str
-        What was taken for what.
-    """
-
-    time: Array
-    columns: tuple[str, ...]
-    values: Array
-    rows: Any
-    label: str
-    read: str
+    time: Array  # (n,): ascending, s
+    columns: tuple[str, ...]  # names of `COLUMNS`
+    values: Array  # (n, c): SI; not a number where there is none
+    rows: Any  # (n,): what the data call each row: the line of a file, or the place in the table, from 1
+    label: str  # the file's name, or "data"
+    read: str  # what was taken for what
 
     @property
     def known(self) -> Array:
@@ -152,20 +136,11 @@ def _scatter(time: Array, column: Array) -> float:
 
 @dataclass(frozen=True)
 class Noise:
-    """How a difference between data and model is turned into one of unit variance.
+    """How a difference between data and model is turned into one of unit variance."""
 
-    Parameters
-    ----------
-    known : bool
-        Whether it was given; an estimated one is scaled by the fit.
-    sigma : array (n, c)
-        Standard deviation of each value.
-    factor : array, optional
-        Of a covariance between values: the lower Cholesky factor over all values that there are.
-    """
-
-    known: bool
-    sigma: Array
+    known: bool  # whether it was given; an estimated one is scaled by the fit
+    sigma: Array  # (n, c): standard deviation of each value
+    # of a covariance between values: the lower Cholesky factor over all values that there are
     factor: Array | None = None
 
     def whiten(self, values: Array, seen: Array) -> Array:

@@ -29,30 +29,14 @@ class Prior:
 
 @dataclass
 class Problem:
-    """What is minimised.
+    """What is minimised."""
 
-    Parameters
-    ----------
-    unknowns : list of Unknown
-        In the order of the vector of values.
-    models : list of RunModel
-        One for each run.
-    noises : list of Noise
-        One for each run.
-    priors : dict
-        By place of the unknown.
-    until : float
-        Share of each run that counts, of its time.
-    watch : callable, optional
-        Told the values, their residuals and the share that counts, wherever the fit comes by.
-    """
-
-    unknowns: list[Unknown]
-    models: list[RunModel]
-    noises: list[Noise]
-    priors: dict[int, Prior] = field(default_factory=dict)
-    until: float = 1.0
-    watch: Watch | None = None
+    unknowns: list[Unknown]  # in the order of the vector of values
+    models: list[RunModel]  # one for each run
+    noises: list[Noise]  # one for each run
+    priors: dict[int, Prior] = field(default_factory=dict)  # by place of the unknown
+    until: float = 1.0  # share of each run that counts, of its time
+    watch: Watch | None = None  # told the values, their residuals and the share that counts, wherever the fit comes by
     limits: dict[int, tuple[float, float]] = field(default_factory=dict)  # those that a trial has come to
     last: tuple[bytes, float, Array, Array] | None = None  # residuals and derivatives
     recent: tuple[bytes, float, Array] | None = None  # residuals alone

@@ -21,27 +21,13 @@ _HALVINGS = 40
 
 @dataclass(frozen=True)
 class Unknown:
-    """A number that a fit may change.
+    """A number that a fit may change."""
 
-    Parameters
-    ----------
-    key : str
-        Such as "body.radius", "camera.scale" or "mark.position[0]".
-    run : int or None
-        Of which run, where each has its own; None where all share it.
-    value : float
-        Where the fit begins, SI.
-    unit : str
-        SI.
-    asked : bool
-        Whether the user named it; a start is found besides.
-    """
-
-    key: str
-    run: int | None
-    value: float
-    unit: str
-    asked: bool
+    key: str  # such as "body.radius", "camera.scale" or "mark.position[0]"
+    run: int | None  # of which run, where each has its own; None where all share it
+    value: float  # where the fit begins, SI
+    unit: str  # SI
+    asked: bool  # whether the user named it; a start is found besides
 
     @property
     def name(self) -> str:

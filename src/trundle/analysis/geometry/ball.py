@@ -28,17 +28,11 @@ _LIGHT = np.array([-0.45, 0.55, 0.75]) / np.linalg.norm([-0.45, 0.55, 0.75])  # 
 
 @dataclass(frozen=True)
 class View:
-    """A way to look: three unit vectors of the support frame that appear to the right, up, and towards the viewer.
+    """A way to look: three unit vectors of the support frame that appear to the right, up, and towards the viewer."""
 
-    Parameters
-    ----------
-    right, up, towards : array (3,)
-        Right-handed.
-    """
-
-    right: Array
-    up: Array
-    towards: Array
+    right: Array  # (3,): right-handed
+    up: Array  # (3,): right-handed
+    towards: Array  # (3,): right-handed
 
     @staticmethod
     def of(azimuth: float, elevation: float) -> View:

@@ -33,17 +33,10 @@ _EPSILON = 2.0**-52
 
 @dataclass(frozen=True)
 class PlaneCurve:
-    """A piecewise polynomial curve, and how far it may be from the one that was meant.
+    """A piecewise polynomial curve, and how far it may be from the one that was meant."""
 
-    Parameters
-    ----------
-    polynomial : scipy.interpolate.PPoly
-        From the parameter u to (x, y), m.
-    deviation : float
-        The largest distance from the curve that was asked for, m; 0 where the polynomials are what was asked for.
-    """
-
-    polynomial: Any
+    polynomial: Any  # from the parameter u to (x, y), m
+    # the largest distance from the curve that was asked for, m; 0 where the polynomials are what was asked for
     deviation: float
 
     @staticmethod
@@ -174,18 +167,10 @@ def _fitted(places: Callable[[Array], Array], low: Array, high: Array) -> tuple[
 
 @dataclass(frozen=True)
 class RolledCurve:
-    """A ball of radius a rolled along a smooth curve.
+    """A ball of radius a rolled along a smooth curve."""
 
-    Parameters
-    ----------
-    curve : PlaneCurve
-        Of the contact point.
-    radius : float
-        a, m.
-    """
-
-    curve: PlaneCurve
-    radius: float
+    curve: PlaneCurve  # of the contact point
+    radius: float  # a, m
 
     @cached_property
     def _rate(self) -> Any:

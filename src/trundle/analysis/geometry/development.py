@@ -22,32 +22,17 @@ _JOINED = 1e-9  # how near to the end of the path so far a curve must begin, as 
 
 @dataclass(frozen=True)
 class Laid:
-    """A path of n pieces on the plane.
+    """A path of n pieces on the plane."""
 
-    Parameters
-    ----------
-    headings, curvatures, lengths : array (n,)
-        At the beginning of each piece, rad; 1/m, 0 for a curve; m.
-    distances : array (n + 1,)
-        Along the path, of the pieces' ends, m.
-    places : array (n + 1, 2)
-        Of the pieces' ends, m.
-    last_heading : float
-        At the end of the path, rad.
-    curves : dict from int to RolledCurve
-        The pieces that are curves.
-    area : float
-        Between the path and the chord from its end to its beginning, m².
-    """
-
+    # `headings`, `curvatures`, `lengths`: (n,): at the beginning of each piece, rad; 1/m, 0 for a curve; m
     headings: Array
     curvatures: Array
     lengths: Array
-    distances: Array
-    places: Array
-    last_heading: float
-    curves: dict[int, RolledCurve]
-    area: float
+    distances: Array  # (n + 1,): along the path, of the pieces' ends, m
+    places: Array  # (n + 1, 2): of the pieces' ends, m
+    last_heading: float  # at the end of the path, rad
+    curves: dict[int, RolledCurve]  # the pieces that are curves
+    area: float  # between the path and the chord from its end to its beginning, m²
 
 
 def develop(pieces: tuple[Piece, ...], start: tuple[float, float], radius: float) -> Laid:

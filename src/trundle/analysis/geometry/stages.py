@@ -17,27 +17,13 @@ MOST_TOLD = 24  # of many places, the first and the last
 
 @dataclass(frozen=True, repr=False)
 class Stages(Displayed):
-    """The ball at some places of its path.
+    """The ball at some places of its path."""
 
-    Parameters
-    ----------
-    distance : array (n,)
-        Along the path, m.
-    contact : array (n, 2)
-        Contact point on the plane, m.
-    heading : array (n,)
-        Direction of travel, from the first axis towards the second, rad.
-    orientation : array (n, 4)
-        Unit quaternion (w, x, y, z), body frame to support frame.
-    radius : float
-        Of the ball, m.
-    """
-
-    distance: Array
-    contact: Array
-    heading: Array
-    orientation: Array
-    radius: float
+    distance: Array  # (n,): along the path, m
+    contact: Array  # (n, 2): contact point on the plane, m
+    heading: Array  # (n,): direction of travel, from the first axis towards the second, rad
+    orientation: Array  # (n, 4): unit quaternion (w, x, y, z), body frame to support frame
+    radius: float  # of the ball, m
 
     @property
     def position(self) -> Array:

@@ -19,24 +19,12 @@ from .resisted import ResistedCircle
 
 @dataclass(frozen=True)
 class Fate:
-    """What theory says of a ball's circle: the path stays within `radius` + `sway` of a centre.
+    """What theory says of a ball's circle: the path stays within `radius` + `sway` of a centre."""
 
-    Parameters
-    ----------
-    centre : callable
-        Of the time, s: x + iy, m.
-    radius : callable
-        Of the time: m.
-    sway : float
-        How far the ball may be off that circle, m.
-    saying : str
-        In words.
-    """
-
-    centre: Callable[[float], complex]
-    radius: Callable[[float], float]
-    sway: float
-    saying: str
+    centre: Callable[[float], complex]  # of the time, s: x + iy, m
+    radius: Callable[[float], float]  # of the time: m
+    sway: float  # how far the ball may be off that circle, m
+    saying: str  # in words
 
     def reach(self, time: float) -> float:
         """Return the distance from the axis that the ball cannot exceed, m."""
@@ -59,15 +47,6 @@ class Fate:
 class Demonstration:
     """A ball on a level table that turns steadily, without loads, and its start: a circle for ever.
 
-    Parameters
-    ----------
-    system : RollingSystem
-        The table, perfect.
-    position, velocity : complex
-        Of the ball's centre at the start, x + iy, m and m/s.
-    spin : float
-        Ω·n, rad/s.
-
     Examples
     --------
     >>> import trundle as tr
@@ -77,10 +56,11 @@ class Demonstration:
     0.1004 m about 0.0996 m
     """
 
-    system: RollingSystem
+    system: RollingSystem  # the table, perfect
+    # `position`, `velocity`: of the ball's centre at the start, x + iy, m and m/s
     position: complex
     velocity: complex
-    spin: float
+    spin: float  # Ω·n, rad/s
 
     @classmethod
     def of(cls, system: RollingSystem, start: State) -> Demonstration:

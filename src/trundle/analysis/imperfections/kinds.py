@@ -16,15 +16,9 @@ from .circle import Demonstration, Fate
 
 @dataclass(frozen=True)
 class Shortcoming:
-    """One way in which a demonstration is less than perfect.
+    """One way in which a demonstration is less than perfect."""
 
-    Parameters
-    ----------
-    size : float
-        In SI.
-    """
-
-    size: float
+    size: float  # in SI
     name: ClassVar[str]
     label: ClassVar[str]
 

@@ -17,20 +17,13 @@ MOST_ROUNDS = 3  # in each of the two windows, at the beginning and at the end
 class CircleMotion:
     """How a circle moved on the whole.
 
-    Parameters
-    ----------
-    centre_rate : float
-        Speed of its centre from the beginning to the end, m/s.
-    radius_rate : float
-        Growth of its radius, m/s; negative where it shrinks.
-
     Examples
     --------
     See `Sensitivity`.
     """
 
-    centre_rate: float
-    radius_rate: float
+    centre_rate: float  # speed of its centre from the beginning to the end, m/s
+    radius_rate: float  # growth of its radius, m/s; negative where it shrinks
 
     @property
     def size(self) -> float:

@@ -44,24 +44,12 @@ def check_device(device: Any) -> Any:
 
 @dataclass(frozen=True)
 class OnDevice:
-    """Many members of systems of one structure on a device.
+    """Many members of systems of one structure on a device."""
 
-    Parameters
-    ----------
-    systems : sequence of RollingSystem
-        All of them.
-    states : array (all, size)
-        As `ensemble.rolling_from` gives them.
-    times : array (n,)
-        Ascending, s, the first that of the starts.
-    device : jax.Device
-        Where.
-    """
-
-    systems: Sequence[RollingSystem]
-    states: Array
-    times: Array
-    device: Any
+    systems: Sequence[RollingSystem]  # all of them
+    states: Array  # (all, size): as `ensemble.rolling_from` gives them
+    times: Array  # (n,): ascending, s, the first that of the starts
+    device: Any  # where
 
     def follow(self, members: Sequence[int], done: Callable[[Block], None]) -> tuple[list[int], Array]:
         """Follow members that roll, for as long as they do.

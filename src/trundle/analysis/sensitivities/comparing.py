@@ -24,25 +24,14 @@ _QUANTITIES = ("position", "velocity", "angular_velocity")
 
 @dataclass(frozen=True)
 class Agreement:
-    """How far the derivatives are from differences of runs in which all numbers are changed at once.
+    """How far the derivatives are from differences of runs in which all numbers are changed at once."""
 
-    Parameters
-    ----------
-    apart : float
-        The largest difference, as a share of the largest derivative of its quantity; not a number where nothing could
-        be compared.
-    sure : float
-        How well the differences themselves are known, as such a share.
-    samples : int
-        At how many samples they were compared: those in the same phase in all runs.
-    left_out : tuple of str
-        The numbers that could not be changed both ways, such as a drag of 0.
-    """
-
+    # the largest difference, as a share of the largest derivative of its quantity; not a number where nothing could be
+    # compared
     apart: float
-    sure: float
-    samples: int
-    left_out: tuple[str, ...] = ()
+    sure: float  # how well the differences themselves are known, as such a share
+    samples: int  # at how many samples they were compared: those in the same phase in all runs
+    left_out: tuple[str, ...] = ()  # the numbers that could not be changed both ways, such as a drag of 0
 
     @property
     def passed(self) -> bool | None:

@@ -39,21 +39,11 @@ _SLIPS = 1e-9  # share of a velocity's slope by which a start may begin to slip
 
 @dataclass(frozen=True)
 class Followed:
-    """A run and its derivatives.
+    """A run and its derivatives."""
 
-    Parameters
-    ----------
-    samples : Samples
-        Of the run.
-    slopes : dict of array
-        Of each quantity, (n, components, parameters).
-    instants : array (events, parameters)
-        Of when each event comes.
-    """
-
-    samples: Samples
-    slopes: Slopes
-    instants: Array
+    samples: Samples  # of the run
+    slopes: Slopes  # of each quantity, (n, components, parameters)
+    instants: Array  # (events, parameters): of when each event comes
 
 
 def follow(

@@ -29,21 +29,11 @@ _NEVER = {"start.time": "the samples are counted from it"}
 
 @dataclass(frozen=True)
 class Key:
-    """A number of a scenario.
+    """A number of a scenario."""
 
-    Parameters
-    ----------
-    name : str
-        Such as "body.radius" or "start.velocity[0]".
-    value : float
-        In SI.
-    unit : str
-        Its SI unit; empty where it has none.
-    """
-
-    name: str
-    value: float
-    unit: str
+    name: str  # such as "body.radius" or "start.velocity[0]"
+    value: float  # in SI
+    unit: str  # its SI unit; empty where it has none
 
 
 def keys(scenario: ScenarioFile) -> list[Key]:

@@ -31,27 +31,13 @@ _AGREE = 1e-7  # to which the two kinds of slope agree where both are sound
 
 @dataclass(frozen=True)
 class Flow:
-    """The rates of (p, q, Ω) in a frame that stands still or turns with the support.
+    """The rates of (p, q, Ω) in a frame that stands still or turns with the support."""
 
-    Parameters
-    ----------
-    system : RollingSystem
-        Its support at rest or turning steadily.
-    time : float
-        At which the law is read, s.
-    turning : float
-        The rate of the frame about the support's axis, rad/s; 0 where the law is the same at all times.
-    scale : (10,) array
-        What is large of p, q and Ω, in their units.
-    by_complex_step : bool
-        Whether slopes come from a step along the imaginary axis.
-    """
-
-    system: RollingSystem
-    time: float
-    turning: float
-    scale: Array
-    by_complex_step: bool = True
+    system: RollingSystem  # its support at rest or turning steadily
+    time: float  # at which the law is read, s
+    turning: float  # the rate of the frame about the support's axis, rad/s; 0 where the law is the same at all times
+    scale: Array  # (10,): what is large of p, q and Ω, in their units
+    by_complex_step: bool = True  # whether slopes come from a step along the imaginary axis
 
     @property
     def length(self) -> float:

@@ -31,18 +31,10 @@ _ATTEMPTS = 3  # of a chunk whose worker was lost
 
 @dataclass(frozen=True)
 class Engine:
-    """Where the chunks of a sweep are run.
+    """Where the chunks of a sweep are run."""
 
-    Parameters
-    ----------
-    workers : int or None
-        Processes; 1: this one; None: as many as there are processors.
-    scheduler : str or None
-        Of Dask: "local" starts one here, else an address; None: no Dask.
-    """
-
-    workers: int | None = 1
-    scheduler: str | None = None
+    workers: int | None = 1  # processes; 1: this one; None: as many as there are processors
+    scheduler: str | None = None  # of Dask: "local" starts one here, else an address; None: no Dask
 
     def check(self, plan: Plan) -> None:
         """Refuse what cannot be run so, before anything runs."""

@@ -44,27 +44,13 @@ def block_of(members: int) -> int:
 
 @dataclass(frozen=True)
 class Job:
-    """What is done with each member.
+    """What is done with each member."""
 
-    Parameters
-    ----------
-    scenario : str
-        As TOML text.
-    axes : tuple of Axis
-        What varies.
-    measures : tuple of Measure
-        What is measured.
-    keep : int
-        Each how-many-th sample is kept; 0: none.
-    block : int
-        Members that go together.
-    """
-
-    scenario: str
-    axes: tuple[Axis, ...]
-    measures: tuple[Measure, ...]
-    keep: int = 0
-    block: int = 8
+    scenario: str  # as TOML text
+    axes: tuple[Axis, ...]  # what varies
+    measures: tuple[Measure, ...]  # what is measured
+    keep: int = 0  # each how-many-th sample is kept; 0: none
+    block: int = 8  # members that go together
 
     @property
     def document(self) -> Scenario:

@@ -46,21 +46,11 @@ _NEWTON = 60  # halvings of an interval between two samples
 
 @dataclass(frozen=True)
 class Sampled:
-    """Members as they were sampled: each quantity (members, time), not a number after the end of a run.
+    """Members as they were sampled: each quantity (members, time), not a number after the end of a run."""
 
-    Parameters
-    ----------
-    systems : sequence of RollingSystem
-        One for each member.
-    runs : Runs
-        Their arrays.
-    starts : sequence of State
-        From where.
-    """
-
-    systems: Sequence[RollingSystem]
-    runs: Runs
-    starts: Sequence[State]
+    systems: Sequence[RollingSystem]  # one for each member
+    runs: Runs  # their arrays
+    starts: Sequence[State]  # from where
     _kept: dict[str, Array] = field(default_factory=dict, compare=False)
 
     @property
@@ -276,27 +266,13 @@ _EXAMPLES = {"end": "hypot(vx, vy)", "max": "hypot(x, y)", "min": "z", "first": 
 
 @dataclass(frozen=True)
 class Measure:
-    """A figure of each member.
+    """A figure of each member."""
 
-    Parameters
-    ----------
-    name : str
-        Of its variable in the results.
-    text : str
-        As it was written, such as "max hypot(x, y)"; the name of a function of the user's.
-    unit : str
-        SI.
-    classes : tuple of str
-        What its values stand for where they are classes: value 0 for the first; -1 is none.
-    function : callable, optional
-        The user's own, of the dataset of one member.
-    """
-
-    name: str
-    text: str
-    unit: str = ""
-    classes: tuple[str, ...] = ()
-    function: Callable[[Any], Any] | None = None
+    name: str  # of its variable in the results
+    text: str  # as it was written, such as "max hypot(x, y)"; the name of a function of the user's
+    unit: str = ""  # SI
+    classes: tuple[str, ...] = ()  # what its values stand for where they are classes: value 0 for the first; -1 is none
+    function: Callable[[Any], Any] | None = None  # the user's own, of the dataset of one member
 
     @staticmethod
     def read(name: str, text: Any, key: str) -> Measure:

@@ -34,40 +34,18 @@ _SAMPLE_BYTES = 185  # about, of all that is sampled at an instant
 
 @dataclass(frozen=True)
 class Plan:
-    """A sweep that has been checked.
+    """A sweep that has been checked."""
 
-    Parameters
-    ----------
-    title, notes : str
-        As the file has them.
-    document : Scenario
-        What is run, its numbers those of the file.
-    axes : tuple of Axis
-        What varies.
-    design : Design
-        How the values combine.
-    measures : tuple of Measure
-        What is measured of each member.
-    keep : int
-        Each how-many-th sample is kept; 0: none.
-    chunk : int
-        Members in a chunk, a multiple of those that go together.
-    table : array (members, axes)
-        The value of each axis for each member.
-    text : str
-        The sweep as TOML.
-    """
-
-    title: str
-    notes: str
-    document: Scenario
-    axes: tuple[Axis, ...]
-    design: Design
-    measures: tuple[Measure, ...]
-    keep: int
-    chunk: int
-    table: Array = field(compare=False, repr=False)
-    text: str = ""
+    title: str  # as the file has them
+    notes: str  # as the file has them
+    document: Scenario  # what is run, its numbers those of the file
+    axes: tuple[Axis, ...]  # what varies
+    design: Design  # how the values combine
+    measures: tuple[Measure, ...]  # what is measured of each member
+    keep: int  # each how-many-th sample is kept; 0: none
+    chunk: int  # members in a chunk, a multiple of those that go together
+    table: Array = field(compare=False, repr=False)  # (members, axes): the value of each axis for each member
+    text: str = ""  # the sweep as TOML
 
     @cached_property
     def job(self) -> Job:

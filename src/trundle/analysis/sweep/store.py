@@ -38,14 +38,9 @@ class Store:
     """A folder with the results of a sweep, finished or not.
 
     The variable `status` of a chunk is written last, and by renaming: where it is there, the whole chunk is.
-
-    Parameters
-    ----------
-    path : Path
-        The folder.
     """
 
-    path: Path
+    path: Path  # the folder
 
     # --- making and opening -----------------------------------------------------------------------------------------
 

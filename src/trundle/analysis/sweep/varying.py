@@ -31,27 +31,13 @@ _KIND_OF = {unit: kind for kind, (unit, _) in UNITS.items()}
 
 @dataclass(frozen=True)
 class Axis:
-    """One number of a scenario, and the values that it takes.
+    """One number of a scenario, and the values that it takes."""
 
-    Parameters
-    ----------
-    key : str
-        Its name, such as "start.velocity[0]".
-    unit : str
-        Its SI unit; empty where it has none.
-    values : array or None
-        As listed or spaced; None where it is drawn from a distribution without limits of its own.
-    quantile : callable
-        From shares (0, 1) to values, for the designs that draw.
-    words : tuple of str
-        What the values stand for where they are texts: the value is the place of the text.
-    """
-
-    key: str
-    unit: str
-    values: Array | None
-    quantile: Callable[[Array], Array] = field(compare=False)
-    words: tuple[str, ...] = ()
+    key: str  # its name, such as "start.velocity[0]"
+    unit: str  # its SI unit; empty where it has none
+    values: Array | None  # as listed or spaced; None where it is drawn from a distribution without limits of its own
+    quantile: Callable[[Array], Array] = field(compare=False)  # from shares (0, 1) to values, for the designs that draw
+    words: tuple[str, ...] = ()  # what the values stand for where they are texts: the value is the place of the text
 
     @property
     def extremes(self) -> list[Any]:
@@ -298,23 +284,14 @@ class Varied:
 
 @dataclass(frozen=True)
 class Design:
-    """How the values combine.
+    """How the values combine."""
 
-    Parameters
-    ----------
-    name : str
-        "grid": each with each. "boundary": a grid of two, run near the boundary between classes only. "together": the
-        first of each, then the second. "random", "latin-hypercube", "sobol": drawn. "variance": the sets of draws that
-        shares of the variance need.
-    members : int or None
-        How many are drawn; for "variance" in each set.
-    seed : int
-        Of the draws.
-    """
-
+    # "grid": each with each. "boundary": a grid of two, run near the boundary between classes only. "together": the
+    # first of each, then the second. "random", "latin-hypercube", "sobol": drawn. "variance": the sets of draws that
+    # shares of the variance need.
     name: str = "grid"
-    members: int | None = None
-    seed: int = 0
+    members: int | None = None  # how many are drawn; for "variance" in each set
+    seed: int = 0  # of the draws
 
     def table(self, axes: Sequence[Axis]) -> Array:
         """Return the values of each member (members, axes).

@@ -168,7 +168,9 @@ class Magnus(_OfAir):
     0.0001
     """
 
-    coefficient: Annotated[Scalar, Number("mass", said="Positive: topspin pushes down.", example="1 g")]
+    coefficient: Annotated[
+        Scalar, Number("mass", said="c of the force c Ω×V; positive: topspin pushes down.", example="1 g")
+    ]
     kind = "magnus"
     label = "Magnus force"
 

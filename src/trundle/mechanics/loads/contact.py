@@ -82,7 +82,7 @@ class PivotFriction(_AtContact):
     """
 
     offset: Annotated[
-        Scalar, Number("length", NOT_NEGATIVE, "Friction coefficient times the area's mean radius.", "0.2 mm")
+        Scalar, Number("length", NOT_NEGATIVE, "ε: friction coefficient times the area's mean radius.", "0.2 mm")
     ]
     below: Annotated[
         Scalar, Number("angular velocity", POSITIVE, "The spin below which it eases off.", label="Eases off below")
@@ -120,7 +120,7 @@ class RollingCouple(_AtContact):
     2e-06
     """
 
-    coefficient: Annotated[Scalar, Number("rotational damping", NOT_NEGATIVE)]
+    coefficient: Annotated[Scalar, Number("rotational damping", NOT_NEGATIVE, "c of the couple −c(Ω − ω).")]
     pivot_coefficient: Annotated[
         Scalar | None, Number("rotational damping", NOT_NEGATIVE, "About the normal; absent: the same.")
     ] = None

@@ -36,9 +36,9 @@ class Rock(Motion):
     True
     """
 
-    amplitude: Annotated[Scalar, Number("angle", example="2 deg")]
-    rate: Annotated[Scalar, Number("angular velocity", example="1 turn/s")]
-    phase: Annotated[Scalar, Number("angle")] = 0.0
+    amplitude: Annotated[Scalar, Number("angle", said="A of A sin(νt + φ).", example="2 deg")]
+    rate: Annotated[Scalar, Number("angular velocity", said="ν of A sin(νt + φ).", example="1 turn/s")]
+    phase: Annotated[Scalar, Number("angle", said="φ of A sin(νt + φ).")] = 0.0
     axis: Annotated[Any, AXIS] = (0.0, 1.0, 0.0)
     kind = "rock"
     label = "Rocks"
@@ -77,9 +77,9 @@ class Shake(Motion):
     Vector(x=0.02, y=0.0, z=0.0)
     """
 
-    amplitude: Annotated[Any, Numbers(Number("length", example="1 cm"), "In the support frame.")]
-    rate: Annotated[Scalar, Number("angular velocity", example="1 turn/s")]
-    phase: Annotated[Scalar, Number("angle")] = 0.0
+    amplitude: Annotated[Any, Numbers(Number("length", example="1 cm"), "A of A sin(νt + φ), in the support frame.")]
+    rate: Annotated[Scalar, Number("angular velocity", said="ν of A sin(νt + φ).", example="1 turn/s")]
+    phase: Annotated[Scalar, Number("angle", said="φ of A sin(νt + φ).")] = 0.0
     kind = "shake"
     label = "Shakes"
     way = "shaken"

@@ -33,9 +33,9 @@ class UnevenSpin(Motion):
     """
 
     rate: Annotated[Scalar, Number("angular velocity", said="On the whole.", example="33.3 rpm")]
-    variation: Annotated[Scalar, Number("number", said="As a share of the rate.", example=0.05)]
+    variation: Annotated[Scalar, Number("number", said="ε, as a share of the rate.", example=0.05)]
     variation_rate: Annotated[
-        Scalar, Number("angular velocity", POSITIVE, "Of the variation; the rate itself: once a turn.")
+        Scalar, Number("angular velocity", POSITIVE, "ν, at which the rate varies; the rate itself: once a turn.")
     ]
     kind = "uneven-spin"
     label = "Turns unevenly"

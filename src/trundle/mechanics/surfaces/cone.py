@@ -45,7 +45,8 @@ class Cone(Surface):
     """
 
     half_angle: Annotated[
-        Scalar, Number("angle", said="Between the axis and the wall.", example="45 deg", limit=_check_half_angle)
+        Scalar,
+        Number("angle", said="Between the axis and the wall, up to 90 deg.", example="45 deg", limit=_check_half_angle),
     ]
     side: Annotated[str, Choice(SIDES, "side of a cone")] = "inside"
     rim: Annotated[

@@ -21,7 +21,12 @@ class Spherical(Surface):
     radius: Annotated[Scalar, Number("length", POSITIVE, example="40 cm")]
     rim: Annotated[
         Scalar | None,
-        Number("length", POSITIVE, "Distance of the edge from the axis; absent: the whole sphere.", "35 cm"),
+        Number(
+            "length",
+            POSITIVE,
+            "Distance of the edge from the axis, up to the radius; absent: the whole sphere.",
+            "35 cm",
+        ),
     ] = None
     sign: ClassVar[float] = 0.0  # +1 where the body is outside, −1 where it is inside
     axisymmetric = True

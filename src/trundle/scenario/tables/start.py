@@ -25,12 +25,14 @@ class Start(Table):
     spin: Rate | None = Field(
         default=None,
         title="Spin about the normal",
-        description="Angular velocity about the normal; the rest follows.",
+        description="Angular velocity about the normal; the rest follows from no slip.",
         examples=["10 rad/s"],
     )
-    angular_velocity: Rate3 | None = Field(default=None, description="All of it, instead of spin.")
-    orientation: Turn4 | None = Field(default=None, description="Quaternion w, x, y, z; absent: not turned.")
-    attitude: Angle3 | None = Field(default=None, description="Heading, lean and turn, instead of orientation.")
+    angular_velocity: Rate3 | None = Field(default=None, description="All three components, instead of `spin`.")
+    orientation: Turn4 | None = Field(
+        default=None, description="Quaternion w, x, y, z from the body to the support frame; absent: not turned."
+    )
+    attitude: Angle3 | None = Field(default=None, description="Heading, lean and turn, instead of `orientation`.")
     roll: Angle = Field(
         default=0.0,
         title="Rolled on by",
@@ -42,7 +44,9 @@ class Start(Table):
         description="Over the support, along the normal: above 0 it falls.",
     )
     time: Instant = Field(default=0.0, description="On the clock of the support's motion, where the run starts.")
-    support: Own | None = Field(default=None, description="Angle, and rate, of a support that turns by itself.")
+    support: Own | None = Field(
+        default=None, description="Angle, and rate, of a support that turns by itself; absent: as its motion begins."
+    )
 
     @model_validator(mode="after")
     def _check(self) -> Start:
@@ -75,9 +79,9 @@ class Start(Table):
 class Run(Table):
     """How long, how finely and by which method."""
 
-    duration: Duration = Field(examples=["60 s"])
+    duration: Duration = Field(description="Length of the run.", examples=["60 s"])
     every: Step = Field(title="Between samples", description="Time between samples.", examples=["10 ms"])
-    method: Method = "auto"
+    method: Method = Field(default="auto", description="How it is computed.")
 
     @model_validator(mode="after")
     def _check(self) -> Run:

@@ -24,25 +24,14 @@ _START_FOCAL = 1.2  # of the longer side: a telephone's
 
 @dataclass(frozen=True)
 class Turning:
-    """How the table turned, from a mark on it.
+    """How the table turned, from a mark on it."""
 
-    Parameters
-    ----------
-    rate, rate_sigma : float
-        Anticlockwise seen from above, rad/s.
-    phase : float
-        Angle of the mark at the time 0, rad.
-    radius : float
-        Its distance from the axis, m.
-    misfit : float
-        Root mean square of the distances from an even turning, px.
-    """
-
+    # `rate`, `rate_sigma`: anticlockwise seen from above, rad/s
     rate: float
     rate_sigma: float
-    phase: float
-    radius: float
-    misfit: float
+    phase: float  # angle of the mark at the time 0, rad
+    radius: float  # its distance from the axis, m
+    misfit: float  # root mean square of the distances from an even turning, px
 
     def angle(self, time: Any) -> Any:
         """Return the angle of the mark, rad."""
@@ -51,60 +40,34 @@ class Turning:
 
 @dataclass(frozen=True)
 class Calibration:
-    """Where the camera stood over the table, and how the table turned.
+    """Where the camera stood over the table, and how the table turned."""
 
-    Parameters
-    ----------
-    camera : PinholeCamera
-        The origin of the world on the table's axis if a mark showed it, else in the middle of the rim.
-    misfit : float
-        Root mean square of the distances of the rim's edges, or of the marks, from where they should be, px.
-    turning : Turning, optional
-        If a mark was seen.
-    basis : str
-        What it comes from, in words.
-    times, mark : arrays (k,) and (k, 2)
-        Of the pictures in which the mark was where it should be, s, and where its middle was seen, px.
-    rim_centre : tuple of float
-        Where the rim has its middle, m: off the axis if the plate lies askew.
-    """
-
+    # the origin of the world on the table's axis if a mark showed it, else in the middle of the rim
     camera: PinholeCamera
+    # root mean square of the distances of the rim's edges, or of the marks, from where they should be, px
     misfit: float
-    turning: Turning | None
-    basis: str
+    turning: Turning | None  # if a mark was seen
+    basis: str  # what it comes from, in words
+    # `times`, `mark`: (k,) and (k, 2): of the pictures in which the mark was where it should be, s, and where its
+    # middle was seen, px
     times: Array
     mark: Array
+    # where the rim has its middle, m: off the axis if the plate lies askew
     rim_centre: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True)
 class Sightings:
-    """What a calibration is made from.
+    """What a calibration is made from."""
 
-    Parameters
-    ----------
-    size : tuple of int
-        Width and height of the picture, px.
-    rim : array (n, 2), optional
-        Edges of the rim, px.
-    rim_radius : float
-        m.
-    marks : array (m, 4), optional
-        Marks at known places: px, px, m, m.
-    times, mark : arrays (k,) and (k, 2), optional
-        Where the mark on the table was seen, px.
-    mark_area : float
-        How many pixels it covers.
-    """
-
-    size: tuple[int, int]
-    rim: Array | None = None
-    rim_radius: float = 0.0
-    marks: Array | None = None
+    size: tuple[int, int]  # width and height of the picture, px
+    rim: Array | None = None  # (n, 2): edges of the rim, px
+    rim_radius: float = 0.0  # m
+    marks: Array | None = None  # (m, 4): marks at known places: px, px, m, m
+    # `times`, `mark`: (k,) and (k, 2): where the mark on the table was seen, px
     times: Array | None = None
     mark: Array | None = None
-    mark_area: float = 0.0
+    mark_area: float = 0.0  # how many pixels it covers
 
 
 def check_marks(marks: Sequence[Sequence[float]]) -> Array:

@@ -24,40 +24,22 @@ _SAME_RATE = 1.05  # rates nearer than this are one
 
 @dataclass(frozen=True)
 class Frame:
-    """One picture of a film.
+    """One picture of a film."""
 
-    Parameters
-    ----------
-    number : int
-        From 0.
-    time : float
-        Of the film, s; NaN where the container has none.
-    picture : array (height, width, 3)
-        Blue, green, red.
-    """
-
-    number: int
-    time: float
-    picture: Picture
+    number: int  # from 0
+    time: float  # of the film, s; NaN where the container has none
+    picture: Picture  # (height, width, 3): blue, green, red
 
 
 @dataclass(frozen=True)
 class Film:
-    """A film that can be read again and again; one picture of it is in memory at a time.
+    """A film that can be read again and again; one picture of it is in memory at a time."""
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    begin, end : float
-        Which part of it is used, s of the film.
-    progress : callable, optional
-        Called with the number of each picture.
-    """
-
-    path: Path
+    path: Path  # the file
+    # `begin`, `end`: which part of it is used, s of the film
     begin: float = 0.0
     end: float = float("inf")
+    # called with the number of each picture
     progress: Callable[[int], None] | None = field(default=None, compare=False)
 
     def frames(self) -> Iterator[Frame]:

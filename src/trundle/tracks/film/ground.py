@@ -57,26 +57,13 @@ def median(pictures: Iterable[Picture]) -> Picture:
 
 @dataclass(frozen=True)
 class Ground:
-    """The picture without the ball at any time: still, but for the table where a mark shows how that turns.
+    """The picture without the ball at any time: still, but for the table where a mark shows how that turns."""
 
-    Parameters
-    ----------
-    still : array
-        The median of the film.
-    camera : PinholeCamera
-        With its origin on the axis.
-    turning : Turning, optional
-        Of the table.
-    radius : float
-        Of the part of the picture that turns, m.
-    samples : tuple of (float, array)
-        True times and pictures, of which the table's own picture is made.
-    """
-
-    still: Picture
-    camera: PinholeCamera
-    turning: Turning | None
-    radius: float
+    still: Picture  # the median of the film
+    camera: PinholeCamera  # with its origin on the axis
+    turning: Turning | None  # of the table
+    radius: float  # of the part of the picture that turns, m
+    # (float, array): true times and pictures, of which the table's own picture is made
     samples: tuple[tuple[float, Picture], ...]
 
     @cached_property

@@ -16,19 +16,6 @@ _ROUNDS = 8  # of fixed points that gain two digits each
 class PinholeCamera:
     """A pinhole with a lens that bends straight lines a little.
 
-    Parameters
-    ----------
-    focal : float
-        Focal length, px.
-    centre : tuple of float
-        Where the optical axis meets the picture, px.
-    turn : array (3,)
-        Rotation vector, rad, by which the camera is turned from looking straight down.
-    place : array (3,)
-        Of the lens, m: the table is the plane z = 0, its axis the z axis.
-    distortion : float
-        κ: a direction (u, v) is seen at (u, v) (1 + κ (u² + v²)).
-
     Examples
     --------
     >>> above = PinholeCamera(1000.0, (320.0, 240.0), np.zeros(3), np.array([0.0, 0.0, 2.0]))
@@ -38,11 +25,11 @@ class PinholeCamera:
     [[0.1, 0.2]]
     """
 
-    focal: float
-    centre: tuple[float, float]
-    turn: Array
-    place: Array
-    distortion: float = 0.0
+    focal: float  # focal length, px
+    centre: tuple[float, float]  # where the optical axis meets the picture, px
+    turn: Array  # (3,): rotation vector, rad, by which the camera is turned from looking straight down
+    place: Array  # (3,): of the lens, m: the table is the plane z = 0, its axis the z axis
+    distortion: float = 0.0  # κ: a direction (u, v) is seen at (u, v) (1 + κ (u² + v²))
 
     @property
     def rotation(self) -> Array:

@@ -24,25 +24,14 @@ _MARGIN = 3  # px around a spot in which its fringe is
 
 @dataclass(frozen=True)
 class Spot:
-    """A connected region of one colour.
+    """A connected region of one colour."""
 
-    Parameters
-    ----------
-    x, y : float
-        Its middle, px, to a tenth or better.
-    area : float
-        How many pixels it covers, fractions counted.
-    whole : bool
-        Whether it lies in the picture with all its fringe.
-    colour : array (3,)
-        Its colour, blue, green, red.
-    """
-
+    # `x`, `y`: its middle, px, to a tenth or better
     x: float
     y: float
-    area: float
-    whole: bool
-    colour: Array
+    area: float  # how many pixels it covers, fractions counted
+    whole: bool  # whether it lies in the picture with all its fringe
+    colour: Array  # (3,): its colour, blue, green, red
 
 
 def colour_of(name: str, key: str) -> Array:

@@ -37,33 +37,18 @@ _MOVES = 1e-3  # of the body's own size that a centre has to go
 class Headline:
     """One number that says what happens, and the same number from elsewhere.
 
-    Parameters
-    ----------
-    text : str
-        A sentence with `{}` for the number and its unit.
-    unit : str
-        SI, or °; empty of a number without one.
-    measured : float
-        From the samples.
-    other : float or None
-        The same by theory, or by another way through the samples.
-    predicted : bool
-        Whether the other is by theory.
-    how : str
-        How the two were found.
-
     Examples
     --------
     >>> Headline("drifts {} along the slope's level", "m/s", 0.0368, 0.0368, True, "").as_dict()["text"]
     "drifts 3.68 cm/s along the slope's level"
     """
 
-    text: str
-    unit: str
-    measured: float
-    other: float | None
-    predicted: bool
-    how: str
+    text: str  # a sentence with `{}` for the number and its unit
+    unit: str  # SI, or °; empty of a number without one
+    measured: float  # from the samples
+    other: float | None  # the same by theory, or by another way through the samples
+    predicted: bool  # whether the other is by theory
+    how: str  # how the two were found
 
     def as_dict(self) -> dict[str, Any]:
         """Return it as a scene's header holds it: in words, both numbers in the unit that suits them."""

@@ -13,22 +13,13 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """A surface of triangles.
+    """A surface of triangles."""
 
-    Parameters
-    ----------
-    vertices, normals : (v, 3) array
-        m, and unit vectors away from the material.
-    triangles : (t, 3) array of int
-        Anticlockwise seen from where the normals point to.
-    paint : array (v, 2) or (v, 3)
-        Coordinates that the markings are painted by.
-    """
-
+    # `vertices`, `normals`: (v, 3): m, and unit vectors away from the material
     vertices: Array
     normals: Array
-    triangles: NDArray[np.uint32]
-    paint: Array
+    triangles: NDArray[np.uint32]  # (t, 3): anticlockwise seen from where the normals point to
+    paint: Array  # (v, 2) or (v, 3): coordinates that the markings are painted by
 
     def columns(self, name: str, paint: str) -> dict[str, NDArray[Any]]:
         """Return it as columns, their names beginning alike."""

@@ -24,25 +24,14 @@ _PROJECTIONS = 4  # of Newton's steps that bring a vertex onto the surface
 
 @dataclass(frozen=True)
 class Ground:
-    """A support's mesh and what a camera should see of it.
+    """A support's mesh and what a camera should see of it."""
 
-    Parameters
-    ----------
-    mesh : Mesh
-        In the support's own frame, its normals towards the body.
-    marks : str
-        "polar": painted by turns round the axis, 0 to 1, and distance along the outline over `size`. "square": by x
-        and y over `size`.
-    size : float
-        Of what is shown, from its middle, m.
-    centre : tuple of 3 floats
-        Its middle, m.
-    """
-
-    mesh: Mesh
+    mesh: Mesh  # in the support's own frame, its normals towards the body
+    # "polar": painted by turns round the axis, 0 to 1, and distance along the outline over `size`. "square": by x and y
+    # over `size`.
     marks: str
-    size: float
-    centre: tuple[float, float, float]
+    size: float  # of what is shown, from its middle, m
+    centre: tuple[float, float, float]  # its middle, m
 
 
 def ground_of(surface: Surface, turns: bool, places: Array, radius: float) -> Ground:

@@ -29,15 +29,6 @@ _TYPES = ("float32", "float64", "uint32", "uint8")
 class Scene:
     """Everything that a viewer needs to draw a run.
 
-    Parameters
-    ----------
-    header : dict
-        Title, scenario, body, support, events, findings, formula: plain values, as JSON has them.
-    columns : dict of arrays
-        Samples over `time`, and the two meshes, each as float32, float64, uint32 or uint8.
-    units : dict
-        The unit of each column that has one.
-
     Examples
     --------
     >>> scene = Scene({"title": "Still"}, {"time": np.array([0.0, 1.0])}, {"time": "s"})
@@ -45,9 +36,10 @@ class Scene:
     array([0., 1.])
     """
 
-    header: dict[str, Any]
+    header: dict[str, Any]  # title, scenario, body, support, events, findings, formula: plain values, as JSON has them
+    # samples over `time`, and the two meshes, each as float32, float64, uint32 or uint8
     columns: dict[str, NDArray[Any]]
-    units: dict[str, str] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)  # the unit of each column that has one
 
 
 def pack(scene: Scene) -> bytes:

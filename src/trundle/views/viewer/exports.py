@@ -23,24 +23,12 @@ MakeScene = Callable[..., "Scene"]
 
 @dataclass(frozen=True)
 class Format:
-    """One form.
+    """One form."""
 
-    Parameters
-    ----------
-    what : str
-        In a few words, for help texts.
-    media_type : str
-        As HTTP calls it.
-    write : callable
-        Takes a motion and what makes a scene of it, returns the file's bytes.
-    extra : str
-        That must be installed for it, if any.
-    """
-
-    what: str
-    media_type: str
-    write: Callable[[Motion, MakeScene], bytes]
-    extra: str = ""
+    what: str  # in a few words, for help texts
+    media_type: str  # as HTTP calls it
+    write: Callable[[Motion, MakeScene], bytes]  # takes a motion and what makes a scene of it, returns the file's bytes
+    extra: str = ""  # that must be installed for it, if any
 
 
 def export(motion: Motion, suffix: str, make_scene: MakeScene | None = None) -> bytes:
