@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from starlette.testclient import TestClient
 from tests.lab.conftest import shipped
+from tests.sweeps.refined import refine
 
 import trundle as tr
-from trundle.analysis.sweep.refining import next_places, refine
+from trundle.analysis.sweep.refining import next_places
 
 OVER = [
     {"key": "support.tilt", "from": "0.1 deg", "to": "3 deg", "count": 7, "scale": "linear"},

@@ -52,7 +52,7 @@ def test_it_opens_in_xarray_without_a_warning_with_units_and_texts(tmp_path: Pat
 def test_a_store_opens_while_it_grows(tmp_path: Path) -> None:
     plan = a_plan()
     store = Store.create(tmp_path / "a.zarr", plan)
-    store.write(3, plan.job.run(plan.values(3)))
+    store.write(slice(24, 32), plan.job.run(plan.values(3)))
     found = tr.Sweep.load(tmp_path / "a.zarr")
     assert found.counts == {"waiting": 56, "done": 8, "refused": 0, "failed": 0, "inferred": 0}
     assert np.isfinite(found.data["end x"].values).sum() == 8
