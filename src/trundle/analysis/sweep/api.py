@@ -211,7 +211,7 @@ def _run(
     part: tuple[int, int],
     progress: Progress | None,
 ) -> None:
-    """Run what is left of a plan, given what became of each member and its first measure, and write it where it goes."""
+    """Run what is left of a plan, given what became of each member and its first measure, and write it."""
     tell = progress or (lambda _: None)
     if plan.design.name == "boundary":
         near = NearBoundary(plan, status, first)

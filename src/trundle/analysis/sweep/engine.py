@@ -111,9 +111,7 @@ def _on_processes(count: int, work: Work, following: Next, take: Take) -> None:
         going: dict[Any, int] = {}
         try:
             while True:
-                while (
-                    len(going) < count * _AHEAD and (chunk := again.pop() if again else following()) is not None
-                ):
+                while len(going) < count * _AHEAD and (chunk := again.pop() if again else following()) is not None:
                     going[pool.submit(run_chunk, work.job, work.values(chunk))] = chunk
                 if not going:
                     pool.shutdown()
