@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from starlette.testclient import TestClient
 from tests.lab.conftest import shipped
+from tests.sweeps.refined import refine
 
 import trundle as tr
-from trundle.analysis.sweep.refining import next_places, refine
+from trundle.analysis.sweep.refining import next_places
 
 OVER = [
     {"key": "support.tilt", "from": "0.1 deg", "to": "3 deg", "count": 7, "scale": "linear"},
@@ -65,6 +66,13 @@ def test_a_map_refined_in_pieces_runs_what_one_refined_at_once_runs(shape: tuple
     assert np.array_equal(next_places(run, found)[1], classes)
 
 
+def test_a_run_that_the_bench_shows_has_a_map(lab: TestClient) -> None:
+    """The rattleback's has 10 000 samples; here it lasts a hundredth as long."""
+    scenario = {**shipped("rattleback"), "run": {"duration": 1.0, "every": 1e-4}}
+    over = [{"key": key, "from": 9, "to": 10, "count": 2} for key in ("gravity", "body.mass")]
+    assert drawn(lab, scenario=scenario, over=over, measure="end-time")["picture"] == [1.0] * 4
+
+
 def test_the_scenario_of_a_field_is_that_of_the_sweep(lab: TestClient) -> None:
     answer = lab.post("/api/map/point", json={"scenario": tables(), "over": OVER, "place": 2 * 6 + 5})
     member = tr.Scenario.read(answer.json()["scenario"])
@@ -87,6 +95,7 @@ def test_a_member_that_cannot_be_has_no_value(lab: TestClient) -> None:
         ({"over": [OVER[0], {**OVER[1], "key": "support.rate"}]}, "over.support.rate", "must be a number"),
         ({"places": [42], "values": [1]}, "place", "must be below 42"),
         ({"over": [OVER[0], {**OVER[1], "count": 65}]}, "over.1.count", "less than or equal to 64"),
+        ({"scenario": {**tables(), "run": {"duration": 60, "every": 0.005}}}, "run.every", "at most 10000 samples"),
         ({"scenario": "tippe-top"}, "scenario", "dictionary"),
         ({"scenario": shipped("roll-x-then-y")}, "scenario", "must have forces"),
     ],
@@ -106,3 +115,10 @@ def test_what_it_offers_to_measure_can_be_measured(lab: TestClient) -> None:
     assert len(read_measures(told["figures"])) == len(told["figures"])
     assert all(set(one["measures"]) and len(one["over"]) == 2 for one in told["sweeps"])
     assert json.dumps(told["colours"]["numbers"]).count("#") == 64
+
+
+def test_what_it_offers_to_draw_is_taken(lab: TestClient) -> None:
+    """A shipped sweep may be finer than a page can draw."""
+    for one in lab.get("/api/sweeps").json()["sweeps"]:
+        answer = lab.post("/api/map/point", json={"scenario": one["scenario"], "over": one["over"], "place": 0})
+        assert answer.status_code == 200, answer.text

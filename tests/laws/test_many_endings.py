@@ -19,6 +19,8 @@ from trundle.analysis.many import running as many
 from trundle.mechanics.algebra import Vector
 from trundle.mechanics.loads import Load
 from trundle.solve import ensemble
+from trundle.solve.laws import RollingLaw
+from trundle.solve.transitions import PhaseStart
 
 pytest.importorskip("heyoka")
 
@@ -182,13 +184,13 @@ def test_no_member_need_come_through() -> None:
 def test_arithmetic_that_fails_is_a_row(error: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
     """As a load of somebody's own may fail, for some numbers only."""
     system = tr.RollingSystem(BALL, tr.Support(tr.Plane(), friction=0.1))
-    slips = system.place(velocity=(0.1, 0.0), angular_velocity=(0.0, 0.0, 0.0))
+    sunk = replace(system.place(), position=(0.0, 0.0, 0.02))  # which goes alone
 
     def broken(*_: Any, **__: Any) -> None:
         raise error
 
     monkeypatch.setattr(many, "simulate", broken)
-    runs = tr.simulate_many(system, [system.place(), slips], 1.0, 0.5)
+    runs = tr.simulate_many(system, [system.place(), sunk], 1.0, 0.5)
     assert runs.ending.values.tolist() == ["", "failed"]
     assert str(runs.reason.values[1]) == f"{type(error).__name__}: {error}"
 
@@ -201,7 +203,7 @@ def test_what_nobody_foresaw_is_not_made_a_row(monkeypatch: pytest.MonkeyPatch) 
 
     monkeypatch.setattr(many, "simulate", broken)
     with pytest.raises(TypeError, match="a mistake in the program"):
-        tr.simulate_many(system, system.place(velocity=(0.1, 0.0), angular_velocity=(0.0, 0.0, 0.0)), 1.0, 0.5)
+        tr.simulate_many(system, replace(system.place(), position=(0.0, 0.0, 0.02)), 1.0, 0.5)
 
 
 def test_the_result_can_be_saved(tmp_path: Path) -> None:
@@ -277,8 +279,9 @@ def test_a_lane_whose_numbers_are_none_is_left_out() -> None:
     states, _ = ensemble.rolling_from([system] * 5, starts)
     states[2] = np.nan
     found: list[int] = []
+    begins = {i: PhaseStart(RollingLaw(), starts[i], state.tolist()) for i, state in enumerate(states)}
     left, _ = ensemble.integrate(
-        [system] * 5, states, range(5), np.linspace(0.0, 1.0, 11), lambda block: found.extend(block.members.tolist())
+        [system] * 5, begins, np.linspace(0.0, 1.0, 11), lambda block: found.extend(block.members.tolist())
     )
     assert left == [2]
     assert sorted(set(found)) == [0, 1, 3, 4]

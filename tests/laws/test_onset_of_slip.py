@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
+
+import pytest
 
 import trundle as tr
 from trundle.mechanics.algebra import E_Z, Vector
 from trundle.mechanics.system import State
+from trundle.solve import corners, transitions
+from trundle.solve.coming_off import lift_at_hand
 from trundle.solve.contact_state import ContactState
+from trundle.solve.laws import Law, RollingLaw
 from trundle.solve.slip_onset import slip_onset
+from trundle.solve.transitions import PhaseStart
 
 RADIUS = 0.327145
 # A ring that fell on its side in a bowl, which is all but as hollow there: the contact runs round the ring within
@@ -24,11 +31,56 @@ BEGINS_TO_SLIP = State(
 POINT = Vector(-0.010746963997333244, -0.006894802410241252, 0.00024927428679377933)
 
 
-def test_a_contact_that_runs_fast_stays_on_the_surface() -> None:
+CENTRE = E_Z * RADIUS
+
+
+def ring_in_a_bowl(*loads: tr.Load) -> tuple[tr.RollingSystem, ContactState]:
     motion = tr.FreeAxle(0.110672, bearing_torque=0.000330105)
     bowl = tr.Support(tr.Bowl(RADIUS), friction=0.0222479, motion=motion)
-    system = tr.RollingSystem(tr.Body.ring(0.0127847, 0.0118486), bowl)
-    begun: Any = slip_onset(system, ContactState.of(system, BEGINS_TO_SLIP, POINT))
+    system = tr.RollingSystem(tr.Body.ring(0.0127847, 0.0118486), bowl, loads=loads)
+    return system, ContactState.of(system, BEGINS_TO_SLIP, POINT)
+
+
+def test_a_contact_that_runs_fast_stays_on_the_surface() -> None:
+    begun: Any = slip_onset(*ring_in_a_bowl())
     point = begun.at.contact.point
     assert (point - POINT).norm() > 1e-10  # it has moved
-    assert abs((point - E_Z * RADIUS).norm() - RADIUS) < 1e-15
+    assert abs((point - CENTRE).norm() - RADIUS) < 1e-15
+
+
+def looks_for_a_lift() -> None:
+    system, at = ring_in_a_bowl()
+    law = RollingLaw()
+    lift_at_hand(system, law, at.state.time, law.state_vector(at), "slip", ())
+
+
+def looks_beyond_a_corner() -> None:
+    x, y, _ = BEGINS_TO_SLIP.position
+    system, at = ring_in_a_bowl(tr.Potential(f"1e-6*sqrt((x - {x!r})**2 + (y + {-y!r})**2)"))
+    now = PhaseStart.of(RollingLaw(), at)
+    corners.directions(system, corners.beyond(system, now))
+
+
+def looks_whether_the_contact_opens() -> None:
+    transitions._opens(*ring_in_a_bowl())
+
+
+@pytest.mark.parametrize(
+    "looks",
+    [looks_for_a_lift, looks_beyond_a_corner, looks_whether_the_contact_opens, lambda: slip_onset(*ring_in_a_bowl())],
+)
+def test_every_step_by_hand_is_so_short_that_its_halves_lead_to_the_same(
+    looks: Callable[[], object], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plain, apart = Law.rk4_step, []
+
+    def watched(law: Law, system: Any, time: Any, state: Any, step: Any, known: Any = None) -> list[Any]:
+        whole = plain(law, system, time, state, step, known)
+        half = plain(law, system, time, state, step / 2, known)
+        halves = plain(law, system, time + step / 2, half, step / 2, known)
+        apart.append(max(abs(one - other) for one, other in zip(whole[:10], halves[:10], strict=True)))
+        return whole
+
+    monkeypatch.setattr(Law, "rk4_step", watched)
+    looks()
+    assert max(apart) <= 1e-9

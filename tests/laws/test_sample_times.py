@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.tolerances import SOLVER
 
 import trundle as tr
 from trundle.mechanics.algebra import Vector
@@ -195,3 +196,16 @@ def test_a_stretch_of_more_steps_than_are_kept_is_gone_through_once_too(share, m
     Method.of("runge-kutta").dense(system, start, 2.0)(times)
     assert alone > 300
     assert sum(taken) < 1.1 * alone
+
+
+def test_a_step_that_ends_a_rounding_beyond_a_sample_has_that_sample() -> None:
+    # Young slip is followed in steps of its age: from the first sample on they end on samples, but for rounding.
+    pytest.importorskip("heyoka")
+    body = tr.Body.weighted_cylinder(0.221515, 2.30374, 0.011858, 0.0143916)
+    system = tr.RollingSystem(body, tr.Support(tr.Plane(), tilt="-79.4249 deg", friction=0.0490033))
+    start = system.place(roll="-246.09 deg")
+    every = 0.0294475
+    often, once = (tr.simulate(system, start, 100 * every, step, method="taylor") for step in (every, 100 * every))
+    assert often.data.time.size == 101
+    apart = often.data.position.values[-1] - once.data.position.values[-1]
+    assert np.abs(apart).max() <= SOLVER(1e3, 1e-15, 50.0)

@@ -20,6 +20,7 @@ from trundle.mechanics.algebra import Matrix, Quaternion, Vector
 from trundle.mechanics.contact import contact_at
 from trundle.mechanics.impact import Impact, _Course, land
 from trundle.verify.course import Course
+from trundle.verify.landings import Landing
 
 Array = Any
 STILL = Quaternion(1.0, 0.0, 0.0, 0.0)
@@ -146,6 +147,23 @@ def test_what_stays_and_may_slip_slips_back() -> None:
     # Friction turns it by s/(1 + 1/k) in all, however the slip came to an end.
     assert abs(run.events[0].after.velocity[0] - (1 - 1.5 * 2 / 7)) <= EXACT(16, 1.0)
     assert np.abs(run.data.velocity.values[-1] - [5 / 7, 0, 0]).max() <= SOLVER(1e3, 1e-13)
+
+
+@pytest.mark.parametrize(
+    ("e", "e_t", "down", "tilt"), [(0.3, 1.0, 0.01, 0.0), (0.6, 0.8, 1.0, 20.0), (0.6, 1.0, 0.1, 20.0)]
+)
+def test_where_slip_given_back_would_leave_a_bounce_to_be_cut_none_is(
+    e: float, e_t: float, down: float, tilt: float
+) -> None:
+    support = tr.Support(tr.Plane(), tilt=f"{tilt} deg", restitution=e, tangential_restitution=e_t)
+    system = tr.RollingSystem(tr.Body.ellipsoid((0.05, 0.04, 0.03), 1.0), support)
+    start = system.place((0.0, 0.0), (0.3, 0.1, -down), angular_velocity=(3.0, -5.0, 2.0), height=1e-9)
+    run = tr.simulate(system, start, duration=0.5, every=0.05)
+    landings = [Landing(system, event) for event in run.events if event.kind == "land"]
+    along = [np.linalg.norm(landing.goes - landing.n * (landing.goes @ landing.n)) for landing in landings]
+    assert min(along) <= EXACT(64, 1.0)  # one bounce leaves no slip: by e alone it is not too low
+    assert run.events[-1].kind == "settle"
+    assert run.card().passed, str(run.card())
 
 
 # --- any body ---------------------------------------------------------------------------------------------------

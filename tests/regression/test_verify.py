@@ -74,6 +74,13 @@ def test_a_planted_fault_is_told(mutant: Mutant) -> None:
         assert failed, refused or "the card passes"
 
 
+def test_the_page_counts_the_faults() -> None:
+    refused = sum(bool(mutant.refused) for mutant in PLANTED)
+    said = f"{len(PLANTED) + len(SHARED)} faults", f"tells {len(PLANTED) - refused} of them", f"with {refused} the run"
+    page = PAGE.read_text(encoding="utf-8")
+    assert [words for words in (*said, f"; {len(SHARED)} pass") if words not in page] == []
+
+
 @pytest.mark.parametrize("mutant", SHARED, ids=lambda mutant: mutant.name)
 def test_what_solver_and_check_share_is_on_the_page(mutant: Mutant) -> None:
     assert tried(mutant) == ([], ""), "it is told now: move it to those that are"

@@ -52,7 +52,7 @@ def test_it_opens_in_xarray_without_a_warning_with_units_and_texts(tmp_path: Pat
 def test_a_store_opens_while_it_grows(tmp_path: Path) -> None:
     plan = a_plan()
     store = Store.create(tmp_path / "a.zarr", plan)
-    store.write(3, plan.job.run(plan.values(3)))
+    store.write(slice(24, 32), plan.job.run(plan.values(3)))
     found = tr.Sweep.load(tmp_path / "a.zarr")
     assert found.counts == {"waiting": 56, "done": 8, "refused": 0, "failed": 0, "inferred": 0}
     assert np.isfinite(found.data["end x"].values).sum() == 8
@@ -116,6 +116,67 @@ def test_interrupted_between_any_two_files_it_goes_on_and_repeats_no_chunk(
     api.run_plan(plan, Engine(), store=store.path, resume=True)
     assert sorted(begun[first:] + done) == list(range(plan.chunks))
     assert files_of(store.path) == files_of(tmp_path / "whole.zarr")
+
+
+def near_boundary() -> Plan:
+    over = {
+        "start.position[0]": {"from": "5 cm", "to": "35 cm", "count": 20},
+        "support.motion.rate": {"from": "20 rpm", "to": "45 rpm", "count": 18},
+    }
+    return read_plan({"scenario": TABLE, "run": {"duration": 2.0, "every": 0.5}, "over": over, "keep": 2,
+                      "measure": ["ending", "end x"], "design": "boundary", "chunk": 32})  # fmt: skip
+
+
+def test_a_map_near_the_boundary_goes_on_from_between_any_two_files(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Stopped again and again, and in the middle of a round too: no piece that is whole is run again."""
+    import zarr
+
+    plan, pieces = near_boundary(), []
+    run, put = job.Job.run, zarr.Array.__setitem__
+    api.run_plan(plan, Engine(), store=tmp_path / "whole.zarr")
+    allowed = iter([40, 59, 101, 160])  # writes before it is stopped
+    left = [next(allowed)]
+
+    def noted(self: job.Job, values: Any) -> Any:
+        pieces.append(values.tobytes())
+        return run(self, values)
+
+    def stopping(self: Any, *given: Any) -> None:
+        left[0] -= 1
+        if left[0] == 0:
+            raise Halt
+        put(self, *given)
+
+    monkeypatch.setattr(job.Job, "run", noted)
+    store = Store.create(tmp_path / "a.zarr", plan).path
+    monkeypatch.setattr(zarr.Array, "__setitem__", stopping)
+    stops = 0
+    while True:
+        try:
+            api.run_plan(plan, Engine(), store=store, resume=True)
+            break
+        except Halt:
+            stops += 1
+            left[0] = next(allowed, -1)
+    assert stops >= 3
+    assert len(pieces) <= len(set(pieces)) + stops
+    assert files_of(store) == files_of(tmp_path / "whole.zarr")
+    (store / "status" / "c" / "3").unlink()  # as if killed between the files of one variable
+    api.run_plan(plan, Engine(), store=store, resume=True)
+    assert files_of(store) == files_of(tmp_path / "whole.zarr")
+
+
+def test_a_map_near_the_boundary_has_the_same_bits_from_any_engine(tmp_path: Path) -> None:
+    distributed = pytest.importorskip("distributed")
+    plan = near_boundary()
+    api.run_plan(plan, Engine(2), store=tmp_path / "a.zarr")
+    options = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
+    with distributed.LocalCluster(**options) as cluster:
+        api.run_plan(plan, Engine(1, cluster.scheduler_address), store=tmp_path / "b.zarr")
+    api.run_plan(plan, Engine()).save(tmp_path / "c.zarr")
+    assert files_of(tmp_path / "a.zarr") == files_of(tmp_path / "b.zarr") == files_of(tmp_path / "c.zarr")
 
 
 SLOW = """

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.sweeps.refined import refine
 
 import trundle as tr
 from trundle.analysis.sweep.api import run_plan
 from trundle.analysis.sweep.engine import Engine
 from trundle.analysis.sweep.plan import read_plan
-from trundle.analysis.sweep.refining import refine
 
 pytest.importorskip("heyoka")
 

@@ -85,7 +85,7 @@ def score(
         entrants = _entrants(engine, adapter, ablations=ablations)
         if not entrants and not (report and (output / DATA).exists()):
             remedy = "Name one with --engine, or give a program of yours with --adapter."
-            raise InvalidValueError("--engine", "must name what is to be scored", None, remedy)
+            raise InvalidValueError("--engine", "must name what is to be scored", "none", remedy)
         found = _run(entrants, _cases(case), step, limit, output, report=report, quiet=quiet or as_json)
         if as_json:
             screen.out(json.dumps(found.as_dict(), indent=2, ensure_ascii=False))

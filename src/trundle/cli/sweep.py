@@ -110,21 +110,25 @@ def _go(
 
     engine.check(plan)
     check_room(store, plan)
-    share = 1.0 / part[1] if not resume else 1.0 - float(Store.open(store).done.mean())
+    bounded = plan.design.name == "boundary"
+    share = 1.0 / part[1] if not resume else float((Store.open(store).status == 0).mean())
     needed = cost(plan, engine)
     if not quiet:
         at = "here" if engine.processes == 1 and engine.scheduler is None else f"with {engine.processes} workers"
         at = at if engine.scheduler is None else f"if {engine.scheduler} has {engine.processes} workers"
+        parts, about = f" in {plan.chunks:,} chunk{'s' * (plan.chunks != 1)}", "about"
+        if bounded:
+            parts, about = ", of which those near the boundary are run", "at most"
+        took = _in_words(needed.seconds * share)
         screen.out(
-            f"{plan.members:,} members in {plan.chunks:,} chunk{'s' * (plan.chunks != 1)}: "
-            f"about {_in_words(needed.seconds * share)} {at}, at most {in_bytes(needed.bytes)}, into {store}"
+            f"{plan.members:,} members{parts}: {about} {took} {at}, at most {in_bytes(needed.bytes)}, into {store}"
         )
     if dry:
         return
     if not chosen and engine.scheduler is None and needed.seconds * share < _SHORT:
         engine = replace(engine, workers=1)
     try:
-        with screen.ProgressBar(wanted=not quiet, members=int(plan.members * share)) as bar:
+        with screen.ProgressBar(wanted=not quiet, members=0 if bounded else int(plan.members * share)) as bar:
             found = run_plan(plan, engine, store=store, resume=resume, part=part, progress=bar)
     except (KeyboardInterrupt, SystemExit) as end:
         if not store.exists():
@@ -164,8 +168,8 @@ def _progress_of(store: Store) -> str:
     counts = store.counts()
     all_, waiting = sum(counts.values()), counts.pop("waiting")
     said = f"{all_ - waiting:,} of {all_:,} members are done"
-    wrong = [f"{counts[name]:,} {name}" for name in ("refused", "failed") if counts[name]]
-    return ", ".join([said, *wrong])
+    rest = [f"{counts[name]:,} {name}" for name in ("refused", "failed", "inferred") if counts[name]]
+    return ", ".join([said, *rest])
 
 
 def _part(text: str | None) -> tuple[int, int]:

@@ -16,7 +16,6 @@ MOST_VALUES = 20_000  # numbers and texts in a scenario; a height field of 100 b
 MOST_LOADS = 20
 MOST_SIDE = 64  # fields along a side of a map
 MOST_FIELDS = MOST_SIDE**2
-MOST_OF_MEMBER = 5000  # samples of a run of a map
 MOST_ROWS = 4000  # of a track that is fitted
 MOST_PIECES = 500  # of a path
 _NO_MORE = "The lab computes no more for one request; `trundle run` does."

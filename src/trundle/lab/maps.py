@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 _GO = 0.7  # s, of work that one request asks for; the page asks again for more
 _FIRST, _TOGETHER = 8, 64  # members that go together: few at first, as nobody knows how long they take
+_SAMPLES = 320_000  # of members that go together: what memory there is for them
 _COARSE = 5  # squares along the shorter side at first: something is to be seen soon
 _SHADES = 64
 
@@ -50,12 +51,13 @@ def sweeps() -> Answer:
 def _shipped(name: str, tables: Any, plan: Plan) -> dict[str, Any]:
     """Return a sweep as the page begins with it; without `over` where it is none over two spans."""
     spans = [{"key": key, "scale": "linear", **span} for key, span in tables["over"].items() if isinstance(span, dict)]
+    spans = [{**span, "count": min(span["count"], limits.MOST_SIDE)} for span in spans if "count" in span]
     return {
         "name": name,
         "title": plan.title,
         "notes": " ".join(plan.notes.split()),
         "scenario": told(plan.document)["scenario"],
-        "over": spans if len(spans) == len(plan.axes) == 2 and all("count" in span for span in spans) else [],
+        "over": spans if len(spans) == len(plan.axes) == 2 else [],
         "measures": {one.name: one.text for one in plan.measures},
     }
 
@@ -112,6 +114,8 @@ def draw_map(
     found[places] = [none if value is None else value for value in values]
     grid, everywhere = run.reshape(shape), not wanted.classes
     new: list[int] = []
+    samples = float(plan.document.timing.duration) / float(plan.document.timing.every)
+    most = min(_TOGETHER, max(_FIRST, int(_SAMPLES / samples)))
     begun, together = time.perf_counter(), _FIRST
     left, picture = next_places(grid, found.reshape(shape), everywhere=everywhere, coarse=_COARSE)
     while left.size and (not new or time.perf_counter() - begun < _GO):
@@ -119,7 +123,7 @@ def draw_map(
         columns = replace(plan.job, block=together).run(plan.table[part])
         found[part], run[part] = columns[wanted.name], True
         new += part.tolist()
-        together = min(2 * together, _TOGETHER)
+        together = min(2 * together, most)
         left, picture = next_places(grid, found.reshape(shape), everywhere=everywhere, coarse=_COARSE)
     return as_json(
         {
@@ -175,7 +179,7 @@ def _rolling(data: dict[str, Any]) -> Scenario:
     if files.rolls_along_path(data):
         raise InvalidValueError("scenario", "must have forces and a start", "a path", "Choose one that rolls freely.")
     scenario = scenario_from(data)
-    limits.check_timing(float(scenario.timing.duration), float(scenario.timing.every), limits.MOST_OF_MEMBER)
+    limits.check_timing(float(scenario.timing.duration), float(scenario.timing.every), limits.MOST_SAMPLES)
     return scenario
 
 

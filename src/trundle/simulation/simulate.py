@@ -93,7 +93,7 @@ def simulate(
     times = start.time + since
     check_room(times.size, labels.size_of(system), "every", every, partial(longer_step, times))
     check_finite(system, float(times[0]), float(times[-1]))
-    _check_start(system, start, float(times[-1]))
+    check_start(system, start, float(times[-1]))
     check_clock(system, start, float(since[1]))
     chosen, samples = methods.run(method, system, start, times, progress, tolerance)
     if scenario is None:
@@ -114,7 +114,7 @@ def described(system: RollingSystem, start: State, times: Any, method: str, titl
     return described.title, described.to_toml()
 
 
-def _check_start(system: RollingSystem, start: State, until: float) -> None:
+def check_start(system: RollingSystem, start: State, until: float) -> None:
     """Refuse a hand-made start inside the support, or one that slips where nothing limits the friction."""
     q, centre = Quaternion(*start.orientation), Vector(*start.position)
     contact = closest_contact(system, start.time, centre, q, start.support)

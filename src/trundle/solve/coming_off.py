@@ -44,7 +44,7 @@ def lift_at_hand(
         return found[which[0]], found[which[1]]
 
     at = law.unpack(system, time, numbers)
-    moment = at.moment(system)
+    moment = law.moment(system, at, plain.rates(time, numbers))
     now = look(0.0)[0]
     changes = abs(look(_AT_HAND * moment)[0] - now) / _AT_HAND  # in such a time, N
     if now > _NEARLY * max(changes, at.forces(system)):

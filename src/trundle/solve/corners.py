@@ -122,4 +122,5 @@ def _is_on(w: Array, later: Array) -> bool:
 
 def _moment(system: RollingSystem, now: PhaseStart) -> float:
     """Return a time in which the motion changes, s."""
-    return now.law.unpack(system, now.time, now.state_vector).moment(system)
+    at = now.law.unpack(system, now.time, now.state_vector)
+    return now.law.moment(system, at, python_law(system, now.law).rates(now.time, now.state_vector))

@@ -7,29 +7,35 @@ that what a member gives does not depend on its company.
 from __future__ import annotations
 
 import copy
+import math
 import os
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import TrundleError
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.nearest import followed
 from ..mechanics.parameters import numbers, with_numbers
 from ..mechanics.placing import SLIP_TOLERANCE
 from ..mechanics.system import RollingSystem, State
-from . import integrators, taylor
+from . import corners, integrators, phases, runge_kutta, taylor
 from .laws import Law, RollingLaw
 from .lowering import Lowered
-from .samples import AT_ONCE, Array, Samples
+from .samples import AT_ONCE, Array, Event, Samples
+from .transitions import PhaseStart, ZeroCrossing
 
 LANES = 8  # doubles in the widest registers; where they are half as wide, two at a time still gain
 _MOST_CHUNKS = 10
 _COMPLETED = 4000  # samples that are completed at once, at least: of few, each costs more
+_STEPS = 300  # steps, between which lanes that are free are taken again
 _PRESSED = 1e-9  # share of the weight with which a member must press on to be taken along
 
 
@@ -144,24 +150,21 @@ def _held(system: RollingSystem, time: float, states: Array) -> Any:
 
 def integrate(
     systems: Sequence[RollingSystem],
-    states: Array,
-    members: Sequence[int],
+    starts: Mapping[int, State | PhaseStart],
     times: Array,
     done: Callable[[Block], None],
     *,
     tolerance: float = taylor.TOLERANCE,
     workers: int = 1,
-) -> tuple[list[int], dict[int, Stop]]:
-    """Follow members that roll, for as long as they do.
+) -> tuple[list[int], dict[int, tuple[Event, ...]]]:
+    """Follow members through their phases, those that are in the same one together.
 
     Parameters
     ----------
     systems : sequence of RollingSystem
-        All of them, of one structure.
-    states : array (all, size)
-        As `rolling_from` gives them.
-    members : sequence of int
-        Which to follow.
+        All of them, of one structure, without kinks.
+    starts : mapping of int to State or PhaseStart
+        Which members to follow, and from where.
     times : array (n,)
         Ascending, s, the first that of the starts.
     done : callable
@@ -176,40 +179,25 @@ def integrate(
     -------
     broken : list of int
         Members that broke down.
-    stops : dict of int to Stop
-        Of each member that came to a stop of the law, where that was.
+    events : dict of int to tuple of Event
+        What happened to each member that came through.
     """
-    law = RollingLaw()
     given = numbers_of(systems)
     zeros = np.equal(np.array(given), 0).all(axis=0)
-    lowered, key = integrators.ready(systems[0], law, tolerance, zeros=frozenset(np.flatnonzero(zeros).tolist()))
-    integrator = integrators.kept(f"{LANES}-passing-{key}", lambda: _compile(lowered, tolerance))
-    blocks = [list(members[i : i + LANES]) for i in range(0, len(members), LANES)]
+    by_law = partial(_compiled, systems[0], frozenset(np.flatnonzero(zeros).tolist()), tolerance, threading.Lock())
     halt = threading.Event()  # somebody pressed Ctrl-C, or another thread failed
+    members = list(starts)
 
-    def work(which: int) -> tuple[list[int], dict[int, Stop]]:
-        mine = copy.copy(integrator)
-        broken: list[int] = []
-        stops: dict[int, Stop] = {}
-        pieces: list[Piece] = []
+    def work(which: int) -> tuple[list[int], dict[int, tuple[Event, ...]]]:
+        mine = [i for first in range(which * LANES, len(members), workers * LANES) for i in members[first:][:LANES]]
+        company = _Company([Member(i, systems[i], given[i], starts[i], times) for i in mine], by_law, halt)
         try:
-            for block in blocks[which::workers]:
-                run = _Lanes(mine, lowered, [given[i] for i in block], states[block])
-                for rows, lanes, path in run.follow(times):
-                    pieces.append(Piece([block[lane] for lane in lanes], rows, path))
-                    if sum(piece.size for piece in pieces) >= _COMPLETED:
-                        done(completed(law, systems, times, pieces))
-                        pieces.clear()
-                    if halt.is_set():
-                        return broken, stops
-                broken += [block[lane] for lane in sorted(run.left)]
-                stops |= {block[lane]: stop for lane, stop in run.stops.items()}
-            if pieces:
-                done(completed(law, systems, times, pieces))
+            for pieces in company.follow():
+                done(pieces.completed(systems, times))
         except BaseException:
             halt.set()
             raise
-        return broken, stops
+        return company.broken, company.events
 
     if workers == 1:
         return work(0)
@@ -218,7 +206,7 @@ def integrate(
             parts = list(pool.map(work, range(workers)))
         finally:
             halt.set()
-    return [member for broken, _ in parts for member in broken], {k: v for _, stops in parts for k, v in stops.items()}
+    return [i for broken, _ in parts for i in broken], {i: found for _, events in parts for i, found in events.items()}
 
 
 def cores() -> int:
@@ -251,122 +239,357 @@ def _of_samples(systems: Sequence[RollingSystem], members: NDArray[np.int64]) ->
     return with_numbers(own[0], [float(row[0]) if (row == row[0]).all() else row[places] for row in values])
 
 
-@dataclass(frozen=True)
-class Stop:
-    """Where a member came to a stop of the law: when, s, and by which of its event functions."""
+def _compiled(
+    system: RollingSystem, zeros: frozenset[int], tolerance: float, one_at_a_time: Any, law: Law
+) -> tuple[Any, Lowered]:
+    """Return a fresh integrator of a law for eight members of a structure."""
+    with one_at_a_time:
+        lowered, key = integrators.ready(system, law, tolerance, zeros=zeros)
+        return copy.copy(integrators.kept(f"{LANES}-stopping-{key}", lambda: _compile(lowered, tolerance))), lowered
 
-    time: float
-    name: str
+
+class Member:
+    """One member on its way: the stretch that it is on, and the leg of that."""
+
+    def __init__(
+        self, index: int, system: RollingSystem, numbers: list[float], start: State | PhaseStart, times: Array
+    ) -> None:
+        self.index, self.system, self.numbers, self.times = index, system, numbers, times
+        self.samples: list[Samples] = []  # of instants that no stretch holds
+        self.course = phases.course(system, start, times, self.samples.append)
+        self.patience = taylor.Shared().patience(float(times[0]), float(times[-1]))
+        self.now: PhaseStart
+        self.left: Array
+
+    def set_out(self) -> bool:
+        """Go to the first stretch; tell whether there is one."""
+        return self._take(lambda: next(self.course))
+
+    def goes_on(self, stop: ZeroCrossing | None) -> bool:
+        """Go to the next stretch, from where this one was left; tell whether there is one."""
+        return self._take(lambda: self.course.send((stop, self.reached)))
+
+    def _take(self, stretch: Callable[[], tuple[PhaseStart, Array]]) -> bool:
+        try:
+            self.now, self.left = stretch()
+            while not self.left.size:
+                self.now, self.left = self.course.send((None, 0))
+        except StopIteration as done:
+            self.events: tuple[Event, ...] = done.value
+            return False
+        event_parameters = (*self.now.event_parameters, *corners.directions(self.system, self.now))
+        self.given = [*self.numbers, *event_parameters] if event_parameters else self.numbers
+        self.first, self.reached = self.times.size - self.left.size, 0  # rows; instants of the stretch
+        self.state, self.begun = np.array(self.now.state_vector, dtype=float), self.now.time
+        self.lasted = taylor.lasted(self.system, self.now)
+        self.legs = _legs(self.now.time, self.left)
+        return True
+
+    def next_leg(self) -> bool:
+        """Go to the next leg of the stretch; tell whether there is one."""
+        leg = next(self.legs, None)
+        if leg is not None:
+            self.begin, self.instants, self.end = leg
+            self.leg_from = self.reached
+        return leg is not None
+
+    def longest(self, time: float) -> float:
+        """Return how long its next step may be, s."""
+        longest = self.lasted + (time - self.begun)
+        return longest if longest <= taylor.GROWN * self.lasted else math.inf
 
 
-class _FirstFall:
-    """What heyoka calls where an event function falls through zero: it keeps the first time of each lane."""
+class _Pieces:
+    """Samples of one law that wait to be completed."""
 
-    def __init__(self) -> None:
-        self.times: dict[int, float] = {}
+    def __init__(self, law: Law) -> None:
+        self.law, self.waiting, self.size = law, list[Piece](), 0
 
-    def __call__(self, integrator: Any, time: float, sign: int, lane: int) -> None:  # noqa: ARG002
-        self.times.setdefault(lane, time)
+    def add(self, piece: Piece) -> None:
+        self.waiting.append(piece)
+        self.size += piece.size
+
+    def completed(self, systems: Sequence[RollingSystem], times: Array) -> Block:
+        """Return them, and wait for others."""
+        waiting, self.waiting, self.size = self.waiting, [], 0
+        return completed(self.law, systems, times, waiting)
+
+
+class _Ready:
+    """Samples that are complete."""
+
+    def __init__(self, member: Member) -> None:
+        self.member, self.samples = member, Samples.joined(member.samples)
+
+    def completed(self, systems: Sequence[RollingSystem], times: Array) -> Block:  # noqa: ARG002
+        """Return those at the instants asked for: an event that ends a run may be between two."""
+        rows = np.minimum(np.searchsorted(times, self.samples.time), times.size - 1)
+        asked = times[rows] == self.samples.time
+        rows, samples = rows[asked], self.samples.part(asked)
+        return Block(np.full(rows.size, self.member.index), rows, samples, self.member.system)
+
+
+class _Company:
+    """Members on their way, sorted by the law that each has to follow next."""
+
+    def __init__(self, members: list[Member], compiled: Callable[[Law], tuple[Any, Lowered]], halt: Any) -> None:
+        self.compiled, self.halt = compiled, halt
+        self.waiting: dict[Any, deque[Member]] = {}
+        self.lanes: dict[Any, _Lanes] = {}
+        self.ready: list[_Ready] = []
+        self.broken: list[int] = []
+        self.events: dict[int, tuple[Event, ...]] = {}
+        for member in members:
+            self._lead(member, member.set_out)
+
+    def follow(self) -> Iterator[_Pieces | _Ready]:
+        """Follow all of them to the end, and yield what is to be completed."""
+        while any(self.waiting.values()) and not self.halt.is_set():
+            key = max(self.waiting, key=lambda key: len(self.waiting[key]))
+            lanes, waiting = self._lanes(key), self.waiting[key]
+            for member, stop in lanes.follow(waiting):
+                if member is not None:
+                    self._lead(member, None if isinstance(stop, Exception) else partial(member.goes_on, stop))
+                if lanes.pieces.size >= _COMPLETED:
+                    yield lanes.pieces
+                yield from self._drained()
+                if self.halt.is_set():
+                    return
+        yield from (lanes.pieces for lanes in self.lanes.values() if lanes.pieces.size)
+        yield from self._drained()
+
+    def _lanes(self, key: Any) -> _Lanes:
+        if key not in self.lanes:
+            self.lanes[key] = _Lanes(*self.compiled(self.waiting[key][0].now.law), self.waiting[key][0].now.law)
+        return self.lanes[key]
+
+    def _drained(self) -> Iterator[_Ready]:
+        ready, self.ready = self.ready, []
+        yield from ready
+
+    def _lead(self, member: Member, onward: Callable[[], bool] | None) -> None:
+        """Lead a member to its next stretch, if it can be led there."""
+        try:
+            goes_on = onward is not None and onward()
+            while goes_on and member.now.law.brief:
+                goes_on = self._briefly(member)
+        except (TrundleError, ArithmeticError, ValueError):
+            onward = None
+        if onward is None:
+            self.broken.append(member.index)
+        elif goes_on:
+            law = member.now.law
+            self.waiting.setdefault((type(law), *vars(law).items()), deque()).append(member)
+        else:
+            self.events[member.index] = member.events
+            if member.samples:
+                self.ready.append(_Ready(member))
+
+    def _briefly(self, member: Member) -> bool:
+        """Follow a member by itself through what is too short to be compiled."""
+        stop = None
+        for piece in runge_kutta.integrate(member.system, member.now, member.left, runge_kutta.FINEST):
+            if piece.times.size:
+                member.samples.append(member.now.law.record(member.system, piece.times, piece.states))
+            stop, member.reached = piece.stop, member.reached + piece.times.size
+        return member.goes_on(stop)
 
 
 class _Lanes:
-    """Members on their way, one in each lane of an integrator.
+    """Members that follow one law, one in each lane of an integrator; who is done makes room for the next.
 
-    Nobody is held up by another's stop: who comes to one goes on to the end of the leg, and what is behind the stop is
-    left out. Where a lane breaks down, all go back to where the leg began. Another's state takes the place of both.
+    Each has its own times and its own steps. Where a lane breaks down, the others go back to where their legs began.
     """
 
-    def __init__(self, integrator: Any, lowered: Lowered, given: list[list[float]], states: Array) -> None:
-        self.integrator, self.lowered, self.count = integrator, lowered, len(given)
-        self.lane = [min(i, self.count - 1) for i in range(LANES)]  # a short block repeats its last member
-        self.given = [given[i] for i in self.lane]
-        self.state, self.left = states[self.lane].T.copy(), set[int]()
-        self.stops: dict[int, Stop] = {}
+    def __init__(self, integrator: Any, lowered: Lowered, law: Law) -> None:
+        self.integrator, self.lowered, self.pieces = integrator, lowered, _Pieces(law)
+        self.members: list[Member | None] = [None] * LANES
+        self.known: dict[int, tuple[float, list[float]]] = {}  # parameters, and from when: many may share one system
 
-    def follow(self, times: Array) -> Iterator[tuple[slice, list[int], Array]]:
-        """Yield rows, the lanes that came so far, and their states (rows, size, lanes), leg by leg."""
-        place = 0
-        for begin, instants, end in _legs(times):
-            before = set(self.stops)
-            path = self._leg(begin, instants, end)
-            if path is None:
+    def follow(self, waiting: deque[Member]) -> Iterator[tuple[Member | None, ZeroCrossing | Exception | None]]:
+        """Yield each member at the end of its stretch, with its stop or what broke it, and in between no member."""
+        while True:
+            for lane in range(LANES):
+                while self.members[lane] is None and waiting:
+                    yield from self._enter(lane, waiting.popleft())
+            if not any(self.members):
                 return
-            kept = [lane for lane in range(self.count) if lane not in self.left and lane not in self.stops]
-            if instants.size and kept:
-                yield slice(place, place + instants.size), kept, path[:, :, kept]
-            for lane in sorted(set(self.stops) - before):
-                count = int(np.searchsorted(instants, self.stops[lane].time))
-                if count:
-                    yield slice(place, place + count), [lane], path[:count, :, [lane]]
-            place += instants.size
+            yield from self._advance()
+            yield None, None
 
-    def _leg(self, begin: float, instants: Array, end: float) -> Array | None:
-        """Return the states (instants, size, LANES) of those that come through; None where nobody does."""
-        grid = np.concatenate([[0.0], (instants if instants.size else np.array([end])) - begin])
-        first = 0 if instants.size and instants[0] == begin else 1  # heyoka's grid begins where the integrator is
-        grid = np.repeat(grid[1 - first :, None], LANES, axis=1)
-        while alive := [i for i in range(self.count) if i not in self.left and i not in self.stops]:
-            for i in range(LANES):
-                if self.lane[i] not in alive:
-                    self.state[:, i], self.given[i] = self.state[:, alive[0]], self.given[alive[0]]
-            failed = self._begin(begin)
-            if not failed:
-                path = self.integrator.propagate_grid(grid)[-1]
-                ended = [_ended(result[0]) for result in self.integrator.propagate_res]
-                failed = {self.lane[i] for i in range(LANES) if self.lane[i] in alive and ended[i]}
-            if not failed:
-                self.state = path[-1].copy()
-                self._take_stops(begin, alive)
-                return path[first : first + instants.size]
-            self.left |= failed
-        return None
+    def _enter(self, lane: int, member: Member) -> Iterator[tuple[Member, ZeroCrossing | Exception | None]]:
+        """Let a member go on in a lane: by its next leg, if it has one."""
+        self.members[lane] = None
+        try:
+            while member.next_leg():
+                self._begin(lane, member)
+                if member.end > member.begin:
+                    self.members[lane] = member
+                    return
+                row, count = member.first + member.reached, member.instants.size  # the instant at which it begins
+                path = np.repeat(self.integrator.state[None, :, [lane]], count, axis=0)
+                self.pieces.add(Piece([member.index], slice(row, row + count), path))
+                member.reached += count
+            yield member, None
+        except (ArithmeticError, ValueError) as error:
+            yield member, error
 
-    def _take_stops(self, begin: float, alive: list[int]) -> None:
-        """Keep the first stop of each member in the leg just done."""
-        for name, event in zip(self.lowered.event_functions, self._events, strict=True):
-            for lane, time in event.callback.times.items():
-                known = self.stops.get(lane)
-                if lane in alive and (known is None or begin + time < known.time):
-                    self.stops[lane] = Stop(begin + time, name)
+    def _begin(self, lane: int, member: Member) -> None:
+        """Set state and parameters of a member at the beginning of its leg, from which its time counts."""
+        time, values = self.known.get(id(member.given), (math.nan, []))
+        if time != member.begin:
+            values = self.lowered.values(member.given, member.begin)
+            if member.given is member.numbers:
+                self.known[id(member.given)] = member.begin, values
+        state = self.lowered.tidy([0.0, *member.state.tolist(), *values])
+        if not (np.isfinite(values[: self.lowered.parameters]).all() and np.isfinite(state).all()):
+            raise ArithmeticError("no numbers")
+        integrator, times = self.integrator, self.integrator.time.copy()
+        integrator.pars[:, lane], integrator.state[:, lane] = values[: self.lowered.parameters], state
+        times[lane] = 0.0
+        integrator.set_time(times)
+        if self.lowered.event_functions:
+            integrator.reset_cooldowns(lane)
 
-    @property
-    def _events(self) -> list[Any]:
-        return self.integrator.nt_events if self.lowered.event_functions else []
+    def _advance(self) -> Iterator[tuple[Member, ZeroCrossing | Exception | None]]:
+        """Take some steps, to the ends of the legs or to the first stop of anybody."""
+        integrator, before = self.integrator, self.integrator.time.copy()
+        looks, longest = self._looks()
+        given: dict[str, Any] = {"max_steps": 1, "max_delta_t": longest} if np.isfinite(longest).any() else {}
+        path = integrator.propagate_grid(_grid(looks), **{"max_steps": _STEPS, **given})[-1]
+        outcomes = [result[0] for result in integrator.propagate_res]
+        stops = {lane: self._stop(lane, outcomes[lane]) for lane in looks}
+        failed = {
+            lane
+            for lane in looks
+            if _failed(outcomes[lane]) or (integrator.time[lane] == before[lane] and not stops[lane])
+        }
+        if failed:
+            yield from self._start_again(failed)
+            return
+        self._sample(path, looks, stops)
+        for lane, member in self._on_the_way():
+            if stops.get(lane) is not None:
+                self.members[lane] = None
+                yield member, stops[lane]
+            elif integrator.time[lane] == member.end - member.begin:
+                member.state = integrator.state[:, lane].copy()
+                yield from self._enter(lane, member)
+            else:
+                yield from self._wait(lane, member, int(integrator.propagate_res[lane][3]))
 
-    def _begin(self, time: float) -> set[int]:
-        """Set states and parameters at a new reference of time, and return the lanes for which these are no numbers."""
-        self.integrator.set_time(0.0)
-        for event in self._events:
-            event.callback.times.clear()
-        failed = set()
-        worked_out: dict[int, list[float]] = {}  # many members may share one system
-        for i in range(LANES):
-            try:
-                if id(self.given[i]) not in worked_out:
-                    worked_out[id(self.given[i])] = self.lowered.values(self.given[i], time)
-                values = worked_out[id(self.given[i])]
-                self.integrator.pars[:, i] = values[: self.lowered.parameters]
-                self.integrator.state[:, i] = self.lowered.tidy([0.0, *self.state[:, i].tolist(), *values])
-            except (ArithmeticError, ValueError):
-                failed.add(self.lane[i])
-        finite = np.isfinite(self.integrator.pars).all(axis=0) & np.isfinite(self.integrator.state).all(axis=0)
-        return failed | {self.lane[i] for i in np.flatnonzero(~finite)}
+    def _on_the_way(self) -> list[tuple[int, Member]]:
+        return [(lane, member) for lane, member in enumerate(self.members) if member is not None]
+
+    def _looks(self) -> tuple[dict[int, _Looks], Array]:
+        """Return when to look at each lane, and how long a step of it may be; a lane that is free repeats another."""
+        integrator, longest = self.integrator, np.full(LANES, math.inf)
+        looks: dict[int, _Looks] = {}
+        times = integrator.time.copy()
+        for lane, member in self._on_the_way():
+            looks[lane] = _Looks.of(member, float(times[lane]))
+            longest[lane] = member.longest(member.begin + float(times[lane]))
+        one = next(iter(looks))
+        for lane in set(range(LANES)).difference(looks):
+            integrator.state[:, lane], integrator.pars[:, lane] = integrator.state[:, one], integrator.pars[:, one]
+            times[lane] = times[one]
+        integrator.set_time(times)
+        return looks, longest
+
+    def _start_again(self, failed: set[int]) -> Iterator[tuple[Member, Exception]]:
+        """Leave those out that broke down; the others go back to where their legs began."""
+        for lane, member in self._on_the_way():
+            if lane in failed:
+                self.members[lane] = None
+                yield member, ArithmeticError("broke down")
+            else:
+                member.reached = member.leg_from
+                self._begin(lane, member)
+
+    def _stop(self, lane: int, outcome: Any) -> ZeroCrossing | None:
+        """Return the stop to which a lane has come."""
+        member = self.members[lane]
+        if member is None or not -1000 < int(outcome) < 0:
+            return None
+        time = member.begin + float(self.integrator.time[lane])
+        name = self.lowered.event_functions[-int(outcome) - 1]
+        return ZeroCrossing(time, name, self.integrator.state[:, lane].copy())
+
+    def _sample(self, path: Array, looks: Mapping[int, _Looks], stops: Mapping[int, ZeroCrossing | None]) -> None:
+        """Keep the states at the instants that have been passed."""
+        alike: dict[tuple[int, bytes], list[int]] = {}  # lanes of which the same samples are at the same places
+        for lane, member in self._on_the_way():
+            stop, done = stops[lane], member.reached - member.leg_from
+            upto = int(np.searchsorted(member.instants - member.begin, self.integrator.time[lane], "right"))
+            if stop is not None:
+                upto = int(np.searchsorted(member.instants, stop.time))
+            if upto > done:
+                places = looks[lane].places[: upto - done]
+                alike.setdefault((member.first + member.reached, places.tobytes()), []).append(lane)
+                member.reached += upto - done
+        for (row, packed), lanes in alike.items():
+            places = np.frombuffer(packed, dtype=np.int64)
+            members = [member.index for lane, member in self._on_the_way() if lane in lanes]
+            self.pieces.add(Piece(members, slice(row, row + places.size), path[places][:, :, lanes]))
+
+    def _wait(self, lane: int, member: Member, steps: int) -> Iterator[tuple[Member, Exception]]:
+        """Let a member go on in its leg, unless it hardly gets on."""
+        try:
+            member.patience.after(steps, member.begin + float(self.integrator.time[lane]))
+        except TrundleError as error:
+            self.members[lane] = None
+            yield member, error
 
 
-def _ended(outcome: Any) -> bool:
-    """Tell whether a lane broke down; one that was cut short because another did has not."""
+@dataclass(frozen=True)
+class _Looks:
+    """Times, since its reference, at which heyoka is to look at a lane: where it is first, its instants, and others."""
+
+    times: Array
+    places: NDArray[np.int64]  # where the instants are among them
+
+    @staticmethod
+    def of(member: Member, now: float) -> _Looks:
+        """Return the time now, and the instants ahead of a member in its leg."""
+        ahead = member.instants[member.reached - member.leg_from :] - member.begin
+        if not ahead.size:
+            return _Looks(np.array([now, member.end - member.begin]), np.empty(0, dtype=np.int64))
+        times, places = np.unique(np.append(now, ahead), return_inverse=True)  # since then, two may be one by rounding
+        return _Looks(times, places[1:])
+
+    def filled_up(self, count: int) -> _Looks:
+        """Return so many: more in the widest gap."""
+        more = count - self.times.size
+        if more == 0:
+            return self
+        after = int(np.argmax(np.diff(self.times))) + 1
+        between = np.linspace(self.times[after - 1], self.times[after], more + 2)[1:-1]
+        times = np.concatenate([self.times[:after], between, self.times[after:]])
+        return _Looks(times, np.where(self.places < after, self.places, self.places + more))
+
+
+def _grid(looks: dict[int, _Looks]) -> Array:
+    """Return the times (looks, LANES) of all lanes, as many for each; one that is free repeats another."""
+    count = max(look.times.size for look in looks.values())
+    for lane, look in looks.items():
+        looks[lane] = look.filled_up(count)
+    some = next(iter(looks.values()))
+    return np.stack([looks.get(lane, some).times for lane in range(LANES)], axis=1)
+
+
+def _failed(outcome: Any) -> bool:
+    """Tell whether a lane broke down."""
     import heyoka
 
-    return int(outcome) >= -1000 or outcome == heyoka.taylor_outcome.err_nf_state
+    return int(outcome) >= 0 or outcome == heyoka.taylor_outcome.err_nf_state
 
 
-def _legs(times: Array) -> Iterator[tuple[float, Array, float]]:
-    """Yield the legs of a run: where each begins, its instants, none where it only leads on, and where it ends."""
-    begin = float(times[0])
-    for part in taylor._chunks(times, _MOST_CHUNKS, AT_ONCE // LANES):
-        while part[0] - begin > taylor._LONGEST:
-            yield begin, part[:0], begin + taylor._LONGEST
-            begin += taylor._LONGEST
+def _legs(begin: float, times: Array) -> Iterator[tuple[float, Array, float]]:
+    """Yield the legs of a stretch: where each begins, its instants, none where it only leads on, and where it ends."""
+    for part in taylor.chunks(times, _MOST_CHUNKS, AT_ONCE // LANES):
+        while part[0] - begin > taylor.LONGEST:
+            yield begin, part[:0], begin + taylor.LONGEST
+            begin += taylor.LONGEST
         yield begin, part, float(part[-1])
         begin = float(part[-1])
 
@@ -375,13 +598,12 @@ def _compile(lowered: Lowered, tolerance: float) -> Any:
     import heyoka
 
     equations, stops = lowered.heyoka()
+    falling = heyoka.event_direction.negative
     return heyoka.taylor_adaptive_batch(
         equations,
         np.zeros((len(equations), LANES)),
         pars=np.zeros((lowered.parameters, LANES)),
         tol=tolerance,
         compact_mode=True,
-        nt_events=[
-            heyoka.nt_event_batch(stop, _FirstFall(), direction=heyoka.event_direction.negative) for stop in stops
-        ],
+        t_events=[heyoka.t_event_batch(stop, direction=falling) for stop in stops],
     )

@@ -6,7 +6,7 @@ the slip, the normal force, the friction cone.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Protocol
@@ -61,6 +61,7 @@ class Segment:
 
 
 Integrate = Callable[[RollingSystem, PhaseStart, Array, float, Progress | None], Iterator[Segment]]
+Course = Generator[tuple[PhaseStart, Array], tuple[ZeroCrossing | None, int], tuple[Event, ...]]
 
 
 def solve(
@@ -109,45 +110,100 @@ def solve(
     SolverError
         If the method breaks down, or events follow each other without end.
     """
-    events: list[Event] = []
-    passed: list[float] = []  # corners
     record = _Record(system, times.size + 1)  # an event that ends a run is sampled, too
     begin = corners.beyond if in_steps else transitions.slipping
     if bends is None:
         bends = kinks_and_jolts(system, start.time, float(times[-1])) if times.size else []
+    steps_between, told = bends if in_steps else [], _telling(progress, times)
+
+    def follow(now: PhaseStart, left: Array) -> tuple[ZeroCrossing | None, int]:
+        stop, taken = None, 0
+        for piece in _between_kinks(integrate, system, now, left, steps_between, tolerance, told):
+            record.take(now.law, piece)
+            stop, taken = piece.stop, taken + piece.times.size
+        return stop, taken
+
+    way = course(system, start, times, record.put, begin, bends, remember)
+    try:
+        stretch = next(way)
+        while True:
+            stretch = way.send(follow(*stretch))
+    except StopIteration as done:
+        return record.samples(done.value)
+
+
+def course(
+    system: RollingSystem,
+    start: State | PhaseStart,
+    times: Array,
+    put: Callable[[Samples], None],
+    begin: Callable[[RollingSystem, PhaseStart], PhaseStart] = corners.beyond,
+    bends: Sequence[Kink] = (),
+    remember: Callable[[Callable[[], PhaseStart], Law, ZeroCrossing], PhaseStart] = lambda follows, *_: follows(),
+) -> Course:
+    """Lead a body through its phases: say which law is to be followed over which times, be told how far it held.
+
+    Parameters
+    ----------
+    system : RollingSystem
+        Any system.
+    start : State or PhaseStart
+        Any state on or over the support, or the phase in which it is.
+    times : array (n,)
+        Ascending, s, none before the start.
+    put : callable
+        Given the samples of instants that no stretch holds: those in the short steps across events, and the end.
+    begin : callable
+        What a method makes of a phase that begins.
+    bends : list of Kink
+        The kinks of its formulas in the time.
+    remember : callable, optional
+        As of `solve`.
+
+    Yields
+    ------
+    (PhaseStart, array)
+        What to follow next, and the instants that are left. Send its stop, if it came to one, and how many of the
+        instants were before that.
+
+    Returns
+    -------
+    tuple of Event
+        All that happened.
+    """
+    events: list[Event] = []
+    passed: list[float] = []  # corners
+    left = times
 
     def behind(now: PhaseStart) -> PhaseStart:
         return _behind_it(system, begin(system, now), bends)
 
-    now = behind(transitions.at_start(system, start))
-    events += now.events
-    left, told = times, _telling(progress, times)
-    if now.time > start.time:  # it slips from rest: its first moment is behind it
-        held = RollingLaw()
-        left = _across(
-            system, held, ZeroCrossing(start.time, "", np.array(held.pack(system, start))), now, left, record
-        )
+    if isinstance(start, PhaseStart):
+        now = start
+    else:
+        now = behind(transitions.at_start(system, start))
+        events += now.events
+        if now.time > start.time:  # it slips from rest: its first moment is behind it
+            held = RollingLaw()
+            rolls = ZeroCrossing(start.time, "", np.array(held.pack(system, start)))
+            left = _across(system, held, rolls, now, left, put)
     while True:
-        law, stop, taken = now.law, None, 0
-        for piece in _between_kinks(integrate, system, now, left, bends if in_steps else [], tolerance, told):
-            record.take(law, piece)
-            stop, taken = piece.stop, taken + piece.times.size
+        law = now.law
+        stop, taken = yield now, left
         if stop is None:
-            break
+            return tuple(events)
         stop = _on_kink(system, law, stop, bends)
         if stop.name in ENDS or _spinning_on(system, law, stop):
             samples, event = _ended(system, law, stop)
-            record.put(samples)
-            events.append(event)
-            break
+            put(samples)
+            return (*events, event)
         now = remember(partial(lambda *ended: behind(following_stop(system, *ended)), law, stop), law, stop)
         events += now.events
         _check_count(system, events)
         if stop.name.startswith(CORNER):
             passed.append(stop.time)
             corners.check_count(system, passed, now)
-        left = _across(system, law, stop, now, left[taken:], record)
-    return record.samples(tuple(events))
+        left = _across(system, law, stop, now, left[taken:], put)
 
 
 def _between_kinks(
@@ -204,7 +260,7 @@ def _is_of(kink: Kink, stop: ZeroCrossing) -> bool:
     return stop.name in _BREAKS and kink.before - stop.time <= _CLOSE * abs(kink.time)
 
 
-def _on_kink(system: RollingSystem, law: Law, stop: ZeroCrossing, bends: list[Kink]) -> ZeroCrossing:
+def _on_kink(system: RollingSystem, law: Law, stop: ZeroCrossing, bends: Sequence[Kink]) -> ZeroCrossing:
     """Return a stop by forces that jump at a kink, found a rounding before it, as it is on the kink."""
     kink = next((kink for kink in bends if stop.time < kink.time and _is_of(kink, stop)), None)
     if kink is None:
@@ -214,7 +270,7 @@ def _on_kink(system: RollingSystem, law: Law, stop: ZeroCrossing, bends: list[Ki
     return replace(stop, time=kink.time, known=known)
 
 
-def _behind_it(system: RollingSystem, now: PhaseStart, bends: list[Kink]) -> PhaseStart:
+def _behind_it(system: RollingSystem, now: PhaseStart, bends: Sequence[Kink]) -> PhaseStart:
     """Return what begins on a kink as it is just behind it, where every method evaluates its formulas alike."""
     wait = next((kink.behind - now.time for kink in bends if kink.time <= now.time < kink.behind), 0.0)
     return corners.advanced(system, now, wait) if wait else now
@@ -280,17 +336,22 @@ class _Record:
 
 
 def _across(
-    system: RollingSystem, law: Law, stop: ZeroCrossing, follows: PhaseStart, left: Array, record: _Record
+    system: RollingSystem,
+    law: Law,
+    stop: ZeroCrossing,
+    follows: PhaseStart,
+    left: Array,
+    put: Callable[[Samples], None],
 ) -> Array:
     """Add the samples in the short step across an event, and return the times after it."""
     if follows.across is not None:  # something struck, or slip ended, before slip begins
-        left = _across(system, law, stop, follows.across, left, record)
+        left = _across(system, law, stop, follows.across, left, put)
         law, stop = follows.across.law, ZeroCrossing(follows.across.time, "", np.array(follows.across.state_vector))
     early, left = cut(left, follows.time)
     if early.size:
         samples = law.record(system, early, _short_of_it(system, law, stop, early))
         gives_way = follows.law.code == SLIPPING and law.code in (ROLLING, RESTING)
-        record.put(_giving_way(system, samples, follows) if gives_way else samples)
+        put(_giving_way(system, samples, follows) if gives_way else samples)
     return left
 
 

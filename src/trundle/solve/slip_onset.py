@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -10,9 +10,9 @@ from ..errors import SolverError
 from ..mechanics.algebra import E_X, E_Y, E_Z, ZERO, Matrix, Vector
 from ..mechanics.contact import Contact, Rolling, roll
 from ..mechanics.creep import SlipRates, slip_rates
-from ..mechanics.duals import has_duals, value_of, values_of
+from ..mechanics.duals import has_duals, values_of
 from ..mechanics.onset import onset
-from ..mechanics.scalars import Scalar, as_float
+from ..mechanics.scalars import as_float
 from ..mechanics.slipping import HeldInertia, Response, response
 from ..mechanics.system import RollingSystem
 from .contact_state import WEIGHTLESS, ContactState, floats
@@ -53,7 +53,7 @@ def slip_onset(system: RollingSystem, at: ContactState, law: Law | None = None) 
     law = RollingLaw() if law is None else law
     time, numbers = at.state.time, law.state_vector(at)
     rates = python_law(system, law).rates
-    moment = _FIRST / _pace(system, at, law, rates(time, numbers))
+    moment = _FIRST * law.moment(system, at, rates(time, numbers))
 
     def later(wait: float) -> tuple[ContactState, _Growth | None]:
         moved = law.rk4_step(system, time, numbers, wait, rates)
@@ -119,13 +119,6 @@ def _growth(system: RollingSystem, at: ContactState, law: Law) -> _Growth | None
                 rate = _rate(rates, c, s)
             return _Growth(rates.direction(c, s), rate, 0.0)
     return None
-
-
-def _pace(system: RollingSystem, at: ContactState, law: Law, rates: Sequence[Scalar]) -> float:
-    """Return how fast the motion changes, 1/s: also where the contact runs round all but equal curvatures."""
-    point, _, turning, *_ = law.split(values_of(tuple(rates)))
-    scale, arm = at.scale(system), value_of(at.arm)
-    return float(max(scale / arm, point.norm() / arm, turning.norm() * arm / scale))
 
 
 def _rate(rates: SlipRates, c: float, s: float) -> float:

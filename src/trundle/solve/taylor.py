@@ -36,8 +36,8 @@ _AT_ONCE = 10_000  # steps, between which Ctrl-C is heard too
 _HASTY_STEPS, _CARES = 10_000, -1
 _SHORT_LAW = 100  # by `Lowered.cost`
 _PATIENCE: dict[str, Any] = {"steps": 3e6, "spare": 5e4, "name": "Taylor's method"}  # a minute, and some seconds
-_STRAIGHT, _YOUNG, _GROWN = 1e-9, 8, 1e12  # sine of an angle; steps at a time, of slip until it has grown so much
-_LONGEST = 100.0  # s without a new reference of time, at most
+_STRAIGHT, _YOUNG, GROWN = 1e-9, 8, 1e12  # sine of an angle; steps at a time, of slip until it has grown so much
+LONGEST = 100.0  # s without a new reference of time, at most
 _PARTS = 10  # of a stretch that is kept, between which rounding's share is taken out
 
 
@@ -191,7 +191,7 @@ def _dense_in_chart(
         def states(times: Array) -> Array:
             return to_law(times, kept.at(times))
 
-        part = min(_LONGEST, (end - now.time) / _PARTS)
+        part = min(LONGEST, (end - now.time) / _PARTS)
         while stop is None and run.reference < end:
             until = min(end, max(run.reference + part, math.nextafter(run.reference, end)))
             reached = run.go_to(until - run.reference)
@@ -218,12 +218,12 @@ def _begun(system: RollingSystem, now: PhaseStart, tolerance: float, shared: Sha
         left = max(0, most - shared.hasty.get(key, 0))
         given = [*numbers(system), *now.event_parameters, *corners.directions(system, now)]
         run = _Run(borrow, left, system, lowered, given, now.time, now.state_vector)
-        run.lasted = _lasted(system, now)
+        run.lasted = lasted(system, now)
         yield run
         shared.hasty[key] = _HASTY_STEPS - max(0, run.hasty_steps)
 
 
-def _lasted(system: RollingSystem, now: PhaseStart) -> float:
+def lasted(system: RollingSystem, now: PhaseStart) -> float:
     """Return for how long slip or turning seems to have lasted that grows straight from all but nothing, s; else ∞.
 
     Where it goes straight its speed has no singularity, and only rounding in the series would say how near it came to
@@ -239,7 +239,7 @@ def _lasted_to(system: RollingSystem, now: PhaseStart, stop: str, near: float) -
     """Return the same of slip or of turning, given the square of what is all but nothing."""
     law, numbers_now = now.law, list(map(float, now.state_vector))
     v = law.shrinking(system, now.time, numbers_now, stop).array()
-    if v @ v > _GROWN * near:
+    if v @ v > GROWN * near:
         return math.inf
     rate = law.shrinking_rate(system, now.time, numbers_now, stop).array()
     length, change = float(np.linalg.norm(v)), float(np.linalg.norm(rate))
@@ -309,6 +309,11 @@ class _Run:
             done += len(found)
             if not self._is_cut(outcome, steps):
                 return np.vstack(parts), _event(self, outcome)
+            while done < since.size and since[done] <= self.integrator.time:  # a rounding before a step's end
+                parts.append(self.integrator.state[None].copy())
+                done += 1
+            if done == since.size:
+                return np.vstack(parts), None
 
     def _at_once(self) -> dict[str, Any]:
         """Return how many steps to make before anything else is looked at, and how long they may be.
@@ -322,7 +327,7 @@ class _Run:
             self.integrator.dtime = hasty.dtime
         most = self.hasty_steps if self.hasty_steps > 0 else _AT_ONCE
         longest = self.lasted + (self.time - self.begun)
-        if longest > _GROWN * self.lasted:
+        if longest > GROWN * self.lasted:
             self.lasted = longest = math.inf
         return {"max_steps": most if longest == math.inf else min(most, _YOUNG), "max_delta_t": longest}
 
@@ -360,9 +365,9 @@ def _to_law(chart: Chart, system: RollingSystem, times: Array, states: Array) ->
 
 def _propagate(run: _Run, times: Array, progress: Progress | None) -> Iterator[tuple[Array, Array, int | None]]:
     """Yield the times and the states there, a chunk after the other, and last which terminal event came, if one did."""
-    for chunk in _chunks(times):
+    for chunk in chunks(times):
         while run.reference < chunk[0]:  # also where rounding does not tell the two instants apart: it must begin there
-            until = min(float(chunk[0]), run.reference + _LONGEST)
+            until = min(float(chunk[0]), run.reference + LONGEST)
             ended = run.go_to(until - run.reference)
             if ended is not None:
                 yield chunk[:0], run.to_law(chunk[:0], np.empty((0, run.integrator.state.size))), ended
@@ -380,7 +385,7 @@ def _propagate(run: _Run, times: Array, progress: Progress | None) -> Iterator[t
             progress(float(chunk[-1]))
 
 
-def _chunks(times: Array, most: int = _CHUNKS, size: int = AT_ONCE) -> Iterator[Array]:
+def chunks(times: Array, most: int = _CHUNKS, size: int = AT_ONCE) -> Iterator[Array]:
     """Part the instants, where it can be into no more parts than `most`, so that none is long after its part's first.
 
     No part has more than `size`.
@@ -389,10 +394,10 @@ def _chunks(times: Array, most: int = _CHUNKS, size: int = AT_ONCE) -> Iterator[
     edges = np.arange(count + 1) * times.size // count
     for first, last in itertools.pairwise(edges.tolist()):
         part = times[first:last]
-        if part.size and part[-1] - part[0] < _LONGEST:
+        if part.size and part[-1] - part[0] < LONGEST:
             yield part
         elif part.size:
-            which = np.floor((part - part[0]) / _LONGEST)
+            which = np.floor((part - part[0]) / LONGEST)
             yield from np.split(part, np.flatnonzero(np.diff(which)) + 1)
 
 

@@ -9,7 +9,7 @@ momentum that one impulse carries, and against the impulse of `course`.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import numpy as np
@@ -131,9 +131,9 @@ class Landing:
         back = float(support.tangential_restitution)
         if mu is None and back > 0:  # nothing slips that stays on it, or that would with the slip it is given back
             found = landing(back)
-            if self.strikes:
-                found.impulse()
-            if min(float(self.goes @ self.n), float(found.slip[2])) <= EXACT * self.speed:
+            given = axes.T @ found.impulse() if self.strikes else np.zeros(3)
+            off = min(float(self.goes @ self.n), float(found.slip[2]))
+            if off <= EXACT * self.speed or self._rise(off, self._struck_by(given)) < _CUT:
                 back = 0.0
         return landing(back)
 
@@ -173,24 +173,23 @@ class Landing:
     @cached_property
     def off(self) -> float:
         """How fast the body would come off again after that impulse, m/s; a bounce that is cut loses it."""
-        V, Omega = self._struck
-        u = self.point_velocity(*_speeds(self.before)) - self.comes
-        if self.lever is not None:
-            u = u + self.lever * self._axle
-        return float((self.point_velocity(V, Omega) - u) @ self.n)
-
-    @property
-    def _axle(self) -> float:
-        """By how much that impulse changes the rate of a free axle, rad/s."""
-        lever = np.zeros(3) if self.lever is None else self.lever
-        return -float(lever @ self.wanted) / float(self.system.support.motion.inertia)
+        return float(self._slip(self._struck) @ self.n)
 
     @cached_property
-    def _struck(self) -> tuple[Array, Array]:
-        """V and Ω after that impulse."""
+    def _struck(self) -> State:
+        """The body after that impulse."""
+        return self._struck_by(self.wanted)
+
+    def _struck_by(self, impulse: Array) -> State:
+        """Return the body after an impulse at the contact, and a free axle after its opposite."""
         V, Omega = _speeds(self.before)
-        m = float(self.system.body.mass)
-        return V + self.wanted / m, Omega + np.linalg.solve(self.J, _cross(self.rho, self.wanted))
+        V = V + impulse / float(self.system.body.mass)
+        Omega = Omega + np.linalg.solve(self.J, _cross(self.rho, impulse))
+        coordinates = self.before.support
+        if self.lever is not None:
+            rate = coordinates[-1] - float(self.lever @ impulse) / float(self.system.support.motion.inertia)
+            coordinates = (*coordinates[:-1], rate)
+        return replace(self.before, velocity=tuple(V), angular_velocity=tuple(Omega), support=coordinates)
 
     @cached_property
     def stays(self) -> bool:
@@ -205,7 +204,7 @@ class Landing:
     @cached_property
     def expected(self) -> tuple[Array, Array]:
         """V and Ω after that impulse, and after the bounces to come were cut where they were."""
-        V, Omega = self._struck
+        V, Omega = _speeds(self._struck)
         return (V - self.off * self.n, Omega) if self.stays else (V, Omega)
 
     @cached_property
@@ -239,7 +238,7 @@ class Landing:
     @property
     def work(self) -> float:
         """What the impulse did to the body's energy, and the cut, J: half of P times both velocities of the contact."""
-        before, struck, after = _speeds(self.before), self._struck, self.expected
+        before, struck, after = _speeds(self.before), _speeds(self._struck), self.expected
         mean = 0.5 * (self.point_velocity(*before) + self.point_velocity(*struck))
         cut = 0.5 * float(self.system.body.mass) * float((after[0] - struck[0]) @ (after[0] + struck[0]))
         return float(self.wanted @ mean) + cut
@@ -282,19 +281,19 @@ class Landing:
             0.0,
         )
         if self.cut:
-            yield "only low bounces are cut", max(0.0, self._rise() / _CUT - 1), 1e-3
+            # Of a jolt the flight may be cut, and what friction without limit would make of it.
+            left_behind = max(0.0, float(self.comes @ self.n))
+            off = max(left_behind, self.off - left_behind)
+            yield "only low bounces are cut", max(0.0, self._rise(off, self.after) / _CUT - 1), 1e-3
 
-    def _rise(self) -> float:
-        """Return how high the bounce would have risen that was cut, as a share of |ρ|."""
-        q, coordinates = Quaternion(*self.before.orientation), self.after.support
-        contact = contact_at(self.system, self.before.time, Vector(*self._point), q, coordinates)
-        slip = self.goes
+    def _rise(self, off: float, after: State) -> float:
+        """Return how high a bounce rises that comes off so fast, m/s, from a state, as a share of |ρ|."""
+        q, coordinates = Quaternion(*after.orientation), after.support
+        contact = contact_at(self.system, after.time, Vector(*self._point), q, coordinates)
+        slip = self._slip(after)
         sliding = Vector(*(slip - self.n * (slip @ self.n)))
-        Omega = Vector(*self.after.angular_velocity)
-        back = -float(unpushed(self.system, self.before.time, contact, q, Omega, sliding, coordinates).opening)
-        # Of a jolt the flight may be cut, and what friction without limit would make of it.
-        left_behind = max(0.0, float(self.comes @ self.n))
-        off = max(left_behind, self.off - left_behind)
+        Omega = Vector(*after.angular_velocity)
+        back = -float(unpushed(self.system, after.time, contact, q, Omega, sliding, coordinates).opening)
         return off**2 / (2 * max(back, 1e-300)) / float(np.linalg.norm(self.rho))
 
     def by_its_course(self) -> Iterator[tuple[str, float, float]]:

@@ -6,7 +6,6 @@ import math
 import threading
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,13 +17,14 @@ from ...mechanics.parameters import parameters, structure_of
 from ...mechanics.system import RollingSystem, State
 from ...simulation import labels
 from ...simulation.memory import check_room
-from ...simulation.simulate import check_state, described, simulate
+from ...simulation.simulate import check_start, check_state, described, simulate
 from ...solve import taylor
 from ...solve.ensemble import numbers_of
+from ...solve.laws import RollingLaw
 from ...solve.methods import Method
-from ...solve.phases import ENDS, ended_in_words
-from ...solve.samples import Progress
+from ...solve.samples import Event, Progress
 from ...solve.sampling import MOST_SAMPLES, check_clock, sample_times
+from ...solve.transitions import PhaseStart
 from ...units import UNITS
 from .on_device import ERROR, OnDevice, check_device
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     import xarray
 
     from ...simulation.trajectory import Trajectory
-    from ...solve.ensemble import Block, Stop
+    from ...solve.ensemble import Block
 
 ENDED = -1  # the phase of a member whose run is over
 
@@ -51,9 +51,9 @@ def simulate_many(
 ) -> xarray.Dataset:
     """Run many members of one system and return them as one dataset over member and time.
 
-    Members that roll all the way, or until they run off a rim, an end or their own edge, go through Taylor's method
-    eight at a time. A member that starts in another phase, or comes to another event, is run by `simulate` instead,
-    phase by phase: the result is the same either way to rounding, only slower.
+    Members go through Taylor's method eight at a time, phase by phase: those that roll, slip, fly or rest are each
+    taken together. A straight roller, and members with a formula that has kinks in the time, are run by `simulate` one
+    by one: the result is the same either way to rounding, only slower.
 
     Parameters
     ----------
@@ -135,8 +135,8 @@ def run_members(
     rest: Iterable[int] = range(len(systems))
     if method in ("auto", "taylor"):
         method = "taylor" if systems[0].support.surface.analytic else "runge-kutta"
-        if _batched(systems[0], where):
-            rest = _rolled(result, systems, starts, times, workers, where)
+        if _batched(systems[0]) and (where is not None or taylor.available()):
+            rest = _together(result, systems, starts, times, workers, where)
     for member in rest:
         result.put_alone(member, systems[member], starts[member], duration, every, method)
     return result
@@ -258,17 +258,16 @@ def _check(systems: list[RollingSystem], starts: list[State], instants: int, eve
         raise InvalidValueError("workers", "must be a whole number, 1 or more, or None", workers)
 
 
-def _batched(system: RollingSystem, device: Any) -> bool:
-    """Tell whether members of such a system can be taken many at a time, by heyoka or on a device.
+def _batched(system: RollingSystem) -> bool:
+    """Tell whether members of such a system can be taken many at a time.
 
-    Resistances that bring a body to rest make nearly every run an event; a straight roller is checked one by one; each
-    member comes to a kink of its own formulas, or to a corner of its loads, at an instant of its own.
+    A straight roller is checked one by one, and each member comes to a kink of its own formulas at its own instant.
     """
-    alone = system.resisted or system.body.shape.axis is not None or system.corners or has_kinks(system)
-    return (device is not None or taylor.available()) and system.support.surface.analytic and not alone
+    alone = system.body.shape.axis is not None or has_kinks(system)
+    return system.support.surface.analytic and not alone
 
 
-def _rolled(
+def _together(
     result: Runs,
     systems: Sequence[RollingSystem],
     starts: Sequence[State],
@@ -276,48 +275,49 @@ def _rolled(
     workers: int | None,
     device: Any,
 ) -> list[int]:
-    """Run the members that roll, and return those that are left."""
+    """Run many members at a time, on a device or by heyoka, and return those that are left."""
     from ...solve import ensemble
 
-    sound = np.flatnonzero(_sound(systems, starts, times))  # `simulate` says what is wrong with the others
-    some = [systems[int(i)] for i in sound]
-    if not some:
+    sound = _sound(systems, starts, times)  # `simulate` says what is wrong with the others
+    if not sound:
         return list(range(len(systems)))
-    states, rolls = ensemble.rolling_from(some, [starts[int(i)] for i in sound])
-    members = np.flatnonzero(rolls).tolist()
-    count = min(workers or ensemble.cores(), -(-len(members) // ensemble.LANES) or 1)
-
-    def done(block: Block) -> None:
-        result.put(replace(block, members=sound[block.members]))
-
-    stopped: list[int] = []
-    stops: dict[int, ensemble.Stop] = {}
-    if members and device is not None:
-        stopped, errors = OnDevice(some, states, times, device).follow(members, done)
+    found, plainly = ensemble.rolling_from([systems[i] for i in sound], [starts[i] for i in sound])
+    states = np.full((len(systems), found.shape[1]), np.nan)
+    states[sound] = found
+    simple = [plainly[row] and not (systems[i].resisted or systems[i].corners) for row, i in enumerate(sound)]
+    rolling = [i for i, rolls in zip(sound, simple, strict=True) if rolls]
+    left = set(range(len(systems)))
+    if rolling and device is not None:
+        stopped, errors = OnDevice(systems, states, times, device).follow(rolling, result.put)
         result.error = np.full(len(systems), np.nan)
-        result.error[sound[members]] = errors
-        result.error[sound[stopped]] = np.nan
-    elif members:
-        stopped, stops = ensemble.integrate(some, states, members, times, done, workers=count)
-    for member, stop in stops.items():
-        if stop.name in ENDS:
-            result.put_end(int(sound[member]), some[member], stop)
-        else:
-            stopped.append(member)
-    rolled = np.zeros(len(systems), dtype=bool)
-    rolled[sound[members]] = True
-    rolled[sound[stopped]] = False
-    return np.flatnonzero(~rolled).tolist()
+        result.error[rolling] = errors
+        result.error[stopped] = np.nan
+        left -= set(rolling).difference(stopped)
+    if not taylor.available():
+        return sorted(left)
+    begins: dict[int, State | PhaseStart] = {
+        i: PhaseStart(RollingLaw(), starts[i], states[i].tolist()) for i in rolling if i in left
+    }
+    for i in left.intersection(sound).difference(begins):
+        if _passes(check_start, systems[i], starts[i], float(times[-1])):
+            begins[i] = starts[i]
+    if not begins:
+        return sorted(left)
+    count = min(workers or ensemble.cores(), -(-len(begins) // ensemble.LANES))
+    _, events = ensemble.integrate(systems, begins, times, result.put, workers=count)
+    for member, happened in events.items():
+        result.put_events(member, happened)
+    return sorted(left.difference(events))
 
 
-def _sound(systems: Sequence[RollingSystem], starts: Sequence[State], times: Any) -> list[bool]:
-    """Tell of which members start and formulas in the time are numbers, throughout the run."""
+def _sound(systems: Sequence[RollingSystem], starts: Sequence[State], times: Any) -> list[int]:
+    """Return the members of which start and formulas in the time are numbers, throughout the run."""
     finite: dict[int, bool] = {}  # of each system, once
     for system in systems if varies(systems[0]) else ():
         if id(system) not in finite:
             finite[id(system)] = _passes(check_finite, system, float(times[0]), float(times[-1]))
-    pairs = zip(systems, starts, strict=True)
-    return [finite.get(id(system), True) and _passes(check_state, system, start) for system, start in pairs]
+    pairs = enumerate(zip(systems, starts, strict=True))
+    return [i for i, (system, start) in pairs if finite.get(id(system), True) and _passes(check_state, system, start)]
 
 
 def _passes(check: Callable[..., None], *given: Any) -> bool:
@@ -356,11 +356,16 @@ class Runs:
             self.arrays[name][block.members, block.rows] = values
         self._tell(block.members, (block.rows + 1) / self.times.size)
 
-    def put_end(self, member: int, system: RollingSystem, stop: Stop) -> None:
-        """Take where a member's run ended for good."""
-        self.end[member], self.events[member], self.ending[member] = stop.time, 1, stop.name
-        self.reason[member] = ended_in_words(system, stop.name, stop.time)
-        self.happened[member] = [(stop.name, stop.time)]
+    def put_events(self, member: int, events: tuple[Event, ...]) -> None:
+        """Take what happened to a member that was followed with others, and where its run ended."""
+        self.events[member] = len(events)
+        self.happened[member] = [(event.kind, event.time) for event in events]
+        if events and events[-1].final:
+            self.end[member], self.ending[member], self.reason[member] = (
+                events[-1].time,
+                events[-1].kind,
+                events[-1].text,
+            )
         self._tell(member, 1.0)
 
     def put_alone(

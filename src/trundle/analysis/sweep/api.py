@@ -5,7 +5,8 @@ from __future__ import annotations
 import shutil
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -13,12 +14,13 @@ import numpy as np
 
 from ...errors import InvalidValueError
 from ...solve.samples import Progress
+from .boundary import NearBoundary
 from .engine import Engine
 from .job import Columns
 from .measures import INFERRED
 from .plan import Plan, read_plan
 from .result import Sweep
-from .store import Store, check_new
+from .store import Store
 
 _PILOTS, _QUICK = 4, 0.01  # members that are timed, and s: a whole block of those that take less
 
@@ -173,43 +175,26 @@ def run_plan(
         Told the fraction done.
     """
     engine.check(plan)
-    if plan.design.name == "boundary":
-        if part != (1, 1) or (resume and store is not None and store.exists()):
-            rule = 'must be run whole where the design is "boundary": where a run is made depends on those before it'
-            raise InvalidValueError(
-                "--part" if part != (1, 1) else "--resume", rule, plan.title, "Run it from the beginning."
-            )
-        if store is not None:
-            check_new(store)
-        found = Sweep.of(plan, _near_boundary(plan, engine, progress))
-        return found if store is None else Sweep.load(found.save(store))
-    told = _Told(progress, plan.chunks)
-    own = range(part[0] - 1, plan.chunks, part[1])
+    if plan.design.name == "boundary" and part != (1, 1):
+        rule = 'must be run whole where the design is "boundary": which members are run depends on those before them'
+        raise InvalidValueError("--part", rule, f"{part[0]}/{part[1]}", "Take a --scheduler for several machines.")
     if store is None:
         memory = plan.job.empty(plan.members)
 
-        def take(chunk: int, columns: Columns) -> None:
+        def keep(where: Any, columns: Columns) -> None:
             for name, column in columns.items():
-                memory[name][chunk * plan.chunk : chunk * plan.chunk + len(column)] = column
-            told()
+                memory[name][where] = column
 
-        engine.run(plan, own, take)
+        _run(plan, engine, memory["status"], memory[plan.measures[0].name], keep, part, progress)
         return Sweep.of(plan, memory)
     there = resume and store.exists()
     opened = Store.open(store) if there else Store.create(store, plan)
     with opened.held():
         if there:
             opened.check_same(plan)
-        done = opened.done
-        left = [chunk for chunk in own if not done[chunk]]
-        told.all = max(len(left), 1)
-
-        def write(chunk: int, columns: Columns) -> None:
-            opened.write(chunk, columns)
-            told()
-
         try:
-            engine.run(plan, left, write)
+            classes = opened.values(plan.measures[0].name)
+            _run(plan, engine, opened.status, classes, opened.write, part, progress)
         except InvalidValueError:  # there is no such scheduler
             if not there:
                 shutil.rmtree(store)
@@ -217,43 +202,39 @@ def run_plan(
     return Sweep(plan.title, opened.dataset())
 
 
-def _near_boundary(plan: Plan, engine: Engine, progress: Progress | None) -> Columns:
-    """Run the members of a grid near the boundary between the classes of the first measure, and infer the others."""
-    from .refining import refine
+def _run(
+    plan: Plan,
+    engine: Engine,
+    status: Any,
+    first: Any,
+    write: Callable[[Any, Columns], None],
+    part: tuple[int, int],
+    progress: Progress | None,
+) -> None:
+    """Run what is left of a plan, given what became of each member and its first measure, and write it."""
+    tell = progress or (lambda _: None)
+    if plan.design.name == "boundary":
+        near = NearBoundary(plan, status, first)
 
-    columns, first = plan.job.empty(plan.members), plan.measures[0].name
-    shape = plan.grid or (1, 1)
+        def take(piece: int, columns: Columns) -> None:
+            write(near.take(piece, columns), columns)
+            tell(near.share)
 
-    def classes_of(places: Any) -> Any:
-        part = replace(plan, table=plan.table[places])
-        told = _Told(progress, part.chunks)
+        engine.run(near, near, take)
+        places, classes = near.inferred
+        for some in np.split(places, np.searchsorted(places, np.arange(plan.chunk, plan.members, plan.chunk))):
+            if some.size:
+                inferred = classes[np.searchsorted(places, some)].astype(plan.measures[0].dtype)
+                write(some, {plan.measures[0].name: inferred, "status": np.full(some.size, INFERRED, dtype=np.int8)})
+        return
+    left = [chunk for chunk in range(part[0] - 1, plan.chunks, part[1]) if not status[chunk * plan.chunk]]
+    chunks, done = iter(left), count(1)
 
-        def take(chunk: int, some: Columns) -> None:
-            for name, column in some.items():
-                columns[name][places[chunk * part.chunk :][: len(column)]] = column
-            told()
+    def put(chunk: int, columns: Columns) -> None:
+        write(slice(chunk * plan.chunk, chunk * plan.chunk + len(columns["status"])), columns)
+        tell(next(done) / len(left))
 
-        engine.run(part, range(part.chunks), take)
-        return columns[first][places].astype(np.int64)
-
-    run, found = refine((shape[0], shape[1]), classes_of)
-    columns[first][~run.ravel()] = found.ravel()[~run.ravel()]
-    columns["status"][~run.ravel()] = INFERRED
-    return columns
-
-
-@dataclass
-class _Told:
-    """What a progress bar is told as chunks are done."""
-
-    progress: Callable[[float], None] | None
-    all: int
-    done: int = 0
-
-    def __call__(self) -> None:
-        self.done += 1
-        if self.progress is not None:
-            self.progress(self.done / self.all)
+    engine.run(plan, lambda: next(chunks, None), put)
 
 
 @dataclass(frozen=True)
@@ -274,12 +255,12 @@ def cost(plan: Plan, engine: Engine) -> Cost:
     34
     """
     each = 0.0
-    for count in (1, _PILOTS, plan.job.block):
-        chosen = np.linspace(0, plan.members - 1, min(count, plan.members)).astype(int)
+    for pilots in (1, _PILOTS, plan.job.block):
+        chosen = np.linspace(0, plan.members - 1, min(pilots, plan.members)).astype(int)
         begun = time.perf_counter()
         plan.job.run(plan.table[chosen])
         each = (time.perf_counter() - begun) / chosen.size
-        if count == _PILOTS and each > _QUICK:
+        if pilots == _PILOTS and each > _QUICK:
             break
     return Cost(each * plan.members / engine.processes, plan.bytes)
 

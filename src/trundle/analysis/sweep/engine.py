@@ -7,13 +7,13 @@ import pickle
 import signal
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import islice
-from typing import Any
+from typing import Any, Protocol
 
 from ...errors import InvalidValueError, SolverError
 from ...extras import need
@@ -22,11 +22,23 @@ from .job import Columns, Job
 from .plan import Plan
 
 Take = Callable[[int, Columns], None]
+Next = Callable[[], int | None]  # the next chunk; None where there is none before one of those under way is taken
 
 PATIENCE = "10s"  # for a scheduler to answer
 _AHEAD = 4  # chunks under way for each worker
 _ASKED_EVERY = 2.0  # s
 _ATTEMPTS = 3  # of a chunk whose worker was lost
+
+
+class Work(Protocol):
+    """What is to be done with the chunks: a plan, or a part of one."""
+
+    @property
+    def job(self) -> Job:
+        """What is done with each member."""
+
+    def values(self, chunk: int, /) -> Any:
+        """Return the values of the members of a chunk."""
 
 
 @dataclass(frozen=True)
@@ -55,17 +67,16 @@ class Engine:
         """How many processes work."""
         return self.workers or cores()
 
-    def run(self, plan: Plan, chunks: Iterable[int], take: Take) -> None:
-        """Run some chunks of a sweep, and hand over each as it is done."""
-        waiting = iter(chunks)
+    def run(self, work: Work, following: Next, take: Take) -> None:
+        """Run chunks of a sweep as long as there is a next one, and hand over each as it is done."""
         if self.scheduler is not None:
             with _client(self.scheduler, self.processes) as client:
-                _on_dask(client, plan, waiting, take)
+                _on_dask(client, work, following, take)
         elif self.processes == 1:
-            for chunk in waiting:
-                take(chunk, plan.job.run(plan.values(chunk)))
+            while (chunk := following()) is not None:
+                take(chunk, work.job.run(work.values(chunk)))
         else:
-            _on_processes(self.processes, plan, waiting, take)
+            _on_processes(self.processes, work, following, take)
 
 
 def run_chunk(job: Job, values: Any) -> Columns:
@@ -84,7 +95,7 @@ def _travels(function: Any) -> bool:
 # --- processes --------------------------------------------------------------------------------------------------------
 
 
-def _on_processes(count: int, plan: Plan, waiting: Iterator[int], take: Take) -> None:
+def _on_processes(count: int, work: Work, following: Next, take: Take) -> None:
     attempts: dict[int, int] = {}
     again: list[int] = []  # their worker was lost
     while True:
@@ -92,10 +103,8 @@ def _on_processes(count: int, plan: Plan, waiting: Iterator[int], take: Take) ->
         going: dict[Any, int] = {}
         try:
             while True:
-                while (
-                    len(going) < count * _AHEAD and (chunk := again.pop() if again else next(waiting, None)) is not None
-                ):
-                    going[pool.submit(run_chunk, plan.job, plan.values(chunk))] = chunk
+                while len(going) < count * _AHEAD and (chunk := again.pop() if again else following()) is not None:
+                    going[pool.submit(run_chunk, work.job, work.values(chunk))] = chunk
                 if not going:
                     pool.shutdown()
                     return
@@ -108,7 +117,7 @@ def _on_processes(count: int, plan: Plan, waiting: Iterator[int], take: Take) ->
                 attempts[chunk] = attempts.get(chunk, 0) + 1
                 if attempts[chunk] >= _ATTEMPTS:
                     raise SolverError(
-                        f"the process that ran members {chunk * plan.chunk} and on was lost {_ATTEMPTS} times: "
+                        f"the process that ran chunk {chunk} was lost {_ATTEMPTS} times: "
                         "is there memory enough? Take fewer `workers`, or smaller chunks (`chunk`)."
                     ) from None
             again += list(going.values())
@@ -173,10 +182,10 @@ def _client(scheduler: str, count: int) -> Iterator[Any]:
         yield client
 
 
-def _on_dask(client: Any, plan: Plan, waiting: Iterator[int], take: Take) -> None:
+def _on_dask(client: Any, work: Work, following: Next, take: Take) -> None:
     from distributed import KilledWorker, as_completed
 
-    job = client.scatter(plan.job, broadcast=True)
+    job = client.scatter(work.job, broadcast=True)
     going: dict[str, int] = {}
     done = as_completed(with_results=True, raise_errors=False)
 
@@ -188,8 +197,8 @@ def _on_dask(client: Any, plan: Plan, waiting: Iterator[int], take: Take) -> Non
             asked, most = time.monotonic(), _AHEAD * max(1, sum(client.nthreads().values()))
         if len(going) > most // 2:  # many at once cost the scheduler less
             return
-        some = list(islice(waiting, most - len(going)))
-        values = [plan.values(chunk) for chunk in some]
+        some = list(islice(iter(following, None), most - len(going)))
+        values = [work.values(chunk) for chunk in some]
         futures = client.map(run_chunk, [job] * len(some), values, pure=False, retries=_ATTEMPTS) if some else []
         for chunk, future in zip(some, futures, strict=True):
             going[future.key] = chunk

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -14,42 +13,12 @@ Mask = NDArray[np.bool_]
 _COARSE = 16
 
 
-def refine(shape: tuple[int, int], classes_of: Callable[[Places], Places]) -> tuple[Mask, Places]:
-    """Return of which fields of a grid the class was found by a run, and the class of every field.
-
-    A field that was not run lies in a square of fields whose corners, and those of all squares about it, are of one
-    class. What is smaller than a square of the first grid, and touches none of its corners, is not seen.
-
-    Parameters
-    ----------
-    shape : pair of int
-        Of the grid.
-    classes_of : callable
-        From places in the grid, counted row by row, to the classes there.
-
-    Examples
-    --------
-    >>> def disc(places):
-    ...     x, y = np.unravel_index(places, (100, 100))
-    ...     return (np.hypot(x - 50, y - 50) < 30.2).astype(int)
-    >>> run, found = refine((100, 100), disc)
-    >>> bool((found.ravel() == disc(np.arange(10_000))).all()), int(run.sum()) < 3000
-    (True, True)
-    """
-    run = np.zeros(shape, dtype=bool)
-    found = np.zeros(shape, dtype=np.int64)
-    while True:
-        places, whole = next_places(run, found)
-        if not places.size:
-            return run, whole
-        found.ravel()[places] = classes_of(places)
-        run.ravel()[places] = True
-
-
 def next_places(run: Mask, found: Any, *, everywhere: bool = False, coarse: int = _COARSE) -> tuple[Places, Any]:
     """Return which fields to run next, none where all is known, and the grid as far as it is known.
 
     What was run may be a part of what was to be run: so a map can be filled in as many goes as you like, and go on.
+    In the end a field that was not run lies in a square of fields whose corners, and those of all squares about it, are
+    of one class. What is smaller than a square of the first grid, and touches none of its corners, is not seen.
 
     Parameters
     ----------
@@ -71,7 +40,7 @@ def next_places(run: Mask, found: Any, *, everywhere: bool = False, coarse: int 
     (289, 0, 800)
     """
     shape = run.shape
-    step = 2 ** max(0, int(np.log2(max(min(shape) // coarse, 1))))
+    step = first_step(shape, coarse)
     wanted, whole = _grid(shape, step), found
     while True:
         lower = [_nodes(count, step)[_below(count, step)] for count in shape]
@@ -83,6 +52,17 @@ def next_places(run: Mask, found: Any, *, everywhere: bool = False, coarse: int 
         if not everywhere:
             wanted &= _near(whole, step)
         step //= 2
+
+
+def first_step(shape: tuple[int, ...], coarse: int = _COARSE) -> int:
+    """Return how many fields apart the first are: at least two, so that a small grid is refined, too.
+
+    Examples
+    --------
+    >>> first_step((1000, 1000)), first_step((33, 25))
+    (32, 2)
+    """
+    return max(2, 2 ** int(np.log2(max(min(shape) // coarse, 1))))
 
 
 def _nodes(count: int, step: int) -> Places:

@@ -291,8 +291,9 @@ class Sweep(Displayed):
         store = Store.create(Path(path), plan)
         names = [str(name) for name in self.data.data_vars]
         for chunk in range(plan.chunks):
-            part = self.data.isel(member=slice(chunk * plan.chunk, (chunk + 1) * plan.chunk))
-            store.write(chunk, {name: part[name].values for name in names})
+            where = slice(chunk * plan.chunk, min((chunk + 1) * plan.chunk, plan.members))
+            part = self.data.isel(member=where)
+            store.write(where, {name: part[name].values for name in names})
         return store.path
 
 

@@ -91,14 +91,13 @@ class Store:
 
     # --- writing ----------------------------------------------------------------------------------------------------
 
-    def write(self, chunk: int, columns: Columns) -> None:
-        """Write a chunk, what says that it is done last."""
-        first = chunk * self._chunk
-        where = slice(first, first + len(columns["status"]))
+    def write(self, where: slice | NDArray[np.int64], columns: Columns) -> None:
+        """Write some members, what says that they are done last: a slice of whole chunks, or places in their order."""
         try:
             for name in sorted(columns, key=lambda one: one == "status"):
                 values = columns[name]
-                self._array(name)[where] = values.astype(np.dtypes.StringDType()) if name == "reason" else values
+                text = values.astype(np.dtypes.StringDType()) if name == "reason" else values
+                self._array(name)[where, *(slice(None),) * (text.ndim - 1)] = text
         except OSError as error:
             raise NoRoomError(
                 f"{self.path} cannot be written: {first_line(error)}. Make room, then go on with "

@@ -12,6 +12,7 @@ from typing import Any
 
 from ...mechanics.algebra import ZERO, Quaternion, Vector
 from ...mechanics.contact import Contact, contact_at
+from ...mechanics.duals import value_of, values_of
 from ...mechanics.loads import BodyMotion
 from ...mechanics.scalars import Scalar, as_float
 from ...mechanics.system import RollingSystem, State
@@ -200,6 +201,15 @@ class Law:
             n = contact_at(system, time, p, q, coordinates).normal
             rate = rate - n * rate.dot(n)
         return rate
+
+    def moment(self, system: RollingSystem, at: ContactState, rates: Sequence[Scalar]) -> float:
+        """Return a time in which a motion with these rates changes, s: at most that of the body.
+
+        Where the support is all but as hollow as the body is round, the contact runs far faster than the body moves.
+        """
+        point, _, turning, *_ = self.split(values_of(tuple(rates)))
+        body, arm = at.moment(system), value_of(at.arm)
+        return float(1 / max(1 / body, point.norm() / arm, turning.norm() * body))
 
     def rk4_step(
         self, system: RollingSystem, time: Scalar, state: Numbers, step: Scalar, known: Rates | None = None
