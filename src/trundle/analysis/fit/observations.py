@@ -40,6 +40,8 @@ class Observations:
         The file's name, or "data".
     read : str
         What was taken for what.
+    accuracy : float
+        By how much all that is seen at one place may be off, as the track says it, m.
     """
 
     time: Array
@@ -48,6 +50,7 @@ class Observations:
     rows: Any
     label: str
     read: str
+    accuracy: float = 0.0
 
     @property
     def known(self) -> Array:
@@ -98,7 +101,8 @@ def observe(
     if time.size < _FEWEST:
         raise InvalidValueError("data", f"must have {_FEWEST} rows at least", f"{time.size} with a time and a value")
     said = f"{track.taken}. {track.left_out_rows}".rstrip(" .")
-    return Observations(time, tuple(wanted), values, rows, _called(track, label), said)
+    accuracy = float(track.data.attrs.get("accuracy", 0.0))
+    return Observations(time, tuple(wanted), values, rows, _called(track, label), said, accuracy)
 
 
 def _check_frame(track: Track) -> None:
