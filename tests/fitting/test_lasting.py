@@ -81,5 +81,5 @@ def test_a_wrong_law_is_still_told() -> None:
     draw = np.random.default_rng(1)
     data = seen(on_turntable(T, RATE, drag=5e-3), draw, 5e-5)
     assert tr.fit(data, TABLE, [K], camera={"accuracy": "0.2 mm"}).answer == "bad"
-    with pytest.raises(tr.InvalidValueError, match="camera.accuracy"):
+    with pytest.raises(tr.InvalidValueError, match=r"camera\.accuracy"):
         tr.fit(data, TABLE, [K], camera={"accuracy": -1e-3})
