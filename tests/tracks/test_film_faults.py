@@ -171,7 +171,8 @@ def test_the_check_film_has_rim_dot_and_ball_where_they_are(path: Any, tmp_path:
         at = int(np.flatnonzero(track.data["row"].values == i)[0])
         assert near(i, shown, "mark")
         assert near(i, track.pixels[at], "ball")
-        assert near(i, SMALL.seen(np.array([[0.0, 0.14, 0.0]]))[0], "rim")
+        for place in ([0.0, 0.14, 0.0], [0.14, 0.0, 0.0], [-0.14, 0.0, 0.0]):
+            assert near(i, SMALL.seen(np.array([place]))[0], "rim")
     at = int(np.flatnonzero(track.data["row"].values == 19)[0])
     assert near(19, track.pixels[at], "ball")
     assert not near(20, track.pixels[at], "ball")  # left out: it repeats the one before
