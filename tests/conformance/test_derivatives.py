@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -69,9 +70,10 @@ def test_a_body_that_leaves_its_support_has_none() -> None:
 
 def test_our_own_derivatives_are_at_rounding() -> None:
     """From the task alone; the exact one of the incline comes of its formula. Differences are as good as their step."""
-    found = score([Entrant.of_engine("trundle")], [DRAW, CASES["incline"]], [1e-2], derivatives=True)
+    ours = Entrant.of_engine("trundle")
+    found = score([replace(ours, settings=ours.settings[:1])], [DRAW, CASES["incline"]], [1e-2], derivatives=True)
     own = {(cell.setting, cell.case, cell.way): cell.finest.worst for cell in found.derivatives}
-    assert len(own) == 2 * 2 * 3
+    assert len(own) == 2 * 3
     assert max(error for (*_, way), error in own.items() if way == "variational equations") < 1e-12
     assert max(error for (*_, way), error in own.items() if way.endswith("1e-05")) < 1e-8
     assert {cell.name for cell in found.motions} == {"exact"}
@@ -103,8 +105,6 @@ def test_an_adapter_without_derivatives_cannot(program: Make, tmp_path: Path) ->
     found = score([Entrant.of_command(" ".join(command))], [CASES["incline"]], [1e-2], derivatives=True)
     first = found.derivatives[0]
     assert (first.name, first.finest.message) == ("cannot", "it gives no derivatives of its own")
-    last = found.derivatives[-1]  # its answer is the same, whatever it is told: at the start that is seen
-    assert last.finest.outcome in ("ok", "bad answer")
 
 
 @pytest.mark.parametrize(

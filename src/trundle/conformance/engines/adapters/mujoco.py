@@ -136,7 +136,7 @@ def chained(mujoco: Any, task: Task, world: Any, data: Any, read: Any) -> Task:
 
 
 def _tangent(task: Task, direction: Task) -> list[float]:
-    """Return a direction in MuJoCo's own coordinates: turns and angular velocities in the axes of the body."""
+    """Return a direction as mjd_transitionFD has it: turns and angular velocities in the axes of the body."""
     body, slope = task["bodies"][0], direction["bodies"][0]
     w, x, y, z = body["orientation"]
     _, *half = times([w, -x, -y, -z], slope["orientation"])
