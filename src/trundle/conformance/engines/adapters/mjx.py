@@ -90,12 +90,8 @@ def differentiated(task: Task, world: Any, state: Any) -> dict[str, list[Any]]:
     def end(by: Any) -> Any:
         """Return the final state by how far the start lies along each direction."""
         moved = {key: jnp.tensordot(by, part, 1) for key, part in along.items()}
-        model = world.tree_replace(
-            {
-                "opt.gravity": world.opt.gravity + moved["gravity"],
-                "pair_friction": world.pair_friction + moved["friction"],
-            }
-        )
+        gravity, friction = world.opt.gravity + moved["gravity"], world.pair_friction + moved["friction"]
+        model = world.tree_replace({"opt.gravity": gravity, "pair_friction": friction})
         begun = state.replace(qpos=state.qpos + moved["qpos"], qvel=state.qvel + moved["qvel"])
         last = jax.lax.fori_loop(0, count, lambda _, now: mjx.step(model, now), begun)
         w, u = last.qpos[3], last.qpos[4:7]
