@@ -173,6 +173,21 @@ class Case(ABC):
             J; not a number where the motion does not tell how its support turns.
         """
 
+    def friction_force(self, motion: Motion) -> Array:  # noqa: ARG002  a case that has a force takes it
+        """Return the mean force of friction of the support on all bodies, where forces are part of the case.
+
+        Parameters
+        ----------
+        motion : Motion
+            The exact one, or an engine's.
+
+        Returns
+        -------
+        array of shape (3,)
+            N; not a number where they are not.
+        """
+        return np.full(3, np.nan)
+
     def inputs(self) -> tuple[Input, ...]:
         """Return the numbers by which the final state has derivatives; none where it has none, or they are not known.
 

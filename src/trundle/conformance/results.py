@@ -32,6 +32,7 @@ _SAID = {
     "energy": "error of the energy over the highest kinetic energy, the largest",
     "seconds": "processor time of the stepping for a second of the motion",
     "derivative": "relative error of the derivatives of the final state, the largest by any input",
+    "friction": "error of the mean force of friction over that force",
     "limit": "rate at which components of the angular velocity are cut off",
 }
 
@@ -58,6 +59,8 @@ class Row:
         How derivatives of the final state were taken; empty for the motion itself.
     derivative : float
         Their relative error, the largest by any input.
+    friction : float
+        See `Errors`.
     """
 
     engine: str
@@ -77,6 +80,7 @@ class Row:
     limit: float
     way: str = ""
     derivative: float = math.nan
+    friction: float = math.nan
 
     @property
     def worst(self) -> float:

@@ -6,6 +6,7 @@ import math
 import shlex
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from statistics import median
 from typing import Any
 
 from ..errors import InvalidValueError
@@ -75,6 +76,7 @@ def score(
     steps: Sequence[float] = STEPS,
     *,
     derivatives: bool = False,
+    repeat: int = 1,
     limit: float = LIMIT,
     tell: Told = lambda _: None,
 ) -> Score:
@@ -90,6 +92,8 @@ def score(
         The engine's steps, s.
     derivatives : bool
         Whether to score the derivatives of the final state, too.
+    repeat : int
+        How often each run is made: the processor time is the median.
     limit : float
         s for one run.
     tell : callable
@@ -108,7 +112,7 @@ def score(
     >>> [(row.outcome, row.message) for row in found.rows][:1]
     [('failed', 'no-such-program cannot be started: No such file or directory')]
     """
-    return Score(tuple(runs(entrants, cases, steps, derivatives=derivatives, limit=limit, tell=tell)))
+    return Score(tuple(runs(entrants, cases, steps, derivatives=derivatives, repeat=repeat, limit=limit, tell=tell)))
 
 
 def runs(
@@ -117,6 +121,7 @@ def runs(
     steps: Sequence[float] = STEPS,
     *,
     derivatives: bool = False,
+    repeat: int = 1,
     limit: float = LIMIT,
     tell: Told = lambda _: None,
 ) -> Iterator[Row]:
@@ -135,18 +140,27 @@ def runs(
             for setting in entrant.settings:
                 tell(f"{entrant.name}, {setting.name}")
                 for case in cases:
-                    yield from _runs(adapter, entrant, setting, case, steps, exact[case.name])
+                    yield from _runs(adapter, entrant, setting, case, steps, exact[case.name], repeat)
                     yield from _slopes(adapter, entrant, setting, case, steps, inputs[case.name])
 
 
 def _runs(
-    adapter: Adapter, entrant: Entrant, setting: Setting, case: Case, steps: Sequence[float], exact: Motion
+    adapter: Adapter,
+    entrant: Entrant,
+    setting: Setting,
+    case: Case,
+    steps: Sequence[float],
+    exact: Motion,
+    repeat: int,
 ) -> Iterator[Row]:
     """Run one case at all steps, the coarsest first: where one cannot or is late, the finer ones are not tried."""
     answer: Answer | None = None
     for dt in sorted(steps, reverse=True):
         if answer is None or answer.outcome not in (CANNOT_OUTCOME, TOO_SLOW):
             answer = adapter.answer(case, dt, dict(setting.values))
+            if answer.outcome == OK and repeat > 1:
+                again = (adapter.answer(case, dt, dict(setting.values)).seconds for _ in range(repeat - 1))
+                answer = replace(answer, seconds=median([answer.seconds, *again]))
         elif answer.outcome == TOO_SLOW:
             answer = Answer(TOO_SLOW, "not tried: a longer step is too slow already")
         yield _row(entrant, setting, case, dt, answer, exact)
@@ -174,7 +188,7 @@ def _slopes(
 
 def _row(entrant: Entrant, setting: Setting, case: Case, dt: float, answer: Answer, exact: Motion | None) -> Row:
     """Measure what came of a run."""
-    told: dict[str, Any] = dict.fromkeys(("position", "angle", "turning", "slip", "energy"), math.nan)
+    told: dict[str, Any] = dict.fromkeys(("position", "angle", "turning", "slip", "energy", "friction"), math.nan)
     limit = None
     if answer.outcome == NOT_FINITE:
         told |= {"position": math.inf, "turning": math.inf}
