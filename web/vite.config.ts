@@ -63,7 +63,7 @@ export default defineConfig(({ mode }) => ({
     projects: [
       { extends: true, test: { name: 'viewer', include: ['src/viewer/**/*.test.ts'], environment: 'node' } },
       { extends: true, test: { name: 'live', include: ['src/live/**/*.test.ts'], environment: 'node' } },
-      { extends: true, test: { name: 'lab', include: ['src/lab/**/*.test.ts'], environment: 'happy-dom' } },
+      { extends: true, test: { name: 'lab', include: ['src/{lab,languages}/**/*.test.ts'], environment: 'happy-dom' } },
     ],
   },
 }))

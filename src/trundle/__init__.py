@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     )
     from .analysis.checking import Check, Mistake, check, check_equations
     from .analysis.derivation import derive
+    from .analysis.fit import Camera, Estimate, Fit, FitPlan, fit, plan_fit
     from .analysis.geometry import Arc, Curve, PathScenario, RolledPath, Rotation, Straight, roll_along
     from .analysis.holonomy import ConstraintAnalysis, PfaffianSystem
     from .analysis.imperfections import Sensitivity, air_drag, sensitivity
@@ -212,6 +213,7 @@ __all__ = [
     "BifurcationDiagram",
     "Body",
     "Bowl",
+    "Camera",
     "Card",
     "ChargedParticle",
     "Check",
@@ -229,8 +231,11 @@ __all__ = [
     "EllipsoidalBowl",
     "Equilibria",
     "Equilibrium",
+    "Estimate",
     "Event",
     "FilmTrack",
+    "Fit",
+    "FitPlan",
     "Fixed",
     "Force",
     "FreeAxle",
@@ -316,11 +321,13 @@ __all__ = [
     "conformance",
     "derive",
     "equilibria",
+    "fit",
     "lyapunov_exponents",
     "lyapunov_map",
     "periodic_motion",
     "periodic_orbit",
     "place_many",
+    "plan_fit",
     "poincare_section",
     "read_track",
     "roll_along",

@@ -35,7 +35,7 @@ class InvalidValueError(TrundleError, ValueError):
 
     def __init__(self, key: str, rule: str, received: object, remedy: str = "") -> None:
         self.key, self.rule, self.received, self.remedy = key, rule, received, remedy
-        super().__init__(f"`{key}` {rule}; got {_shown(received)}.{' ' + remedy if remedy else ''}")
+        super().__init__(f"`{key}` {rule}; got {shown(received)}.{' ' + remedy if remedy else ''}")
 
     def __reduce__(self) -> tuple[type, tuple[object, ...]]:
         return type(self), (self.key, self.rule, self.received, self.remedy)
@@ -223,7 +223,8 @@ def did_you_mean(received: str, known: Iterable[str]) -> str:
     return f" Did you mean {close[0]!r}?" if close else ""
 
 
-def _shown(received: object) -> str:
+def shown(received: object) -> str:
+    """Return a value as a message shows it."""
     try:
         text = repr(received)
     except (ValueError, RecursionError):  # an integer of more than 4300 digits, a structure nested too deep

@@ -55,6 +55,7 @@ _NUMBER = re.compile(
     re.DOTALL | re.ASCII | re.IGNORECASE,
 )
 _PLUS_MINUS = re.compile(r"±|\+/-|\+-")
+_SPAN = re.compile(r"\.\.")
 _UNIT = re.compile(r"[A-Za-z°µμΩ%²³·/*^() \-\d]{0,40}")
 _LARGE_POWER = re.compile(r"\d{2,}|(?:\^|\*\*)[^0-9-]*-?\d{2,}|(?:\^|\*\*).*(?:\^|\*\*).*(?:\^|\*\*)")
 
@@ -93,14 +94,18 @@ def plus_minus(text: str) -> tuple[str, str] | None:
     >>> plus_minus("33.3 ± 0.3 rpm"), plus_minus("33.3 rpm +- 0.3"), plus_minus("33.3 rpm")
     (('33.3 rpm', '0.3 rpm'), ('33.3 rpm', '0.3 rpm'), None)
     """
-    parts = [part.strip() for part in _PLUS_MINUS.split(text)]
-    if len(parts) != 2 or not all(parts):
-        return None
-    found = [_NUMBER.fullmatch(part) for part in parts]
-    units = [(match[2] or "").strip() if match else "" for match in found]
-    either = zip(parts, found, strict=True)
-    middle, half = (f"{part} {max(units)}".strip() if match and not match[2] else part for part, match in either)
-    return middle, half
+    return _two(text, _PLUS_MINUS)
+
+
+def span(text: str) -> tuple[str, str] | None:
+    """Return the two ends of "1..3 cm", a unit that stands once with both; None where it is written otherwise.
+
+    Examples
+    --------
+    >>> span("1..3 cm"), span("5 mm..3 cm"), span("1 cm")
+    (('1 cm', '3 cm'), ('5 mm', '3 cm'), None)
+    """
+    return _two(text, _SPAN)
 
 
 def finite(number: Any, key: str, received: Any) -> Any:
@@ -132,6 +137,18 @@ def _with_units(kind: str, digits: str) -> str:
     offered = dict.fromkeys([unit, example.partition(" ")[2]])
     quoted = ", ".join(f"'{digits} {one}'" for one in offered)
     return f"Write {quoted} or, in a file or in Python, the bare number {digits}, which is in {unit}."
+
+
+def _two(text: str, between: re.Pattern[str]) -> tuple[str, str] | None:
+    """Return the two parts of a text, a unit that stands with one of them with both."""
+    parts = [part.strip() for part in between.split(text)]
+    if len(parts) != 2 or not all(parts):
+        return None
+    found = [_NUMBER.fullmatch(part) for part in parts]
+    units = [(match[2] or "").strip() if match else "" for match in found]
+    either = zip(parts, found, strict=True)
+    first, second = (f"{part} {max(units)}".strip() if match and not match[2] else part for part, match in either)
+    return first, second
 
 
 def _as_float(value: int | float, key: str) -> float:

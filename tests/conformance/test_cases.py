@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -54,6 +55,20 @@ def test_the_pushed_box_gains_what_simbenchmark_asks() -> None:
                 by_hand
             )
             assert np.linalg.norm(motion.velocity[-1, 1:], axis=-1) == pytest.approx(2 / 7 * by_hand)
+
+
+@pytest.mark.parametrize("name", ["pushed-box", "pushed-box-diagonal"])
+def test_the_ground_holds_the_box_by_its_friction(name: str) -> None:
+    """μ times the weight of all; an error of it counts elevenfold in the motion, which the small net force makes."""
+    case = next(case for case in CASES if case.name == name)
+    exact = case.exact()
+    friction = 0.4 * 35.0 * 9.80665
+    assert np.linalg.norm(case.friction_force(exact)) == pytest.approx(friction, rel=1e-12)
+    assert case.friction_force(exact) @ exact.velocity[-1, 0] < 0
+    net = 150.0 - friction
+    wrong = replace(exact, velocity=exact.velocity * (150.0 - 1.01 * friction) / net)
+    assert errors_of(case, exact, wrong).friction == pytest.approx(0.01, rel=1e-9)
+    assert friction / net == pytest.approx(10.8, abs=0.05)
 
 
 def test_energy_and_slip_are_what_the_laws_say() -> None:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.conformance.conftest import Make, good_answer
 
 import trundle as tr
 from trundle.conformance import Entrant, Row, Score, cases, engines, score
@@ -93,7 +96,8 @@ def test_rows_are_read_back_and_compared(tmp_path) -> None:
     old = Score(rows(1e-2, 1e-3) + rows(1e-2, 1e-2, case="dome"))
     old.save(tmp_path / "score.nc")
     read = Score.load(tmp_path / "score.nc")
-    assert [replace(row, limit=0.0) for row in read.rows] == [replace(row, limit=0.0) for row in old.rows]
+    plain = {"limit": 0.0, "derivative": 0.0}  # no number is equal to nan
+    assert [replace(row, **plain) for row in read.rows] == [replace(row, **plain) for row in old.rows]
     new = Score(rows(1e-2, 1e-2))
     assert new.changes_from(read) == ["E, as shipped, incline: converges, now plateaus"]
     assert len(new.with_rows_of(read).rows) == 4
@@ -140,3 +144,15 @@ def test_our_own_row_is_at_rounding() -> None:
     assert {row.outcome for row in found.rows} == {"ok"}
     assert max(row.worst for row in found.rows) <= 1e-12
     assert {cell.name for cell in found.profiles} == {"exact"}
+
+
+def test_the_cost_is_the_median_of_runs(program: Make, tmp_path: Path) -> None:
+    """The program says that each run takes as many seconds as its task has in its number, squared."""
+    case = CASES["billiard-draw"]
+    motion = {key: part for key, part in good_answer(case).items() if key not in ("task", "seconds")}
+    (tmp_path / "motion").write_text(json.dumps(motion))
+    command = program(f"say(seconds=task['task']**2, **json.load(open(r'{tmp_path}/motion')))")
+    entrant = Entrant.of_command(" ".join(command))
+    found = score([entrant], [case], [1e-2], repeat=5).rows[0]
+    assert found.seconds == pytest.approx(9 / case.duration)
+    assert score([entrant], [case], [1e-2]).rows[0].seconds == pytest.approx(1 / case.duration)

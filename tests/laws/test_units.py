@@ -16,7 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from trundle.errors import InvalidValueError
-from trundle.units import UNITS, _exact_factor, plus_minus, to_si, unit_registry
+from trundle.units import UNITS, _exact_factor, plus_minus, span, to_si, unit_registry
 
 ULP = np.finfo(float).eps
 
@@ -223,11 +223,13 @@ def test_any_text_is_a_finite_float_or_refused(text: str, kind: str) -> None:
 )
 def test_a_unit_that_stands_once_stands_for_both(middle: str, half: str, both: tuple[str, str], sign: str) -> None:
     assert plus_minus(f"{middle}{sign}{half}") == both
+    assert span(f"{middle}..{half}") == both
 
 
 @pytest.mark.parametrize("text", ["", "3 rpm", "±", "± 3", "3 ±", "3 ± 4 ± 5"])
 def test_what_has_no_two_parts_is_no_value_with_its_error(text: str) -> None:
     assert plus_minus(text) is None
+    assert span(text.replace("±", "..")) is None
 
 
 def test_common_units_leave_pint_alone() -> None:

@@ -35,7 +35,7 @@ SAMPLE = {
 def test_the_motion_in_the_page_is_the_run(name: str) -> None:
     """`python -m tests.live.accuracy` compares all scenarios at the ends of all sliders that are offered."""
     scenario = tr.Scenario.load(name)
-    asked = SAMPLE[name] or ["start.angular_velocity[2]=150..160"]
+    asked = SAMPLE[name] or ["start.angular_velocity[2]=150..160 rad/s"]
     for one in compared(scenario, asked):
         assert not one.refused
         assert one.apart <= BOUND, one.where
@@ -67,6 +67,30 @@ def test_a_moved_slider_places_the_start_anew(name: str) -> None:
         assert np.allclose(found[placed.size :], system.vector_field("numpy").parameters, rtol=1e-14, atol=0)
 
 
+BY_FORMULA = {"tilted-turntable": "T5", "golfers-dilemma": "T7", "cylinder-on-incline": "T5", "tippe-top": None}
+
+
+@pytest.mark.parametrize("name", BY_FORMULA)
+def test_where_a_closed_form_can_be_printed_the_page_has_it(name: str) -> None:
+    """By it the place is right to rounding, also where a slider takes the motion to another of its cases."""
+    scenario = tr.Scenario.load(name)
+    sliders, placed = sliders_of(scenario, [])
+    text = law.script_of(scenario, [one.key for one in sliders], placed)
+    assert (placed.form and placed.form.equation) == BY_FORMULA[name]
+    assert ("function rolling_by_formula_rates(" in text) == (placed.form is not None)
+    assert placed.form is None or max(one.apart for one in compared(scenario)) < 1e-14
+
+
+def test_where_a_slider_leads_out_of_a_closed_form_the_law_is_followed() -> None:
+    """The golf ball's is that of an upright cylinder; another has that of one that leans."""
+    scenario = tr.Scenario.load("golfers-dilemma")
+    tables = scenario.model_dump(exclude_unset=True, exclude_none=True, by_alias=True)
+    upright = tr.Scenario.read({**tables, "support": {**tables["support"], "tilt": 0.0}})
+    _, placed = sliders_of(upright, ["support.tilt=0 deg..1 deg"])
+    assert placed.form is None
+    assert max(one.apart for one in compared(upright, ["support.tilt=0 deg..1 deg"])) < BOUND
+
+
 def test_a_start_that_would_be_decided_otherwise_is_refused() -> None:
     """What is decided by numbers on the way holds for those of the file; elsewhere the two are compared."""
     scenario = tr.Scenario.load("weighted-cylinder-on-incline")
@@ -83,6 +107,8 @@ REFUSED = {
     "no such number": ["tilted-turntable", "page.html", "--live", "--slider", "body.redius"],
     "a formula": ["turntable-starting-up", "page.html", "--live", "--slider", "support.motion.rate"],
     "downwards": ["tilted-turntable", "page.html", "--live", "--slider", "support.tilt=1deg..0deg"],
+    "no unit": ["tilted-turntable", "page.html", "--live", "--slider", "support.tilt=0..2"],
+    "no span": ["tilted-turntable", "page.html", "--live", "--slider", "support.tilt="],
     "half a span": ["tilted-turntable", "page.html", "--live", "--slider", "support.tilt=1deg"],
     "without its value": ["tilted-turntable", "page.html", "--live", "--slider", "support.tilt=1deg..2deg"],
     "beyond the rim": ["tilted-turntable", "page.html", "--live", "--slider", "start.position[0]=-1 m..0 m"],
@@ -129,6 +155,21 @@ def test_the_labels_are_those_of_the_file() -> None:
     (one,), _ = sliders_of(tr.Scenario.load("tilted-turntable"), ["support.motion.rate=20 rpm..45 rpm"])
     assert (one.label, one.group, one.unit) == ("Rate", "support motion", "rpm")
     assert one.low / one.factor == pytest.approx(20.0, rel=1e-14)
+
+
+@pytest.mark.parametrize("span", ["20..45 rpm", "20 rpm..45", "20 rpm .. 45 rpm"])
+def test_a_unit_that_stands_once_stands_for_both_ends(span: str) -> None:
+    (one,), _ = sliders_of(tr.Scenario.load("tilted-turntable"), [f"support.motion.rate={span}"])
+    assert (one.low / one.factor, one.high / one.factor) == pytest.approx((20.0, 45.0), rel=1e-14)
+
+
+def test_the_example_in_a_refusal_is_no_refusal_itself() -> None:
+    scenario = tr.Scenario.load("tilted-turntable")
+    with pytest.raises(InvalidValueError) as refused:
+        sliders_of(scenario, ["support.tilt=0..2"])
+    example = re.search(r'--slider "(.*)"', refused.value.remedy)
+    assert example is not None
+    sliders_of(scenario, [example[1]])
 
 
 def test_too_many_sliders_are_refused() -> None:

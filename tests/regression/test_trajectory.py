@@ -481,3 +481,4 @@ def test_every_public_name_is_there() -> None:
     for name in tr.__all__:
         assert getattr(tr, name) is not None
     assert set(dir(tr)) == set(tr.__all__)
+    assert set(tr.__all__) == {*tr._HOME_OF, *tr._ROOMS, "__version__"}

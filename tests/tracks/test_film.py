@@ -287,14 +287,14 @@ def test_a_ball_is_where_its_centre_is() -> None:
         moments = cv2.moments(outline - outline[0])
         middle = outline[0] + np.array([moments["m10"], moments["m01"]]) / moments["m00"]
         # The camera of the package, told where the studio's stands and looks.
-        found = _as_ours(studio, rows)
+        found = as_ours(studio, rows)
         np.testing.assert_allclose(found.ball_centres(middle[None], studio.ball), [place], atol=2e-6)
         area = found.ball_area(np.array([place]), studio.ball)[0]
         assert abs(area / moments["m00"] - 1) < 1e-3
     assert matrix[0, 0] == found.focal
 
 
-def _as_ours(studio: Studio, rows: Any) -> PinholeCamera:
+def as_ours(studio: Studio, rows: Any) -> PinholeCamera:
     turn = cv2.Rodrigues(np.diag([1.0, -1.0, -1.0]) @ rows)[0][:, 0]
     centre = ((studio.width - 1) / 2, (studio.height - 1) / 2)
     return PinholeCamera(studio.focal, centre, turn, np.array(studio.lens), studio.distortion)

@@ -38,6 +38,13 @@ def score(
     ablations: Annotated[
         bool, typer.Option("--ablations", help="Run what looks for causes, beside the profiles.")
     ] = False,
+    derivatives: Annotated[
+        bool,
+        typer.Option("--derivatives", help="Score the derivatives of the final state, too, where a case has them."),
+    ] = False,
+    repeat: Annotated[
+        int, typer.Option(metavar="NUMBER", min=1, help="Make each run so often; its cost is the median.")
+    ] = 1,
     limit: Annotated[str, typer.Option(metavar="TIME", help="How long one run may take.")] = "60 s",
     output: Annotated[
         Path, typer.Option("--output", "-o", metavar="FOLDER", help="Of score.nc, to which new rows are added.")
@@ -86,7 +93,9 @@ def score(
         if not entrants and not (report and (output / DATA).exists()):
             remedy = "Name one with --engine, or give a program of yours with --adapter."
             raise InvalidValueError("--engine", "must name what is to be scored", "none", remedy)
-        found = _run(entrants, _cases(case), step, limit, output, report=report, quiet=quiet or as_json)
+        found = _run(
+            entrants, _cases(case), step, limit, output, derivatives, repeat, report=report, quiet=quiet or as_json
+        )
         if as_json:
             screen.out(json.dumps(found.as_dict(), indent=2, ensure_ascii=False))
         elif not quiet:
@@ -139,6 +148,8 @@ def _run(
     steps: list[str] | None,
     limit: str,
     folder: Path,
+    derivatives: bool,
+    repeat: int,
     *,
     report: bool,
     quiet: bool,
@@ -156,7 +167,9 @@ def _run(
     rows: list[Row] = [] if entrants else list(older.rows)
     stopped: int | str | None = None
     try:
-        for row in scoring.runs(entrants, cases, dts, limit=patience, tell=partial(_tell, quiet)):
+        for row in scoring.runs(
+            entrants, cases, dts, derivatives=derivatives, repeat=repeat, limit=patience, tell=partial(_tell, quiet)
+        ):
             rows.append(row)  # noqa: PERF402  those that are there are kept, whatever stops it
     except KeyboardInterrupt:
         stopped = signals.INTERRUPTED

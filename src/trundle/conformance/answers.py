@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from .case import PARTS, Array, Case, Motion, extent, in_body_axes
+from .case import END, PARTS, Array, Case, Input, Motion, extent, in_body_axes
 
 OK, CANNOT, FAILED, NOT_FINITE, BAD = "ok", "cannot", "failed", "not finite", "bad answer"
 TOO_SLOW, NOT_INSTALLED = "too slow", "not installed"
@@ -34,6 +34,9 @@ class Answer:
         Processor time of the stepping, s.
     engine : str
         Name and version, as the adapter says them.
+    derivatives : dict
+        Where they were asked for: by each way that the engine has, for each input, an array of the shape of
+        `Input.exact`, or why there is none.
     """
 
     outcome: str
@@ -41,20 +44,21 @@ class Answer:
     motion: Motion | None = None
     seconds: float = float("nan")
     engine: str = ""
+    derivatives: dict[str, list[Array | str]] = field(default_factory=dict)
 
 
 class _BadAnswerError(ValueError):
     """What is wrong with an answer."""
 
 
-def read_answer(line: str, case: Case, number: int) -> Answer:
+def read_answer(line: str, case: Case, number: int, inputs: Sequence[Input] = ()) -> Answer:
     """Read the line that answers the task of this number; whatever is wrong is said in the answer, and never raised.
 
     Examples
     --------
     >>> import trundle as tr
-    >>> read_answer("Hello, world!", tr.conformance.cases()[0], 1)
-    Answer(outcome='bad answer', message="not JSON: 'Hello, world!'", motion=None, seconds=nan, engine='')
+    >>> read_answer("Hello, world!", tr.conformance.cases()[0], 1).message
+    "not JSON: 'Hello, world!'"
     """
     try:
         told = json.loads(line)
@@ -73,7 +77,8 @@ def read_answer(line: str, case: Case, number: int) -> Answer:
         motion = _motion(told, case)
         _check_start(motion, case)
         _check_turning(motion)
-        return Answer(OK, "", motion, float(_array({"seconds": float("nan")} | told, "seconds", ())), engine)
+        seconds = float(_array({"seconds": float("nan")} | told, "seconds", ()))
+        return Answer(OK, "", motion, seconds, engine, _derivatives(told, inputs) if inputs else {})
     except FloatingPointError as error:
         return Answer(NOT_FINITE, str(error), engine=engine)
     except (_BadAnswerError, TypeError) as error:
@@ -117,6 +122,34 @@ def _motion(told: dict[str, Any], case: Case) -> Motion:
         raise _BadAnswerError(f"`orientation` must hold unit quaternions; a length is off by {worst:.2g}")
     arrays["orientation"] = arrays["orientation"] / length
     return Motion(time=wanted, support=support, **arrays)
+
+
+def _derivatives(told: dict[str, Any], inputs: Sequence[Input]) -> dict[str, list[Array | str]]:
+    """Return the derivatives of the final state by each way, in the order of the inputs."""
+    ways = told.get("derivatives", {})
+    if not isinstance(ways, dict):
+        raise _BadAnswerError("`derivatives` must be an object, with a list for each way to them")
+    found: dict[str, list[Array | str]] = {}
+    for name, each in ways.items():
+        way = _cut(name)
+        if not isinstance(each, list) or len(each) != len(inputs):
+            raise _BadAnswerError(f"`derivatives`, {way}: must be a list of {len(inputs)}, one for each direction")
+        pairs = zip(inputs, each, strict=True)
+        found[way] = [_slopes(one, f"{way}, {wanted.name}", len(wanted.exact)) for wanted, one in pairs]
+    return found
+
+
+def _slopes(told: Any, where: str, bodies: int) -> Array | str:
+    """Return the derivatives by one input, or why there are none."""
+    if isinstance(told, str):
+        return _cut(told)
+    if not isinstance(told, dict):
+        raise _BadAnswerError(f"`derivatives`, {where}: must be an object, or a text that says why there are none")
+    try:
+        slopes = np.concatenate([_array(told, part, (bodies, 3)) for part in END], axis=1)
+    except _BadAnswerError as error:
+        raise _BadAnswerError(f"`derivatives`, {where}: {error}") from None
+    return slopes if np.isfinite(slopes).all() else "they are not finite"
 
 
 def _check_start(motion: Motion, case: Case) -> None:

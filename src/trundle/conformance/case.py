@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 FORMAT = 1  # of the task and the answer: raised when an adapter has to be changed
 PARTS = {"position": 3, "velocity": 3, "angular_velocity": 3, "orientation": 4}
+END = ("position", "velocity", "angular_velocity")  # of which derivatives are asked for
 
 Array = NDArray[np.float64]
 Task = dict[str, Any]
@@ -47,6 +48,39 @@ class Motion:
     angular_velocity: Array
     orientation: Array
     support: Array | None = None
+
+
+@dataclass(frozen=True)
+class Input:
+    """A number of a case by which the final state is differentiated.
+
+    Parameters
+    ----------
+    name : str
+        As the scenario calls it.
+    direction : dict
+        How the numbers of the task change with it: of the same structure, a slope in the place of each number.
+    exact : array of shape (bodies, 9)
+        What it does to position, velocity and angular velocity of each body at the end.
+    size : float
+        Its own, or 1 where it is zero.
+    moved : callable
+        Returns the case with so much more of it.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> case = next(case for case in tr.conformance.cases() if case.name == "incline")
+    >>> tilt = next(each for each in case.inputs() if each.name == "support.tilt")
+    >>> tilt.exact.shape, [round(slope, 3) for slope in tilt.direction["gravity"]]  # the plane leans, with its axes
+    ((1, 9), [9.758, 0.0, 0.979])
+    """
+
+    name: str
+    direction: Task
+    exact: Array
+    size: float
+    moved: Callable[[float], Case]
 
 
 @dataclass(frozen=True)
@@ -139,6 +173,31 @@ class Case(ABC):
             J; not a number where the motion does not tell how its support turns.
         """
 
+    def friction_force(self, motion: Motion) -> Array:  # noqa: ARG002  a case that has a force takes it
+        """Return the mean force of friction of the support on all bodies, where forces are part of the case.
+
+        Parameters
+        ----------
+        motion : Motion
+            The exact one, or an engine's.
+
+        Returns
+        -------
+        array of shape (3,)
+            N; not a number where they are not.
+        """
+        return np.full(3, np.nan)
+
+    def inputs(self) -> tuple[Input, ...]:
+        """Return the numbers by which the final state has derivatives; none where it has none, or they are not known.
+
+        Returns
+        -------
+        tuple of Input
+            Those that change something.
+        """
+        return ()
+
     def kinetic_energy(self, motion: Motion) -> Array:
         """Return the kinetic energy of all bodies.
 
@@ -175,7 +234,7 @@ class Case(ABC):
             found.add("offset")
         return frozenset(found)
 
-    def task(self, dt: float, setting: Mapping[str, Any] | None = None) -> Task:
+    def task(self, dt: float, setting: Mapping[str, Any] | None = None, derivatives: Sequence[Input] = ()) -> Task:
         """Return what an adapter is given.
 
         Parameters
@@ -184,6 +243,8 @@ class Case(ABC):
             The engine's step, s.
         setting : mapping, optional
             What the adapter is to set beside it, in words of its own.
+        derivatives : sequence of Input
+            By what it is to differentiate the final state.
 
         Returns
         -------
@@ -198,7 +259,10 @@ class Case(ABC):
         (0.001, ['angular_velocity', 'force', 'inertia', 'mass'])
         """
         timing = {"dt": dt, "duration": self.duration, "every": self.every}
-        return {"format": FORMAT, "case": self.name, **timing, "setting": dict(setting or {}), **self.situation()}
+        told = {"format": FORMAT, "case": self.name, **timing, "setting": dict(setting or {}), **self.situation()}
+        if derivatives:
+            told["derivatives"] = [{"by": each.name, **each.direction} for each in derivatives]
+        return told
 
     def times(self) -> Array:
         """Return the times of the samples, s."""

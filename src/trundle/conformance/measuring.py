@@ -48,6 +48,8 @@ class Errors:
         Of the velocity of slipping over the highest speed; not a number where the engine does not say enough.
     energy : float
         Over the highest kinetic energy; of the moving energy on a driven support.
+    friction : float
+        Of the mean force of friction, over that force; not a number where the case has no other force.
     """
 
     position: float
@@ -55,6 +57,7 @@ class Errors:
     turning: float
     slip: float
     energy: float
+    friction: float
 
     @property
     def worst(self) -> float:
@@ -80,6 +83,7 @@ def errors_of(case: Case, exact: Motion, motion: Motion) -> Errors:
     turned = (0.5 * (spin[1:] + spin[:-1]) * np.diff(exact.time)[:, None]).sum(0)
     slip = np.abs(np.linalg.norm(case.slip(motion) - case.slip(exact), axis=-1)).max()
     energy = np.abs(case.energy(motion) - case.energy(exact)).max() / case.kinetic_energy(exact).max()
+    friction = case.friction_force(exact)
     # A body that stays, or does not turn, is measured by how far the others go, and by its own size.
     path = np.maximum(path, max(1e-3 * path.max(), extent(case)))
     return Errors(
@@ -88,6 +92,7 @@ def errors_of(case: Case, exact: Motion, motion: Motion) -> Errors:
         float((between / np.maximum(turned, 1e-3 * turned.max())).max()),
         float(slip) / size if size > 0 else float("nan"),
         float(energy),
+        float(np.linalg.norm(case.friction_force(motion) - friction) / np.linalg.norm(friction)),
     )
 
 

@@ -103,7 +103,7 @@ def junit(score: Score, at_most: float | None, least_order: float | None) -> str
     suite = ET.Element("testsuite", name="trundle score")
     failed = dict.fromkeys(("tests", "failures", "skipped"), 0)
     for cell in score.profiles:
-        test = ET.SubElement(suite, "testcase", classname=f"{cell.engine}, {cell.setting}", name=cell.case)
+        test = ET.SubElement(suite, "testcase", classname=f"{cell.engine}, {cell.label}", name=cell.case)
         failed["tests"] += 1
         lines = Score(cell.rows).failures(at_most, least_order)
         if lines:

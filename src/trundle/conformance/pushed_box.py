@@ -162,6 +162,13 @@ class PushedBox(Case):
         slip[:, 0] = 0.0
         return slip
 
+    def friction_force(self, motion: Motion) -> Array:
+        """Return what the gain of momentum leaves of the force that pushes, on the ground."""
+        mass = np.array([self.box_mass, *[self.ball_mass] * len(self.rows) ** 2])
+        gained = mass @ (motion.velocity[-1] - motion.velocity[0]) / self.duration
+        force: Array = (gained - self.force * np.array([*self._along, 0.0])) * [1.0, 1.0, 0.0]
+        return force
+
     def energy(self, motion: Motion) -> Array:
         """Return the kinetic energy, less the work of the force and of the friction on the ground."""
         moved = motion.position[:, 0] - motion.position[:1, 0]

@@ -55,7 +55,9 @@ svg { max-width: 100%; height: auto } figure { margin: 1rem 0 } p { max-width: 4
 
 
 def markdown(score: Score) -> str:
-    """Return the profiles as one table in Markdown: a row for each engine and profile, a column for each case.
+    """Return the profiles as a table in Markdown: a row for each engine and profile, a column for each case.
+
+    Derivatives have a table of their own below.
 
     Examples
     --------
@@ -63,10 +65,15 @@ def markdown(score: Score) -> str:
     | engine | setting |
     | --- | --- |
     """
-    names = _case_names(score)
-    lines = [_row(["engine", "setting", *names]), _row(["---"] * (2 + len(names)))]
-    for (engine, setting), cells in _matrix(score.profiles).items():
-        lines.append(_row([engine, setting, *(_in_words(cells.get(name)) for name in names)]))
+    motions = _in_markdown("setting", score.motions)
+    return motions + (f"\n{_in_markdown('derivatives', score.derivatives)}" if score.derivatives else "")
+
+
+def _in_markdown(head: str, cells: Sequence[Cell]) -> str:
+    names = _case_names(cells)
+    lines = [_row(["engine", head, *names]), _row(["---"] * (2 + len(names)))]
+    for (engine, setting), found in _matrix(cells).items():
+        lines.append(_row([engine, setting, *(_in_words(found.get(name)) for name in names)]))
     return "\n".join(lines) + "\n"
 
 
@@ -85,15 +92,15 @@ def _number(value: float) -> str:
     return f"{value:.1e}".replace("e-0", "e-").replace("e+0", "e+")
 
 
-def _case_names(score: Score) -> list[str]:
-    return list(dict.fromkeys(cell.case for cell in score.profiles))
+def _case_names(cells: Iterable[Cell]) -> list[str]:
+    return list(dict.fromkeys(cell.case for cell in cells))
 
 
 def _matrix(cells: Iterable[Cell]) -> dict[tuple[str, str], dict[str, Cell]]:
     """Return the cells by engine and setting, and by case."""
     found: dict[tuple[str, str], dict[str, Cell]] = {}
     for cell in cells:
-        found.setdefault((cell.engine, cell.setting), {})[cell.case] = cell
+        found.setdefault((cell.engine, cell.label), {})[cell.case] = cell
     return found
 
 
@@ -108,7 +115,7 @@ def page(score: Score, cases: Sequence[Case]) -> str:
         For their titles and what is said about them.
     """
     known = {case.name: case for case in cases}
-    names = _case_names(score)
+    names = _case_names(score.motions)
     versions = sorted({row.version for row in score.rows if row.version})
     told = [platform.machine(), platform.system(), f"Python {platform.python_version()}"]
     about = f"{', '.join(versions)}. {', '.join(told)}. {datetime.now(UTC):%Y-%m-%d}."
@@ -118,15 +125,16 @@ def page(score: Score, cases: Sequence[Case]) -> str:
         _p(about),
         Markup("<h2>How the error falls with the step</h2>"),
         _key(),
-        _table(_matrix(score.profiles), names, known),
+        _table(_matrix(score.motions), names, known),
+        *_of_derivatives(score.derivatives, known),
         Markup("<h2>What takes a plateau away</h2>"),
         _p(
             "Each row differs from a profile in one thing. Where an error that stays in the profile falls here, that"
             " one thing is its cause."
         ),
-        _table(_matrix(cell for cell in score.cells if cell.rows[0].of), names, known),
+        _table(_matrix(cell for cell in score.cells if cell.rows[0].of and not cell.way), names, known),
         Markup("<h2>Case by case</h2>"),
-        *(_section(name, known.get(name), [cell for cell in score.profiles if cell.case == name]) for name in names),
+        *(_section(name, known.get(name), [cell for cell in score.motions if cell.case == name]) for name in names),
     ]
     return (
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
@@ -140,9 +148,26 @@ _INTRODUCTION = (
     "Each engine was given the same bodies, the same start and the same numbers, and run at several steps. The exact"
     " motion is known, by a formula or to fifteen digits by two methods. The error is the larger of two: the distance"
     " from the exact position over the length of the path, and the angle from the exact orientation over the angle"
-    " turned through, each at its worst. “As shipped” changes no setting; “best” sets what the engine's own"
+    " turned through, each at its worst. Where a box is pushed, the error of the force of friction is given, too."
+    " “As shipped” changes no setting; “best” sets what the engine's own"
     " documentation recommends for accuracy. An engine that is made for another purpose may do well there all the same."
 )
+
+
+_DERIVATIVES = (
+    "How the state at the end changes with the start, gravity, the slope, the friction and the table, which is what"
+    " methods that learn or fit by gradients need. The error is that of the worst of them, relative to the exact"
+    " derivative. An engine's own derivatives, in each way that it has to them, stand beside differences of its whole"
+    " runs: where these are good and its own are not, it is not the motion that is at fault."
+)
+
+
+def _of_derivatives(cells: Sequence[Cell], known: Mapping[str, Case]) -> Iterable[Markup]:
+    """Yield what is said of derivatives, and their matrix."""
+    if cells:
+        yield Markup("<h2>Derivatives of the final state</h2>")
+        yield _p(_DERIVATIVES)
+        yield _table(_matrix(cells), _case_names(cells), known)
 
 
 def _p(words: str) -> Markup:
@@ -190,6 +215,7 @@ def _cell(cell: Cell | None) -> str:
     sign, colour = _LOOKS[cell.name]
     last, why = cell.finest, _reason(cell)
     lines = [f"{_number(last.worst)} at {1e3 * last.step:g} ms"] if math.isfinite(last.worst) else []
+    lines += [f"friction {_number(last.friction)}"] if math.isfinite(last.friction) else []
     lines += [f"falls with: {cell.cause}"] if cell.cause else []
     small = "".join(f"<small>{escaped(line)}</small>" for line in lines)
     told = f' title="{escaped(why)}"' if why else ""

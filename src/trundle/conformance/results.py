@@ -20,6 +20,7 @@ from .measuring import CANNOT, CONVERGES, DIVERGES, EXACT, FLOAT_FLOOR, NOT_RUN,
 if TYPE_CHECKING:
     import xarray
 
+_Key = tuple[str, str, str, str]
 _LESS = 1 / 3  # of the error at the finest step: an ablation that leaves so little names the cause
 _FORMAT = "trundle score 1"
 _UNITS = {"step": "s", "angle": "rad", "seconds": "1", "limit": "rad/s"}
@@ -30,6 +31,8 @@ _SAID = {
     "slip": "error of the velocity of slipping over the highest speed, the largest",
     "energy": "error of the energy over the highest kinetic energy, the largest",
     "seconds": "processor time of the stepping for a second of the motion",
+    "derivative": "relative error of the derivatives of the final state, the largest by any input",
+    "friction": "error of the mean force of friction over that force",
     "limit": "rate at which components of the angular velocity are cut off",
 }
 
@@ -52,6 +55,12 @@ class Row:
         Of a processor, for a second of the motion.
     limit : float
         Rate at which spins are cut off, rad/s; not a number where they are not.
+    way : str
+        How derivatives of the final state were taken; empty for the motion itself.
+    derivative : float
+        Their relative error, the largest by any input.
+    friction : float
+        See `Errors`.
     """
 
     engine: str
@@ -69,16 +78,24 @@ class Row:
     energy: float
     seconds: float
     limit: float
+    way: str = ""
+    derivative: float = math.nan
+    friction: float = math.nan
 
     @property
     def worst(self) -> float:
-        """The larger of the errors of position and turning: the one that classes go by."""
-        return max(self.position, self.turning)
+        """The error that classes go by: the larger of those of position and turning, or that of derivatives."""
+        return self.derivative if self.way else max(self.position, self.turning)
 
     @property
-    def key(self) -> tuple[str, str, str, float]:
+    def cell(self) -> tuple[str, str, str, str]:
+        """What it has in common with the same at other steps."""
+        return (self.engine, self.setting, self.case, self.way)
+
+    @property
+    def key(self) -> tuple[str, str, str, str, float]:
         """What tells it from others."""
-        return (self.engine, self.setting, self.case, self.step)
+        return (*self.cell, self.step)
 
 
 class Cell(NamedTuple):
@@ -87,10 +104,16 @@ class Cell(NamedTuple):
     engine: str
     setting: str
     case: str
+    way: str  # to the derivatives; empty for the motion
     name: str  # its class
     order: float
     rows: tuple[Row, ...]  # the coarsest step first
     cause: str  # the ablation that takes a plateau away
+
+    @property
+    def label(self) -> str:
+        """The setting, and the way to the derivatives."""
+        return f"{self.setting}, {self.way}" if self.way else self.setting
 
     @property
     def finest(self) -> Row:
@@ -132,9 +155,9 @@ class Score(Displayed):
     @cached_property
     def cells(self) -> tuple[Cell, ...]:
         """What the rows of each engine, setting and case come to, ablations too."""
-        groups: dict[tuple[str, str, str], list[Row]] = {}
+        groups: dict[_Key, list[Row]] = {}
         for row in self.rows:
-            groups.setdefault((row.engine, row.setting, row.case), []).append(row)
+            groups.setdefault(row.cell, []).append(row)
         ordered = {key: tuple(sorted(rows, key=lambda row: -row.step)) for key, rows in groups.items()}
         return tuple(self._cell(rows, ordered) for rows in ordered.values())
 
@@ -143,7 +166,17 @@ class Score(Displayed):
         """The cells that are no ablations."""
         return tuple(cell for cell in self.cells if not cell.rows[0].of)
 
-    def _cell(self, rows: tuple[Row, ...], groups: dict[tuple[str, str, str], tuple[Row, ...]]) -> Cell:
+    @property
+    def motions(self) -> tuple[Cell, ...]:
+        """Those of the profiles that are of motions."""
+        return tuple(cell for cell in self.profiles if not cell.way)
+
+    @property
+    def derivatives(self) -> tuple[Cell, ...]:
+        """Those of the profiles that are of derivatives."""
+        return tuple(cell for cell in self.profiles if cell.way)
+
+    def _cell(self, rows: tuple[Row, ...], groups: dict[_Key, tuple[Row, ...]]) -> Cell:
         first = rows[0]
         errors = {row.step: row.worst for row in rows}
         name = classify(errors)
@@ -157,13 +190,14 @@ class Score(Displayed):
         if cause.startswith("double precision"):
             name = FLOAT_FLOOR
         p = order(np.array([row.step for row in rows]), np.array([row.worst for row in rows]))
-        return Cell(first.engine, first.setting, first.case, name, p, rows, cause)
+        return Cell(*first.cell, name, p, rows, cause)
 
-    def _cause(self, rows: tuple[Row, ...], groups: dict[tuple[str, str, str], tuple[Row, ...]]) -> str:
+    def _cause(self, rows: tuple[Row, ...], groups: dict[_Key, tuple[Row, ...]]) -> str:
         """Return the ablation of this setting that leaves least of the error, if it leaves little."""
         best, left = "", _LESS
-        for (engine, setting, case), others in groups.items():
-            if (engine, case) != (rows[0].engine, rows[0].case) or others[0].of != rows[0].setting:
+        engine, profile, *same = rows[0].cell
+        for (other_engine, setting, *other_same), others in groups.items():
+            if (other_engine, other_same) != (engine, same) or others[0].of != profile:
                 continue
             for mine, other in zip(reversed(rows), reversed(others), strict=False):
                 if math.isfinite(other.worst) and mine.step == other.step:
@@ -181,7 +215,7 @@ class Score(Displayed):
             why = cell.cause or next((row.message for row in cell.rows if row.message), "")
             ran = any(row.outcome == "ok" for row in cell.rows)
             errors = ", ".join(shown if ran else dict.fromkeys(shown))
-            yield (cell.engine, cell.setting, cell.case, cell.name, p, errors, why)
+            yield (cell.engine, cell.label, cell.case, cell.name, p, errors, why)
 
     def _merged(self) -> Iterator[tuple[str, ...]]:
         """Yield `lines`, one for all cases of an engine of which nothing could be run."""
@@ -230,9 +264,11 @@ class Score(Displayed):
         list of str
             Empty where nothing has changed.
         """
-        before = {cell[:3]: cell.name for cell in older.cells}
-        pairs = ((cell, before.get(cell[:3], cell.name)) for cell in self.cells)
-        return [f"{', '.join(cell[:3])}: {was}, now {cell.name}" for cell, was in pairs if was != cell.name]
+        before = {cell[:4]: cell.name for cell in older.cells}
+        pairs = ((cell, before.get(cell[:4], cell.name)) for cell in self.cells)
+        return [
+            f"{', '.join(filter(None, cell[:4]))}: {was}, now {cell.name}" for cell, was in pairs if was != cell.name
+        ]
 
     def failures(self, at_most: float | None = None, least_order: float | None = None) -> list[str]:
         """Return a line for each engine and case that does not keep a threshold.
@@ -258,7 +294,7 @@ class Score(Displayed):
         """
         lines = []
         for cell in self.profiles if at_most is not None or least_order is not None else ():
-            where, last = f"{cell.engine}, {cell.setting}, {cell.case}", cell.rows[-1]
+            where, last = f"{cell.engine}, {cell.label}, {cell.case}", cell.rows[-1]
             if cell.name == CANNOT:
                 continue
             if not math.isfinite(last.worst):
@@ -318,7 +354,7 @@ class Score(Displayed):
         data = read_netcdf(Path(path))
         if data.attrs.get("format") != _FORMAT:
             raise RunFileError("file", "must hold a score", data.attrs.get("format"), "Name a score.nc.", str(path))
-        columns = {each.name: data[each.name].values for each in fields(Row)}
+        columns = {each.name: data[each.name].values for each in fields(Row) if each.name in data}
         kinds: dict[str, Any] = {each.name: float if each.type == "float" else str for each in fields(Row)}
         return Score(
             tuple(

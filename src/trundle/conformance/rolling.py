@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from ..analysis.sensitivities import keys, sensitivities
 from ..errors import ScenarioError
 from ..mechanics.algebra import Quaternion, Vector
+from ..mechanics.duals import slopes_of
 from ..mechanics.scalars import Scalar
+from ..mechanics.system import RollingSystem, State
 from ..simulation.simulate import Scenario
-from .case import PARTS, Array, Case, Motion, Task
+from .case import END, PARTS, Array, Case, Input, Motion, Task
 
 _SHAPES = {"ball": "sphere", "disc": "disc", "ellipsoid": "ellipsoid"}
 _SURFACES = ("plane", "dome")
 _FINEST = 1e-14  # of a second route by DOP853
 _FOR = "for a physics engine"
+_PARAMETERS = ("gravity", "support.tilt", "support.friction", "support.motion.rate", "support.motion.inertia")
+_SMOOTH = {"grip", "slip"}  # events that no contact begins or ends with
+_NOTHING = 1e-9  # slopes below do not count: the number changes nothing
 _MOTIONS = {"fixed": "fixed", "free-axle": "hinge", "spin": "driven"}
 
 
@@ -84,35 +90,29 @@ class Rolling(Case):
 
     def situation(self) -> Task:
         """Return bodies, support, friction and gravity, as the task tells them."""
-        system, start = self.scenario.system(), self.scenario.start_state()
-        body, support = system.body, system.support
         self._check()
-        shape: Task = {"kind": _SHAPES[body.shape.noun]}
-        shape |= {key: _plain(value) for key, value in body.shape.parameters().items() if key != "centre"}
-        ground: Task = {"kind": support.surface.kind, "motion": {"kind": _MOTIONS[support.motion.kind]}}
-        if hasattr(support.surface, "radius"):
-            ground["radius"] = float(support.surface.radius)
-        ground["motion"] |= {
-            key: float(getattr(support.motion, key)) for key in ("inertia", "rate") if hasattr(support.motion, key)
-        }
-        inertia = body.inertia_in_space(Quaternion(1.0, 0.0, 0.0, 0.0).matrix())
-        weight = system.weight
-        told: Task = {
-            "shape": shape,
-            "offset": _plain(getattr(body.shape, "centre", None) or Vector(0.0, 0.0, 0.0)),
-            "mass": float(body.mass),
-            "inertia": [[float(e.dot(inertia @ f)) for f in _AXES] for e in _AXES],
-            "force": [0.0, 0.0, 0.0],
-            **{part: list(map(float, getattr(start, part))) for part in PARTS},
-        }
-        return {
-            "gravity": [float(weight.x), float(weight.y), float(weight.z)],
-            "bodies": [told],
-            "support": ground,
-            "friction": float(support.friction or 0.0),
-            "friction_between": 0.0,
-            "restitution": float(support.restitution),
-        }
+        told: Task = _leaves(_told(self.scenario.system(), self.scenario.start_state()), float)
+        return told
+
+    def inputs(self) -> tuple[Input, ...]:
+        """Return start, gravity, slope, friction and table, where the body stays on its support."""
+        wanted = [key for key in keys.keys(self.scenario) if key.name.startswith("start.") or key.name in _PARAMETERS]
+        slopes = sensitivities(
+            self.scenario, [key.name for key in wanted], duration=self.duration, every=self.every, compared=False
+        ).data
+        if not _SMOOTH.issuperset(map(str, slopes.kind.values)):
+            return ()
+        ends = np.concatenate([slopes[part].values[-1] for part in END], axis=0).T
+        directions = _told(*keys.varied(self.scenario, wanted))
+
+        def one(j: int, key: keys.Key) -> Input:
+            def moved(by: float) -> Rolling:
+                return replace(self, scenario=keys.replaced(self.scenario, {key.name: key.value + by}))
+
+            direction = _leaves(directions, lambda x: float(slopes_of(x, len(wanted))[j]))
+            return Input(key.name, direction, ends[j : j + 1], abs(key.value) or 1.0, moved)
+
+        return tuple(one(j, key) for j, key in enumerate(wanted) if np.linalg.norm(ends[j]) > _NOTHING)
 
     def _check(self) -> None:
         """Refuse what the task has no words for."""
@@ -179,6 +179,41 @@ class Rolling(Case):
 _AXES = (Vector(1.0, 0.0, 0.0), Vector(0.0, 1.0, 0.0), Vector(0.0, 0.0, 1.0))
 
 
-def _plain(value: Scalar | Vector | tuple[Scalar, ...]) -> Any:
-    """Return a number, or a list of numbers."""
-    return list(map(float, value)) if isinstance(value, (tuple, Vector)) else float(value)
+def _told(system: RollingSystem, start: State) -> Task:
+    """Return the words of a task with the scalars that a system and its start are made of."""
+    body, support = system.body, system.support
+    shape: Task = {"kind": _SHAPES[body.shape.noun]}
+    shape |= {key: value for key, value in body.shape.parameters().items() if key != "centre"}
+    ground: Task = {"kind": support.surface.kind, "motion": {"kind": _MOTIONS[support.motion.kind]}}
+    if hasattr(support.surface, "radius"):
+        ground["radius"] = support.surface.radius
+    ground["motion"] |= {
+        key: getattr(support.motion, key) for key in ("inertia", "rate") if hasattr(support.motion, key)
+    }
+    inertia = body.inertia_in_space(Quaternion(1.0, 0.0, 0.0, 0.0).matrix())
+    return {
+        "gravity": [system.weight.x, system.weight.y, system.weight.z],
+        "bodies": [
+            {
+                "shape": shape,
+                "offset": list(getattr(body.shape, "centre", None) or Vector(0.0, 0.0, 0.0)),
+                "mass": body.mass,
+                "inertia": [[e.dot(inertia @ f) for f in _AXES] for e in _AXES],
+                "force": [0.0, 0.0, 0.0],
+                **{part: list(getattr(start, part)) for part in PARTS},
+            }
+        ],
+        "support": ground,
+        "friction": 0.0 if support.friction is None else support.friction,
+        "friction_between": 0.0,
+        "restitution": support.restitution,
+    }
+
+
+def _leaves(told: Any, number: Callable[[Scalar], float]) -> Any:
+    """Return words and lists with a number in the place of each scalar."""
+    if isinstance(told, dict):
+        return {key: _leaves(value, number) for key, value in told.items()}
+    if isinstance(told, (list, tuple)):
+        return [_leaves(value, number) for value in told]
+    return told if isinstance(told, str) else number(told)

@@ -17,7 +17,7 @@ from types import TracebackType
 from typing import IO, Any, Self
 
 from .answers import BAD, FAILED, TOO_SLOW, Answer, read_answer
-from .case import Case
+from .case import Case, Input
 
 LIMIT = 60.0  # s for an answer
 STARTING = 60.0  # s more for the first one, in which the engine is imported
@@ -72,7 +72,9 @@ class Adapter:
     ) -> None:
         self.end()
 
-    def answer(self, case: Case, dt: float, setting: dict[str, Any] | None = None) -> Answer:
+    def answer(
+        self, case: Case, dt: float, setting: dict[str, Any] | None = None, derivatives: Sequence[Input] = ()
+    ) -> Answer:
         """Give it one task, and return what came of it.
 
         Parameters
@@ -83,6 +85,8 @@ class Adapter:
             The engine's step, s.
         setting : dict, optional
             What the adapter is to set beside it.
+        derivatives : sequence of Input
+            By what it is to differentiate the final state.
 
         Returns
         -------
@@ -90,7 +94,7 @@ class Adapter:
             Whatever happens.
         """
         self._number += 1
-        task = json.dumps({"task": self._number, **case.task(dt, setting)}).encode() + b"\n"
+        task = json.dumps({"task": self._number, **case.task(dt, setting, derivatives)}).encode() + b"\n"
         running = self._process is not None and self._process.poll() is None
         try:
             line = self._exchange(task, self.limit) if running else b""
@@ -106,7 +110,7 @@ class Adapter:
         if isinstance(line, Answer):
             self.end()
             return line
-        answer = read_answer(line.decode(errors="replace"), case, self._number)
+        answer = read_answer(line.decode(errors="replace"), case, self._number, derivatives)
         if answer.outcome == BAD:  # it may say more, which would be late for the next task
             self.end()
         return answer

@@ -5,14 +5,16 @@ from __future__ import annotations
 import math
 import shlex
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from statistics import median
 from typing import Any
 
 from ..errors import InvalidValueError
+from . import derivatives as slopes
 from . import engines as shipped
 from .answers import CANNOT as CANNOT_OUTCOME
 from .answers import NOT_FINITE, NOT_INSTALLED, OK, TOO_SLOW, Answer
-from .case import Case, Motion
+from .case import Case, Input, Motion
 from .engines import BEST, SHIPPED, CannotInstallError, Setting
 from .measuring import cut_off, errors_of
 from .results import Row, Score
@@ -73,6 +75,8 @@ def score(
     cases: Sequence[Case],
     steps: Sequence[float] = STEPS,
     *,
+    derivatives: bool = False,
+    repeat: int = 1,
     limit: float = LIMIT,
     tell: Told = lambda _: None,
 ) -> Score:
@@ -86,6 +90,10 @@ def score(
         On what.
     steps : sequence of float
         The engine's steps, s.
+    derivatives : bool
+        Whether to score the derivatives of the final state, too.
+    repeat : int
+        How often each run is made: the processor time is the median.
     limit : float
         s for one run.
     tell : callable
@@ -104,7 +112,7 @@ def score(
     >>> [(row.outcome, row.message) for row in found.rows][:1]
     [('failed', 'no-such-program cannot be started: No such file or directory')]
     """
-    return Score(tuple(runs(entrants, cases, steps, limit=limit, tell=tell)))
+    return Score(tuple(runs(entrants, cases, steps, derivatives=derivatives, repeat=repeat, limit=limit, tell=tell)))
 
 
 def runs(
@@ -112,11 +120,14 @@ def runs(
     cases: Sequence[Case],
     steps: Sequence[float] = STEPS,
     *,
+    derivatives: bool = False,
+    repeat: int = 1,
     limit: float = LIMIT,
     tell: Told = lambda _: None,
 ) -> Iterator[Row]:
     """Yield the rows of `score` as they come, so that those that are there can be kept."""
     exact = {case.name: case.exact() for case in cases}
+    inputs = {case.name: case.inputs() if derivatives else () for case in cases}
     for entrant in entrants:
         try:
             adapter = entrant.start(limit)
@@ -129,25 +140,55 @@ def runs(
             for setting in entrant.settings:
                 tell(f"{entrant.name}, {setting.name}")
                 for case in cases:
-                    yield from _runs(adapter, entrant, setting, case, steps, exact[case.name])
+                    yield from _runs(adapter, entrant, setting, case, steps, exact[case.name], repeat)
+                    yield from _slopes(adapter, entrant, setting, case, steps, inputs[case.name])
 
 
 def _runs(
-    adapter: Adapter, entrant: Entrant, setting: Setting, case: Case, steps: Sequence[float], exact: Motion
+    adapter: Adapter,
+    entrant: Entrant,
+    setting: Setting,
+    case: Case,
+    steps: Sequence[float],
+    exact: Motion,
+    repeat: int,
 ) -> Iterator[Row]:
     """Run one case at all steps, the coarsest first: where one cannot or is late, the finer ones are not tried."""
     answer: Answer | None = None
     for dt in sorted(steps, reverse=True):
         if answer is None or answer.outcome not in (CANNOT_OUTCOME, TOO_SLOW):
             answer = adapter.answer(case, dt, dict(setting.values))
+            if answer.outcome == OK and repeat > 1:
+                again = (adapter.answer(case, dt, dict(setting.values)).seconds for _ in range(repeat - 1))
+                answer = replace(answer, seconds=median([answer.seconds, *again]))
         elif answer.outcome == TOO_SLOW:
             answer = Answer(TOO_SLOW, "not tried: a longer step is too slow already")
         yield _row(entrant, setting, case, dt, answer, exact)
 
 
+def _slopes(
+    adapter: Adapter,
+    entrant: Entrant,
+    setting: Setting,
+    case: Case,
+    steps: Sequence[float],
+    inputs: Sequence[Input],
+) -> Iterator[Row]:
+    """Take the derivatives of one case at all steps, as `_runs` does: the engine's own, and differences of its runs."""
+    told = adapter, case, inputs
+    for take in (slopes.own, slopes.of_runs) if inputs else ():
+        found: dict[str, slopes.Result] = {}
+        for dt in sorted(steps, reverse=True):
+            if not found or not {CANNOT_OUTCOME, TOO_SLOW}.issuperset(one.outcome for one in found.values()):
+                found = take(*told, dt, setting.values)
+            for way, one in found.items():
+                said = Answer(one.outcome, one.message, None, one.seconds, one.engine)
+                yield replace(_row(entrant, setting, case, dt, said, None), way=way, derivative=one.error)
+
+
 def _row(entrant: Entrant, setting: Setting, case: Case, dt: float, answer: Answer, exact: Motion | None) -> Row:
     """Measure what came of a run."""
-    told: dict[str, Any] = dict.fromkeys(("position", "angle", "turning", "slip", "energy"), math.nan)
+    told: dict[str, Any] = dict.fromkeys(("position", "angle", "turning", "slip", "energy", "friction"), math.nan)
     limit = None
     if answer.outcome == NOT_FINITE:
         told |= {"position": math.inf, "turning": math.inf}

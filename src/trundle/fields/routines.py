@@ -110,18 +110,23 @@ class PhaseRoutines:
     """
 
     def __init__(self, system: RollingSystem, phase: str, groups: Sequence[str]) -> None:
-        self.phase, self.law = phase, phases_of(system)[phase]
+        law = phases_of(system)[phase]
+        sizes = len(parameters(system)), len(inputs_of(system, groups))
+        self._state, p, u = self._begin(system, phase, law.names(system), *sizes)
+        self.system = with_inputs(with_numbers(system, p), groups, u)
+
+    def _begin(
+        self, system: RollingSystem, phase: str, state: Sequence[str], parameters: int, inputs: int
+    ) -> list[list[Node]]:
+        """Start a tape whose functions take so many numbers, and return these."""
+        self.phase, self.name, self.law, self._plain = phase, phase, phases_of(system)[phase], system
+        self.state_names = state
         self._tape = Tape()
-        self._sizes = {
-            "y": len(self.law.names(system)),
-            "p": len(parameters(system)),
-            "u": len(inputs_of(system, groups)),
-            "e": self.law.event_parameters,
-        }
+        self._sizes = {"y": len(state), "p": parameters, "u": inputs, "e": self.law.event_parameters}
         self._time, *rest = self._tape.inputs(1 + sum(self._sizes.values()))
         parts = iter(rest)
-        self._state, p, u, self._given = ([next(parts) for _ in range(n)] for n in self._sizes.values())
-        self.system, self._plain = with_inputs(with_numbers(system, p), groups, u), system
+        *found, self._given = ([next(parts) for _ in range(n)] for n in self._sizes.values())
+        return found
 
     def all(self) -> Iterator[Routine]:
         """Return every routine of the phase."""
@@ -212,7 +217,7 @@ class PhaseRoutines:
 
     def _routine(self, name: str, said: str, outputs: Any, *, given: bool = False) -> Routine:
         arguments = [("t", None), *((name, self._sizes[name]) for name in ("y", "p", "u", *("e" * given)))]
-        return Routine(f"{self.phase}_{name}", said, tuple(arguments), tuple(map(plain, outputs)), self._tape)
+        return Routine(f"{self.name}_{name}", said, tuple(arguments), tuple(map(plain, outputs)), self._tape)
 
 
 def plain(value: Scalar) -> Any:

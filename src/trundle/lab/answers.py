@@ -369,7 +369,7 @@ def _why_not(data: dict[str, Any]) -> dict[str, Any] | None:
         refusal = refusal_of(error)
         if refusal is None:
             raise
-        return {"message": refusal.message, "key": refusal.key}
+        return refusal.told
     return None
 
 

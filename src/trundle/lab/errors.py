@@ -6,7 +6,7 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
-from ..errors import TrundleError
+from ..errors import InvalidValueError, ScenarioError, TrundleError, shown
 
 
 @dataclass(frozen=True)
@@ -15,8 +15,8 @@ class Refusal:
 
     Examples
     --------
-    >>> Refusal(422, "`support.tilt` must be an angle", "support.tilt").body
-    b'{"error": {"message": "`support.tilt` must be an angle", "key": "support.tilt", "kind": "RequestError"}}'
+    >>> Refusal(413, "too big", "body").body
+    b'{"error": {"message": "too big", "key": "body", "parts": [], "kind": "RequestError"}}'
     """
 
     status: int  # of HTTP
@@ -24,12 +24,17 @@ class Refusal:
     key: str | None = None  # the key of the scenario that is meant
     kind: str = "RequestError"  # the kind of error
     headers: tuple[tuple[str, str], ...] = ()  # that the answer carries besides
+    parts: tuple[dict[str, str], ...] = ()  # key, rule, value received and remedy apart, for another language
 
     @property
     def body(self) -> bytes:
         """The JSON, in ASCII: what was received may hold half a character."""
-        error = {"message": self.message, "key": self.key, "kind": self.kind}
-        return json.dumps({"error": error}).encode("ascii")
+        return json.dumps({"error": {**self.told, "kind": self.kind}}).encode("ascii")
+
+    @property
+    def told(self) -> dict[str, Any]:
+        """What is wrong, as a page is told."""
+        return {"message": self.message, "key": self.key, "parts": list(self.parts)}
 
 
 class RefusedError(TrundleError):
@@ -67,12 +72,21 @@ def refusal_of(error: BaseException) -> Refusal | None:
         return error.refusal
     if isinstance(error, TrundleError):
         key = getattr(error, "key", None)
-        return Refusal(422, str(error), str(key) if key else None, type(error).__name__)
+        parts = _parts(error) if isinstance(error, InvalidValueError) else ()
+        return Refusal(422, str(error), str(key) if key else None, type(error).__name__, parts=parts)
     if isinstance(error, RecursionError):
         return Refusal(422, "`scenario` nests too deep. A scenario is a page of plain tables.", "scenario")
     if isinstance(error, MemoryError):
         return Refusal(422, "This takes more memory than there is. Ask for fewer samples.", "run", "MemoryError")
     return None
+
+
+def _parts(error: InvalidValueError) -> tuple[dict[str, str], ...]:
+    """Return what an error says of each value, apart."""
+    every = (error, *error.others) if isinstance(error, ScenarioError) else (error,)
+    return tuple(
+        {"key": one.key, "rule": one.rule, "received": shown(one.received), "remedy": one.remedy} for one in every
+    )
 
 
 def of_validation(errors: Any) -> Refusal:

@@ -11,12 +11,13 @@ from ..analysis.sensitivities.keys import Key
 from ..errors import OutOfDomainError
 from ..fields.printers import javascript
 from ..fields.resets import CODES, HELD
-from ..fields.routines import PhaseRoutines, Routine, check_analytic, phases_of
+from ..fields.routines import FILM, PhaseRoutines, Routine, check_analytic, phases_of
 from ..mechanics.kinks import kinks_and_jolts
 from ..mechanics.system import RollingSystem
 from ..scenario import ScenarioFile
 from ..solve.contact_state import ContactState, moment
 from ..solve.phases import ENDS
+from .formula import FormulaRoutines
 from .start import Placed
 
 TOLERANCE = 1e-13  # relative, of each step
@@ -66,21 +67,27 @@ def script_of(scenario: ScenarioFile, wanted: Sequence[Key], placed: Placed) -> 
     True
     """
     system = scenario.system()
+    start = scenario.start_state()
     phases = {phase: PhaseRoutines(system, phase, ()) for phase in phases_of(system)}
+    begins = placed.phase
+    if placed.form is not None:
+        routines = FormulaRoutines(system, begins, placed.form, float(start.time))
+        begins = routines.name
+        phases[begins] = routines
     printed: list[Routine] = [placed.routine]
     told = {phase: _phase(routines, printed) for phase, routines in phases.items()}
-    start = scenario.start_state()
     arm = float(ContactState.of(system, start).arm)
     law = {
         "begin": float(start.time),
         "duration": float(scenario.timing.duration),
-        "phase": placed.phase,
+        "phase": begins,
         "size": placed.size,
         "defaults": [key.value for key in wanted],
         "arm": arm,
         "moment": moment(system, start),
         "tolerance": TOLERANCE,
         "codes": CODES,
+        "turning": [name for name, _ in FILM].index("angular_velocity_x"),
         "said": _SAID,
         "ends": _ends(system),
         "method": _method(),
@@ -95,19 +102,18 @@ def script_of(scenario: ScenarioFile, wanted: Sequence[Key], placed: Placed) -> 
 def _phase(routines: PhaseRoutines, printed: list[Routine]) -> str:
     """Return one phase as an object of JavaScript, and add what it names to what is printed."""
     names, events = routines.events()
-    own = {"rates": routines.rates(), "events": events, "film": routines.film()}
+    own: dict[str, Routine] = {"rates": routines.rates(), "events": events, "film": routines.film()}
     if routines.law.event_parameters:
         own["eventParameters"] = routines.event_parameters()
     printed += own.values()
-    parts = [f"{key}: {routine.name}" for key, routine in own.items()]
-    parts += [f"names: {json.dumps(names)}", f"groups: {json.dumps(_groups(routines))}"]
+    parts = [f"name: {json.dumps(routines.phase)}", *(f"{key}: {routine.name}" for key, routine in own.items())]
+    parts += [f"names: {json.dumps(names)}", f"groups: {json.dumps(_groups(routines.state_names))}"]
     resets = []
     for event in routines.resets():
         following = list(routines.after(event))
         printed += following
         known = {
-            each.name.removeprefix(f"{routines.phase}_").removesuffix(f"_after_{event}"): each.name
-            for each in following
+            each.name.removeprefix(f"{routines.name}_").removesuffix(f"_after_{event}"): each.name for each in following
         }
         choice = known.pop("phase", "null")
         states = ", ".join(f"{phase}: {name}" for phase, name in known.items())
@@ -115,9 +121,8 @@ def _phase(routines: PhaseRoutines, printed: list[Routine]) -> str:
     return f"{{{', '.join(parts)}, resets: {{{', '.join(resets)}}}}}"
 
 
-def _groups(routines: PhaseRoutines) -> list[list[Any]]:
+def _groups(names: Sequence[str]) -> list[list[Any]]:
     """Return which numbers of a state belong together: where they begin and end, and what they are."""
-    names = routines.law.names(routines.system)
     heads = [name.partition("_")[0] for name in names]
     begins = [i for i, head in enumerate(heads) if i == 0 or head != heads[i - 1] or head == "support"]
     return [[i, j, heads[i]] for i, j in zip(begins, [*begins[1:], len(heads)], strict=True)]

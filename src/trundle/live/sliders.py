@@ -13,7 +13,7 @@ import numpy as np
 from ..analysis.sensitivities.keys import Key, chosen, keys, moved
 from ..errors import InvalidValueError, OutOfDomainError, TrundleError, UnknownNameError
 from ..scenario import ScenarioFile
-from ..units import UNITS, to_si
+from ..units import UNITS, span, to_si
 from .start import Placed
 
 MOST = 8  # sliders on a page
@@ -71,15 +71,18 @@ def sliders_of(scenario: ScenarioFile, asked: Sequence[str]) -> tuple[list[Slide
     found = _asked(scenario, asked) if asked else _offered(scenario)
     if len(found) > MOST:
         raise InvalidValueError("--slider", f"must stand at most {MOST} times", len(found))
-    return found, _together(scenario, found)
+    try:
+        return found, _together(scenario, found, by_formula=True)
+    except TrundleError:  # no closed form has its motion for all that the sliders reach
+        return found, _together(scenario, found)
 
 
 def _asked(scenario: ScenarioFile, asked: Sequence[str]) -> list[Slider]:
     found: dict[str, Slider] = {}
     for each in asked:
-        name, _, span = each.partition("=")
+        name, sign, text = each.partition("=")
         for key in _chosen(scenario, name.strip()):
-            ends = _ends(span, key, each) if span else None
+            ends = _ends(text, scenario, key, each) if sign else None
             found[key.name] = _slider(scenario, key, ends)
     return list(found.values())
 
@@ -95,26 +98,29 @@ def _chosen(scenario: ScenarioFile, name: str) -> list[Key]:
         raise InvalidValueError("--slider", "must name a number of the scenario", name, remedy) from None
 
 
-def _ends(span: str, key: Key, received: str) -> tuple[float, float]:
-    """Read "1 cm..3 cm"."""
-    low, dots, high = span.partition("..")
-    example = f"Write for instance `--slider {key.name}={0.5 * key.value or -1:.3g}..{1.5 * key.value or 1:.3g}`."
-    if not dots:
+def _ends(text: str, scenario: ScenarioFile, key: Key, received: str) -> tuple[float, float]:
+    """Read "1 cm..3 cm" or "1..3 cm"."""
+    _, _, unit, factor = _shown(scenario, key)
+    low, here, high = (f"{value / factor:.4g} {unit}".strip() for value in _example(key.value))
+    example = f'Write for instance --slider "{key.name}={low}..{high}".'
+    parts = span(text)
+    if parts is None:
         raise InvalidValueError("--slider", "must give a span as FROM..TO", received, example)
-    first, last = (to_si(_number(part.strip()), _kind(key), "--slider") for part in (low, high))
+    try:
+        first, last = (to_si(part, _kind(key), "--slider") for part in parts)
+    except InvalidValueError as error:
+        raise InvalidValueError("--slider", error.rule, received, example) from None
     if not first < last:
         raise InvalidValueError("--slider", "must go upwards, FROM..TO", received, example)
     if not first <= key.value <= last:
-        rule = f"must hold the value that the scenario has, {key.value:.6g} {key.unit}".rstrip()
-        raise InvalidValueError("--slider", rule, received)
+        raise InvalidValueError("--slider", f"must hold the value that the scenario has, {here}", received, example)
     return first, last
 
 
-def _number(text: str) -> Any:
-    try:
-        return float(text)
-    except ValueError:
-        return text
+def _example(value: float) -> tuple[float, float, float]:
+    """Return a span about a value, and the value."""
+    reach = 0.5 * abs(value) or 1.0
+    return value - reach, value, value + reach
 
 
 def _offered(scenario: ScenarioFile) -> list[Slider]:
@@ -150,9 +156,9 @@ def _rule(key: Key) -> str:
     return f"must lead to starts that a page can place by itself; `{key.name}` may not go so far"
 
 
-def _placed(scenario: ScenarioFile, wanted: Sequence[Key]) -> Placed:
+def _placed(scenario: ScenarioFile, wanted: Sequence[Key], *, by_formula: bool = False) -> Placed:
     try:
-        return Placed.of(scenario, wanted)
+        return Placed.of(scenario, wanted, by_formula=by_formula)
     except OutOfDomainError as error:
         remedy = "Take another number, or leave --live out."
         raise InvalidValueError("--slider", str(error), ", ".join(key.name for key in wanted), remedy) from None
@@ -180,9 +186,9 @@ def _why_not(scenario: ScenarioFile, placed: Placed, values: Mapping[str, float]
     return None
 
 
-def _together(scenario: ScenarioFile, found: Sequence[Slider]) -> Placed:
+def _together(scenario: ScenarioFile, found: Sequence[Slider], *, by_formula: bool = False) -> Placed:
     """Return the start that several sliders place, compared at combinations of them, of which some may be refused."""
-    placed = _placed(scenario, [one.key for one in found])
+    placed = _placed(scenario, [one.key for one in found], by_formula=by_formula)
     if not found:
         return placed
     for shares in _combinations(len(found)):

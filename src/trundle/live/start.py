@@ -18,8 +18,10 @@ from ..mechanics.system import RollingSystem, State
 from ..scenario import ScenarioFile
 from ..solve import transitions
 from ..solve.contact_state import ContactState
+from ..solve.exact import ClosedForm
 from ..solve.samples import FLIGHT, RESTING, SLIPPING
 from ..solve.tape import Tape
+from .formula import formula_of
 from .recorded import Recorded, step_of
 
 _APART = 1e-12  # of a start's numbers by their size: what is placed on a tape is placed alike but for rounding
@@ -32,18 +34,21 @@ class Placed:
     phase: str  # in which it begins
     routine: Routine  # (w) -> the numbers of the state and then all those of the system
     size: int  # how many are of the state
+    # By which the motion begins: then the state is the orientation, and behind the system's numbers are those of it.
+    form: ClosedForm | None = None
 
     @staticmethod
-    def of(scenario: ScenarioFile, wanted: Sequence[Key]) -> Placed:
+    def of(scenario: ScenarioFile, wanted: Sequence[Key], *, by_formula: bool = False) -> Placed:
         """Return the start of a scenario for any values of some numbers.
 
         Raises
         ------
         OutOfDomainError
-            If a number on the way is wanted as such.
+            If a number on the way is wanted as such, or no closed form has the motion and one is asked for.
         """
         system, start = scenario.system(), scenario.start_state()
         phase = phase_of(system, start)
+        form = formula_of(system, start, phase) if by_formula else None
         tape = Tape()
         steps = tape.inputs(len(wanted))
         recorded = {key.name: Recorded(key.value, step) for key, step in zip(wanted, steps, strict=True)}
@@ -51,13 +56,16 @@ class Placed:
             model = replaced(scenario, recorded)
             now = model.system()
             begin, contact = Placing(now, **model.start.arguments()).at_contact(checked=False)
-            state = phases_of(system)[phase].state_vector(ContactState.at(begin, contact))
+            if form is None:
+                state, others = phases_of(system)[phase].state_vector(ContactState.at(begin, contact)), ()
+            else:
+                state, others = list(begin.orientation), tuple(_counterparts(form, type(form).of(now, begin)))
         except (TypeError, AttributeError, ValueError) as error:
             names = ", ".join(f"`{key.name}`" for key in wanted)
             raise OutOfDomainError(f"The start cannot be written out as a function of {names} ({error}).") from None
-        outputs = tuple(plain(step_of(part)) for part in (*state, *_counterparts(system, now)))
+        outputs = tuple(plain(step_of(part)) for part in (*state, *_counterparts(system, now), *others))
         said = "The state in which it starts, and then p."
-        return Placed(phase, Routine("placed", said, (("w", len(wanted)),), outputs, tape), len(state))
+        return Placed(phase, Routine("placed", said, (("w", len(wanted)),), outputs, tape), len(state), form)
 
     def at(self, values: Sequence[float]) -> np.ndarray:
         """Return what the routine makes of some values."""
@@ -74,13 +82,22 @@ class Placed:
         system, start = moved(scenario, values)
         if phase_of(system, start) != self.phase:
             raise OutOfDomainError(f"there it starts {phase_of(system, start)}, and here {self.phase}")
-        law = phases_of(system)[self.phase]
-        wanted = np.array([*law.pack(system, start), *numbers(system)])
+        state, others = self._wanted(system, start)
+        wanted = np.array([*state, *numbers(system), *others])
         found = self.at(list(values.values()))
         if found.size != wanted.size:
             raise OutOfDomainError("there the system is made otherwise")
-        if not np.allclose(found, wanted, rtol=_APART, atol=_APART * float(np.max(np.abs(law.pack(system, start))))):
+        if not np.allclose(found, wanted, rtol=_APART, atol=_APART * float(np.max(np.abs(state)))):
             raise OutOfDomainError("there the start is placed otherwise")
+
+    def _wanted(self, system: RollingSystem, start: State) -> tuple[Sequence[float], Sequence[float]]:
+        """Return the state where it is placed, and the numbers of the closed form."""
+        if self.form is None:
+            return phases_of(system)[self.phase].pack(system, start), ()
+        form = formula_of(system, start, self.phase)
+        if type(form) is not type(self.form):
+            raise OutOfDomainError("there another closed form has the motion")
+        return start.orientation, numbers(form)
 
 
 def phase_of(system: RollingSystem, start: State) -> str:

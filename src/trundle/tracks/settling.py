@@ -63,7 +63,7 @@ class Reading:
                 "time": ("time", time[kept], {"units": "s", "heading": found["t"][0].heading}),
                 "row": ("time", row_numbers(self.table, time.size)[kept]),
             },
-            attrs={"frame": self._frame, "axes": self.table.axes or self.axes},
+            attrs={"frame": self._frame, "axes": self.table.axes or self.axes, "accuracy": self.table.accuracy},
         )
         return Track(
             data,

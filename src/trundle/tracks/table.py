@@ -90,6 +90,8 @@ class Table:
         Whether y is counted downwards, as in pictures; None where nobody knows.
     rate : float, optional
         Frames a second, where the file says it.
+    accuracy : float
+        By how much all that is seen at one place may be off, where the file says it, m.
 
     Examples
     --------
@@ -107,6 +109,7 @@ class Table:
     axes: str = ""
     y_down: bool | None = None
     rate: float | None = None
+    accuracy: float = 0.0
 
     @classmethod
     def of(cls, columns: Mapping[str, Any], **known: Any) -> Table:

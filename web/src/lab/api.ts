@@ -1,5 +1,6 @@
 /** Every route of the lab's server, typed. */
 
+import { t } from '../languages/translate'
 import type { Scene, Triple, Turn } from '../viewer/scene'
 import { unpack } from '../viewer/scene'
 import { createLanes } from './lanes'
@@ -317,12 +318,24 @@ export interface Api {
 
 const UNREACHABLE = 'The lab does not answer. Is it still running in its terminal?'
 
+/** What the package says is wrong, and apart from it, for each value that is, the rule, what came instead, and the remedy. */
+interface Told extends Refused {
+  parts: readonly { key: string; rule: string; received: string; remedy: string }[]
+}
+
+/** The same in the language of the page. */
+export function saidOf({ message, parts }: Told): string {
+  // The package begins with the name of the file, which here is only ever "scenario".
+  if (parts.length === 0) return t(message.replace(/^scenario: /, ''))
+  const one = ({ key, rule, received, remedy }: Told['parts'][number]) =>
+    `${t('`{key}` {rule}; got {received}.', { key, rule: t(rule), received: t(received) })} ${t(remedy)}`.trim()
+  return parts.map(one).join('\n')
+}
+
 async function failure(response: Response): Promise<ApiError> {
   try {
-    const { error } = (await response.json()) as { error: { message: string; key: string | null; kind: string } }
-    // The package begins with the name of the file, which here is only ever "scenario".
-    const message = error.message.replace(/^scenario: /, '')
-    return new ApiError(message, error.key ?? null, error.kind, response.status)
+    const { error } = (await response.json()) as { error: Told & { kind: string } }
+    return new ApiError(saidOf(error), error.key ?? null, error.kind, response.status)
   } catch {
     return new ApiError(`The server answered ${response.status} ${response.statusText}.`, null, 'HTTP', response.status)
   }
@@ -411,7 +424,10 @@ export function createApi(base = '', ask: typeof fetch = (input, init) => fetch(
     parts: (options) => get('/api/parts', options),
     start: (scenario, put, options = {}) => post('/api/start', { scenario, ...put }, options, 'start', json<Table>),
     possible: (scenarios, options = {}) =>
-      post('/api/possible', { scenarios }, options, 'possible', json<(Refused | null)[]>),
+      post('/api/possible', { scenarios }, options, 'possible', async (response) => {
+        const all = await json<(Told | null)[]>(response)
+        return all.map((one) => one && { message: saidOf(one), key: one.key })
+      }),
     ready: (options) => get('/api/ready', options),
     challenges: (options) => get('/api/challenges', options),
     tried: (name, values, body, options = {}) =>

@@ -1,4 +1,5 @@
-/** Small helpers to make elements. No framework: what is on the page is what was made here. */
+/** Small helpers to make elements. No framework: what is on the page is what was made here, in the reader's language. */
+import { t, WORDED } from '../languages/translate'
 
 type Attribute = string | number | boolean | null | undefined
 type Handlers = { [E in keyof HTMLElementEventMap as `on${E}`]?: (event: HTMLElementEventMap[E]) => void }
@@ -13,7 +14,7 @@ export function h<Tag extends keyof HTMLElementTagNameMap>(
 ): HTMLElementTagNameMap[Tag] {
   const element = document.createElement(tag)
   assign(element, properties)
-  element.append(...nodes(children))
+  element.append(...(tag === 'code' || tag === 'pre' ? nodes(children, (text) => text) : nodes(children)))
   return element
 }
 
@@ -33,15 +34,16 @@ function assign(element: Element, properties: Properties): void {
   for (const [name, value] of Object.entries(properties)) {
     if (typeof value === 'function') element.addEventListener(name.slice(2), value as (event: Event) => void)
     else if (value === true) element.setAttribute(name, '')
-    else if (value !== false && value !== null && value !== undefined) element.setAttribute(name, String(value))
+    else if (value !== false && value !== null && value !== undefined)
+      element.setAttribute(name, WORDED.has(name) ? t(String(value)) : String(value))
   }
 }
 
-function nodes(children: (Child | Child[])[]): (Node | string)[] {
+function nodes(children: (Child | Child[])[], said: (text: string) => string = t): (Node | string)[] {
   return children
     .flat()
     .filter((child) => child !== null && child !== undefined && child !== false)
-    .map((child) => (child instanceof Node ? child : String(child)))
+    .map((child) => (child instanceof Node ? child : said(String(child))))
 }
 
 /** A message of the package without the marks of code, which nobody at the page writes. */

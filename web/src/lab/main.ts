@@ -7,6 +7,7 @@ import './base.css'
 import './inputs.css'
 import './shell.css'
 import './low.css'
+import { chosenLanguage, learn } from '../languages'
 import { createApi } from './api'
 import type { App } from './app'
 import { FIRST } from './first'
@@ -18,6 +19,7 @@ import { tellWhileStarting } from './starting'
 import { createStore } from './store'
 import './forced.css'
 
+await learn(chosenLanguage(location.search, navigator.languages))
 const settings = createSettings()
 const router = createRouter()
 const shell = createShell(document.body)

@@ -1,4 +1,6 @@
 /** What is round every page: header, menu, theme, projector, help, messages, and which page is shown. */
+import { t } from '../languages/translate'
+import { put, say } from '../viewer/elements'
 import type { App, Page } from './app'
 import { fill, h, plainly } from './dom'
 import { openHelp } from './help'
@@ -34,7 +36,7 @@ export function createShell(body: HTMLElement): Shell {
   return {
     main,
     announce(text) {
-      live.textContent = plainly(text)
+      live.textContent = t(plainly(text)) // the same once more is to be heard once more
     },
     hold(text) {
       const one = h('p', { class: 'toast working' }, text)
@@ -100,8 +102,8 @@ export function startShell(shell: Shell, app: App, pages: Page[]): void {
   const showSettings = () => {
     const now = THEMES.find((one) => one.theme === app.settings.theme) ?? THEMES[0]!
     fill(theme, icon(now.icon))
-    theme.setAttribute('aria-label', now.label)
-    theme.title = `${now.label} (Shift+T)`
+    put(theme, 'aria-label', now.label)
+    put(theme, 'title', `${now.label} (Shift+T)`)
     projector.setAttribute('aria-pressed', String(app.settings.projector))
   }
   app.watchSettings(showSettings)
@@ -151,8 +153,8 @@ function showPages(shell: Shell, app: App, pages: Page[], links: HTMLAnchorEleme
       if (link.dataset.page === page.id) link.setAttribute('aria-current', 'page')
       else link.removeAttribute('aria-current')
     }
-    document.querySelector('.nav-here')!.textContent = page.title
-    document.title = `${page.title} · trundle lab`
+    say(document.querySelector('.nav-here')!, page.title)
+    document.title = t(`${page.title} · trundle lab`)
     document.body.dataset.page = page.id
     shell.main.replaceChildren()
     shell.main.className = `page page-${page.id}`

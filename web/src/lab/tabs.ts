@@ -1,4 +1,5 @@
 /** Tabs as the ARIA practices ask: arrow keys go along them, one of them is in the order of focus. */
+import { say } from '../viewer/elements'
 import { h, uniqueId } from './dom'
 
 export interface Tab {
@@ -91,7 +92,7 @@ export function createTabs(tabs: Tab[], label: string, changed?: (id: string) =>
       const badge = buttons.get(id)?.querySelector<HTMLElement>('.badge')
       if (!badge || (badge.textContent === text && badge.dataset.kind === kind)) return
       badge.hidden = text === ''
-      badge.textContent = text
+      say(badge, text)
       badge.dataset.kind = kind
     },
     hide(id, hidden) {

@@ -1,4 +1,4 @@
-/** The words of the front door, the challenges, the report and the teacher's notes: one place, for whoever translates. */
+/** The words of the front door, the challenges, the report and the teacher's notes: by them the catalogues in languages/ have other languages. */
 
 export const START = {
   title: 'Start',
@@ -12,6 +12,7 @@ export const START = {
   benchSaid: 'Every scenario, every number',
   pictures: 'Six to begin with',
   teachers: 'For teachers: notes on every step and challenge',
+  languages: 'Language',
 } as const
 
 /** The six pictures: a scenario that ships, and what is surprising about it. */

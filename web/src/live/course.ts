@@ -47,7 +47,6 @@ class Follower {
   private readonly u: number[] = []
   private readonly end: number
   private readonly found: Course
-  private name: string
   private phase: Phase
   private e: Numbers = []
   private t: number
@@ -65,7 +64,6 @@ class Follower {
     this.p = placed.slice(law.size)
     this.t = law.begin
     this.end = law.begin + law.duration
-    this.name = law.phase
     this.phase = law.phases[law.phase] as Phase
     this.found = { time: [], rows: [], phase: [], events: [], ended: null, parameters: this.p }
   }
@@ -194,7 +192,7 @@ class Follower {
       return
     }
     const reset = phase.resets[name]
-    const held = law.ends[`${this.name} ${name}`]
+    const held = law.ends[`${phase.name} ${name}`]
     if (!reset || held) {
       this.stop(name, held ?? law.ends[name] ?? NO_ANSWER)
       return
@@ -207,7 +205,7 @@ class Follower {
       this.stop(name, NO_ANSWER)
       return
     }
-    if (name === 'stop' && this.spins(y)) {
+    if (name === 'stop' && this.spins(follows, y)) {
       this.stop('spot', law.ends.spot ?? NO_ANSWER)
       return
     }
@@ -217,8 +215,7 @@ class Follower {
       this.stop('lift', PULLED)
       return
     }
-    const same = follows === this.name
-    this.name = follows
+    const same = follows === phase.name
     this.phase = law.phases[follows] as Phase
     this.y = y
     const text = law.said[name]?.[follows]
@@ -241,9 +238,16 @@ class Follower {
   }
 
   /** Whether it turned about the normal when it stopped rolling: rest would take that away at once. */
-  private spins(resting: Numbers): boolean {
-    const lost = Math.hypot(...[7, 8, 9].map((i) => this.y[i]! - resting[i]!))
+  private spins(follows: string, y: Numbers): boolean {
+    const after = this.turning(this.law.phases[follows] as Phase, y)
+    const lost = Math.hypot(...this.turning(this.phase, this.y).map((rate, i) => rate - after[i]!))
     return lost * this.law.arm > 1e-9 * (this.law.arm / this.law.moment)
+  }
+
+  /** Ω of a state of a phase, rad/s. */
+  private turning(phase: Phase, y: Numbers): number[] {
+    const { law, t, p, u } = this
+    return phase.film(t, y, p, u).slice(law.turning, law.turning + 3)
   }
 
   private checkCount(): void {
@@ -280,7 +284,7 @@ class Follower {
       this.sampleAt(until, within)
       return
     }
-    const turning = Math.hypot(this.y[7]!, this.y[8]!, this.y[9]!)
+    const turning = Math.hypot(...this.turning(this.phase, this.y))
     const span = until - from
     const room = Math.max(1, MOST_FRAMES - this.found.time.length)
     const frames = Math.max((FRAMES * span) / this.law.duration, (turning * span) / TURN)
@@ -307,7 +311,7 @@ class Follower {
     }
     time.push(t)
     this.found.rows.push(this.phase.film(t, y, this.p, this.u))
-    this.found.phase.push(this.law.codes[this.name]!)
+    this.found.phase.push(this.law.codes[this.phase.name]!)
   }
 }
 

@@ -9,6 +9,8 @@ export interface Reset {
 }
 
 export interface Phase {
+  /** What it is: by a closed form it has the name of the phase of contact, too. */
+  name: string
   rates: (t: number, y: Numbers, p: Numbers, u: Numbers) => number[]
   events: (t: number, y: Numbers, p: Numbers, u: Numbers, e: Numbers) => number[]
   film: (t: number, y: Numbers, p: Numbers, u: Numbers) => number[]
@@ -39,6 +41,8 @@ export interface Law {
   moment: number
   tolerance: number
   codes: Record<string, number>
+  /** Where in a row of the film the angular velocity begins. */
+  turning: number
   said: Record<string, Record<string, string>>
   ends: Record<string, string>
   method: Method

@@ -1,4 +1,5 @@
 /** The viewer's own bar: play, scrub, speed, whose eyes, which arrows. Everything can be reached by keyboard. */
+import { t } from '../languages/translate'
 import { ARROWS, type ArrowKind } from './arrows'
 import type { Frame, Show, Viewer } from './contract'
 import { element, hide, icon, iconButton, put, say } from './elements'
@@ -188,9 +189,9 @@ export class Controls {
   refresh(): void {
     const { viewer } = this
     const label = viewer.playing ? 'Pause (space)' : 'Play (space)'
-    if (this.playing.getAttribute('aria-label') !== label) {
-      this.playing.setAttribute('aria-label', label)
-      this.playing.title = label
+    if (this.playing.title !== t(label)) {
+      put(this.playing, 'aria-label', label)
+      put(this.playing, 'title', label)
       this.playing.replaceChildren(icon(viewer.playing ? 'pause' : 'play'))
     }
     put(this.looping, 'aria-pressed', String(viewer.loop))

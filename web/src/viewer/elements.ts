@@ -1,4 +1,5 @@
-/** Small helpers for elements of the page, and the icons of the bar. */
+/** Small helpers for elements of the page, and the icons of the bar. Words are said in the reader's language. */
+import { t, WORDED } from '../languages/translate'
 
 const SVG = 'http://www.w3.org/2000/svg'
 
@@ -10,14 +11,15 @@ export function element<Name extends keyof HTMLElementTagNameMap>(
 ): HTMLElementTagNameMap[Name] {
   const made = document.createElement(name)
   if (className) made.className = className
-  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value)
-  made.append(...children)
+  for (const [key, value] of Object.entries(attributes)) put(made, key, value)
+  made.append(...children.map((child) => (typeof child === 'string' ? t(child) : child)))
   return made
 }
 
 /** Say something there. What is said already is left alone, here and below: the browser would lay it out once more. */
 export function say(element: Element, text: string): void {
-  if (element.textContent !== text) element.textContent = text
+  const said = t(text)
+  if (element.textContent !== said) element.textContent = said
 }
 
 /** Hide it, or show it. */
@@ -27,7 +29,8 @@ export function hide(element: HTMLElement, hidden: boolean): void {
 
 /** Set an attribute. */
 export function put(element: Element, name: string, value: string): void {
-  if (element.getAttribute(name) !== value) element.setAttribute(name, value)
+  const said = WORDED.has(name) ? t(value) : value
+  if (element.getAttribute(name) !== said) element.setAttribute(name, said)
 }
 
 /** Drawn on a field of 20 by 20, in strokes. */

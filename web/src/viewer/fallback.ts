@@ -2,6 +2,7 @@
 
 import { Vector3 } from 'three'
 import type { Frame } from './contract'
+import { put, say } from './elements'
 import { BREAK } from './lines'
 import { shortNumber } from './quantities'
 import type { Scene } from './scene'
@@ -27,7 +28,7 @@ export class Fallback {
       'This browser draws no 3-D pictures (WebGL is missing or turned off). Here is the path seen along the support’s axis.'
     this.drawing = document.createElementNS(SVG, 'svg')
     this.drawing.setAttribute('role', 'img')
-    this.drawing.setAttribute('aria-label', 'Path of the body, seen along the support’s axis')
+    put(this.drawing, 'aria-label', 'Path of the body, seen along the support’s axis')
     this.numbers = document.createElement('p')
     this.numbers.className = 'tr-numbers'
     this.element.append(said, this.drawing, this.numbers)
@@ -52,7 +53,7 @@ export class Fallback {
       this.dots[i]?.setAttribute('cy', String(-y))
       return `${track.scene.header.body.label}: x = ${shortNumber(x)} m, y = ${shortNumber(y)} m, z = ${shortNumber(z)} m`
     })
-    this.numbers.textContent = said.join('; ')
+    say(this.numbers, said.join('; '))
   }
 
   private add(name: 'polyline' | 'circle', order: number, attributes: Record<string, string | number>): SVGElement {

@@ -1,7 +1,8 @@
 /** The motion in words, for who does not see the stage: "ball 12 cm from the axis, moving outwards, slowing". */
+import { t } from '../languages/translate'
 import type { Scene, Triple } from './scene'
 
-/** Every word of it, for whoever translates. */
+/** Every word of it, by which the catalogues have it. */
 export const WORDS = {
   ball: 'ball',
   at: (time: string, said: string) => `${time} s: ${said}.`,
@@ -81,7 +82,7 @@ export function described(scene: Scene, time: number): string {
   }
   const phase = WORDS.phase[columns.phase?.[at] ?? 0]
   if (phase) said.push(phase)
-  return said.join(', ')
+  return said.map((one) => t(one)).join(', ')
 }
 
 /** The same of all that move, with the time. */
@@ -89,7 +90,7 @@ export function narrated(scenes: readonly Scene[], time: number): string {
   const one = (scene: Scene) => {
     const { ball, label, name } = scene.header.body
     const called = scenes.length > 1 ? label : ball ? WORDS.ball : name.toLowerCase()
-    return `${called} ${described(scene, time)}`
+    return `${t(called)} ${described(scene, time)}`
   }
   return scenes.length ? WORDS.at(time.toFixed(1), scenes.map(one).join('; ')) : ''
 }

@@ -19,6 +19,7 @@ from .camera import Camera
 from .directions import Directions, echelon, taken
 from .first_guess import first_guess
 from .judging import judge
+from .lasting import lasting
 from .minimising import LOSSES, Minimum, look, minimise
 from .model import RunModel
 from .observations import Observations, noise_for, observe
@@ -309,9 +310,11 @@ def _told(problem: Problem, solved: _Solved, scenario: ScenarioFile, loss: str, 
     _, jacobian = problem.both(values)
     scale = alone(jacobian)
     together = taken(found, scale, problem.signal())
-    scaled = replace(found, basis=found.basis * np.sqrt(factor))
+    added = lasting(problem, values, found.basis, memory=not judgement.noise_known)
+    grown = np.linalg.cholesky(factor * np.eye(len(added)) + added)
+    scaled = replace(found, basis=found.basis @ grown)
     open_ = undetermined(problem, values, scaled, scale, cures=cures)
-    covariance = solved.covariance * factor
+    covariance = solved.covariance * factor + found.basis @ added @ found.basis.T
     estimates = tuple(
         _estimate(
             one, float(values[i]), float(covariance[i, i]), bool(together[i]), i in solved.pivots, solved.limits.get(i)

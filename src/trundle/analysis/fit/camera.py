@@ -11,7 +11,10 @@ from ...mechanics.algebra import Vector
 from ...mechanics.scalars import Scalar, is_zero, namespace
 from ...units import UNITS, to_si
 
-_KINDS = {"time_offset": "time", "scale": "number", "rotation": "angle", "origin": "length", "height": "length"}
+_KINDS = {
+    "time_offset": "time", "scale": "number", "rotation": "angle", "origin": "length", "height": "length",
+    "accuracy": "length",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -19,7 +22,8 @@ class Camera:
     """How measured lengths and times differ from those of the scenario.
 
     A point (x, y) at the height z over the plane of calibration is measured at s·R(θ)·(x, y)/(1 − z/H) + origin, at
-    the time that the scenario calls t + offset. Each number may be free in a fit, by names such as "camera.scale".
+    the time that the scenario calls t + offset. Each of these numbers may be free in a fit, by names such as
+    "camera.scale".
 
     Parameters
     ----------
@@ -33,6 +37,9 @@ class Camera:
         H, of the camera over the plane of calibration, m; absent: very far, no parallax.
     time_offset : float, quantity or str
         What the clock of the scenario shows when that of the data shows 0, s.
+    accuracy : float, quantity or str, optional
+        By how much lens, calibration and compression may shift all that is seen at one place, m. Such errors do not
+        average out: those of the fit allow for them, and no fit is bad for less. Absent: as the track says, or none.
 
     Examples
     --------
@@ -45,6 +52,7 @@ class Camera:
     origin: tuple[Scalar, Scalar] = (0.0, 0.0)
     height: Scalar | None = None
     time_offset: Scalar = 0.0
+    accuracy: float | None = None
 
     def __post_init__(self) -> None:
         for name in ("scale", "rotation", "time_offset"):
@@ -53,6 +61,11 @@ class Camera:
             object.__setattr__(self, "height", to_si(self.height, "length", "camera.height"))
             if not self.height > 0:
                 raise InvalidValueError("camera.height", "must be positive", self.height, "Leave it out if far away.")
+        if self.accuracy is not None:
+            object.__setattr__(self, "accuracy", to_si(self.accuracy, "length", "camera.accuracy"))
+            if not 0 <= self.accuracy < float("inf"):
+                remedy = "Write for instance '0.1 mm', or 0 for a camera without error."
+                raise InvalidValueError("camera.accuracy", "must not be negative", self.accuracy, remedy)
         if isinstance(self.origin, str) or not hasattr(self.origin, "__len__") or len(self.origin) != 2:
             raise InvalidValueError("camera.origin", "must be two lengths", self.origin, "Write ['1 cm', 0].")
         pair = tuple(to_si(part, "length", f"camera.origin[{i}]") for i, part in enumerate(self.origin))

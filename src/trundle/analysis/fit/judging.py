@@ -7,6 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...solve.samples import Array
+from .lasting import of_places
+from .model import RunModel
+from .observations import Noise
 from .problem import Problem
 
 ENOUGH = 5.0  # standard deviations by which a fit is bad
@@ -49,6 +52,8 @@ class Judgement:
         The farthest first.
     noise_known : bool
         Whether the noise was given.
+    allowed : float
+        By which χ² may be larger, as the camera is only so accurate.
     """
 
     chi_square: float
@@ -59,6 +64,7 @@ class Judgement:
     runs_excess: float
     outliers: tuple[Outlier, ...]
     noise_known: bool
+    allowed: float = 0.0
 
     @property
     def reduced(self) -> float:
@@ -92,6 +98,8 @@ class Judgement:
     def remarks(self) -> list[str]:
         """What else there is to say."""
         said = []
+        if self.allowed and self.chi_square > self.freedom + ENOUGH * float(np.sqrt(2.0 * max(self.freedom, 1))):
+            said.append("residuals are larger than the noise, but no larger than the camera is accurate")
         if self.excess < -ENOUGH:
             said.append(f"χ²/dof = {self.reduced:.3g}: the noise is less than was given, and the errors are too large")
         if 0 < len(self.outliers) <= _FEW * (self.freedom + 1):
@@ -112,21 +120,26 @@ def judge(problem: Problem, values: Array, fitted: int, *, robust: bool = False)
     chi, freedom = float(residual @ residual), count - fitted
     known = all(noise.known for noise in problem.noises)
     spread = np.sqrt(2.0 * max(freedom, 1)) * (1.0 if known else _OF_SCATTER)
+    allowed = sum(_allowed(model, noise) for model, noise in zip(problem.models, problem.noises, strict=True))
     excess = (chi - freedom) / spread if freedom > 0 else 0.0
+    if excess > 0:
+        excess = max(excess - allowed / spread, 0.0)
     scale = 1.0 if known else np.sqrt(chi / freedom) if freedom > 0 and chi > 0 else 1.0
     memory, memory_excess, runs = 0.0, 0.0, 0.0
     outliers: list[Outlier] = []
     whole = problem.residual(values)
     limit = _limit(count)
     at = 0
-    for i, model in enumerate(problem.models):
+    for i, (model, noise) in enumerate(zip(problem.models, problem.noises, strict=True)):
         seen = model.seen.known
         size = int(seen.sum())
         z = np.full(seen.shape, np.nan)
         z[seen] = whole[at : at + size]
         at += size
         typical = max(scale if known else 1.4826 * float(np.nanmedian(np.abs(z))), 1e-300)
-        for c in range(len(model.seen.columns)):
+        off_by = np.nanstd(z * noise.sigma, axis=0)
+        small = of_places(model.seen.columns) & (off_by <= model.accuracy)
+        for c in np.flatnonzero(~small):
             column = z[:, c][np.isfinite(z[:, c])]
             r, off = _memory(column)
             if off > memory_excess:
@@ -137,7 +150,13 @@ def judge(problem: Problem, values: Array, fitted: int, *, robust: bool = False)
             Outlier(i, int(model.seen.rows[row]), model.seen.columns[c], -float(z[row, c]) / typical) for row, c in far
         ]
     outliers.sort(key=lambda one: -abs(one.off))
-    return Judgement(chi, freedom, float(excess), memory, memory_excess, runs, tuple(outliers), known)
+    return Judgement(chi, freedom, float(excess), memory, memory_excess, runs, tuple(outliers), known, allowed)
+
+
+def _allowed(model: RunModel, noise: Noise) -> float:
+    """Return by how much χ² may be larger, as a camera is only so accurate."""
+    share = np.where(of_places(model.seen.columns), model.accuracy / noise.sigma, 0.0)
+    return float((share[model.seen.known] ** 2).sum())
 
 
 def _limit(count: int) -> float:

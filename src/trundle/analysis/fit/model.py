@@ -54,6 +54,11 @@ class RunModel:
     )  # once it is known to do
 
     @property
+    def accuracy(self) -> float:
+        """By how much all that is seen at one place may be off, m: as somebody says it, or the track."""
+        return self.seen.accuracy if self.camera.accuracy is None else self.camera.accuracy
+
+    @property
     def by_formula(self) -> bool:
         """Whether derivatives come from a closed form, and cost little more than the motion."""
         return bool(self._form)

@@ -32,6 +32,7 @@ class Observations:
     rows: Any  # (n,): what the data call each row: the line of a file, or the place in the table, from 1
     label: str  # the file's name, or "data"
     read: str  # what was taken for what
+    accuracy: float = 0.0  # by how much all that is seen at one place may be off, as the track says it, m
 
     @property
     def known(self) -> Array:
@@ -82,7 +83,8 @@ def observe(
     if time.size < _FEWEST:
         raise InvalidValueError("data", f"must have {_FEWEST} rows at least", f"{time.size} with a time and a value")
     said = f"{track.taken}. {track.left_out_rows}".rstrip(" .")
-    return Observations(time, tuple(wanted), values, rows, _called(track, label), said)
+    accuracy = float(track.data.attrs.get("accuracy", 0.0))
+    return Observations(time, tuple(wanted), values, rows, _called(track, label), said, accuracy)
 
 
 def _check_frame(track: Track) -> None:

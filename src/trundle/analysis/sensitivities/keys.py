@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, get_args
+from typing import Any, TypeVar, get_args
 
 from ...errors import InvalidValueError, UnknownNameError
 from ...mechanics.duals import Dual
@@ -18,6 +18,7 @@ from ...scenario.tables.of_parts import ListOfLengths
 from ...scenario.tables.values import Table
 from ...units import UNITS
 
+Model = TypeVar("Model", bound=ScenarioFile)
 _APART = {"title", "group", "notes", "timing"}  # what says nothing of the motion
 # At 0 these say that there is nothing of the kind, and a start is where the clock of the derivatives begins.
 _AT_ZERO = {
@@ -121,7 +122,7 @@ def varied(scenario: ScenarioFile, wanted: Sequence[Key]) -> tuple[RollingSystem
     return system, Placing(system, **model.start.arguments()).state(checked=False)
 
 
-def replaced(scenario: ScenarioFile, values: Mapping[str, Any]) -> ScenarioFile:
+def replaced(scenario: Model, values: Mapping[str, Any]) -> Model:
     """Return a scenario with other scalars in the places of its numbers; they are not checked again.
 
     Examples
@@ -130,7 +131,7 @@ def replaced(scenario: ScenarioFile, values: Mapping[str, Any]) -> ScenarioFile:
     >>> replaced(tr.Scenario.load("tilted-turntable"), {"body.radius": 0.03}).system().body.radius
     0.03
     """
-    model: ScenarioFile = _replaced(scenario, "", lambda name, value: values.get(name, value))
+    model: Model = _replaced(scenario, "", lambda name, value: values.get(name, value))
     return model
 
 

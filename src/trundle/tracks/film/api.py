@@ -22,6 +22,7 @@ from .result import FilmTrack
 from .rim import find_rim
 
 _ASTRAY = 0.02  # relative difference from the rate that the table has
+_ACCURACY = 0.1  # px: what lens, edges and compression leave, and more pictures do not mend
 _EVEN = 1.5  # px, of a mark on a table that turns evenly
 _WHOLE = 0.03  # how near to a whole number a ratio of rates is one
 _PASSES = 3  # how often a film is read
@@ -151,7 +152,7 @@ def track_film(
     found = calibrating.calibrate(seen, length["height"], focal, distortion)
     _check_turning(found, table_rate, speed)
     camera, radius = found.camera, float(length["ball_radius"] or 0.0)
-    turns = length["rim_radius"] or (found.turning.radius if found.turning else 0.0)
+    turns = length["rim_radius"] or (found.turning.outermost if found.turning else 0.0)
     taken = tuple((clock(frame.time), frame.picture) for frame in samples)
     ground = Ground(still, camera, found.turning, float(turns), taken)
     own = learn_ball([(clock(frame.time), frame) for frame in samples], ground, camera, radius, colour)
@@ -252,6 +253,12 @@ def _check_turning(found: Calibration, table_rate: Any, speed: str) -> None:
         raise InvalidValueError("table_rate", "must be what the mark shows", received, remedy)
 
 
+def _pixel(found: Calibration, places: Array) -> float:
+    """Return how wide the part of the table is that a pixel shows, m, where the ball is."""
+    middle = np.array([*np.median(places, axis=0), 0.0])
+    return float(np.linalg.norm(middle - found.camera.place) / found.camera.focal)
+
+
 def _track(
     film: Film,
     ball: Followed,
@@ -276,7 +283,7 @@ def _track(
         {name: ("time", values, {"units": "m", "heading": name}) for name, values in columns.items()},
         coords={"time": ("time", np.array(ball.times), {"units": "s", "heading": "t"}),
                 "row": ("time", np.array(ball.numbers, dtype=int))},
-        attrs={"frame": "support", "axes": "space", "film_rate": rate},
+        attrs={"frame": "support", "axes": "space", "film_rate": rate, "accuracy": _ACCURACY * _pixel(found, places)},
     )  # fmt: skip
     count = len(ball.numbers)
     taken = ", ".join([f"{count} frames of {ball.frames}", *said])

@@ -18,6 +18,7 @@ _SIDES = 0.005  # of the rim's radius: how far two solutions may be apart
 _ALIKE = 2.0  # times the least misfit, within which another solution is as good
 _OFF = 5.0  # times the median distance of the mark from where it should be: another thing has spoilt it
 _LEAST_OFF = 0.2  # px
+_BLURRED = 2.0  # times the radius of a mark, within which all of its blurred picture is
 _RING = 2 * np.pi * np.arange(24) / 24
 _START_FOCAL = 1.2  # of the longer side: a telephone's
 
@@ -32,6 +33,7 @@ class Turning:
     phase: float  # angle of the mark at the time 0, rad
     radius: float  # its distance from the axis, m
     misfit: float  # root mean square of the distances from an even turning, px
+    outermost: float = 0.0  # distance from the axis to which the mark reaches, with its blur, m
 
     def angle(self, time: Any) -> Any:
         """Return the angle of the mark, rad."""
@@ -115,13 +117,23 @@ def calibrate(seen: Sightings, height: float | None, focal: float | None, distor
         freedom = max(best.fun.size - best.x.size, 1)
         covariance = _inverse(best.jac) * 2 * best.cost / freedom
         off = float(np.sqrt((best.fun[count:] ** 2).mean()))
-        turning = replace(turning, rate_sigma=float(np.sqrt(covariance[-1, -1])), misfit=off)
+        outermost = turning.radius + _BLURRED * _radius(camera, seen)
+        turning = replace(turning, rate_sigma=float(np.sqrt(covariance[-1, -1])), misfit=off, outermost=outermost)
         camera = replace(camera, place=camera.place - np.array([*axis, 0.0]))
     basis = f"the rim ({count} points of its edge)" if seen.rim is not None else f"{len(known.marks)} marks"
     times, mark = (
         (np.zeros(0), np.zeros((0, 2))) if seen.mark is None or seen.times is None else (seen.times, seen.mark)
     )
     return Calibration(camera, misfit, turning, basis, times, mark, (float(-axis[0]), float(-axis[1])))
+
+
+def _radius(camera: PinholeCamera, seen: Sightings) -> float:
+    """Return the radius of a round mark by the pixels that it covers, m."""
+    place = np.nanmedian(camera.on_plane(seen.mark), axis=0) if seen.mark is not None else np.zeros(2)
+    step = 1e-3
+    at, right, up = camera.project(np.array([[*(place + aside), 0.0] for aside in ((0, 0), (step, 0), (0, step))]))
+    cell = abs(np.linalg.det([right - at, up - at])) / step**2  # pixels a square metre
+    return float(np.sqrt(seen.mark_area / (np.pi * cell)))
 
 
 def _middles(camera: PinholeCamera, mark: Array, area: float) -> Array:

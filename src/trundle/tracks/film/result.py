@@ -118,6 +118,7 @@ class FilmTrack(Track):
             ("calibrated by", f"{calibration.basis}, to {calibration.misfit:.2f} px"),
             ("lens over the table", f"{camera.place[2]:.4g} m, aside by {np.hypot(*camera.place[:2]):.3g} m"),
             ("focal length", f"{camera.focal:.5g} px"),
+            ("accuracy", f"{self.data.attrs['accuracy']:.2g} m, a tenth of a pixel"),
         ]
         if turning is not None:
             rpm = turning.rate * 30 / np.pi

@@ -12,6 +12,8 @@ from ..options import Options
 from ..table import Table
 from .base import GridFormat, headed, table_of
 
+_ACCURACY = re.compile(r"#\s*accuracy:\s*([\d.eE+-]+)\s*m\b")  # as `FilmTrack.save` writes it
+
 
 class PlainTable(GridFormat):
     """A table with a line of headings, and perhaps a line of units below it."""
@@ -39,7 +41,7 @@ class PlainTable(GridFormat):
                 raise InvalidValueError("file", rule, f"numbers in {grid.counted} {grid.lines[0]}", remedy)
         names = [name or f"column {i + 1}" for i, name in enumerate(names)]
         table = table_of(grid, names, units)
-        return [replace(table, rejected=(*rejected, *table.rejected))]
+        return [replace(table, rejected=(*rejected, *table.rejected), accuracy=_accuracy(grid.notes))]
 
     def _noted(self, grid: Grid) -> list[str]:
         """Return the headings from the last remark that has a word for each column (as numpy.savetxt writes it)."""
@@ -49,3 +51,19 @@ class PlainTable(GridFormat):
                 if len(words) == grid.width:
                     return words
         return []
+
+
+def _accuracy(notes: Sequence[str]) -> float:
+    """Return by how much places may be off, as a remark says it, m.
+
+    Examples
+    --------
+    >>> _accuracy(["# film.mp4", "# accuracy: 0.00013 m, a tenth of a pixel"])
+    0.00013
+    """
+    found = next(filter(None, map(_ACCURACY.match, notes)), None)
+    try:
+        number = float(found.group(1)) if found else 0.0
+    except ValueError:
+        return 0.0
+    return number if 0 < number < float("inf") else 0.0

@@ -1,4 +1,5 @@
 /** The verification card: each line with its mark, value and bound; what it means unfolds. */
+import { say } from '../../viewer/elements'
 import type { Card } from '../api'
 import { fill, h } from '../dom'
 import { icon } from '../icons'
@@ -111,7 +112,7 @@ export function createCard(): CardPanel {
         : 'Solving again by another route, and comparing …'
     if (element.querySelector('.card-lines')) {
       element.setAttribute('data-old', '')
-      element.querySelector('.card-summary')!.textContent = words
+      say(element.querySelector('.card-summary')!, words)
     } else fill(element, h('p', { class: 'empty working' }, words))
   }
 

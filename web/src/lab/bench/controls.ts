@@ -1,4 +1,5 @@
 /** The panel of controls: built from the layout of the scenario, kept in step with the store. */
+import { t } from '../../languages/translate'
 import { hide, say } from '../../viewer/elements'
 import type { ApiError } from '../api'
 import type { App } from '../app'
@@ -214,14 +215,14 @@ export function createControls(app: App): Controls {
       const place = key.replace(/\[(\d+)\]/g, '.$1')
       const at = ({ path }: Field) => places.get(path) ?? path
       const field = fields.find((one) => at(one) === place) ?? fields.find((one) => at(one).split('.').at(-1) === place)
-      if (field) return `“${field.label}”`
+      if (field) return t('“{label}”', { label: t(field.label) })
       const word = /^[a-z_.\d]+$/.test(place)
         ? (place
             .split('.')
             .filter((part) => /\D/.test(part))
             .at(-1) ?? '')
         : key
-      return `“${word.replaceAll('_', ' ')}”`
+      return t('“{label}”', { label: t(word.replaceAll('_', ' ')) })
     })
   }
 

@@ -1,4 +1,5 @@
 /** Curves: two of them, any quantity over time or against any other; a click goes to that instant. */
+import { put } from '../../viewer/elements'
 import type { Scene } from '../../viewer/scene'
 import type { App } from '../app'
 import { fill, h } from '../dom'
@@ -55,7 +56,7 @@ export function svgOf(plot: Plot, look: Look): string {
   const { element } = createChart(plot, look, SAVED.width, SAVED.height, true)
   element.setAttribute('xmlns', 'http://www.w3.org/2000/svg')
   element.setAttribute('role', 'img')
-  element.setAttribute('aria-label', `${title(plot.y)} over ${title(plot.x)}`)
+  put(element, 'aria-label', `${title(plot.y)} over ${title(plot.x)}`)
   return new XMLSerializer().serializeToString(element)
 }
 
@@ -149,7 +150,7 @@ function createFigure(app: App, first: string, seek: (time: number) => void): Fi
       known.reduce((a, b) => Math.max(a, b), -Infinity),
     ]
     const over = x.id === 'time' ? 'over time' : `against ${x.label}`
-    place.setAttribute('aria-label', `${y.label} ${over}: from ${show(least)} to ${show(most)} ${y.unit}`)
+    put(place, 'aria-label', `${y.label} ${over}: from ${show(least)} to ${show(most)} ${y.unit}`)
   }
 
   /** The lists are filled anew only where others are on offer: an open one stays open. */

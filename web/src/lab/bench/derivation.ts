@@ -1,4 +1,5 @@
 /** The derivation, step by step, in a drawer. */
+import { say } from '../../viewer/elements'
 import type { Api, Derivation } from '../api'
 import { isAbort } from '../api'
 import { fill, h } from '../dom'
@@ -76,7 +77,7 @@ export async function openDerivation(api: Api, scenario: Scenario): Promise<void
   dialog.showModal()
   try {
     const derivation = await api.derivation(scenario, { signal: gone.signal })
-    title.textContent = derivation.title
+    say(title, derivation.title)
     fill(body, content(derivation))
   } catch (error) {
     if (!isAbort(error))

@@ -1,4 +1,5 @@
 /** One number of the scenario: typed with its unit, dragged by a slider, stepped by the arrow keys. */
+import { shownDigits, typedDigits } from '../../languages/translate'
 import { hide, put, say } from '../../viewer/elements'
 import { h, uniqueId } from '../dom'
 import { brief, parse, rounded, siUnit, stepped, suited, toSI, type Units, write } from '../quantity'
@@ -188,7 +189,7 @@ export function createField(options: FieldOptions): Field {
 
   function draw(): void {
     if (hasUnits) fillUnits()
-    if (!typing) input.value = document.activeElement === input ? digits() : brief(digits())
+    if (!typing) input.value = shownDigits(document.activeElement === input ? digits() : brief(digits()))
     const si = toSI(value, entry.units)
     const formula = si === null && typeof value === 'string'
     element.toggleAttribute('data-formula', formula)
@@ -213,7 +214,7 @@ export function createField(options: FieldOptions): Field {
 
   /** What was typed, with the unit shown where none was. */
   function typed(): { value: Json; known: boolean } {
-    const found = parse(input.value)
+    const found = parse(typedDigits(input.value))
     if (found.number === null) return { value: input.value.trim(), known: false }
     const written = found.unit || (hasUnits ? shownUnit() : '')
     const known = written === '' || written in entry.units
@@ -229,14 +230,14 @@ export function createField(options: FieldOptions): Field {
   input.addEventListener('change', () => {
     typing = false
     gesture += 1
-    const found = parse(input.value)
+    const found = parse(typedDigits(input.value))
     if (found.unit && found.unit in entry.units) options.keepUnit(found.unit)
     const { value: next } = typed()
     if (next !== value) commit(next)
     else draw()
   })
   input.addEventListener('focus', () => {
-    const all = digits()
+    const all = shownDigits(digits())
     if (typing || input.value === all) return
     input.value = all
     input.select() // as a box is that one comes to by the keyboard: other text takes its place
@@ -271,7 +272,7 @@ export function createField(options: FieldOptions): Field {
     const next = stepped(si / factor, way, scale)
     typing = false
     commit(write(next * factor, entry.units, hasUnits ? shownUnit() : '', 12), 'step')
-    input.value = digits()
+    input.value = shownDigits(digits())
   }
 
   slider.addEventListener('keydown', step)

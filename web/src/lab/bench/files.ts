@@ -1,4 +1,5 @@
 /** Files in and out: the link, the downloads, and what is dropped on the page. */
+import { put } from '../../viewer/elements'
 import type { ExportFormat } from '../api'
 import { isAbort } from '../api'
 import type { App } from '../app'
@@ -60,7 +61,7 @@ export function createDownloads(app: App, snapshot: () => Promise<Blob>): { elem
   const undo = cleanup()
   const button = h('button', { class: 'button', type: 'button', 'aria-expanded': 'false', 'aria-haspopup': 'true' })
   button.append(icon('download'), h('span', { class: 'button-word' }, 'Download'))
-  button.setAttribute('aria-label', 'Download')
+  put(button, 'aria-label', 'Download')
   const items = CHOICES.map(([format, name, what]) => {
     const item = h(
       'button',

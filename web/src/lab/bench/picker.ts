@@ -1,4 +1,5 @@
 /** The dialog to choose a scenario: the shipped ones, grouped by what they show, searched by every word. */
+import { say } from '../../viewer/elements'
 import type { Api, ScenarioEntry } from '../api'
 import { fill, h } from '../dom'
 import { icon } from '../icons'
@@ -57,7 +58,7 @@ export async function pickScenario(api: Api, choose: (name: string) => void): Pr
   try {
     entries = await api.scenarios()
   } catch (error) {
-    count.textContent = ''
+    say(count, '')
     fill(list, h('p', { class: 'empty', role: 'alert' }, error instanceof Error ? error.message : String(error)))
     return
   }
@@ -94,7 +95,7 @@ export async function pickScenario(api: Api, choose: (name: string) => void): Pr
       .map(([name, all]): [string, ScenarioEntry[]] => [name, all.filter((entry) => matches(entry, query))])
       .filter(([, members]) => members.length > 0)
     const found = shown.reduce((sum, [, members]) => sum + members.length, 0)
-    count.textContent = `${found} of ${entries.length}`
+    say(count, `${found} of ${entries.length}`)
     fill(
       list,
       shown.map(([name, members]) =>

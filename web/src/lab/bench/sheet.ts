@@ -1,4 +1,5 @@
 /** The sheet at the bottom of a phone: pulled up and down by its handle, or stepped by the arrow keys. */
+import { put } from '../../viewer/elements'
 import { h } from '../dom'
 
 const STOPS = [12, 42, 80]
@@ -19,7 +20,7 @@ export function createSheet(content: HTMLElement): { handle: HTMLElement; open()
     height = Math.min(STOPS[2]!, Math.max(STOPS[0]!, next))
     content.style.setProperty('--sheet', `${height}dvh`)
     handle.setAttribute('aria-valuenow', String(Math.round(height)))
-    handle.setAttribute('aria-valuetext', `${Math.round(height)} % of the screen`)
+    put(handle, 'aria-valuetext', `${Math.round(height)} % of the screen`)
   }
 
   const nearest = () => STOPS.reduce((best, stop) => (Math.abs(stop - height) < Math.abs(best - height) ? stop : best))

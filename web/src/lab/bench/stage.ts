@@ -1,6 +1,6 @@
 /** The stage: the viewer, its tools, what is written over it, and what is done on it by hand. */
 import type { Place } from '../../viewer/contract'
-import { hide } from '../../viewer/elements'
+import { put as attribute, hide, say } from '../../viewer/elements'
 import type { Scene, Triple } from '../../viewer/scene'
 import type { Tool, Viewer } from '../../viewer/viewer'
 import { createViewer } from '../../viewer/viewer'
@@ -146,7 +146,7 @@ export function createStage(app: App): Stage {
       button.setAttribute('aria-checked', String(on))
       button.tabIndex = on ? 0 : -1
     })
-    hint.textContent = chosen?.hint ?? ''
+    say(hint, chosen?.hint ?? '')
     hint.hidden = tool === 'orbit' && (knowsHand || whyNotDragged(store.scenario) !== null)
     if (tool === 'drag' || tool === 'velocity') {
       viewer.pause()
@@ -331,14 +331,14 @@ export function createStage(app: App): Stage {
       fill(time, h('span', { class: 'number' }, computed ?? whole), ` ${method}`)
       const finely = header.tolerance > 1e-12 ? `, to ${show(header.tolerance, 1)} a step while the numbers move` : ''
       const asked = `From the question to the picture: ${whole}.`
-      time.title = computed ? `Computed in ${computed}${finely}. ${asked}` : asked
+      attribute(time, 'title', computed ? `Computed in ${computed}${finely}. ${asked}` : asked)
     },
     stale(why) {
       hide(old, why === null || scene === undefined)
       element.toggleAttribute('data-stale', why !== null)
       if (scene || why === null) return
       empty.classList.remove('working')
-      empty.textContent = why
+      say(empty, why)
     },
     dispose() {
       clearTimeout(late)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .serving import CannotError, Task, march, refuse, serve
+from .serving import CannotError, Task, changes, march, refuse, serve
 
 
 def run(task: Task) -> Task:
@@ -34,7 +34,8 @@ def run(task: Task) -> Task:
     plant.Finalize()
     if any(any(body["force"]) for body in task["bodies"]):
         _push(drake, builder, plant, bodies, task)
-    simulator = drake.Simulator(builder.Build())
+    diagram = builder.Build()
+    simulator = drake.Simulator(diagram)
     context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
     for made, body in zip(bodies, task["bodies"], strict=True):
         q = np.array(body["orientation"]) / np.linalg.norm(body["orientation"])
@@ -43,6 +44,7 @@ def run(task: Task) -> Task:
         plant.SetFreeBodySpatialVelocity(context, made, velocity)
     if hinge is not None:
         hinge.set_angular_rate(context, task["support"]["motion"]["rate"])
+    begun = plant.GetPositionsAndVelocities(context)
     simulator.Initialize()
     count = [0]
 
@@ -62,7 +64,38 @@ def run(task: Task) -> Task:
         return seen
 
     turn = None if hinge is None else lambda: (hinge.get_angle(context), hinge.get_angular_rate(context))
-    return march(task, f"Drake {_version()}", step, read, turn)
+    answer = march(task, f"Drake {_version()}", step, read, turn)
+    if "derivatives" in task:
+        answer["derivatives"] = {"AutoDiffXd": differentiated(drake, np, task, diagram, plant, bodies[0], begun)}
+    return answer
+
+
+def differentiated(drake: Any, np: Any, task: Task, diagram: Any, plant: Any, made: Any, begun: Any) -> list[Any]:
+    """Return the derivatives of the final state, by the run in AutoDiffXd."""
+    directions = task["derivatives"]
+    place, moves = made.floating_positions_start(), plant.num_positions() + made.floating_velocities_start_in_v()
+    slopes = np.zeros((begun.size, len(directions)))
+    for j, direction in enumerate(directions):
+        slope = direction["bodies"][0]
+        slopes[place : place + 7, j] = [*slope["orientation"], *slope["position"]]
+        slopes[moves : moves + 6, j] = [*slope["angular_velocity"], *slope["velocity"]]
+        for hinge in set(range(plant.num_positions(), begun.size)) - set(range(moves, moves + 6)):
+            slopes[hinge, j] = direction["support"]["motion"]["rate"]
+    twin = diagram.ToAutoDiffXd()
+    simulator = drake.Simulator_[drake.AutoDiffXd](twin)
+    own = twin.GetSubsystemByName("plant")
+    context = own.GetMyMutableContextFromRoot(simulator.get_mutable_context())
+    own.SetPositionsAndVelocities(context, drake.InitializeAutoDiff(begun, slopes)[:, 0])
+    try:
+        simulator.Initialize()
+        simulator.AdvanceTo(task["duration"])
+    except RuntimeError as error:
+        return [str(error)] * len(directions)
+    found = drake.ExtractGradient(own.GetPositionsAndVelocities(context))
+    parts = {"position": place + 4, "velocity": moves + 3, "angular_velocity": moves}
+    ends = [{key: [found[at : at + 3, j].tolist()] for key, at in parts.items()} for j in range(len(directions))]
+    reason = "this adapter makes no variable of a number of the model"
+    return [end if changes(direction) <= {"start"} else reason for end, direction in zip(ends, directions, strict=True)]
 
 
 def _version() -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .serving import CannotError, Task, march, refuse, rotation, serve, turned
+from .serving import CannotError, Task, backwards, changes, cross, march, refuse, rotation, serve, times, turned
 
 # What MuJoCo does where nothing is said; a setting names what differs.
 SHIPPED = {
@@ -17,6 +17,7 @@ SHIPPED = {
     "solref": [0.02, 1.0],
     "solimp": [0.9, 0.95, 0.001],
 }
+DIFFERENCES = (1e-6, 1e-8)  # by which mjd_transitionFD moves the state
 
 
 def model(task: Task, *, moving: bool = True) -> str:
@@ -85,6 +86,8 @@ def run(task: Task) -> Task:
         """Return the state of each body, the angular velocity turned to space axes."""
         return [(j.qpos[:3], j.qpos[3:], j.qvel[:3], turned(j.qpos[3:], j.qvel[3:])) for j in joints]
 
+    if "derivatives" in task:
+        return chained(mujoco, task, world, data, read)
     return march(
         task,
         f"MuJoCo {mujoco.__version__}",
@@ -92,6 +95,56 @@ def run(task: Task) -> Task:
         read,
         None if hinge is None else lambda: (hinge.qpos[0], hinge.qvel[0]),
     )
+
+
+def chained(mujoco: Any, task: Task, world: Any, data: Any, read: Any) -> Task:
+    """March, and carry the slopes of the state along by mjd_transitionFD of each step."""
+    import numpy as np
+
+    directions = task["derivatives"]
+    able = [changes(direction) <= {"start"} for direction in directions]
+    if len(task["bodies"]) > 1:
+        raise CannotError("this adapter chains the derivatives of one body")
+    begun = np.array([_tangent(task, direction) for direction in directions]).T
+    slopes = dict.fromkeys(DIFFERENCES, begun)
+    A = np.zeros((2 * world.nv, 2 * world.nv))
+
+    def step(count: int) -> None:
+        """Take steps; the derivatives of each are taken before it."""
+        for _ in range(count):
+            for by in DIFFERENCES:
+                mujoco.mjd_transitionFD(world, data, by, 1, A, None, None, None)
+                slopes[by] = A @ slopes[by]
+            mujoco.mj_step(world, data)
+
+    answer = march(task, f"MuJoCo {mujoco.__version__}", step, read)
+    turn, spin = data.joint("b0").qpos[3:], data.joint("b0").qvel[3:]
+
+    def end(column: Any) -> Task:
+        """Return the slopes in the axes of space."""
+        place, velocity = column[world.nv - 6 : world.nv], column[-6:]
+        across = velocity[3:] + np.cross(place[3:], spin)
+        parts = {"position": place[:3], "velocity": velocity[:3], "angular_velocity": turned(turn, across)}
+        return {name: [[float(x) for x in part]] for name, part in parts.items()}
+
+    reason = "mjd_transitionFD has derivatives by the state, and none by numbers of the model"
+    answer["derivatives"] = {
+        f"mjd_transitionFD by {by:g}": [end(slope) if able[j] else reason for j, slope in enumerate(slopes[by].T)]
+        for by in DIFFERENCES
+    }
+    return answer
+
+
+def _tangent(task: Task, direction: Task) -> list[float]:
+    """Return a direction as mjd_transitionFD has it: turns and angular velocities in the axes of the body."""
+    body, slope = task["bodies"][0], direction["bodies"][0]
+    w, x, y, z = body["orientation"]
+    _, *half = times([w, -x, -y, -z], slope["orientation"])
+    turn, q = [2 * part for part in half], body["orientation"]
+    across = cross(backwards(q, body["angular_velocity"]), turn)
+    spin = [a + b for a, b in zip(backwards(q, slope["angular_velocity"]), across, strict=True)]
+    hinge = [direction["support"]["motion"]["rate"]] if "rate" in direction["support"]["motion"] else []
+    return [*(0.0 for _ in hinge), *slope["position"], *turn, *hinge, *slope["velocity"], *spin]
 
 
 def settled(mujoco: Any, task: Task) -> list[float] | None:

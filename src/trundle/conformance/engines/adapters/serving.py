@@ -17,6 +17,7 @@ from typing import Any
 Task = dict[str, Any]
 Read = Callable[[], Sequence[Sequence[Sequence[float]]]]
 PARTS = ("position", "orientation", "velocity", "angular_velocity")
+END = ("position", "velocity", "angular_velocity")  # of which derivatives are asked for
 
 
 class CannotError(Exception):
@@ -83,6 +84,25 @@ def march(
     return {**answer, "seconds": spent}
 
 
+def changes(direction: Task) -> set[str]:
+    """Return what changes along a direction of differentiation: its keys that have a slope other than zero.
+
+    Of what is within another, the innermost key is named; "start" stands for the state of a body, and the rate of a
+    table on a hinge.
+    """
+
+    def within(key: str, part: Any) -> set[str]:
+        if isinstance(part, dict):
+            return set().union(*(within(*item) for item in part.items()))
+        if isinstance(part, list):
+            return set().union(*(within(key, each) for each in part))
+        return {key} if not isinstance(part, str) and part != 0 else set()
+
+    words = within("", direction)
+    begins = {*PARTS, *(["rate"] if direction["support"]["motion"]["kind"] == "hinge" else [])}
+    return words - begins | ({"start"} if words & begins else set())
+
+
 def refuse(task: Task, reasons: dict[str, str]) -> None:
     """Refuse a task that has one of these words in it: a shape, a support, a motion of it, restitution or offset."""
     support = task["support"]
@@ -125,6 +145,11 @@ def turned(q: Sequence[float], vector: Sequence[float]) -> list[float]:
 def backwards(q: Sequence[float], vector: Sequence[float]) -> list[float]:
     """Turn a vector back by a unit quaternion."""
     return turned([q[0], -q[1], -q[2], -q[3]], vector)
+
+
+def cross(a: Sequence[float], b: Sequence[float]) -> list[float]:
+    """Return the product a × b."""
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 
 
 def times(p: Sequence[float], q: Sequence[float]) -> list[float]:

@@ -1,4 +1,5 @@
 /** One challenge: predict, do, explain; the server says whether the answer is right. */
+import { say } from '../../../viewer/elements'
 import type { Scene } from '../../../viewer/scene'
 import type { Challenge, Judgement, Values } from '../../api'
 import { isAbort } from '../../api'
@@ -102,7 +103,7 @@ export function mountChallenge(host: HTMLElement, app: App, challenge: Challenge
   async function judge(): Promise<void> {
     const answer = answering.value()
     if (answer === undefined) {
-      verdict.textContent = answering.missing
+      say(verdict, answering.missing)
       return
     }
     check.disabled = true
@@ -119,11 +120,11 @@ export function mountChallenge(host: HTMLElement, app: App, challenge: Challenge
     { right, found, explanation: why }: Judgement,
     answer: string | number | null,
   ): Promise<void> {
-    verdict.textContent = right ? CHALLENGE.right : CHALLENGE.notYet
+    say(verdict, right ? CHALLENGE.right : CHALLENGE.notYet)
     verdict.dataset.right = String(right)
     fill(result, found.length > 0 && findings(found))
     explanation.hidden = !right
-    explanation.textContent = why
+    say(explanation, why)
     const tries = (readNotebook().entries[name]?.tries ?? 0) + 1
     const { scenario } = scenes[0]?.header ?? {}
     keep({
@@ -166,7 +167,7 @@ export function mountChallenge(host: HTMLElement, app: App, challenge: Challenge
     asked = Math.min(asked, challenge.hints.length)
     fill(hints, ...challenge.hints.slice(0, asked).map((text) => h('li', {}, text)))
     more.hidden = asked >= challenge.hints.length
-    more.textContent = CHALLENGE.hint(asked + 1, challenge.hints.length)
+    say(more, CHALLENGE.hint(asked + 1, challenge.hints.length))
   }
   hinted()
 

@@ -1,4 +1,5 @@
 /** The challenges: their list, each of them, and the report on them. #/challenges, #/challenges/home-turned. */
+import { t } from '../../../languages/translate'
 import type { Challenge } from '../../api'
 import type { App, Page } from '../../app'
 import { cleanup, fill, h } from '../../dom'
@@ -37,7 +38,7 @@ export const challenges: Page = {
       if (name && !one) app.toast(CHALLENGE.unknown, 'error')
       if (one) takeDown = mountChallenge(host, app, one)
       else list(host, all)
-      document.title = `${one?.title ?? CHALLENGE.title} · trundle lab`
+      document.title = t(`${one?.title ?? CHALLENGE.title} · trundle lab`)
       if (!focus) return
       host.querySelector<HTMLElement>('h1')?.focus({ preventScroll: true })
       window.scrollTo(0, 0)

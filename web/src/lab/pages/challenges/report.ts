@@ -1,4 +1,6 @@
 /** The report that a pupil hands in: predictions, pictures, numbers, explanations, links. It prints well. */
+import { language } from '../../../languages/translate'
+import { say } from '../../../viewer/elements'
 import type { App } from '../../app'
 import { fill, h, uniqueId } from '../../dom'
 import { type Entry, forget, type Notebook, readNotebook, writeNotebook } from '../../notebook'
@@ -14,7 +16,7 @@ export async function drawReport(host: HTMLElement, app: App): Promise<void> {
   const clear = button(REPORT.clear, () => {
     if (!sure) {
       sure = true
-      clear.textContent = REPORT.sure
+      say(clear, REPORT.sure)
       return
     }
     forget()
@@ -32,7 +34,7 @@ export async function drawReport(host: HTMLElement, app: App): Promise<void> {
         { class: 'sheet-names' },
         named(REPORT.name, 'name', notebook),
         named(REPORT.group, 'group', notebook),
-        h('p', {}, `${REPORT.date}: ${new Date().toLocaleDateString()}`),
+        h('p', {}, `${REPORT.date}: ${new Date().toLocaleDateString(language())}`),
       ),
       h(
         'p',

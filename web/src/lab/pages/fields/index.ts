@@ -1,4 +1,5 @@
 /** The turntable beside the crossed fields: shared controls, one clock, and a dictionary with the current numbers. */
+import { say } from '../../../viewer/elements'
 import type { Scene } from '../../../viewer/scene'
 import type { Page } from '../../app'
 import { cleanup, fill, h } from '../../dom'
@@ -42,7 +43,7 @@ export const fields: Page = {
       const header = chargeOf(charge)
       fill(values, ...fieldValues(header))
       fill(body, dictionary(header.table).map(line))
-      apart.textContent = `Greatest distance between the two paths: ${written(header.apart, 2)} m. That is rounding.`
+      say(apart, `Greatest distance between the two paths: ${written(header.apart, 2)} m. That is rounding.`)
     }
 
     function change(part: Partial<Setting>): void {

@@ -1,4 +1,5 @@
 /** Roll the ball by quarter turns or drag it along, and watch its north pole. */
+import { say } from '../../../viewer/elements'
 import type { Scene } from '../../../viewer/scene'
 import type { App } from '../../app'
 import { cleanup, fill, h, listen } from '../../dom'
@@ -85,7 +86,7 @@ export function mountHand(host: HTMLElement, app: App): () => void {
     const last = rolled.stages[rolled.stages.length - 1]
     at = last ? [last.position[0], last.position[1]] : [0, 0]
     const home = rolled.closed && pieces.length > 0
-    place.textContent = home ? 'Home again.' : `${inRadii(at[0])} east, ${inRadii(at[1])} north of home, in radii.`
+    say(place, home ? 'Home again.' : `${inRadii(at[0])} east, ${inRadii(at[1])} north of home, in radii.`)
     place.classList.toggle('home', home)
     numbers.set([
       { name: 'turned since the start', predicted: null, measured: degrees(rolled.turned) },
@@ -142,7 +143,7 @@ export function mountHand(host: HTMLElement, app: App): () => void {
       viewer.tool = 'drag'
       framed = true
       pole.set([0, 0, 1])
-      place.textContent = 'At home, north pole up.'
+      say(place, 'At home, north pole up.')
       place.classList.remove('home')
       numbers.set([])
     } catch (error) {

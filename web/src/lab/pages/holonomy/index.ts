@@ -1,4 +1,5 @@
 /** Rolling as geometry: by hand, in two orders, home by a loop. #/holonomy, #/holonomy/orders, #/holonomy/loop. */
+import { t } from '../../../languages/translate'
 import type { App, Page } from '../../app'
 import { cleanup, fill, h } from '../../dom'
 import { mountHand } from './hand'
@@ -34,7 +35,7 @@ export const holonomy: Page = {
         if (VIEWS[i] === view) link.setAttribute('aria-current', 'page')
         else link.removeAttribute('aria-current')
       })
-      document.title = `${view.title} · Holonomy · trundle lab`
+      document.title = t(`${view.title} · Holonomy · trundle lab`)
       fill(place)
       takeDown = view.mount(place, app)
     }

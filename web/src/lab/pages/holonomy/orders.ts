@@ -1,4 +1,5 @@
 /** Two balls, the same quarter turns in two orders, side by side; and by how much their ends differ. */
+import { say } from '../../../viewer/elements'
 import type { Scene } from '../../../viewer/scene'
 import type { App } from '../../app'
 import { cleanup, h } from '../../dom'
@@ -83,8 +84,8 @@ export function createOrders(app: App, done: (outcome: Outcome) => void): Orders
     outcome = null
     wanted = false
     const ways = [piecesOf(one), piecesOf(other), piecesOf(between(one, other))]
-    first.heading.textContent = sentence(inWords(one))
-    second.heading.textContent = sentence(inWords(other))
+    say(first.heading, sentence(inWords(one)))
+    say(second.heading, sentence(inWords(other)))
     try {
       const scenes = await Promise.all(ways.map((pieces) => roll(app, pieces, { signal: controller.signal })))
       const [a, b, c] = scenes as [Scene, Scene, Scene]

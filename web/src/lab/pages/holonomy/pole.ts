@@ -1,4 +1,5 @@
 /** A small map of the ball from above: where its north pole is now. Full where it is on the upper half, hollow below. */
+import { say } from '../../../viewer/elements'
 import { h, svg } from '../../dom'
 import type { Vector } from '../parts/measure'
 import { directionInWords } from './rolling'
@@ -41,7 +42,7 @@ export function createPoleMap(label = 'North pole'): PoleMap {
       line.setAttribute('x2', x.toFixed(2))
       line.setAttribute('y2', y.toFixed(2))
       element.classList.toggle('pole-below', pole[2] < -1e-3)
-      words.textContent = directionInWords(pole)
+      say(words, directionInWords(pole))
     },
   }
 }

@@ -1,4 +1,5 @@
 /** What a map is of: the two numbers, how far they go, and what is measured. */
+import { say } from '../../../viewer/elements'
 import type { MapRequest, ScenarioNumber, Span } from '../../api'
 import { fill, h, uniqueId } from '../../dom'
 import { rounded } from '../../quantity'
@@ -86,7 +87,7 @@ export function createForm(figures: readonly string[], asked: (request: MapReque
     },
     wrong(text, key = null) {
       message.hidden = text === null
-      message.textContent = text ?? ''
+      say(message, text ?? '')
       const fields = [...sides.map((side) => [side.key, side.field] as const), ['', measure] as const]
       for (const [name, field] of fields) {
         const meant = text !== null && (name ? (key ?? '').startsWith(`over.${name}`) : !!key?.startsWith('measure'))

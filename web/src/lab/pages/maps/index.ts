@@ -1,4 +1,5 @@
 /** Maps of many runs: computed live, coarse to fine; point at one, and the run of that point plays beside it. */
+import { say } from '../../../viewer/elements'
 import { ApiError, isAbort, type MapPart, type MapRequest, type ScenarioNumber, type Sweeps } from '../../api'
 import type { App, Page } from '../../app'
 import { cleanup, fill, h, uniqueId } from '../../dom'
@@ -56,12 +57,12 @@ function show(host: HTMLElement, app: App, sweeps: Sweeps, leaving: AbortSignal)
     drawn(part, request) {
       form.wrong(null)
       picture.draw(part, request)
-      progress.textContent = saidOf(part)
+      say(progress, saidOf(part))
       if (picture.at && !run) playing.ask(picture.at)
     },
     failed(error) {
       form.wrong(told(error), error instanceof ApiError ? error.key : null)
-      progress.textContent = ''
+      say(progress, '')
     },
     state(state) {
       tellState(state)
@@ -125,7 +126,7 @@ function show(host: HTMLElement, app: App, sweeps: Sweeps, leaving: AbortSignal)
     bench.disabled = true
     framed = false
     const sweep = sweeps.sweeps.find(({ name }) => name === next.name)
-    notes.textContent = sweep?.notes ?? ''
+    say(notes, sweep?.notes ?? '')
     chooser.show(next, sweep ? Object.entries(sweep.measures) : [])
     void numbersOf(next.request)
     if (point && point[0] < next.request.over[0].count && point[1] < next.request.over[1].count) picture.point(...point)

@@ -1,4 +1,5 @@
 /** The picture of a map: its fields in colours that every eye can tell apart, its sides, its legend, the point on it. */
+import { put, say } from '../../../viewer/elements'
 import type { MapPart, MapRequest, Sweeps } from '../../api'
 import { fill, h, uniqueId } from '../../dom'
 import { show } from '../../quantity'
@@ -145,7 +146,7 @@ export function createPicture(colours: Sweeps['colours'], chosen: (i: number, j:
       cross.style.width = `${100 / wide}%`
       cross.style.height = `${100 / high}%`
     }
-    readout.textContent = said()
+    say(readout, said())
   }
 
   function choose(i: number, j: number): void {
@@ -193,9 +194,9 @@ export function createPicture(colours: Sweeps['colours'], chosen: (i: number, j:
       )
       if (at && (at[0] >= part.shape[0] || at[1] >= part.shape[1])) at = null
       shown = { part, sides, measure: request.measure, low, high }
-      acrossLabel.textContent = labelOf(sides[0].key, sides[0].unit)
-      upLabel.textContent = labelOf(sides[1].key, sides[1].unit)
-      plot.setAttribute('aria-label', `Map of ${request.measure} over ${sides[0].key} and ${sides[1].key}`)
+      say(acrossLabel, labelOf(sides[0].key, sides[0].unit))
+      say(upLabel, labelOf(sides[1].key, sides[1].unit))
+      put(plot, 'aria-label', `Map of ${request.measure} over ${sides[0].key} and ${sides[1].key}`)
       ticks(across, sides[0], 6, 'left')
       ticks(up, sides[1], 7, 'bottom')
       paint()

@@ -1,4 +1,5 @@
 /** From a track that was measured to numbers with errors, and what they cannot tell. */
+import { put, say } from '../../../viewer/elements'
 import { ApiError, type ExampleTrack, type Fitted, isAbort, type ScenarioEntry, type Track } from '../../api'
 import type { Page } from '../../app'
 import { save } from '../../bench/files'
@@ -181,7 +182,7 @@ export const measure: Page = {
       },
       failed: (error) => tell(error),
       state(busy) {
-        go.textContent = busy ? 'Fitting …' : 'Fit'
+        say(go, busy ? 'Fitting …' : 'Fit')
         go.disabled = busy || track === null
         host.firstElementChild?.toggleAttribute('data-busy', busy)
       },
@@ -243,7 +244,7 @@ export const measure: Page = {
           offered,
           examples.map((one) => {
             const chosen = button(one.title, () => takeExample(one), 'plain')
-            chosen.title = one.about
+            put(chosen, 'title', one.about)
             return chosen
           }),
         )
@@ -343,7 +344,7 @@ function createScenarios(chosen: (name: string) => void): Scenarios {
     },
     show(name, example) {
       own.hidden = example === null
-      own.textContent = example ? `${example.title}, as the example says` : ''
+      say(own, example ? `${example.title}, as the example says` : '')
       select.value = name
     },
   }

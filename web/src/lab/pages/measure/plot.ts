@@ -1,4 +1,6 @@
 /** What was measured, as points, and the path of the fit, as a line: step by step as the fit went. */
+import { t } from '../../../languages/translate'
+import { put } from '../../../viewer/elements'
 import type { TrackColumns, Way } from '../../api'
 import { fill, h, uniqueId } from '../../dom'
 import { show } from '../../quantity'
@@ -103,7 +105,7 @@ export function createPlot(): Plot {
       const last = found.frames.length - 1
       const part = share < 1 ? `, of the first ${Math.round(share * 100)} % of the time` : ''
       fill(said, `${place === last ? 'the end' : `${place + 1} of ${last + 1}`}: χ²/dof ${show(reduced, 3)}${part}`)
-      step.setAttribute('aria-valuetext', said.textContent ?? '')
+      put(step, 'aria-valuetext', said.textContent ?? '')
       step.style.setProperty('--to', `${last ? (100 * place) / last : 100}%`)
     }
     paint()
@@ -188,20 +190,20 @@ function draw(
     const [x] = at([value, up[0]])
     rule(context, x, EDGE.top, x, EDGE.top + high)
     context.textAlign = 'center'
-    context.fillText(show(value), x, EDGE.top + high + 12)
+    context.fillText(t(show(value)), x, EDGE.top + high + 12)
   }
   for (const value of roundNumbers(up[0], up[1], 6)) {
     const [, y] = at([across[0], value])
     rule(context, EDGE.left, y, EDGE.left + wide, y)
     context.textAlign = 'right'
-    context.fillText(show(value), EDGE.left - 6, y)
+    context.fillText(t(show(value)), EDGE.left - 6, y)
   }
   context.textAlign = 'center'
-  context.fillText(drawn.names[0], EDGE.left + wide / 2, height - 10)
+  context.fillText(t(drawn.names[0]), EDGE.left + wide / 2, height - 10)
   context.save()
   context.translate(10, EDGE.top + high / 2)
   context.rotate(-Math.PI / 2)
-  context.fillText(drawn.names[1], 0, 0)
+  context.fillText(t(drawn.names[1]), 0, 0)
   context.restore()
   context.save()
   context.beginPath()

@@ -1,4 +1,5 @@
 /** The few controls of these pages: a slider with its value, a choice of some, a button. */
+import { put, say } from '../../../viewer/elements'
 import { h, uniqueId } from '../../dom'
 
 export interface SliderOptions {
@@ -27,8 +28,8 @@ export function slider(options: SliderOptions): Slider {
   const input = h('input', { id, class: 'slider', type: 'range', min, max, step, value, 'data-testid': testid })
   function told(): void {
     const now = Number(input.value)
-    output.textContent = words(now)
-    input.setAttribute('aria-valuetext', words(now))
+    say(output, words(now))
+    put(input, 'aria-valuetext', words(now))
     const at = (place: number) => `${(100 * (place - min)) / (Number(input.max) - min)}%`
     const zero = Math.max(min, Math.min(0, Number(input.max)))
     input.style.setProperty('--from', at(Math.min(now, zero)))

@@ -1,4 +1,5 @@
 /** Text with a little markup: $formula$, *emphasis*. */
+import { t } from '../../../languages/translate'
 import { h } from '../../dom'
 import { formula } from '../../math'
 
@@ -16,7 +17,7 @@ export function fragments(text: string): Fragment[] {
 }
 
 export function prose(text: string): Node[] {
-  return fragments(text).map(({ kind, text: words }) => {
+  return fragments(t(text)).map(({ kind, text: words }) => {
     if (kind === 'math') return formula(words)
     return kind === 'emphasis' ? h('em', {}, words) : document.createTextNode(words)
   })

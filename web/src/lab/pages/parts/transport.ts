@@ -1,4 +1,5 @@
 /** One clock for several stages: play, scrub, speed. The first stage leads, the others follow. */
+import { put, say } from '../../../viewer/elements'
 import type { Viewer } from '../../../viewer/viewer'
 import { fill, h, svg, uniqueId } from '../../dom'
 
@@ -48,8 +49,8 @@ export function createTransport(leader: Viewer, followers: readonly Viewer[]): T
     const share = leader.duration ? leader.time / leader.duration : 0
     range.value = String(Math.round(share * STEPS))
     range.style.setProperty('--to', `${100 * share}%`)
-    range.setAttribute('aria-valuetext', `${leader.time.toFixed(1)} seconds`)
-    clock.textContent = `${leader.time.toFixed(1)} s`
+    put(range, 'aria-valuetext', `${leader.time.toFixed(1)} seconds`)
+    say(clock, `${leader.time.toFixed(1)} s`)
   }
 
   function refresh(): void {
@@ -57,7 +58,7 @@ export function createTransport(leader: Viewer, followers: readonly Viewer[]): T
       press,
       svg('svg', { viewBox: '0 0 20 20', 'aria-hidden': 'true' }, svg('path', { d: leader.playing ? PAUSE : PLAY })),
     )
-    press.setAttribute('aria-label', leader.playing ? 'Pause' : 'Play')
+    put(press, 'aria-label', leader.playing ? 'Pause' : 'Play')
     press.classList.toggle('playing', leader.playing)
     follow()
   }

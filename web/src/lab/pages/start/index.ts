@@ -1,4 +1,6 @@
 /** The front door: what this is, six pictures to begin with, and the ways on. */
+import { LANGUAGES, nameOf } from '../../../languages'
+import { language } from '../../../languages/translate'
 import type { Page } from '../../app'
 import { fill, h } from '../../dom'
 import { pictureOf } from '../../pictures'
@@ -27,6 +29,7 @@ export const start: Page = {
         h('h2', { class: 'start-six' }, START.pictures),
         h('ul', { class: 'start-pictures' }, SIX.map(one)),
         h('p', {}, h('a', { href: '#/notes' }, START.teachers)),
+        h('nav', { class: 'start-languages', 'aria-label': START.languages }, LANGUAGES.map(inLanguage)),
       ),
     )
     return () => {}
@@ -40,6 +43,11 @@ function way(route: string, words: string, said: string, first = false): HTMLEle
     h('strong', {}, words),
     h('span', {}, said),
   )
+}
+
+function inLanguage(name: string): HTMLElement {
+  const here = name === language()
+  return h('a', { href: `?lang=${name}`, lang: name, hreflang: name, 'aria-current': here && 'true' }, nameOf(name))
 }
 
 function one([name, caption]: (typeof SIX)[number]): HTMLElement {

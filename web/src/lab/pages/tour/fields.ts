@@ -1,5 +1,6 @@
 /** Step 7: the ball and the charge, moving in step. */
 
+import { say } from '../../../viewer/elements'
 import { show } from '../../quantity'
 import type { Scenario } from '../../scenario'
 import { chargeOf } from '../fields/charge'
@@ -26,7 +27,10 @@ export const mountFields: StepMount = ({ app, stage, controls, numbers, worked, 
         : undefined,
     ])
     worked(ball)
-    remark.textContent = `Ball and charge never part: their paths, each by its own formulas, differ by ${show(apart, 2)} m, which is rounding.`
+    say(
+      remark,
+      `Ball and charge never part: their paths, each by its own formulas, differ by ${show(apart, 2)} m, which is rounding.`,
+    )
   })
   stage.append(pair.element)
   let tilt = 0.15

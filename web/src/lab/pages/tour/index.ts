@@ -1,4 +1,6 @@
 /** The tour: seven steps, in the lecture's order. #/tour/1 to #/tour/7. */
+import { t } from '../../../languages/translate'
+import { put } from '../../../viewer/elements'
 import type { App, Page } from '../../app'
 import { cleanup, fill, h, listen } from '../../dom'
 import { formula } from '../../math'
@@ -99,7 +101,7 @@ function showStep(host: HTMLElement, app: App, number: number): () => void {
     number === LAST ? 'primary' : 'quiet',
     'make-it-yours',
   )
-  yours.title = 'Open this on the bench'
+  put(yours, 'title', 'Open this on the bench')
   yours.hidden = true
   fill(
     host,
@@ -124,7 +126,7 @@ function showStep(host: HTMLElement, app: App, number: number): () => void {
       h('nav', { class: 'tour-nav', 'aria-label': 'Steps' }, back(number), yours, next(number)),
     ),
   )
-  document.title = `${text.title} · Tour · trundle lab`
+  document.title = t(`${text.title} · Tour · trundle lab`)
   return MOUNTS[number - 1]!({
     app,
     stage,

@@ -1,4 +1,5 @@
 /** Step 5: put down gently, it stays; nudged, it goes round a circle. */
+import { say } from '../../../viewer/elements'
 import type { Scene } from '../../../viewer/scene'
 import { h } from '../../dom'
 import type { Scenario } from '../../scenario'
@@ -23,9 +24,7 @@ export const mountNudge: StepMount = ({ app, stage: host, controls, numbers, wor
     playUnlessCalm(app, stage.viewer)
     numbers.set([rowOf(finding(scene, '\\varrho'), 100, 'cm'), rowOf(finding(scene, '\\kappa'))])
     worked(scene)
-    remark.textContent = nudged
-      ? 'It comes back to where it was nudged.'
-      : 'It stays, spinning on the spot. Now nudge it.'
+    say(remark, nudged ? 'It comes back to where it was nudged.' : 'It stays, spinning on the spot. Now nudge it.')
   })
 
   function ask(scenario: Scenario): void {

@@ -1,4 +1,5 @@
 /** The ball from the side: where it is pushed, and which way the table answers. Lengths of the arrows to one scale. */
+import { say } from '../../../viewer/elements'
 import { svg } from '../../dom'
 
 export interface PushDiagram {
@@ -45,7 +46,7 @@ export function createPushDiagram(): PushDiagram {
       answer.setAttribute('d', Math.abs(reach) < 0.5 ? '' : path(0, reach, RADIUS + 8))
       answerName.setAttribute('x', String(reach + (reach < 0 ? -10 : 8)))
       answerName.setAttribute('y', String(RADIUS + 12))
-      answerName.textContent = Math.abs(reach) < 0.5 ? 'Rₓ = 0' : 'Rₓ'
+      say(answerName, Math.abs(reach) < 0.5 ? 'Rₓ = 0' : 'Rₓ')
     },
   }
 }

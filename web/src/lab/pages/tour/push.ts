@@ -1,4 +1,5 @@
 /** Step 3: a level push, at a height that can be chosen. */
+import { say } from '../../../viewer/elements'
 import { h } from '../../dom'
 import { slider } from '../parts/controls'
 import { column, finding, vectorAt } from '../parts/measure'
@@ -31,7 +32,7 @@ export const mountPush: StepMount = ({ app, stage: host, controls, numbers, work
     ])
     diagram.set(shareOf(asked), sideways / PUSH)
     worked(scene)
-    remark.textContent = saying(sideways)
+    say(remark, saying(sideways))
   })
 
   const height = slider({

@@ -1,0 +1,79 @@
+import { afterEach, describe, expect, it } from 'vitest'
+import { chosenLanguage } from '.'
+import german from './de.json'
+import { pseudo } from './pseudo'
+import { type Catalogue, shownDigits, speak, t, typedDigits } from './translate'
+
+afterEach(() => speak('en', {}))
+
+describe('saying a text', () => {
+  it('leaves English as it is', () => {
+    expect(t('Rolls at 3.5 m/s')).toBe('Rolls at 3.5 m/s')
+    expect(t('Rolls at {speed}', { speed: '3.5 m/s' })).toBe('Rolls at 3.5 m/s')
+  })
+
+  it('takes the entry, also within a sentence and between spaces', () => {
+    speak('de', { Rim: 'Rand', 'Has a {part}': 'Mit {part}' })
+    expect(t('Rim')).toBe('Rand')
+    expect(t(' rim ')).toBe(' Rand ')
+    expect(t('Has a rim')).toBe('Mit Rand')
+  })
+
+  it('knows a template again, and gives its numbers the decimal sign', () => {
+    speak('de', { 'reverses its spin after {time}': 'kehrt nach {time} um' })
+    expect(t('reverses its spin after 2.85 s')).toBe('kehrt nach 2,85 s um')
+    expect(t('(1.5, -0.25, 3)')).toBe('(1,5; -0,25; 3)')
+  })
+
+  it('mixes no languages: with a value that it cannot say, the whole stays', () => {
+    speak('de', { '{found} of {all}': '{found} von {all}', '{title} · lab': '{title} · Labor' })
+    expect(t('3 of 7')).toBe('3 von 7')
+    expect(t('Rate of the circle')).toBe('Rate of the circle')
+    expect(t('Rate of the circle · lab')).toBe('Rate of the circle · Labor')
+  })
+
+  it('takes the most particular template', () => {
+    speak('de', { '{a} of {b}': '{a} von {b}', 'Step {a} of {b}': 'Schritt {a} von {b}' })
+    expect(t('Step 2 of 7')).toBe('Schritt 2 von 7')
+  })
+
+  it('says sentence by sentence what it has', () => {
+    speak('de', { 'It rolls.': 'Sie rollt.', 'It slips.': 'Sie gleitet.' })
+    expect(t('It rolls. It slips.')).toBe('Sie rollt. Sie gleitet.')
+  })
+
+  it('takes a comma for a point where a number begins, and shows it so', () => {
+    speak('de', { a: 'b' })
+    expect(typedDigits('-3,5 cm')).toBe('-3.5 cm')
+    expect(typedDigits('min(1, 2)')).toBe('min(1, 2)')
+    expect(shownDigits('-3.5')).toBe('-3,5')
+  })
+})
+
+describe('the language of the page', () => {
+  it('is that of the link, else the first of the browser that there is', () => {
+    expect(chosenLanguage('?lang=de', ['en-GB'])).toBe('de')
+    expect(chosenLanguage('', ['fr', 'de-AT', 'en'])).toBe('de')
+    expect(chosenLanguage('?lang=xx', ['fr'])).toBe('en')
+    expect(chosenLanguage('', ['pseudo'])).toBe('en')
+  })
+})
+
+const FILES = import.meta.glob<Catalogue>('./*.json', { import: 'default', eager: true })
+
+describe.each(Object.entries(FILES))('the catalogue %s', (_, catalogue) => {
+  const marks = (text: string) => (text.match(/\{\w+\}|\$[^$]+\$/g) ?? []).sort()
+
+  it('keeps what varies, and the formulas', () => {
+    for (const [key, said] of Object.entries(catalogue)) expect(marks(said), key).toEqual(marks(key))
+  })
+
+  it('has what the German one has', () => {
+    expect(Object.keys(german).filter((key) => !(key in catalogue))).toEqual([])
+  })
+})
+
+it('the pseudo-language marks every word and leaves what varies', () => {
+  const strange = pseudo({ 'Show hint {next} of $x$': '' })
+  expect(strange).toEqual({ 'Show hint {next} of $x$': '⟦Shóów híínt {next} óóf $x$⟧' })
+})

@@ -1,0 +1,130 @@
+/**
+ * What the page says, in the language of its reader.
+ *
+ * English stands where it is said; a catalogue has the other language, by the English text: `{name}` in both stands for
+ * what varies. A text that is put together here or comes from the server is known again by what does not vary, if its
+ * values can be said as well: numbers, which get the decimal sign of the language, and what the catalogue has. Only
+ * `{title}` may be anything: it was written by somebody. What cannot be said so stays English as a whole.
+ */
+
+/** English texts, and what they are in another language. */
+export type Catalogue = Readonly<Record<string, string>>
+
+type Values = Readonly<Record<string, string>>
+
+interface Template {
+  pattern: RegExp
+  names: string[]
+  said: string
+}
+
+const SLOT = /\{(\w+)\}/g
+const TITLE = 'title'
+const MOST = 4000 // texts that are remembered
+
+let entries = new Map<string, string>()
+let templates: Template[] = []
+let known = new Map<string, string>()
+let mark = '.'
+let speaking = 'en'
+
+/** From now on say everything in this language. */
+export function speak(language: string, catalogue: Catalogue): void {
+  speaking = language
+  mark = new Intl.NumberFormat(language).format(0.5).includes(',') ? ',' : '.'
+  entries = new Map(Object.entries(catalogue))
+  known = new Map()
+  const varying = [...entries].filter(([key]) => key.search(SLOT) >= 0)
+  const fixed = (key: string) => key.replace(SLOT, '').length
+  // What is most particular is tried first.
+  templates = varying.sort(([one], [other]) => fixed(other) - fixed(one)).map(([key, said]) => template(key, said))
+}
+
+/** The language of the page, for dates and for the document. */
+export function language(): string {
+  return speaking
+}
+
+function template(key: string, said: string): Template {
+  const parts = key.split(SLOT) // fixed, name, fixed, name, ..., fixed
+  const pattern = parts.map((part, i) => (i % 2 ? '(.+?)' : part.replace(/[.*+?^${}()|[\]\\]/g, '\\$&'))).join('')
+  return { pattern: new RegExp(`^${pattern}$`, 's'), names: parts.filter((_, i) => i % 2), said }
+}
+
+/** Say an English text in the language of the page; with values, what stands for its `{names}`. */
+export function t(text: string, values: Values = {}): string {
+  if (entries.size === 0) return filled(text, values)
+  const found = known.get(text) ?? remembered(text)
+  return filled(found, values)
+}
+
+function remembered(text: string): string {
+  const [, before = '', core = '', after = ''] = /^(\s*)(.*?)(\s*)$/s.exec(text) ?? []
+  const found = core === '' ? text : before + translated(core) + after
+  if (known.size >= MOST) known.clear()
+  known.set(text, found)
+  return found
+}
+
+function translated(text: string): string {
+  if (!/\p{L}{2}/u.test(text)) return entries.get(text) ?? withMarks(text)
+  const said = entry(text) ?? recognized(text)
+  if (said !== undefined) return said
+  const sentences = text.split(/(?<=[^\d\s][.!?;:…]) (?=\S)|\n/)
+  if (sentences.length < 2) return withMarks(text)
+  const between = text.match(/(?<=[^\d\s][.!?;:…]) (?=\S)|\n/g) ?? []
+  return sentences.map((one, i) => t(one) + (between[i] ?? '')).join('')
+}
+
+/** The entry of a text, however its first letter is written: a label may stand within a sentence. */
+function entry(text: string): string | undefined {
+  const first = text.charAt(0)
+  const other = first === first.toUpperCase() ? first.toLowerCase() : first.toUpperCase()
+  return entries.get(text) ?? entries.get(other + text.slice(1))
+}
+
+function recognized(text: string): string | undefined {
+  for (const { pattern, names, said } of templates) {
+    const match = pattern.exec(text)
+    if (!match) continue
+    const values = names.map((name, i) => [name, name === TITLE ? t(match[i + 1]!) : sayable(match[i + 1]!)] as const)
+    if (values.every(([, value]) => value !== undefined)) return filled(said, Object.fromEntries(values) as Values)
+  }
+  return undefined
+}
+
+/** A value as it is said: a number with its unit, or what the catalogue has; undefined of any other words. */
+function sayable(value: string): string | undefined {
+  return entry(value) ?? recognized(value) ?? (/\p{L}{4}|\p{L}{2,}\s+\p{L}{2}/u.test(value) ? undefined : t(value))
+}
+
+function filled(text: string, values: Values): string {
+  return text.replace(SLOT, (slot, name: string) => values[name] ?? slot)
+}
+
+/** Numbers with the decimal sign of the language; in a list, what separates them is another. */
+function withMarks(text: string): string {
+  if (mark === '.') return text
+  return text.replace(/(\d)\.(?=\d)/g, `$1${mark}`).replace(/(\d,\d+[^,;]*), (?=[-−]?\d)/g, '$1; ')
+}
+
+/** Digits as they stand in a box: with the decimal sign of the language. */
+export function shownDigits(digits: string): string {
+  return mark === '.' ? digits : digits.replace(/^(\s*[-−+]?\d*)\.(?=\d)/, `$1${mark}`)
+}
+
+/** What was typed, with a point where the language has another sign, or where the reader has. */
+export function typedDigits(text: string): string {
+  return text.replace(/^(\s*[-−+]?\d*),(?=\d)/, '$1.')
+}
+
+/** The attributes that are read or heard. */
+export const WORDED: ReadonlySet<string> = new Set([
+  'aria-label',
+  'aria-roledescription',
+  'aria-valuetext',
+  'alt',
+  'label',
+  'placeholder',
+  'title',
+])
