@@ -59,7 +59,7 @@ def test_what_passes_its_middle_at_a_sample_is_told_too():
     turning = turned(time, 0.25 * math.pi * time, np.full(5, 0.25 * math.pi), (1, 0, 0))
     assert number(headline_of(TOP, turning, ())["text"]) == pytest.approx(2.0, abs=1e-12)
     time = np.arange(17.0)
-    place = np.outer(np.round(np.sin(0.5 * math.pi * time)), [0.0, 0.0, 1.0]) + [1.0, 0.0, 0.0]
+    place = np.outer(np.round(np.sin(0.5 * math.pi * time)), [0.0, 0.0, 1.0]) + np.array([1.0, 0.0, 0.0])
     still = np.zeros((time.size, 3))
     rising = Samples(time, place, still, still, still, np.tile([1.0, 0, 0, 0], (time.size, 1)), still)
     assert headline_of(TOP, rising, ())["text"] == "rises and falls every 4 s"

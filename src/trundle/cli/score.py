@@ -12,6 +12,7 @@ import typer
 
 from ..errors import InvalidValueError, UnknownNameError
 from . import CARD_FAILED, screen, signals
+from .options import Json, Quiet
 
 if TYPE_CHECKING:
     from ..conformance import Case, Entrant, Row, Score
@@ -66,8 +67,8 @@ def score(
         Path | None,
         typer.Option(metavar="FOLDER", help="Write cases and exact runs as JSON and CSV, with a scorer of one file."),
     ] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the rows as JSON, and nothing else.")] = False,
+    quiet: Quiet = False,
+    as_json: Json = False,
 ) -> None:
     """Score physics engines on rolling: run them on motions that are known exactly, and say how the error falls.
 

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from . import screen, signals
+from .options import Quiet
 
 
 def site(
@@ -17,7 +18,7 @@ def site(
         list[str] | None,
         typer.Argument(metavar="[SCENARIO]...", help="Shipped ones or TOML files; absent: all that ship."),
     ] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Write a site of gallery, tour and live pages: plain files with relative links, for any web host.
 

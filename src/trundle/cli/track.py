@@ -10,6 +10,7 @@ import typer
 
 from ..errors import InvalidValueError
 from . import screen, signals
+from .options import Quiet
 
 TRACK, CHECK, FIGURE = "track.csv", "check.mp4", "track.png"
 _LENGTHS = re.compile(r"\s*[,;]\s*")
@@ -48,7 +49,7 @@ def track(
         Path | None, typer.Option("--output", "-o", metavar="FOLDER", help="Default: a folder of the film's name.")
     ] = None,
     no_check: Annotated[bool, typer.Option("--no-check", help="Write no film to check the track by.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Follow a ball on a table through a film, and write its track, which `trundle fit` reads.
 

@@ -202,17 +202,6 @@ def jets(values: Sequence[Scalar]) -> tuple[Jet, ...]:
     return tuple(Jet(v, tuple(1.0 if i == j else 0.0 for j in range(n)), flat) for i, v in enumerate(values))
 
 
-def constant_jet(value: Scalar, n: int) -> Jet:
-    """Return a constant among jets in n variables.
-
-    Examples
-    --------
-    >>> constant_jet(2.0, 1).gradient
-    (0.0,)
-    """
-    return Jet(value, (0.0,) * n, (0.0,) * len(_pairs(n)))
-
-
 @cache
 def _pairs(n: int) -> tuple[tuple[int, int], ...]:
     return tuple((i, j) for i in range(n) for j in range(i, n))

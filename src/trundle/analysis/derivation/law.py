@@ -11,7 +11,6 @@ from ...mechanics.algebra import Matrix, Quaternion, Vector
 from ...mechanics.contact import contact_at, roll
 from ...mechanics.loads import BodyMotion
 from ...mechanics.system import RollingSystem
-from .steps import Proof
 from .symbols import OMEGA_XYZ, TIME
 from .vectors import vector
 from .zero import exact, normal_form, with_plain_roots
@@ -76,21 +75,6 @@ def at_one_instant(system: RollingSystem, point: Vector, here: Mapping[Any, Any]
         lambda part: normal_form(sum(part.diff(s).xreplace(chosen) * rate for s, rate in flow.items()))
     )
     return values
-
-
-def proof_at_one_instant(system: RollingSystem, point: Vector) -> Proof:
-    """Return a proof by the rolling law: what it makes of an equation holds at any instant of any motion.
-
-    Examples
-    --------
-    >>> import trundle as tr
-    >>> a, m, k, x, y = sp.symbols("a m k x y")
-    >>> level = tr.RollingSystem(tr.Body.sphere(a, m, k), tr.Support(tr.Plane()))
-    >>> proof = proof_at_one_instant(level, Vector(x, y, sp.Integer(0)))
-    >>> proof.equation(m * vector("Vdot"), vector("F") + vector("R")).holds
-    True
-    """
-    return Proof(at_one_instant(system, point), UNIT_QUATERNION)
 
 
 def inertia(system: RollingSystem) -> Any:

@@ -88,11 +88,11 @@ def _turned(rolled: RolledPath, pace: float) -> dict[str, Any]:
 
 def _findings(rolled: RolledPath) -> list[Finding]:
     small, turn = rolled.small_loop_angle, rolled.rotation
-    found = [Finding("Angle by which the ball is turned", r"\theta", None, turn.angle, "rad", "about one axis")]
+    found = [Finding("Angle by which the ball is turned", r"\theta", None, turn.angle, "rad", note="about one axis")]
     if small is not None:
         note = "predicted for a loop that is small beside the ball"
-        found.append(Finding("Of it, about the normal", r"\psi", small, turn.about_normal, "rad", note))
-        found.append(Finding("Enclosed area", "A", None, rolled.enclosed_area, "m²", "anticlockwise is positive"))
+        found.append(Finding("Of it, about the normal", r"\psi", small, turn.about_normal, "rad", note=note))
+        found.append(Finding("Enclosed area", "A", None, rolled.enclosed_area, "m²", note="anticlockwise is positive"))
     return found
 
 

@@ -19,20 +19,11 @@ class NearBoundary:
 
     A round is divided into pieces of members that go together. Which these are depends on the rounds before it alone:
     so a sweep that goes on repeats the rounds with what is known, runs the pieces that are not, and comes to the same.
-
-    Parameters
-    ----------
-    plan : Plan
-        The whole grid.
-    status : array (members,)
-        What became of each member so far.
-    classes : array (members,)
-        The class of each that has been run.
     """
 
-    plan: Plan
-    status: Any
-    classes: Any
+    plan: Plan  # the whole grid
+    status: Any  # (members,): what became of each member so far
+    classes: Any  # (members,): the class of each that has been run
     _run: Mask = field(init=False)
     _pieces: list[Places] = field(default_factory=list)
     _waiting: list[int] = field(default_factory=list)

@@ -314,7 +314,7 @@ class BallInLeaningCylinder(ClosedForm):
         if math.isfinite(advance) and advance and seen.time[-1] >= pendulum.period:
             z = seen.at.position[:, 2]
             gone = float(np.interp(float(pendulum.period), seen.time, z) - z[0])
-            yield Finding("Way along the axis in one swing", r"\Delta z", advance, gone, "m", "", float(np.ptp(z)))
+            yield Finding("Way along the axis in one swing", r"\Delta z", advance, gone, "m", scale=float(np.ptp(z)))
 
 
 def _is_mpmath(t: Any) -> bool:

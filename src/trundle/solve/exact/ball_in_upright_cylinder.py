@@ -123,11 +123,6 @@ class BallInUprightCylinder(ClosedForm):
         return math.inf if is_zero(self.angular_rate) else 2 * math.pi / abs(self.bobbing_rate)
 
     @property
-    def mean_height(self) -> Scalar:
-        """Height about which it bobs, m."""
-        return self.height + self._below
-
-    @property
     def amplitude(self) -> Scalar:
         """Of the bobbing, m."""
         xp = namespace(self.climb, self.bobbing_rate)
@@ -234,7 +229,9 @@ class BallInUprightCylinder(ClosedForm):
         ratio = None if found is None else found / abs(round_)
         note = "of bobbing to going round, whatever the radii"
         predicted = float(self.frequency_ratio)
-        yield Finding("Ratio of the two", r"\sqrt{k/(1+k)}", predicted, ratio, "", note, None, "bobs {} times a round")
+        yield Finding(
+            "Ratio of the two", r"\sqrt{k/(1+k)}", predicted, ratio, "", note=note, said="bobs {} times a round"
+        )
         if found is not None and found * seen.time[-1] >= 2 * math.pi:
             wave = found * seen.time
             design = np.column_stack([np.ones_like(wave), np.cos(wave), np.sin(wave)])

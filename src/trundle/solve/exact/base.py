@@ -319,7 +319,7 @@ class ClosedForm:
         gone = self.motion_at(end)[0] - self.motion_at(0.0)[0]
         measured = float(np.linalg.norm(seen.at.position[-1] - seen.at.position[0]))
         name, note = "Distance from the start", f"straight, after {end:.4g} s"
-        yield Finding(name, "d", float(gone.norm()), measured, "m", note, seen.way or None)
+        yield Finding(name, "d", float(gone.norm()), measured, "m", note=note, scale=seen.way or None)
 
     def repeats(self, stop: str) -> float:  # noqa: ARG002
         """Return after how long the course of one of the law's event functions repeats.

@@ -233,4 +233,4 @@ class ChaplyginBall(ClosedForm):
             speed = float(np.linalg.norm(ends[1] - ends[0]) / (times[-1] - times[0]))
         drift = math.hypot(float(self.drift.x), float(self.drift.y))
         fastest = float(np.max(np.linalg.norm(seen.at.velocity, axis=1)))
-        yield Finding("Speed from one nutation to the next", r"\bar v", drift, speed, "m/s", "", max(drift, fastest))
+        yield Finding("Speed from one nutation to the next", r"\bar v", drift, speed, "m/s", scale=max(drift, fastest))

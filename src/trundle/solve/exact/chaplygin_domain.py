@@ -117,4 +117,4 @@ def turning_faster(name: str, predicted: float, seen: Seen) -> tuple[Finding, Ar
     times = crossings(seen.time, square - 0.5 * (low + high))
     measured = float((times[-1] - times[0]) / (len(times) - 1)) if len(times) > 1 else None
     note = "from one rise of |Ω| to the next" if measured else "the run shows less than one"
-    return Finding(name, "T", predicted, measured, "s", note, None, "turns faster every {}"), times
+    return Finding(name, "T", predicted, measured, "s", note=note, said="turns faster every {}"), times

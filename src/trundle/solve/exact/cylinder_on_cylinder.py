@@ -372,7 +372,7 @@ class CylinderOnCylinder(ClosedForm):
         measured, largest = swing(seen.time, angle)
         if finite is not None:
             note = "" if measured else "the run shows less than one"
-            yield Finding("Time of one swing", "T", period, measured, "s", note, None, "swings to and fro in {}")
+            yield Finding("Time of one swing", "T", period, measured, "s", note=note, said="swings to and fro in {}")
         pull = math.hypot(*map(float, self.force))
         if pull and seen.time[-1] >= 0.5 * period:
             heavy = float(self.mass) * float(self.length) * (1 + float(self.inertia_ratio))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import Any
 
 
@@ -39,6 +39,7 @@ class Finding:
     predicted: float | None
     measured: float | None
     unit: str = ""
+    _: KW_ONLY
     note: str = ""
     scale: float | None = None
     said: str = ""

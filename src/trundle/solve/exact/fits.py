@@ -217,7 +217,7 @@ def angle_where(what: tuple[str, str, str], predicted: float, time: Array, angle
         course = np.polynomial.polynomial.polyfit(time[-3:] - time[-1], angle[-3:], 2)
         measured = math.degrees(float(np.polynomial.polynomial.polyval(end - time[-1], course)))
     (name, symbol, said), note = what, "drawn on behind the last samples before"
-    return Finding(name, symbol, math.degrees(predicted), measured, "°", note, None, said)
+    return Finding(name, symbol, math.degrees(predicted), measured, "°", note=note, said=said)
 
 
 def needed_friction(predicted: float | None, at: Samples, friction: Any = None, normals: Any = None) -> Finding:
@@ -232,4 +232,4 @@ def needed_friction(predicted: float | None, at: Samples, friction: Any = None, 
     note = "largest |f|/N while it rolls"
     if friction is not None:
         note += f"; there is {float(friction):g}"
-    return Finding("Friction needed", r"\mu", predicted, share, "", note, max(predicted or 0.0, 1e-3))
+    return Finding("Friction needed", r"\mu", predicted, share, "", note=note, scale=max(predicted or 0.0, 1e-3))

@@ -215,7 +215,9 @@ class SlidingSphere(ClosedForm):
         time = part.time - samples.time[0]
         gripped = zero_ahead(time, slip) if slips.size > count or slip[-1] < 0.5 * slip[0] else None
         note = "where the slip, drawn on, ends"
-        yield Finding("Time at which it grips", "t_g", predicted, gripped, "s", note, None, "slips for {}, then rolls")
+        yield Finding(
+            "Time at which it grips", "t_g", predicted, gripped, "s", note=note, said="slips for {}, then rolls"
+        )
         if gripped is None or slips.size <= count:
             return
         r, velocity, _, _ = self.motion_at(predicted)
@@ -224,7 +226,9 @@ class SlidingSphere(ClosedForm):
         course = np.polynomial.polynomial.polyfit(time, part.position[:, :2], degree)
         there = np.polynomial.polynomial.polyval(gripped, course)
         gone = float(np.linalg.norm(there - part.position[0, :2]))
-        yield Finding("Distance to there", "d_g", way, gone, "m", "from start to grip, straight", max(way, self.radius))
+        yield Finding(
+            "Distance to there", "d_g", way, gone, "m", note="from start to grip, straight", scale=max(way, self.radius)
+        )
         after = samples.part(slice(count, None))
         rolls = int(np.argmin(after.phase == ROLLING)) if not (after.phase == ROLLING).all() else after.time.size
         pushed = float(system.support.tilt) != 0 or bool(system.loads)
@@ -235,7 +239,7 @@ class SlidingSphere(ClosedForm):
             started = math.hypot(*map(float, self.velocity))
             plain = not any(self.angular_velocity[:2]) and started > 0
             note = f"{as_ratio(1 / (1 + float(self.inertia_ratio)))} of the start's" if plain else ""
-            yield Finding("Speed after it grips", "v_g", final, speed, "m/s", note, max(final, started))
+            yield Finding("Speed after it grips", "v_g", final, speed, "m/s", note=note, scale=max(final, started))
 
     def _slipping_on(self, system: RollingSystem, part: Samples) -> Iterator[Finding]:
         """Compare the acceleration where it slips for ever, and straight: F/m − μN/m along the slip."""

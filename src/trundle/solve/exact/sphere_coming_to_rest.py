@@ -298,14 +298,16 @@ class SphereComingToRest(ClosedForm):
         speed = np.hypot(part.velocity[:, 0], part.velocity[:, 1])
         if math.isfinite(predicted) and count < rolls.size:
             stops, note = zero_ahead(time, speed), "where its speed, drawn on, ends"
-            yield Finding("Time at which it stops", "t_s", predicted, stops, "s", note, None, "comes to rest after {}")
+            yield Finding(
+                "Time at which it stops", "t_s", predicted, stops, "s", note=note, said="comes to rest after {}"
+            )
             gone = float(np.linalg.norm(samples.position[-1, :2] - samples.position[0, :2]))
             yield Finding("Way to there", "d_s", float(self.way), gone, "m")
         elif count > 3:
             at_start = float(self.deceleration + self.gamma * self.speed + self.eta * self.speed**2)
             slowed = -float(np.gradient(speed[:3], time[:3], edge_order=2)[0])
             note = "by the first three samples"
-            yield Finding("Deceleration at the start", r"-\dot v_0", at_start, slowed, "m/s²", note)
+            yield Finding("Deceleration at the start", r"-\dot v_0", at_start, slowed, "m/s²", note=note)
 
 
 def _log_share(z: Any) -> Any:

@@ -220,7 +220,7 @@ class SphereInFlight(ClosedForm):
         heights = course[:, 2] - np.array([float(self.radius), 0.0, 0.0])
         lands = float(np.max(np.polynomial.polynomial.polyroots(heights).real))
         note = "by the parabola through its heights"
-        yield Finding("Time at which it lands", "t_l", predicted, lands, "s", note, None, "lands after {}")
+        yield Finding("Time at which it lands", "t_l", predicted, lands, "s", note=note, said="lands after {}")
         ahead = self.motion_at(predicted)[0]
         way = math.hypot(float(ahead.x) - float(self.position[0]), float(ahead.y) - float(self.position[1]))
         if way:

@@ -232,5 +232,5 @@ class SphereInMovingAir(ClosedForm):
             size, note = abs(s) or None, "" if measured is not None else TOO_LITTLE
             turn, grow = (None, None) if measured is None else (measured.imag, measured.real)
             turns, grows = rf"\mathrm{{Im}}\,s_{mark}", rf"\mathrm{{Re}}\,s_{mark}"
-            yield Finding(f"Angular rate of the {name} part", turns, s.imag, turn, "rad/s", note, size)
-            yield Finding(f"Growth of the {name} part", grows, s.real, grow, "1/s", note, size)
+            yield Finding(f"Angular rate of the {name} part", turns, s.imag, turn, "rad/s", note=note, scale=size)
+            yield Finding(f"Growth of the {name} part", grows, s.real, grow, "1/s", note=note, scale=size)

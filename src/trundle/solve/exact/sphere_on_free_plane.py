@@ -179,7 +179,9 @@ class SphereOnFreePlane(ClosedForm):
         predicted = float(self.angular_momentum)
         worst = float(momentum[np.argmax(np.abs(momentum - predicted))])
         scale = float(np.max(np.abs(float(self.axle_inertia) * rate)))
-        yield Finding("Angular momentum about the axle", "L", predicted, worst, "kg m²/s", "of ball and table", scale)
+        yield Finding(
+            "Angular momentum about the axle", "L", predicted, worst, "kg m²/s", note="of ball and table", scale=scale
+        )
         if not self.rate:
             return  # a table at rest that the ball sets going: no conic
         centre, measured = conic(seen)
@@ -189,7 +191,7 @@ class SphereOnFreePlane(ClosedForm):
         eccentricity = drive / (abs(float(self.rate)) * math.sqrt(square))
         scale = max(eccentricity, 0.1)
         said = "" if math.isfinite(self.period) else f"follows a {self.path} of eccentricity {{}}"
-        yield Finding(f"Eccentricity of the {self.path}", "e", eccentricity, measured, "", "", scale, said)
+        yield Finding(f"Eccentricity of the {self.path}", "e", eccentricity, measured, "", scale=scale, said=said)
         if math.isfinite(self.period):
             angle = np.unwrap(np.angle(seen.zeta - centre))
             measured = None if measured is None else round_time(seen.time, angle)

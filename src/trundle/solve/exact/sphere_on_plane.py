@@ -415,29 +415,40 @@ class SphereOnPlane(ManySamples, ClosedForm):
             if not drift:
                 note = "put down gently, it stays while the table turns away under it"
                 scale = max(abs(centre), self.radius)
-                yield Finding("Distance that it moves", r"\varrho", 0.0, moved, "m", note, scale, "stays, to within {}")
+                yield Finding(
+                    "Distance that it moves",
+                    r"\varrho",
+                    0.0,
+                    moved,
+                    "m",
+                    note=note,
+                    scale=scale,
+                    said="stays, to within {}",
+                )
                 return
             speed = abs(zeta[-1] - zeta[0]) / float(seen.time[-1])
             note = "straight, without loops"
-            yield Finding("Drift speed", r"|v_d|", abs(drift), speed, "m/s", note, None, _drifts(drift, seen.system))
+            yield Finding(
+                "Drift speed", r"|v_d|", abs(drift), speed, "m/s", note=note, said=_drifts(drift, seen.system)
+            )
             yield _direction(drift, zeta[-1] - zeta[0], seen.system)
             return
         found = circle(seen, abs(kappa))
         note = "" if found else TOO_LITTLE
         rate = found.rate if found else None
-        yield Finding("Angular rate of the circle", r"\kappa", kappa, rate, "rad/s", note)
+        yield Finding("Angular rate of the circle", r"\kappa", kappa, rate, "rad/s", note=note)
         of_table = f"{as_ratio(share)} of the table's rate, whatever its size and mass"
         measured = rate and rate / float(self.rate)
         said = "" if drift else "circles at {} of the table's rate"
-        yield Finding("Share of the table's rate", r"\kappa/\omega", share, measured, "", of_table, None, said)
-        yield Finding("Radius of the circle", r"\varrho", radius, abs(found.arm) if found else None, "m", note)
+        yield Finding("Share of the table's rate", r"\kappa/\omega", share, measured, "", note=of_table, said=said)
+        yield Finding("Radius of the circle", r"\varrho", radius, abs(found.arm) if found else None, "m", note=note)
         if not drift:
             name, scale = "Distance of its centre from the axis", max(abs(centre), radius)
             measured = abs(found.centre) if found else None
-            yield Finding(name, r"|\zeta_c|", abs(centre), measured, "m", note, scale)
+            yield Finding(name, r"|\zeta_c|", abs(centre), measured, "m", note=note, scale=scale)
             return
         measured, said = abs(found.drift) if found else None, _drifts(drift, seen.system)
-        yield Finding("Drift speed", r"|v_d|", abs(drift), measured, "m/s", note, None, said)
+        yield Finding("Drift speed", r"|v_d|", abs(drift), measured, "m/s", note=note, said=said)
         yield _direction(drift, found.drift if found else None, seen.system)
 
     def _pushed(self, seen: Seen) -> Iterator[Finding]:
@@ -447,7 +458,7 @@ class SphereOnPlane(ManySamples, ClosedForm):
             gone = float(np.abs(seen.zeta[-1] - seen.zeta[0]) / seen.time[-1])
             note = "nothing pushes it: it keeps its speed"
             speed = math.hypot(*map(float, self.velocity))
-            yield Finding("Speed", "v", speed, gone, "m/s", note, None, "rolls straight at {}")
+            yield Finding("Speed", "v", speed, gone, "m/s", note=note, said="rolls straight at {}")
             return
         found = acceleration(seen)
         yield Finding("Acceleration", r"|\varphi|", abs(push), abs(found), "m/s²", said="accelerates at {}")
@@ -455,16 +466,18 @@ class SphereOnPlane(ManySamples, ClosedForm):
         if slide and not system.loads:
             share = 1 / (1 + float(self.inertia_ratio))
             note = f"{as_ratio(share)} of that of a block without friction"
-            yield Finding("Share of a sliding block's", r"\frac{1}{1+k}", share, abs(found) / slide, "", note)
+            yield Finding("Share of a sliding block's", r"\frac{1}{1+k}", share, abs(found) / slide, "", note=note)
             return
         turned = math.degrees(cmath.phase(push) + cmath.phase(found / push))
         note = "from the first axis towards the second"
-        yield Finding("Its direction", r"\arg\varphi", math.degrees(cmath.phase(push)), turned, "°", note, 360.0)
+        yield Finding(
+            "Its direction", r"\arg\varphi", math.degrees(cmath.phase(push)), turned, "°", note=note, scale=360.0
+        )
         applied, along = complex(*map(float, self.force[:2])), push / abs(push)
         reaction, seen_so = (((float(self.mass) * a - applied) / along).real for a in (push, found))
         note = "along the acceleration; negative: it holds the ball back"
         scale = max(abs(applied), float(self.mass) * abs(push))
-        yield Finding("Reaction of the support", r"R_\parallel", reaction, seen_so, "N", note, scale)
+        yield Finding("Reaction of the support", r"R_\parallel", reaction, seen_so, "N", note=note, scale=scale)
 
     def _braked(self, seen: Seen) -> Iterator[Finding]:
         """Compare with the spiral or the straight course that air brakes."""
@@ -472,17 +485,19 @@ class SphereOnPlane(ManySamples, ClosedForm):
         found = exponent(seen, math.hypot(gamma, kappa))
         rate = found[0] if found else None
         note = "" if found else TOO_LITTLE
-        yield Finding("Rate at which air slows it", r"\gamma", gamma, None if rate is None else -rate.real, "1/s", note)
+        yield Finding(
+            "Rate at which air slows it", r"\gamma", gamma, None if rate is None else -rate.real, "1/s", note=note
+        )
         if kappa:
             measured = None if rate is None else rate.imag
             yield Finding(
-                "Angular rate of the spiral", r"\kappa", kappa, measured, "rad/s", note, None, "spirals at {}"
+                "Angular rate of the spiral", r"\kappa", kappa, measured, "rad/s", note=note, said="spirals at {}"
             )
         if push:
             final = abs(push / complex(-gamma, kappa))
             measured = abs(found[1] / found[0]) if found else None
             yield Finding(
-                "Speed that it comes to", r"|\varphi/\lambda|", final, measured, "m/s", note, None, "comes to {}"
+                "Speed that it comes to", r"|\varphi/\lambda|", final, measured, "m/s", note=note, said="comes to {}"
             )
 
     def _friction_needed(self, seen: Seen) -> Iterator[Finding]:
@@ -518,4 +533,4 @@ def _direction(predicted: complex, measured: complex | None, system: RollingSyst
     name = "Direction of the drift, from straight downhill" if tilted else "Direction of the drift"
     turned = None if measured is None else math.degrees(cmath.phase(predicted) + cmath.phase(measured / predicted))
     note = "90° is level: on average it does not come down" if tilted and not system.loads else ""
-    return Finding(name, r"\arg v_d", math.degrees(cmath.phase(predicted)), turned, "°", note, 360.0)
+    return Finding(name, r"\arg v_d", math.degrees(cmath.phase(predicted)), turned, "°", note=note, scale=360.0)

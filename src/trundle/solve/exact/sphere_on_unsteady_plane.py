@@ -245,7 +245,7 @@ class SphereOnUnsteadyPlane(ClosedForm):
         worst = float(np.abs(kept)[np.argmax(np.abs(np.abs(kept) - predicted))])
         name, symbol = "Velocity less its share of the table's", r"|\dot\zeta - i\kappa\zeta|"
         size, note = max(float(np.max(np.abs(velocity))), predicted), "stays as it is, however the table is turned"
-        yield Finding(name, symbol, predicted, worst, "m/s", note, size)
+        yield Finding(name, symbol, predicted, worst, "m/s", note=note, scale=size)
 
 
 def _is_mpmath(t: Any) -> bool:

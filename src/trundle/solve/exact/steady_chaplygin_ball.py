@@ -140,6 +140,13 @@ class SteadyChaplyginBall(ClosedForm):
         scale = float(self.radius) * math.hypot(p, q, r)
         note = "it turns about the same axis and keeps its speed"
         yield Finding(
-            "Speed", "v", float(self.radius) * math.hypot(p, q), gone, "m/s", note, scale, "rolls straight at {}"
+            "Speed",
+            "v",
+            float(self.radius) * math.hypot(p, q),
+            gone,
+            "m/s",
+            note=note,
+            scale=scale,
+            said="rolls straight at {}",
         )
         yield needed_friction(0.0, seen.at)

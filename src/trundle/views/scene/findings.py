@@ -52,7 +52,7 @@ def _sliding_friction(seen: Seen) -> Iterator[Finding]:
         system = seen.system
         mu = float(system.support.sliding_friction)
         found = needed_friction(mu, some, None, some.normals(system))
-        yield Finding("Friction while it slips", r"\mu_k", mu, found.measured, "", "largest |f|/N while it slips")
+        yield Finding("Friction while it slips", r"\mu_k", mu, found.measured, "", note="largest |f|/N while it slips")
 
 
 def _integrals(system: RollingSystem, start: State, samples: Samples) -> Iterator[Finding]:
@@ -77,7 +77,9 @@ def _integrals(system: RollingSystem, start: State, samples: Samples) -> Iterato
         size = max(float(np.max(np.abs(part))) for part in (*sizes, *meanwhile))
         name = integral.name[0].upper() + integral.name[1:]
         note = f"{integral.formula} stays the same: at the start, and where it is furthest from that"
-        yield Finding(name, _SYMBOLS.get(integral.name, "I"), predicted, worst, integral.unit, note, size or None)
+        yield Finding(
+            name, _SYMBOLS.get(integral.name, "I"), predicted, worst, integral.unit, note=note, scale=size or None
+        )
 
 
 def _record(system: RollingSystem, start: State, samples: Samples) -> Any:
