@@ -17,9 +17,9 @@ from .launching import LAPTOP, PATIENCE, PHONE
 from .visiting import Visitor
 
 
-def take(page: Page, name: str, text: str) -> None:
+def take(page: Page, name: str, text: str, kind: str = "text/plain") -> None:
     """Give the page a file."""
-    page.get_by_test_id("file").set_input_files({"name": name, "mimeType": "text/plain", "buffer": text.encode()})
+    page.get_by_test_id("file").set_input_files({"name": name, "mimeType": kind, "buffer": text.encode()})
 
 
 def table(columns: str, rows: np.ndarray) -> str:
@@ -136,8 +136,12 @@ def test_what_is_no_track_is_refused_in_words(visitor: Visitor) -> None:
     visitor.watch.allow("status of 422")
     page = visitor.open("#/measure", drawn=False)
     expect(page.get_by_role("button", name="A ball on a ramp")).to_be_visible()
-    take(page, "film.mov", "x")
-    expect(page.get_by_test_id("wrong")).to_contain_text("'film.mov'. Export it as CSV.")
+    take(page, "notes.doc", "x")
+    expect(page.get_by_test_id("wrong")).to_contain_text("'notes.doc'. Export it as CSV.")
+    take(page, "film.mov", "x" * 12_000_000, "video/quicktime")  # too long for a request: its name alone is sent
+    expect(page.get_by_test_id("wrong")).to_contain_text(
+        "'film.mov' is a film, and no track. Find the ball in it first"
+    )
     take(page, "sheet.xlsx", "so long, and thanks")
     expect(page.get_by_test_id("wrong")).to_contain_text("sheet.xlsx")
     expect(page.get_by_test_id("wrong")).not_to_contain_text("/")  # no folder of the server's

@@ -80,11 +80,15 @@ def read(content: bytes, how: Mapping[str, Any], folder: str) -> Answer:
     ('units', ['m', 'cm'])
     """
     from ..tracks import read_track
+    from ..tracks.film.container import ENDINGS
     from ..tracks.formats import endings
     from ..tracks.reading import track_names
 
     name = Path(how["name"].replace("\\", "/")).name
     ending = Path(name).suffix.lower()
+    if ending in ENDINGS:
+        remedy = f"Find the ball in it first: `trundle track {name}`. Then drop track.csv, which that writes."
+        raise refused(422, f"{name!r} is a film, and no track. {remedy}", "file")
     if ending not in endings():
         ends = f"{', '.join(endings()[:-1])} or {endings()[-1]}"
         raise refused(422, f"A track is a file that ends in {ends}; this is {name!r}. Export it as CSV.", "file")

@@ -64,7 +64,7 @@ class Camera:
         if self.accuracy is not None:
             object.__setattr__(self, "accuracy", to_si(self.accuracy, "length", "camera.accuracy"))
             if not 0 <= self.accuracy < float("inf"):
-                remedy = "Write for instance '0.1 mm', or 0 for a camera without error."
+                remedy = "Write for instance '0.1 mm', or '0 mm' for a camera without error."
                 raise InvalidValueError("camera.accuracy", "must not be negative", self.accuracy, remedy)
         if isinstance(self.origin, str) or not hasattr(self.origin, "__len__") or len(self.origin) != 2:
             raise InvalidValueError("camera.origin", "must be two lengths", self.origin, "Write ['1 cm', 0].")

@@ -50,7 +50,8 @@ export const measure: Page = {
     const said = h('div', { class: 'measure-said', role: 'status', 'data-testid': 'said' })
     const wrong = h('p', { class: 'map-wrong', role: 'alert', hidden: true, 'data-testid': 'wrong' })
     const reading = createReading((how) => given && take({ ...given, how }))
-    const picker = createPicker((file) => take({ file, name: file.name, how: {} }, null))
+    const dropped = (file: File) => take({ file: worthSending(file), name: file.name, how: {} }, null)
+    const picker = createPicker(dropped)
     const offered = h('div', { class: 'buttons measure-examples', role: 'group', 'aria-label': 'Example tracks' })
 
     // 2. What moved
@@ -230,7 +231,7 @@ export const measure: Page = {
         h('div', { class: 'measure-seen' }, stage.element, plot.element, results, after),
       ),
     )
-    undo.add(dropping(host, (dropped) => take({ file: dropped, name: dropped.name, how: {} }, null)))
+    undo.add(dropping(host, dropped))
 
     async function begin(): Promise<void> {
       try {
@@ -292,6 +293,9 @@ function createPicker(chosen: (file: File) => void): Picker {
     ),
   }
 }
+
+/** A film is too large to send, and its name is enough for what there is to say of it. */
+const worthSending = (file: File): Blob => (file.type.startsWith('video/') ? file.slice(0, 0) : file)
 
 /** Files may be dropped anywhere on the page. */
 function dropping(host: HTMLElement, dropped: (file: File) => void): () => void {
