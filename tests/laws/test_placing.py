@@ -216,6 +216,19 @@ def test_a_body_over_its_flat_side_is_refused(turn: float) -> None:
         floor.place(height=0.3, orientation=turned.orientation)
 
 
+@pytest.mark.parametrize("surface", [tr.Plane(), tr.Bowl(1.4)], ids=["plane", "bowl"])
+@pytest.mark.parametrize("side", [-1, 1])
+def test_a_start_on_the_edge_of_the_round_side_is_refused_whatever_rounding_says(surface: Any, side: int) -> None:
+    body = tr.Body.hemisphere(0.04, 0.02)
+    system = tr.RollingSystem(body, tr.Support(surface, friction=0.2))
+    for heading in np.linspace(0.0, 3.0, 7):
+        with pytest.raises(tr.InvalidValueError, match=r"attitude.*on its edge"):
+            system.place((0.9 * isinstance(surface, tr.Bowl), 0.0), attitude=(heading, side * math.pi / 2, -0.17))
+    inside = system.place(attitude=(0.3, side * (math.pi / 2 - 1e-6), -0.17))  # turned so far from it, it is let go
+    card = tr.simulate(system, inside, 0.05, 0.01).card()
+    assert card.passed, str(card)
+
+
 @pytest.mark.parametrize("speed", [3e-28, 1e-300, 0.0])
 def test_where_nothing_moves_a_slip_of_a_rounding_is_none(speed: float) -> None:
     system = tr.RollingSystem(tr.Body.solid_sphere(0.02, 0.1), tr.Support(tr.Plane()))

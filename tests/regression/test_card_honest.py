@@ -13,6 +13,7 @@ import tomli_w
 import trundle as tr
 from trundle.solve.methods import Method
 from trundle.solve.patience import Patience
+from trundle.solve.samples import FLIGHT
 from trundle.verify.again import Again
 from trundle.verify.bounds import sizes_of
 from trundle.verify.growth import growth
@@ -611,3 +612,16 @@ def test_slip_that_creeps_takes_few_steps(velocity: float, monkeypatch: pytest.M
     )
     assert any(event.kind == "slip" for event in run.events)
     assert len(taken) < 60
+
+
+@pytest.mark.parametrize("torque", [0.0126241, -0.0126241, 0.03])
+@pytest.mark.parametrize("inertia", [0.00534196, 0.05])
+def test_an_axle_that_settles_at_once_under_a_body_in_flight_is_followed_in_narrow_windows(
+    torque: float, inertia: float
+) -> None:
+    axle = tr.FreeAxle(inertia, motor_torque=torque, bearing_torque=0.0390261)
+    system = tr.RollingSystem(tr.Body.ring(0.05, 1.58663), tr.Support(tr.Plane(), motion=axle))
+    start = system.place((0.3, 0.0), attitude=(0.8, 1.2, 0.0), height=0.9)
+    run = tr.simulate(system, start, 0.4, 0.01)
+    assert run.samples.phase[-1] == FLIGHT
+    assert run.card().passed, str(run.card())

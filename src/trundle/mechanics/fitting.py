@@ -20,6 +20,7 @@ from .surfaces import Surface
 if TYPE_CHECKING:
     from .system import RollingSystem
 
+EDGE = 1e-14  # of a shape's margin, which is a cosine or its square: below it only rounding says which side it is
 LEAST_ROOM = 1e-12  # of the eigenvalues of 1 + C S
 SHARPEST = 1e9  # bends in a body's size beyond which a surface is no longer smooth there
 

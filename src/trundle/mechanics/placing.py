@@ -112,7 +112,7 @@ class Placing:
             covered = self.system.body.shape.validity_margin(-(q.matrix().transpose @ contact.normal))
         except (ArithmeticError, ValueError):
             covered = 0.0
-        if covered is None or covered > 0:
+        if covered is None or covered > fitting.EDGE:
             return contact
         given = (1.0, 0.0, 0.0, 0.0) if self.orientation is None else self.orientation
         raise InvalidValueError(

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from .algebra import ZERO, Quaternion, Vector
 from .attitude import attitude
 from .contact import Contact, contact_at
-from .fitting import LEAST_ROOM, SHARPEST
+from .fitting import EDGE, LEAST_ROOM, SHARPEST
 from .placing import IN_PROPORTION, SLIP_TOLERANCE, not_opening, rolling_along, rolling_rate
 from .system import RollingSystem
 
@@ -105,7 +105,8 @@ class ManyPlacing:
         ends = [surface.domain_margin(there), surface.domain_margin(surface.point(*self.position.T))]
         if surface.rim is not None:
             ends.append(surface.rim - np.hypot(there.x, there.y))
-        ends.append(self.system.body.shape.validity_margin(-(q.matrix().transpose @ contact.normal)))
+        covered = self.system.body.shape.validity_margin(-(q.matrix().transpose @ contact.normal))
+        ends.append(None if covered is None else covered - EDGE)
         for margin in ends:
             sound &= True if margin is None else np.asarray(margin > 0)
         sound &= np.isfinite(surface.level(there))

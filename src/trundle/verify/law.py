@@ -67,26 +67,31 @@ def narrowed(times: Array) -> Array:
     return np.clip(middles + 0.25 * (times - middles), times[:, :1], times[:, -1:])
 
 
-def slope_sizes(windows: Samples, times: Array) -> tuple[float, float]:
-    """Return against what a slope of V and one of Ω is small or not, m/s² and rad/s²."""
+def _rates(windows: Samples) -> tuple[Array, Array, Array]:
+    """Return V, Ω and the rate of a free axle: what the law says the slopes of; of no axle an empty array."""
+    return windows.velocity, windows.angular_velocity, windows.support_coordinates[:, -1:]
+
+
+def slope_sizes(windows: Samples, times: Array) -> tuple[float, ...]:
+    """Return against what a slope of each of these is small or not, m/s² and rad/s²."""
     turning = largest(windows.angular_velocity)
-    linear, angular = (
-        largest(_slope_at_middle(times, values.reshape(*times.shape, 3))) + turning * largest(values)
-        for values in (windows.velocity, windows.angular_velocity)
+    return tuple(
+        largest(_slope_at_middle(times, values.reshape(*times.shape, -1))) + turning * largest(values)
+        for values in _rates(windows)
+        if values.size
     )
-    return linear, angular
 
 
-def roughness(windows: Samples, times: Array, sizes: tuple[float, float]) -> Array:
-    """Return what the last Chebyshev coefficients of V and Ω in each window are to their slopes, as shares."""
+def roughness(windows: Samples, times: Array, sizes: tuple[float, ...]) -> Array:
+    """Return what the last Chebyshev coefficients of V, Ω and an axle's rate in each window are to their slopes."""
     nodes = times.shape[1]
     weights = np.ones(nodes)
     weights[[0, -1]] = 0.5
     last = np.cos(np.pi * np.outer([nodes - 2, nodes - 1], np.arange(nodes)) / (nodes - 1)) * weights / (nodes - 1)
     half = (times[:, -1] - times[:, 0]) / 2
     found = np.zeros(len(times))
-    for values, slope in zip((windows.velocity, windows.angular_velocity), sizes, strict=True):
-        tails = np.abs(np.einsum("kn,wnc->wkc", last, values.reshape(*times.shape, 3))).max(axis=(1, 2))
+    for values, slope in zip(_rates(windows), sizes, strict=False):
+        tails = np.abs(np.einsum("kn,wnc->wkc", last, values.reshape(*times.shape, -1))).max(axis=(1, 2))
         found = np.maximum(found, tails * nodes / half / max(slope, 1e-300))
     wide = times[:, -1] - times[:, 0] > 4 * _NARROWEST * np.abs(times).max()
     return np.where(wide, found, 0.0)
