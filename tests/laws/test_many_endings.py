@@ -323,3 +323,47 @@ def test_off_the_end_of_a_bowl_and_the_edge_of_a_half_ball() -> None:
             alone, mine = tr.simulate(system, start, 1.0, 0.05, method="taylor"), runs.isel(member=i)
             assert str(mine.reason.values) == (alone.events[-1].text if alone.events else "")
             assert float(mine.end) == pytest.approx(float(alone.data.time[-1]), abs=1e-12)
+
+
+FLOOR = tr.Support(tr.Plane(), friction=0.2, restitution=0.5)
+EGG = tr.Body.ellipsoid((0.03, 0.025, 0.02), mass=0.1)
+ROLLS_BACK = {"angular_velocity": (0.0, -2.0, 0.0)}
+STILL = {"angular_velocity": (0.0, 0.0, 0.0)}
+THROUGH_PHASES: dict[str, tuple[tr.RollingSystem, list[dict[str, Any]]]] = {
+    "slips and comes to rest": (
+        tr.RollingSystem(BALL, FLOOR, loads=[tr.RollingResistance(2e-3)]),
+        [{"velocity": (0.1 + 0.05 * j, 0.02 * j), **(ROLLS_BACK if j % 2 else {})} for j in range(11)],
+    ),
+    "bounces with spin": (
+        tr.RollingSystem(BALL, FLOOR),
+        [
+            {"height": 0.02 + 0.01 * j, "velocity": (0.3, 0.0), "angular_velocity": (0.0, 9.0 * j, 3.0)}
+            for j in range(9)
+        ],
+    ),
+    "slips without friction": (
+        tr.RollingSystem(EGG, replace(FLOOR, friction=0.0)),
+        [{"velocity": (0.1, 0.02 * j), "orientation": (0.9, 0.1 * j, 0.2, 0.1)} for j in range(9)],
+    ),
+    "has a drag with a corner": (
+        tr.RollingSystem(BALL, FLOOR, loads=[tr.QuadraticDrag(0.02)]),
+        [{"velocity": (0.1 + 0.1 * j, 0.0), **(STILL if j % 3 else {})} for j in range(9)],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", THROUGH_PHASES)
+def test_members_in_any_phase_go_in_company(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nobody is run alone, and each comes through the events of its own run, at their instants."""
+    system, placed = THROUGH_PHASES[name]
+    starts = [system.place(**one) for one in placed]
+    monkeypatch.setattr(many.Runs, "put_alone", None)
+    result = many.run_members([system] * len(starts), starts, 0.6, 0.02)
+    for i, start in enumerate(starts):
+        alone = tr.simulate(system, start, 0.6, 0.02, method="taylor")
+        assert [kind for kind, _ in result.happened[i]] == [event.kind for event in alone.events]
+        apart = [time - event.time for (_, time), event in zip(result.happened[i], alone.events, strict=True)]
+        assert max(map(abs, apart), default=0.0) <= 1e-12
+        assert np.array_equal(result.arrays["phase"][i], alone.data.phase.values)
+        for quantity in ("position", "velocity", "angular_velocity", "orientation"):
+            assert np.abs(result.arrays[quantity][i] - alone.data[quantity].values).max() <= 1e-10, quantity

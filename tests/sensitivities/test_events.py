@@ -240,3 +240,24 @@ def test_without_the_saltation_the_derivatives_are_wrong(name: str, monkeypatch:
     apart = abs(wrong.velocity - right.velocity).sel(time=times[-1]).max()
     assert float(apart) > 1e-3 * float(abs(right.velocity).max())
     assert wrong.passed is False
+
+
+def test_a_later_start_moves_all_that_follows() -> None:
+    """A ball that slips as a billiard ball does: x = vτ − μgτ²/2 and then 5/7 v, with τ = t − t₀."""
+    mu, v, t0 = 0.2, 1.0, 0.3
+    tables = {
+        "gravity": 9.80665,
+        "body": {"kind": "solid-sphere", "radius": 0.03, "mass": 0.2},
+        "support": {"kind": "plane", "friction": mu},
+        "start": {"position": [0, 0], "velocity": [v, 0], "angular_velocity": [0, 0, 0], "time": t0},
+        "run": {"duration": 0.4, "every": 0.05},
+    }
+    found = tr.sensitivities(tr.Scenario.read(tables), "start.time")
+    assert found.passed
+    data = found.data.squeeze("parameter")
+    since = data.time.values - t0
+    grips = 2 * v / (7 * mu * 9.80665)
+    assert data.event_time.values == pytest.approx([1.0], abs=1e-12)
+    assert data.instant.values == pytest.approx([t0 + grips], abs=1e-12)
+    wanted = -np.where(since < grips, v - mu * 9.80665 * since, 5 / 7 * v)
+    assert data.position.sel(axis="x").values == pytest.approx(wanted, abs=1e-11)

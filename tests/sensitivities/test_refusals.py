@@ -50,7 +50,6 @@ def test_nothing_to_differentiate_by_is_refused() -> None:
     [
         ("start.spin", "Write `start.spin` into the scenario first"),
         ("start.height", "cannot be a little lower"),
-        ("start.time", "counted from it"),
         ("support.kind", "There are:"),
     ],
 )

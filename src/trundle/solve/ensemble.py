@@ -459,11 +459,9 @@ class _Lanes:
         path = integrator.propagate_grid(_grid(looks), **{"max_steps": _STEPS, **given})[-1]
         outcomes = [result[0] for result in integrator.propagate_res]
         stops = {lane: self._stop(lane, outcomes[lane]) for lane in looks}
-        failed = {
-            lane
-            for lane in looks
-            if _failed(outcomes[lane]) or (integrator.time[lane] == before[lane] and not stops[lane])
-        }
+        failed = {lane for lane in looks if _failed(outcomes[lane])}
+        if not failed:  # else nobody takes a step
+            failed = {lane for lane in looks if integrator.time[lane] == before[lane] and not stops[lane]}
         if failed:
             yield from self._start_again(failed)
             return
@@ -554,7 +552,10 @@ class _Looks:
         ahead = member.instants[member.reached - member.leg_from :] - member.begin
         if not ahead.size:
             return _Looks(np.array([now, member.end - member.begin]), np.empty(0, dtype=np.int64))
-        times, places = np.unique(np.append(now, ahead), return_inverse=True)  # since then, two may be one by rounding
+        times = np.concatenate([[now], ahead])
+        if (times[1:] > times[:-1]).all():
+            return _Looks(times, np.arange(1, times.size))
+        times, places = np.unique(times, return_inverse=True)  # since a reference, two may be one by rounding
         return _Looks(times, places[1:])
 
     def filled_up(self, count: int) -> _Looks:

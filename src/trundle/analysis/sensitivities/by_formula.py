@@ -35,6 +35,8 @@ def follow_formula(
         return None
     check_brink(system, now)
     duals, first = in_duals
+    if any(slopes_of(first.time, len(names))):  # forms count from the start
+        return None
     begins, count = transitions.at_start(duals, first), len(names)
     check_start(duals, begins, first, names)
     varied = form_in_duals(type(form), duals, begins, count)

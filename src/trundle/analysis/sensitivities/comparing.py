@@ -74,15 +74,16 @@ def _compared(
     if not usable:
         return none
 
-    def run(part: float) -> Samples:
-        values = {wanted[j].name: wanted[j].value + part * steps[j] for j in usable}
-        return solve(*moved(scenario, values), times)
+    def begun(part: float) -> tuple[RollingSystem, State]:
+        return moved(scenario, {wanted[j].name: wanted[j].value + part * steps[j] for j in usable})
 
     try:
-        far, near = ((run(part), run(-part)) for part in (1.0, 0.5))
+        starts = [begun(part) for part in (1.0, -1.0, 0.5, -0.5)]
+        first = int(np.searchsorted(times, max(start.time for _, start in starts)))  # before that some have not begun
+        runs = [solve(system, start, times[first:]) for system, start in starts]
     except TrundleError:  # with these numbers all at once the body cannot start so
         return none
-    runs, here = (*far, *near), followed.samples
+    far, near, here = runs[:2], runs[2:], followed.samples.part(slice(first, None))
     size = min(one.time.size for one in (*runs, here))
     alike = [(one.phase[:size] == here.phase[:size]) & (one.time[:size] == here.time[:size]) for one in runs]
     everywhere = np.all(alike, axis=0)
@@ -94,7 +95,7 @@ def _compared(
             (getattr(up, name)[:size] - getattr(down, name)[:size])[everywhere] / (2 * part)
             for (up, down), part in ((far, 1.0), (near, 0.5))
         )
-        found = followed.slopes[name][:size][everywhere][:, :, usable] @ np.array([steps[j] for j in usable])
+        found = followed.slopes[name][first:][:size][everywhere][:, :, usable] @ np.array([steps[j] for j in usable])
         values = float(np.abs(getattr(here, name)).max())
         largest = max(float(np.abs(found).max()), 1e-3 * share * values, 1e-300)
         apart = max(apart, float(np.abs(found - (4 * narrow - wide) / 3).max()) / largest)

@@ -20,12 +20,11 @@ from ...units import UNITS
 
 Model = TypeVar("Model", bound=ScenarioFile)
 _APART = {"title", "group", "notes", "timing"}  # what says nothing of the motion
-# At 0 these say that there is nothing of the kind, and a start is where the clock of the derivatives begins.
+# At 0 these say that there is nothing of the kind.
 _AT_ZERO = {
     "start.height": "a body that touches its support cannot be a little lower",
     "start.roll": "the body is not laid across its way",
 }
-_NEVER = {"start.time": "the samples are counted from it"}
 
 
 @dataclass(frozen=True)
@@ -56,7 +55,7 @@ def keys(scenario: ScenarioFile) -> list[Key]:
 
 def _without(name: str, value: Any) -> str:
     """Say why there is no derivative by a number; empty where there is one."""
-    return _NEVER.get(name, "") or (_AT_ZERO.get(name, "") if value == 0 else "")
+    return _AT_ZERO.get(name, "") if value == 0 else ""
 
 
 def chosen(scenario: ScenarioFile, names: Sequence[str]) -> list[Key]:
