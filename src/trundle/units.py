@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from fractions import Fraction
 from functools import cache
 from typing import Any
@@ -96,11 +97,24 @@ def plus_minus(text: str) -> tuple[str, str] | None:
     parts = [part.strip() for part in _PLUS_MINUS.split(text)]
     if len(parts) != 2 or not all(parts):
         return None
-    found = [_NUMBER.fullmatch(part) for part in parts]
-    units = [(match[2] or "").strip() if match else "" for match in found]
-    either = zip(parts, found, strict=True)
-    middle, half = (f"{part} {max(units)}".strip() if match and not match[2] else part for part, match in either)
+    middle, half = sharing_unit(parts)
     return middle, half
+
+
+def sharing_unit(texts: Sequence[str]) -> list[str]:
+    """Return numbers as text, those without a unit with that of the others, where these have but one.
+
+    Examples
+    --------
+    >>> sharing_unit(["1", "3 deg"]), sharing_unit(["1", "3 deg", "1 rad"]), sharing_unit(["1", "2"])
+    (['1 deg', '3 deg'], ['1', '3 deg', '1 rad'], ['1', '2'])
+    """
+    found = [_NUMBER.fullmatch(text.strip()) for text in texts]
+    units = {(match[2] or "").strip() for match in found if match} - {""}
+    if len(units) != 1 or not all(found):
+        return list(texts)
+    unit = units.pop()
+    return [text if match and match[2] else f"{text.strip()} {unit}" for text, match in zip(texts, found, strict=True)]
 
 
 def finite(number: Any, key: str, received: Any) -> Any:
