@@ -9,6 +9,7 @@ import tempfile
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ import numpy as np
 from measure import Row, check, seconds, timed
 from trundle.analysis.sweep import engine
 from trundle.analysis.sweep.plan import Plan, read_plan
-from trundle.analysis.sweep.refining import refine
+from trundle.analysis.sweep.refining import next_places
 
 TITLE = "Sweeps: 5 s with 51 samples each, as many members as a block has, on one core"
 
@@ -28,7 +29,7 @@ KINDS: dict[str, tuple[str, dict[str, Any], float]] = {
     "bowl": ("ball-in-a-turning-bowl", {"start.position[0]": {"uniform": [0.1, 0.2]}}, 1860),
     "rattleback": ("rattleback", {"body.products[0]": {"uniform": [1.8e-5, 2.2e-5]}}, 120),
 }
-PAIR_CHUNKS, EMPTY_CHUNKS, EMPTY_WORKERS = 24, 2000, 16
+PAIR_CHUNKS, EMPTY_CHUNKS, EMPTY_WORKERS = 24, 10_000, 16
 FIELDS, FINE = 100, 1000
 
 
@@ -65,8 +66,9 @@ def pair() -> tuple[float, float]:
     for _ in range(2):
         for workers in rate:
             times: list[float] = []
-            chunks = (chunk % plan.chunks for chunk in range(PAIR_CHUNKS))
-            engine._on_processes(workers, plan, chunks, lambda *_: times.append(time.perf_counter()))  # noqa: B023
+            chunks = iter([chunk % plan.chunks for chunk in range(PAIR_CHUNKS)])
+            more = partial(next, chunks, None)
+            engine._on_processes(workers, plan, more, lambda *_: times.append(time.perf_counter()))  # noqa: B023
             first = 2 * workers  # each has compiled
             rate[workers] = max(rate[workers], (len(times) - 1 - first) * plan.chunk / (times[-1] - times[first]))
     return rate[1], rate[2]
@@ -98,7 +100,8 @@ def empty_chunk() -> float:
     with LocalCluster(**options) as cluster, Client(cluster) as client:
         done: list[int] = []
         waiting = iter(range(EMPTY_CHUNKS))
-        taken, _ = timed(lambda: engine._on_dask(client, Empty(), waiting, lambda chunk, _: done.append(chunk)))
+        more = partial(next, waiting, None)
+        taken, _ = timed(lambda: engine._on_dask(client, Empty(), more, lambda chunk, _: done.append(chunk)))
         check(sorted(done) == list(range(EMPTY_CHUNKS)), "each chunk has to come back once")
     return taken / EMPTY_CHUNKS
 
@@ -139,7 +142,9 @@ def near_boundary() -> Iterator[Row]:
     found = tr.sweep("tippe-top", over, ["turned-over"], design="boundary", duration="8 s", every="0.1 s")
     taken = time.process_time() - begun
     classes, places = found.dataset["turned-over"].values, np.arange(FINE) * FIELDS // FINE
-    run, _ = refine((FINE, FINE), lambda some: classes[np.ix_(places, places)].ravel()[some].astype(int))
+    fine, run = classes[np.ix_(places, places)].astype(int), np.zeros((FINE, FINE), dtype=bool)
+    while (some := next_places(run, np.where(run, fine, 0))[0]).size:
+        run.ravel()[some] = True
     count = found.counts["done"]
     yield Row(f"tippe top, {FIELDS}²: runs of {FIELDS**2}", count, raw=seconds(taken), kind="count")
     yield Row(f"the same boundary in {FINE}²: runs", run.sum(), most=1e5, kind="count")

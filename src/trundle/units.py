@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from fractions import Fraction
 from functools import cache
 from typing import Any
@@ -108,6 +109,22 @@ def span(text: str) -> tuple[str, str] | None:
     return _two(text, _SPAN)
 
 
+def sharing_unit(texts: Sequence[str]) -> list[str]:
+    """Return numbers as text, those without a unit with that of the others, where these have but one.
+
+    Examples
+    --------
+    >>> sharing_unit(["1", "3 deg"]), sharing_unit(["1", "3 deg", "1 rad"]), sharing_unit(["1", "2"])
+    (['1 deg', '3 deg'], ['1', '3 deg', '1 rad'], ['1', '2'])
+    """
+    found = [_NUMBER.fullmatch(text.strip()) for text in texts]
+    units = {(match[2] or "").strip() for match in found if match} - {""}
+    if len(units) != 1 or not all(found):
+        return list(texts)
+    unit = units.pop()
+    return [text if match and match[2] else f"{text.strip()} {unit}" for text, match in zip(texts, found, strict=True)]
+
+
 def finite(number: Any, key: str, received: Any) -> Any:
     """Return the number if it is finite; raise `InvalidValueError` under the name `key` if it is not.
 
@@ -144,10 +161,7 @@ def _two(text: str, between: re.Pattern[str]) -> tuple[str, str] | None:
     parts = [part.strip() for part in between.split(text)]
     if len(parts) != 2 or not all(parts):
         return None
-    found = [_NUMBER.fullmatch(part) for part in parts]
-    units = [(match[2] or "").strip() if match else "" for match in found]
-    either = zip(parts, found, strict=True)
-    first, second = (f"{part} {max(units)}".strip() if match and not match[2] else part for part, match in either)
+    first, second = sharing_unit(parts)
     return first, second
 
 

@@ -51,7 +51,7 @@ def test_two_crossings_close_together_are_both_seen():
     start = trough.place(position=(0.4, 0.0))
     highest = tr.simulate(trough, start, "4 s", "1 ms").data.position.sel(axis="y").values
     level = float(highest.max()) * (1 - 1e-6)
-    found = tr.poincare_section(trough, f"position.y crossing through {level}", start, "4 s", every=0.02)
+    found = tr.poincare_section(trough, f"position.y crossing through {level} m", start, "4 s", every=0.02)
     assert found.count >= 3
     assert found.located
 
@@ -84,7 +84,7 @@ def test_a_jump_at_a_landing_is_no_crossing():
 
 def test_a_motion_that_ends_says_so():
     table = tr.RollingSystem(BALL, tr.Support(tr.Plane(rim=0.2)))
-    found = tr.poincare_section(table, "position.x rising through 0.1", table.place(velocity=(0.1, 0.0)), "60 s")
+    found = tr.poincare_section(table, "position.x rising through 10 cm", table.place(velocity=(0.1, 0.0)), "60 s")
     assert found.count == 1
     assert "rim" in found.ended
     assert math.isclose(found.duration, 2.0, rel_tol=1e-9)
@@ -97,6 +97,7 @@ def test_a_motion_that_ends_says_so():
         ({"section": "position.w rising through 0"}, "position.w"),
         ({"section": "position.x rising above 0"}, "which quantity passes"),
         ({"section": "position.x sinking through 0"}, "sinking"),
+        ({"section": "position.x rising through 10"}, "with its unit"),
         ({"section": "position.x rising through 3 kg"}, "length"),
         ({"section": "lend"}, "which quantity passes"),
         ({"section": 3.0}, "text or a function"),
@@ -116,6 +117,6 @@ def test_what_is_no_section_is_refused_in_words(given, said):
 
 def test_a_body_at_rest_never_crosses():
     plane = tr.RollingSystem(BALL, tr.Support(tr.Plane()))
-    found = tr.poincare_section(plane, "position.x rising through 0.1", plane.place(), "5 s")
+    found = tr.poincare_section(plane, "position.x rising through 10 cm", plane.place(), "5 s")
     assert found.count == 0
     assert found.plot().axes

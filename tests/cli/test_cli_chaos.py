@@ -84,6 +84,7 @@ def test_it_finds_the_orbit_next_to_the_start(here: Command) -> None:
         (["swing.toml", "--count", "9"], "from 1 to 8"),
         (["swing.toml", "--duration", "0.01 s"], "Follow it for longer"),
         (["roll-x-then-y"], "feels no forces"),
+        (["swing.toml", "--strobe", "1 s", "--along", "support.tilt", "--from", "0", "--to", "3"], "with its unit"),
     ],
 )
 def test_bad_input_is_refused_and_nothing_written(here: Command, arguments: list[str], said: str) -> None:

@@ -170,13 +170,33 @@ def test_draws_fill_what_they_are_drawn_from() -> None:
 
 def test_together_takes_the_first_of_each_and_a_table_is_read(tmp_path: Path) -> None:
     table = tmp_path / "members.csv"
-    table.write_text("support.tilt,start.position[0]\n1 deg,5 cm\n2 deg,0.1\n")
+    table.write_text("support.tilt (deg),start.position[0]\n1,5 cm\n2 deg,0.1 m\n")
     one = tr.sweep(TABLE, measure="end x", table=table, duration=1.0, every=0.5)
     over = {"support.tilt": ["1 deg", "2 deg"], "start.position[0]": [0.05, 0.1]}
     other = tr.sweep(TABLE, over, "end x", design="together", duration=1.0, every=0.5)
     assert one.data["end x"].dims == ("member",)
     assert np.array_equal(one.data["end x"], other.data["end x"])
     assert np.allclose(one.data["support.tilt"], np.radians([1, 2]), rtol=1e-15)
+
+
+def test_text_without_a_unit_is_never_si_in_silence(tmp_path: Path) -> None:
+    """In a table a cell without a unit is refused; a unit that stands once in a range stands for both of its ends."""
+    table = tmp_path / "members.csv"
+    table.write_text("support.tilt,body.mass\n1,1 kg\n2 deg,2\n")
+    with pytest.raises(
+        tr.InvalidValueError, match=r"`table.support.tilt` must have a unit.*support.tilt \(rad\)"
+    ) as told:
+        tr.sweep(TABLE, measure="end x", table=table)
+    assert "table.body.mass" in str([str(one) for one in told.value.others])
+    table.write_text("support.friction,support.tilt\n0.1,1 deg\n0.2,2 deg\n")
+    document = tr.Scenario.load("incline-with-slip")
+    assert read_plan({"measure": "end x", "table": table}, document=document).table[:, 0].tolist() == [0.1, 0.2]
+    for spec in ({"from": "1", "to": "2 deg", "count": 2}, {"from": "1 deg", "to": "2", "count": 2}):
+        plan = read_plan({"scenario": TABLE, "measure": "end x", "over": {"support.tilt": spec}})
+        assert np.allclose(plan.table[:, 0], np.radians([1, 2]), rtol=1e-15)
+    for spec in ({"from": "1", "to": "2", "count": 2}, ["1", "2 deg"]):
+        with pytest.raises(tr.InvalidValueError, match="with its unit"):
+            tr.sweep(TABLE, {"support.tilt": spec}, "end x")
 
 
 # --- the same to the last bit ---------------------------------------------------------------------------------------

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..errors import InvalidValueError
+from ..units import sharing_unit
 from . import CARD_FAILED, screen, signals
 from .options import Folder, Json, Name, Quiet, folder_for, load
 
@@ -73,6 +74,8 @@ def chaos(
     for name, given in (("--count", count if asked else None), ("--duration", duration if orbit else None)):
         if given is not None:
             raise InvalidValueError(name, f"has no meaning with {asked[0]}", given, "Leave it out.")
+    if lowest is not None and highest is not None:
+        lowest, highest = sharing_unit((lowest, highest))
     loaded = load(scenario)
     folder = folder_for(output, scenario)
     wanted: tuple[str, ...] = (EXPONENTS,)
@@ -128,9 +131,7 @@ def _diagram(
         raise InvalidValueError("--values", f"must be 2 to {MOST_VALUES}", count)
     system = loaded.system()
     dimension = parameters(system)[number_of(system, along)[0]].dimension
-    first, last = (
-        float(checks.real(_bare(end), dimension, key)) for key, end in zip(("--from", "--to"), ends, strict=True)
-    )
+    first, last = (float(checks.real(end, dimension, key)) for key, end in zip(("--from", "--to"), ends, strict=True))
     return bifurcation_diagram(
         loaded,
         along,
@@ -142,14 +143,6 @@ def _diagram(
         duration=duration,
         progress=bar,
     )
-
-
-def _bare(text: str) -> str | float:
-    """Return a number without a unit as one: it is SI."""
-    try:
-        return float(text)
-    except ValueError:
-        return text
 
 
 def _followed(

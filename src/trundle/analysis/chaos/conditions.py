@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 WAYS = ("rising", "falling", "crossing")
 _PASSES = re.compile(r"\s*([A-Za-z_0-9.]+)\s+(\w+)\s+through\s+(.+?)\s*")
+_ZERO = re.compile(r"[+-]?0+(\.0*)?")  # in whatever unit
 _EXAMPLE = 'Write for instance "position.z rising through 10 mm", or name a kind of event, such as "land".'
 
 
@@ -52,12 +53,7 @@ class Condition:
         if said not in WAYS:
             raise UnknownNameError("way through a section", said, WAYS)
         quantity, kind = quantity_of(system, name)
-        try:  # a number without a unit is SI, as in Python
-            level = float(value)
-        except ValueError:
-            level = float(checks.real(value, kind, "section"))
-        if not np.isfinite(level):
-            raise InvalidValueError("section", "must pass a finite value", given, _EXAMPLE)
+        level = 0.0 if _ZERO.fullmatch(value) else float(checks.real(value, kind, "section"))
         return cls(given, lambda data: quantity(data) - level, said)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
@@ -19,9 +20,10 @@ from ...scenario.together import tell_all
 from ...simulation import labels
 from ...simulation.simulate import Scenario
 from ...solve.sampling import sample_times
+from ...units import sharing_unit
 from .job import Job, block_of
 from .measures import Measure, read_measures
-from .varying import Axis, Design, check_values, grid_shape, read_axes
+from .varying import Axis, Design, check_values, grid_shape, numbers_of, read_axes
 
 Array = NDArray[np.float64]
 
@@ -29,6 +31,8 @@ KEYS = (
     "title", "notes", "scenario", "run", "over", "table", "design", "members", "seed", "measure", "keep", "chunk"
 )  # fmt: skip
 _MOST_CHUNK, _MOST_BYTES, _PARTS = 1024, 2**24, 32  # members and bytes in a chunk; into so many at least
+_HEAD = re.compile(r"(.*?)\s*\(([^()]+)\)", re.DOTALL)  # a key, and a unit in brackets
+_BARE = re.compile(r"[-+−]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.IGNORECASE)
 _SAMPLE_BYTES = 185  # about, of all that is sampled at an instant
 
 
@@ -118,7 +122,7 @@ def _plan(tables: Mapping[str, Any], document: Scenario, near: Path | None) -> P
     over = tables.get("over")
     listed = None
     if tables.get("table") is not None:
-        listed = _columns(tables["table"], near)
+        listed = _columns(tables["table"], near, document)
     read: Callable[[], list[Axis]] = partial(_axes, over, listed, document)
     name = tables.get("design", "grid" if listed is None else "together")
     design = Design(str(name), tables.get("members"), tables.get("seed", 0))
@@ -191,7 +195,7 @@ def _axes(over: Any, listed: dict[str, list[Any]] | None, document: Scenario) ->
     return read_axes(listed, document)
 
 
-def _columns(given: Any, near: Path | None) -> dict[str, list[Any]]:
+def _columns(given: Any, near: Path | None, document: Scenario) -> dict[str, list[Any]]:
     """Return the columns of a table of members: a CSV file with the keys as its heads, or a mapping."""
     if isinstance(given, Mapping):
         return {str(key): list(values) for key, values in given.items()}
@@ -203,15 +207,22 @@ def _columns(given: Any, near: Path | None) -> dict[str, list[Any]]:
         raise InvalidValueError("table", "must be a CSV file that can be read", str(given), f"{error}.") from None
     if len(rows) < 2 or any(len(row) != len(rows[0]) for row in rows):
         rule = "must have a head with the keys, and as many cells in each row"
-        raise InvalidValueError("table", rule, str(given), "Write for instance: start.spin,support.tilt")
-    return {key.strip(): [_cell(row[i]) for row in rows[1:]] for i, key in enumerate(rows[0])}
+        raise InvalidValueError("table", rule, str(given), "Write for instance: start.spin (rpm),support.tilt (deg)")
+    read = (partial(_column, head, [row[i] for row in rows[1:]], document) for i, head in enumerate(rows[0]))
+    return dict(tell_all(*read))
 
 
-def _cell(text: str) -> Any:
-    try:
-        return float(text)
-    except ValueError:
-        return text.strip()
+def _column(head: str, cells: list[str], document: Scenario) -> tuple[str, list[str]]:
+    """Return the key and the values of a column, those without a unit in that of its head."""
+    parts = _HEAD.fullmatch(head.strip())
+    key, unit = (parts[1], parts[2]) if parts else (head.strip(), None)
+    texts = [cell.strip() for cell in cells]
+    shared = [sharing_unit((text, f"1 {unit}"))[0] for text in texts] if unit else texts
+    known = numbers_of(document).get(key)
+    if known is not None and known[1] and (bare := [text for text in shared if _BARE.fullmatch(text)]):
+        rule = "must have a unit: in its head, or in each cell"
+        raise InvalidValueError(f"table.{key}", rule, bare[0], f"Write as its head: {key} ({known[1]})")
+    return key, shared
 
 
 def _keep(given: Any) -> int:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ...errors import InvalidValueError, did_you_mean
 from ...scenario import ScenarioFile
 from ...scenario.together import each_checked, tell_all
-from ...units import UNITS, plus_minus, to_si
+from ...units import UNITS, plus_minus, sharing_unit, to_si
 from ..sensitivities.keys import leaves
 
 Array = NDArray[np.float64]
@@ -139,6 +139,11 @@ def _numeric(key: str, spec: Any, where: str, unit: str) -> Axis:
     return Axis(key, unit, values, partial(_pick, values))
 
 
+def _sharing(values: list[Any]) -> list[Any]:
+    """Return texts with the unit that stands once; numbers are SI."""
+    return sharing_unit(values) if all(isinstance(value, str) for value in values) else values
+
+
 def _si(value: Any, key: str, kind: str) -> float:
     if isinstance(value, np.generic):
         value = value.item()
@@ -167,7 +172,7 @@ def _spaced(key: str, spec: Mapping[str, Any], where: str, unit: str, convert: A
             if set(spec) != {name} or not isinstance(spec[name], (list, tuple)) or len(spec[name]) != 2:
                 example = "{ uniform = [1, 2] }" if name == "uniform" else "{ normal = [1.5, 0.1] }"
                 raise InvalidValueError(where, f"must give two numbers to `{name}`", spec, f"Write {example}.")
-            first, second = each_checked(convert, spec[name], f"{where}.{name}")
+            first, second = each_checked(convert, _sharing(list(spec[name])), f"{where}.{name}")
             return (
                 _uniform(key, unit, first, second, where)
                 if name == "uniform"
@@ -179,7 +184,10 @@ def _spaced(key: str, spec: Mapping[str, Any], where: str, unit: str, convert: A
     for name in ("from", "to"):
         if name not in spec:
             raise InvalidValueError(f"{where}.{name}", "must be given", None, SHAPES)
-    low, high = tell_all(*(partial(convert, spec[name], f"{where}.{name}") for name in ("from", "to")))
+    ends = _sharing([spec["from"], spec["to"]])
+    low, high = tell_all(
+        *(partial(convert, end, f"{where}.{name}") for name, end in zip(("from", "to"), ends, strict=True))
+    )
     return _between(key, unit, low, high, spec.get("count"), spec.get("scale", "linear"), where)
 
 
