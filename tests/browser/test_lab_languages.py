@@ -8,7 +8,9 @@ from .visiting import Visitor
 
 # What of the page has vowels without marks: what is in no catalogue.
 PLAIN = """() => {
-    const plain = (text) => (text.match(/\\p{L}+/gu) ?? []).some((word) => /^[A-Za-z]{3,}$/.test(word) && /[aeiou]/i.test(word))
+    const unmarked = (word) => /^[A-Za-z]{3,}$/.test(word) && /[aeiou]/i.test(word)
+    const plain = (text) => (text.match(/\\p{L}+/gu) ?? []).some(unmarked)
+    const ours = 'noscript, script, [hreflang], .wordmark'
     const found = []
     const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT)
     for (let node = walk.nextNode(); node; node = walk.nextNode())
