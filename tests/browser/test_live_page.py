@@ -12,6 +12,7 @@ from playwright.sync_api import Browser, Locator, Page, expect
 
 import trundle as tr
 from trundle.analysis.sensitivities.keys import moved
+from trundle.lab.challenges import on_site
 from trundle.live import live_page, site_of
 
 from .axe import violations
@@ -109,10 +110,11 @@ def test_on_a_phone_nothing_runs_over_the_edge(file: Path, opened: OpenPage) -> 
 
 
 def test_a_site_is_walked_from_the_gallery_through_the_tour(opened: OpenPage, tmp_path: Path) -> None:
-    for name, content in site_of(["cylinder-on-incline", "level-turntable-put-down", "roll-x-then-y"]).items():
+    names = ["cylinder-on-incline", "level-turntable-put-down", "roll-x-then-y", "billiard-draw"]
+    for name, content in site_of(names, challenges=on_site()).items():
         (tmp_path / name).write_bytes(content)
     page = opened(tmp_path / "index.html")
-    expect(page.get_by_role("listitem")).to_have_count(3)
+    expect(page.get_by_role("listitem")).to_have_count(4)
     page.get_by_text("Embed").first.click()
     code = page.locator("textarea").first
     address = (tmp_path / "cylinder-on-incline.html").as_uri()
@@ -124,5 +126,9 @@ def test_a_site_is_walked_from_the_gallery_through_the_tour(opened: OpenPage, tm
     page.get_by_role("link", name="On: ").click()
     expect(page.get_by_role("heading", level=1)).to_have_text(tr.Scenario.load("level-turntable-put-down").title)
     page.get_by_role("link", name="Gallery").click()
-    page.get_by_role("link", name="Cylinder down an incline").click()
-    expect(headline(page)).to_contain_text("Goes on for all of")
+    page.get_by_role("link", name="Challenges").click()
+    expect(page.get_by_text("have your answer checked")).to_be_visible()
+    assert violations(page) == []
+    expect(page.get_by_text("can be done in the lab only").first).to_be_visible()
+    page.get_by_role("link", name=tr.Scenario.load("billiard-draw").title).click()
+    expect(headline(page)).to_contain_text("Path")

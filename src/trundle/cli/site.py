@@ -27,13 +27,14 @@ def site(
 
     Exit status: 0, all is well; 2, bad input; 130, interrupted; 1, all else.
     """
+    from ..lab.challenges import on_site
     from ..live.site import site_of
     from .writing import check_folder, write_together
 
     folder = folder.expanduser()
     check_folder(folder, ("index.html",), key="DIR")
     with screen.ProgressBar(wanted=not quiet) as progress:
-        found = site_of(scenarios or (), progress=progress)
+        found = site_of(scenarios or (), challenges=on_site(), progress=progress)
     signals.check()
     write_together(folder, {name: partial(_write, content) for name, content in found.items()})
     if not quiet:

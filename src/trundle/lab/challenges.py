@@ -211,3 +211,15 @@ def challenge(name: str) -> Challenge:
     if name not in {path.stem for path in FOLDER.glob("*.toml")}:
         raise refused(404, "There is no such challenge. Choose one of the list.", None, "NotFoundError")
     return Challenge.model_validate(tomllib.loads((FOLDER / f"{name}.toml").read_text(encoding="utf-8")))
+
+
+def on_site() -> list[dict[str, Any]]:
+    """Return what a page without a server says of all challenges: nothing of what their answers are.
+
+    Examples
+    --------
+    >>> {"scenario", "hidden", "task"} <= set(on_site()[0]), "explanation" in on_site()[0]
+    (True, False)
+    """
+    every = [(name, challenge(name)) for name in names()]
+    return [{**one.told(name), "scenario": one.scenario, "hidden": one.hidden} for name, one in every]

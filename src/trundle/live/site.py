@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import base64
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from importlib.metadata import version
 from importlib.resources import files
 from pathlib import Path
 from string import Template
+from typing import Any
 
 import numpy as np
 
@@ -38,6 +39,8 @@ TOUR = (
 _ADDITIONAL = "More"  # the heading of scenarios that have none
 _POINTS = 300  # of a picture in the gallery
 _TITLE = "Bodies that roll"
+_CHALLENGES = "challenges.html"
+_TAKEN = ("index", "challenges")  # by the site itself
 
 
 @dataclass(frozen=True)
@@ -58,13 +61,20 @@ class Entry:
         return f"{self.name}.html"
 
 
-def site_of(names: Sequence[str] = (), *, progress: Progress | None = None) -> dict[str, bytes]:
+def site_of(
+    names: Sequence[str] = (),
+    *,
+    challenges: Sequence[Mapping[str, Any]] = (),
+    progress: Progress | None = None,
+) -> dict[str, bytes]:
     """Return the files of a site, by name.
 
     Parameters
     ----------
     names : sequence of str
         Shipped scenarios or TOML files; none: all that ship.
+    challenges : sequence of dict
+        As `trundle.lab.challenges` tells them; those whose scenario is on the site have a page.
     progress : callable, optional
         Told the fraction done.
 
@@ -85,7 +95,7 @@ def site_of(names: Sequence[str] = (), *, progress: Progress | None = None) -> d
     """
     wanted = list(names or scenarios.names())
     stems = [Path(name).stem if name.endswith(".toml") else name for name in wanted]
-    double = {stem for stem in stems if stems.count(stem) > 1 or stem == "index" or stem.startswith("tour-")}
+    double = {stem for stem in stems if stems.count(stem) > 1 or stem in _TAKEN or stem.startswith("tour-")}
     if double:
         raise InvalidValueError("SCENARIO", "must have a name of its own on the site", ", ".join(sorted(double)))
     entries = []
@@ -94,8 +104,13 @@ def site_of(names: Sequence[str] = (), *, progress: Progress | None = None) -> d
         entries.append(entry(name, stem, part))
     toured = [one for wish in TOUR for one in entries if one.name == wish]
     found = {one.file: one.page for one in entries}
-    found["index.html"] = _gallery(entries, toured)
-    return found | {_step(i): _stop(toured, i) for i in range(len(toured))}
+    tasks = [(task, one) for task in challenges for one in entries if one.name == task["scenario"]]
+    links = {"index.html": "Gallery"} | ({_step(0): "Tour"} if toured else {})
+    links |= {_CHALLENGES: "Challenges"} if tasks else {}
+    found["index.html"] = _gallery(entries, links)
+    if tasks:
+        found[_CHALLENGES] = _challenges(tasks, links)
+    return found | {_step(i): _stop(toured, i, links) for i in range(len(toured))}
 
 
 def entry(name: str, stem: str, progress: Progress | None = None) -> Entry:
@@ -115,7 +130,7 @@ def entry(name: str, stem: str, progress: Progress | None = None) -> Entry:
     return Entry(stem, *told, page, scene, live=True)
 
 
-def _gallery(entries: Sequence[Entry], toured: Sequence[Entry]) -> bytes:
+def _gallery(entries: Sequence[Entry], links: Mapping[str, str]) -> bytes:
     groups = list(dict.fromkeys(one.group or _ADDITIONAL for one in entries))
     parts = [
         "<p>Each page below computes its motion where it is opened, and has sliders to change it; a film shows one "
@@ -124,7 +139,7 @@ def _gallery(entries: Sequence[Entry], toured: Sequence[Entry]) -> bytes:
     for group in groups:
         cards = "".join(_card(one) for one in entries if (one.group or _ADDITIONAL) == group)
         parts.append(f'<section><h2>{escape(group)}</h2><ul class="gallery">{cards}</ul></section>')
-    return _page(_TITLE, "\n".join(parts), toured)
+    return _page(_TITLE, "\n".join(parts), links)
 
 
 def _card(one: Entry) -> str:
@@ -158,11 +173,33 @@ def _picture(scene: Drawn) -> str:
     return f'<svg viewBox="-50 -50 100 100" aria-hidden="true"><path d="M{points}"/></svg>'
 
 
+def _challenges(tasks: Sequence[tuple[Mapping[str, Any], Entry]], links: Mapping[str, str]) -> bytes:
+    """Return the challenges, the easier first, each with its scenario and its hints."""
+    parts = [
+        "<p>Write down your prediction before you press Play. These pages have no server that could judge a run: to "
+        "have your answer checked, run <code>trundle lab</code> and open Challenges there.</p>"
+    ]
+    for task, one in sorted(tasks, key=lambda pair: pair[0]["level"]):
+        asked = task["prediction"]
+        choices = "".join(f"<li>{escape(choice)}</li>" for choice in asked["choices"])
+        hints = "".join(f"<li>{escape(hint)}</li>" for hint in task["hints"])
+        if task["hidden"]:
+            way = "<p>This one hides something, and can be done in the lab only.</p>"
+        else:
+            way = f'<p>The scenario to begin with: <a href="{escape(one.file)}">{escape(one.title)}</a></p>'
+        parts.append(
+            f"<section><h2>{escape(task['title'])}</h2><p>{escape(task['task'])}</p>"
+            f"<p>Predict first: {escape(asked['question'])}</p><ul>{choices}</ul>{way}"
+            f"<details><summary>Hints</summary><ol>{hints}</ol></details></section>"
+        )
+    return _page("Challenges", "\n".join(parts), links)
+
+
 def _step(i: int) -> str:
     return f"tour-{i + 1}.html"
 
 
-def _stop(toured: Sequence[Entry], i: int) -> bytes:
+def _stop(toured: Sequence[Entry], i: int, links: Mapping[str, str]) -> bytes:
     """Return a step of the tour: what a lecturer says, and the page."""
     one = toured[i]
     paragraphs = "".join(f"<p>{escape(' '.join(part.split()))}</p>" for part in one.notes.split("\n\n") if part.strip())
@@ -173,10 +210,10 @@ def _stop(toured: Sequence[Entry], i: int) -> bytes:
         if 0 <= j < len(toured)
     )
     body = f'{paragraphs}{frame}<p class="ways">{ways}</p>'
-    return _page(one.title, body, toured)
+    return _page(one.title, body, links)
 
 
-def _page(title: str, body: str, toured: Sequence[Entry]) -> bytes:
+def _page(title: str, body: str, links: Mapping[str, str]) -> bytes:
     """Return a page of the site that holds no motion itself."""
     own = files(__package__)
     style, script, template = ((own / f"site.{kind}").read_text(encoding="utf-8") for kind in ("css", "js", "html"))
@@ -185,7 +222,6 @@ def _page(title: str, body: str, toured: Sequence[Entry]) -> bytes:
     ]
     # A page from a memory stick is no origin to a browser: frames of files beside it are said by their scheme.
     policy = "default-src 'none'; script-src {}; style-src {}; frame-src 'self' file:; base-uri 'none'".format(*allowed)
-    links = {"index.html": "Gallery"} | ({_step(0): "Tour"} if toured else {})
     shown = "".join(f'<a href="{address}">{name}</a>' for address, name in links.items())
     parts = {"title": escape(title), "version": escape(version("trundle")), "links": shown, "body": body}
     return Template(template).substitute(parts, policy=policy, style=style, script=script).encode()
