@@ -136,5 +136,5 @@ def test_what_is_not_finite_counts_as_missing() -> None:
 
 
 def test_an_older_file_is_read(tmp_path: Path) -> None:
-    write_dataset(Score(rows(1e-2, 1e-3)).data.drop_vars(["way", "derivative"]), tmp_path / "score.nc")
+    write_dataset(Score(rows(1e-2, 1e-3)).data.drop_vars(["way", "derivative", "friction"]), tmp_path / "score.nc")
     assert [row.way for row in Score.load(tmp_path / "score.nc").rows] == ["", ""]
