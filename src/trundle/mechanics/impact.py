@@ -34,7 +34,7 @@ _MOST_PIECES = 20
 class Impact:
     """What a landing does."""
 
-    impulse: Vector  # p on the body, N s, in the inertial support frame
+    impulse: Vector  # P on the body, N s, in the inertial support frame
     # `velocity_change`, `angular_velocity_change`: of the body, m/s and rad/s
     velocity_change: Vector
     angular_velocity_change: Vector
