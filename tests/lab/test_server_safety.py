@@ -21,7 +21,7 @@ NAME = "level-turntable-nudged"
 def error_of(answer: Any) -> dict[str, Any]:
     told = answer.json()
     assert set(told) == {"error"}
-    assert set(told["error"]) == {"message", "key", "kind"}
+    assert set(told["error"]) == {"message", "key", "kind", "parts"}
     return told["error"]
 
 
@@ -235,7 +235,9 @@ def test_the_message_is_the_packages_own(lab: TestClient) -> None:
         tr.Scenario.read(wrong, "")
     for route in ("simulate", "card", "derivation", "twin"):
         error = error_of(lab.post(f"/api/{route}", json={"scenario": wrong}))
+        (part,) = error.pop("parts")
         assert error == {"message": str(caught.value), "key": "support.tilt", "kind": "ScenarioError"}
+        assert all(words in error["message"] for words in part.values())
 
 
 @pytest.mark.parametrize("content", [b"", b"{", b'{"scenario": ', b"[1, 2]", b"\xff", b"[" * 100_000, b"9" * 5000])

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import trundle as tr
-from trundle.analysis.sensitivities.keys import Key, keys, moved, varied
+from trundle.analysis.sensitivities.keys import Key, chosen, keys, moved, varied
 from trundle.errors import TrundleError
 from trundle.mechanics.duals import slopes_of, value_of
 from trundle.mechanics.system import State
@@ -36,7 +36,8 @@ def difference(scenario: tr.Scenario, key: Key) -> Any:
 @pytest.mark.parametrize("name", tr.Scenario.names())
 def test_a_start_has_the_derivatives_of_its_differences(name: str) -> None:
     scenario = tr.Scenario.load(name)
-    wanted = [key for key in keys(scenario) if (name, key.name) not in NO_SLOPE]
+    every = [*keys(scenario), *chosen(scenario, ["start.time"])]
+    wanted = [key for key in every if (name, key.name) not in NO_SLOPE]
     _, start = varied(scenario, wanted)
     slopes = np.array([slopes_of(part, len(wanted)) for part in parts(start)], dtype=float)
     compared = 0

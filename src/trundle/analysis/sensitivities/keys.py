@@ -20,6 +20,7 @@ from ...units import UNITS
 
 Model = TypeVar("Model", bound=ScenarioFile)
 _APART = {"title", "group", "notes", "timing"}  # what says nothing of the motion
+_CLOCK = "start.time"
 # At 0 these say that there is nothing of the kind.
 _AT_ZERO = {
     "start.height": "a body that touches its support cannot be a little lower",
@@ -37,7 +38,7 @@ class Key:
 
 
 def keys(scenario: ScenarioFile) -> list[Key]:
-    """Return all numbers of a scenario that a motion may be differentiated by.
+    """Return all numbers of a scenario that say what moves; the clock of its start is not one of them.
 
     Examples
     --------
@@ -45,6 +46,11 @@ def keys(scenario: ScenarioFile) -> list[Key]:
     >>> [key.name for key in keys(tr.Scenario.load("tilted-turntable"))][:4]
     ['gravity', 'body.radius', 'body.mass', 'support.rim']
     """
+    return [key for key in _all(scenario) if key.name != _CLOCK]
+
+
+def _all(scenario: ScenarioFile) -> list[Key]:
+    """Return all numbers of a scenario that a motion may be differentiated by."""
     kinds = {
         f"{key}[{i}]": kind for key, all_ in scenario._kinds_of_components().items() for i, kind in enumerate(all_)
     }
@@ -67,7 +73,7 @@ def chosen(scenario: ScenarioFile, names: Sequence[str]) -> list[Key]:
     >>> [key.name for key in chosen(tr.Scenario.load("tilted-turntable"), ["start.velocity"])]
     ['start.velocity[0]', 'start.velocity[1]']
     """
-    known = keys(scenario)
+    known = _all(scenario)
     found: dict[str, Key] = {}
     for name in names:
         own = [
