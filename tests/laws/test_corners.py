@@ -145,7 +145,8 @@ def test_members_with_corners_are_as_when_alone() -> None:
     many = tr.simulate_many(system, starts, 2.5, 0.1)
     for i, start in enumerate(starts):
         alone = tr.simulate(system, start, 2.5, 0.1)
-        assert np.array_equal(many.position.values[i], alone.samples.position)
+        apart = np.abs(many.position.values[i] - alone.samples.position)
+        assert apart.max() <= 1e-14  # several at once: their steps are rounded otherwise
 
 
 @pytest.mark.parametrize("method", METHODS)
