@@ -105,6 +105,7 @@ REFUSED = {
     "several": ["tilted-turntable", "rattleback", "page.html", "--live"],
     "no page to move it in": ["tilted-turntable", "page.html", "--slider", "body.radius"],
     "no such number": ["tilted-turntable", "page.html", "--live", "--slider", "body.redius"],
+    "the clock": ["turntable-starting-up", "page.html", "--live", "--slider", "start.time=0 s..1 s"],
     "a formula": ["turntable-starting-up", "page.html", "--live", "--slider", "support.motion.rate"],
     "downwards": ["tilted-turntable", "page.html", "--live", "--slider", "support.tilt=1deg..0deg"],
     "no unit": ["tilted-turntable", "page.html", "--live", "--slider", "support.tilt=0..2"],

@@ -89,6 +89,9 @@ def _asked(scenario: ScenarioFile, asked: Sequence[str]) -> list[Slider]:
 
 def _chosen(scenario: ScenarioFile, name: str) -> list[Key]:
     """Return the numbers of a name."""
+    if name == "start.time":
+        rule, remedy = "must not name `start.time`", "A page counts its time from the start: move another number."
+        raise InvalidValueError("--slider", rule, name, remedy)
     try:
         return chosen(scenario, [name])
     except UnknownNameError:
