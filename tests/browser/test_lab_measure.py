@@ -46,7 +46,7 @@ def test_the_truth_is_found_and_goes_to_the_bench(visitor: Visitor) -> None:
     expect(page.get_by_test_id("said")).to_contain_text("597 rows")
     fit(page)
     expect(page.get_by_test_id("verdict")).to_contain_text("good fit")
-    value, error = found(page, "body.inertia_ratio")
+    value, error = found(page, "Body: Inertia ratio k")
     assert 0 < error < 1e-4
     assert abs(value - truth["body.inertia_ratio"]) < 4 * error
     expect(page.get_by_test_id("fit-said")).to_contain_text("the end")
@@ -63,7 +63,7 @@ def test_the_truth_is_found_and_goes_to_the_bench(visitor: Visitor) -> None:
 def test_what_cannot_be_known_is_said_with_the_cure(visitor: Visitor) -> None:
     page = visitor.open("#/measure?example=ball-on-a-turntable", drawn=False)
     expect(page.get_by_test_id("said")).to_contain_text("597 rows")
-    page.get_by_role("checkbox", name="support.motion.rate").check()
+    page.get_by_role("checkbox", name="Motion of the support: Rate").check()
     fit(page)
     expect(page.get_by_test_id("verdict")).to_contain_text("cannot decide")
     expect(page.get_by_test_id("unknown")).to_contain_text("rate·body.inertia_ratio/(1 + body.inertia_ratio)")
@@ -120,14 +120,14 @@ def test_a_ball_of_ones_own_on_the_scenario_of_the_bench(visitor: Visitor) -> No
     )
     page.dispatch_event("main", "drop", {"dataTransfer": transfer})
     expect(page.get_by_test_id("said")).to_contain_text("120 rows")
-    page.get_by_role("checkbox", name="support.tilt").check()
+    page.get_by_role("checkbox", name="Support: Tilt").check()
     page.get_by_test_id("noise").fill("0.5 kg")
     visitor.watch.allow("status of 422")
     page.get_by_test_id("fit").click()
     expect(page.get_by_test_id("wrong")).to_contain_text("noise")
     page.get_by_test_id("noise").fill("0.5 mm")
     fit(page)
-    value, error = found(page, "support.tilt")
+    value, error = found(page, "Support: Tilt")
     assert abs(value - 0.04) < 4 * error < 4e-3
     expect(page.get_by_test_id("wrong")).to_be_hidden()
 

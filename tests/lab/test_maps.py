@@ -13,6 +13,8 @@ from tests.sweeps.refined import refine
 
 import trundle as tr
 from trundle.analysis.sweep.refining import next_places
+from trundle.lab.maps import map_numbers
+from trundle.scenario import files
 
 OVER = [
     {"key": "support.tilt", "from": "0.1 deg", "to": "3 deg", "count": 7, "scale": "linear"},
@@ -122,3 +124,21 @@ def test_what_it_offers_to_draw_is_taken(lab: TestClient) -> None:
     for one in lab.get("/api/sweeps").json()["sweeps"]:
         answer = lab.post("/api/map/point", json={"scenario": one["scenario"], "over": one["over"], "place": 0})
         assert answer.status_code == 200, answer.text
+
+
+@pytest.mark.parametrize("name", [name for name in files.names() if not files.rolls_along_path(files.tables_of(name))])
+def test_each_number_has_a_name_of_its_own_in_words(name: str) -> None:
+    numbers = json.loads(map_numbers(files.tables_of(name)).body)
+    named = [(one["group"], one["label"]) for one in numbers]
+    assert len(set(named)) == len(named)
+    assert not [words for words in named if "_" in "".join(words) or not words[1]]
+
+
+def test_a_number_has_the_label_of_its_control(lab: TestClient) -> None:
+    parts = lab.get("/api/parts").json()
+    numbers = {one["key"]: one["label"] for one in json.loads(map_numbers(tables()).body)}
+    assert numbers["body.radius"] == parts["body"]["solid-sphere"]["fields"]["radius"]["label"]
+    assert numbers["start.position[1]"] == parts["support"]["plane"]["coordinates"][1]["label"]
+    velocity = parts["common"]["start"]["velocity"]
+    assert numbers["start.velocity[0]"] == f"{velocity['label']} {velocity['names'][0]}"
+    assert [axis["label"] for axis in drawn(lab)["axes"]] == ["Tilt", "Rate"]

@@ -12,6 +12,7 @@ from ..errors import InvalidValueError
 from . import limits
 from .answers import answering, as_json, scenario_from, told
 from .cache import Answer
+from .parts import words_of
 
 if TYPE_CHECKING:
     from ..analysis.sweep.plan import Plan
@@ -64,21 +65,22 @@ def _shipped(name: str, tables: Any, plan: Plan) -> dict[str, Any]:
 
 @answering
 def map_numbers(data: dict[str, Any]) -> Answer:
-    """List the numbers of a scenario that a map may go over, in SI.
+    """List the numbers of a scenario that a map may go over, in SI, each with the words of its control.
 
     Examples
     --------
     >>> import json
     >>> from ..scenario import files
-    >>> json.loads(map_numbers(files.tables_of("tilted-turntable")).body)[0]
-    {'key': 'gravity', 'value': 9.80665, 'unit': 'm/s^2'}
+    >>> json.loads(map_numbers(files.tables_of("tilted-turntable")).body)[1]
+    {'key': 'body.radius', 'group': 'Body', 'label': 'Radius', 'value': 0.025, 'unit': 'm'}
     """
     from ..analysis.sweep.varying import numbers_of
 
-    known = numbers_of(_rolling(data)).items()
+    scenario = _rolling(data)
+    known = numbers_of(scenario).items()
     return as_json(
         [
-            {"key": key, "value": value, "unit": unit}
+            {"key": key, **words_of(scenario, key), "value": value, "unit": unit}
             for key, (value, unit) in known
             if isinstance(value, float) and not key.startswith(("run.", "start.time"))
         ]
@@ -129,7 +131,12 @@ def draw_map(
         {
             "shape": list(shape),
             "axes": [
-                {"key": axis.key, "unit": axis.unit, "values": [] if axis.values is None else axis.values.tolist()}
+                {
+                    "key": axis.key,
+                    **words_of(plan.document, axis.key),
+                    "unit": axis.unit,
+                    "values": [] if axis.values is None else axis.values.tolist(),
+                }
                 for axis in plan.axes
             ],
             "unit": wanted.unit,

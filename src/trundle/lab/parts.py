@@ -6,8 +6,9 @@ All of it is read off the tables of scenario files, which are made from what the
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
-from typing import Any, Literal, get_args, get_origin
+from typing import Any, Literal, cast, get_args, get_origin
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
@@ -61,6 +62,44 @@ def all_parts() -> dict[str, Any]:
         "at_rest": OnSurface.model_fields["motion"].default.kind,
         "units": OFFERED,
     }
+
+
+def words_of(scenario: ScenarioFile, key: str) -> dict[str, str]:
+    """Return what the page calls a number of a scenario: its `label`, and the `group` that it stands in.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> words_of(tr.Scenario.load("rattleback"), "start.angular_velocity[2]")
+    {'group': 'Start', 'label': 'Angular velocity z'}
+    """
+    group, label, value = "", "", cast(Any, scenario)
+    told: dict[str, Any] = {}
+    for part in re.findall(r"[^.\[\]]+", key):
+        if part.isdigit():
+            place, many = int(part), len(value)
+            value = value[place]
+            if isinstance(value, Table):
+                label = f"{place + 1}." if many > 1 else ""
+            elif key.startswith("start.position["):
+                label = scenario.system().support.surface.coordinate_labels[place]
+            else:
+                label = f"{label} {told['names'][place] if told.get('names') else place + 1}"
+            continue
+        told, value = _told_of(value, part)
+        label = f"{label} {told['label']}".strip()
+        several = isinstance(value, tuple) and any(isinstance(one, Table) for one in value)
+        if isinstance(value, Table) or several:
+            group, label = (group if group and several else label), ""
+    return {"group": group, "label": label}
+
+
+def _told_of(table: Any, key: str) -> tuple[dict[str, Any], Any]:
+    """Return what a control shows of a key of a table, and its value."""
+    name, field = next((one, of) for one, of in type(table).model_fields.items() if key in (one, of.alias))
+    kind = getattr(table, "kind", "")
+    known = _load(kind, type(table))["fields"].get(key) if KINDS["loads"].get(kind) is type(table) else None
+    return known or _field(key, field) or {"label": field.title or _words(key)}, getattr(table, name)
 
 
 # --- families -----------------------------------------------------------------------------------------------

@@ -180,8 +180,15 @@ export interface Sweeps {
 }
 
 /** A number of a scenario, SI. */
-export interface ScenarioNumber {
+/** What the page calls a number of a scenario. */
+export interface Named {
   key: string
+  /** The table that it stands in; empty for what stands alone. */
+  group: string
+  label: string
+}
+
+export interface ScenarioNumber extends Named {
   value: number
   unit: string
 }
@@ -189,7 +196,7 @@ export interface ScenarioNumber {
 /** A part of a map: fields are counted with the second number running first. */
 export interface MapPart {
   shape: [number, number]
-  axes: { key: string; unit: string; values: number[] }[]
+  axes: (Named & { unit: string; values: number[] })[]
   unit: string
   /** What the values stand for where they are classes; else empty. */
   classes: string[]

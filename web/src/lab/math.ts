@@ -1,11 +1,27 @@
 /** Formulas by KaTeX, built as nodes: its styles go through the CSSOM, which a strict style policy allows. */
 import katex from 'katex'
 import 'katex/dist/katex.min.css'
+import { t } from '../languages/translate'
+import { put } from '../viewer/elements'
 import { h } from './dom'
+import { SYMBOLS } from './texts'
 
-/** Put a formula into an element: drawn for the eye, and as MathML for the ear. */
+/** What is no symbol: words, units, unit vectors, and what stands below the line. */
+const NONE = /\\(?:text|mathrm|operatorname|hat)\s*(?:\{[^}]*\}|\\?[A-Za-z]+)|_(?:\{[^}]*\}|\\?[A-Za-z]+)/g
+
+/** What the symbols of a formula mean: "κ: angular rate of the ball’s circle". */
+export function meanings(latex: string): string {
+  const found = new Set(latex.replace(NONE, '').match(/\\[A-Za-z]+|[A-Za-z]/g))
+  const known = Object.entries(SYMBOLS).filter(([command]) => found.has(command))
+  return known.map(([, [sign, meaning]]) => `${sign}: ${t(meaning)}`).join('; ')
+}
+
+/** Put a formula into an element: drawn for the eye, as MathML for the ear, and at the pointer what its symbols mean. */
 function math(host: HTMLElement, latex: string, display = false): void {
   host.replaceChildren()
+  const meant = meanings(latex)
+  put(host, 'title', meant)
+  put(host, 'aria-description', meant)
   try {
     katex.render(latex, host, {
       displayMode: display,

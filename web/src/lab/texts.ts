@@ -102,6 +102,18 @@ export const NOTES = {
   apparatus: 'Apparatus',
 } as const
 
+/** What symbols mean, everywhere: by the command, as it is printed, in words. */
+export const SYMBOLS: Readonly<Record<string, readonly [sign: string, meaning: string]>> = {
+  '\\kappa': ['κ', 'angular rate at which the ball goes round its circle'],
+  '\\omega': ['ω', 'angular velocity of the support'],
+  '\\Omega': ['Ω', 'angular velocity of the body'],
+  k: ['k', 'inertia ratio I/(m a²)'],
+  R: ['R', 'contact force, of the support on the body'],
+  F: ['F', 'applied force'],
+  N: ['N', 'normal force'],
+  f: ['f', 'friction force'],
+}
+
 /** As the server says it of a challenge. */
 export interface TeacherNote {
   aim: string

@@ -42,6 +42,17 @@ describe('saying a text', () => {
     expect(t('It rolls. It slips.')).toBe('Sie rollt. Sie gleitet.')
   })
 
+  it('says the rule of a refusal, whatever was received and advised', () => {
+    speak('de', german)
+    expect(t('„Radius“ must be positive; got -1.5.')).toBe('„Radius“ muss positiv sein; angegeben ist -1,5.')
+    expect(t('„Neigung“ must lie in (-90 deg, 90 deg); got 172 deg. Did you mean 1.72 deg?')).toBe(
+      '„Neigung“ muss in (-90 deg, 90 deg) liegen; angegeben ist 172°. Meinst du 1,72°?',
+    )
+    expect(t("body.mass must be positive; got 'none of it'.")).toBe(
+      "body.mass muss positiv sein; angegeben ist 'none of it'.",
+    )
+  })
+
   it('takes a comma for a point where a number begins, and shows it so', () => {
     speak('de', { a: 'b' })
     expect(typedDigits('-3,5 cm')).toBe('-3.5 cm')

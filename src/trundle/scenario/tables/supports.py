@@ -41,7 +41,7 @@ class OnSurface(PartTable):
         title="Restitution of the slip",
         description="Of a landing, 0 to 1: e_t, of which e_t² of what friction took comes back.",
     )
-    motion: Motions = MOTIONS["fixed"].model_validate({"kind": "fixed"})
+    motion: Motions = Field(default=MOTIONS["fixed"].model_validate({"kind": "fixed"}), title="Motion of the support")
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:

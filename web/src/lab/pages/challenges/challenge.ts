@@ -1,4 +1,5 @@
 /** One challenge: predict, do, explain; the server says whether the answer is right. */
+import { typedDigits } from '../../../languages/translate'
 import { say } from '../../../viewer/elements'
 import type { Scene } from '../../../viewer/scene'
 import type { Challenge, Judgement, Values } from '../../api'
@@ -6,7 +7,7 @@ import { isAbort } from '../../api'
 import type { App } from '../../app'
 import { cleanup, fill, h, uniqueId } from '../../dom'
 import { type Found, note, readNotebook } from '../../notebook'
-import { show } from '../../quantity'
+import { parse, show } from '../../quantity'
 import { createRunner } from '../../runner'
 import type { Scenario } from '../../scenario'
 import { encode } from '../../share'
@@ -246,7 +247,7 @@ interface Answering {
 }
 
 /** Where the answer is given that is not the run itself. */
-function answerOf({ answer }: Challenge): Answering {
+export function answerOf({ answer }: Pick<Challenge, 'answer'>): Answering {
   if (answer.kind === 'run') return { element: null, value: () => null, missing: '' }
   if (answer.kind === 'choice') {
     let chosen: string | undefined
@@ -261,8 +262,8 @@ function answerOf({ answer }: Challenge): Answering {
   return {
     element: h('div', { class: 'answer-row' }, h('label', { for: id }, answer.label), input),
     value() {
-      const number = Number(input.value.trim().replace(',', '.'))
-      return input.value.trim() === '' || !Number.isFinite(number) ? undefined : number
+      const { number, unit } = parse(typedDigits(input.value))
+      return number === null || unit || !Number.isFinite(number) ? undefined : number
     },
     missing: CHALLENGE.number,
   }

@@ -1,7 +1,15 @@
 import { describe, expect, it } from 'vitest'
-import { fieldAt, inPrint, labelOf, placeOf, roundNumbers, sideOf, ticksOf } from './axes'
+import german from '../../../languages/de.json'
+import { speak } from '../../../languages/translate'
+import { fieldAt, inPrint, labelOf, nameOf, placeOf, roundNumbers, sideOf, ticksOf } from './axes'
 
-const axis = (values: number[], unit = 'rad/s') => ({ key: 'support.motion.rate', unit, values })
+const axis = (values: number[], unit = 'rad/s') => ({
+  key: 'support.motion.rate',
+  group: 'Motion of the support',
+  label: 'Rate',
+  unit,
+  values,
+})
 const span = (from: number | string, to: number | string, scale: 'linear' | 'log' = 'linear') => ({
   key: 'support.motion.rate',
   from,
@@ -52,6 +60,17 @@ describe('ticks', () => {
   it('are decades and their parts on a logarithmic scale', () => {
     const side = sideOf(axis([0.05, 0.2, 1], ''), span(0.05, 1, 'log'))
     expect(ticksOf(side, 6).map(({ text }) => text)).toEqual(['0.05', '0.1', '0.2', '0.5', '1'])
+  })
+})
+
+describe('the name of a number', () => {
+  it('is its label, with the table that it stands in, in the language of the page', () => {
+    const rate = { key: 'support.motion.rate', group: 'Motion of the support', label: 'Rate' }
+    expect(nameOf(rate)).toBe('Motion of the support: Rate')
+    expect(nameOf({ key: 'gravity', group: '', label: 'Gravity' })).toBe('Gravity')
+    speak('de', german)
+    expect(nameOf(rate)).toBe('Bewegung der Unterlage: Winkelgeschwindigkeit')
+    speak('en', {})
   })
 })
 

@@ -1,9 +1,9 @@
 /** The sides of a map: its values in the unit in which they were asked for, where they stand, and what is written there. */
-import type { MapPart, Span } from '../../api'
+import { t } from '../../../languages/translate'
+import type { MapPart, Named, Span } from '../../api'
 import { parse, rounded, show } from '../../quantity'
 
-export interface Side {
-  key: string
+export interface Side extends Named {
   unit: string
   log: boolean
   /** Of each field, in the unit. */
@@ -22,6 +22,8 @@ export function sideOf(axis: MapPart['axes'][number], span: Span): Side {
   const factor = same ? factorOf(axis.values, from.number, to.number) : null
   return {
     key: axis.key,
+    group: axis.group,
+    label: axis.label,
     unit: factor === null ? axis.unit : from.unit,
     log: span.scale === 'log',
     values: axis.values.map((value) => value * (factor ?? 1)),
@@ -88,6 +90,11 @@ export function inPrint(unit: string): string {
 
 function superscript(power: string): string {
   return [...power].map((c) => (c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[Number(c)])).join('')
+}
+
+/** What a number is called in full: "Start: Angular velocity z". */
+export function nameOf({ group, label }: Named): string {
+  return group ? `${t(group)}: ${t(label)}` : t(label)
 }
 
 export function labelOf(name: string, unit: string): string {

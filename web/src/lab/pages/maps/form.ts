@@ -1,10 +1,11 @@
 /** What a map is of: the two numbers, how far they go, and what is measured. */
+import { shownDigits, t, typedDigits } from '../../../languages/translate'
 import { say } from '../../../viewer/elements'
 import type { MapRequest, ScenarioNumber, Span } from '../../api'
 import { fill, h, uniqueId } from '../../dom'
 import { rounded } from '../../quantity'
 import { button } from '../parts/controls'
-import { inPrint } from './axes'
+import { labelOf, nameOf } from './axes'
 
 export interface Form {
   readonly element: HTMLElement
@@ -39,6 +40,7 @@ export function createForm(figures: readonly string[], asked: (request: MapReque
   const measure = h('input', { type: 'text', list, spellcheck: 'false', 'data-testid': 'map-measure' })
   const sides = [createSide('Across'), createSide('Upwards')] as const
   let scenario: MapRequest['scenario'] | undefined
+  let known: readonly ScenarioNumber[] = []
 
   const element = h(
     'form',
@@ -80,6 +82,7 @@ export function createForm(figures: readonly string[], asked: (request: MapReque
     element,
     show(request, numbers) {
       scenario = request.scenario
+      known = numbers
       sides.forEach((side, i) => {
         side.show(request.over[i]!, numbers)
       })
@@ -87,7 +90,14 @@ export function createForm(figures: readonly string[], asked: (request: MapReque
     },
     wrong(text, key = null) {
       message.hidden = text === null
-      say(message, text ?? '')
+      // In the words of the labels above it.
+      say(
+        message,
+        known.reduce(
+          (said, one) => said.replaceAll(`over.${one.key}`, t('“{label}”', { label: nameOf(one) })),
+          text ?? '',
+        ),
+      )
       const fields = [...sides.map((side) => [side.key, side.field] as const), ['', measure] as const]
       for (const [name, field] of fields) {
         const meant = text !== null && (name ? (key ?? '').startsWith(`over.${name}`) : !!key?.startsWith('measure'))
@@ -119,8 +129,8 @@ function createSide(name: string): SideOfForm {
   })
 
   function put(span: Span): void {
-    from.value = String(span.from)
-    to.value = String(span.to)
+    from.value = shownDigits(String(span.from))
+    to.value = shownDigits(String(span.to))
     count.value = String(span.count)
     scale.value = span.scale
   }
@@ -153,18 +163,25 @@ function createSide(name: string): SideOfForm {
     field: from,
     show(span, numbers) {
       known = numbers
-      fill(
-        key,
-        numbers.map((one) => h('option', { value: one.key }, one.unit ? `${one.key}, ${inPrint(one.unit)}` : one.key)),
-      )
+      fill(key, options(numbers))
       key.value = span.key
       put(span)
     },
   }
 }
 
-/** A bare number as a number: it is SI. */
+/** The numbers to choose from, those of each table together. */
+function options(numbers: readonly ScenarioNumber[]): HTMLElement[] {
+  const groups = new Set(numbers.map(({ group }) => group))
+  return [...groups].flatMap((group) => {
+    const some = numbers.filter((one) => one.group === group)
+    const each = some.map((one) => h('option', { value: one.key, title: one.key }, labelOf(t(one.label), one.unit)))
+    return group ? [h('optgroup', { label: group }, each)] : each
+  })
+}
+
+/** A bare number as a number: it is SI. With the decimal sign that the reader typed. */
 function written(text: string): string | number {
-  const trimmed = text.trim()
+  const trimmed = typedDigits(text).trim()
   return trimmed !== '' && Number.isFinite(Number(trimmed)) ? Number(trimmed) : trimmed
 }

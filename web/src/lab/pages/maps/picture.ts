@@ -1,9 +1,10 @@
 /** The picture of a map: its fields in colours that every eye can tell apart, its sides, its legend, the point on it. */
+import { t } from '../../../languages/translate'
 import { put, say } from '../../../viewer/elements'
 import type { MapPart, MapRequest, Sweeps } from '../../api'
 import { fill, h, uniqueId } from '../../dom'
 import { show } from '../../quantity'
-import { fieldAt, inPrint, labelOf, type Side, sideOf, ticksOf } from './axes'
+import { fieldAt, inPrint, labelOf, nameOf, type Side, sideOf, ticksOf } from './axes'
 
 export interface Picture {
   readonly element: HTMLElement
@@ -128,7 +129,7 @@ export function createPicture(colours: Sweeps['colours'], chosen: (i: number, j:
     if (!shown) return ''
     if (!at) return 'Click on the map, or go over it with the arrow keys: the run of that point plays.'
     const { part, sides, measure } = shown
-    const where = sides.map((side, i) => `${side.key} = ${show(side.values[at![i]!])} ${inPrint(side.unit)}`.trim())
+    const where = sides.map((side, i) => `${nameOf(side)} = ${show(side.values[at![i]!])} ${inPrint(side.unit)}`.trim())
     const value = part.picture[at[0] * part.shape[1] + at[1]]
     const word =
       value === null || value === undefined
@@ -194,9 +195,19 @@ export function createPicture(colours: Sweeps['colours'], chosen: (i: number, j:
       )
       if (at && (at[0] >= part.shape[0] || at[1] >= part.shape[1])) at = null
       shown = { part, sides, measure: request.measure, low, high }
-      say(acrossLabel, labelOf(sides[0].key, sides[0].unit))
-      say(upLabel, labelOf(sides[1].key, sides[1].unit))
-      put(plot, 'aria-label', `Map of ${request.measure} over ${sides[0].key} and ${sides[1].key}`)
+      const named = [acrossLabel, upLabel].map((label, i) => {
+        const { key, unit } = sides[i]!
+        const name = nameOf(sides[i]!)
+        say(label, labelOf(name, unit))
+        put(label, 'title', key)
+        return name
+      })
+      const [first = '', second = ''] = named
+      put(
+        plot,
+        'aria-label',
+        t('Map of {measure} over {first} and {second}', { measure: request.measure, first, second }),
+      )
       ticks(across, sides[0], 6, 'left')
       ticks(up, sides[1], 7, 'bottom')
       paint()

@@ -1,12 +1,22 @@
 /** From a track that was measured to numbers with errors, and what they cannot tell. */
+import { shownDigits, typedDigits } from '../../../languages/translate'
 import { put, say } from '../../../viewer/elements'
-import { ApiError, type ExampleTrack, type Fitted, isAbort, type ScenarioEntry, type Track } from '../../api'
+import {
+  ApiError,
+  type ExampleTrack,
+  type Fitted,
+  isAbort,
+  type ScenarioEntry,
+  type ScenarioNumber,
+  type Track,
+} from '../../api'
 import type { Page } from '../../app'
 import { save } from '../../bench/files'
 import { cleanup, fill, h, listen, uniqueId } from '../../dom'
 import { createRunner } from '../../runner'
 import type { Scenario } from '../../scenario'
 import { encode } from '../../share'
+import { nameOf } from '../maps/axes'
 import { button } from '../parts/controls'
 import { createStage, playUnlessCalm, told } from '../parts/stage'
 import { createPlot } from './plot'
@@ -44,6 +54,7 @@ export const measure: Page = {
     let example: ExampleTrack | null = null
     let scenario: Scenario = app.store.scenario
     let fitted: Fitted | null = null
+    let numbers: readonly ScenarioNumber[] = []
     let examples: ExampleTrack[] = []
 
     // 1. The track
@@ -131,10 +142,10 @@ export const measure: Page = {
         else if (name === BENCH) scenario = app.store.scenario
         else if (name !== OF_EXAMPLE) scenario = (await app.api.scenario(name, { signal: leaving.signal })).scenario
         moved.show(name, example)
-        const numbers = await app.api.mapNumbers(scenario, { signal: leaving.signal })
+        numbers = await app.api.mapNumbers(scenario, { signal: leaving.signal })
         const asked = name === OF_EXAMPLE && example ? example : { free: [], noise: '' }
         free.show(
-          numbers.map(({ key }) => key).filter((key) => !key.startsWith('start.')),
+          numbers.filter(({ key }) => !key.startsWith('start.')),
           asked.free,
           asked.noise,
         )
@@ -176,7 +187,7 @@ export const measure: Page = {
       },
       done(answer) {
         fitted = answer
-        report(results, answer)
+        report(results, answer, numbers)
         after.hidden = false
         plot.way(answer.way, app.settings.reducedMotion)
         staging.ask(answer.scenario)
@@ -357,12 +368,12 @@ function createScenarios(chosen: (name: string) => void): Scenarios {
 interface Free {
   readonly element: HTMLElement
   readonly value: { keys: string[]; noise: string | null }
-  show(keys: readonly string[], chosen: readonly string[], noise: string): void
+  show(numbers: readonly ScenarioNumber[], chosen: readonly string[], noise: string): void
   wrong(now: boolean): void
 }
 
 /** Which numbers are to be found, and how large the noise is. */
-function createFree(): Free {
+export function createFree(): Free {
   const list = h('div', { class: 'measure-free' })
   const noise = h('input', {
     type: 'text',
@@ -386,15 +397,15 @@ function createFree(): Free {
     ),
     get value() {
       const keys = boxes.filter(({ checked }) => checked).map(({ value }) => value)
-      return { keys, noise: noise.value.trim() || null }
+      return { keys, noise: typedDigits(noise.value).trim() || null }
     },
-    show(keys, chosen, given) {
-      boxes = keys.map((key) => h('input', { type: 'checkbox', value: key, checked: chosen.includes(key) }))
+    show(numbers, chosen, given) {
+      boxes = numbers.map(({ key }) => h('input', { type: 'checkbox', value: key, checked: chosen.includes(key) }))
       fill(
         list,
-        boxes.map((box) => h('label', { class: 'toggle' }, box, h('code', {}, box.value))),
+        boxes.map((box, i) => h('label', { class: 'toggle', title: box.value }, box, nameOf(numbers[i]!))),
       )
-      noise.value = given
+      noise.value = shownDigits(given)
     },
     wrong(now) {
       if (now) noise.setAttribute('aria-invalid', 'true')

@@ -1,4 +1,5 @@
 /** What a file does not say of itself: asked when it has to be known, and to be changed at any time. */
+import { shownDigits, typedDigits } from '../../../languages/translate'
 import type { Question } from '../../api'
 import { fill, h, uniqueId } from '../../dom'
 import { button } from '../parts/controls'
@@ -13,40 +14,51 @@ export interface Reading {
   set(how: How): void
 }
 
+interface Asked {
+  key: string
+  label: string
+  question: string
+  choices?: readonly string[]
+  hint?: string
+  /** Digits, which have the decimal sign of the reader. */
+  digits?: boolean
+}
+
 /** Each with what it is, in words, and answers to choose from where there are few. */
-const FIELDS: readonly { key: string; label: string; question: string; choices?: readonly string[]; hint?: string }[] =
-  [
-    { key: 'track', label: 'Track', question: 'The file holds several tracks. Which one?' },
-    { key: 'units', label: 'Unit of places', question: 'In which unit are the places?', hint: 'cm, mm, px' },
-    { key: 'time', label: 'Unit of time', question: 'What is time counted in?', hint: 's, ms, frame' },
-    { key: 'rate', label: 'Frames a second', question: 'How many frames were taken a second?', hint: '60' },
-    { key: 'pixel', label: 'Size of a pixel', question: 'How large is a pixel?', hint: '0.8 mm' },
-    {
-      key: 'y',
-      label: 'y grows',
-      question: 'Does y grow upwards, as in graphs, or downwards, as in pictures?',
-      choices: ['', 'up', 'down'],
-    },
-    { key: 'angles', label: 'Unit of angles', question: 'In which unit are the angles?', hint: 'deg, rad' },
-    {
-      key: 'sense',
-      label: 'Angles grow',
-      question: 'Seen from above, does the angle grow clockwise?',
-      choices: ['', 'clockwise', 'anticlockwise'],
-    },
-    {
-      key: 'decimal',
-      label: 'Decimal sign',
-      question: 'Is "1,234" a little more than one, or a thousand?',
-      choices: ['', 'point', 'comma'],
-    },
-    {
-      key: 'columns',
-      label: 'Columns',
-      question: 'Which column is which?',
-      hint: 't=frame_time, x=u, y=v',
-    },
-  ]
+const FIELDS: readonly Asked[] = [
+  { key: 'track', label: 'Track', question: 'The file holds several tracks. Which one?' },
+  { key: 'units', label: 'Unit of places', question: 'In which unit are the places?', hint: 'cm, mm, px' },
+  { key: 'time', label: 'Unit of time', question: 'What is time counted in?', hint: 's, ms, frame' },
+  { key: 'rate', label: 'Frames a second', question: 'How many frames were taken a second?', hint: '60', digits: true },
+  { key: 'pixel', label: 'Size of a pixel', question: 'How large is a pixel?', hint: '0.8 mm', digits: true },
+  {
+    key: 'y',
+    label: 'y grows',
+    question: 'Does y grow upwards, as in graphs, or downwards, as in pictures?',
+    choices: ['', 'up', 'down'],
+  },
+  { key: 'angles', label: 'Unit of angles', question: 'In which unit are the angles?', hint: 'deg, rad' },
+  {
+    key: 'sense',
+    label: 'Angles grow',
+    question: 'Seen from above, does the angle grow clockwise?',
+    choices: ['', 'clockwise', 'anticlockwise'],
+  },
+  {
+    key: 'decimal',
+    label: 'Decimal sign',
+    question: 'Is "1,234" a little more than one, or a thousand?',
+    choices: ['', 'point', 'comma'],
+  },
+  {
+    key: 'columns',
+    label: 'Columns',
+    question: 'Which column is which?',
+    hint: 't=frame_time, x=u, y=v',
+  },
+]
+
+const digitsOf = (key: string) => FIELDS.some((one) => one.key === key && one.digits)
 
 export function createReading(changed: (how: How) => void): Reading {
   let how: How = {}
@@ -68,7 +80,8 @@ export function createReading(changed: (how: How) => void): Reading {
 
   function say(key: string, value: string): void {
     const { [key]: _, ...others } = how
-    how = value.trim() ? { ...others, [key]: value.trim() } : others
+    const said = (digitsOf(key) ? typedDigits(value) : value).trim()
+    how = said ? { ...others, [key]: said } : others
     changed(how)
   }
 
@@ -112,7 +125,7 @@ export function createReading(changed: (how: How) => void): Reading {
     ask,
     set(next) {
       how = next
-      for (const [key, input] of inputs) input.value = next[key] ?? ''
+      for (const [key, input] of inputs) input.value = digitsOf(key) ? shownDigits(next[key] ?? '') : (next[key] ?? '')
     },
   }
 }

@@ -1,11 +1,15 @@
 /** What a fit found: the verdict, the numbers with errors, and what these data cannot show. */
-import type { Fitted } from '../../api'
+import type { Fitted, Named } from '../../api'
 import { fill, h } from '../../dom'
-import { inPrint } from '../maps/axes'
+import { inPrint, nameOf } from '../maps/axes'
 
 const SIGNS: Record<Fitted['answer'], string> = { good: '✓', bad: '✗', 'cannot decide': '?' }
 
-export function report(host: HTMLElement, found: Fitted): void {
+export function report(host: HTMLElement, found: Fitted, numbers: readonly Named[]): void {
+  const named = (name: string) => {
+    const known = numbers.find(({ key }) => key === name)
+    return known ? nameOf(known) : h('code', {}, name)
+  }
   fill(
     host,
     h(
@@ -39,7 +43,7 @@ export function report(host: HTMLElement, found: Fitted): void {
             h(
               'tr',
               {},
-              h('th', { scope: 'row' }, h('code', {}, name)),
+              h('th', { scope: 'row', title: name }, named(name)),
               [value.replaceAll('-', '−'), inPrint(unit), remark].map((cell) => h('td', {}, cell)),
             ),
           ),
