@@ -11,10 +11,10 @@ import math
 import os
 import threading
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -189,8 +189,10 @@ def integrate(
     members = list(starts)
 
     def work(which: int) -> tuple[list[int], dict[int, tuple[Event, ...]]]:
-        mine = [i for first in range(which * LANES, len(members), workers * LANES) for i in members[first:][:LANES]]
-        company = _Company([Member(i, systems[i], given[i], starts[i], times) for i in mine], by_law, halt)
+        blocks = range(which * LANES, len(members), workers * LANES)
+        mine = (i for first in blocks for i in members[first : first + LANES])
+        legs = lru_cache(LANES)(partial(_legs, times))  # most members begin at one time
+        company = _Company((Member(i, systems[i], given[i], starts[i], times, legs) for i in mine), by_law, halt)
         try:
             for pieces in company.follow():
                 done(pieces.completed(systems, times))
@@ -252,9 +254,15 @@ class Member:
     """One member on its way: the stretch that it is on, and the leg of that."""
 
     def __init__(
-        self, index: int, system: RollingSystem, numbers: list[float], start: State | PhaseStart, times: Array
+        self,
+        index: int,
+        system: RollingSystem,
+        numbers: list[float],
+        start: State | PhaseStart,
+        times: Array,
+        legs: Callable[[float, int], Sequence[_Leg]],
     ) -> None:
-        self.index, self.system, self.numbers, self.times = index, system, numbers, times
+        self.index, self.system, self.numbers, self.times, self.legs_from = index, system, numbers, times, legs
         self.samples: list[Samples] = []  # of instants that no stretch holds
         self.course = phases.course(system, start, times, self.samples.append)
         self.patience = taylor.Shared().patience(float(times[0]), float(times[-1]))
@@ -282,16 +290,22 @@ class Member:
         self.first, self.reached = self.times.size - self.left.size, 0  # rows; instants of the stretch
         self.state, self.begun = np.array(self.now.state_vector, dtype=float), self.now.time
         self.lasted = taylor.lasted(self.system, self.now)
-        self.legs = _legs(self.now.time, self.left)
+        self.legs = iter(self.legs_from(self.now.time, self.first))
         return True
 
     def next_leg(self) -> bool:
         """Go to the next leg of the stretch; tell whether there is one."""
         leg = next(self.legs, None)
         if leg is not None:
-            self.begin, self.instants, self.end = leg
+            self.leg, self.begin, self.instants, self.end = leg, leg.begin, leg.instants, leg.end
             self.leg_from = self.reached
         return leg is not None
+
+    def looks(self, now: float) -> _Looks:
+        """Return when to look at it next, so long after its leg began."""
+        if self.reached == self.leg_from and now == 0.0:
+            return self.leg.looks
+        return _Looks.of(self.leg, self.reached - self.leg_from, now)
 
     def longest(self, time: float) -> float:
         """Return how long its next step may be, s."""
@@ -332,19 +346,17 @@ class _Ready:
 class _Company:
     """Members on their way, sorted by the law that each has to follow next."""
 
-    def __init__(self, members: list[Member], compiled: Callable[[Law], tuple[Any, Lowered]], halt: Any) -> None:
-        self.compiled, self.halt = compiled, halt
+    def __init__(self, members: Iterator[Member], compiled: Callable[[Law], tuple[Any, Lowered]], halt: Any) -> None:
+        self.members, self.compiled, self.halt = members, compiled, halt
         self.waiting: dict[Any, deque[Member]] = {}
         self.lanes: dict[Any, _Lanes] = {}
         self.ready: list[_Ready] = []
         self.broken: list[int] = []
         self.events: dict[int, tuple[Event, ...]] = {}
-        for member in members:
-            self._lead(member, member.set_out)
 
     def follow(self) -> Iterator[_Pieces | _Ready]:
         """Follow all of them to the end, and yield what is to be completed."""
-        while any(self.waiting.values()) and not self.halt.is_set():
+        while self._set_out(self.waiting.values(), 1) and not self.halt.is_set():
             key = max(self.waiting, key=lambda key: len(self.waiting[key]))
             lanes, waiting = self._lanes(key), self.waiting[key]
             for member, stop in lanes.follow(waiting):
@@ -355,8 +367,18 @@ class _Company:
                 yield from self._drained()
                 if self.halt.is_set():
                     return
+                self._set_out([waiting], LANES)
         yield from (lanes.pieces for lanes in self.lanes.values() if lanes.pieces.size)
         yield from self._drained()
+
+    def _set_out(self, waiting: Collection[deque[Member]], enough: int) -> bool:
+        """Let members set out until enough wait, and not all at once, which is dear; tell whether enough do."""
+        while sum(map(len, waiting)) < enough:
+            member = next(self.members, None)
+            if member is None:
+                return False
+            self._lead(member, member.set_out)
+        return True
 
     def _lanes(self, key: Any) -> _Lanes:
         if key not in self.lanes:
@@ -404,6 +426,7 @@ class _Lanes:
     def __init__(self, integrator: Any, lowered: Lowered, law: Law) -> None:
         self.integrator, self.lowered, self.pieces = integrator, lowered, _Pieces(law)
         self.members: list[Member | None] = [None] * LANES
+        self.times = np.zeros(LANES)  # since each leg began; given to the integrator before it steps
         self.known: dict[int, tuple[float, list[float]]] = {}  # parameters, and from when: many may share one system
 
     def follow(self, waiting: deque[Member]) -> Iterator[tuple[Member | None, ZeroCrossing | Exception | None]]:
@@ -439,29 +462,30 @@ class _Lanes:
         time, values = self.known.get(id(member.given), (math.nan, []))
         if time != member.begin:
             values = self.lowered.values(member.given, member.begin)
+            if not all(map(math.isfinite, values[: self.lowered.parameters])):
+                raise ArithmeticError("no numbers")
             if member.given is member.numbers:
                 self.known[id(member.given)] = member.begin, values
         state = self.lowered.tidy([0.0, *member.state.tolist(), *values])
-        if not (np.isfinite(values[: self.lowered.parameters]).all() and np.isfinite(state).all()):
+        if not all(map(math.isfinite, state)):
             raise ArithmeticError("no numbers")
-        integrator, times = self.integrator, self.integrator.time.copy()
+        integrator = self.integrator
         integrator.pars[:, lane], integrator.state[:, lane] = values[: self.lowered.parameters], state
-        times[lane] = 0.0
-        integrator.set_time(times)
+        self.times[lane] = 0.0
         if self.lowered.event_functions:
             integrator.reset_cooldowns(lane)
 
     def _advance(self) -> Iterator[tuple[Member, ZeroCrossing | Exception | None]]:
         """Take some steps, to the ends of the legs or to the first stop of anybody."""
-        integrator, before = self.integrator, self.integrator.time.copy()
+        integrator, before = self.integrator, self.times
         looks, longest = self._looks()
         given: dict[str, Any] = {"max_steps": 1, "max_delta_t": longest} if np.isfinite(longest).any() else {}
         path = integrator.propagate_grid(_grid(looks), **{"max_steps": _STEPS, **given})[-1]
-        outcomes = [result[0] for result in integrator.propagate_res]
-        stops = {lane: self._stop(lane, outcomes[lane]) for lane in looks}
-        failed = {lane for lane in looks if _failed(outcomes[lane])}
+        self.times, results = integrator.time.copy(), integrator.propagate_res
+        stops = {lane: self._stop(lane, results[lane][0]) for lane in looks}
+        failed = {lane for lane in looks if _failed(results[lane][0])}
         if not failed:  # else nobody takes a step
-            failed = {lane for lane in looks if integrator.time[lane] == before[lane] and not stops[lane]}
+            failed = {lane for lane in looks if self.times[lane] == before[lane] and not stops[lane]}
         if failed:
             yield from self._start_again(failed)
             return
@@ -470,11 +494,11 @@ class _Lanes:
             if stops.get(lane) is not None:
                 self.members[lane] = None
                 yield member, stops[lane]
-            elif integrator.time[lane] == member.end - member.begin:
+            elif self.times[lane] == member.end - member.begin:
                 member.state = integrator.state[:, lane].copy()
                 yield from self._enter(lane, member)
             else:
-                yield from self._wait(lane, member, int(integrator.propagate_res[lane][3]))
+                yield from self._wait(lane, member, int(results[lane][3]))
 
     def _on_the_way(self) -> list[tuple[int, Member]]:
         return [(lane, member) for lane, member in enumerate(self.members) if member is not None]
@@ -483,9 +507,9 @@ class _Lanes:
         """Return when to look at each lane, and how long a step of it may be; a lane that is free repeats another."""
         integrator, longest = self.integrator, np.full(LANES, math.inf)
         looks: dict[int, _Looks] = {}
-        times = integrator.time.copy()
+        times = self.times.copy()
         for lane, member in self._on_the_way():
-            looks[lane] = _Looks.of(member, float(times[lane]))
+            looks[lane] = member.looks(float(times[lane]))
             longest[lane] = member.longest(member.begin + float(times[lane]))
         one = next(iter(looks))
         for lane in set(range(LANES)).difference(looks):
@@ -509,7 +533,7 @@ class _Lanes:
         member = self.members[lane]
         if member is None or not -1000 < int(outcome) < 0:
             return None
-        time = member.begin + float(self.integrator.time[lane])
+        time = member.begin + float(self.times[lane])
         name = self.lowered.event_functions[-int(outcome) - 1]
         return ZeroCrossing(time, name, self.integrator.state[:, lane].copy())
 
@@ -518,9 +542,12 @@ class _Lanes:
         alike: dict[tuple[int, bytes], list[int]] = {}  # lanes of which the same samples are at the same places
         for lane, member in self._on_the_way():
             stop, done = stops[lane], member.reached - member.leg_from
-            upto = int(np.searchsorted(member.instants - member.begin, self.integrator.time[lane], "right"))
             if stop is not None:
                 upto = int(np.searchsorted(member.instants, stop.time))
+            elif self.times[lane] == member.end - member.begin:
+                upto = member.instants.size
+            else:
+                upto = int(np.searchsorted(member.instants - member.begin, self.times[lane], "right"))
             if upto > done:
                 places = looks[lane].places[: upto - done]
                 alike.setdefault((member.first + member.reached, places.tobytes()), []).append(lane)
@@ -533,7 +560,7 @@ class _Lanes:
     def _wait(self, lane: int, member: Member, steps: int) -> Iterator[tuple[Member, Exception]]:
         """Let a member go on in its leg, unless it hardly gets on."""
         try:
-            member.patience.after(steps, member.begin + float(self.integrator.time[lane]))
+            member.patience.after(steps, member.begin + float(self.times[lane]))
         except TrundleError as error:
             self.members[lane] = None
             yield member, error
@@ -547,11 +574,11 @@ class _Looks:
     places: NDArray[np.int64]  # where the instants are among them
 
     @staticmethod
-    def of(member: Member, now: float) -> _Looks:
-        """Return the time now, and the instants ahead of a member in its leg."""
-        ahead = member.instants[member.reached - member.leg_from :] - member.begin
+    def of(leg: _Leg, passed: int, now: float) -> _Looks:
+        """Return the time now, and the instants of a leg that are ahead."""
+        ahead = leg.instants[passed:] - leg.begin
         if not ahead.size:
-            return _Looks(np.array([now, member.end - member.begin]), np.empty(0, dtype=np.int64))
+            return _Looks(np.array([now, leg.end - leg.begin]), np.empty(0, dtype=np.int64))
         times = np.concatenate([[now], ahead])
         if (times[1:] > times[:-1]).all():
             return _Looks(times, np.arange(1, times.size))
@@ -567,6 +594,20 @@ class _Looks:
         between = np.linspace(self.times[after - 1], self.times[after], more + 2)[1:-1]
         times = np.concatenate([self.times[:after], between, self.times[after:]])
         return _Looks(times, np.where(self.places < after, self.places, self.places + more))
+
+
+@dataclass(frozen=True)
+class _Leg:
+    """A part of a stretch with one reference of time; members that begin together share it."""
+
+    begin: float
+    instants: Array  # none where it only leads on
+    end: float
+
+    @cached_property
+    def looks(self) -> _Looks:
+        """When to look at who begins it."""
+        return _Looks.of(self, 0, 0.0)
 
 
 def _grid(looks: dict[int, _Looks]) -> Array:
@@ -585,14 +626,16 @@ def _failed(outcome: Any) -> bool:
     return int(outcome) >= 0 or outcome == heyoka.taylor_outcome.err_nf_state
 
 
-def _legs(begin: float, times: Array) -> Iterator[tuple[float, Array, float]]:
-    """Yield the legs of a stretch: where each begins, its instants, none where it only leads on, and where it ends."""
-    for part in taylor.chunks(times, _MOST_CHUNKS, AT_ONCE // LANES):
+def _legs(times: Array, begin: float, first: int) -> list[_Leg]:
+    """Return the legs of a stretch that begins at a time and holds the instants from the first on."""
+    legs = []
+    for part in taylor.chunks(times[first:], _MOST_CHUNKS, AT_ONCE // LANES):
         while part[0] - begin > taylor.LONGEST:
-            yield begin, part[:0], begin + taylor.LONGEST
+            legs.append(_Leg(begin, part[:0], begin + taylor.LONGEST))
             begin += taylor.LONGEST
-        yield begin, part, float(part[-1])
+        legs.append(_Leg(begin, part, float(part[-1])))
         begin = float(part[-1])
+    return legs
 
 
 def _compile(lowered: Lowered, tolerance: float) -> Any:

@@ -305,8 +305,7 @@ def _together(
         return sorted(left)
     count = min(workers or ensemble.cores(), -(-len(begins) // ensemble.LANES))
     _, events = ensemble.integrate(systems, begins, times, result.put, workers=count)
-    for member, happened in events.items():
-        result.put_events(member, happened)
+    result.put_events(events)
     return sorted(left.difference(events))
 
 
@@ -356,17 +355,17 @@ class Runs:
             self.arrays[name][block.members, block.rows] = values
         self._tell(block.members, (block.rows + 1) / self.times.size)
 
-    def put_events(self, member: int, events: tuple[Event, ...]) -> None:
-        """Take what happened to a member that was followed with others, and where its run ended."""
-        self.events[member] = len(events)
-        self.happened[member] = [(event.kind, event.time) for event in events]
-        if events and events[-1].final:
-            self.end[member], self.ending[member], self.reason[member] = (
-                events[-1].time,
-                events[-1].kind,
-                events[-1].text,
-            )
-        self._tell(member, 1.0)
+    def put_events(self, happened: Mapping[int, tuple[Event, ...]]) -> None:
+        """Take what happened to members that were followed together, and where their runs ended."""
+        for member, events in happened.items():
+            if not events:
+                continue
+            last = events[-1]
+            self.events[member] = len(events)
+            self.happened[member] = [(event.kind, event.time) for event in events]
+            if last.final:
+                self.end[member], self.ending[member], self.reason[member] = last.time, last.kind, last.text
+        self._tell(list(happened), 1.0)
 
     def put_alone(
         self, member: int, system: RollingSystem, start: State, duration: Any, every: Any, method: str
