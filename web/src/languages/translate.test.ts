@@ -22,6 +22,7 @@ describe('saying a text', () => {
   it('knows a template again, and gives its numbers the decimal sign', () => {
     speak('de', { 'reverses its spin after {time}': 'kehrt nach {time} um' })
     expect(t('reverses its spin after 2.85 s')).toBe('kehrt nach 2,85 s um')
+    expect(t('Reverses its spin after 2.85 s')).toBe('Kehrt nach 2,85 s um')
     expect(t('(1.5, -0.25, 3)')).toBe('(1,5; -0,25; 3)')
   })
 

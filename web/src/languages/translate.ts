@@ -48,7 +48,8 @@ export function language(): string {
 function template(key: string, said: string): Template {
   const parts = key.split(SLOT) // fixed, name, fixed, name, ..., fixed
   const pattern = parts.map((part, i) => (i % 2 ? '(.+?)' : part.replace(/[.*+?^${}()|[\]\\]/g, '\\$&'))).join('')
-  return { pattern: new RegExp(`^${pattern}$`, 's'), names: parts.filter((_, i) => i % 2), said }
+  const either = pattern.replace(/^\p{Ll}/u, (first) => `[${first}${first.toUpperCase()}]`) // it may begin a line
+  return { pattern: new RegExp(`^${either}$`, 's'), names: parts.filter((_, i) => i % 2), said }
 }
 
 /** Say an English text in the language of the page; with values, what stands for its `{names}`. */
@@ -88,7 +89,9 @@ function recognized(text: string): string | undefined {
     const match = pattern.exec(text)
     if (!match) continue
     const values = names.map((name, i) => [name, name === TITLE ? t(match[i + 1]!) : sayable(match[i + 1]!)] as const)
-    if (values.every(([, value]) => value !== undefined)) return filled(said, Object.fromEntries(values) as Values)
+    if (values.some(([, value]) => value === undefined)) continue
+    const whole = filled(said, Object.fromEntries(values) as Values)
+    return /^\p{Lu}/u.test(text) ? whole.charAt(0).toUpperCase() + whole.slice(1) : whole
   }
   return undefined
 }

@@ -69,7 +69,7 @@ describe('the name of a number', () => {
     expect(nameOf(rate)).toBe('Motion of the support: Rate')
     expect(nameOf({ key: 'gravity', group: '', label: 'Gravity' })).toBe('Gravity')
     speak('de', german)
-    expect(nameOf(rate)).toBe('Bewegung der Unterlage: Winkelgeschwindigkeit')
+    expect(nameOf(rate)).toBe('Bewegung der Unterlage: Winkel\u00adgeschwindigkeit')
     speak('en', {})
   })
 })
