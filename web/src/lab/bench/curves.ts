@@ -1,5 +1,5 @@
 /** Curves: two of them, any quantity over time or against any other; a click goes to that instant. */
-import { put } from '../../viewer/elements'
+import { put, say } from '../../viewer/elements'
 import type { Scene } from '../../viewer/scene'
 import type { App } from '../app'
 import { fill, h } from '../dom'
@@ -176,7 +176,7 @@ function createFigure(app: App, first: string, seek: (time: number) => void): Fi
   function read(index: number): void {
     if (!plot) return
     const told = ({ values, unit }: Plot['x']) => `${show(values[index])} ${unit}`.trim()
-    reading.textContent = plot.x.values === plot.time ? told(plot.y) : `${told(plot.y)} at ${told(plot.x)}`
+    say(reading, plot.x.values === plot.time ? told(plot.y) : `${told(plot.y)} at ${told(plot.x)}`)
   }
 
   function at(next: number): void {

@@ -114,7 +114,7 @@ function show(host: HTMLElement, app: App, sweeps: Sweeps, leaving: AbortSignal)
 
   function tellState(state: State): void {
     working.hidden = state === 'finished' || state === 'idle'
-    working.textContent = state === 'computing' ? 'Stop' : 'Go on'
+    say(working, state === 'computing' ? 'Stop' : 'Go on')
     host.querySelector('.maps')?.toggleAttribute('data-busy', state === 'computing')
     if (state === 'finished') app.announce('The map is finished.')
   }

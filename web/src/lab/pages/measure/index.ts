@@ -79,7 +79,7 @@ export const measure: Page = {
 
     function tell(error: unknown): void {
       wrong.hidden = error === null
-      wrong.textContent = error === null ? '' : told(error)
+      say(wrong, error === null ? '' : told(error))
       free.wrong(error instanceof ApiError && error.key === 'noise')
     }
 

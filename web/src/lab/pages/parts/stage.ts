@@ -1,5 +1,6 @@
 /** A viewer in its frame, told of theme and projector, with a place for what went wrong. */
 
+import { say } from '../../../viewer/elements'
 import type { Scene, Triple } from '../../../viewer/scene'
 import { createViewer, type Viewer, type ViewerOptions } from '../../../viewer/viewer'
 import { ApiError, isAbort } from '../../api'
@@ -46,7 +47,7 @@ export function createStage(app: App, { label, controls = true, kind = 'large', 
     problem(error) {
       if (error !== null && isAbort(error)) return
       message.hidden = error === null
-      message.textContent = error === null ? '' : told(error)
+      say(message, error === null ? '' : told(error))
     },
     dispose: () => undo.run(),
   }
