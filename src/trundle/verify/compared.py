@@ -20,6 +20,7 @@ from ..solve.samples import Event, Samples
 from .bounds import EXACT, Array, bound_of, largest, sizes_of, turned_in
 from .card import CardFigure, checked
 from .growth import MOST, Growth, alike, at_the_same_times, growth, numerical, parted, same_events
+from .landings import landings_of
 from .stretches import SINGULAR, before_a_singular_end
 
 _INSTANTS = 200
@@ -229,6 +230,32 @@ class Compared:
         ]
         return max(float(np.linalg.norm(moved)) / max(self.sizes["position"], 1e-300), *apart)
 
+    @cached_property
+    def _delays(self) -> Array:
+        """Each landing's time, and how many times larger an error of the place in flight shows at it, and after it.
+
+        A change of the start does not show it: what lifted off was in contact, whatever the start. By an error δ of the
+        gap it comes down δ/|sₙ| later, which is long where it all but grazes the support, and at another speed.
+        """
+        span = max(float(self.ours.time[-1] - self.start.time), 1e-300)
+        size, speed, force = (max(self.sizes[field], 1e-300) for field in ("position", "velocity", "contact_force"))
+        turning = self.turned / span * self.bound / self.angle_bound
+        pace = max(1 / span, speed / size, force / (float(self.system.body.mass) * speed), turning)
+        rows = []
+        for landing in landings_of(self.system, self.ours.events[: self._shifts.size]):
+            if landing.jolted:
+                continue
+            closing = max(-float(landing.comes @ landing.n), 1e-300)
+            jumps = float(np.linalg.norm(landing.goes - landing.comes)) / speed
+            rows.append((landing.before.time, size * pace / closing, size * landing.pull / closing**2 * jumps))
+        return np.array(rows).reshape(-1, 3)
+
+    def _delayed(self, times: Array) -> Array:
+        """Return how many times larger an error of the place in flight shows at given times."""
+        landed, then, after = self._delays.T
+        past = np.concatenate([[0.0], np.maximum.accumulate(after)])[np.searchsorted(landed, times)]
+        return np.max([past, *(late * (times == at) for at, late in zip(landed, then, strict=True))], axis=0)
+
     def figure(self, name: str, share: Array, bound: float, said: str, unit: str = "") -> CardFigure:
         """Return the figure of a difference: where a plain bound does not hold, with what the motion magnifies."""
         parts = parted(self.ours, self.theirs)
@@ -238,10 +265,12 @@ class Compared:
         grown = self.growth
         until = grown.told_until(bound, self._steps)
         events = np.array([event.time for event in self.ours.events[: self._shifts.size]])
-        allowed = grown.widened(bound, self._steps, grown.at(self.ours.time))
+        magnified = np.maximum(grown.at(self.ours.time), self._delayed(self.ours.time))
+        allowed = grown.widened(bound, self._steps, magnified)
         told = (self.ours.time <= until) & ((allowed < MOST) | (allowed <= bound))
+        until = min([until, *self.ours.time[(self.ours.time <= until) & ~told][:1].tolist()])
         later = np.pad(grown.shifted, (grown.skipped, max(0, events.size - grown.skipped - grown.shifted.size)))
-        later = np.maximum(later[: events.size], grown.at(events))  # of the times and of the states
+        later = np.max([later[: events.size], grown.at(events), self._delayed(events)], axis=0)  # times and states
         allowed_then = grown.widened(bound, self._steps, later)
         known = (events <= until) & ((allowed_then < MOST) | (allowed_then <= bound))
         values = np.concatenate(
