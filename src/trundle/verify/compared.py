@@ -17,7 +17,7 @@ from ..solve.exact import ClosedForm
 from ..solve.methods import Method
 from ..solve.runge_kutta import FINEST
 from ..solve.samples import Event, Samples
-from .bounds import EXACT, Array, bound_of, largest, sizes_of, turned_in
+from .bounds import EXACT, Array, bound_of, largest, pace_of, sizes_of, turned_in
 from .card import CardFigure, checked
 from .growth import MOST, Growth, alike, at_the_same_times, growth, numerical, parted, same_events
 from .landings import landings_of
@@ -120,7 +120,9 @@ class Compared:
     @property
     def _steps(self) -> float:
         """About how many steps it took, each with an error of its own: one a radian, or as many as were counted."""
-        return max(self.turned, 0.0 if self.kept is None else self.kept.steps)
+        if self.kept is not None:
+            return max(self.turned, self.kept.steps)
+        return max(self.turned, pace_of(self.system, self.ours) * float(self.ours.time[-1] - self.start.time))
 
     @property
     def angle_bound(self) -> float:
