@@ -35,7 +35,7 @@ _BLUR = 0.05  # share of a step within which a polynomial through these finds wh
 _SINGULAR = ("curved", "edge", "end", "jam")  # stops at which a law is singular
 _ALL_BUT = 1e-3  # share of what was left of such a stop at first
 _PATIENCE: dict[str, Any] = {"steps": 1e7, "spare": 5e3, "name": "The Runge-Kutta method"}  # an hour, and seconds
-_BRIEF = 3e3  # steps of a law that holds for an instant only
+_BRIEF = 1e5  # steps of a law that mostly holds for an instant only: some seconds
 _FIRST_STEP = 1e-12  # s
 _BEGINNING = 20  # steps, after which one sees how many there will be
 WORTH_COMPILING = 2_000  # steps: for so many, in a run and its card, SciPy takes as long as laws take to be compiled
@@ -156,7 +156,7 @@ def _integrated(
         except (ArithmeticError, ValueError):
             return np.full(len(traced.names), np.nan)
 
-    patience = Patience(begin, begin + end, **_PATIENCE | ({"steps": _BRIEF, "spare": _BRIEF} if law.brief else {}))
+    patience = Patience(begin, begin + end, **_PATIENCE | ({"steps": _BRIEF} if law.brief else {}))
     try:
         at = law.unpack(system, begin, y0)
         least = tolerance * _scale(y0, at.arm, at.scale(system))
@@ -200,7 +200,7 @@ def _paths(
         t, y = float(stiff.t), stiff.y
     if t < end:
         stepper = DOP853(rates, t, y, end, **given)
-        compiles = traced.compiled is not None and not law.brief and available()
+        compiles = traced.compiled is not None and available()
         yield from _one_by_one(stepper, _many_to_come(stepper) if compiles else lambda: False)
         if stepper.status == "running" and traced.compiled is not None:
             yield from CompiledDOP853(traced.compiled(), stepper, begin, tolerance, least)

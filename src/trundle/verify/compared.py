@@ -258,6 +258,20 @@ class Compared:
         past = np.concatenate([[0.0], np.maximum.accumulate(after)])[np.searchsorted(landed, times)]
         return np.max([past, *(late * (times == at) for at, late in zip(landed, then, strict=True))], axis=0)
 
+    def _undecided(self, grown: Growth) -> float:
+        """Return when one of the two touches the support by less than an error of its place; infinite where none does.
+
+        What it strikes at a speed s, pulled at a, it would have entered by s²/2a.
+        """
+        known = self._shifts.size
+        for run in (self.ours, self.theirs):
+            for landing in landings_of(self.system, run.events[known : known + 1]):
+                time, closing = landing.before.time, float(landing.comes @ landing.n)
+                place = grown.widened(self.bound, self._steps, grown.at(np.array([time]))) * self.sizes["position"]
+                if not landing.jolted and closing**2 < 2 * landing.pull * float(place[0]):
+                    return time
+        return np.inf
+
     def figure(self, name: str, share: Array, bound: float, said: str, unit: str = "") -> CardFigure:
         """Return the figure of a difference: where a plain bound does not hold, with what the motion magnifies."""
         parts = parted(self.ours, self.theirs)
@@ -265,7 +279,8 @@ class Compared:
         if plain <= bound and parts == np.inf:
             return checked(name, plain, bound, said, unit)
         grown = self.growth
-        until = grown.told_until(bound, self._steps)
+        undecided = self._undecided(grown)
+        until = min(grown.told_until(bound, self._steps), np.nextafter(undecided, -np.inf))
         events = np.array([event.time for event in self.ours.events[: self._shifts.size]])
         magnified = np.maximum(grown.at(self.ours.time), self._delayed(self.ours.time))
         allowed = grown.widened(bound, self._steps, magnified)
@@ -287,6 +302,8 @@ class Compared:
             why = (
                 "up to which a change is followed"
                 if until == grown.times[-1]
+                else "where a rounding decides whether it touches"
+                if until >= np.nextafter(undecided, -np.inf)
                 else "where a rounding has grown too large"
             )
             said += f"; nothing can be told beyond t = {until:.6g} s, {why}"
