@@ -355,6 +355,14 @@ class _Paths:
         return states
 
 
+def nearly_singular(system: RollingSystem, now: PhaseStart, time: float, y: Array) -> bool:
+    """Tell whether a law, followed to a state, has all but come to an end at which it is singular."""
+    given = (*now.event_parameters, *corners.directions(system, now))
+    traced = python_law(system, now.law, given, now.time, now.state_vector)
+    first, there = (np.array(traced.event_functions(*at)) for at in ((now.time, now.state_vector), (time, y.tolist())))
+    return _singular(traced.names, there, first) is not None
+
+
 def _singular(names: tuple[str, ...], values: Array, first: Array) -> str | None:
     """Return the end at which the law is singular that it has all but come to: no step leads nearer."""
     shares = {
