@@ -25,7 +25,10 @@ def equations(
     ] = "python",
     phase: Annotated[
         str | None,
-        typer.Option(metavar="PHASE", help="rolling, slipping, flight or rest. Default: rolling, where it may roll."),
+        typer.Option(
+            metavar="PHASE",
+            help="rolling, slipping, held_slipping, flight or rest. Default: rolling, where it may roll.",
+        ),
     ] = None,
     inputs: Annotated[
         str | None,

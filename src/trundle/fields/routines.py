@@ -14,9 +14,11 @@ from ..mechanics.parameters import parameters, with_numbers
 from ..mechanics.scalars import Scalar, is_number, namespace
 from ..mechanics.system import RollingSystem
 from ..solve.laws import FlightLaw, Law, RestingLaw, RollingLaw, RollingWithResistance, SlidingFreely, SlippingLaw
+from ..solve.samples import SLIPPING
 from ..solve.tape import Dialect, Node, Tape
 from .inputs import inputs_of, with_inputs
-from .resets import RESETS, Follows, event_parameters
+from .resets import RESETS, event_parameters
+from .touching import HELD, Follows
 
 # What a picture of a motion is made from, and its curves.
 FILM = (
@@ -78,13 +80,29 @@ def phases_of(system: RollingSystem) -> dict[str, Law]:
     none = friction is not None and is_number(friction) and friction == 0
     if not none:
         found["rolling"] = RollingWithResistance() if system.resisted else RollingLaw()
+    slipping = SlidingFreely if none else SlippingLaw
     if friction is not None:
-        turning = "resisted" if system.resisted else "free"
-        found["slipping"] = SlidingFreely(turning=turning) if none else SlippingLaw(turning=turning)
+        found["slipping"] = slipping(turning="resisted" if system.resisted else "free")
+        if system.resisted and not system.support.motion.free:
+            found[HELD] = slipping(turning="held")
     found["flight"] = FlightLaw()
     if system.resisted and not none and not system.support.motion.free:
         found["rest"] = RestingLaw()
     return found
+
+
+def phase_of_law(system: RollingSystem, law: Law) -> str:
+    """Return the phase in which a law holds.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> phase_of_law(tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane())), FlightLaw())
+    'flight'
+    """
+    found = phases_of(system).items()
+    held = law.turning == "held"
+    return next(name for name, each in found if each.code == law.code and (each.turning == "held") == held)
 
 
 def check_analytic(system: RollingSystem) -> None:
@@ -184,7 +202,7 @@ class PhaseRoutines:
             orbit + turning,
             sum(others, orbit + turning),
             R.dot(n),
-            contact.slip_velocity(V, Omega).norm() if self.phase == "slipping" else 0.0,
+            contact.slip_velocity(V, Omega).norm() if self.law.code == SLIPPING else 0.0,
         ]
         turn = [part for row in support.rotation.rows for part in row]
         found = [*motion.position, *p, *q.unit, *V, *Omega, *R, *support.origin, *turn, *curves]

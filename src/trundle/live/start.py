@@ -10,7 +10,7 @@ import numpy as np
 
 from ..analysis.sensitivities.keys import Key, moved, replaced
 from ..errors import OutOfDomainError, TrundleError
-from ..fields.routines import Routine, phases_of, plain
+from ..fields.routines import Routine, phase_of_law, phases_of, plain
 from ..mechanics.parameters import numbers
 from ..mechanics.placing import Placing
 from ..mechanics.scalars import is_number
@@ -19,7 +19,7 @@ from ..scenario import ScenarioFile
 from ..solve import transitions
 from ..solve.contact_state import ContactState
 from ..solve.exact import ClosedForm
-from ..solve.samples import FLIGHT, RESTING, SLIPPING
+from ..solve.samples import SLIPPING
 from ..solve.tape import Tape
 from .formula import formula_of
 from .recorded import Recorded, step_of
@@ -116,7 +116,7 @@ def phase_of(system: RollingSystem, start: State) -> str:
     at = ContactState.of(system, start)
     if now.law.code == SLIPPING and not at.sliding.norm() > transitions.SLIP_TOLERANCE * at.speed:
         return "slipping" if system.support.friction == 0 else "rolling"
-    return {FLIGHT: "flight", SLIPPING: "slipping", RESTING: "rest"}.get(now.law.code, "rolling")
+    return phase_of_law(system, now.law)
 
 
 def _counterparts(system: Any, other: Any) -> Iterator[Any]:

@@ -16,7 +16,7 @@ from ...solve.transitions import at_start
 from ..compiler import compiler, shared_library
 from ..field import VectorField
 from ..printers import c
-from ..resets import CODES
+from ..routines import phase_of_law
 from .description import IDENTIFIER, build_description, model_description
 
 _EARLIEST = (1980, 1, 1, 0, 0, 0)  # so that the same unit is the same file
@@ -47,8 +47,7 @@ def fmu(system: RollingSystem, start: State, title: str) -> tuple[bytes, str]:
     >>> zipfile.ZipFile(io.BytesIO(made)).namelist()[0]
     'modelDescription.xml'
     """
-    code = at_start(system, start).law.code
-    field = VectorField(system, "c", next(name for name, known in CODES.items() if known == code))
+    field = VectorField(system, "c", phase_of_law(system, at_start(system, start).law))
     sources = {
         "fmi3.c": files(__package__).joinpath("fmi3.c").read_text(encoding="utf-8"),
         "model.c": c.source(field.routines(alone=True), "model", title),
