@@ -17,7 +17,7 @@ import trundle as tr
 from trundle.errors import OutOfDomainError
 from trundle.fields import VectorField
 from trundle.fields.compiler import compiler
-from trundle.live.start import phase_of
+from trundle.fields.routines import starting_phase
 
 LANGUAGES = [*(["jax"] if find_spec("jax") else []), *(["c"] if compiler() else [])]
 BALL = tr.Body.solid_sphere(0.02, 0.1)
@@ -152,7 +152,7 @@ def followed(field: VectorField, y: Any, times: Any) -> Course:
 def compared(system: tr.RollingSystem, start: tr.State, duration: float) -> Course:
     """Compare a run with what the fields make of its start: a slip begins there with a billionth of the speeds."""
     run = tr.simulate(system, start, duration=duration, every=duration / 40)
-    field = system.vector_field("numpy", phase_of(system, start), ())
+    field = system.vector_field("numpy", starting_phase(system, start), ())
     times = run.data.time.values
     found = followed(field, field.pack(start), times)
     assert set(found.rows) >= set(times[:-1].tolist())

@@ -11,14 +11,19 @@ from ..mechanics.algebra import Vector
 from ..mechanics.contact import contact_at
 from ..mechanics.invariants.powers import energies
 from ..mechanics.parameters import parameters, with_numbers
-from ..mechanics.scalars import Scalar, is_number, namespace
-from ..mechanics.system import RollingSystem
+from ..mechanics.placing import SLIP_TOLERANCE
+from ..mechanics.scalars import Scalar, is_number, is_zero, namespace
+from ..mechanics.system import RollingSystem, State
+from ..solve.contact_state import ContactState
 from ..solve.laws import FlightLaw, Law, RestingLaw, RollingLaw, RollingWithResistance, SlidingFreely, SlippingLaw
 from ..solve.samples import SLIPPING
 from ..solve.tape import Dialect, Node, Tape
+from ..solve.transitions import at_start
 from .inputs import inputs_of, with_inputs
 from .resets import RESETS, event_parameters
 from .touching import HELD, Follows
+
+STROKES = ("land", "settle", "jolt")  # kinds of event at which the support strikes the body
 
 # What a picture of a motion is made from, and its curves.
 FILM = (
@@ -91,18 +96,30 @@ def phases_of(system: RollingSystem) -> dict[str, Law]:
     return found
 
 
-def phase_of_law(system: RollingSystem, law: Law) -> str:
-    """Return the phase in which a law holds.
+def starting_phase(system: RollingSystem, start: State) -> str:
+    """Return the phase in which a start is placed; where static friction cannot hold it, "slip" ends it at once.
 
     Examples
     --------
     >>> import trundle as tr
-    >>> phase_of_law(tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane())), FlightLaw())
+    >>> level = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane(), friction=0.2))
+    >>> starting_phase(level, level.place()), starting_phase(level, level.place(velocity=(1.0, 0.0), spin=3.0))
+    ('rolling', 'rolling')
+    >>> starting_phase(level, level.place(height=0.1))
     'flight'
     """
+    now, at = at_start(system, start), ContactState.of(system, start)
+    if any(event.kind in STROKES for event in now.events):
+        return "flight"
+    held = now.law.turning == "held"
+    if now.law.code == SLIPPING and not is_zero(system.support.friction) and _sticks(at):
+        return "rest" if held else "rolling"
     found = phases_of(system).items()
-    held = law.turning == "held"
-    return next(name for name, each in found if each.code == law.code and (each.turning == "held") == held)
+    return next(name for name, law in found if law.code == now.law.code and (law.turning == "held") == held)
+
+
+def _sticks(at: ContactState) -> bool:
+    return not at.sliding.norm() > SLIP_TOLERANCE * at.speed
 
 
 def check_analytic(system: RollingSystem) -> None:

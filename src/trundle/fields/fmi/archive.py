@@ -10,13 +10,16 @@ import zipfile
 from importlib.resources import files
 from pathlib import Path
 
+import numpy as np
+
 from ...errors import SolverError
 from ...mechanics.system import RollingSystem, State
+from ...solve.samples import SLIPPING
 from ...solve.transitions import at_start
 from ..compiler import compiler, shared_library
 from ..field import VectorField
 from ..printers import c
-from ..routines import phase_of_law
+from ..routines import starting_phase
 from .description import IDENTIFIER, build_description, model_description
 
 _EARLIEST = (1980, 1, 1, 0, 0, 0)  # so that the same unit is the same file
@@ -47,15 +50,15 @@ def fmu(system: RollingSystem, start: State, title: str) -> tuple[bytes, str]:
     >>> zipfile.ZipFile(io.BytesIO(made)).namelist()[0]
     'modelDescription.xml'
     """
-    field = VectorField(system, "c", phase_of_law(system, at_start(system, start).law))
+    field, y = beginning(system, start)
     sources = {
         "fmi3.c": files(__package__).joinpath("fmi3.c").read_text(encoding="utf-8"),
         "model.c": c.source(field.routines(alone=True), "model", title),
     }
-    token = hashlib.sha256("".join([*sources.values(), repr(field.pack(start).tolist())]).encode()).hexdigest()
-    sources["model.h"] = _header(field, start, token)
+    token = hashlib.sha256("".join([*sources.values(), repr(y.tolist())]).encode()).hexdigest()
+    sources["model.h"] = _header(field, y, token)
     texts = {
-        "modelDescription.xml": model_description(field, start, title, token),
+        "modelDescription.xml": model_description(field, y, float(start.time), title, token),
         "sources/buildDescription.xml": build_description([name for name in sources if name.endswith(".c")]),
         **{f"sources/{name}": text for name, text in sources.items()},
     }
@@ -69,7 +72,19 @@ def fmu(system: RollingSystem, start: State, title: str) -> tuple[bytes, str]:
     return held.getvalue(), where.split("/")[1] if binary else ""
 
 
-def _header(field: VectorField, start: State, token: str) -> str:
+def beginning(system: RollingSystem, start: State) -> tuple[VectorField, np.ndarray]:
+    """Return the field with which a start goes on, and its state: slip where friction gives way at once."""
+    field = VectorField(system, "c", starting_phase(system, start))
+    y = field.pack(start)
+    law = at_start(system, start).law
+    if law.code == SLIPPING and field.phase in ("rolling", "rest"):
+        there = VectorField(system, "numpy", field.phase)
+        follows, y = there.after("slip", float(start.time), y, there.parameters, there.inputs)
+        field = field.at(follows.phase)
+    return field, np.asarray(y)
+
+
+def _header(field: VectorField, y: np.ndarray, token: str) -> str:
     """Return what the functions of FMI know of the model."""
     phase, routines = field.phase, field.routines(alone=True)
     given = sum(len(each.outputs) for each in routines if each.name == f"{phase}_event_parameters")
@@ -83,7 +98,7 @@ def _header(field: VectorField, start: State, token: str) -> str:
     }
     e = ", e" if given else ""
     begin = f"model_{phase}_event_parameters(t, y, p, u, e)" if given else "(void)0"
-    arrays = {"start": field.pack(start), "parameters": field.parameters, "inputs": field.inputs}
+    arrays = {"start": y, "parameters": field.parameters, "inputs": field.inputs}
     names = ", ".join(f'"{name}"' for name in field.event_names) or "0"
     return "\n".join(
         [
