@@ -22,7 +22,9 @@ _BASE = ("kg", "m", "s", "rad")
 def model_description(field: VectorField, y: np.ndarray, begin: float, title: str, token: str) -> str:
     """Return modelDescription.xml; the value references are those of fmi3.c."""
     ends = ", ".join(field.event_names)
-    left_out = f"Only {field.phase} is in it: the simulation ends where that ends" + (f" ({ends})." if ends else ".")
+    left_out = f"Only {field.phase} is in it: the simulation ends where another begins" + (
+        f" ({ends})." if ends else "."
+    )
     root = ET.Element(
         "fmiModelDescription",
         fmiVersion="3.0",
