@@ -161,6 +161,10 @@ class OutOfDomainError(TrundleError):
     """A closed form or a method was asked for a system outside its stated domain."""
 
 
+class TurnsTooFastError(OutOfDomainError):
+    """A closed form holds, but its orientation is a quadrature that cannot follow so fast a turning."""
+
+
 class SolverError(TrundleError):
     """A numerical method did not reach the tolerance or the time asked for."""
 

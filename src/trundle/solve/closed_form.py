@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import OutOfDomainError, SolverError
+from ..errors import OutOfDomainError, SolverError, TurnsTooFastError
 from ..mechanics.algebra import ZERO, Quaternion, Vector
 from ..mechanics.contact import Contact, contact_at
 from ..mechanics.nearest import closest_contact
@@ -270,4 +270,4 @@ def orientations(motion: ClosedForm, start: State, times: Array) -> Array:
     try:
         return orientation(absolute, times, start.orientation, start.time)
     except SolverError as error:  # a method that takes steps may still follow it
-        raise OutOfDomainError(f"{error} A numerical method may do.") from None
+        raise TurnsTooFastError(f"{error} A numerical method may do.") from None

@@ -22,6 +22,8 @@ from .tracing import python_law
 # not, `SlippingLaw` follows the direction; a method has to take steps as short as that takes to settle.
 SETTLES_FAST = 30.0
 _LEFT_OUT = 3e-13
+_TURNS = 20.0  # times as fast as the body turns: no slower does a direction settle whose steps would be too short
+GROWN = ("settled", "lags", "turns")  # ends at which slip is to be followed with its direction
 _NEAR = 0.98  # cosine of the angle by which the direction may turn until it is looked for near another
 
 
@@ -29,7 +31,8 @@ class CreepingLaw(SlippingLaw):
     """Slipping along the direction that friction keeps: the state is (p, q, Ω, |s|).
 
     It ends where |s| falls back to nothing, "held", where slip has grown so fast that its direction lags, "settled" and
-    "lags", or where that has turned away from the one near which it is looked for, "turned", to be followed from there.
+    "lags", where the body itself turns almost as fast as that settles, "turns", or where it has turned away from the
+    one near which it is looked for, "turned", to be followed from there.
 
     Parameters
     ----------
@@ -137,7 +140,7 @@ class CreepingLaw(SlippingLaw):
     ) -> dict[str, Scalar]:
         """Return the normal force, its effect on the gap, the speed of slip, how its direction lags, and the bounds."""
         hat, settling, turning = self._way(system, time, state)
-        now = self._now(system, time, state, hat)
+        now, Omega = self._now(system, time, state, hat), self.split(state)[2]
         speed, since = state[10], time - self.since
         ratio = speed / (settling * since)  # 1/r
         return {
@@ -145,6 +148,7 @@ class CreepingLaw(SlippingLaw):
             "held": speed,
             "settled": settling * since - SETTLES_FAST * speed,
             "lags": _LEFT_OUT**2 - (6 * turning * since * ratio**3) ** 2,
+            "turns": settling**2 - (_TURNS * speed) ** 2 * Omega.dot(Omega),
             "turned": hat.dot(Vector(self.near_x, self.near_y, self.near_z)) - _NEAR,
             **self._bounds(system, now.contact, Quaternion(*state[3:7]), 0.0),
         }
@@ -154,7 +158,7 @@ class CreepingLaw(SlippingLaw):
         time, numbers = at.state.time, self.state_vector(at)
         law = python_law(system, self, (0.0,) * (self.event_parameters + corner_events.count(system)), time, numbers)
         stops = dict(zip(law.names, law.event_functions(time, numbers), strict=True))
-        return bool(min(stops["settled"], stops["lags"]) > 0)
+        return min(stops[name] for name in GROWN) > 0
 
     def state_vector(self, at: ContactState) -> list[float]:
         """Return p, q, Ω and |s| of the slip along the support."""

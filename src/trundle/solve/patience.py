@@ -53,7 +53,7 @@ class Patience:
 
     def after(self, steps: int, time: float) -> None:
         """Take account of steps up to a time; refuse to go on where they are too many."""
-        gone, self.time = time - self.time, time
+        gone, self.time = max(time - self.time, 0.0), max(time, self.time)  # a step may be taken again, shorter
         counted = steps * (_DEARER if gone < steps * self.nowhere else 1)
         self.owed = max(0.0, self.owed + counted - gone * self.pace)
         if self.owed > self.spare:

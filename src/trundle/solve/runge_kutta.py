@@ -35,7 +35,8 @@ _BLUR = 0.05  # share of a step within which a polynomial through these finds wh
 _SINGULAR = ("curved", "edge", "end", "jam")  # stops at which a law is singular
 _ALL_BUT = 1e-3  # share of what was left of such a stop at first
 _PATIENCE: dict[str, Any] = {"steps": 1e7, "spare": 5e3, "name": "The Runge-Kutta method"}  # an hour, and seconds
-_BRIEF = 3e3  # steps of a law that holds for an instant only
+_CLOSE = 1e-9  # share of the time by which a step may begin before an instant at which the law is singular
+_BRIEF = 1e5  # steps of a law that mostly holds for an instant only: some seconds
 _FIRST_STEP = 1e-12  # s
 _BEGINNING = 20  # steps, after which one sees how many there will be
 WORTH_COMPILING = 2_000  # steps: for so many, in a run and its card, SciPy takes as long as laws take to be compiled
@@ -156,13 +157,17 @@ def _integrated(
         except (ArithmeticError, ValueError):
             return np.full(len(traced.names), np.nan)
 
-    patience = Patience(begin, begin + end, **_PATIENCE | ({"steps": _BRIEF, "spare": _BRIEF} if law.brief else {}))
+    patience = Patience(begin, begin + end, **_PATIENCE | ({"steps": _BRIEF} if law.brief else {}))
     try:
         at = law.unpack(system, begin, y0)
         least = tolerance * _scale(y0, at.arm, at.scale(system))
         least[y0.size - law.unwatched :] = np.inf
-        paths = _paths(law, traced, begin, y0, end, tolerance, least)
-        yield from _follow(_watched(paths, patience, progress, begin), y0, rows, stops, traced.names)
+
+        def onward(since: float, y: Array, until: float) -> Iterator[Path]:
+            paths = _paths(law, traced, begin, since, y, until, tolerance, least)
+            return _watched(paths, patience, progress, begin)
+
+        yield from _follow(onward, y0, end, rows, stops, traced.names)
     except StuckError as stuck:
         raise SolverError(_broken(stuck, begin)) from None
     except (ZeroDivisionError, ValueError, OverflowError) as error:
@@ -179,7 +184,7 @@ def _watched(paths: Iterable[Path], patience: Patience, progress: Progress | Non
 
 
 def _paths(
-    law: Law, traced: PythonLaw, begin: float, y0: Array, end: float, tolerance: float, least: Array
+    law: Law, traced: PythonLaw, begin: float, t: float, y: Array, end: float, tolerance: float, least: Array
 ) -> Iterator[Path]:
     """Take steps to the end; those of a law that is stiff, and the first of any other, one by one."""
     from scipy.integrate import DOP853, Radau
@@ -190,17 +195,16 @@ def _paths(
         try:
             return np.array(traced.rates(begin + since, y.tolist()))
         except (ArithmeticError, ValueError):  # a trial beyond the end of a formula: a shorter step stays before it
-            return np.full(y0.size, np.nan)
+            return np.full(y.size, np.nan)
 
-    t, y = 0.0, y0
-    if law.stiff(y0):
+    if law.stiff(y):
         # Its first steps must be as short as the law is stiff: across a jump of direction there are other solutions.
-        stiff = Radau(rates, 0.0, y0, end, first_step=min(_FIRST_STEP, end), **given)
+        stiff = Radau(rates, t, y, end, first_step=min(_FIRST_STEP, end - t), **given)
         yield from _one_by_one(stiff, lambda: not law.stiff(stiff.y))
         t, y = float(stiff.t), stiff.y
     if t < end:
         stepper = DOP853(rates, t, y, end, **given)
-        compiles = traced.compiled is not None and not law.brief and available()
+        compiles = traced.compiled is not None and available()
         yield from _one_by_one(stepper, _many_to_come(stepper) if compiles else lambda: False)
         if stepper.status == "running" and traced.compiled is not None:
             yield from CompiledDOP853(traced.compiled(), stepper, begin, tolerance, least)
@@ -248,14 +252,27 @@ def _size(part: Array) -> float:
 
 
 def _follow(
-    paths: Iterable[Path], y0: Array, rows: _Rows | _Paths, stops: Any, names: tuple[str, ...]
+    onward: Callable[[float, Array, float], Iterator[Path]],
+    y0: Array,
+    end: float,
+    rows: _Rows | _Paths,
+    stops: Any,
+    names: tuple[str, ...],
 ) -> Iterator[Segment]:
     """Go along steps to the end or the first stop; states are read off the steps' own polynomials."""
     yield from rows.take(_OneStep(0.0, 0.0, lambda t: np.tile(y0[:, None], t.size), count=0))
-    first = stops(0.0, y0)
+    first, paths = stops(0.0, y0), onward(0.0, y0, end)
     try:
-        for path in paths:
+        while (path := next(paths, None)) is not None:
             found = None if path.plain else _first_stop(path, stops)
+            if found is not None and names[found[1]] in _SINGULAR and found[0] > path.t_old + _CLOSE * found[0]:
+                # A step across an instant at which the law is singular says little of the way there.
+                halfway, y = 0.5 * (path.t_old + found[0]), path(np.array([path.t_old]))[:, 0]
+                for nearer in onward(path.t_old, y, halfway):
+                    yield from rows.take(nearer)
+                    y = nearer(np.array([nearer.t]))[:, 0]
+                paths = onward(halfway, y, end)
+                continue
             yield from rows.take(path, before=None if found is None else found[0])
             if found is not None:
                 yield rows.rest(ZeroCrossing(found[0], names[found[1]], path(found[0])))
@@ -336,6 +353,14 @@ class _Paths:
         for i in np.unique(which):
             states[which == i] = self.paths[i](times[which == i]).T
         return states
+
+
+def nearly_singular(system: RollingSystem, now: PhaseStart, time: float, y: Array) -> bool:
+    """Tell whether a law, followed to a state, has all but come to an end at which it is singular."""
+    given = (*now.event_parameters, *corners.directions(system, now))
+    traced = python_law(system, now.law, given, now.time, now.state_vector)
+    first, there = (np.array(traced.event_functions(*at)) for at in ((now.time, now.state_vector), (time, y.tolist())))
+    return _singular(traced.names, there, first) is not None
 
 
 def _singular(names: tuple[str, ...], values: Array, first: Array) -> str | None:

@@ -89,15 +89,21 @@ def integrate(
         now, goes_on = goes_on, None
         with _begun(system, now, tolerance, shared) as run:
             run.patience = shared.patience(now.time, float(times[-1]) if times.size else now.time)
-            for chunk, states, reached in _propagate(run, times, progress):
-                if reached is None:
-                    yield Segment(chunk, states, None)
-                    continue
-                stop = run.stop(reached)
-                kept, _ = cut(chunk, stop.time)
-                goes_on = _in_another_chart(system, now, stop)
-                yield Segment(kept, states[: kept.size], stop if goes_on is None else None)
-                _, times = cut(times, stop.time)
+            try:
+                for chunk, states, reached in _propagate(run, times, progress):
+                    if reached is None:
+                        yield Segment(chunk, states, None)
+                        times = times[chunk.size :]
+                        continue
+                    stop = run.stop(reached)
+                    kept, _ = cut(chunk, stop.time)
+                    goes_on = _in_another_chart(system, now, stop)
+                    yield Segment(kept, states[: kept.size], stop if goes_on is None else None)
+                    _, times = cut(times, stop.time)
+            except SolverError:  # at an instant at which the law is singular, which its steps came to by a rounding
+                if not _ends_singular(system, now, run):
+                    raise
+                yield from runge_kutta.integrate(system, now, times, runge_kutta.FINEST, progress)
 
 
 def _in_another_chart(system: RollingSystem, now: PhaseStart, stop: ZeroCrossing) -> PhaseStart | None:
@@ -161,7 +167,8 @@ def dense(
     goes_on: PhaseStart | None = now
     while goes_on is not None:
         now, goes_on = goes_on, None
-        leg = _dense_in_chart(system, now, end, tolerance, most - sum(each.steps for each in legs), shared)
+        left = most - sum(each.steps for each in legs)
+        leg = _dense_in_chart(system, now, end, tolerance, left, shared)
         legs.append(leg)
         if isinstance(leg, Leg) and leg.stop is not None:
             goes_on = _in_another_chart(system, now, leg.stop)
@@ -194,7 +201,12 @@ def _dense_in_chart(
         part = min(LONGEST, (end - now.time) / _PARTS)
         while stop is None and run.reference < end:
             until = min(end, max(run.reference + part, math.nextafter(run.reference, end)))
-            reached = run.go_to(until - run.reference)
+            try:
+                reached = run.go_to(until - run.reference)
+            except SolverError:
+                if not _ends_singular(system, now, run):
+                    raise
+                return runge_kutta.dense(system, now, end, runge_kutta.FINEST, most)
             if reached is not None:
                 stop = run.stop(reached)
             elif kept.steps > most and until < end:
@@ -399,6 +411,12 @@ def chunks(times: Array, most: int = _CHUNKS, size: int = AT_ONCE) -> Iterator[A
         elif part.size:
             which = np.floor((part - part[0]) / LONGEST)
             yield from np.split(part, np.flatnonzero(np.diff(which)) + 1)
+
+
+def _ends_singular(system: RollingSystem, now: PhaseStart, run: _Run) -> bool:
+    """Tell whether a method that does not get on, or breaks down, has all but come to where its law is singular."""
+    (state,) = run.to_law(np.array([run.time]), run.integrator.state[None].copy())
+    return not np.isfinite(state).all() or runge_kutta.nearly_singular(system, now, run.time, state)
 
 
 def _event(run: _Run, outcome: Any) -> int | None:

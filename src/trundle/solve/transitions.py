@@ -18,7 +18,7 @@ from ..mechanics.slipping import response, slip, unpushed, unturned
 from ..mechanics.system import RollingSystem, State
 from .coming_off import lift_at_hand
 from .contact_state import WEIGHTLESS, ContactState, floats, moment
-from .creeping import CreepingLaw
+from .creeping import GROWN, CreepingLaw
 from .laws import (
     AN_INSTANT,
     CORNER,
@@ -112,7 +112,7 @@ def after(system: RollingSystem, law: Law, stop: ZeroCrossing) -> PhaseStart:
     if name == "land":
         # The gap and r may differ by rounding. The gap has said when; r gives way, or each bounce would add its share.
         return _struck(system, at.over(0.0))
-    if name in ("settled", "lags"):
+    if name in GROWN:
         return slipping(system, PhaseStart.of(law, at))
     if isinstance(law, CreepingLaw) and name == "turned":
         turned = law.turned(law.direction(system, stop.time, stop.state_vector))

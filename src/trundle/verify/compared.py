@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import OutOfDomainError
+from ..errors import OutOfDomainError, TurnsTooFastError
 from ..mechanics.system import RollingSystem, State
 from ..solve.compiled_steps import available
 from ..solve.dense import Dense
@@ -17,9 +17,10 @@ from ..solve.exact import ClosedForm
 from ..solve.methods import Method
 from ..solve.runge_kutta import FINEST
 from ..solve.samples import Event, Samples
-from .bounds import EXACT, Array, bound_of, largest, sizes_of, turned_in
+from .bounds import EXACT, Array, bound_of, largest, pace_of, sizes_of, turned_in
 from .card import CardFigure, checked
 from .growth import MOST, Growth, alike, at_the_same_times, growth, numerical, parted, same_events
+from .landings import landings_of
 from .stretches import SINGULAR, before_a_singular_end
 
 _INSTANTS = 200
@@ -77,6 +78,8 @@ def cross_check(
     ours = method.solve(system, start, times)
     try:
         theirs = other.solve(system, start, times)
+    except TurnsTooFastError:  # nothing to compare with
+        return
     except OutOfDomainError:  # the run comes into a phase that no closed form covers: up to there
         times = times[times < min((event.time for event in ours.events), default=times[-1])]
         if not times.size:
@@ -119,7 +122,9 @@ class Compared:
     @property
     def _steps(self) -> float:
         """About how many steps it took, each with an error of its own: one a radian, or as many as were counted."""
-        return max(self.turned, 0.0 if self.kept is None else self.kept.steps)
+        if self.kept is not None:
+            return max(self.turned, self.kept.steps)
+        return max(self.turned, pace_of(self.system, self.ours) * float(self.ours.time[-1] - self.start.time))
 
     @property
     def angle_bound(self) -> float:
@@ -229,6 +234,46 @@ class Compared:
         ]
         return max(float(np.linalg.norm(moved)) / max(self.sizes["position"], 1e-300), *apart)
 
+    @cached_property
+    def _delays(self) -> Array:
+        """Each landing's time, and how many times larger an error of the place in flight shows at it, and after it.
+
+        A change of the start does not show it: what lifted off was in contact, whatever the start. By an error δ of the
+        gap it comes down δ/|sₙ| later, which is long where it all but grazes the support, and at another speed.
+        """
+        span = max(float(self.ours.time[-1] - self.start.time), 1e-300)
+        size, speed, force = (max(self.sizes[field], 1e-300) for field in ("position", "velocity", "contact_force"))
+        turning = self.turned / span * self.bound / self.angle_bound
+        pace = max(1 / span, speed / size, force / (float(self.system.body.mass) * speed), turning)
+        rows = []
+        for landing in landings_of(self.system, self.ours.events[: self._shifts.size]):
+            if landing.jolted:
+                continue
+            closing = max(-float(landing.comes @ landing.n), 1e-300)
+            jumps = float(np.linalg.norm(landing.goes - landing.comes)) / speed
+            rows.append((landing.before.time, size * pace / closing, size * landing.pull / closing**2 * jumps))
+        return np.array(rows).reshape(-1, 3)
+
+    def _delayed(self, times: Array) -> Array:
+        """Return how many times larger an error of the place in flight shows at given times."""
+        landed, then, after = self._delays.T
+        past = np.concatenate([[0.0], np.maximum.accumulate(after)])[np.searchsorted(landed, times)]
+        return np.max([past, *(late * (times == at) for at, late in zip(landed, then, strict=True))], axis=0)
+
+    def _undecided(self, grown: Growth) -> float:
+        """Return when one of the two touches the support by less than an error of its place; infinite where none does.
+
+        What it strikes at a speed s, pulled at a, it would have entered by s²/2a.
+        """
+        known = self._shifts.size
+        for run in (self.ours, self.theirs):
+            for landing in landings_of(self.system, run.events[known : known + 1]):
+                time, closing = landing.before.time, float(landing.comes @ landing.n)
+                place = grown.widened(self.bound, self._steps, grown.at(np.array([time]))) * self.sizes["position"]
+                if not landing.jolted and closing**2 < 2 * landing.pull * float(place[0]):
+                    return time
+        return np.inf
+
     def figure(self, name: str, share: Array, bound: float, said: str, unit: str = "") -> CardFigure:
         """Return the figure of a difference: where a plain bound does not hold, with what the motion magnifies."""
         parts = parted(self.ours, self.theirs)
@@ -236,12 +281,15 @@ class Compared:
         if plain <= bound and parts == np.inf:
             return checked(name, plain, bound, said, unit)
         grown = self.growth
-        until = grown.told_until(bound, self._steps)
+        undecided = self._undecided(grown)
+        until = min(grown.told_until(bound, self._steps), np.nextafter(undecided, -np.inf))
         events = np.array([event.time for event in self.ours.events[: self._shifts.size]])
-        allowed = grown.widened(bound, self._steps, grown.at(self.ours.time))
+        magnified = np.maximum(grown.at(self.ours.time), self._delayed(self.ours.time))
+        allowed = grown.widened(bound, self._steps, magnified)
         told = (self.ours.time <= until) & ((allowed < MOST) | (allowed <= bound))
+        until = min([until, *self.ours.time[(self.ours.time <= until) & ~told][:1].tolist()])
         later = np.pad(grown.shifted, (grown.skipped, max(0, events.size - grown.skipped - grown.shifted.size)))
-        later = np.maximum(later[: events.size], grown.at(events))  # of the times and of the states
+        later = np.max([later[: events.size], grown.at(events), self._delayed(events)], axis=0)  # times and states
         allowed_then = grown.widened(bound, self._steps, later)
         known = (events <= until) & ((allowed_then < MOST) | (allowed_then <= bound))
         values = np.concatenate(
@@ -256,6 +304,8 @@ class Compared:
             why = (
                 "up to which a change is followed"
                 if until == grown.times[-1]
+                else "where a rounding decides whether it touches"
+                if until >= np.nextafter(undecided, -np.inf)
                 else "where a rounding has grown too large"
             )
             said += f"; nothing can be told beyond t = {until:.6g} s, {why}"

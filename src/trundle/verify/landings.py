@@ -286,15 +286,23 @@ class Landing:
             off = max(left_behind, self.off - left_behind)
             yield "only low bounces are cut", max(0.0, self._rise(off, self.after) / _CUT - 1), 1e-3
 
+    @property
+    def pull(self) -> float:
+        """How fast the gap's rate changes just before it, m/s²."""
+        return abs(self._opening(self.before))
+
     def _rise(self, off: float, after: State) -> float:
         """Return how high a bounce rises that comes off so fast, m/s, from a state, as a share of |ρ|."""
-        q, coordinates = Quaternion(*after.orientation), after.support
-        contact = contact_at(self.system, after.time, Vector(*self._point), q, coordinates)
-        slip = self._slip(after)
+        return off**2 / (2 * max(-self._opening(after), 1e-300)) / float(np.linalg.norm(self.rho))
+
+    def _opening(self, state: State) -> float:
+        """Return the gap's acceleration without a contact force, m/s²."""
+        q, coordinates = Quaternion(*state.orientation), state.support
+        contact = contact_at(self.system, state.time, Vector(*self._point), q, coordinates)
+        slip = self._slip(state)
         sliding = Vector(*(slip - self.n * (slip @ self.n)))
-        Omega = Vector(*after.angular_velocity)
-        back = -float(unpushed(self.system, after.time, contact, q, Omega, sliding, coordinates).opening)
-        return off**2 / (2 * max(back, 1e-300)) / float(np.linalg.norm(self.rho))
+        Omega = Vector(*state.angular_velocity)
+        return float(unpushed(self.system, state.time, contact, q, Omega, sliding, coordinates).opening)
 
     def by_its_course(self) -> Iterator[tuple[str, float, float]]:
         """Yield how far V and Ω after it are from what the impulse of its course makes of them."""

@@ -308,7 +308,8 @@ class _Windows:
         change, rate = self.slope(self.all.support_coordinates), at.support_coordinates[:, -1]
         # Of a force that presses on past the axle, and of a slope, no smaller moment is told from none.
         pressing = _PRODUCT * largest(arm) * largest(R) / self.bound
-        sharp = motion.inertia * _ROUNDING * np.abs(rate).max() / self.half / self.bound
+        fastest = max(np.abs(rate).max(), largest(at.angular_velocity))  # a step's error is a share of it
+        sharp = motion.inertia * _ROUNDING * fastest / self.half / self.bound
         steady = motion.inertia * np.abs(rate).max() * self.rate
         size = max(*(float(np.abs(part).max()) for part in parts), steady, pressing + sharp)
         law = np.abs(motion.inertia * change[:, -1] - sum(parts)).max() / max(size, 1e-300)

@@ -32,6 +32,7 @@ class SmoothSegment:
     end: float  # s
     pace: float  # the fastest rate in it, 1/s
     slips: bool = False  # whether the body slips in it
+    damped: bool = False  # whether something acts that may have done most of its work in the first moments
     settling: float = 0.0  # how long its first moment lasts, in which slip may begin, s
 
     @property
@@ -57,9 +58,11 @@ class SmoothSegment:
         aside = min(max(_ASIDE * self.length, self.settling), 0.25 * self.length)
         begin, end = self.begin + aside, self.end - _ASIDE * self.length
         edges = np.linspace(begin, end, count + 1)
-        if self.slips:  # closer and closer towards both ends, where the slip turns fast
-            nearer = (end - begin) * 0.25 ** np.arange(1, _QUARTERINGS)
-            edges = np.unique(np.concatenate([edges, begin + nearer, end - nearer]))
+        nearer = (end - begin) * 0.25 ** np.arange(1, _QUARTERINGS)
+        if self.slips or self.damped:  # closer and closer to where it begins
+            edges = np.union1d(edges, begin + nearer)
+        if self.slips:  # and towards its end, where the slip turns fast
+            edges = np.union1d(edges, end - nearer)
         return np.stack([edges[:-1], edges[1:]], axis=1)
 
     @property
@@ -88,6 +91,7 @@ def stretches(system: RollingSystem, begin: float, samples: Samples) -> list[Smo
     smooth = before_a_singular_end(samples)
     happenings = [event.time for event in samples.events] + [kink.time for kink in kinks(system, begin, end)]
     edges = sorted({begin, *(time for time in happenings if begin < time < end), end})
+    damped = bool(system.loads) or system.support.motion.free
     found: list[SmoothSegment] = []
     first, settles = begin, settling.get(begin, 0.0)
     for last in edges[1:]:
@@ -99,7 +103,7 @@ def stretches(system: RollingSystem, begin: float, samples: Samples) -> list[Smo
         pace = pace_of(system, part) + 1 / (last - first)
         slips = bool((part.phase == SLIPPING).any())
         pace += _TURNS / (last - first) if slips else 0.0
-        found.append(SmoothSegment(first, last, pace, slips, settles))
+        found.append(SmoothSegment(first, last, pace, slips, damped, settles))
         first, settles = last, settling.get(last, 0.0)
     return found
 
