@@ -51,7 +51,7 @@ def test_c_comes_with_its_header(here: Command) -> None:
             ("tilted-turntable", "--phase", "rest"),
             "`--phase` must be one that the system may have: rolling, flight; got 'rest'",
         ),
-        (("tilted-turntable", "--phase", "sinking"), "There are: rolling, slipping, flight, rest"),
+        (("tilted-turntable", "--phase", "sinking"), "There are: rolling, slipping, flight, rest, held_slipping"),
         (("tilted-turntable", "--inputs", "wind"), "There are: force, torque, support"),
         (("roll-home-turned",), "must have a body that forces act on"),
         (("tilted-turntable", "-o", "."), "must be a file"),

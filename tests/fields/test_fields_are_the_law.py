@@ -16,6 +16,7 @@ from tests.tolerances import EXACT
 import trundle as tr
 from trundle.errors import OutOfDomainError
 from trundle.fields.compiler import compiler
+from trundle.fields.fmi.archive import beginning
 from trundle.fields.printers.c import FLAGS
 from trundle.solve.laws import Law, RollingLaw
 
@@ -153,6 +154,23 @@ def test_the_file_of_c_stands_alone(tmp_path: Path) -> None:
     done = subprocess.run([tmp_path / "main"], capture_output=True, text=True, check=True)  # noqa: S603
     found = [float.fromhex(line) for line in done.stdout.split()]
     assert found == field.system.vector_field("numpy").rates(t, y, p, u).tolist()
+
+
+@WITH_C
+def test_a_file_of_c_with_loops_has_nothing_unused(tmp_path: Path) -> None:
+    """A landing that turns the slip is a loop, of which not all is wanted."""
+    (tmp_path / "top.c").write_text(tr.Scenario.load("tippe-top").system().vector_field("c").source("top"))
+    strict = ("-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
+    subprocess.run([str(compiler()), *FLAGS, *strict, "top.c"], cwd=tmp_path, check=True)  # noqa: S603
+
+
+@pytest.mark.parametrize("name", DYNAMIC)
+def test_a_start_has_rates(name: str) -> None:
+    """Also where slip begins at once, which has no direction before."""
+    scenario = tr.Scenario.load(name)
+    field, y = beginning(scenario.system(), scenario.start_state())
+    floats = scenario.system().vector_field("numpy", field.phase)
+    assert np.isfinite(floats.rates(0.0, y, floats.parameters, floats.inputs)).all()
 
 
 def test_every_number_has_one_name() -> None:

@@ -13,7 +13,7 @@ import trundle as tr
 from trundle.errors import InvalidValueError, OutOfDomainError, UnknownNameError
 from trundle.fields import VectorField
 from trundle.fields.compiler import compiler
-from trundle.fields.resets import CODES
+from trundle.fields.touching import CODES
 from trundle.mechanics.algebra import Quaternion, Vector
 from trundle.mechanics.contact import contact_at
 from trundle.mechanics.impact import land
@@ -248,31 +248,6 @@ def test_slip_begins_against_friction_and_ends_in_rolling(backend: str) -> None:
     assert np.array_equal(state, y)
 
 
-def test_where_resistance_holds_a_body_that_slips_it_is_said() -> None:
-    """A ball that slides with little turning stops turning first, as in the run."""
-    system = tr.RollingSystem(
-        tr.Body.solid_sphere(0.02, 0.1), tr.Support(tr.Plane(), friction=0.2), (tr.RollingResistance(0.015),)
-    )
-    start = system.place(velocity=(1.0, 0.0), angular_velocity=(0.0, -2.0, 0.0))
-    run = tr.simulate(system, start, duration=0.2, every=0.01)
-    stop = next(event for event in run.events if "stopped turning" in event.text)
-    field = system.vector_field("numpy", "slipping", ())
-    y, given = field.pack(start), (field.parameters, field.inputs)
-    e = field.event_parameters(0.0, y, *given)
-    assert "stop" in field.event_names
-    where = field.event_names.index("stop")
-    before, after = (
-        field.events(0.0, y + t * field.rates(0.0, y, *given), *given, e)[where]  # of a ball all rates are constant
-        for t in (0.9 * stop.time, 1.1 * stop.time)
-    )
-    assert before > 0 > after
-    with pytest.raises(OutOfDomainError, match="keeps it from turning"):
-        field.after("stop", stop.time, y, *given)
-    rests = system.vector_field("numpy", "rest", ())
-    with pytest.raises(OutOfDomainError, match="keeps it from turning"):
-        rests.after("slip", 0.0, rests.pack(system.place()), *given)
-
-
 def test_what_is_not_written_out_is_said() -> None:
     egg = tr.RollingSystem(tr.Body.ellipsoid((0.2, 0.15, 0.12), mass=1.0), ROUGH)
     field = egg.vector_field("c", "flight")
@@ -280,6 +255,10 @@ def test_what_is_not_written_out_is_said() -> None:
     bounded = tr.RollingSystem(egg.body, tr.Support(tr.Plane(rim=0.5))).vector_field("numpy")
     with pytest.raises(OutOfDomainError, match="the run ends there"):
         bounded.after("rim", 0.0, bounded.pack(egg.place()), bounded.parameters, bounded.inputs)
+    resisted = tr.RollingSystem(FLOOR.body, ROUGH, (tr.RollingResistance(1e-3),)).vector_field("numpy")
+    spinning = resisted.pack(FLOOR.place(spin=3.0))
+    with pytest.raises(OutOfDomainError, match="the run ends there"):
+        resisted.after("stop", 0.0, spinning, resisted.parameters, resisted.inputs)
     with pytest.raises(UnknownNameError, match="There are: land"):
         field.after("lend", *given)
     with pytest.raises(OutOfDomainError, match="leaves out what follows an event"):

@@ -15,6 +15,7 @@ from tests.tolerances import SOLVER
 import trundle as tr
 from trundle.analysis.many import running as many
 from trundle.solve import ensemble, integrator_cache, integrators, runge_kutta, taylor
+from trundle.solve.contact_state import STILL
 from trundle.solve.exact import SphereOnPlane
 from trundle.solve.laws import RollingLaw
 from trundle.solve.transitions import PhaseStart
@@ -262,6 +263,40 @@ def test_members_that_slip_or_fly_are_followed_through_their_phases(alone: list[
     mine = runs.isel(member=1)
     assert np.array_equal(mine.phase.values, np.where(mine.time.values < grip, 1, 0))
     assert float(mine.velocity.sel(axis="x")[-1]) == pytest.approx(0.5, abs=1e-9)
+
+
+@pytest.mark.parametrize("steps", [1, 2, 300])
+def test_an_event_in_the_last_step_that_a_lane_may_take_is_seen(
+    steps: int, alone: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A billiard ball slips for 2 v/(7 μ g), and then rolls at 5/7 v."""
+    monkeypatch.setattr(ensemble, "_STEPS", steps)
+    system = tr.RollingSystem(BALL, tr.Support(tr.Plane(), friction=0.2))
+    speeds = np.linspace(0.5, 1.5, 11)
+    starts = [system.place(velocity=(v, 0.0), angular_velocity=(0.0, 0.0, 0.0)) for v in speeds]
+    data = tr.simulate_many(system, starts, duration=0.5, every=0.25)
+    grips = 2 * speeds / (7 * 0.2 * 9.80665)
+    x = speeds * grips - 0.1 * 9.80665 * grips**2 + 5 / 7 * speeds * (0.5 - grips)
+    assert np.abs(data.position.values[:, -1, 0] - x).max() <= SOLVER(30, taylor.TOLERANCE)
+    assert alone == []
+
+
+def test_a_ball_that_begins_to_turn_against_resistance_is_taken_along(alone: list[int]) -> None:
+    """It slips for v/(μ g + (5/2)(μ − δ/a) g), as both friction and what it leaves of the resistance say."""
+    mu, delta, g, a = 0.2, 1e-3, 9.80665, 0.025
+    system = tr.RollingSystem(BALL, tr.Support(tr.Plane(), friction=mu), (tr.RollingResistance(delta),))
+    speeds = np.linspace(0.4, 0.8, 11)
+    starts = [system.place(velocity=(v, 0.0), angular_velocity=(0.0, 0.0, 0.0)) for v in speeds]
+    data = tr.simulate_many(system, starts, duration=0.2, every=0.1)
+    grips = speeds / (mu * g + 2.5 * (mu - delta / a) * g)
+    x = speeds * grips - 0.5 * mu * g * grips**2
+    left = 0.2 - grips
+    slows = delta * g / (1.4 * a)  # that of a ball which rolls
+    x += (speeds - mu * g * grips) * left - 0.5 * slows * left**2
+    assert (data.events.values == 1).all()
+    # It begins with a first little turn, four times what is all but nothing.
+    assert np.abs(data.position.values[:, -1, 0] - x).max() <= 2 * 4 * STILL * speeds.max() * 0.2
+    assert alone == []
 
 
 def test_starts_at_a_later_time() -> None:

@@ -52,6 +52,20 @@ def test_where_friction_gives_way_the_film_stops_and_says_so() -> None:
     assert low.apart <= BOUND
 
 
+def test_a_page_follows_a_body_that_slips_and_is_kept_from_turning() -> None:
+    tables = tr.Scenario.load("billiard-draw").model_dump(exclude_unset=True, exclude_none=True, by_alias=True)
+    tables["loads"] = [{"kind": "rolling-resistance", "offset": "25 mm"}]
+    tables["start"] = {**tables["start"], "angular_velocity": [0, "-1 turn/s", 0]}
+    (one,) = compared(tr.Scenario.read(tables))[:1]
+    assert one.run is not None
+    told = [event["text"].partition(" at ")[0] for event in one.told["events"]]
+    assert told == ["Stopped turning as it slipped", "Came to rest"]
+    times = [event["time"] for event in one.told["events"]]
+    assert times == pytest.approx([event.time for event in one.run.events], rel=1e-9)
+    assert one.apart <= BOUND
+    assert one.alike
+
+
 @pytest.mark.parametrize("name", ["rattleback", "ball-in-a-funnel", "eulers-disc", "turntable-drop"])
 def test_a_moved_slider_places_the_start_anew(name: str) -> None:
     """Placed on the tape at other numbers, the start is that of a scenario with these numbers."""

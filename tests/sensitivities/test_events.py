@@ -261,3 +261,10 @@ def test_a_later_start_moves_all_that_follows() -> None:
     assert data.instant.values == pytest.approx([t0 + grips], abs=1e-12)
     wanted = -np.where(since < grips, v - mu * 9.80665 * since, 5 / 7 * v)
     assert data.position.sel(axis="x").values == pytest.approx(wanted, abs=1e-11)
+
+
+@pytest.mark.parametrize("name", ["billiard-follow", "turntable-starting-up", "ball-on-a-pushed-box", "turntable-drop"])
+def test_the_clock_is_a_number_of_any_scenario(name: str) -> None:
+    """Also where the support is faster then, and where a slip ends in nothing to the last digit."""
+    found = tr.sensitivities(name, "start.time", duration=0.3, every=0.1)
+    assert found.passed

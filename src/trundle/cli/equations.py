@@ -25,7 +25,10 @@ def equations(
     ] = "python",
     phase: Annotated[
         str | None,
-        typer.Option(metavar="PHASE", help="rolling, slipping, flight or rest. Default: rolling, where it may roll."),
+        typer.Option(
+            metavar="PHASE",
+            help="rolling, slipping, held_slipping, flight or rest. Default: that in which the scenario starts.",
+        ),
     ] = None,
     inputs: Annotated[
         str | None,
@@ -44,6 +47,7 @@ def equations(
 
     Exit status: 0, all is well; 2, bad input; 130, interrupted; 1, all else.
     """
+    from ..fields.routines import starting_phase
     from ..files import written_whole
 
     if form not in FORMS:
@@ -55,8 +59,7 @@ def equations(
     groups: tuple[str, ...] = ("force", "torque", "support") if form != "latex" else ()
     if inputs is not None:
         groups = tuple(part.strip() for part in inputs.split(",") if part.strip())
-    if phase is None:
-        phase = "slipping" if system.support.friction == 0 else "rolling"
+    phase = starting_phase(system, start) if phase is None else phase
     try:
         field = system.vector_field(FORMS[form], phase, groups)
     except InvalidValueError as error:

@@ -16,8 +16,8 @@ from .backends import BACKENDS, Function
 from .inputs import GROUPS, inputs_of
 from .printed import Listed, Printed
 from .printers import symbolic
-from .resets import CODES, HELD
 from .routines import OUTPUTS, PhaseRoutines, Routine, check_analytic, phases_of
+from .touching import CODES, NOTHING
 
 _UNIT_OF = {"p": "m", "q": "", "Omega": "rad/s", "s": "m/s", "V": "m/s", "g": "m", "r": "m"}  # of the state's symbols
 
@@ -26,7 +26,7 @@ _UNIT_OF = {"p": "m", "q": "", "Omega": "rad/s", "s": "m/s", "V": "m/s", "g": "m
 class FieldReset:
     """What follows an event."""
 
-    # (t, y, p, u) -> the code of the phase that follows, an array of one number; None where only one may
+    # (t, y, p, u) -> the code of the phase that follows, an array of one number, −1 for none; None where only one may
     phase: Function | None
     states: Mapping[str, Function]  # for each phase that may follow, (t, y, p, u) -> the state with which it begins
 
@@ -42,7 +42,7 @@ class VectorField(Printed):
     backend : str
         "numpy", "numba", "jax", "sympy", "c" or "javascript".
     phase : str
-        "rolling", "slipping", "flight" or "rest".
+        "rolling", "slipping", "held_slipping", "flight" or "rest".
     input_groups : tuple of str
         Some of "force", "torque" and "support".
 
@@ -70,7 +70,10 @@ class VectorField(Printed):
             raise UnknownNameError("phase", str(self.phase), CODES)
         if self.phase not in self.phases:
             rule = f"must be one that the system may have: {', '.join(self.phases)}"
-            remedy = "Slipping takes a `friction` of the support, rolling one above 0, rest a resistance to rolling."
+            remedy = (
+                "Slipping takes a `friction` of the support, rolling one above 0, rest a resistance to rolling, and "
+                "held slipping both."
+            )
             raise InvalidValueError("phase", rule, self.phase, remedy)
         inputs_of(self.system, self.input_groups)
 
@@ -201,15 +204,10 @@ class VectorField(Printed):
         name = event.removeprefix("near ")
         if event not in self.event_names:
             raise UnknownNameError("event", event, self.event_names)
-        if (self.phase, name) in HELD:
-            raise OutOfDomainError(
-                f"After `{event}` of {self.phase} the body slips while resistance to rolling keeps it from turning, "
-                "which is no phase of vector fields. trundle.simulate follows it."
-            )
-        if name not in self.resets:
+        reset = self.resets.get(name)
+        code = None if reset is None or reset.phase is None else int(np.asarray(reset.phase(t, y, p, u)).item())
+        if reset is None or code == NOTHING:
             raise OutOfDomainError(f"After `{event}` of {self.phase} no phase follows: the run ends there.")
-        reset = self.resets[name]
-        code = None if reset.phase is None else int(np.asarray(reset.phase(t, y, p, u)).item())
         follows = next(phase for phase in reset.states if code is None or CODES[phase] == code)
         return self.at(follows), reset.states[follows](t, y, p, u)
 

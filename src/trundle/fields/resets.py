@@ -6,35 +6,22 @@ As in `trundle.solve.transitions`, which looks closer: there slip begins after i
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
 
-from ..mechanics.algebra import Quaternion, Vector
+from ..mechanics.algebra import Vector
 from ..mechanics.contact import contact_at
 from ..mechanics.impact import keeps_direction, straight_impulse
-from ..mechanics.scalars import Scalar, is_number, less, namespace
+from ..mechanics.scalars import Scalar, is_zero, less, namespace
 from ..mechanics.slipping import unpushed
 from ..mechanics.system import RollingSystem
 from ..solve.contact_state import STILL
-from ..solve.laws import CONTACT, Law, Numbers, RestingLaw, RollingLaw, cone, state_turning
-from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING
+from ..solve.laws import Law, Numbers, state_turning
+from ..solve.samples import RESTING, SLIPPING
 from ..solve.transitions import SETTLED, TAKE_OFF
 from .landings import turning_impulse
+from .touching import FIRST, HELD, Follows, Option, Touch, above, first, where
 
-CODES = {"rolling": ROLLING, "slipping": SLIPPING, "flight": FLIGHT, "rest": RESTING}
-_FIRST = 1e-9  # share of the speeds at hand with which slip, or turning, begins, and below which there is none
-
-
-@dataclass(frozen=True)
-class Follows:
-    """The state of each phase that may follow, and which does, by its code; none where only one may."""
-
-    states: dict[str, list[Scalar]]
-    phase: Scalar | None = None
-
-    def codes(self) -> list[tuple[str, int]]:
-        """Return the code of each."""
-        return [(name, CODES[name]) for name in self.states]
-
+_LEFT = 1e-6  # share of the speeds at hand below which slip, or turning, that comes to its end has ended
 
 # What follows an event, of (system, law, time, state, n, the system with plain numbers).
 Reset = Callable[[RollingSystem, Law, Scalar, Numbers, Vector, RollingSystem], Follows]
@@ -65,103 +52,78 @@ def _speed(system: RollingSystem, law: Law, time: Scalar, state: Numbers) -> Sca
 
 def _lift(system: RollingSystem, law: Law, time: Scalar, state: Numbers, n: Vector, plain: RollingSystem) -> Follows:  # noqa: ARG001
     """Return flight as the body moves, a gap begun that rounding does not close."""
-    p, q, Omega, _, coordinates = law.split(state)
+    p, q, _, _, coordinates = law.split(state)
     motion = law.motion(system, time, state)
     gap = (p - motion.position).norm() * TAKE_OFF
     r = motion.position + n * gap
-    return Follows({"flight": [*p, *q, *Omega, *motion.velocity, gap, *r, *coordinates]})
+    return Follows({"flight": [*p, *q, *motion.angular_velocity, *motion.velocity, gap, *r, *coordinates]})
 
 
 def _slip(system: RollingSystem, law: Law, time: Scalar, state: Numbers, n: Vector, plain: RollingSystem) -> Follows:  # noqa: ARG001
     """Return slip that begins against the friction that rolling, or rest, takes."""
-    p, q, Omega, _, coordinates = law.split(state)
-    R = law.reaction(system, time, state)
-    f = R - n * n.dot(R)
-    s = f * (-_FIRST * _speed(system, law, time, state) / f.norm())
-    return Follows({"slipping": [*p, *q, *Omega, *s, *coordinates]})
+    touch = _touch(system, law, time, state, plain)
+    s = touch.first_slip(law.reaction(system, time, state))
+    return first(list(touch.sliding(s)) if law.code == RESTING else [Option("slipping", touch.state(s))])
 
 
-def _grip(system: RollingSystem, law: Law, time: Scalar, state: Numbers, n: Vector, plain: RollingSystem) -> Follows:
-    """Return rolling, or slip the other way where friction cannot hold the body."""
-    rolling, coordinates = RollingLaw(), law.split(state)[4]
-    rolls = [*state[: len(CONTACT)], *coordinates]
-    contact = contact_at(system, time, *_place(law, state))
-    R = rolling.reaction(system, time, rolls)
-    holds = cone(system, contact, R, contact.normal.dot(R))["slip"]
-    slips = _slip(system, rolling, time, rolls, n, plain).states["slipping"]
-    return _either(holds, ("rolling", rolls), ("slipping", slips))
+def _grip(system: RollingSystem, law: Law, time: Scalar, state: Numbers, n: Vector, plain: RollingSystem) -> Follows:  # noqa: ARG001
+    """Return rolling, or rest; slip the other way where friction cannot hold the body; or slip that goes on."""
+    touch, s = _touch(system, law, time, state, plain), Vector(*law.split(state)[3])
+    goes_on = Option(HELD if law.turning == "held" else "slipping", [*state], above(s.norm(), _LEFT * touch.speed))
+    return first([goes_on, *touch.sticking()])
 
 
-def _stop(system: RollingSystem, law: Law, time: Scalar, state: Numbers, n: Vector, plain: RollingSystem) -> Follows:
-    """Return rest, or rolling that begins anew where the resistance cannot hold the body."""
-    p, q, _, _, coordinates = law.split(state)
-    resting, rests = RestingLaw(), [*p, *q, *_at_rest(system, time, coordinates), *coordinates]
-    holds = resting.event_functions(system, time, rests, ())["start"]
-    rolls = _start(system, resting, time, rests, n, plain).states["rolling"]
-    return _either(holds, ("rest", rests), ("rolling", rolls))
+def _stop(system: RollingSystem, law: Law, time: Scalar, state: Numbers, n: Vector, plain: RollingSystem) -> Follows:  # noqa: ARG001
+    """Return rest, or slip while the body is held; turning anew where it cannot be; or turning that goes on."""
+    touch, slips = _touch(system, law, time, state, plain), law.code == SLIPPING
+    goes_on = Option("slipping" if slips else "rolling", [*state], above(touch.turning, _LEFT * touch.speed))
+    still = touch.unturned
+    follows = still.sliding(Vector(*law.split(state)[3])) if slips else still.sticking()
+    return first([goes_on, *follows])
 
 
 def _start(system: RollingSystem, law: Law, time: Scalar, state: Numbers, n: Vector, plain: RollingSystem) -> Follows:  # noqa: ARG001
-    """Return rolling with a first little turn against what the resistance would have to give."""
-    p, q, _, _, coordinates = law.split(state)
-    Omega = _at_rest(system, time, coordinates)
-    held = RestingLaw().held(system, time, state)
-    couple = held.couple - n * n.dot(held.couple)
-    size = _speed(system, law, time, state) / held.contact.offset.norm()
-    Omega = Omega - couple * (_FIRST * size / couple.norm())
-    return Follows({"rolling": [*p, *q, *Omega, *coordinates]})
+    """Return rolling, or slip, with a first little turn against what the resistance would have to give."""
+    touch = _touch(system, law, time, state, plain)
+    if law.code == SLIPPING:
+        s, still = Vector(*law.split(state)[3]), touch.unturned
+        return Follows({"slipping": still.turned(still.held(s).holding).state(s)})
+    return Follows({"rolling": touch.at_rest.turned(touch.resting().couple).state()})
 
 
 def _land(system: RollingSystem, law: Law, time: Scalar, state: Numbers, n: Vector, plain: RollingSystem) -> Follows:
-    """Return flight where the body bounces, else slipping or rolling; a bounce as low as in a run is cut."""
-    p, q, Omega, _, coordinates = law.split(state)
-    motion, contact = law.motion(system, time, state), contact_at(system, time, p, q, coordinates)
-    V, mass, free = motion.velocity, system.body.mass, system.support.motion.free
+    """Return flight where the body bounces, else what it does that stays; a bounce as low as in a run is cut."""
+    touch, motion = _touch(system, law, time, state, plain), law.motion(system, time, state)
+    q, V, contact, mass = touch.q, motion.velocity, touch.contact, system.body.mass
     impulse = straight_impulse if keeps_direction(plain) else turning_impulse
-    P = impulse(system, contact, q, contact.slip_velocity(V, Omega))
+    P = impulse(system, contact, q, contact.slip_velocity(V, touch.Omega))
     J = system.body.inertia_in_space(q.matrix())
-    V, Omega = V + P / mass, Omega + J.solve(contact.offset.cross(P))
-    if free:
-        moment = contact.support.lever(p).dot(P)
-        coordinates = (*coordinates[:-1], coordinates[-1] - moment / system.support.motion.inertia)
-        contact = contact_at(system, time, p, q, coordinates)
+    V, touch = V + P / mass, replace(touch, Omega=touch.Omega + J.solve(contact.offset.cross(P)))
+    if plain.support.motion.free:
+        *others, rate = touch.coordinates
+        moment = contact.support.lever(touch.p).dot(P)
+        touch = replace(touch, coordinates=(*others, rate - moment / system.support.motion.inertia))
+    contact, Omega = touch.contact, touch.Omega
     s = contact.slip_velocity(V, Omega)
     off = n.dot(s)
     along, arm = s - n * off, contact.offset.norm()
-    pull = -unpushed(system, time, contact, q, Omega, along, coordinates).opening
-    xp = namespace(off, pull, arm)
-    tiny = _FIRST * _speed(system, law, time, state)
+    pull = -unpushed(system, time, contact, q, Omega, along, touch.coordinates).opening
     # Lower than the height at which a run cuts a bounce, or off by rounding alone.
-    height = xp.where(less(0.0, pull), off * off - 2.0 * SETTLED * arm * pull, 1.0)
-    bounces = xp.where(less(tiny, off), height, -1.0)
+    height = namespace(pull, off).where(less(0.0, pull), off * off - 2.0 * SETTLED * arm * pull, 1.0)
     gap = arm * TAKE_OFF
-    flies = [*p, *q, *Omega, *V, gap, *(motion.position + n * gap), *coordinates]
-    states = {"flight": flies}
+    flies = [*touch.p, *q, *Omega, *V, gap, *(motion.position + n * gap), *touch.coordinates]
+    bounces = Option("flight", flies, above(off, FIRST * touch.speed) * above(height, 0.0))
     friction = plain.support.friction
-    none = friction is not None and is_number(friction) and friction == 0
-    if friction is not None:
-        states["slipping"] = [*p, *q, *Omega, *along, *coordinates]
-    if not none:
-        states["rolling"] = [*p, *q, *Omega, *coordinates]
-    slides = along.dot(along) - tiny * tiny
-    stays = xp.where(less(0.0, slides), float(SLIPPING), float(ROLLING))
-    stays = float(ROLLING) if friction is None else float(SLIPPING) if none else stays
-    return Follows(states, xp.where(less(0.0, bounces), float(FLIGHT), stays))
+    if is_zero(friction):
+        return first([bounces, *touch.sliding(along)])
+    slides = touch.sliding(along) if friction is not None else iter(())
+    return first([bounces, *where(above(along.norm(), FIRST * touch.speed), slides), *touch.sticking()])
 
 
-def _place(law: Law, state: Numbers) -> tuple[Vector, Quaternion, tuple[Scalar, ...]]:
-    p, q, _, _, coordinates = law.split(state)
-    return p, q, coordinates
-
-
-def _at_rest(system: RollingSystem, time: Scalar, coordinates: tuple[Scalar, ...]) -> Vector:
-    return system.support.motion.at(time, *coordinates).angular_velocity
-
-
-def _either(holds: Scalar, one: tuple[str, list[Scalar]], other: tuple[str, list[Scalar]]) -> Follows:
-    """Return the other where what holds is less than zero."""
-    first, second = (float(CODES[name]) for name, _ in (one, other))
-    return Follows(dict((one, other)), namespace(holds).where(less(holds, 0.0), second, first))
+def _touch(system: RollingSystem, law: Law, time: Scalar, state: Numbers, plain: RollingSystem) -> Touch:
+    """Return the body of a state where it touches."""
+    p, q, Omega, _, coordinates = law.split(state)
+    return Touch(system, time, p, q, Omega, coordinates, _speed(system, law, time, state), plain)
 
 
 RESETS: dict[tuple[str, str], Reset] = {
@@ -169,11 +131,13 @@ RESETS: dict[tuple[str, str], Reset] = {
     ("rolling", "lift"): _lift,
     ("rolling", "stop"): _stop,
     ("slipping", "grip"): _grip,
+    ("slipping", "stop"): _stop,
     ("slipping", "lift"): _lift,
+    (HELD, "grip"): _grip,
+    (HELD, "start"): _start,
+    (HELD, "lift"): _lift,
     ("flight", "land"): _land,
+    ("rest", "slip"): _slip,
     ("rest", "start"): _start,
     ("rest", "lift"): _lift,
 }
-
-# Where a body goes on slipping, and resistance to rolling keeps it from turning: no phase of fields.
-HELD = {("slipping", "stop"), ("rest", "slip")}

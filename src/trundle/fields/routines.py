@@ -11,12 +11,19 @@ from ..mechanics.algebra import Vector
 from ..mechanics.contact import contact_at
 from ..mechanics.invariants.powers import energies
 from ..mechanics.parameters import parameters, with_numbers
-from ..mechanics.scalars import Scalar, is_number, namespace
-from ..mechanics.system import RollingSystem
+from ..mechanics.placing import SLIP_TOLERANCE
+from ..mechanics.scalars import Scalar, is_number, is_zero, namespace
+from ..mechanics.system import RollingSystem, State
+from ..solve.contact_state import ContactState
 from ..solve.laws import FlightLaw, Law, RestingLaw, RollingLaw, RollingWithResistance, SlidingFreely, SlippingLaw
+from ..solve.samples import SLIPPING
 from ..solve.tape import Dialect, Node, Tape
+from ..solve.transitions import at_start
 from .inputs import inputs_of, with_inputs
-from .resets import RESETS, Follows, event_parameters
+from .resets import RESETS, event_parameters
+from .touching import HELD, Follows
+
+STROKES = ("land", "settle", "jolt")  # kinds of event at which the support strikes the body
 
 # What a picture of a motion is made from, and its curves.
 FILM = (
@@ -78,13 +85,41 @@ def phases_of(system: RollingSystem) -> dict[str, Law]:
     none = friction is not None and is_number(friction) and friction == 0
     if not none:
         found["rolling"] = RollingWithResistance() if system.resisted else RollingLaw()
+    slipping = SlidingFreely if none else SlippingLaw
     if friction is not None:
-        turning = "resisted" if system.resisted else "free"
-        found["slipping"] = SlidingFreely(turning=turning) if none else SlippingLaw(turning=turning)
+        found["slipping"] = slipping(turning="resisted" if system.resisted else "free")
+        if system.resisted and not system.support.motion.free:
+            found[HELD] = slipping(turning="held")
     found["flight"] = FlightLaw()
     if system.resisted and not none and not system.support.motion.free:
         found["rest"] = RestingLaw()
     return found
+
+
+def starting_phase(system: RollingSystem, start: State) -> str:
+    """Return the phase in which a start is placed; where static friction cannot hold it, "slip" ends it at once.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> level = tr.RollingSystem(tr.Body.solid_sphere(0.1, 1.0), tr.Support(tr.Plane(), friction=0.2))
+    >>> starting_phase(level, level.place()), starting_phase(level, level.place(velocity=(1.0, 0.0), spin=3.0))
+    ('rolling', 'rolling')
+    >>> starting_phase(level, level.place(height=0.1))
+    'flight'
+    """
+    now, at = at_start(system, start), ContactState.of(system, start)
+    if any(event.kind in STROKES for event in now.events):
+        return "flight"
+    held = now.law.turning == "held"
+    if now.law.code == SLIPPING and not is_zero(system.support.friction) and _sticks(at):
+        return "rest" if held else "rolling"
+    found = phases_of(system).items()
+    return next(name for name, law in found if law.code == now.law.code and (law.turning == "held") == held)
+
+
+def _sticks(at: ContactState) -> bool:
+    return not at.sliding.norm() > SLIP_TOLERANCE * at.speed
 
 
 def check_analytic(system: RollingSystem) -> None:
@@ -184,7 +219,7 @@ class PhaseRoutines:
             orbit + turning,
             sum(others, orbit + turning),
             R.dot(n),
-            contact.slip_velocity(V, Omega).norm() if self.phase == "slipping" else 0.0,
+            contact.slip_velocity(V, Omega).norm() if self.law.code == SLIPPING else 0.0,
         ]
         turn = [part for row in support.rotation.rows for part in row]
         found = [*motion.position, *p, *q.unit, *V, *Omega, *R, *support.origin, *turn, *curves]

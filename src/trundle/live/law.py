@@ -10,8 +10,8 @@ from typing import Any
 from ..analysis.sensitivities.keys import Key
 from ..errors import OutOfDomainError
 from ..fields.printers import javascript
-from ..fields.resets import CODES, HELD
 from ..fields.routines import FILM, PhaseRoutines, Routine, check_analytic, phases_of
+from ..fields.touching import CODES, HELD, NOTHING
 from ..mechanics.kinks import kinks_and_jolts
 from ..mechanics.system import RollingSystem
 from ..scenario import ScenarioFile
@@ -24,14 +24,29 @@ TOLERANCE = 1e-13  # relative, of each step
 
 # What is said where a phase gives way to another, by its event and that which follows.
 _SAID = {
-    "grip": {"rolling": "Gripped and rolled", "slipping": "Slipped on the other way"},
-    "stop": {"rest": "Came to rest", "rolling": "Stood for an instant"},
-    "start": {"rolling": "Began to roll"},
-    "slip": {"slipping": "Began to slip"},
+    "grip": {
+        "rolling": "Gripped and rolled",
+        "slipping": "Slipped on the other way",
+        HELD: "Slipped on the other way",
+        "rest": "Came to rest",
+    },
+    "stop": {
+        "rest": "Came to rest",
+        "rolling": "Stood for an instant",
+        "slipping": "Turned on the other way as it slipped",
+        HELD: "Stopped turning as it slipped",
+    },
+    "start": {"rolling": "Began to roll", "slipping": "Began to turn as it slipped"},
+    "slip": {"slipping": "Began to slip", HELD: "Began to slip"},
     "lift": {"flight": "Came off the support"},
-    "land": {"flight": "Bounced", "slipping": "Landed and slipped", "rolling": "Landed and rolled"},
+    "land": {
+        "flight": "Bounced",
+        "slipping": "Landed and slipped",
+        HELD: "Landed and slipped",
+        "rolling": "Landed and rolled",
+        "rest": "Landed and stayed",
+    },
 }
-_HELD = "Slips while resistance keeps it from turning, which a live page does not follow"
 _JAM = "Friction would jam the body: the rigid law has no answer"
 
 
@@ -87,6 +102,7 @@ def script_of(scenario: ScenarioFile, wanted: Sequence[Key], placed: Placed) -> 
         "moment": moment(system, start),
         "tolerance": TOLERANCE,
         "codes": CODES,
+        "nothing": NOTHING,
         "turning": [name for name, _ in FILM].index("angular_velocity_x"),
         "said": _SAID,
         "ends": _ends(system),
@@ -106,7 +122,10 @@ def _phase(routines: PhaseRoutines, printed: list[Routine]) -> str:
     if routines.law.event_parameters:
         own["eventParameters"] = routines.event_parameters()
     printed += own.values()
-    parts = [f"name: {json.dumps(routines.phase)}", *(f"{key}: {routine.name}" for key, routine in own.items())]
+    parts = [
+        f"name: {json.dumps(routines.phase)}, code: {routines.law.code}",
+        *(f"{key}: {routine.name}" for key, routine in own.items()),
+    ]
     parts += [f"names: {json.dumps(names)}", f"groups: {json.dumps(_groups(routines.state_names))}"]
     resets = []
     for event in routines.resets():
@@ -133,8 +152,7 @@ def _ends(system: RollingSystem) -> dict[str, str]:
     surface, shape = system.support.surface, system.body.shape
     known = {name: text.format(rim=0.0, end=surface.domain_end, left=shape.validity_end) for name, text in ENDS.items()}
     plain = {name: re.sub(r" \(.*?\)", "", text) for name, text in known.items()}
-    held = {f"{phase} {event}": _HELD for phase, event in HELD}
-    return {name: text[:1].upper() + text[1:] for name, text in (plain | held | {"jam": _JAM}).items()}
+    return {name: text[:1].upper() + text[1:] for name, text in (plain | {"jam": _JAM}).items()}
 
 
 def _method() -> dict[str, Any]:

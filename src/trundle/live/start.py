@@ -10,7 +10,7 @@ import numpy as np
 
 from ..analysis.sensitivities.keys import Key, moved, replaced
 from ..errors import OutOfDomainError, TrundleError
-from ..fields.routines import Routine, phases_of, plain
+from ..fields.routines import STROKES, Routine, phases_of, plain, starting_phase
 from ..mechanics.parameters import numbers
 from ..mechanics.placing import Placing
 from ..mechanics.scalars import is_number
@@ -19,7 +19,6 @@ from ..scenario import ScenarioFile
 from ..solve import transitions
 from ..solve.contact_state import ContactState
 from ..solve.exact import ClosedForm
-from ..solve.samples import FLIGHT, RESTING, SLIPPING
 from ..solve.tape import Tape
 from .formula import formula_of
 from .recorded import Recorded, step_of
@@ -101,7 +100,7 @@ class Placed:
 
 
 def phase_of(system: RollingSystem, start: State) -> str:
-    """Return the phase in which a start is placed; where static friction cannot hold it, that ends at once.
+    """Return the phase in which a start is placed, if a page can begin with it.
 
     Raises
     ------
@@ -109,14 +108,11 @@ def phase_of(system: RollingSystem, start: State) -> str:
         If it begins with a stroke, or nothing presses it on.
     """
     now = transitions.at_start(system, start)
-    if any(event.kind in ("land", "settle", "jolt") for event in now.events):
+    if any(event.kind in STROKES for event in now.events):
         raise OutOfDomainError("It starts with a stroke against the support")
     if now.law.weightless:
         raise OutOfDomainError("Nothing presses the body on the support")
-    at = ContactState.of(system, start)
-    if now.law.code == SLIPPING and not at.sliding.norm() > transitions.SLIP_TOLERANCE * at.speed:
-        return "slipping" if system.support.friction == 0 else "rolling"
-    return {FLIGHT: "flight", SLIPPING: "slipping", RESTING: "rest"}.get(now.law.code, "rolling")
+    return starting_phase(system, start)
 
 
 def _counterparts(system: Any, other: Any) -> Iterator[Any]:

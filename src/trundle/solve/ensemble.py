@@ -530,12 +530,22 @@ class _Lanes:
 
     def _stop(self, lane: int, outcome: Any) -> ZeroCrossing | None:
         """Return the stop to which a lane has come."""
-        member = self.members[lane]
-        if member is None or not -1000 < int(outcome) < 0:
+        member, event = self.members[lane], self._event(lane, outcome)
+        if member is None or event is None:
             return None
         time = member.begin + float(self.times[lane])
-        name = self.lowered.event_functions[-int(outcome) - 1]
-        return ZeroCrossing(time, name, self.integrator.state[:, lane].copy())
+        return ZeroCrossing(time, self.lowered.event_functions[event], self.integrator.state[:, lane].copy())
+
+    def _event(self, lane: int, outcome: Any) -> int | None:
+        """Return which event a lane has come to; in the last of the steps that it may take only its cooldown tells."""
+        import heyoka
+
+        if -1000 < int(outcome) < 0:
+            return -int(outcome) - 1
+        if outcome != heyoka.taylor_outcome.step_limit or not self.lowered.event_functions:
+            return None
+        cooldowns = enumerate(self.integrator.te_cooldowns[lane])
+        return next((i for i, since in cooldowns if since is not None and since[0] == 0.0), None)
 
     def _sample(self, path: Array, looks: Mapping[int, _Looks], stops: Mapping[int, ZeroCrossing | None]) -> None:
         """Keep the states at the instants that have been passed."""

@@ -32,7 +32,7 @@ ENDS = {
     "end": "came to {end}",
     "edge": "{left}, which its shape does not cover",
     "curved": "came where the support is as hollow as the body is round: 1 + C S is singular",
-    "spot": "stopped rolling while it still spins about the normal, which is not covered",
+    "spot": "stopped on the spot while it still spins about the normal, which is not covered",
 }
 
 
@@ -383,12 +383,13 @@ def _telling(progress: Progress | None, times: Array) -> Progress | None:
 
 
 def _spinning_on(system: RollingSystem, law: Law, stop: ZeroCrossing) -> bool:
-    return law.code == ROLLING and stop.name.endswith("stop") and transitions.spins_on(system, law, stop)
+    ends = stop.name.endswith("stop") if law.code == ROLLING else law.turning == "held" and stop.name.endswith("grip")
+    return ends and transitions.spins_on(system, law, stop)
 
 
 def _ended(system: RollingSystem, law: Law, stop: ZeroCrossing) -> tuple[Samples, Event]:
     samples = law.record(system, np.array([stop.time]), stop.state_vector[None])
-    name = "spot" if stop.name.endswith("stop") else stop.name
+    name = "spot" if stop.name.endswith(("stop", "grip")) else stop.name
     state, contact = samples.state(0), tuple(samples.contact[0].tolist())
     return samples, Event(state.time, name, ended_in_words(system, name, state.time), state, state, contact)
 

@@ -255,7 +255,7 @@ def _extras(system: RollingSystem, law: Law, at: ContactState, numbers: Any = No
 
 
 def spins_on(system: RollingSystem, law: Law, stop: ZeroCrossing) -> bool:
-    """Tell whether a body has stopped rolling, and still spins about the normal."""
+    """Tell whether a body neither slips nor turns over the support from now on, and still spins about the normal."""
     at = stop.at(system, law)
     if _goes_on(system, law, at, stop):
         return False

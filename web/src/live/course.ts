@@ -192,21 +192,20 @@ class Follower {
       return
     }
     const reset = phase.resets[name]
-    const held = law.ends[`${phase.name} ${name}`]
-    if (!reset || held) {
-      this.stop(name, held ?? law.ends[name] ?? NO_ANSWER)
+    if (!reset) {
+      this.stop(name, law.ends[name] ?? NO_ANSWER)
       return
     }
     const code = reset.choice?.(this.t, this.y, p, u)[0]
+    if (code === law.nothing) {
+      this.stop('spot', law.ends.spot ?? NO_ANSWER)
+      return
+    }
     const names = Object.keys(reset.states)
     const follows = names.find((each) => code === undefined || law.codes[each] === code) ?? (names[0] as string)
     const y = (reset.states[follows] as (typeof reset.states)[string])(this.t, this.y, p, u)
     if (!y.every(Number.isFinite)) {
       this.stop(name, NO_ANSWER)
-      return
-    }
-    if (name === 'stop' && this.spins(follows, y)) {
-      this.stop('spot', law.ends.spot ?? NO_ANSWER)
       return
     }
     const last = this.found.events.at(-1)
@@ -235,13 +234,6 @@ class Follower {
     const least = this.e[4 * which]!
     const square = this.events(this.t, this.y)[near]! + least
     return square > 16 * least
-  }
-
-  /** Whether it turned about the normal when it stopped rolling: rest would take that away at once. */
-  private spins(follows: string, y: Numbers): boolean {
-    const after = this.turning(this.law.phases[follows] as Phase, y)
-    const lost = Math.hypot(...this.turning(this.phase, this.y).map((rate, i) => rate - after[i]!))
-    return lost * this.law.arm > 1e-9 * (this.law.arm / this.law.moment)
   }
 
   /** Ω of a state of a phase, rad/s. */
@@ -311,7 +303,7 @@ class Follower {
     }
     time.push(t)
     this.found.rows.push(this.phase.film(t, y, this.p, this.u))
-    this.found.phase.push(this.law.codes[this.phase.name]!)
+    this.found.phase.push(this.phase.code)
   }
 }
 

@@ -11,6 +11,8 @@ export interface Reset {
 export interface Phase {
   /** What it is: by a closed form it has the name of the phase of contact, too. */
   name: string
+  /** As in the column `phase` of a run. */
+  code: number
   rates: (t: number, y: Numbers, p: Numbers, u: Numbers) => number[]
   events: (t: number, y: Numbers, p: Numbers, u: Numbers, e: Numbers) => number[]
   film: (t: number, y: Numbers, p: Numbers, u: Numbers) => number[]
@@ -41,6 +43,8 @@ export interface Law {
   moment: number
   tolerance: number
   codes: Record<string, number>
+  /** The code where no phase follows. */
+  nothing: number
   /** Where in a row of the film the angular velocity begins. */
   turning: number
   said: Record<string, Record<string, string>>

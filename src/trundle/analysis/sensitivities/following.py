@@ -7,6 +7,7 @@ derivatives are less by the new rates times dt*/dθ: together, the saltation mat
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -24,7 +25,7 @@ from ...mechanics.slipping import slip
 from ...mechanics.system import RollingSystem, State
 from ...solve import corner_events, corners, phases, runge_kutta, taylor, transitions
 from ...solve.contact_state import ContactState
-from ...solve.laws import CORNER, Law, SlippingLaw, state_turning
+from ...solve.laws import CONTACT, CORNER, Law, SlippingLaw, state_turning
 from ...solve.phases import Integrate, Segment
 from ...solve.samples import RESTING, ROLLING, SLIPPING, Array, Progress, Samples
 from ...solve.transitions import JOLT, PhaseStart, ZeroCrossing
@@ -118,8 +119,8 @@ def check_start(system: RollingSystem, begins: PhaseStart, first: State, names: 
         rule = "must name numbers that change alone without turning a body that does not turn at the start"
         remedy = "A resistance acts against either way at once, and so there is no derivative."
         _refuse(turning * given.arm, given, names, rule, remedy)
-    at = begins.law.unpack(system, value_of(begins.time), begins.state_vector)
     if begins.law.code in (ROLLING, RESTING):
+        at = begins.law.unpack(system, begins.time, begins.state_vector)  # its slope, too: a support may be faster then
         rule = "must name numbers that change alone without making a body slip that rolls at the start"
         remedy = 'Both velocities are given: let one follow, by `spin` or by `velocity = "rolling"`.'
         _refuse(given.V - at.V, given, names, rule, remedy)
@@ -248,16 +249,23 @@ class VariationalRun:
             numbers: Any = np.array(state, dtype=object)
             known = transitions.jolted(self.duals, law, kink, numbers) if stop.name == JOLT else None
             return ZeroCrossing(stop.time, stop.name, numbers, known)
-        try:
-            rates = [float(rate) for rate in law.rates(self.system, stop.time, [one.value for one in state])]
-        except ZeroDivisionError:
-            raise no_derivative(stop.time, "slip is nothing there to the last digit, and has no direction") from None
+        state = self._with_direction(law, state)
+        rates = [float(rate) for rate in law.rates(self.system, stop.time, [one.value for one in state])]
         moved = self._moved(law, stop, state, rates)
         pairs = zip(state, rates, strict=True)
         there = [
             Dual(one.value, tuple(s + rate * m for s, m in zip(one.slopes, moved, strict=True))) for one, rate in pairs
         ]
         return ZeroCrossing(Dual(stop.time, moved), stop.name, np.array(there, dtype=object))  # type: ignore[arg-type]
+
+    def _with_direction(self, law: Law, state: list[Dual]) -> list[Dual]:
+        """Return the same with a slip less than all but nothing, as it was, where it has ended to the last digit."""
+        contact, slips, others = state[: len(CONTACT)], state[len(CONTACT) :][:3], state[len(CONTACT) + 3 :]
+        if "grip" not in law.ends or any(one.value for one in slips):
+            return state
+        near, *direction = self.event_parameters[law.weightless :][:4]
+        size = 1e-3 * math.sqrt(near)
+        return [*contact, *(Dual(size * part, one.slopes) for part, one in zip(direction, slips, strict=True)), *others]
 
     def _moved(self, law: Law, stop: ZeroCrossing, state: list[Dual], rates: list[float]) -> tuple[float, ...]:
         """Return how the instant of a stop changes with the parameters."""
@@ -267,14 +275,13 @@ class VariationalRun:
         system = with_numbers(self.system, numbers)
         found = corner_events.all_event_functions(system, law, time, ahead, self.event_parameters)
         *slopes, falls = (float(slope) for slope in slopes_of(found[stop.name], self.count + 1))
-        self._check_crossing(law, stop, falls)
+        self._check_crossing(law, stop, [one.value for one in state], falls)
         return tuple(-slope / falls for slope in slopes)
 
-    def _check_crossing(self, law: Law, stop: ZeroCrossing, falls: float) -> None:
+    def _check_crossing(self, law: Law, stop: ZeroCrossing, numbers: list[float], falls: float) -> None:
         """Refuse an event that is only just reached: with other numbers it may not come at all."""
         if stop.name.startswith("near "):  # a square, of what is all but nothing
             return
-        numbers = stop.state_vector.tolist()
         wait = _BEFORE * law.unpack(self.system, stop.time, numbers).moment(self.system)
         before = law.rk4_step(self.system, stop.time, numbers, -wait)
         stops = corner_events.all_event_functions(self.system, law, stop.time - wait, before, self.event_parameters)

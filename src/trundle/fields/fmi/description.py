@@ -10,7 +10,8 @@ from itertools import count
 from typing import Any
 from xml.etree import ElementTree as ET
 
-from ...mechanics.system import State
+import numpy as np
+
 from ..field import VectorField
 
 IDENTIFIER = "trundle_model"
@@ -18,10 +19,12 @@ _IN_BASE = {"N": "kg*m/s^2", "J": "kg*m^2/s^2"}
 _BASE = ("kg", "m", "s", "rad")
 
 
-def model_description(field: VectorField, start: State, title: str, token: str) -> str:
+def model_description(field: VectorField, y: np.ndarray, begin: float, title: str, token: str) -> str:
     """Return modelDescription.xml; the value references are those of fmi3.c."""
     ends = ", ".join(field.event_names)
-    left_out = f"Only {field.phase} is in it: the simulation ends where that ends" + (f" ({ends})." if ends else ".")
+    left_out = f"Only {field.phase} is in it: the simulation ends where another begins" + (
+        f" ({ends})." if ends else "."
+    )
     root = ET.Element(
         "fmiModelDescription",
         fmiVersion="3.0",
@@ -37,7 +40,7 @@ def model_description(field: VectorField, start: State, title: str, token: str) 
     rates = [f"{unit}/s" if unit else "1/s" for unit in field.state_units]
     units = {*field.state_units, *rates, *field.parameter_units, *field.input_units, *field.output_units, "s"}
     _define(root, sorted(units - {""}))
-    ET.SubElement(root, "DefaultExperiment", startTime=repr(float(start.time)), stopTime=repr(start.time + 1.0))
+    ET.SubElement(root, "DefaultExperiment", startTime=repr(begin), stopTime=repr(begin + 1.0))
     variables, structure = ET.SubElement(root, "ModelVariables"), ET.SubElement(root, "ModelStructure")
     references = count()
 
@@ -53,7 +56,7 @@ def model_description(field: VectorField, start: State, title: str, token: str) 
 
     add(["time"], ["s"], causality="independent", variability="continuous")
     local: dict[str, Any] = {"causality": "local", "variability": "continuous"}
-    states = add(field.state_names, field.state_units, field.pack(start), **local, initial="exact")
+    states = add(field.state_names, field.state_units, y, **local, initial="exact")
     derivatives = add([f"der({name})" for name in field.state_names], rates, **local)
     for state, element in zip(states, list(variables)[derivatives[0] :], strict=True):
         element.set("derivative", str(state))

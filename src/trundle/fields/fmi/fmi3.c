@@ -1,7 +1,8 @@
 /*
  * The functions of FMI 3.0, model exchange and co-simulation, about the routines in model.c.
  *
- * One phase of contact is in it. Where an event function falls through zero the phase ends, and the simulation with it.
+ * One phase of contact is in it. Where an event function falls through zero the phase ends, and the simulation with it,
+ * unless the same phase follows, as where slip has only turned.
  * In co-simulation the method is that of Dormand and Prince, 5(4), with steps by the tolerance asked for.
  */
 #include <math.h>
@@ -112,6 +113,17 @@ static void end(Model *m, int event)
     m->ended = true;
 }
 
+/* Begin the phase anew where it follows its own event; tell whether it does. */
+static bool goes_on(Model *m, int event)
+{
+    double after[MODEL_STATES + 1];
+    if (!model_goes_on(event, m->t, m->y, m->p, m->u, after)) return false;
+    memcpy(m->y, after, sizeof(double) * MODEL_STATES);
+    memset(m->size, 0, sizeof m->size);
+    MODEL_BEGIN(m->t, m->y, m->p, m->u, m->e);
+    return true;
+}
+
 /* One step of Dormand and Prince; the error as a share of what the tolerance allows. */
 static double step(const Model *m, double h, double *after)
 {
@@ -158,6 +170,7 @@ static Status advance(Model *m, double until)
     double after[MODEL_STATES + 1], h = until - m->t;
     for (long steps = 0; m->t < until; steps++) {
         double left = until - m->t, worst, low = 0, high;
+        int event;
         if (h > left) h = left;
         worst = step(m, h, after);
         if (!(worst <= 1)) {
@@ -179,8 +192,12 @@ static Status advance(Model *m, double until)
             step(m, high, after);
             memcpy(m->y, after, sizeof(double) * MODEL_STATES);
             m->t += high;
-            end(m, fallen(m, 1e-9) < 0 ? 0 : fallen(m, 1e-9));
-            return OK;
+            event = fallen(m, 1e-9);
+            if (!goes_on(m, event < 0 ? 0 : event)) {
+                end(m, event < 0 ? 0 : event);
+                return OK;
+            }
+            continue;
         }
         memcpy(m->y, after, sizeof(double) * MODEL_STATES);
         m->t = h >= left ? until : m->t + h;
@@ -264,12 +281,28 @@ EXPORT Status fmi3GetFloat64(Instance i, const Reference which[], size_t n, doub
     return OK;
 }
 
+static Status refuse(const Model *m, Reference r, const char *rule, double value)
+{
+    char text[300];
+    bool known = r >= PARAMETERS && r < INPUTS;
+    snprintf(text, sizeof text, "%s %s; got %.17g.", known ? model_parameter_names[r - PARAMETERS] : "A value", rule,
+             value);
+    say(m, ERROR, text);
+    return ERROR;
+}
+
 EXPORT Status fmi3SetFloat64(Instance i, const Reference which[], size_t n, const double values[], size_t count)
 {
     Model *m = i;
     (void)count;
     for (size_t j = 0; j < n; j++) {
         Reference r = which[j];
+        if (!isfinite(values[j])) return refuse(m, r, "must be a finite number", values[j]);
+        if (r >= PARAMETERS && r < INPUTS) {
+            int sign = model_signs[r - PARAMETERS];
+            if (sign == 2 && values[j] <= 0) return refuse(m, r, "must be positive", values[j]);
+            if (sign == 1 && values[j] < 0) return refuse(m, r, "must not be negative", values[j]);
+        }
         if (r >= STATES && r < RATES) m->y[r - STATES] = values[j];
         else if (r >= PARAMETERS && r < INPUTS) m->p[r - PARAMETERS] = values[j];
         else if (r >= INPUTS && r < EVENTS) m->u[r - INPUTS] = values[j];
@@ -352,8 +385,9 @@ EXPORT Status fmi3UpdateDiscreteStates(Instance i, bool *again, bool *terminate,
 {
     Model *m = i;
     int event = m->begun && !m->ended ? fallen(m, m->size[0] > 0 ? 1e-9 : 0) : -1;
-    if (event >= 0) end(m, event);
-    *again = *nominals = *values = *defined = false;
+    *values = event >= 0 && goes_on(m, event);
+    if (event >= 0 && !*values) end(m, event);
+    *again = *nominals = *defined = false;
     *terminate = m->ended;
     (void)next;
     return OK;

@@ -52,6 +52,7 @@ def _step(line: Any) -> list[str]:
     goes_on = [f"{name} = next_{name};" for name in line.changing]
     inside = [f"    {each}" for each in (*steps, *after, *goes_on)]
     end = [f"{target} = {name};" for target, name in zip(line.targets, line.changing, strict=True)]
+    end += [f"(void){target};" for target in line.targets]  # of which some may not be wanted
     block = [*begin, f"while ({line.changing[0]} > 0.0) {{", *inside, "}", *end]
     return [*outside, "{", *(f"    {each}" for each in block), "}"]
 

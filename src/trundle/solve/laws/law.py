@@ -44,6 +44,8 @@ class Law:
         Whether it holds for so short a time that to compile it would take longer than to follow it.
     in_charts : bool
         Whether its state is no more than place, turning and the support's own motion, which charts know.
+    turning : str
+        "free"; "resisted"; or "held", where the body slips and does not turn over the support.
     variational : bool
         Whether its numbers are those of another law with their derivatives.
     unwatched : int
@@ -61,6 +63,7 @@ class Law:
     brief: bool = False
     in_charts: bool = False
     unwatched: int = 0
+    turning: str = "free"
     variational: bool = False
 
     def __init__(self, weightless: bool = False) -> None:
