@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import subprocess
 import sys
@@ -17,6 +18,7 @@ from tests.conformance.test_score import rows
 
 from trundle.cli import run as trundle
 from trundle.conformance import Score, cases, engines, portable
+from trundle.conformance.animation import path_of
 from trundle.conformance.measuring import errors_of
 from trundle.conformance.report import markdown, page
 
@@ -41,7 +43,7 @@ class _Checker(HTMLParser):
         self.outside: list[str] = []
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        if tag not in ("meta", "br", "use", "path", "rect", "circle"):
+        if tag not in ("meta", "br", "use", "path", "rect", "circle", "input"):
             self.open.append(tag)
         self.outside += [v for k, v in attrs if k in ("src", "href") and v and not v.startswith("#")]
 
@@ -61,6 +63,24 @@ def test_the_page_needs_nothing_but_itself() -> None:
     assert text.count("<svg") == 2
     for words in ("Ball rolling down an incline", "float32 floor", "falls with: double precision", "no wheel", "E 1"):
         assert words in text
+
+
+def test_the_page_plays_the_motion_of_an_engine_beside_the_exact_one() -> None:
+    """What the page holds is read back: the exact motion of the case, and the engine's own."""
+    case = CASES["incline"]
+    exact = case.exact()
+    moved = replace(exact, position=exact.position + np.array([0.0, 0.25, 0.0]))
+    score = Score(tuple(replace(row, path=path_of(moved)) for row in rows(1e-2, 1e-3)))
+    text = page(score, [case])
+    told = json.loads(text.partition('<script type="application/json">')[2].partition("</script>")[0])
+    for words, motion in ((told["exact"], exact), (told["runs"][0]["path"], moved)):
+        seen = np.frombuffer(base64.b64decode(words), "<f4").reshape(told["frames"], 1, 7)
+        for k, sample in ((0, 0), (-1, -1)):
+            assert np.allclose(seen[k, 0, :3], motion.position[sample, 0], rtol=0, atol=1e-6)
+            assert np.allclose(seen[k, 0, 3:], motion.orientation[sample, 0], rtol=0, atol=1e-6)
+    assert "<option>E, as shipped, 1 ms</option>" in text
+    hostile = page(Score(tuple(replace(row, path="</script><b>") for row in rows(1e-2))), [case])
+    assert "</script><b>" not in hostile
 
 
 def test_the_table_has_a_row_for_each_profile() -> None:

@@ -10,6 +10,7 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
 from ..display import Markup, escaped, joined
+from .animation import beside, program
 from .answers import NOT_INSTALLED
 from .case import Case
 from .measuring import (
@@ -51,6 +52,12 @@ table { border-collapse: collapse; font-size: .9rem } .wide { overflow-x: auto }
 th, td { border: 1px solid #d9d9d9; padding: .3rem .5rem; text-align: left; vertical-align: top }
 th { background: #f4f3ee; font-weight: 600 } td small { color: #4a4a4a; display: block } td span { white-space: nowrap }
 svg { max-width: 100%; height: auto } figure { margin: 1rem 0 } p { max-width: 46rem }
+.beside canvas { display: block; width: 100%; height: 22rem; margin: .5rem 0 }
+.beside :is(button, select, input) { font: inherit; min-height: 2.2rem; vertical-align: middle; accent-color: #0072b2 }
+.beside select { max-width: 100% } .beside input { width: 14rem } .beside button { min-width: 6.5rem }
+.beside :focus-visible { outline: 3px solid #0072b2; outline-offset: 2px }
+.beside div { display: flex; flex-wrap: wrap; gap: .5rem 1rem; align-items: center }
+.beside output { font-variant-numeric: tabular-nums }
 """
 
 
@@ -140,7 +147,7 @@ def page(score: Score, cases: Sequence[Case]) -> str:
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
         f"<title>Physics engines on rolling</title><style>{_STYLE}</style></head><body>"
-        f"{joined(part for part in parts if part)}</body></html>\n"
+        f"{joined(part for part in parts if part)}{program()}</body></html>\n"
     )
 
 
@@ -236,7 +243,7 @@ def _section(name: str, case: Case | None, cells: Sequence[Cell]) -> Markup:
     said = [cell for cell in cells if _reason(cell) and cell.rows[0].outcome != NOT_INSTALLED]
     reasons = dict.fromkeys(f"{cell.engine}: {_reason(cell)}" for cell in said)
     left_out = Markup(f"<ul>{''.join(f'<li>{escaped(line)}</li>' for line in reasons)}</ul>") if reasons else Markup()
-    return joined([Markup(title), about, picture, left_out])
+    return joined([Markup(title), about, picture, beside(case, cells) if case else Markup(), left_out])
 
 
 def curves(cells: Sequence[Cell]) -> Figure:

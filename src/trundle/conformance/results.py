@@ -61,6 +61,8 @@ class Row:
         Their relative error, the largest by any input.
     friction : float
         See `Errors`.
+    path : str
+        The motion as an animation shows it; empty where there is none.
     """
 
     engine: str
@@ -81,6 +83,7 @@ class Row:
     way: str = ""
     derivative: float = math.nan
     friction: float = math.nan
+    path: str = ""
 
     @property
     def worst(self) -> float:
@@ -364,12 +367,15 @@ class Score(Displayed):
         )
 
     def as_dict(self) -> list[dict[str, Any]]:
-        """Return the rows as plain values.
+        """Return the rows as plain values, without their paths.
 
         Returns
         -------
         list of dict
             One a row; None for what is not a number.
         """
-        plain = (asdict(row).items() for row in self.rows)
-        return [{k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in row} for row in plain]
+        plain = (asdict(replace(row, path="")).items() for row in self.rows)
+        return [
+            {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in row if k != "path"}
+            for row in plain
+        ]

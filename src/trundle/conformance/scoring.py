@@ -12,6 +12,7 @@ from typing import Any
 from ..errors import InvalidValueError
 from . import derivatives as slopes
 from . import engines as shipped
+from .animation import path_of
 from .answers import CANNOT as CANNOT_OUTCOME
 from .answers import NOT_FINITE, NOT_INSTALLED, OK, TOO_SLOW, Answer
 from .case import Case, Input, Motion
@@ -189,12 +190,12 @@ def _slopes(
 def _row(entrant: Entrant, setting: Setting, case: Case, dt: float, answer: Answer, exact: Motion | None) -> Row:
     """Measure what came of a run."""
     told: dict[str, Any] = dict.fromkeys(("position", "angle", "turning", "slip", "energy", "friction"), math.nan)
-    limit = None
+    limit, path = None, ""
     if answer.outcome == NOT_FINITE:
         told |= {"position": math.inf, "turning": math.inf}
     if answer.outcome == OK and answer.motion is not None and exact is not None:
         told = vars(errors_of(case, exact, answer.motion))
-        limit = cut_off(exact, answer.motion)
+        limit, path = cut_off(exact, answer.motion), path_of(answer.motion)
     return Row(
         engine=entrant.name,
         version=answer.engine,
@@ -206,5 +207,6 @@ def _row(entrant: Entrant, setting: Setting, case: Case, dt: float, answer: Answ
         message=answer.message,
         seconds=answer.seconds / case.duration,
         limit=math.nan if limit is None else limit,
+        path=path,
         **told,
     )
