@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ import trundle as tr
 from trundle.analysis.chaos import tangents, volume
 from trundle.analysis.chaos.asked import integrator
 from trundle.analysis.chaos.exponents import means
+from trundle.analysis.chaos.spectrum import LyapunovExponents
 
 G = 9.80665
 BALL = tr.Body.solid_sphere(0.025, 0.065)
@@ -208,3 +210,22 @@ def test_differences_keep_to_the_constraints():
     rows = tangents.constraint_rows(bowl, now.law, 0.0, now.state_vector)
     assert basis.shape == (10, 8)
     assert np.abs((rows * scale) @ basis).max() < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("exponents", "dimension"),
+    [
+        ((0.9056, 0.0, -14.5723), 2.06215),  # Lorenz
+        ((0.0714, 0.0, -5.3943), 2.0132),  # Rössler
+        ((0.41922, -1.62319), 1.25827),  # Hénon's map
+        ((0.5, 0.0, 0.0, -0.5), 4.0),  # Hamiltonian: nothing is lost
+        ((-0.1, -0.3), 0.0),  # a point
+        ((0.0, -0.3), 1.0),  # a circle
+        ((0.2, -math.inf), 1.0),  # a difference that an event takes away altogether
+        ((0.3, 1e-9, -1e-9, -0.6), 3.5),  # zero within their errors
+    ],
+)
+def test_the_dimension_by_kaplan_and_yorke(exponents: tuple[float, ...], dimension: float) -> None:
+    """Of the first three, exponents and dimension are those of Sprott (2003, Chaos and Time-Series Analysis)."""
+    found = SimpleNamespace(exponents=np.array(exponents), errors=np.full(len(exponents), 1e-8))
+    assert LyapunovExponents.kaplan_yorke_dimension.fget(found) == pytest.approx(dimension, abs=1e-4)

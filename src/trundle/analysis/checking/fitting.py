@@ -10,7 +10,6 @@ from functools import partial
 import numpy as np
 
 from ...errors import TrundleError
-from ...mechanics.bodies import Principal, Tensor
 from ...mechanics.loads import at_rest
 from ...mechanics.system import RollingSystem
 from . import laws
@@ -117,7 +116,7 @@ def _inertias(system: RollingSystem, numbers: Array, doubts: Array) -> Iterator[
         return
     factor, doubt = math.exp(numbers[0]), float(doubts[0])
     changed, touched = partial(laws.with_inertia, factor=factor), frozenset({"inertia"})
-    if isinstance(system.body.inertia, (Principal, Tensor)) or not system.body.is_isotropic_sphere:
+    if not system.body.is_isotropic_sphere:
         says = f"The moments of inertia are wrong: {_about(factor, doubt * factor)} times as large ones fit."
         yield Suspect("wrong-inertia", says, touched, changed, numbers={"factor": factor}, named=False)
         return

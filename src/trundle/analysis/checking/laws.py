@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...mechanics.algebra import ZERO, Matrix, Quaternion, Vector
-from ...mechanics.bodies import Body, Isotropic, Principal, Tensor
+from ...mechanics.bodies import Body
 from ...mechanics.contact import roll
 from ...mechanics.loads import Force, Load
 from ...mechanics.motions import Fixed, Motion, Spin, SupportState
@@ -169,14 +169,7 @@ def with_rate(system: RollingSystem, rate: float) -> RollingSystem:
 def with_inertia(system: RollingSystem, factor: float) -> RollingSystem:
     """Return the system with all moments of inertia multiplied."""
     body = system.body
-    if isinstance(body.inertia, Principal):
-        inertia: Any = Principal(*(float(getattr(body.inertia, axis)) * factor for axis in "xyz"))
-    elif isinstance(body.inertia, Tensor):
-        inertia = Tensor(*(float(element) * factor for element in body.inertia.elements))
-    else:
-        moment = float(body.inertia_in_space(Matrix.identity()).a.x)
-        inertia = Isotropic(moment * factor)  # more than a shell's, even: theirs may be so
-    return replace(system, body=replace(body, inertia=inertia))
+    return replace(system, body=replace(body, inertia=body.inertia.times(factor, body)))
 
 
 def with_pull(system: RollingSystem, x: float, y: float, z: float = 0.0) -> RollingSystem:

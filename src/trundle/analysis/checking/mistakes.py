@@ -12,7 +12,6 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import partial
 
-from ...mechanics.bodies import Principal, Tensor
 from ...mechanics.loads import at_rest
 from ...mechanics.system import RollingSystem
 from . import laws
@@ -229,7 +228,7 @@ def _terms(system: RollingSystem) -> Iterator[Suspect]:
         says = f"A load was left out: {type(load).__name__}."
         left = partial(laws.without_load, load=load)
         yield Suspect("load-left-out", says, frozenset({f"load {i}"}), left, textbook=True)
-    if isinstance(system.body.inertia, (Principal, Tensor)):
+    if not system.body.inertia.isotropic:
         says = "Ω×JΩ was left out of Euler's equation: the moments of inertia are not all the same."
         name, touched = "missing-gyroscopic-term", frozenset({"law", "inertia"})
         yield Suspect(name, says, touched, laws.without_gyroscopic, laws.eliminated_law, textbook=True)

@@ -127,7 +127,7 @@ class Body:
     @property
     def is_isotropic_sphere(self) -> bool:
         """Whether it rolls as a sphere about its centre of mass with the same inertia about every axis."""
-        return concentric_sphere(self.shape) and isinstance(self.inertia, (Isotropic, RatioInertia))
+        return concentric_sphere(self.shape) and self.inertia.isotropic
 
     @property
     def axisymmetric(self) -> bool:

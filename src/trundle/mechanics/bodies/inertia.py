@@ -63,7 +63,7 @@ class Isotropic:
     """
 
     moment: Annotated[Scalar, MOMENT]
-    axisymmetric = True
+    isotropic = axisymmetric = True
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "moment", checks.positive(self.moment, "inertia", "inertia.moment"))
@@ -89,6 +89,10 @@ class Isotropic:
         """Return k = I/(m a²) for a spherical body of radius a."""
         return self.moment / (body.mass * body.radius * body.radius)
 
+    def times(self, factor: Scalar, body: Any) -> Isotropic:  # noqa: ARG002
+        """Return so many times as large an inertia."""
+        return Isotropic(self.moment * factor)
+
 
 @dataclass(frozen=True)
 class RatioInertia:
@@ -107,7 +111,7 @@ class RatioInertia:
     """
 
     ratio: Scalar
-    axisymmetric = True
+    isotropic = axisymmetric = True
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "ratio", checks.positive(self.ratio, "number", "inertia_ratio"))
@@ -135,6 +139,10 @@ class RatioInertia:
         """Return k."""
         return self.ratio
 
+    def times(self, factor: Scalar, body: Any) -> Isotropic:
+        """Return so many times as large an inertia, more than a hoop's, even."""
+        return Isotropic(self.ratio * body.mass * body.radius * body.radius * factor)
+
 
 @dataclass(frozen=True)
 class Principal:
@@ -155,6 +163,7 @@ class Principal:
     x: Annotated[Scalar, MOMENT]
     y: Annotated[Scalar, MOMENT]
     z: Annotated[Scalar, MOMENT]
+    isotropic = False
 
     def __post_init__(self) -> None:
         moments = [checks.positive(getattr(self, name), "inertia", f"inertia.{name}") for name in "xyz"]
@@ -178,6 +187,10 @@ class Principal:
     def of_revolution(self) -> Principal:
         """The same, known to be symmetric about the third axis."""
         return Principal(self.x, self.x, self.z)
+
+    def times(self, factor: Scalar, body: Any) -> Principal:  # noqa: ARG002
+        """Return so many times as large an inertia."""
+        return Principal(self.x * factor, self.y * factor, self.z * factor)
 
     def in_space(self, Q: Matrix, body: Any) -> Matrix:  # noqa: ARG002
         """Return Q diag(x, y, z) Qᵀ, the inertia tensor in the support frame, kg m²."""
@@ -218,6 +231,7 @@ class Tensor:
     xy: Annotated[Scalar, MOMENT] = 0.0
     xz: Annotated[Scalar, MOMENT] = 0.0
     yz: Annotated[Scalar, MOMENT] = 0.0
+    isotropic = False
 
     def __post_init__(self) -> None:
         for i, name in enumerate(("xx", "yy", "zz")):
@@ -272,6 +286,10 @@ class Tensor:
     def of_revolution(self) -> Principal:
         """The same, known to be symmetric about the third axis."""
         return Principal(self.xx, self.xx, self.zz)
+
+    def times(self, factor: Scalar, body: Any) -> Tensor:  # noqa: ARG002
+        """Return so many times as large an inertia."""
+        return Tensor(*(element * factor for element in self.elements))
 
     def in_space(self, Q: Matrix, body: Any) -> Matrix:  # noqa: ARG002
         """Return Q J Qᵀ, the inertia tensor in the support frame, kg m²."""
