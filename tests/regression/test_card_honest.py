@@ -625,3 +625,19 @@ def test_an_axle_that_settles_at_once_under_a_body_in_flight_is_followed_in_narr
     run = tr.simulate(system, start, 0.4, 0.01)
     assert run.samples.phase[-1] == FLIGHT
     assert run.card().passed, str(run.card())
+
+
+@pytest.mark.parametrize("every", [0.01, 0.1, 2.0])
+def test_a_run_from_rest_that_ends_before_its_first_sample_has_windows_as_wide_as_its_motion_allows(
+    every: float,
+) -> None:
+    """At rest forces show no rate: a window of 10⁻¹² s, in which all slopes are rounding, condemned such runs."""
+    body = {"kind": "disc", "radius": 0.0111582, "density": 524.104, "thickness": 0.0202322}
+    off = {"centre": [-0.0030152, -0.00893241, 0.00932234]}
+    support = {"kind": "dome", "radius": 0.150259, "friction": 0.0484944, "motion": {"kind": "tilt", "angle": 0.123139}}
+    start = {"position": [0.0523731, -0.00837106], "spin": 0.0, "attitude": [-1.16503, -0.0330119, 0.0]}
+    run = tr.Scenario.read(
+        {"body": body | off, "support": support, "start": start, "run": {"duration": 2.0, "every": every}}
+    ).run()
+    assert [event.kind for event in run.events] == ["edge"]
+    assert run.card().passed, run.card().failures

@@ -62,8 +62,9 @@ def pace_of(system: RollingSystem, at: Samples) -> float:
     changing = [at.velocity, at.angular_velocity, *(np.broadcast_to(load.array(), shape) for load in loads)]
     paces = [_pace(at.time, values) for values in changing]
     applied = np.broadcast_to(system.loads_on(motion)[0].array(), shape)
-    speed = max(largest(at.velocity), 1e-6 * speed_of(system, at), 1e-300)
-    paces.append(largest(at.contact_force + applied) / (system.body.mass * speed))
+    speed = max(largest(at.velocity), 1e-6 * speed_of(system, at))
+    if speed > 0:  # of what is at rest wherever it is looked at, forces say nothing of a rate
+        paces.append(largest(at.contact_force + applied) / (system.body.mass * speed))
     return largest(at.angular_velocity) + float(system.support.motion.fastest_rate) + max(paces)
 
 
