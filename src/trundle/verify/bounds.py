@@ -16,6 +16,7 @@ Array = NDArray[np.float64]
 # be off (more after a thousand radians of turning, for what adds up over a run).
 EXACT, SOLVER = 1e-12, 1e3
 A_STEP = 10.0  # times its tolerance that a method may err in a step
+SINGULAR = ("curved", "edge")  # ends of a run at which its law is singular
 
 
 def bound_of(method: Method, turned: float = 1.0) -> float:
@@ -54,18 +55,37 @@ def sizes_of(system: RollingSystem, at: Samples) -> dict[str, float]:
 def pace_of(system: RollingSystem, at: Samples) -> float:
     """Return the fastest rate in a motion, as its samples show it, 1/s: what a look at its slopes must resolve.
 
-    Samples far apart do not show by their differences how fast the velocity changes; the forces at each of them do.
+    Samples far apart do not show by their differences how fast the velocity changes; the forces at each of them do,
+    but for that at a singular end. The speed there counts: from rest it may be the only one that is not zero.
     """
     varying = [load for load in system.loads if _varies(load)]
     motion, shape = at.motion(system), at.position.shape
     loads = [vector for load in varying for vector in (load.force(motion), load.torque(motion))]
     changing = [at.velocity, at.angular_velocity, *(np.broadcast_to(load.array(), shape) for load in loads)]
     paces = [_pace(at.time, values) for values in changing]
-    applied = np.broadcast_to(system.loads_on(motion)[0].array(), shape)
+    regular = before_a_singular_end(at)
+    applied = system.loads_on(regular.motion(system))[0].array()
     speed = max(largest(at.velocity), 1e-6 * speed_of(system, at))
-    if speed > 0:  # of what is at rest wherever it is looked at, forces say nothing of a rate
-        paces.append(largest(at.contact_force + applied) / (system.body.mass * speed))
+    if speed > 0:  # what is at rest in all samples stays at rest
+        paces.append(largest(regular.contact_force + applied) / (system.body.mass * speed))
     return largest(at.angular_velocity) + float(system.support.motion.fastest_rate) + max(paces)
+
+
+def before_a_singular_end(samples: Samples) -> Samples:
+    """Return a run without the sample at its very end, where its law is singular, and so are rounding and the force.
+
+    By the force alone, a million times that of all others, all windows would be so short that a slope says nothing.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> run = tr.Scenario.load("tilted-turntable").run()
+    >>> before_a_singular_end(run.samples).time.size == run.samples.time.size
+    True
+    """
+    last = samples.events[-1] if samples.events else None
+    singular = last is not None and last.kind in SINGULAR and samples.time[-1] >= last.time
+    return samples.part(slice(0, -1)) if singular and samples.time.size > 1 else samples
 
 
 def _varies(load: Load) -> bool:

@@ -17,11 +17,10 @@ from ..solve.exact import ClosedForm
 from ..solve.methods import Method
 from ..solve.runge_kutta import FINEST
 from ..solve.samples import Event, Samples
-from .bounds import EXACT, Array, bound_of, largest, pace_of, sizes_of, turned_in
+from .bounds import EXACT, SINGULAR, Array, before_a_singular_end, bound_of, largest, pace_of, sizes_of, turned_in
 from .card import CardFigure, checked
 from .growth import MOST, Growth, alike, at_the_same_times, growth, numerical, parted, same_events
 from .landings import landings_of
-from .stretches import SINGULAR, before_a_singular_end
 
 _INSTANTS = 200
 _SLOW = 1e-3  # of a body's turning: what a support's own is held against at least

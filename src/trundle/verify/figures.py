@@ -14,7 +14,7 @@ from ..solve.exact import ClosedForm, closed_form
 from ..solve.methods import Method
 from ..solve.samples import ROLLING, SLIPPING, Samples
 from .again import Again
-from .bounds import bound_of, turned_in
+from .bounds import SINGULAR, bound_of, turned_in
 from .card import Card, CardFigure
 from .circle import guiding_centre, measured_circle
 from .compared import cross_check, finer, same_again
@@ -25,7 +25,6 @@ from .friction import contact_force, friction_law, looked_into
 from .integrals import drifts
 from .landings import landing_figures, landings_of
 from .plane import reactions, straightness
-from .stretches import SINGULAR
 
 _MOST_SAMPLES = 20_000  # looked at for integrals
 _EVENTS_TOLD = 4

@@ -14,9 +14,8 @@ from ..mechanics.invariants import Record, invariants_of
 from ..mechanics.system import RollingSystem
 from ..solve.methods import Method
 from ..solve.samples import FLIGHT, ROLLING, SLIPPING, Samples
-from .bounds import EXACT, Array, bound_of, largest, speed_of, turned_in
+from .bounds import EXACT, Array, before_a_singular_end, bound_of, largest, speed_of, turned_in
 from .card import CardFigure, checked
-from .stretches import before_a_singular_end
 
 _ROUNDING = 3e-16  # of a speed
 _MEANWHILE = {"rolling": "while it rolls", "slipping": "while it slips", "flight": "in flight"}

@@ -14,13 +14,11 @@ from .bounds import Array, pace_of
 from .law import WINDOWS, window_times
 
 _MARGIN = 0.02  # of a stretch that is left out at its ends: slip turns faster and faster before it ends
-_TURNS = 20.0  # by so many radians, at most, slip turns over what is left of a stretch
 _PHASE_A_PANEL = 1.5  # rad of the fastest rotation
 _WIDE = 16  # how many of these a panel holds at first
 _MOST_PANELS = 8000
 _QUARTERINGS = 11
 _FIRST = 2e-6  # of the time in which a motion changes: twice what the first moment of slip takes
-SINGULAR = ("curved", "edge")  # ends of a run at which its law is singular
 _ASIDE = 1e-6  # of a stretch, at its ends, over which the energy is not balanced
 
 
@@ -88,7 +86,6 @@ def stretches(system: RollingSystem, begin: float, samples: Samples) -> list[Smo
     }
     if samples.phase[0] == SLIPPING:
         settling.setdefault(begin, _FIRST * moment(system, samples.state(0)))
-    smooth = before_a_singular_end(samples)
     happenings = [event.time for event in samples.events] + [kink.time for kink in kinks(system, begin, end)]
     edges = sorted({begin, *(time for time in happenings if begin < time < end), end})
     damped = bool(system.loads) or system.support.motion.free
@@ -98,27 +95,10 @@ def stretches(system: RollingSystem, begin: float, samples: Samples) -> list[Smo
         if last - first <= 1e-12 * (end - begin):  # one and the same instant
             settles = max(settles, settling.get(last, 0.0))
             continue
-        inside = np.flatnonzero((smooth.time >= first) & (smooth.time <= last))
-        part = smooth.part(inside) if inside.size > 2 else smooth
+        inside = np.flatnonzero((samples.time >= first) & (samples.time <= last))
+        part = samples.part(inside) if inside.size > 2 else samples
         pace = pace_of(system, part) + 1 / (last - first)
         slips = bool((part.phase == SLIPPING).any())
-        pace += _TURNS / (last - first) if slips else 0.0
         found.append(SmoothSegment(first, last, pace, slips, damped, settles))
         first, settles = last, settling.get(last, 0.0)
     return found
-
-
-def before_a_singular_end(samples: Samples) -> Samples:
-    """Return a run without the sample at its very end, where its law is singular, and so are rounding and the force.
-
-    By the force alone, a million times that of all others, all windows would be so short that a slope says nothing.
-
-    Examples
-    --------
-    >>> import trundle as tr
-    >>> run = tr.Scenario.load("tilted-turntable").run()
-    >>> before_a_singular_end(run.samples).time.size == run.samples.time.size
-    True
-    """
-    ended = samples.events[-1].kind if samples.events else ""
-    return samples.part(slice(0, -1)) if ended in SINGULAR and samples.time.size > 1 else samples
