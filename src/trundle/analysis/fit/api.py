@@ -26,7 +26,8 @@ from .observations import Observations, noise_for, observe
 from .problem import Prior, Problem, Watch, names_of
 from .result import Estimate, Fit
 from .undetermined import preference, undetermined
-from .unknowns import Unknown, changed, limit, of_run, prepared, unknowns
+from .unknowns import OUTSIDE, Unknown, changed, limit, of_run, prepared, unknowns
+from .unrolled import aligned, mounted, unrolled
 
 _MOST_LIMITS = 8
 _PLAINLY = 3.0  # χ²/dof
@@ -58,12 +59,15 @@ def fit(
     data : Track, mapping, DataFrame, Dataset, path, or a list of these
         Columns over time: ``t`` and some of ``x``, ``y``, ``z`` (the centre), ``vx`` to ``vz``, ``wx`` to ``wz``
         (angular velocity), ``mark_x``, ``mark_y`` (a mark on the support), ``angle`` (by which the support has turned),
-        ``spot_x`` to ``spot_z`` (a spot on the body). Several runs share what is free, and have each their own start.
+        ``spot_x`` to ``spot_z`` (a spot on the body), ``gyro_x`` to ``gyro_z`` (Ω along the axes of a gyroscope that is
+        fixed in the body; how it is turned there is fitted). Several runs share what is free, and have each their own
+        start.
     scenario : Scenario, str or path
         What moves: a scenario, the name of one that ships, or a file. Its start only helps where the data say nothing.
     free : sequence of str
-        Numbers of the scenario by their keys, such as ``"body.inertia_ratio"``, and of the camera, such as
-        ``"camera.scale"``; the key of a list stands for each of its components.
+        Numbers of the scenario by their keys, such as ``"body.inertia_ratio"``, of the camera, such as
+        ``"camera.scale"``, and of a gyroscope, ``"gyroscope.bias"``; the key of a list stands for each of its
+        components.
     priors : mapping, optional
         What is known beforehand: a value and its standard deviation by key, as ``{"support.tilt": ("0 deg",
         "0.1 deg")}``.
@@ -143,6 +147,9 @@ def fit_observed(
     loaded = scenario if isinstance(scenario, ScenarioFile) else Scenario.load(scenario)
     problem = pose(seen, loaded, free, priors, noise, camera, start=start)
     guess = first_guess(problem)
+    slow = unrolled(problem)
+    if slow is not None:
+        guess = mounted(problem, _solved(slow, aligned(slow, guess), loss).values)
     problem.watch = watch
     solved = _solved(problem, guess, loss)
     problem.watch = None
@@ -345,7 +352,7 @@ def _fitted(problem: Problem, values: Array, run: int, scenario: ScenarioFile) -
     numbers = {
         problem.unknowns[j].key: float(values[j])
         for j in of_run(problem.unknowns, run)
-        if not problem.unknowns[j].key.startswith(("camera.", "mark.", "spot."))
+        if not problem.unknowns[j].key.startswith(OUTSIDE)
     }
     there = changed(model.scenario, numbers)
     time = model.seen.time

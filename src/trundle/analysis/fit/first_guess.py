@@ -12,9 +12,9 @@ from ...mechanics.duals import slopes_of, value_of
 from ...solve.samples import Array
 from ..sensitivities import keys
 from .model import RunModel
-from .observations import Observations
+from .observations import GYROSCOPE, Observations
 from .problem import Problem
-from .unknowns import START, camera_with, of_run
+from .unknowns import OUTSIDE, START, camera_with, of_run
 
 _DEGREE = 3
 _MOST = 200  # rows for the polynomial at the start
@@ -72,11 +72,11 @@ def _started(model: RunModel, values: Array, wanted: list[int], begun: dict[str,
     names = [one.key for one in model.unknowns]
     numbers = dict(zip(names, map(float, values), strict=True))
     camera = camera_with(model.camera, numbers)
-    inside = {name: value for name, value in numbers.items() if not name.startswith(("camera.", "mark.", "spot."))}
+    inside = {name: value for name, value in numbers.items() if not name.startswith(OUTSIDE)}
     rows, targets = _wanted(begun, camera, float(model.scenario.start_state().position[2]))
     guess = np.array([values[j] for j in wanted])
     if not rows:
-        return guess
+        return _as_fast(model, inside, names, guess, wanted, begun)
     for _ in range(_ROUNDS):
         inside |= {names[j]: float(part) for j, part in zip(wanted, guess, strict=True)}
         listed = [keys.Key(names[j], inside[names[j]], "") for j in wanted]
@@ -91,6 +91,32 @@ def _started(model: RunModel, values: Array, wanted: list[int], begun: dict[str,
             break
     inside |= {names[j]: float(part) for j, part in zip(wanted, guess, strict=True)}
     keys.moved(model.scenario, inside)  # refuses what is no start
+    return guess
+
+
+def _as_fast(
+    model: RunModel, inside: dict[str, float], names: list[str], guess: Array, wanted: list[int], begun: dict[str, Any]
+) -> Array:
+    """Return the start of a body that turns as fast as its gyroscope shows, along the scenario's direction or along x.
+
+    Ω = Ω₀ + A v of a velocity v, so that |Ω₀ + s A d|² is known: the larger s.
+    """
+    moving = [i for i, j in enumerate(wanted) if names[j].startswith("start.velocity")]
+    if not moving or not set(GYROSCOPE.values()) <= begun.keys():
+        return guess
+    listed = [keys.Key(names[wanted[i]], float(guess[i]), "") for i in moving]
+    fixed = {name: value for name, value in inside.items() if name not in {key.name for key in listed}}
+    turning = [*keys.varied(_fixed(model, fixed), listed)[1].angular_velocity]
+    A = np.array([slopes_of(part, len(moving)) for part in turning], dtype=float)
+    v = guess[moving]
+    d = v / np.linalg.norm(v) if v.any() else np.eye(len(moving))[0]
+    still, along = np.array([value_of(part) for part in turning], dtype=float) - A @ v, A @ d
+    shown = sum(begun[name][0] ** 2 for name in GYROSCOPE.values())
+    roots = np.roots([along @ along, 2 * still @ along, still @ still - shown]) if along.any() else np.empty(0)
+    real = roots.real[np.abs(roots.imag) <= _SETTLED * np.abs(roots)]
+    if real.size:
+        guess = guess.copy()
+        guess[moving] = max(real) * d
     return guess
 
 

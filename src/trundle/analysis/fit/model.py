@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import SolverError
-from ...mechanics.algebra import Vector
+from ...mechanics.algebra import Quaternion, Vector
 from ...mechanics.duals import Dual, slopes_of, value_of
 from ...mechanics.scalars import namespace
 from ...mechanics.system import RollingSystem, State
@@ -21,11 +21,10 @@ from ..sensitivities import by_formula, keys
 from ..sensitivities.by_formula import Moved
 from ..sensitivities.following import Followed, check_brink, follow
 from .camera import Camera
-from .observations import Observations
-from .unknowns import Unknown, camera_with, rotated, vector_of
+from .observations import GYROSCOPE, Observations
+from .unknowns import BIAS, MOUNTING, OUTSIDE, Unknown, camera_with, rotated, turn_by, vector_of
 
-_OUTSIDE = ("camera.", "mark.", "spot.")
-_TURNED = {"spot_x", "spot_y", "spot_z"}  # what needs the body's orientation
+_TURNED = {"spot_x", "spot_y", "spot_z", *GYROSCOPE.values()}  # what needs the body's orientation
 
 
 @dataclass(frozen=True)
@@ -72,8 +71,8 @@ class RunModel:
             Where there is no such motion.
         """
         names = [one.key for one in self.unknowns]
-        of_scenario = [i for i, name in enumerate(names) if not name.startswith(_OUTSIDE)]
-        order = [*of_scenario, *(i for i, name in enumerate(names) if name.startswith(_OUTSIDE))]
+        of_scenario = [i for i, name in enumerate(names) if not name.startswith(OUTSIDE)]
+        order = [*of_scenario, *(i for i, name in enumerate(names) if name.startswith(OUTSIDE))]
         count, inside = len(names), len(of_scenario)
         numbers = {names[i]: float(values[i]) for i in order}
         if not slopes:
@@ -102,6 +101,12 @@ class RunModel:
         model = RunModel(self.scenario, other, (*self.unknowns, *names), self.camera)
         _, jacobian = model.predict([*values, *extra.values()], self.seen.time.size, slopes=True)
         return np.asarray(jacobian), len(names)
+
+    def orientation(self, values: Sequence[float], row: int) -> Array:
+        """Return the orientation of the body at one row, (4,), of a model whose columns need it."""
+        numbers = {one.key: float(value) for one, value in zip(self.unknowns, values, strict=True)}
+        motion = self._motion(numbers, row + 1, camera_with(self.camera, numbers))
+        return np.array([part[row] for part in motion.q])
 
     # The motion
 
@@ -195,7 +200,8 @@ class RunModel:
 
     def _duals(self, motion: Motion, numbers: Mapping[str, Any], camera: Camera, columns: Sequence[str]) -> list[Any]:
         known: dict[str, Vector] = {}
-        makers = {"": self._place, "v": self._velocity, "w": self._turning, "mark_": self._mark, "spot_": self._spot}
+        makers = {"": self._place, "v": self._velocity, "w": self._turning, "mark_": self._mark, "spot_": self._spot,
+                  "gyro_": self._gyroscope, "unrolled_": self._unrolled}  # fmt: skip
         found = []
         for name in columns:
             if name == "angle":
@@ -222,6 +228,16 @@ class RunModel:
 
     def _spot(self, motion: Motion, numbers: Mapping[str, Any], camera: Camera) -> Vector:
         return camera.sees(motion.r + rotated(motion.q, vector_of(numbers, "spot.position", 3)))
+
+    def _gyroscope(self, motion: Motion, numbers: Mapping[str, Any], camera: Camera) -> Vector:  # noqa: ARG002
+        """Return Ω along the axes of a gyroscope that is fixed in the body, and what it shows at rest besides."""
+        own = Quaternion(*motion.q).conjugate.matrix() @ motion.Omega
+        bias = Vector(*(numbers.get(f"{BIAS}[{i}]", 0.0) for i in range(3)))
+        return turn_by(vector_of(numbers, MOUNTING, 3)).conjugate.matrix() @ own + bias
+
+    def _unrolled(self, motion: Motion, numbers: Mapping[str, Any], camera: Camera) -> Vector:  # noqa: ARG002
+        """Return Ω along the axes in which a gyroscope begins."""
+        return turn_by(vector_of(numbers, MOUNTING, 3)).conjugate.matrix() @ motion.Omega
 
     def _angle(self, motion: Motion, numbers: Mapping[str, Any]) -> Any:
         """Return the turn of the support, by as many whole turns more as bring it next to what was measured."""

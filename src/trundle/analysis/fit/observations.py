@@ -16,7 +16,10 @@ from ...units import UNITS, to_si
 
 # What may be observed: the columns of a trajectory and others beside them, and of which kind each is.
 OTHERS = ("mark_x", "mark_y", "angle", "spot_x", "spot_y", "spot_z")
+GYROSCOPE = {f"w{axis}": f"gyro_{axis}" for axis in "xyz"}  # Ω along axes of the body, by what is read
+UNROLLED = tuple(f"unrolled_{axis}" for axis in "xyz")  # the same along axes at rest, by itself
 COLUMNS = {name: kind_of(name) for name in (*(f"{part}{axis}" for part in ("", "v", "w") for axis in "xyz"), *OTHERS)}
+COLUMNS |= {ours: kind_of(read) for read, ours in GYROSCOPE.items()}
 _FEWEST = 4  # rows
 _HALF = 4  # rows to either side of one, whose polynomial shows the noise
 _DEGREE = 3
@@ -71,13 +74,13 @@ def observe(
     """
     track = read_track(data, columns=columns, units=units)
     _check_frame(track)
-    known = [name for name in COLUMNS if name in track.columns]
-    wanted = [name for name in known if np.isfinite(track[name]).any()]
+    known = {_ours(track, name): name for name in COLUMNS if name in track.columns}
+    wanted = [name for name, read in known.items() if np.isfinite(track[read]).any()]
     if not wanted:
         told = f"only empty ones: {', '.join(known)}" if known else "none"
         remedy = f"What may be fitted: {', '.join(COLUMNS)}."
         raise InvalidValueError("columns", "must have one of what was seen of the motion", told, remedy)
-    values = np.column_stack([track[name] for name in wanted])
+    values = np.column_stack([track[known[name]] for name in wanted])
     good = np.isfinite(values).any(axis=1)
     time, values, rows = track.time[good], values[good], np.asarray(track.data["row"].values)[good]
     if time.size < _FEWEST:
@@ -88,13 +91,16 @@ def observe(
 
 
 def _check_frame(track: Track) -> None:
-    """Refuse what is measured along axes that turn."""
+    """Refuse what is measured in a frame that turns."""
     if track.frame != "support":
         rule, remedy = "must be along the support's axes at rest", "Say so, or turn the columns first."
         raise InvalidValueError("frame", rule, track.frame, remedy)
-    if track.axes == "body" and any(name in track.columns for name in ("wx", "wy", "wz")):
-        remedy = "Leave the columns wx, wy and wz out; `trundle check` turns them by a measured orientation."
-        raise InvalidValueError("axes", "must be those of space", "Ω along axes of the body", remedy)
+
+
+def _ours(track: Track, name: str) -> str:
+    """Return the column that one of a track is here: what a gyroscope shows is along its own axes."""
+    own = track.axes == "body" or str(track.data[name].attrs.get("heading", "")).lower().startswith("gyro")
+    return GYROSCOPE.get(name, name) if own else name
 
 
 def _called(track: Track, label: str) -> str:

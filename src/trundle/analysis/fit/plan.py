@@ -22,6 +22,7 @@ from .directions import directions, taken
 from .model import RunModel
 from .observations import COLUMNS, Observations
 from .undetermined import Undetermined, undetermined
+from .unknowns import OUTSIDE
 
 _LENGTHS = (0.25, 0.5, 1.0)  # of the scenario's duration
 _RATES = (30.0, 60.0, 120.0)  # pictures a second
@@ -258,7 +259,7 @@ def _planned(
 def _check_lasts(model: RunModel, values: Array, time: Array) -> None:
     """Refuse a length at which the run is over."""
     named = {one.key: float(v) for one, v in zip(model.unknowns, values, strict=True)}
-    inside = {key: value for key, value in named.items() if not key.startswith(("camera.", "mark.", "spot."))}
+    inside = {key: value for key, value in named.items() if not key.startswith(OUTSIDE)}
     end = methods.run("auto", *keys.moved(model.scenario, inside), time)[1]
     last = float(end.time[-1])
     if last < time[-1]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...errors import UnknownNameError
 from ...solve.samples import Array
-from .unknowns import of_run
+from .unknowns import OUTSIDE, of_run
 
 if TYPE_CHECKING:
     import xarray
@@ -89,7 +89,7 @@ def toml(fit: Fit, run: int = 0) -> str:
     outside = []
     for j in mine:
         key, one = fit.problem.unknowns[j].key, fit.estimates[j]
-        if key.startswith(("camera.", "mark.", "spot.")):
+        if key.startswith(OUTSIDE):
             outside.append(f"# {one}")
         else:
             index = re.search(r"\[\d+\]$", key)

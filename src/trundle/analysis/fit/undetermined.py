@@ -16,6 +16,7 @@ import numpy as np
 from ...errors import TrundleError
 from ...solve.samples import Array
 from .directions import Directions, echelon, taken
+from .observations import GYROSCOPE
 from .problem import Problem
 from .unknowns import Unknown, of_marks, of_run
 
@@ -268,7 +269,8 @@ def _others(problem: Problem, values: Array) -> list[tuple[str, Array, Array]]:
     found = []
     for words, columns in _WAYS:
         extra = {"mark.position[0]": 0.1, "mark.position[1]": 0.02} if columns[0] == "mark_x" else {}
-        if set(columns) <= set(model.seen.columns) or (extra and of_marks(model.seen)):
+        turning = columns == ("wx", "wy", "wz") and set(GYROSCOPE.values()) <= set(model.seen.columns)
+        if turning or set(columns) <= set(model.seen.columns) or (extra and of_marks(model.seen)):
             continue
         try:
             jacobian, count = model.others([float(values[j]) for j in mine], columns, extra)

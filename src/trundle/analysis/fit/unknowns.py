@@ -10,13 +10,18 @@ import numpy as np
 
 from ...errors import InvalidValueError, ScenarioError, TrundleError, UnknownNameError
 from ...mechanics.algebra import Quaternion, Vector
+from ...mechanics.duals import value_of
+from ...mechanics.scalars import namespace
 from ...scenario import ScenarioFile
 from ..sensitivities import keys
 from .camera import Camera
 from .observations import Observations
 
 START = ("start.position", "start.velocity")
+OUTSIDE = ("camera.", "mark.", "spot.", "gyroscope.")  # numbers that are not of the scenario
+MOUNTING, BIAS = "gyroscope.mounting", "gyroscope.bias"
 _HALVINGS = 40
+_SMALL = 1e-8  # rad²: of a smaller turn the series has all digits
 
 
 @dataclass(frozen=True)
@@ -55,6 +60,8 @@ def of_marks(seen: Observations) -> dict[str, tuple[float, str]]:
     if "angle" in seen.columns:
         column = seen.column("angle")
         found["mark.angle"] = (float(column[np.isfinite(column)][0]), "rad")
+    if any(name.startswith("gyro_") for name in seen.columns):
+        found |= {f"{MOUNTING}[{i}]": (0.0, "rad") for i in range(3)}
     return found
 
 
@@ -122,6 +129,9 @@ def unknowns(
                 raise UnknownNameError("number of the camera" + extra, name, of_camera)
             found += [Unknown(key, None, float(of_camera[key][0]), of_camera[key][1], True) for key in mine]
             continue
+        if name.startswith("gyroscope."):
+            found += _of_gyroscope(name, seen)
+            continue
         try:
             wanted = keys.chosen(scenario, [name])
         except InvalidValueError as error:
@@ -144,6 +154,20 @@ def unknowns(
     for each in found:
         distinct.setdefault(each.name, each)
     return list(distinct.values())
+
+
+def _of_gyroscope(name: str, seen: Sequence[Observations]) -> list[Unknown]:
+    """Return the numbers of a gyroscope that were asked for, of each run that has one."""
+    known = {f"{what}[{i}]": unit for what, unit in ((MOUNTING, "rad"), (BIAS, "rad/s")) for i in range(3)}
+    mine = [key for key in known if key == name or key.startswith(f"{name}[")]
+    if not mine:
+        raise UnknownNameError("number of the gyroscope", name, known)
+    runs = [i for i, one in enumerate(seen) if any(column.startswith("gyro_") for column in one.columns)]
+    if not runs:
+        remedy = "Name its columns gyro_x, gyro_y, gyro_z, or leave the number out."
+        raise InvalidValueError("free", "must name numbers of what was measured", f"{name} without a gyroscope", remedy)
+    several = len(seen) > 1
+    return [Unknown(key, run if several else None, 0.0, known[key], True) for key in mine for run in runs]
 
 
 def of_run(names: Sequence[Unknown], run: int) -> list[int]:
@@ -201,7 +225,7 @@ def limit(scenario: ScenarioFile, name: str, good: float, bad: float) -> float |
     >>> abs(limit(tr.Scenario.load("off-the-rim"), "body.mass", 0.5, -0.1)) < 1e-9
     True
     """
-    if name.startswith(("camera.", "mark.", "spot.")):
+    if name.startswith(OUTSIDE):
         positive = name in ("camera.scale", "camera.height")
         return 0.0 if positive and bad <= 0 else None
     if _allowed(scenario, name, bad):
@@ -244,6 +268,24 @@ def camera_with(camera: Camera, values: Mapping[str, Any]) -> Camera:
 def vector_of(values: Mapping[str, Any], name: str, count: int) -> Vector:
     """Return a vector of marks by its components, zeros where it has fewer."""
     return Vector(*(values[f"{name}[{i}]"] if i < count else 0.0 for i in range(3)))
+
+
+def turn_by(v: Vector) -> Quaternion:
+    """Return the turn by a rotation vector, rad: smooth, and with slopes, at none as well.
+
+    Examples
+    --------
+    >>> turn_by(Vector(0.0, 0.0, 0.0)), round(turn_by(Vector(0.0, 0.0, 1.0)).z, 12)
+    (Quaternion(w=1.0, x=0.0, y=0.0, z=0.0), 0.479425538604)
+    """
+    square = v.dot(v)
+    if float(np.max(value_of(square))) < _SMALL:
+        w, share = 1.0 - square / 8.0, 0.5 - square / 48.0
+    else:
+        xp = namespace(square)
+        angle = xp.sqrt(square)
+        w, share = xp.cos(0.5 * angle), xp.sin(0.5 * angle) / angle
+    return Quaternion(w, share * v.x, share * v.y, share * v.z)
 
 
 def rotated(q: Any, along: Vector) -> Vector:
