@@ -41,6 +41,23 @@ def test_a_fit_is_that_of_the_package(lab: TestClient) -> None:
     assert np.allclose(end, last, rtol=0, atol=1e-12)
 
 
+def test_a_telephone_in_a_ball_is_no_film_of_its_turning(lab: TestClient) -> None:
+    t = np.arange(300) / 50.0
+    phone = {"t": t, "gyro_x": 2 + 0 * t, "gyro_y": np.cos(3 * t), "gyro_z": np.sin(3 * t)}
+    head = "Time (s),Gyroscope x (rad/s),Gyroscope y (rad/s),Gyroscope z (rad/s)\n"
+    rows = "".join(",".join(map(repr, map(float, row))) + "\n" for row in zip(*phone.values(), strict=True))
+    track = sent(lab, (head + rows).encode(), "phone.csv").json()
+    assert {name: len(column) for name, column in track["columns"].items()} == dict.fromkeys(phone, 300)
+    ball = {"kind": "sphere", "radius": 0.025, "mass": 0.065, "inertia_ratio": 0.5}
+    table = {"kind": "plane", "motion": {"kind": "spin", "rate": 3.0}}
+    scenario = {"body": ball, "support": table, "start": {"position": [0.1, 0]}, "run": {"duration": 6, "every": 0.02}}
+    asked = {"scenario": scenario, "columns": track["columns"], "free": ["start.spin"], "noise": "0.01 rad/s"}
+    answer = lab.post("/api/fit", json=asked).json()
+    found = tr.fit(phone, tr.Scenario.read(scenario), free=["start.spin"], noise="0.01 rad/s")
+    assert answer["rows"] == [list(row) for row in found.rows]
+    assert answer["way"]["columns"] == ["gyro_x", "gyro_y", "gyro_z"]
+
+
 def test_a_long_track_is_thinned_and_says_so(lab: TestClient) -> None:
     rows = "".join(f"{i / 1000:.4f},{i},{i}\n" for i in range(20_000))
     track = sent(lab, f"t (s),x (mm),y (mm)\n{rows}".encode(), "long.csv").json()

@@ -125,9 +125,12 @@ def _pairs(text: str) -> dict[str, str]:
 
 def _track(track: Track) -> dict[str, Any]:
     """Return a track as the page has it, thinned where it is long."""
+    from ..analysis.fit.observations import observable
+
     most = min(limits.MOST_ROWS, _MOST_VALUES // (len(track.columns) + 1))
     step = -(-len(track) // most)
-    columns = {name: _listed(track[name][::step]) for name in ("t", *track.columns)}
+    called = {read: name for name, read in observable(track).items()}
+    columns = {called.get(read, read): _listed(track[read][::step]) for read in ("t", *track.columns)}
     said = [f"{track.taken}.", track.left_out_rows]
     said += [f"`{name}` was left out: {why}." for name, why in track.left_out.items()]
     if step > 1:

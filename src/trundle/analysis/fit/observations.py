@@ -74,7 +74,7 @@ def observe(
     """
     track = read_track(data, columns=columns, units=units)
     _check_frame(track)
-    known = {_ours(track, name): name for name in COLUMNS if name in track.columns}
+    known = observable(track)
     wanted = [name for name, read in known.items() if np.isfinite(track[read]).any()]
     if not wanted:
         told = f"only empty ones: {', '.join(known)}" if known else "none"
@@ -97,8 +97,18 @@ def _check_frame(track: Track) -> None:
         raise InvalidValueError("frame", rule, track.frame, remedy)
 
 
+def observable(track: Track) -> dict[str, str]:
+    """Return the columns of a track that may be fitted, by what each is: Ω along axes of a body is a gyroscope's.
+
+    Examples
+    --------
+    >>> observable(read_track({"t": [0.0, 0.1], "x": [0.0, 0.1], "gyro_z": [1.0, 1.0]}))
+    {'x': 'x', 'gyro_z': 'wz'}
+    """
+    return {_ours(track, name): name for name in COLUMNS if name in track.columns}
+
+
 def _ours(track: Track, name: str) -> str:
-    """Return the column that one of a track is here: what a gyroscope shows is along its own axes."""
     own = track.axes == "body" or str(track.data[name].attrs.get("heading", "")).lower().startswith("gyro")
     return GYROSCOPE.get(name, name) if own else name
 
