@@ -48,6 +48,7 @@ def test_a_telephone_in_a_ball_is_no_film_of_its_turning(lab: TestClient) -> Non
     rows = "".join(",".join(map(repr, map(float, row))) + "\n" for row in zip(*phone.values(), strict=True))
     track = sent(lab, (head + rows).encode(), "phone.csv").json()
     assert {name: len(column) for name, column in track["columns"].items()} == dict.fromkeys(phone, 300)
+    assert track["units"] == {"t": "s"} | dict.fromkeys(("gyro_x", "gyro_y", "gyro_z"), "rad/s")
     ball = {"kind": "sphere", "radius": 0.025, "mass": 0.065, "inertia_ratio": 0.5}
     table = {"kind": "plane", "motion": {"kind": "spin", "rate": 3.0}}
     scenario = {"body": ball, "support": table, "start": {"position": [0.1, 0]}, "run": {"duration": 6, "every": 0.02}}

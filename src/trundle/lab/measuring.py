@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InvalidValueError, TrundleError, UnknownNameError
 from ..scenario import files
+from ..units import UNITS
 from . import limits
 from .answers import answering, as_json, scenario_from
 from .cache import Answer
@@ -126,6 +127,7 @@ def _pairs(text: str) -> dict[str, str]:
 def _track(track: Track) -> dict[str, Any]:
     """Return a track as the page has it, thinned where it is long."""
     from ..analysis.fit.observations import observable
+    from ..tracks.names import kind_of
 
     most = min(limits.MOST_ROWS, _MOST_VALUES // (len(track.columns) + 1))
     step = -(-len(track) // most)
@@ -138,7 +140,8 @@ def _track(track: Track) -> dict[str, Any]:
     if track.frame != "support":
         rule = "must be along axes that do not turn"
         raise InvalidValueError("frame", rule, track.frame, "Turn the columns first.")
-    return {"title": track.source, "columns": columns, "said": [one for one in said if one]}
+    units = {called.get(read, read): UNITS[kind_of(read) or "number"][0] for read in ("t", *track.columns)}
+    return {"title": track.source, "columns": columns, "units": units, "said": [one for one in said if one]}
 
 
 @answering

@@ -222,6 +222,8 @@ export type TrackColumns = Record<string, (number | null)[]>
 export interface Track {
   title: string
   columns: TrackColumns
+  /** Of each column. */
+  units: Record<string, string>
   /** What was taken for what, and what was left out, a sentence each. */
   said: string[]
 }

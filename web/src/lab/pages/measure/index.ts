@@ -107,7 +107,7 @@ export const measure: Page = {
           answer.said.slice(1).map((sentence) => h('p', { class: 'map-hint' }, ...marked(sentence))),
         )
         go.disabled = false
-        plot.measured(answer.columns)
+        plot.measured(answer)
         sketch()
       },
       failed: (error) => tell(error),

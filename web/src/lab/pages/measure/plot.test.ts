@@ -3,13 +3,14 @@ import { drawnOf, rangesOf, stepOf } from './plot'
 
 describe('what is drawn', () => {
   it('is the path where x and y were measured', () => {
-    const drawn = drawnOf({ t: [0, 1], x: [1, null], y: [2, 3] })
+    const drawn = drawnOf({ t: [0, 1], x: [1, null], y: [2, 3] }, {})
     expect(drawn).toMatchObject({ names: ['x, m', 'y, m'], square: true, points: [[[1, 2], null]] })
   })
 
   it('is each column over time where they were not', () => {
-    const drawn = drawnOf({ t: [0, 1], x: [1, 2], wz: [3, 4] })
-    expect(drawn.names).toEqual(['t, s', 'x, wz'])
+    const units = { t: 's', x: 'm', wy: 'rad/s', wz: 'rad/s' }
+    const drawn = drawnOf({ t: [0, 1], x: [1, 2], wy: [3, 4], wz: [3, 4] }, units)
+    expect(drawn.names).toEqual(['t, s', 'x, m; wy, wz, rad/s'])
     expect(drawn.points[1]).toEqual([
       [0, 3],
       [1, 4],
@@ -18,7 +19,7 @@ describe('what is drawn', () => {
 
   it('is drawn by the same rule for a step of the fit', () => {
     const way = { time: [0, 1], columns: ['x'], frames: [{ reduced: 2, share: 1, columns: [[5, 6]] }] }
-    expect(stepOf(way, 0).points[0]).toEqual([
+    expect(stepOf(way, 0, {}).points[0]).toEqual([
       [0, 5],
       [1, 6],
     ])

@@ -1,14 +1,14 @@
 /** What was measured, as points, and the path of the fit, as a line: step by step as the fit went. */
 import { t } from '../../../languages/translate'
 import { put } from '../../../viewer/elements'
-import type { TrackColumns, Way } from '../../api'
+import type { Track, TrackColumns, Way } from '../../api'
 import { fill, h, uniqueId } from '../../dom'
 import { show } from '../../quantity'
 import { roundNumbers } from '../maps/axes'
 
 export interface Plot {
   readonly element: HTMLElement
-  measured(columns: TrackColumns): void
+  measured(track: Pick<Track, 'columns' | 'units'>): void
   /** Show the way of a fit from its beginning, or at once where it ended; null takes it away. */
   way(way: Way | null, calm: boolean): void
   restyle(): void
@@ -27,22 +27,32 @@ export interface Drawn {
 const LASTS = 1600 // ms, of the way of a fit
 
 /** The path where x and y were measured, else each column over time. */
-export function drawnOf(columns: TrackColumns): Drawn {
+export function drawnOf(columns: TrackColumns, units: Record<string, string>): Drawn {
   const { t = [], x, y, ...others } = columns
   if (x && y) return { names: ['x, m', 'y, m'], square: true, points: [paired(x, y)] }
   const rest = Object.entries(x ? { x, ...others } : y ? { y, ...others } : others)
   return {
-    names: ['t, s', rest.map(([name]) => name).join(', ')],
+    names: ['t, s', told(rest.map(([name]) => name), units)],
     square: false,
     points: rest.map(([, column]) => paired(t, column)),
   }
 }
 
+/** Names of columns, those of one unit together: 'x, m; wy, wz, rad/s'. */
+function told(names: string[], units: Record<string, string>): string {
+  const groups = new Map<string, string[]>()
+  for (const name of names) {
+    const unit = units[name] ?? ''
+    groups.set(unit, [...(groups.get(unit) ?? []), name])
+  }
+  return [...groups].map(([unit, those]) => [...those, ...(unit ? [unit] : [])].join(', ')).join('; ')
+}
+
 /** The same of a step of the fit. */
-export function stepOf(way: Way, place: number): Drawn {
+export function stepOf(way: Way, place: number, units: Record<string, string>): Drawn {
   const frame = way.frames[place]!
   const columns = Object.fromEntries(way.columns.map((name, i) => [name, frame.columns[i]!]))
-  return drawnOf({ t: way.time, ...columns })
+  return drawnOf({ t: way.time, ...columns }, units)
 }
 
 function paired(across: (number | null)[], up: (number | null)[]): Line {
@@ -89,7 +99,7 @@ export function createPlot(): Plot {
   const said = h('output', { for: id, class: 'number', 'data-testid': 'fit-said' })
   const steps = h('div', { class: 'dial', hidden: true }, h('label', { for: id }, 'Step of the fit'), said, step)
   const element = h('div', { class: 'measure-plot', 'data-empty': true }, canvas, steps)
-  let columns: TrackColumns | null = null
+  let track: Pick<Track, 'columns' | 'units'> | null = null
   let found: Way | null = null
   let frame = 0
 
@@ -114,13 +124,13 @@ export function createPlot(): Plot {
   function paint(): void {
     const box = canvas.getBoundingClientRect()
     const context = canvas.getContext('2d')
-    if (!context || !columns || box.width === 0) return
+    if (!context || !track || box.width === 0) return
     const ratio = window.devicePixelRatio || 1
     canvas.width = Math.round(box.width * ratio)
     canvas.height = Math.round(box.height * ratio)
     context.scale(ratio, ratio)
-    const drawn = drawnOf(columns)
-    const line = found ? stepOf(found, Number(step.value)) : null
+    const drawn = drawnOf(track.columns, track.units)
+    const line = found ? stepOf(found, Number(step.value), track.units) : null
     draw(context, box.width, box.height, drawn, line, canvas)
   }
 
@@ -130,7 +140,7 @@ export function createPlot(): Plot {
   return {
     element,
     measured(next) {
-      columns = next
+      track = next
       element.removeAttribute('data-empty')
       found = null
       steps.hidden = true
