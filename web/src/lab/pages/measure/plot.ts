@@ -32,7 +32,13 @@ export function drawnOf(columns: TrackColumns, units: Record<string, string>): D
   if (x && y) return { names: ['x, m', 'y, m'], square: true, points: [paired(x, y)] }
   const rest = Object.entries(x ? { x, ...others } : y ? { y, ...others } : others)
   return {
-    names: ['t, s', told(rest.map(([name]) => name), units)],
+    names: [
+      't, s',
+      told(
+        rest.map(([name]) => name),
+        units,
+      ),
+    ],
     square: false,
     points: rest.map(([, column]) => paired(t, column)),
   }
