@@ -645,3 +645,21 @@ def test_a_run_from_near_rest_that_ends_at_an_edge_has_windows_as_wide_as_its_mo
     ).run()
     assert [event.kind for event in run.events] == ["edge"]
     assert run.card().passed, run.card().failures
+
+
+@pytest.mark.parametrize("roll", [0.266909, -0.266909, 0.9])
+@pytest.mark.parametrize("moment", [6.92438e-05, 6.92438e-07])
+def test_a_body_that_turns_back_against_resistance_begins_with_the_least_turn(roll: float, moment: float) -> None:
+    """Of a body that is slow to turn this first turn is no longer a rounding of how fast it comes to turn."""
+    body = {"kind": "half-cylinder", "radius": 0.013592, "density": 1473.23, "length": 0.0195219}
+    run = passes(
+        loads=[
+            {"kind": "rolling-resistance", "offset": 1.51258e-05},
+            {"kind": "pivot-friction", "offset": 2.06248e-05},
+        ],
+        body=body | {"moment_of_inertia": moment},
+        support={"kind": "plane", "tilt": 0.0841393},
+        start={"position": [0.0409548, 0.0102629], "roll": roll},
+        run={"duration": 2.0, "every": 0.02},
+    )
+    assert {"stop", "start"} <= {event.kind for event in run.events}

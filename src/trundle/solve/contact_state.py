@@ -104,6 +104,10 @@ class ContactState:
         """Return the speed at which slip has all but ended, m/s."""
         return STILL * self.scale(system)
 
+    def first_turn(self, system: RollingSystem) -> float:
+        """Return how fast a body begins to turn against a resistance, rad/s: the least that surely has a direction."""
+        return 4 * self.still(system) / self.arm
+
 
 def moment(system: RollingSystem, state: State, contact: tuple[float, float, float] | None = None) -> float:
     """Return a time in which a motion changes: |ρ| over its speed, or over what the forces make of it.

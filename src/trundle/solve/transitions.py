@@ -491,11 +491,10 @@ def _turning_on(system: RollingSystem, at: ContactState) -> ContactState:
 
 def _turned_off(system: RollingSystem, at: ContactState, holding: Vector, slip: Vector) -> ContactState:
     """Return a body that turns over the support; from none, with a first little turn against what would hold it."""
-    still = at.still(system) / at.arm
-    turning = state_turning(at.contact, at.Omega)
-    if turning.norm() > 2 * still:
+    first, turning = at.first_turn(system), state_turning(at.contact, at.Omega)
+    if turning.norm() > first / 2:
         return at
-    way = holding * (-4 * still / holding.norm()) if holding.norm() > 0 else ZERO
+    way = holding * (-first / holding.norm()) if holding.norm() > 0 else ZERO
     Omega = at.Omega - turning + way
     return at.moving(system, at.contact.rolling_velocity(Omega) + slip, Omega)
 

@@ -17,9 +17,11 @@ import numpy as np
 
 from ..mechanics.algebra import Quaternion, Vector
 from ..mechanics.contact import contact_at, roll
+from ..mechanics.duals import value_of
 from ..mechanics.kinks import Kink
 from ..mechanics.slipping import slip
 from ..mechanics.system import RollingSystem, State
+from ..solve.contact_state import ContactState
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Event, Samples
 from ..solve.transitions import JOLT
 from .acting import acting, cross
@@ -141,7 +143,7 @@ class AtEvents:
         if last.final:
             return
         if after is not None:
-            yield from self._same(last, last.after, after.state(0), "no jump after")
+            yield from self._same(last, last.after, after.state(0), "no jump after", self._begun(last))
         if before is not None and after is not None:
             may, then = _BETWEEN.get(first.kind, (_ANY, _ANY))[0], _BETWEEN.get(last.kind, (_ANY, _ANY))[1]
             fits = int(before.phase[0]) in may and int(after.phase[0]) in then
@@ -159,6 +161,17 @@ class AtEvents:
     def _kink_at(self, time: float) -> Kink | None:
         """Return the kink of the support's motion at an instant, if there is one."""
         return next((kink for kink in self.kinks if kink.before < time <= kink.behind), None)
+
+    def _begun(self, event: Event) -> dict[str, float]:
+        """Return by what shares V and Ω jump where a resistance gives way: to the least turn that has a direction."""
+        if event.kind != "start" or event.after is None:
+            return {}
+        at = ContactState.of(self.system, event.after, None if event.contact is None else Vector(*event.contact))
+        first, sizes = float(value_of(at.first_turn(self.system))), self._sizes
+        return {
+            "velocity": first * self._arm / sizes["velocity"],
+            "angular_velocity": first / sizes["angular_velocity"],
+        }
 
     def _in_a_moment(self, at: Samples, span: float = 0.0) -> dict[str, float]:
         """Return by what shares V, Ω and an axle's rate change while the clock, or the place, is not told apart.
