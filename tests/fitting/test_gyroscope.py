@@ -60,6 +60,31 @@ def test_it_shows_the_ratio_of_inertia_alone(rate: float, mounting: np.ndarray) 
     assert found.answer == "good"
 
 
+@pytest.mark.parametrize("rate", [3.487, -2.1])
+@pytest.mark.parametrize("spin", [0.0, -2.0])
+def test_it_is_found_from_a_start_that_is_far_off(rate: float, spin: float) -> None:
+    found = tr.fit(inside(rate), table(rate, spin=spin), [K, "start.spin"], noise=NOISE)
+    assert found.answer == "good"
+    assert abs(found[K].value - 0.4) < 4 * found[K].sigma
+
+
+@pytest.mark.parametrize("attitude", [[0, 0, 3.0], [2.0, -1.5, 0.5]], ids=str)
+@pytest.mark.parametrize("spin", [1.5, -2.0])
+@pytest.mark.parametrize("velocity", [0.02 + 0.15j, -0.1 - 0.1j])
+def test_what_is_known_of_the_mounting_is_of_the_axes_of_the_body(
+    attitude: list[float], spin: float, velocity: complex
+) -> None:
+    placed = {"position": [0.1, 0.0], "spin": spin, "attitude": attitude}
+    lying = scenario(body=ball(0.5), support=turntable(3.487, 0.0), start=placed)
+    own = Rotation.from_quat(lying.start_state().orientation, scalar_first=True)
+    mounting = (own.inv() * Rotation.from_rotvec(MOUNTING)).as_rotvec()
+    known = {f"gyroscope.mounting[{i}]": (mounting[i], 0.01) for i in range(3)}
+    found = tr.fit(inside(3.487, velocity), lying, [K, "start.spin"], priors=known, noise=NOISE)
+    assert found.answer == "good"
+    for name, truth in ((K, 0.4), ("start.velocity[0]", velocity.real), ("start.velocity[1]", velocity.imag)):
+        assert abs(found[name].value - truth) < 4 * found[name].sigma
+
+
 def circle(rate: float, velocity: complex = 0.02 + 0.15j) -> dict[str, np.ndarray]:
     kappa = rate * 2 / 7
     z = 0.1 + velocity * (np.exp(1j * kappa * T) - 1) / (1j * kappa)

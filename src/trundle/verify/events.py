@@ -167,11 +167,9 @@ class AtEvents:
         if event.kind != "start" or event.after is None:
             return {}
         at = ContactState.of(self.system, event.after, None if event.contact is None else Vector(*event.contact))
-        first, sizes = float(value_of(at.first_turn(self.system))), self._sizes
-        return {
-            "velocity": first * self._arm / sizes["velocity"],
-            "angular_velocity": first / sizes["angular_velocity"],
-        }
+        first = float(value_of(at.first_turn(self.system)))
+        turns = {"velocity": first * self._arm, "angular_velocity": first}
+        return {name: turn / max(self._sizes[name], 1e-300) for name, turn in turns.items()}
 
     def _in_a_moment(self, at: Samples, span: float = 0.0) -> dict[str, float]:
         """Return by what shares V, Ω and an axle's rate change while the clock, or the place, is not told apart.

@@ -147,7 +147,7 @@ def fit_observed(
     loaded = scenario if isinstance(scenario, ScenarioFile) else Scenario.load(scenario)
     problem = pose(seen, loaded, free, priors, noise, camera, start=start)
     guess = first_guess(problem)
-    slow = unrolled(problem)
+    slow = unrolled(problem, guess)
     if slow is not None:
         guess = mounted(problem, _solved(slow, aligned(slow, guess), loss).values)
     problem.watch = watch

@@ -9,26 +9,41 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import replace
-from itertools import accumulate
+from typing import Any
 
 import numpy as np
 
+from ...mechanics.algebra import Quaternion, Vector
 from ...solve.samples import Array
+from ..checking.record import orientation_from
 from .observations import GYROSCOPE, UNROLLED, Observations
-from .problem import Problem
+from .problem import Prior, Problem
 from .unknowns import MOUNTING, of_run
 
 _FEWEST = 3  # rows
 
 
-def unrolled(problem: Problem) -> Problem | None:
-    """Return the problem with what gyroscopes show along axes at rest; none where there is no whole gyroscope."""
+def unrolled(problem: Problem, values: Array) -> Problem | None:
+    """Return the problem with what gyroscopes show along axes at rest; none where there is no whole gyroscope.
+
+    What is known beforehand of a mounting is turned with the body that the values describe.
+    """
+    from scipy.spatial.transform import Rotation
+
     models, noises = list(problem.models), list(problem.noises)
+    known = [i for i, one in enumerate(problem.unknowns) if one.key.startswith(MOUNTING)]
+    priors = {i: prior for i, prior in problem.priors.items() if i not in known}
     whole = [i for i, model in enumerate(models) if shows(model.seen)]
     for i in whole:
+        places = _places(problem, i)
+        if problem.priors.keys() >= set(places):
+            body = _body(problem, i, values)
+            turned = body * Rotation.from_rotvec([problem.priors[j].value for j in places])
+            widest = max(problem.priors[j].sigma for j in places)
+            priors |= {j: Prior(float(part), widest) for j, part in zip(places, turned.as_rotvec(), strict=True)}
         models[i] = replace(models[i], seen=_at_rest(models[i].seen))
         noises[i] = replace(noises[i], factor=None)
-    return replace(problem, models=models, noises=noises, last=None, recent=None) if whole else None
+    return replace(problem, models=models, noises=noises, priors=priors, last=None, recent=None) if whole else None
 
 
 def shows(seen: Observations) -> bool:
@@ -43,15 +58,12 @@ def shown(seen: Observations) -> Array:
 
 
 def _at_rest(seen: Observations) -> Observations:
-    from scipy.spatial.transform import Rotation
-
     at = [seen.columns.index(name) for name in GYROSCOPE.values()]
     good = np.flatnonzero(np.isfinite(seen.values[:, at]).all(axis=1))
     g = seen.values[good][:, at]
-    steps = Rotation.from_rotvec((g[1:] + g[:-1]) / 2 * np.diff(seen.time[good])[:, None]).as_matrix()
-    turns = np.array([*accumulate([np.eye(3), *steps], np.matmul)])
+    q, _ = orientation_from(seen.time[good], g, (1.0, 0.0, 0.0, 0.0), body_axes=True)
     along = np.full((seen.time.size, 3), np.nan)
-    along[good] = np.einsum("nij,nj->ni", turns, g)
+    along[good] = (Quaternion.of(q).matrix() @ Vector.of(g)).array()
     values = seen.values.copy()
     values[:, at] = along
     names = dict(zip(GYROSCOPE.values(), UNROLLED, strict=True))
@@ -86,11 +98,18 @@ def mounted(problem: Problem, values: Array) -> Array:
     for i, model in enumerate(problem.models):
         if shows(model.seen):
             places = _places(problem, i)
-            first = int(np.flatnonzero(np.isfinite(shown(model.seen)).all(axis=1))[0])
-            mine = [float(values[j]) for j in of_run(problem.unknowns, i)]
-            body = Rotation.from_quat(model.orientation(mine, first), scalar_first=True)
-            values[places] = (body.inv() * Rotation.from_rotvec(values[places])).as_rotvec()
+            values[places] = (_body(problem, i, values).inv() * Rotation.from_rotvec(values[places])).as_rotvec()
     return values
+
+
+def _body(problem: Problem, run: int, values: Array) -> Any:
+    """Return how the body lies at the first row of its gyroscope."""
+    from scipy.spatial.transform import Rotation
+
+    model = problem.models[run]
+    first = int(np.flatnonzero(np.isfinite(shown(model.seen)).all(axis=1))[0])
+    mine = [float(values[j]) for j in of_run(problem.unknowns, run)]
+    return Rotation.from_quat(model.orientation(mine, first), scalar_first=True)
 
 
 def _places(problem: Problem, run: int) -> list[int]:

@@ -31,14 +31,9 @@ export function drawnOf(columns: TrackColumns, units: Record<string, string>): D
   const { t = [], x, y, ...others } = columns
   if (x && y) return { names: ['x, m', 'y, m'], square: true, points: [paired(x, y)] }
   const rest = Object.entries(x ? { x, ...others } : y ? { y, ...others } : others)
+  const names = rest.map(([name]) => name)
   return {
-    names: [
-      't, s',
-      told(
-        rest.map(([name]) => name),
-        units,
-      ),
-    ],
+    names: ['t, s', told(names, units)],
     square: false,
     points: rest.map(([, column]) => paired(t, column)),
   }
