@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...mechanics.algebra import Quaternion, Vector
+from ...mechanics.algebra import Quaternion
 from ...mechanics.shapes import concentric_sphere
 from .case import Case
 from .examining import SLIP
@@ -62,51 +62,56 @@ def _starts(given: Quaternion) -> Iterator[Quaternion]:
 class _Rolling:
     """The slip of a ball, over its bounds, if Ω was added up along its own axes from one start or another.
 
-    The support may be free to turn at another rate than is said, the mistake that is most often made beside this one.
+    All of it is linear in the nine elements of the start's rotation matrix, so that a triangle of ten rows stands for
+    the thousands of a track. The support may be free to turn at another rate than is said, the mistake that is most
+    often made beside this one.
     """
 
     def __init__(self, case: Case, own: ExternalTrajectory, *, rate_free: bool) -> None:
-        self._rate_free = rate_free
         at = motion_of(case.system, own, case.start, case.view.instants)
-        self._bound = case.series[SLIP].bound[:, None]
-        self._velocity, self._carried = ((v / self._bound).ravel() for v in (at.velocity, at.carried))
-        self._offset, self._arm = _by_columns(at.offset), np.linalg.norm(at.offset, axis=1)
-        self._turning = _by_columns(at.angular_velocity)
+        bound = case.series[SLIP].bound[:, None]
+        velocity, carried = ((v / bound).ravel() for v in (at.velocity, at.carried))
+        rolled = _elements(np.cross(np.eye(3)[:, None], at.offset / bound), at.angular_velocity)
         flat = case.system.support.surface.flat and case.system.body.is_isotropic_sphere
-        self._normal = np.broadcast_to(at.contact.normal.array(), at.position.shape) if flat else 0.0 * at.position
+        normal = np.broadcast_to(at.contact.normal.array(), at.position.shape) if flat else 0.0 * at.position
+        arm = np.linalg.norm(at.offset, axis=1)[:, None]
+        spin = _elements((normal * arm).T[:, :, None], at.angular_velocity)
+        spin = (spin - spin.mean(axis=0)) / bound  # of a ball on a plane no contact can change it
+        slip = np.column_stack([rolled, velocity if rate_free else velocity - carried])
+        if rate_free:  # the share of what is carried with which least slips
+            slip -= np.outer(carried, carried @ slip) / max(float(carried @ carried), 1e-300)
+        self._off = np.vstack([slip, np.column_stack([spin, np.zeros(len(spin))])])
+        self._size = velocity.size
+        self._rolled, self._slip, self._short = (np.linalg.qr(rows, "r") for rows in (rolled, slip, self._off))
 
     def fitted(self, start: Quaternion) -> Aligned | None:
         """Turn a start until least is off."""
-        found = least_squares(lambda angles: self._off(_turn(angles) * start), [0.0, 0.0, 0.0])
+        found = least_squares(
+            lambda angles: self._short @ _with_one(_turn(angles) * start),
+            [0.0, 0.0, 0.0],
+            lambda angles: self._off @ _with_one(_turn(angles) * start),
+        )
         if found is None:
             return None
         angles, doubts = found  # as if all residuals were moved together
-        unsure = float(np.linalg.norm(doubts)) * np.sqrt(_TOGETHER / self._velocity.size)
+        unsure = float(np.linalg.norm(doubts)) * np.sqrt(_TOGETHER / self._size)
         return Aligned(_turn(angles) * start, given=False, unsure=unsure)
 
     def left(self, start: Quaternion) -> float:
         """Return the slip as a share of what rolls."""
-        slip, rolled = self._slip(start.matrix() @ self._turning)
-        return float(np.linalg.norm(slip) / max(float(np.linalg.norm(rolled)), 1e-300))
-
-    def _off(self, start: Quaternion) -> Array:
-        """Return what slips, and by how much the spin of a ball on a plane changes, which no contact can change."""
-        turning = start.matrix() @ self._turning
-        spin = (turning.array() * self._normal).sum(axis=1) * self._arm
-        return np.concatenate([self._slip(turning)[0], (spin - spin.mean()) / self._bound[:, 0]])
-
-    def _slip(self, turning: Vector) -> tuple[Array, Array]:
-        """Return what slips, and what rolls, if Ω is this in space."""
-        rolled = (turning.cross(self._offset).array() / self._bound).ravel()
-        moved, carried, share = self._velocity + rolled, self._carried, 1.0
-        if self._rate_free:  # the share of it with which least slips
-            share = float(moved @ carried) / max(float(carried @ carried), 1e-300)
-        return moved - share * carried, rolled
+        elements = _with_one(start)
+        slip, rolled = np.linalg.norm(self._slip @ elements), np.linalg.norm(self._rolled @ elements[:-1])
+        return float(slip) / max(float(rolled), 1e-300)
 
 
-def _by_columns(rows: Array) -> Vector:
-    """Return vectors whose components lie together each, as they are gone through thousands of times."""
-    return Vector.of(np.asfortranarray(rows))
+def _elements(weights: Array, turning: Array) -> Array:
+    """Return, for each element of a matrix M by rows, what it adds to the sum of the weights times M turning."""
+    return np.stack([weight * turning[:, [k]] for weight in weights for k in range(3)], axis=-1).reshape(-1, 9)
+
+
+def _with_one(start: Quaternion) -> Array:
+    """Return the nine elements of a rotation matrix, and one for what does not depend on it."""
+    return np.array([*(element for row in start.matrix().rows for element in row), 1.0])
 
 
 def _turn(angles: Array) -> Quaternion:

@@ -50,8 +50,10 @@ class _LateLaw:
         return self.law(system, self.numbers)(system, at)
 
 
-def least_squares(residual: Callable[[Array], Array], guess: list[float]) -> tuple[Array, Array] | None:
-    """Fit numbers so that residuals, over their bounds, are least."""
+def least_squares(
+    residual: Callable[[Array], Array], guess: list[float], whole: Callable[[Array], Array] | None = None
+) -> tuple[Array, Array] | None:
+    """Fit numbers so that residuals, over their bounds, are least; `whole` is what fewer rows stand for."""
     from scipy import optimize
 
     scale = np.where(np.asarray(guess) == 0, 1.0, np.abs(guess))
@@ -68,8 +70,8 @@ def least_squares(residual: Callable[[Array], Array], guess: list[float]) -> tup
     if not np.isfinite(normal).all() or np.linalg.matrix_rank(normal) < len(guess):
         return None
     # As if all residuals were as far off as the worst that is left, and all together.
-    left = max(float(np.abs(found.fun).max()), 1e-6)
-    doubt = left * np.sqrt(np.diag(np.linalg.inv(normal)) * found.fun.size)
+    left = found.fun if whole is None else whole(found.x * scale)
+    doubt = max(float(np.abs(left).max()), 1e-6) * np.sqrt(np.diag(np.linalg.inv(normal)) * left.size)
     return found.x * scale, doubt * scale
 
 
