@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from typing import Any
 
 import pytest
@@ -10,7 +11,9 @@ from sympy.parsing.latex import parse_latex
 from tests.derivation.derived import derived
 
 import trundle as tr
+from trundle.analysis.derivation.topics import TOPICS
 from trundle.analysis.derivation.zero import is_zero
+from trundle.solve.exact import CLOSED_FORMS
 
 # What SymPy's grammar does not read, or takes for a function, and what stands in its place.
 READABLE = {
@@ -86,3 +89,9 @@ def test_what_a_scene_shows_is_proved(
     assert set(right) & set(page) == both
     for left in both:
         assert any(is_zero(plain(one) - page[left]) for one in right[left]), f"{left} = {page[left]}, not {right[left]}"
+
+
+def test_every_form_that_is_derived_is_looked_at() -> None:
+    names = {form.__module__.rpartition(".")[2] for form in CLOSED_FORMS}
+    derivable = {name for name in names if find_spec(f"trundle.analysis.derivation.{name}")}
+    assert derivable == {TOPICS[topic].form for topic, *_ in CASES}

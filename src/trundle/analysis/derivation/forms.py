@@ -1,6 +1,6 @@
 """Which derivation belongs to which closed form.
 
-The closed form of `solve/exact/<name>.py` brings its derivation in `derivation/<name>.py`: a class `Setting` with
+The closed form of `solve/exact/<name>.py` has its derivation, if any, in `derivation/<name>.py`: a class `Setting` with
 `of(system)`, which says what is there; `derive_system(setting)`, which yields the steps up to the proof of the form;
 and `numbers_of(motion, system)`, which yields its constants in numbers.
 """
