@@ -24,7 +24,6 @@ _LOCAL = 96  # windows in which it is seen whether the noise is the same all alo
 _NEIGHBOURS = 15  # of these that are taken to have the same
 _PLAINLY = 9.0  # times another variance: the noise is not the same all along
 _MEDIAN = 0.6  # degrees of freedom that a median keeps
-_FARTHEST = 32  # samples over which noise is looked at for what it has in common
 _TOGETHER = 4.0  # standard deviations by which that must stand out
 _STEPS = 1e-6  # of a step, that samples which are cut off may be off a multiple of it
 _FEWEST_STEPS = 4  # different values, to tell that they are multiples of one
@@ -130,16 +129,18 @@ class _Levels:
 def _alike(rest: Array, at: Polynomials, degree: int) -> float:
     """Return how much more the noise of a mean is than that of independent samples: 1 + 2 Σ of its correlations."""
     width = rest.shape[1]
-    lags = min(width // 4, _FARTHEST)
     power = float((rest * rest).sum())
-    if lags == 0 or power == 0:
+    if power == 0:
         return 1.0
     scale = power / (width - degree - 1)  # a sum over the windows and components, of the variance
-    sums = np.array([float((rest[:, :-lag] * rest[:, lag:]).sum()) for lag in range(1, lags + 1)])
-    share = (sums / scale - at.correlations(lags)) / width
     samples = min(rest.shape[0] * width, int(np.ptp(at.index)) + 1)
-    small = np.flatnonzero(share < _TOGETHER / np.sqrt(samples))
-    return float(1 + 2 * share[: small[0] if small.size else lags].sum())
+    total = 0.0
+    for lag, independent in enumerate(at.correlations, 1):
+        share = (float((rest[:, :-lag] * rest[:, lag:]).sum()) / scale - independent) / width
+        if share < _TOGETHER / np.sqrt(samples):
+            break
+        total += share
+    return float(1 + 2 * total)
 
 
 def _shape(time: Array, values: Array, known: Known) -> tuple[Index, Array]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ Index = NDArray[np.int_]
 
 _EVEN = 1e-12  # of half a window: instants that are even to rounding
 _AT_ONCE = 2_000_000  # numbers of a stack of windows
+_FARTHEST = 32  # samples over which noise is looked at for what it has in common
 
 
 @dataclass(frozen=True)
@@ -28,10 +29,12 @@ class Polynomials:
     basis: Array  # (m, width, degree + 1), or (1, ...) where the samples are even
     inverse: Array
 
-    def correlations(self, lags: int) -> Array:
-        """Return what independent noise of variance 1 gives for Σᵢ eᵢ eᵢ₊ₗ of what a fit leaves over, l = 1, 2, ..."""
+    @cached_property
+    def correlations(self) -> Array:
+        """What independent noise of variance 1 gives for Σᵢ eᵢ eᵢ₊ₗ of what a fit leaves over, l = 1, 2, ..."""
         B, P = self.basis[0], self.inverse[0].T
         width = B.shape[0]
+        lags = min(width // 4, _FARTHEST)
         return np.array([-(B[: width - lag] * P[lag:]).sum() for lag in range(1, lags + 1)])
 
 
