@@ -32,7 +32,7 @@ class BowlOfTriangles(Rolling):
     >>> import trundle as tr
     >>> case = next(case for case in tr.conformance.cases() if case.name == "bowl-mesh-coarse")
     >>> len(case.situation()["support"]["mesh"]["triangles"])
-    400
+    406
     """
 
     points: int = 0

@@ -93,7 +93,7 @@ class Triangles:
 def _turn(a: Array, b: Array) -> Array:
     """Return the rotation that takes the unit vector a to b, the shortest way."""
     v = np.cross(a, b)
-    K = np.cross(np.eye(3), v).T
+    K = np.cross(v, np.eye(3)).T
     turn: Array = np.eye(3) + K + K @ K / (1.0 + a @ b)
     return turn
 

@@ -24,6 +24,7 @@ def run(task: Task) -> Task:
         {
             "restitution": "it has no coefficient of restitution: contacts are damped springs",
             "driven": "it has no body of prescribed velocity that contacts know of",
+            "mesh": "it takes a piece for each triangle, and to compile 406 of them takes it minutes",
             "hinge": "it has no collision of a moving table and a ball: planes may not move, and MJX has no pair of a"
             " cylinder and a sphere",
         },

@@ -134,6 +134,22 @@ def pieces(mesh: Task, share: float = 0.1) -> list[list[list[float]]]:
     ]
 
 
+def plates(np: Any, mesh: Task) -> list[tuple[Any, Any, float]]:
+    """Return, for each triangle of a bowl, a middle, axes whose third points inwards, and how far the corners reach.
+
+    A square plate behind it reaches farther than the triangle, but not into the bowl, which is convex.
+    """
+    found = []
+    for corners in np.array(mesh["vertices"])[np.array(mesh["triangles"])]:
+        middle = corners.mean(0)
+        along = (corners[1] - corners[0]) / np.linalg.norm(corners[1] - corners[0])
+        normal = np.cross(along, corners[2] - corners[0])
+        normal /= np.linalg.norm(normal)
+        reach = float(np.linalg.norm(corners - middle, axis=-1).max())
+        found.append((middle, np.stack([along, np.cross(normal, along), normal], axis=-1), reach))
+    return found
+
+
 def rotation(q: Sequence[float]) -> list[list[float]]:
     """Return the matrix of a unit quaternion (w, x, y, z)."""
     w, x, y, z = q
