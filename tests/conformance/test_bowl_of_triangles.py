@@ -58,7 +58,7 @@ def test_the_triangles_bound_a_convex_room_about_the_bowl(case: BowlOfTriangles)
 
 
 def test_each_triangle_and_each_edge_is_as_trundle_rolls_and_lands() -> None:
-    """The general law of this package knows planes and landings, and nothing of meshes; here it goes from one to the next."""
+    """The general law of this package knows planes and landings, and no meshes: here it goes from one to the next."""
     told = COARSE.situation()
     mesh, _ = mesh_of(COARSE)
     found = stretches(mesh, told, COARSE.duration)
@@ -83,7 +83,7 @@ def test_each_triangle_and_each_edge_is_as_trundle_rolls_and_lands() -> None:
         orientation = A.T @ turned @ A @ orientation
         assert (mesh.distances + mesh.normals @ place).min() >= 0.025 - 1e-12  # it is in no triangle
     ours = COARSE.on_mesh()
-    assert place + [0, 0, 0.5] == pytest.approx(ours.position[-1, 0], abs=1e-12)
+    assert place == pytest.approx(ours.position[-1, 0] - [0, 0, 0.5], abs=1e-12)
     assert velocity == pytest.approx(ours.velocity[-1, 0], abs=1e-11)
     assert turning == pytest.approx(ours.angular_velocity[-1, 0], abs=1e-9)
     assert orientation == pytest.approx(matrix(ours.orientation[-1, 0]), abs=1e-9)

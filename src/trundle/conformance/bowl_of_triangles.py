@@ -1,4 +1,4 @@
-"""A ball in a bowl that engines are told of as triangles: exact is the smooth bowl, and the triangles have their share."""
+"""A ball in a bowl that engines are told of as triangles: exact is the smooth bowl."""
 
 from __future__ import annotations
 
@@ -98,4 +98,4 @@ def _mesh(points: int, radius: float, towards: tuple[float, ...]) -> Triangles:
 @lru_cache
 def _on_mesh(case: BowlOfTriangles) -> Motion:
     told = Rolling.situation(case)
-    return rolled(case._mesh(told), told, case.times())  # noqa: SLF001  its own
+    return rolled(case._mesh(told), told, case.times())

@@ -187,7 +187,9 @@ def rolled(mesh: Triangles, situation: Task, times: Array) -> Motion:
         def rate(t: float, q: Array, each: _Stretch = each) -> Array:
             (x, y, z), w = 0.5 * each.turning(each.at(t)[1], radius), q
             a, b, c, d = w
-            return np.array([-x * b - y * c - z * d, x * a + y * d - z * c, y * a + z * b - x * d, z * a + x * c - y * b])
+            return np.array(
+                [-x * b - y * c - z * d, x * a + y * d - z * c, y * a + z * b - x * d, z * a + x * c - y * b]
+            )
 
         turned = solve_ivp(rate, (each.time, until), orientation, "DOP853", seen, rtol=_FINE, atol=_FINE)
         orientation = turned.y[:, -1] / np.linalg.norm(turned.y[:, -1])

@@ -30,9 +30,7 @@ def run(task: Task) -> Task:
     pairs = [(made[0], (ground, table), task["friction"])]
     pairs += [(each, made[0], task["friction_between"]) for each in made[1:]]
     surfaces = [_surface(ode, friction, task["restitution"]) for *_, friction in pairs]
-    pushed = [
-        (body, told["force"]) for (_, body), told in zip(made, task["bodies"], strict=True) if any(told["force"])
-    ]
+    pushed = [(body, told["force"]) for (_, body), told in zip(made, task["bodies"], strict=True) if any(told["force"])]
     group, advance = ode.OdeJointGroup(), world.step if setting.get("solver") == "step" else world.quickStep
 
     def step(count: int) -> None:

@@ -129,9 +129,7 @@ def pieces(mesh: Task, share: float = 0.1) -> list[list[list[float]]]:
     def behind(vertex: list[float]) -> list[float]:
         return [x + share * (x - m) for x, m in zip(vertex, middle, strict=True)]
 
-    return [
-        [vertices[i] for i in triangle] + [behind(vertices[i]) for i in triangle] for triangle in mesh["triangles"]
-    ]
+    return [[vertices[i] for i in triangle] + [behind(vertices[i]) for i in triangle] for triangle in mesh["triangles"]]
 
 
 def plates(np: Any, mesh: Task) -> list[tuple[Any, Any, float]]:
