@@ -80,7 +80,7 @@ def differentiated(task: Task, world: Any, state: Any) -> dict[str, list[Any]]:
     # The first pair is that of the first body and the ground, the others those of the others and it.
     rough = np.zeros((len(directions), *world.pair_friction.shape))
     rough[:, 0, :2] = [[one["friction"]] * 2 for one in directions]
-    rough[:, 1:, :2] = [[[one["friction_between"]] * 2] * (count - 1) for one in directions]
+    rough[:, 1:, :2] = np.array([one["friction_between"] for one in directions])[:, None, None]
     along = {
         "qpos": jnp.array(tangents[:, :, :7].reshape(len(directions), -1), kind),
         "qvel": jnp.array(tangents[:, :, 7:].reshape(len(directions), -1), kind),
