@@ -13,6 +13,7 @@ import math
 from dataclasses import dataclass, fields
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .case import Array, Motion, Task
 
@@ -39,7 +40,7 @@ class Triangles:
     """
 
     vertices: Array
-    corners: Array
+    corners: NDArray[np.integer]
     normals: Array
     distances: Array
 
