@@ -109,7 +109,7 @@ def _drawn(body: dict[str, Any]) -> dict[str, Any]:
 
 
 def _ground(support: dict[str, Any], exact: Motion, margin: float) -> list[_Line]:
-    """Return lines on the ground under a motion: a grid, or rings where it turns or is a dome."""
+    """Return lines on the ground under a motion: a grid, or rings where it turns, or is a dome or a bowl."""
     points = exact.position.reshape(-1, 3)
     if support["kind"] == "plane" and support["motion"]["kind"] == "fixed":
         low, high = points[:, :2].min(0) - margin, points[:, :2].max(0) + margin
@@ -124,7 +124,8 @@ def _ground(support: dict[str, Any], exact: Motion, margin: float) -> list[_Line
     widest = min(float(np.hypot(points[:, 0], points[:, 1]).max()) + margin, radius)
     rings = []
     for part in np.linspace(0.2, 1.0, 5) * widest:
-        height = math.sqrt(max(radius**2 - part**2, 0.0)) - radius if math.isfinite(radius) else 0.0
+        depth = radius - math.sqrt(max(radius**2 - part**2, 0.0)) if math.isfinite(radius) else 0.0
+        height = depth if support["kind"] == "bowl" else -depth
         rings.append(np.column_stack([part * np.cos(_AROUND), part * np.sin(_AROUND), np.full(_AROUND.size, height)]))
     return [_rounded(ring) for ring in rings]
 

@@ -188,6 +188,16 @@ class Case(ABC):
         """
         return np.full(3, np.nan)
 
+    def on_mesh(self) -> Motion | None:
+        """Return the motion that is exact but for a mesh in the place of a smooth support; None where there is none.
+
+        Returns
+        -------
+        Motion or None
+            At the times of the samples.
+        """
+        return None
+
     def inputs(self) -> tuple[Input, ...]:
         """Return the numbers by which the final state has derivatives; none where it has none, or they are not known.
 
@@ -223,7 +233,7 @@ class Case(ABC):
         """What an engine must be able to say to run it, as words of the task."""
         told = self.situation()
         bodies, support = told["bodies"], told["support"]
-        found = {support["kind"], *(body["shape"]["kind"] for body in bodies)}
+        found = {"mesh" if "mesh" in support else support["kind"], *(body["shape"]["kind"] for body in bodies)}
         if support["motion"]["kind"] != "fixed":
             found.add(support["motion"]["kind"])
         if told["restitution"]:
@@ -326,6 +336,7 @@ def cases(folder: str | Path | None = None) -> list[Case]:
     """
     from ..errors import InvalidValueError
     from ..scenario import files
+    from .bowl_of_triangles import BowlOfTriangles
     from .pushed_box import PushedBox
     from .rolling import Rolling
 
@@ -336,6 +347,6 @@ def cases(folder: str | Path | None = None) -> list[Case]:
     found: list[Case] = []
     for path in paths:
         tables = files.tables_of(path)
-        kind = PushedBox if PushedBox.table in tables else Rolling
+        kind = next((each for each in (PushedBox, BowlOfTriangles) if each.table in tables), Rolling)
         found.append(kind.read(path.stem, tables, str(path)))
     return found

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -50,6 +50,11 @@ class Errors:
         Over the highest kinetic energy; of the moving energy on a driven support.
     friction : float
         Of the mean force of friction, over that force; not a number where the case has no other force.
+    own : float
+        The larger of those of position and turning from a body that is exact but for the mesh; not a number where
+        the support is none.
+    mesh : float
+        What that body is off by itself: the share that is no fault of the engine's.
     """
 
     position: float
@@ -58,15 +63,17 @@ class Errors:
     slip: float
     energy: float
     friction: float
+    own: float = math.nan
+    mesh: float = math.nan
 
     @property
     def worst(self) -> float:
-        """The larger of the errors of position and turning: the one that classes go by."""
-        return max(self.position, self.turning)
+        """The one that classes go by: the larger of those of position and turning, or what is not the mesh's."""
+        return max(self.position, self.turning) if math.isnan(self.own) else self.own
 
 
 def errors_of(case: Case, exact: Motion, motion: Motion) -> Errors:
-    """Measure a motion against the exact one.
+    """Measure a motion against the exact one, and against the one that is exact but for a mesh.
 
     Examples
     --------
@@ -75,6 +82,14 @@ def errors_of(case: Case, exact: Motion, motion: Motion) -> Errors:
     >>> errors_of(case, case.exact(), case.exact()).worst < 1e-15
     True
     """
+    found, on_mesh = _apart(case, exact, motion), case.on_mesh()
+    if on_mesh is None:
+        return found
+    own, mesh = (_apart(case, *pair) for pair in ((on_mesh, motion), (exact, on_mesh)))
+    return replace(found, own=own.worst, mesh=mesh.worst)
+
+
+def _apart(case: Case, exact: Motion, motion: Motion) -> Errors:
     apart = np.linalg.norm(motion.position - exact.position, axis=-1).max(0)
     path = np.linalg.norm(np.diff(exact.position, axis=0), axis=-1).sum(0)
     between = _angles(motion.orientation, exact.orientation).max(0)

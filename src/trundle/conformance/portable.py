@@ -25,7 +25,9 @@ _LICENCE = (
     "NAME.json: what an engine is told, in SI units. NAME.csv: the exact run, a row for each sample and body.\n"
     "Orientations are unit quaternions (w, x, y, z), body axes to axes of the support at rest; angular velocities are\n"
     "in those, too. Write a CSV of the same columns from your engine, and compare:\n\n"
-    "    python3 score.py incline mine.csv\n"
+    "    python3 score.py incline mine.csv\n\n"
+    "A bowl is told as triangles. What an exact ball does on them is in NAME-exact-but-for-it.csv: compare with that,\n"
+    "too, and you know which part of an error is that of the mesh.\n"
 )
 
 
@@ -68,6 +70,9 @@ def case_files(cases: Sequence[Case]) -> dict[str, str]:
         task: dict[str, Any] = {key: value for key, value in case.task(0.0).items() if key not in ("dt", "setting")}
         files[f"{case.name}.json"] = json.dumps(task, indent=1) + "\n"
         files[f"{case.name}.csv"] = table(case.exact())
+        on_mesh = case.on_mesh()
+        if on_mesh is not None:
+            files[f"{case.name}-exact-but-for-it.csv"] = table(on_mesh)
     return files
 
 

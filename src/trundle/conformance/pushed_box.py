@@ -7,15 +7,15 @@ F − μ (M + n m) g = (M + n m k/(1 + k)) a, and the ball itself gains k a/(1 +
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
 
 from ..errors import ScenarioError
 from ..mechanics.system import STANDARD_GRAVITY
-from .case import Array, Case, Motion, Task
+from .case import END, Array, Case, Input, Motion, Task
 
 
 @dataclass(frozen=True)
@@ -30,6 +30,10 @@ class PushedBox(Case):
         N.
     direction : float
         Of the force, rad from the first axis.
+    friction : tuple of float
+        Coefficients: box and ground, ball and box.
+    gravity : float
+        m/s².
 
     Examples
     --------
@@ -41,6 +45,8 @@ class PushedBox(Case):
 
     force: float
     direction: float
+    friction: tuple[float, float] = (0.4, 0.8)
+    gravity: float = STANDARD_GRAVITY
 
     table: ClassVar[str] = "pushed-box"
     box_mass: ClassVar[float] = 10.0
@@ -49,7 +55,6 @@ class PushedBox(Case):
     radius: ClassVar[float] = 0.1
     ratio: ClassVar[float] = 0.4  # k = I/(m a²)
     rows: ClassVar[tuple[float, ...]] = (-2.0, -1.0, 0.0, 1.0, 2.0)  # m, both ways
-    friction: ClassVar[tuple[float, float]] = (0.4, 0.8)  # of box and ground, of ball and box
     duration = 1.0
     every = 0.01
 
@@ -78,7 +83,7 @@ class PushedBox(Case):
     @property
     def _weight(self) -> float:
         """Of all bodies together, N."""
-        return (self.box_mass + len(self.rows) ** 2 * self.ball_mass) * STANDARD_GRAVITY
+        return (self.box_mass + len(self.rows) ** 2 * self.ball_mass) * self.gravity
 
     @property
     def _along(self) -> tuple[float, float]:
@@ -115,7 +120,7 @@ class PushedBox(Case):
             for up in self.rows
         ]
         return {
-            "gravity": [0.0, 0.0, -STANDARD_GRAVITY],
+            "gravity": [0.0, 0.0, -self.gravity],
             "bodies": [box, *balls],
             "support": {"kind": "plane", "motion": {"kind": "fixed"}},
             "friction": self.friction[0],
@@ -153,6 +158,54 @@ class PushedBox(Case):
             angular_velocity=turning[..., None] * axis,
             orientation=quaternion,
         )
+
+    def inputs(self) -> tuple[Input, ...]:
+        """Return the force and its direction, the friction of the ground and gravity."""
+        c, s = self._along
+        mu, g = self.friction[0], self.gravity
+        carried = (self.force - mu * self._weight) / self.acceleration
+        end = self.exact()
+        state = np.concatenate([getattr(end, part)[-1] - getattr(end, part)[0] for part in END], axis=1)
+        faster = state / self.acceleration  # all of it grows with the acceleration of the box
+        x, y, z = np.split(state.reshape(-1, 3, 3), 3, axis=2)
+        turned = np.concatenate([-y, x, 0 * z], axis=2).reshape(-1, 9)
+        pushes = {"force": [c, s, 0.0], "direction": [-s * self.force, c * self.force, 0.0]}
+        return (
+            Input("force", self._slopes(force=pushes["force"]), faster / carried, self.force, self._with("force")),
+            Input("direction", self._slopes(force=pushes["direction"]), turned, 1.0, self._with("direction")),
+            Input(
+                "friction",
+                self._slopes(friction=1.0),
+                -self._weight / carried * faster,
+                mu,
+                lambda by: replace(self, friction=(mu + by, self.friction[1])),
+            ),
+            Input(
+                "gravity",
+                self._slopes(gravity=[0.0, 0.0, -1.0]),
+                -mu * self._weight / (g * carried) * faster,
+                g,
+                self._with("gravity"),
+            ),
+        )
+
+    def _with(self, name: str) -> Callable[[float], PushedBox]:
+        """Return what makes a case with so much more of a number."""
+        return lambda by: replace(self, **{name: getattr(self, name) + by})
+
+    def _slopes(self, force: list[float] | None = None, **others: Any) -> Task:
+        """Return how the numbers of the task change: by nothing but by what is given."""
+
+        def still(told: Any) -> Any:
+            if isinstance(told, dict):
+                return {key: still(part) for key, part in told.items()}
+            if isinstance(told, list):
+                return [still(part) for part in told]
+            return told if isinstance(told, str) else 0.0
+
+        slopes: Task = still(self.situation()) | others
+        slopes["bodies"][0]["force"] = force or [0.0] * 3
+        return slopes
 
     def slip(self, motion: Motion) -> Array:
         """Return the velocity of each ball's lowest point over the box; zero for the box, which has to slip."""

@@ -156,6 +156,8 @@ _INTRODUCTION = (
     " motion is known, by a formula or to fifteen digits by two methods. The error is the larger of two: the distance"
     " from the exact position over the length of the path, and the angle from the exact orientation over the angle"
     " turned through, each at its worst. Where a box is pushed, the error of the force of friction is given, too."
+    " Where a bowl is made of triangles, the error is that from a ball that is exact but for the triangles; how far"
+    " this ball is from the exact one is the mesh's own share, and stands beside it."
     " “As shipped” changes no setting; “best” sets what the engine's own"
     " documentation recommends for accuracy. An engine that is made for another purpose may do well there all the same."
 )
@@ -222,6 +224,7 @@ def _cell(cell: Cell | None) -> str:
     sign, colour = _LOOKS[cell.name]
     last, why = cell.finest, _reason(cell)
     lines = [f"{_number(last.worst)} at {1e3 * last.step:g} ms"] if math.isfinite(last.worst) else []
+    lines += [f"the mesh's own: {_number(last.mesh)}"] if math.isfinite(last.mesh) else []
     lines += [f"friction {_number(last.friction)}"] if math.isfinite(last.friction) else []
     lines += [f"falls with: {cell.cause}"] if cell.cause else []
     small = "".join(f"<small>{escaped(line)}</small>" for line in lines)

@@ -33,6 +33,8 @@ _SAID = {
     "seconds": "processor time of the stepping for a second of the motion",
     "derivative": "relative error of the derivatives of the final state, the largest by any input",
     "friction": "error of the mean force of friction over that force",
+    "own": "the larger error of position and turning from a body that is exact but for the mesh",
+    "mesh": "that error of a body that is exact but for the mesh",
     "limit": "rate at which components of the angular velocity are cut off",
 }
 
@@ -59,7 +61,7 @@ class Row:
         How derivatives of the final state were taken; empty for the motion itself.
     derivative : float
         Their relative error, the largest by any input.
-    friction : float
+    friction, own, mesh : float
         See `Errors`.
     path : str
         The motion as an animation shows it; empty where there is none.
@@ -83,12 +85,16 @@ class Row:
     way: str = ""
     derivative: float = math.nan
     friction: float = math.nan
+    own: float = math.nan
+    mesh: float = math.nan
     path: str = ""
 
     @property
     def worst(self) -> float:
-        """The error that classes go by: the larger of those of position and turning, or that of derivatives."""
-        return self.derivative if self.way else max(self.position, self.turning)
+        """The error that classes go by: that of derivatives, or else `Errors.worst`."""
+        if self.way:
+            return self.derivative
+        return max(self.position, self.turning) if math.isnan(self.own) else self.own
 
     @property
     def cell(self) -> tuple[str, str, str, str]:

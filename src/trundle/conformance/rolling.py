@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -18,7 +18,6 @@ from ..simulation.simulate import Scenario
 from .case import END, PARTS, Array, Case, Input, Motion, Task
 
 _SHAPES = {"ball": "sphere", "disc": "disc", "ellipsoid": "ellipsoid"}
-_SURFACES = ("plane", "dome")
 _FINEST = 1e-14  # of a second route by DOP853
 _FOR = "for a physics engine"
 _PARAMETERS = ("gravity", "support.tilt", "support.friction", "support.motion.rate", "support.motion.inertia")
@@ -47,6 +46,7 @@ class Rolling(Case):
     """
 
     scenario: Scenario
+    surfaces: ClassVar[tuple[str, ...]] = ("plane", "dome")
 
     @classmethod
     def of(cls, name: str, scenario: Scenario) -> Rolling:
@@ -120,7 +120,7 @@ class Rolling(Case):
         support, surface, shape = system.support, system.support.surface, system.body.shape
         for key, received, words in (
             ("body.kind", _SHAPES.get(shape.noun, shape.noun), _SHAPES.values()),
-            ("support.kind", surface.kind, _SURFACES),
+            ("support.kind", surface.kind, self.surfaces),
             ("support.motion.kind", support.motion.kind, _MOTIONS),
         ):
             if received not in words:

@@ -20,7 +20,7 @@ from .answers import BAD, FAILED, TOO_SLOW, Answer, read_answer
 from .case import Case, Input
 
 LIMIT = 60.0  # s for an answer
-STARTING = 60.0  # s more for the first one, in which the engine is imported
+STARTING = 60.0  # s more for the first one, in which an engine is imported
 _MOST_BYTES = 256 * 2**20  # of an answer
 _ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS", "RAYON_NUM_THREADS"), "1"
@@ -40,7 +40,11 @@ class Adapter:
     folder : path, optional
         Where it runs; absent: here.
     limit : float
-        s for an answer; the first one may take a minute more.
+        s for an answer.
+    environment : dict, optional
+        Variables of it, beside those that are.
+    starting : float
+        s that the first answer may take more.
 
     Examples
     --------
@@ -57,8 +61,9 @@ class Adapter:
         folder: Path | None = None,
         limit: float = LIMIT,
         environment: dict[str, str] | None = None,
+        starting: float = STARTING,
     ) -> None:
-        self.command, self.folder, self.limit = list(command), folder, limit
+        self.command, self.folder, self.limit, self._starting = list(command), folder, limit, starting
         self._environment = os.environ | _ONE_THREAD | (environment or {})
         self._process: subprocess.Popen[bytes] | None = None
         self._complaints: Any = None
@@ -101,7 +106,7 @@ class Adapter:
             if not line:  # it may have ended after its last answer, unseen
                 self.end()
                 self._start()
-                line = self._exchange(task, self.limit + STARTING)
+                line = self._exchange(task, self.limit + self._starting)
         except OSError as error:
             self.end()
             return Answer(FAILED, f"{self.command[0]} cannot be started: {error.strerror or error}")

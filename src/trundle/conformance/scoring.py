@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import shlex
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from statistics import median
 from typing import Any
 
@@ -17,7 +17,7 @@ from .answers import CANNOT as CANNOT_OUTCOME
 from .answers import NOT_FINITE, NOT_INSTALLED, OK, TOO_SLOW, Answer
 from .case import Case, Input, Motion
 from .engines import BEST, SHIPPED, CannotInstallError, Setting
-from .measuring import cut_off, errors_of
+from .measuring import Errors, cut_off, errors_of
 from .results import Row, Score
 from .running import LIMIT, Adapter
 
@@ -189,7 +189,7 @@ def _slopes(
 
 def _row(entrant: Entrant, setting: Setting, case: Case, dt: float, answer: Answer, exact: Motion | None) -> Row:
     """Measure what came of a run."""
-    told: dict[str, Any] = dict.fromkeys(("position", "angle", "turning", "slip", "energy", "friction"), math.nan)
+    told: dict[str, Any] = dict.fromkeys((each.name for each in fields(Errors)), math.nan)
     limit, path = None, ""
     if answer.outcome == NOT_FINITE:
         told |= {"position": math.inf, "turning": math.inf}

@@ -20,7 +20,7 @@ from typing import Any
 from ...errors import UnknownNameError
 from ...files import hold
 from ...solve.integrator_cache import cache_folder
-from ..running import Adapter
+from ..running import STARTING, Adapter
 
 _HERE = Path(__file__).parent
 _READY = "ready"  # a file in an environment that is whole
@@ -71,6 +71,8 @@ class Engine:
         Profiles first.
     cannot : str
         Why it is not scored.
+    starting : float
+        s that its first answer may take more than others.
 
     Examples
     --------
@@ -84,6 +86,7 @@ class Engine:
     packages: tuple[str, ...] = ()
     settings: tuple[Setting, ...] = ()
     cannot: str = ""
+    starting: float = STARTING
 
     @property
     def profiles(self) -> tuple[Setting, ...]:
@@ -170,7 +173,7 @@ class Engine:
         own = not self.packages
         ours = str(_HERE.parents[2]) if own else ""  # trundle itself is imported from where this file is
         path = {"PYTHONPATH": os.pathsep.join(filter(None, (ours, os.environ.get("PYTHONPATH", "") if own else "")))}
-        return Adapter([str(self.python), "-m", f"adapters.{self.name}"], _HERE, limit, path)
+        return Adapter([str(self.python), "-m", f"adapters.{self.name}"], _HERE, limit, path, self.starting)
 
 
 def _python(environment: Path) -> Path:
@@ -206,4 +209,11 @@ def engine(name: str) -> Engine:
         Setting(key, each.get("set", {}), each.get("source", ""), each.get("of", ""))
         for key, each in told.get("settings", {}).items()
     ]
-    return Engine(name, told["title"], tuple(told.get("packages", ())), tuple(settings), told.get("cannot", ""))
+    return Engine(
+        name,
+        told["title"],
+        tuple(told.get("packages", ())),
+        tuple(settings),
+        told.get("cannot", ""),
+        told.get("starting", STARTING),
+    )

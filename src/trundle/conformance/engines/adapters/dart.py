@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from .serving import CannotError, Task, march, refuse, serve
+from .serving import CannotError, Task, march, plates, refuse, serve
+
+_THICK = 0.02  # m, half of a plate
 
 
 def run(task: Task) -> Task:
@@ -25,7 +27,7 @@ def run(task: Task) -> Task:
     solver = world.getConstraintSolver()
     detectors = {"dart": "DARTCollisionDetector", "bullet": "BulletCollisionDetector", "fcl": "FCLCollisionDetector"}
     ellipsoid = any(body["shape"]["kind"] == "ellipsoid" for body in task["bodies"])
-    chosen = task["setting"].get("detector", "bullet" if ellipsoid else "dart")
+    chosen = task["setting"].get("detector", "bullet" if ellipsoid or "mesh" in task["support"] else "dart")
     solver.setCollisionDetector(getattr(dart.collision, detectors[chosen])())
     table = _support(dart, np, world, task)
     bodies = [_body(dart, np, world, task, body, i) for i, body in enumerate(task["bodies"])]
@@ -69,11 +71,16 @@ def _support(dart: Any, np: Any, world: Any, task: Task) -> Any:
     else:
         joint, node = skeleton.createRevoluteJointAndBodyNodePair()
         joint.setAxis(np.array([0.0, 0.0, 1.0]))
-    dome = support["kind"] == "dome"
-    depth = support["radius"] if dome else 0.5
-    shape = dart.dynamics.SphereShape(depth) if dome else dart.dynamics.BoxShape(np.array([100.0, 100.0, 1.0]))
     # Of two coefficients the smaller counts: balls on a box have that of the box at most, which they do not need.
-    _rough(node, shape, [0.0, 0.0, -depth], np, 1e3, float(task["restitution"] > 0))
+    surface = np, 1e3, float(task["restitution"] > 0)
+    if "mesh" in support:  # through its meshes the ball falls: plates behind the triangles bound the same room
+        for place, frame, half in plates(np, support["mesh"]):
+            box = dart.dynamics.BoxShape(2 * np.array([half, half, _THICK]))
+            _rough(node, box, place - _THICK * frame[:, 2], *surface).setRelativeRotation(frame)
+    elif support["kind"] == "dome":
+        _rough(node, dart.dynamics.SphereShape(support["radius"]), [0.0, 0.0, -support["radius"]], *surface)
+    else:
+        _rough(node, dart.dynamics.BoxShape(np.array([100.0, 100.0, 1.0])), [0.0, 0.0, -0.5], *surface)
     inertia = motion.get("inertia", 1.0)
     node.setInertia(dart.dynamics.Inertia(1.0, np.zeros(3), np.diag([1.0, 1.0, inertia])))
     world.addSkeleton(skeleton)
@@ -109,14 +116,15 @@ def _body(dart: Any, np: Any, world: Any, task: Task, body: Task, i: int) -> Any
     return node
 
 
-def _rough(node: Any, shape: Any, place: list[float], np: Any, friction: float, restitution: float) -> None:
-    """Give a body its shape, with a coefficient of friction and one of restitution."""
+def _rough(node: Any, shape: Any, place: list[float], np: Any, friction: float, restitution: float) -> Any:
+    """Give a body its shape, with a coefficient of friction and one of restitution; return the shape's node."""
     part = node.createShapeNode(shape)
     part.createCollisionAspect()
     part.createDynamicsAspect()
     part.getDynamicsAspect().setFrictionCoeff(friction)
     part.getDynamicsAspect().setRestitutionCoeff(restitution)
     part.setRelativeTranslation(np.array(place, dtype=float))
+    return part
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .serving import CannotError, Task, changes, march, refuse, serve
+from .serving import CannotError, Task, changes, march, pieces, refuse, serve
 
 
 def run(task: Task) -> Task:
@@ -28,7 +28,7 @@ def run(task: Task) -> Task:
     if "approximation" in setting:
         config.discrete_contact_approximation = setting["approximation"]
     plant, _graph = drake.AddMultibodyPlant(config, builder)
-    hinge = _support(drake, plant, task)
+    hinge = _support(drake, np, plant, task)
     bodies = [_body(drake, np, plant, task, body, i) for i, body in enumerate(task["bodies"])]
     plant.mutable_gravity_field().set_gravity_vector(task["gravity"])
     plant.Finalize()
@@ -118,12 +118,17 @@ def _surface(drake: Any, task: Task, friction: float) -> Any:
     return properties
 
 
-def _support(drake: Any, plant: Any, task: Task) -> Any:
+def _support(drake: Any, np: Any, plant: Any, task: Task) -> Any:
     """Make the ground: a half space or a large ball; return the joint of a table on a hinge."""
     support, motion = task["support"], task["support"]["motion"]
     # Of two coefficients it takes 2 μ₁ μ₂/(μ₁ + μ₂): the same one twice gives that one.
     own, pair = task["friction"], task["friction_between"]
     properties = _surface(drake, task, own * pair / (2 * pair - own) if pair else own)
+    if "mesh" in support:  # a mesh is taken for its convex hull by point contact: it is told as convex pieces
+        for i, piece in enumerate(pieces(support["mesh"])):
+            shape = drake.Convex(points=np.array(piece).T, label=f"piece{i}")
+            plant.RegisterCollisionGeometry(plant.world_body(), drake.RigidTransform(), shape, f"ground{i}", properties)
+        return None
     if support["kind"] == "dome":
         place, shape = drake.RigidTransform([0.0, 0.0, -support["radius"]]), drake.Sphere(support["radius"])
     else:

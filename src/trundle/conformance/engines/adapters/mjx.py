@@ -24,6 +24,7 @@ def run(task: Task) -> Task:
         {
             "restitution": "it has no coefficient of restitution: contacts are damped springs",
             "driven": "it has no body of prescribed velocity that contacts know of",
+            "mesh": "it takes a piece for each triangle, and to compile 406 of them takes it minutes",
             "hinge": "it has no collision of a moving table and a ball: planes may not move, and MJX has no pair of a"
             " cylinder and a sphere",
         },
@@ -70,45 +71,67 @@ def differentiated(task: Task, world: Any, state: Any) -> dict[str, list[Any]]:
     from mujoco import mjx
 
     directions = task["derivatives"]
-    able = [changes(direction) <= {"start", "gravity", "friction"} for direction in directions]
-    body, kind = task["bodies"][0], state.qpos.dtype
-    slopes = [direction["bodies"][0] for direction in directions]
-    spins = []  # of the angular velocity in the axes of the body
-    for slope in slopes:
-        half = times([body["orientation"][0], *(-x for x in body["orientation"][1:])], slope["orientation"])[1:]
-        across = cross(backwards(body["orientation"], body["angular_velocity"]), [2 * x for x in half])
-        own = backwards(body["orientation"], slope["angular_velocity"])
-        spins.append([a + b for a, b in zip(own, across, strict=True)])
+    able = [changes(direction) <= {"start", "gravity", "friction", "force"} for direction in directions]
+    count, kind = len(task["bodies"]), state.qpos.dtype
+    rows = [[_tangent(*pair) for pair in zip(task["bodies"], one["bodies"], strict=True)] for one in directions]
+    tangents = np.array(rows)  # directions, bodies, 13
+    forces = np.zeros((len(directions), *state.xfrc_applied.shape))
+    forces[:, -count:, :3] = [[body["force"] for body in one["bodies"]] for one in directions]
+    # The first pair is that of the first body and the ground, the others those of the others and it.
+    rough = np.zeros((len(directions), *world.pair_friction.shape))
+    rough[:, 0, :2] = [[one["friction"]] * 2 for one in directions]
+    rough[:, 1:, :2] = np.array([one["friction_between"] for one in directions])[:, None, None]
     along = {
-        "qpos": jnp.array([[*slope["position"], *slope["orientation"]] for slope in slopes], kind),
-        "qvel": jnp.array([[*slope["velocity"], *spin] for slope, spin in zip(slopes, spins, strict=True)], kind),
+        "qpos": jnp.array(tangents[:, :, :7].reshape(len(directions), -1), kind),
+        "qvel": jnp.array(tangents[:, :, 7:].reshape(len(directions), -1), kind),
         "gravity": jnp.array([direction["gravity"] for direction in directions], kind),
-        "friction": jnp.array([[direction["friction"]] * 2 + [0.0] * 3 for direction in directions], kind),
+        "friction": jnp.array(rough, kind),
+        "force": jnp.array(forces, kind),
     }
-    count = round(task["duration"] / task["dt"])
+    steps = round(task["duration"] / task["dt"])
 
-    def end(by: Any) -> Any:
+    def end(by: Any, world: Any) -> Any:
         """Return the final state by how far the start lies along each direction."""
         moved = {key: jnp.tensordot(by, part, 1) for key, part in along.items()}
         gravity, friction = world.opt.gravity + moved["gravity"], world.pair_friction + moved["friction"]
         model = world.tree_replace({"opt.gravity": gravity, "pair_friction": friction})
-        begun = state.replace(qpos=state.qpos + moved["qpos"], qvel=state.qvel + moved["qvel"])
-        last = jax.lax.fori_loop(0, count, lambda _, now: mjx.step(model, now), begun)
-        w, u = last.qpos[3], last.qpos[4:7]
-        spin = last.qvel[3:6]
+        begun = state.replace(
+            qpos=state.qpos + moved["qpos"],
+            qvel=state.qvel + moved["qvel"],
+            xfrc_applied=state.xfrc_applied + moved["force"],
+        )
+        last = jax.lax.fori_loop(0, steps, lambda _, now: mjx.step(model, now), begun)
+        places, rates = last.qpos.reshape(count, 7), last.qvel.reshape(count, 6)
+        w, u, spin = places[:, 3:4], places[:, 4:], rates[:, 3:]
         spin = spin + 2 * jnp.cross(u, jnp.cross(u, spin) + w * spin)
-        return jnp.concatenate([last.qpos[:3], last.qvel[:3], spin])
+        return jnp.stack([places[:, :3], rates[:, :3], spin])
 
+    once = world.tree_replace({"opt.iterations": 1})
     found: dict[str, list[Any]] = {}
-    for way, mode in (("forward mode", jax.jacfwd), ("reverse mode", jax.jacrev)):
+    # With more iterations than one its solver is a loop that JAX has no reverse mode of.
+    for way, mode, chosen in (
+        ("forward mode", jax.jacfwd, world),
+        ("reverse mode", jax.jacrev, world),
+        ("reverse mode, one iteration of the solver", jax.jacrev, once),
+    ):
         try:
-            columns = np.asarray(jax.jit(mode(end))(jnp.zeros(len(directions), kind)), dtype=float).T
-            parts = [dict(zip(END, ([part.tolist()] for part in np.split(one, 3)), strict=True)) for one in columns]
+            at = jnp.zeros(len(directions), kind)
+            columns = np.asarray(jax.jit(lambda by, mode=mode, chosen=chosen: mode(end)(by, chosen))(at), dtype=float)
+            parts = [dict(zip(END, columns[..., j].tolist(), strict=True)) for j in range(len(directions))]
             reason = "this adapter has no direction of it"
             found[way] = [part if can else reason for part, can in zip(parts, able, strict=True)]
         except (TypeError, ValueError, NotImplementedError) as error:
             found[way] = [f"{type(error).__name__}: {error}"] * len(directions)
     return found
+
+
+def _tangent(body: Task, slope: Task) -> list[float]:
+    """Return how qpos and qvel of a body change: angular velocities are in its axes."""
+    q = body["orientation"]
+    half = times([q[0], *(-x for x in q[1:])], slope["orientation"])[1:]
+    across = cross(backwards(q, body["angular_velocity"]), [2 * x for x in half])
+    spin = [a + b for a, b in zip(backwards(q, slope["angular_velocity"]), across, strict=True)]
+    return [*slope["position"], *slope["orientation"], *slope["velocity"], *spin]
 
 
 @cache

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .serving import CannotError, Task, backwards, changes, cross, march, refuse, rotation, serve, times, turned
+from .serving import CannotError, Task, backwards, changes, cross, march, pieces, refuse, rotation, serve, times, turned
 
 # What MuJoCo does where nothing is said; a setting names what differs.
 SHIPPED = {
@@ -17,6 +17,7 @@ SHIPPED = {
     "solref": [0.02, 1.0],
     "solimp": [0.9, 0.95, 0.001],
 }
+_ALONE = 'contype="0" conaffinity="0"'  # what meets something is named as a pair with it
 DIFFERENCES = (1e-6, 1e-8)  # by which mjd_transitionFD moves the state
 
 
@@ -27,19 +28,25 @@ def model(task: Task, *, moving: bool = True) -> str:
         chosen["solref"] = [task["setting"]["solref_steps"] * task["dt"], 1.0]
     soft = f'solref="{_row(chosen["solref"])}" solimp="{_row(chosen["solimp"])}" condim="3"'
     support, motion = task["support"], task["support"]["motion"]
-    ground = {
-        "plane": '<geom name="ground" type="plane" size="100 100 1" contype="0" conaffinity="0"/>',
-        "dome": f'<geom name="ground" type="sphere" size="{support.get("radius", 1)!r}" '
-        f'pos="0 0 {-support.get("radius", 1)!r}" contype="0" conaffinity="0"/>',
-    }[support["kind"]]
+    assets = ""
+    if "mesh" in support:  # one that is not convex is taken for its convex hull: it is told as convex pieces
+        assets, ground = _pieces(support)
+    elif support["kind"] == "dome":
+        radius = support["radius"]
+        ground = f'<geom name="ground" type="sphere" size="{radius!r}" pos="0 0 {-radius!r}" {_ALONE}/>'
+    else:
+        ground = f'<geom name="ground" type="plane" size="100 100 1" {_ALONE}/>'
     if motion["kind"] == "hinge" and moving:  # a plane may not move here: a disc of 50 m does
         ground = (
             '<body><joint name="hinge" type="hinge" axis="0 0 1"/>'
             f'<inertial pos="0 0 0" mass="1" diaginertia="1 1 {motion["inertia"]!r}"/>'
-            '<geom name="ground" type="cylinder" size="50 0.5" pos="0 0 -0.5" contype="0" conaffinity="0"/></body>'
+            f'<geom name="ground" type="cylinder" size="50 0.5" pos="0 0 -0.5" {_ALONE}/></body>'
         )
-    bodies = "".join(_body(i, body) for i, body in enumerate(task["bodies"]))
-    pairs = f'<pair geom1="g0" geom2="ground" friction="{_friction(task["friction"])}" {soft}/>' + "".join(
+    # What meets pieces cannot name each as a pair: it says itself how it meets them.
+    meets = f'contype="1" priority="1" friction="{task["friction"]!r} 0 0" {soft}' if assets else _ALONE
+    bodies = "".join(_body(i, body, meets) for i, body in enumerate(task["bodies"]))
+    ground_pair = f'<pair geom1="g0" geom2="ground" friction="{_friction(task["friction"])}" {soft}/>'
+    pairs = ("" if assets else ground_pair) + "".join(
         f'<pair geom1="g{i}" geom2="g0" friction="{_friction(task["friction_between"])}" {soft}/>'
         for i in range(1, len(task["bodies"]))
     )
@@ -50,7 +57,7 @@ def model(task: Task, *, moving: bool = True) -> str:
         f'iterations="{chosen["iterations"]}" noslip_iterations="{chosen["noslip_iterations"]}"/>'
     )
     exact = '<compiler balanceinertia="false" boundmass="0" boundinertia="0"/>'
-    return f"<mujoco>{exact}{option}<worldbody>{ground}{bodies}</worldbody><contact>{pairs}</contact></mujoco>"
+    return f"<mujoco>{exact}{option}{assets}<worldbody>{ground}{bodies}</worldbody><contact>{pairs}</contact></mujoco>"
 
 
 def run(task: Task) -> Task:
@@ -160,7 +167,15 @@ def settled(mujoco: Any, task: Task) -> list[float] | None:
     return [float(data.joint(f"b{i}").qpos[2]) for i in range(len(task["bodies"]))]
 
 
-def _body(i: int, body: Task) -> str:
+def _pieces(support: Task) -> tuple[str, str]:
+    """Write the pieces of a bowl as meshes, and as what is made of them."""
+    corners = [" ".join(map(_row, piece)) for piece in pieces(support["mesh"])]
+    meshes = "".join(f'<mesh name="m{i}" vertex="{piece}"/>' for i, piece in enumerate(corners))
+    geoms = "".join(f'<geom type="mesh" mesh="m{i}" contype="0" conaffinity="1"/>' for i in range(len(corners)))
+    return f"<asset>{meshes}</asset>", geoms
+
+
+def _body(i: int, body: Task, meets: str) -> str:
     """Write one body that moves freely, its frame at the centre of mass."""
     shape = body["shape"]
     sizes = {
@@ -178,8 +193,7 @@ def _body(i: int, body: Task) -> str:
         inertia = f'mass="{body["mass"]!r}" diaginertia="{_row([xx, yy, zz])}"'
     return (
         f'<body name="b{i}"><freejoint name="b{i}"/><inertial pos="0 0 0" {inertia}/>'
-        f'<geom name="g{i}" type="{kind}" size="{_row(size)}" pos="{_row(body["offset"])}" '
-        'contype="0" conaffinity="0"/></body>'
+        f'<geom name="g{i}" type="{kind}" size="{_row(size)}" pos="{_row(body["offset"])}" {meets}/></body>'
     )
 
 

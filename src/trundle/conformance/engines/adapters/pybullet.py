@@ -87,6 +87,12 @@ def _support(pb: Any, task: Task) -> int:
     if support["kind"] == "dome":
         shape = pb.createCollisionShape(pb.GEOM_SPHERE, radius=support["radius"])
         return int(pb.createMultiBody(0, shape, basePosition=[0, 0, -support["radius"]]))
+    if "mesh" in support:
+        mesh = support["mesh"]
+        corners = [i for triangle in mesh["triangles"] for i in triangle]
+        concave = pb.GEOM_FORCE_CONCAVE_TRIMESH
+        shape = pb.createCollisionShape(pb.GEOM_MESH, vertices=mesh["vertices"], indices=corners, flags=concave)
+        return int(pb.createMultiBody(0, shape))
     if motion["kind"] == "fixed":
         return int(pb.createMultiBody(0, pb.createCollisionShape(pb.GEOM_PLANE, planeNormal=[0, 0, 1])))
     inertia = f'<inertia ixx="1" iyy="1" izz="{motion["inertia"]!r}" ixy="0" ixz="0" iyz="0"/>'

@@ -69,6 +69,8 @@ def _support(rapier: Any, world: Any, task: Task) -> Any:
     support, motion = task["support"], task["support"]["motion"]
     if support["kind"] == "dome":
         shape = rapier.Collider.ball(support["radius"]).translation((0.0, 0.0, -support["radius"]))
+    elif "mesh" in support:
+        shape = rapier.Collider.trimesh(support["mesh"]["vertices"], support["mesh"]["triangles"])
     else:
         shape = rapier.Collider.cuboid(50.0, 50.0, 0.5).translation((0.0, 0.0, -0.5))
     # Of two coefficients the larger counts, and those of the bodies are their own.

@@ -104,9 +104,11 @@ def changes(direction: Task) -> set[str]:
 
 
 def refuse(task: Task, reasons: dict[str, str]) -> None:
-    """Refuse a task that has one of these words in it: a shape, a support, a motion of it, restitution or offset."""
+    """Refuse a task that has one of these words: a shape, a support, a motion of it, mesh, restitution or offset."""
     support = task["support"]
     words = {support["kind"], support["motion"]["kind"], *(body["shape"]["kind"] for body in task["bodies"])}
+    if "mesh" in support:
+        words.add("mesh")
     if task["restitution"]:
         words.add("restitution")
     if any(any(body["offset"]) for body in task["bodies"]):
@@ -114,6 +116,36 @@ def refuse(task: Task, reasons: dict[str, str]) -> None:
     for word, reason in reasons.items():
         if word in words:
             raise CannotError(reason)
+
+
+def pieces(mesh: Task, share: float = 0.1) -> list[list[list[float]]]:
+    """Return the six corners of a prism behind each triangle of a bowl, away from its middle by that share more.
+
+    Each is convex and none is in the way of another: this is how engines whose meshes are convex are told of a bowl.
+    """
+    vertices = mesh["vertices"]
+    middle = mesh["middle"]
+
+    def behind(vertex: list[float]) -> list[float]:
+        return [x + share * (x - m) for x, m in zip(vertex, middle, strict=True)]
+
+    return [[vertices[i] for i in triangle] + [behind(vertices[i]) for i in triangle] for triangle in mesh["triangles"]]
+
+
+def plates(np: Any, mesh: Task) -> list[tuple[Any, Any, float]]:
+    """Return, for each triangle of a bowl, a middle, axes whose third points inwards, and how far the corners reach.
+
+    A square plate behind it reaches farther than the triangle, but not into the bowl, which is convex.
+    """
+    found = []
+    for corners in np.array(mesh["vertices"])[np.array(mesh["triangles"])]:
+        middle = corners.mean(0)
+        along = (corners[1] - corners[0]) / np.linalg.norm(corners[1] - corners[0])
+        normal = np.cross(along, corners[2] - corners[0])
+        normal /= np.linalg.norm(normal)
+        reach = float(np.linalg.norm(corners - middle, axis=-1).max())
+        found.append((middle, np.stack([along, np.cross(normal, along), normal], axis=-1), reach))
+    return found
 
 
 def rotation(q: Sequence[float]) -> list[list[float]]:

@@ -15,6 +15,8 @@ def run(task: Task) -> Task:
 
     if len(task["bodies"]) > 1:
         raise CannotError("it has one body on one support")
+    if "mesh" in task["support"]:
+        raise CannotError("it rolls on smooth surfaces, such as the bowl that the triangles stand for")
     system = system_of(tr, task)
     start = start_of(tr, task)
     method = task["setting"].get("method", "auto")
