@@ -166,7 +166,7 @@ def track_film(
         found,
         radius,
         length["rim_radius"] or 0.0,
-        film_rate,
+        (film_rate, factor),
         [*said, f"the ball of colour {shown(own)}"],
     )
 
@@ -203,12 +203,8 @@ class _Work:
         self._pass += 1
         if self._progress is None:
             return self._film
-        import cv2
-
         if self._pass == 1:
-            capture = cv2.VideoCapture(str(self._film.path.resolve()))
-            self._count = max(int(capture.get(cv2.CAP_PROP_FRAME_COUNT)), 1)
-            capture.release()
+            self._count = max(self._film.properties()[2], 1)
         before, tell = self._pass - 1, self._progress
 
         def told(number: int) -> None:
@@ -266,7 +262,7 @@ def _track(
     found: Calibration,
     radius: float,
     rim: float,
-    rate: float,
+    rates: tuple[float, float],
     said: Sequence[str],
 ) -> FilmTrack:
     """Return the track of what was followed."""
@@ -283,7 +279,8 @@ def _track(
         {name: ("time", values, {"units": "m", "heading": name}) for name, values in columns.items()},
         coords={"time": ("time", np.array(ball.times), {"units": "s", "heading": "t"}),
                 "row": ("time", np.array(ball.numbers, dtype=int))},
-        attrs={"frame": "support", "axes": "space", "film_rate": rate, "accuracy": _ACCURACY * _pixel(found, places)},
+        attrs={"frame": "support", "axes": "space", "film_rate": rates[0],
+               "accuracy": _ACCURACY * _pixel(found, places)},
     )  # fmt: skip
     count = len(ball.numbers)
     taken = ", ".join([f"{count} frames of {ball.frames}", *said])
@@ -304,5 +301,6 @@ def _track(
         pixels=ball.pixels,
         ball_radius=radius,
         rim_radius=rim,
+        slow=rates[1],
         film=film,
     )

@@ -35,6 +35,8 @@ class FilmTrack(Track):
         m.
     rim_radius : float
         m; 0 where marks were given.
+    slow : float
+        How many times slower than the world the film runs.
     film : Film
         What it was measured from.
 
@@ -47,6 +49,7 @@ class FilmTrack(Track):
     pixels: Any = field(default=None, repr=False)
     ball_radius: float = 0.0
     rim_radius: float = 0.0
+    slow: float = 1.0
     film: Any = field(default=None, repr=False)
 
     @property
@@ -59,6 +62,11 @@ class FilmTrack(Track):
     def height(self) -> float:
         """Of the lens over the table, m."""
         return float(self.calibration.camera.place[2])
+
+    @property
+    def calibrated(self) -> tuple[str, ...]:
+        """What is known of camera and table, a line each."""
+        return tuple(f"{name}: {value}" for name, value in self._told())
 
     def save(self, path: str | Path) -> Path:
         """Write the track as a table that `trundle.read_track` and `trundle fit` read.
@@ -79,7 +87,7 @@ class FilmTrack(Track):
         """
         target = Path(path)
         heads = ["t (s)", *(f"{name} ({self.data[name].attrs['units']})" for name in self.columns)]
-        notes = [f"# {self.source}: {self.taken}", *(f"# {name}: {value}" for name, value in self._told())]
+        notes = [f"# {self.source}: {self.taken}", *(f"# {line}" for line in self.calibrated)]
         notes += [f"# frame {one.row} was left out: {one.reason}" for one in self.rejected[:_TOLD]]
         more = len(self.rejected) - _TOLD
         notes += [f"# and {more} more"] if more > 0 else []
@@ -131,4 +139,4 @@ class FilmTrack(Track):
         yield from super()._parts()
 
     def __str__(self) -> str:
-        return "\n".join([super().__str__(), *(f"{name}: {value}" for name, value in self._told())])
+        return "\n".join([super().__str__(), *self.calibrated])
