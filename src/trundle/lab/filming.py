@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from ..solve.samples import Array
     from ..tracks.film.container import Picture
     from ..tracks.film.pinhole import PinholeCamera
+    from ..tracks.film.result import FilmTrack
 
 JPEG = "image/jpeg"
 _WIDEST = 960  # px, of a picture on the page
@@ -31,6 +32,7 @@ _PLAYED = 300, 480  # pictures of a film that the browser cannot play, and their
 _AT_ONCE = 2.0, 2**21  # s of work and bytes, for one request for such pictures
 _RIM = 60  # points of the rim that are shown
 _OUTLINE = 20  # points of the ball's outline
+_MASS = 0.1  # kg, of a suggested ball: its motion does not depend on it
 _TELLING = 0.2  # s between two notes of the progress
 # What a film begins with: nothing else is opened, so that no playlist can name another file.
 _BEGINS = (b"RIFF", b"\x1a\x45\xdf\xa3", b"\x00\x00\x01\xba", b"\x00\x00\x01\xb3", b"\x30\x26\xb2\x75", b"OggS")
@@ -183,6 +185,7 @@ def followed(token: str, asked: Mapping[str, Any], path: str, name: str) -> Answ
         {
             **track,
             **at_hand,
+            "suggested": _suggested(found),
             "film": {
                 "slow": found.slow,
                 "pixels": _rounded(found.pixels[::step]),
@@ -197,6 +200,28 @@ def followed(token: str, asked: Mapping[str, Any], path: str, name: str) -> Answ
             },
         }
     )
+
+
+def _suggested(found: FilmTrack) -> dict[str, Any]:
+    """Return a scenario that may be like what was filmed, and what is to be found of it."""
+    support: dict[str, Any] = {"kind": "plane"}
+    if found.rim_radius:
+        support["rim"] = found.rim_radius
+    free = []
+    if found.rate is not None:
+        support["motion"] = {"kind": "spin", "rate": found.rate[0]}
+        free = ["body.inertia_ratio", "support.motion.rate"]
+    body = {"kind": "sphere", "radius": found.ball_radius, "mass": _MASS, "inertia_ratio": 0.4}
+    x, y = found["x"][0], found["y"][0]
+    length = float(found.time[-1] - found.time[0])
+    scenario = {
+        "title": "A ball on the filmed table",
+        "body": body,
+        "support": support,
+        "start": {"position": [float(x), float(y)]},
+        "run": {"duration": max(length, 0.1), "every": 0.02},
+    }
+    return {"scenario": scenario, "free": free}
 
 
 def _named(sentence: str, path: Path, name: str) -> str:

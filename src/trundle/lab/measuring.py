@@ -41,6 +41,20 @@ _QUESTIONS: dict[str, tuple[str, ...]] = {
 }
 
 
+# What the page calls numbers that are not of the scenario.
+_WORDS = {
+    "camera.scale": ("Camera", "Scale"),
+    "camera.rotation": ("Camera", "Direction of its axes"),
+    "camera.origin": ("Camera", "Origin"),
+    "camera.time_offset": ("Camera", "Offset of its clock"),
+    "mark.position": ("Mark on the support", "Position"),
+    "mark.angle": ("Mark on the support", "Angle"),
+    "spot.position": ("Spot on the body", "Position"),
+    "gyroscope.mounting": ("Gyroscope", "Turn in the body"),
+    "gyroscope.bias": ("Gyroscope", "Bias"),
+}
+
+
 @answering
 def examples() -> Answer:
     """List the tracks that ship with the package, each with its file and what is asked of it.
@@ -174,6 +188,7 @@ def fitted(
     from ..analysis.fit.api import fit_observed
     from ..analysis.fit.camera import Camera
     from ..analysis.fit.observations import observe
+    from ..analysis.fit.unknowns import OUTSIDE
     from ..extras import need
 
     need("fit", "the page Measure")
@@ -200,6 +215,9 @@ def fitted(
             "scenario": files.parse(found.scenario.to_toml(), found.title),
             "commented": found.to_toml(),
             "way": _way(found, way),
+            "named": [
+                {"key": one.name, **_called(one.name)} for one in found.estimates if one.name.startswith(OUTSIDE)
+            ],
             "seen": None if view is None else _seen(found, view),
         }
     )
@@ -218,6 +236,20 @@ def _way(found: Fit, way: Sequence[tuple[Array, float, float]]) -> dict[str, Any
             columns = [_listed(column) for column in predicted[rows].T]
             paths.append({"reduced": reduced, "share": until, "columns": columns})
     return {"time": model.seen.time[rows].tolist(), "columns": list(model.seen.columns), "frames": paths}
+
+
+def _called(name: str) -> dict[str, str]:
+    """Return what the page calls a number that is not of the scenario.
+
+    Examples
+    --------
+    >>> _called("gyroscope.mounting[0]")
+    {'group': 'Gyroscope', 'label': 'Turn in the body x'}
+    """
+    key, _, place = name.partition("[")
+    group, label = _WORDS[key]
+    axis = f" {'xyz'[int(place.rstrip(']'))]}" if place else ""
+    return {"group": group, "label": f"{label}{axis}"}
 
 
 def _seen(found: Fit, view: Mapping[str, Any]) -> dict[str, Any]:
