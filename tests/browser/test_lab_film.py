@@ -19,7 +19,7 @@ from .visiting import Visitor
 
 pytest.importorskip("cv2", reason="the extra `video` is not installed")
 
-from tests.tracks.studio import Studio, write  # noqa: E402  it draws with OpenCV
+from tests.tracks.studio import Studio, write
 
 STUDIO = Studio(noise=3.0)
 RATIO, LONG = 0.4, 8 * PATIENCE
