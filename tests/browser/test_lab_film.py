@@ -105,7 +105,7 @@ def test_the_truth_comes_out_of_a_film_that_is_dropped(visitor: Visitor, films: 
     page.get_by_test_id("fit-bench").click()
     expect(page).to_have_url(re.compile(r"#/bench\?s="))
     sent = tr.Scenario.read(decoded(page.url.split("s=")[1]))
-    assert sent.body.inertia_ratio == pytest.approx(value, abs=1e-6)
+    assert sent.body.inertia_ratio == pytest.approx(value, abs=0.1 * error)
 
 
 def test_by_keys_with_four_marks_a_film_that_browsers_do_not_play(visitor: Visitor, films: dict[str, Path]) -> None:
@@ -166,7 +166,7 @@ def test_what_is_wrong_with_a_film_is_said_in_words(visitor: Visitor, films: dic
     page.get_by_test_id("film-follow").click()
     expect(wrong).to_contain_text("Radius of the ball: say how large it is")
     expect(page.get_by_label("Radius of the ball")).to_be_focused()
-    page.get_by_label("Radius of the ball").fill("2 mm")
+    page.get_by_label("Radius of the ball").fill("60 mm")
     page.get_by_label("Radius of the rim").fill("14 cm")
     page.get_by_label("Colour of the dot").fill("#0a500f")
     page.get_by_test_id("film-follow").click()
