@@ -151,10 +151,10 @@ def fit_observed(
     guess = first_guess(calm or problem)
     slow = unrolled(calm or problem, guess)
     if slow is not None:
-        guess = mounted(calm or problem, _solved(slow, aligned(slow, guess), loss).values)
+        guess = mounted(calm or problem, _solved(slow, aligned(slow, guess), "linear").values)
     if calm is not None:
         calm.watch = watch
-        guess = _solved(calm, guess, loss).values
+        guess = _solved(calm, guess, "linear").values
     problem.watch = watch
     solved = _solved(problem, guess, loss, staged=calm is None)
     problem.watch = None
@@ -232,7 +232,9 @@ def _solved(problem: Problem, guess: Array, loss: str, *, staged: bool = True) -
         guess[place] = prior.value
     found = minimise(problem, guess, none, loss, staged=staged)
     evaluations = found.evaluations
-    if staged and _far(problem, found.values):  # perhaps a minimum that is not the least: once more, with all data at once
+    if staged and _far(
+        problem, found.values
+    ):  # perhaps a minimum that is not the least: once more, with all data at once
         again = minimise(problem, guess, none, loss, staged=False)
         evaluations += again.evaluations
         if _sum(problem, again.values) < _sum(problem, found.values):

@@ -23,6 +23,8 @@ from .rim import find_rim
 
 _ASTRAY = 0.02  # relative difference from the rate that the table has
 _ACCURACY = 0.1  # px: what lens, edges and compression leave, and more pictures do not mend
+# Codecs from before H.264 move what is coarse by blocks: their films were off by up to twice that.
+_COARSE, _COARSE_ACCURACY = ("fmp4", "mp4v", "xvid", "divx", "dx50", "mpg1", "mpg2", "mpeg", "h263"), 0.25
 _EVEN = 1.5  # px, of a mark on a table that turns evenly
 _WHOLE = 0.03  # how near to a whole number a ratio of rates is one
 _PASSES = 3  # how often a film is read
@@ -269,6 +271,8 @@ def _track(
     import xarray
 
     places = found.camera.ball_centres(ball.pixels, radius)
+    coarse = film.code() in _COARSE
+    off = _COARSE_ACCURACY if coarse else _ACCURACY
     columns = {"x": places[:, 0], "y": places[:, 1]}
     if mark is not None:
         number = dict(zip(mark.times, mark.numbers, strict=True))
@@ -280,7 +284,7 @@ def _track(
         coords={"time": ("time", np.array(ball.times), {"units": "s", "heading": "t"}),
                 "row": ("time", np.array(ball.numbers, dtype=int))},
         attrs={"frame": "support", "axes": "space", "film_rate": rates[0],
-               "accuracy": _ACCURACY * _pixel(found, places)},
+               "accuracy": off * _pixel(found, places), "accuracy_in_pixels": off},
     )  # fmt: skip
     count = len(ball.numbers)
     taken = ", ".join([f"{count} frames of {ball.frames}", *said])

@@ -104,6 +104,17 @@ class Film:
             capture.release()
         return (int(width), int(height)), rate, max(int(count), 0)
 
+    def code(self) -> str:
+        """Return by which four letters the file names its codec, in small ones."""
+        import cv2
+
+        capture = _opened(self.path)
+        try:
+            number = int(capture.get(cv2.CAP_PROP_FOURCC))
+        finally:
+            capture.release()
+        return number.to_bytes(4, "little", signed=number < 0).decode("latin-1").lower()
+
     def rotation(self) -> int:
         """Return by how many degrees the file says that its pictures are to be turned; they come turned."""
         import cv2

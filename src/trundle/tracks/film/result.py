@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from .calibration import Calibration
 
 _TOLD = 200  # frames that are named in a file
+_PARTS = {
+    0.1: "a tenth of a pixel",
+    0.25: "a quarter of a pixel, since its codec (MPEG-4 before H.264) is coarse: film in H.264, HEVC or VP9",
+}
 
 
 @dataclass(frozen=True, repr=False)
@@ -126,7 +130,7 @@ class FilmTrack(Track):
             ("calibrated by", f"{calibration.basis}, to {calibration.misfit:.2f} px"),
             ("lens over the table", f"{camera.place[2]:.4g} m, aside by {np.hypot(*camera.place[:2]):.3g} m"),
             ("focal length", f"{camera.focal:.5g} px"),
-            ("accuracy", f"{self.data.attrs['accuracy']:.2g} m, a tenth of a pixel"),
+            ("accuracy", f"{self.data.attrs['accuracy']:.2g} m, {_PARTS[self.data.attrs['accuracy_in_pixels']]}"),
         ]
         if turning is not None:
             rpm = turning.rate * 30 / np.pi
