@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import signal
+import time
 
 import pytest
 
@@ -30,6 +31,37 @@ def test_an_interrupt_that_became_another_exception_is_still_one(number: int, ra
 
     with pytest.raises(raised), ending():
         compiled()
+
+
+@pytest.mark.parametrize(("number", "raised"), [(signal.SIGINT, KeyboardInterrupt), (signal.SIGTERM, SystemExit)])
+def test_an_interrupt_that_is_lost_in_a_callback_comes_again_without_a_word(
+    number: int, raised: type[BaseException], capsys: pytest.CaptureFixture[str]
+) -> None:
+    class Dying:
+        def __del__(self) -> None:
+            signal.raise_signal(number)
+
+    def lose_it() -> None:
+        [Dying()].clear()  # Python loses what is raised there
+        until = time.monotonic() + 20
+        while time.monotonic() < until:
+            time.sleep(0.01)
+
+    with pytest.raises(raised), ending():
+        lose_it()
+    assert "ignored" not in capsys.readouterr().err
+
+
+def test_what_else_is_lost_in_a_callback_is_told_as_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Dying:
+        def __del__(self) -> None:
+            raise ValueError("a mistake")
+
+    told = []
+    monkeypatch.setattr("sys.unraisablehook", told.append)
+    with ending():
+        [Dying()].clear()
+    assert [one.exc_type for one in told] == [ValueError]
 
 
 def test_an_exception_without_a_signal_stays_what_it_is() -> None:

@@ -126,6 +126,19 @@ def test_the_check_film_shows_the_track(tracked: Any, table_film: Path, tmp_path
         tracked.save_check(tmp_path / "check.gif")
 
 
+@pytest.mark.parametrize(("code", "ending", "said"), [("mp4v", "mp4", "a quarter"), ("MJPG", "avi", "a tenth")])
+def test_an_old_codec_is_said_to_be_less_accurate(code: str, ending: str, said: str, tmp_path: Path) -> None:
+    def circling(t: Any) -> Any:
+        return 0.06 * np.column_stack([np.cos(t), np.sin(t)])
+
+    film = write(tmp_path / f"film.{ending}", PLAIN.pictures(circling, np.arange(24) / 12), 12.0, code)
+    found = tr.track_film(film, **SEEN)
+    (line,) = [one for one in found.calibrated if one.startswith("accuracy")]
+    assert f"{said} of a pixel" in line
+    parts = {"a quarter": 0.25, "a tenth": 0.1}[said]
+    assert found.data.attrs["accuracy"] == pytest.approx(parts * PLAIN.lens[2] / PLAIN.focal, rel=0.5)
+
+
 # --- containers --------------------------------------------------------------------------------------------------
 
 CODECS = {

@@ -13,7 +13,7 @@ from starlette.exceptions import HTTPException
 from starlette.responses import JSONResponse, Response
 
 from ..views.viewer.exports import FORMATS
-from . import answers, exports, maps, measuring, pages
+from . import answers, exports, filming, maps, measuring, pages
 from .errors import Refusal, RefusedError, of_validation
 from .lanes import LeftError
 from .requests import (
@@ -25,6 +25,7 @@ from .requests import (
     ToDraw,
     ToExport,
     ToFit,
+    ToFollow,
     ToJudge,
     ToMap,
     ToPoint,
@@ -40,6 +41,8 @@ from .service import Lab
 from .settings import Settings
 
 _BINARY = {"type": "string", "format": "binary"}
+Name = Annotated[str, Query(max_length=300)]
+Seconds = Annotated[float, Query(ge=0, le=1e6, allow_inf_nan=False)]
 
 
 def create_app(settings: Settings | None = None) -> FastAPI:
@@ -80,6 +83,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     _judging(app, lab)
     _mapping(app, lab)
     _measuring(app, lab)
+    _filming(app, lab)
     _files(app, lab)
     _refusing(app)
     pages.add_routes(app, chosen)
@@ -206,8 +210,66 @@ def _measuring(app: FastAPI, lab: Lab) -> None:
 
     @app.post("/api/fit", **described("Fit numbers of a scenario to measured motion."))
     async def fit(request: Request, asked: ToFit) -> Response:
-        wanted = asked.columns, asked.free, asked.noise, asked.title
+        view = None if asked.view is None else asked.view.model_dump()
+        wanted = asked.columns, asked.free, asked.noise, asked.title, asked.accuracy, view
         return await lab.answer(request, measuring.fitted, asked.scenario, *wanted, slow=True)
+
+
+def _filming(app: FastAPI, lab: Lab) -> None:
+    """Add the routes of films, which are kept for a while."""
+    takes = {"requestBody": {"required": True, "content": {OPENED[-1]: {"schema": _BINARY}}}}
+    bounds = lab.settings
+
+    @app.get("/api/film", **described("How large a film may be, and how long it is kept and followed."))
+    async def limits() -> Response:
+        lab.films.check()
+        most = {"bytes": bounds.film_bytes, "kept": bounds.film_life, "followed": bounds.film_time}
+        return JSONResponse(most, headers={"cache-control": "no-store"})
+
+    @app.post("/api/film", **described("Keep a film: its token, and what it says of itself."), openapi_extra=takes)
+    async def take(request: Request, name: Name) -> Response:
+        film = await lab.films.take(request, name, filming.ending_of(name))
+        try:
+            with lab.films.in_use(film):
+                return await lab.answer(request, filming.looked_at, film.token, slow=True, unkept=(str(film.path),))
+        except BaseException:
+            lab.films.remove(film)
+            raise
+
+    @app.delete("/api/film/{token}", **described("Remove a film."))
+    async def remove(token: str) -> Response:
+        lab.films.remove(lab.films.find(token))
+        return JSONResponse({})
+
+    @app.get(
+        "/api/film/{token}/picture",
+        **described("The picture at a time.", 404, content={filming.JPEG: {"schema": _BINARY}}),
+    )
+    async def picture(request: Request, token: str, at: Seconds = 0.0) -> Response:
+        film = lab.films.find(token)
+        with lab.films.in_use(film):
+            return await lab.answer(request, filming.still, token, str(film.path), at, slow=True)
+
+    @app.get(
+        "/api/film/{token}/pictures", **described("Pictures from some time on, of a film that lasts so long.", 404)
+    )
+    async def pictures(request: Request, token: str, length: Seconds, begin: Seconds = 0.0) -> Response:
+        film = lab.films.find(token)
+        with lab.films.in_use(film):
+            return await lab.answer(request, filming.reel, token, str(film.path), begin, length, slow=True)
+
+    @app.get("/api/film/{token}/progress", **described("How much of it has been followed, 0 to 1.", 404))
+    async def progress(token: str) -> Response:
+        return JSONResponse({"done": lab.films.find(token).progress}, headers={"cache-control": "no-store"})
+
+    @app.post("/api/film/{token}/track", **described("Follow the ball through it.", 404))
+    async def follow(request: Request, token: str, asked: ToFollow) -> Response:
+        film = lab.films.find(token)
+        with lab.films.in_use(film, follow=True):
+            film.forget_progress()
+            wanted = token, asked.model_dump(exclude_none=True)
+            unkept = str(film.path), film.name
+            return await lab.answer(request, filming.followed, *wanted, slow=True, unkept=unkept, most=bounds.film_time)
 
 
 def _files(app: FastAPI, lab: Lab) -> None:

@@ -115,7 +115,8 @@ class BoundedProtocol(H11Protocol):
         self._phase, self._reading = phase, None
         if phase is not None:
             # A body's own time is up before, where the application reads it: that says so in words.
-            time = self.settings.head_time if phase is h11.IDLE else self.settings.reading_time + _FLUSH
+            body = self.settings.body_bounds(self.scope["path"])[1] if phase is h11.SEND_BODY else 0.0
+            time = self.settings.head_time if phase is h11.IDLE else body + _FLUSH
             self._reading = self.loop.call_later(time, self._late)
 
     def _late(self) -> None:

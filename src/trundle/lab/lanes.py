@@ -34,6 +34,7 @@ class _Job:
     arguments: tuple[Any, ...]
     number: int  # in the order in which they were asked for
     answer: asyncio.Future[Any]
+    most: float | None = None  # s, that it may take; none: as usual
     work: asyncio.Task[None] | None = None  # while it is computed
     computation: Computation | None = None  # likewise
     began: float | None = None  # when it was first seen to run: a fresh process takes a moment to be there
@@ -74,12 +75,19 @@ class Lanes:
         self._alarm: asyncio.TimerHandle | None = None
         self._stopped = False
 
-    async def run(self, request: Request | None, slow: bool, function: Callable[..., Any], *arguments: Any) -> Any:
+    async def run(
+        self,
+        request: Request | None,
+        slow: bool,
+        function: Callable[..., Any],
+        *arguments: Any,
+        most: float | None = None,
+    ) -> Any:
         """Compute something in a process."""
         client = "" if request is None or request.client is None else request.client.host
         self._check(client)
         answer = asyncio.get_running_loop().create_future()
-        job = _Job(client, slow, function, arguments, next(self._count), answer)
+        job = _Job(client, slow, function, arguments, next(self._count), answer, most)
         self._jobs.append(job)
         self._wait(job)
         left = asyncio.create_task(_left(request))
@@ -198,7 +206,7 @@ class Lanes:
     async def _compute(self, job: _Job) -> None:
         within = 0.0 if job.slow else self.settings.quick_time
         try:
-            job.computation = self.processes.computation(job.function, job.arguments, within)
+            job.computation = self.processes.computation(job.function, job.arguments, within, job.most)
             result = await job.computation.result()
         except asyncio.CancelledError:
             if job.again and not job.left and not self._stopped:

@@ -8,6 +8,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..errors import InvalidValueError, TrundleError, UnknownNameError
 from ..scenario import files
 from ..units import UNITS
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
 
 _MOST_VALUES = 12_000  # of a track that goes to the page and back
 _FRAMES, _POINTS = 40, 250  # of the way that a fit went; of its path in each
+_OUTLINES = 500  # of the fitted ball, in a film
 # What may be asked of who brings a file, and answers to choose from; any other may be written.
 _QUESTIONS: dict[str, tuple[str, ...]] = {
     "track": (),
@@ -35,6 +38,20 @@ _QUESTIONS: dict[str, tuple[str, ...]] = {
     "y": ("down", "up"),
     "sense": ("anticlockwise", "clockwise"),
     "decimal": ("point", "comma"),
+}
+
+
+# What the page calls numbers that are not of the scenario.
+_WORDS = {
+    "camera.scale": ("Camera", "Scale"),
+    "camera.rotation": ("Camera", "Direction of its axes"),
+    "camera.origin": ("Camera", "Origin"),
+    "camera.time_offset": ("Camera", "Offset of its clock"),
+    "mark.position": ("Mark on the support", "Position"),
+    "mark.angle": ("Mark on the support", "Angle"),
+    "spot.position": ("Spot on the body", "Position"),
+    "gyroscope.mounting": ("Gyroscope", "Turn in the body"),
+    "gyroscope.bias": ("Gyroscope", "Bias"),
 }
 
 
@@ -88,7 +105,7 @@ def read(content: bytes, how: Mapping[str, Any], folder: str) -> Answer:
     name = Path(how["name"].replace("\\", "/")).name
     ending = Path(name).suffix.lower()
     if ending in ENDINGS:
-        remedy = f"Find the ball in it first: `trundle track {name}`. Then drop track.csv, which that writes."
+        remedy = "The page Measure finds the ball in it, and so does `trundle track`."
         raise refused(422, f"{name!r} is a film, and no track. {remedy}", "file")
     if ending not in endings():
         ends = f"{', '.join(endings()[:-1])} or {endings()[-1]}"
@@ -96,7 +113,7 @@ def read(content: bytes, how: Mapping[str, Any], folder: str) -> Answer:
     path = Path(folder) / f"{slug(Path(name).stem)}{ending}"
     path.write_bytes(content)
     try:
-        return as_json(_track(read_track(path, **_options(how))))
+        return as_json(track_told(read_track(path, **_options(how))))
     except UnknownNameError as error:
         raise refused(422, str(error), "track" if how.get("track") else "columns") from None
     except InvalidValueError as error:
@@ -124,7 +141,7 @@ def _pairs(text: str) -> dict[str, str]:
     return {name.strip(): heading.strip() for name, _, heading in parts}
 
 
-def _track(track: Track) -> dict[str, Any]:
+def track_told(track: Track) -> dict[str, Any]:
     """Return a track as the page has it, thinned where it is long."""
     from ..analysis.fit.observations import observable
     from ..tracks.names import kind_of
@@ -141,7 +158,9 @@ def _track(track: Track) -> dict[str, Any]:
         rule = "must be along axes that do not turn"
         raise InvalidValueError("frame", rule, track.frame, "Turn the columns first.")
     units = {called.get(read, read): UNITS[kind_of(read) or "number"][0] for read in ("t", *track.columns)}
-    return {"title": track.source, "columns": columns, "units": units, "said": [one for one in said if one]}
+    accuracy = float(track.data.attrs.get("accuracy", 0.0))
+    return {"title": track.source, "columns": columns, "units": units, "said": [one for one in said if one],
+            "accuracy": accuracy}  # fmt: skip
 
 
 @answering
@@ -151,6 +170,8 @@ def fitted(
     free: Sequence[str],
     noise: str | None,
     title: str = "data",
+    accuracy: float = 0.0,
+    view: Mapping[str, Any] | None = None,
 ) -> Answer:
     """Fit numbers of a scenario to a track: what was found, and the way there.
 
@@ -164,11 +185,10 @@ def fitted(
     >>> found["answer"], found["rows"][0][1]
     ('good', '0.6502 ± 0.0014')
     """
-    import numpy as np
-
     from ..analysis.fit.api import fit_observed
     from ..analysis.fit.camera import Camera
     from ..analysis.fit.observations import observe
+    from ..analysis.fit.unknowns import OUTSIDE
     from ..extras import need
 
     need("fit", "the page Measure")
@@ -179,7 +199,9 @@ def fitted(
     def watch(values: Array, residual: Array, until: float) -> None:
         way.append((values.copy(), float(residual @ residual) / residual.size, until))
 
-    found = fit_observed([seen], scenario, free, None, noise, Camera(), "linear", start=True, watch=watch)
+    found = fit_observed(
+        [seen], scenario, free, None, noise, Camera(accuracy=accuracy), "linear", start=True, watch=watch
+    )
     summary = found.as_dict()
     return as_json(
         {
@@ -193,14 +215,16 @@ def fitted(
             "scenario": files.parse(found.scenario.to_toml(), found.title),
             "commented": found.to_toml(),
             "way": _way(found, way),
+            "named": [
+                {"key": one.name, **_called(one.name)} for one in found.estimates if one.name.startswith(OUTSIDE)
+            ],
+            "seen": None if view is None else _seen(found, view),
         }
     )
 
 
 def _way(found: Fit, way: Sequence[tuple[Array, float, float]]) -> dict[str, Any]:
     """Return the path of some of the values that the fit came by, the last the fitted one."""
-    import numpy as np
-
     model = found.problem.models[0]
     chosen = np.unique(np.linspace(0, len(way) - 1, min(len(way), _FRAMES)).astype(int))
     rows = np.unique(np.linspace(0, model.seen.time.size - 1, _POINTS).astype(int))
@@ -212,6 +236,30 @@ def _way(found: Fit, way: Sequence[tuple[Array, float, float]]) -> dict[str, Any
             columns = [_listed(column) for column in predicted[rows].T]
             paths.append({"reduced": reduced, "share": until, "columns": columns})
     return {"time": model.seen.time[rows].tolist(), "columns": list(model.seen.columns), "frames": paths}
+
+
+def _called(name: str) -> dict[str, str]:
+    """Return what the page calls a number that is not of the scenario.
+
+    Examples
+    --------
+    >>> _called("gyroscope.mounting[0]")
+    {'group': 'Gyroscope', 'label': 'Turn in the body x'}
+    """
+    key, _, place = name.partition("[")
+    group, label = _WORDS[key]
+    axis = f" {'xyz'[int(place.rstrip(']'))]}" if place else ""
+    return {"group": group, "label": f"{label}{axis}"}
+
+
+def _seen(found: Fit, view: Mapping[str, Any]) -> dict[str, Any]:
+    """Return where a film shows the ball as it was fitted: the outline at some of the times of the track."""
+    from .filming import outlines
+
+    model, places = found.problem.models[0], found.predicted()[0]
+    rows = np.unique(np.linspace(0, model.seen.time.size - 1, _OUTLINES).astype(int))
+    at = [model.seen.columns.index(axis) for axis in "xy"]
+    return {"time": model.seen.time[rows].tolist(), "outlines": outlines(view, places[rows][:, at])}
 
 
 def _listed(values: Any) -> list[float | None]:

@@ -65,17 +65,19 @@ class Processes:
         if pool is not None:
             _end(pool, self._context)
 
-    def computation(self, function: Callable[..., Any], arguments: tuple[Any, ...], within: float) -> Computation:
-        """Return a computation that begins once its result is awaited."""
-        return Computation(self, function, arguments, within)
+    def computation(
+        self, function: Callable[..., Any], arguments: tuple[Any, ...], within: float, most: float | None = None
+    ) -> Computation:
+        """Return a computation that begins once its result is awaited; `most`: seconds, other than usual."""
+        return Computation(self, self.settings.wall_time if most is None else most, function, arguments, within)
 
-    async def schedule(self, *work: Any) -> ProcessFuture:
+    async def schedule(self, most: float, *work: Any) -> ProcessFuture:
         """Hand work to the pool, to a new one where there is none, or an idle process of it was killed."""
         if self._pool is None or not self._pool.active:
             await asyncio.to_thread(self.start)
         pool: Any = self._pool
         try:
-            return pool.schedule(computed, work, timeout=self.settings.wall_time)
+            return pool.schedule(computed, work, timeout=most)
         except RuntimeError as error:
             raise BrokenProcessPool(*error.args) from None
 
@@ -83,8 +85,8 @@ class Processes:
 class Computation:
     """One computation in a process; see `Processes.computation`."""
 
-    def __init__(self, processes: Processes, *work: Any) -> None:
-        self.processes, self.work = processes, work
+    def __init__(self, processes: Processes, most: float, *work: Any) -> None:
+        self.processes, self.most, self.work = processes, most, work
         self._future: ProcessFuture | None = None
 
     @property
@@ -101,14 +103,15 @@ class Computation:
             message = "The process that computed this died. It may have taken too much memory: ask for less."
             raise refused(500, message, kind="CrashError") from None
         except TimeoutError:
-            most = self.processes.settings.wall_time
-            message = f"This takes longer than the {most:g} s that the lab allows; `trundle run` takes its time."
+            message = (
+                f"This takes longer than the {self.most:g} s that the lab allows; the command line takes its time."
+            )
             raise refused(504, message, "run.duration", kind="TimeUpError") from None
 
     async def _in_process(self) -> Any:
         for _ in range(2):  # an idle process that was killed breaks its pool; the next one is whole
             with suppress(BrokenProcessPool):
-                self._future = await self.processes.schedule(*self.work)
+                self._future = await self.processes.schedule(self.most, *self.work)
                 return await asyncio.wrap_future(self._future)
         raise refused(503, "The processes that compute keep dying. Start the lab anew.", kind="CrashError")
 

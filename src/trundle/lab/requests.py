@@ -193,6 +193,46 @@ class ToFit(AboutScenario):
     noise: Annotated[str, Field(max_length=40)] | None = Field(
         default=None, description="Standard deviation of a value, with a unit; absent: estimated."
     )
+    accuracy: Annotated[_Finite, Field(ge=0, le=1)] = Field(
+        default=0.0, description="By how much a camera may shift all that it sees at one place, m."
+    )
+    view: View | None = Field(default=None, description="Of a film, in which the fitted ball is to be drawn.")
+
+
+class View(_Asked):
+    """The camera of a film, as it was found: focal length and axis in px, rotation vector, place of the lens, SI."""
+
+    focal: Annotated[_Finite, Field(gt=0)]
+    centre: Annotated[list[_Finite], Field(min_length=2, max_length=2)]
+    turn: Triple
+    place: Triple
+    distortion: _Finite
+    ball: Annotated[_Finite, Field(gt=0, description="Radius of the ball.")]
+
+
+_Length = _Finite | Annotated[str, Field(max_length=60)]
+_Colour = Annotated[str, Field(max_length=40)]
+
+
+class ToFollow(_Asked):
+    """What a film does not say of itself; as of `trundle.track_film`."""
+
+    ball_radius: _Length
+    rim_radius: _Length | None = None
+    marks: Annotated[list[Annotated[list[_Length], Field(min_length=4, max_length=4)]], Field(max_length=40)] | None = (
+        Field(default=None, description="Each two pixels, to the right and down, and two lengths.")
+    )
+    height: _Length | None = None
+    focal: _Finite | None = None
+    distortion: _Finite = 0.0
+    colour: _Colour | None = None
+    mark_colour: _Colour | None = None
+    table_rate: _Length | None = None
+    slow: _Finite | None = None
+    frame_rate: _Finite | None = None
+    readout: _Length | None = None
+    begin: _Length | None = None
+    end: _Length | None = None
 
 
 class HowToRead(_Asked):

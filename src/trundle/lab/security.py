@@ -15,13 +15,12 @@ from starlette.exceptions import HTTPException
 
 from ..errors import InvalidValueError
 from .errors import Refusal, RefusedError, refused
-from .settings import Settings
+from .settings import UPLOADS, Settings
 
 Scope = MutableMapping[str, Any]
 Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
 Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 
-UPLOADS = ("/api/open", "/api/track")  # these take files
 LOOPBACK_NAMES = ("127.0.0.1", "localhost", "::1")
 
 # No inline script, no inline style, nothing from elsewhere. Pictures and films that the page itself makes are blobs.
@@ -114,7 +113,7 @@ class Guard:
             if scope["method"] not in ("GET", "HEAD", "OPTIONS"):
                 check_origin(headers, scope.get("scheme", "http"))
             uploads = scope["path"] in UPLOADS
-            most = self.settings.upload_bytes if uploads else self.settings.body_bytes
+            most, seconds = self.settings.body_bounds(scope["path"])
             check_length(headers.get("content-length"), most)
             client = (scope.get("client") or ("",))[0]
             if uploads:
@@ -122,7 +121,7 @@ class Guard:
         except RefusedError as error:
             await refuse(error.refusal, sent)
             return
-        bounded = _bounded(receive, most, self.settings.reading_time)
+        bounded = _bounded(receive, most, seconds)
         if not uploads:
             await self.app(scope, bounded, sent)
             return

@@ -15,6 +15,7 @@ from starlette.responses import Response
 from . import answers
 from .cache import Answer, Cache, key_of
 from .errors import Refusal, RefusedError
+from .films import Films
 from .lanes import Lanes
 from .settings import Settings
 
@@ -38,6 +39,7 @@ class Lab:
         self.settings = settings
         self.cache = Cache(settings.cache_bytes)
         self.lanes = Lanes(settings)
+        self.films = Films(settings)
         self.ready = False  # has a worker answered yet?
         self._coming: dict[str, asyncio.Task[Answer]] = {}
 
@@ -48,8 +50,9 @@ class Lab:
         await self.prepare(answers.catalogue)
 
     async def stop(self) -> None:
-        """End the workers, whatever they do."""
+        """End the workers, whatever they do, and remove what was kept for them."""
         await self.lanes.stop()
+        self.films.stop()
 
     async def answer(
         self,
@@ -58,15 +61,16 @@ class Lab:
         *arguments: Any,
         slow: bool = False,
         unkept: tuple[Any, ...] = (),
+        most: float | None = None,
     ) -> Response:
-        """Answer from the cache, or from a worker."""
+        """Answer from the cache, or from a worker; `most`: seconds that this may take, other than usual."""
         key = key_of(function.__name__, *arguments)
         tag = _tag(key)
         if tag in (part.strip() for part in request.headers.get("if-none-match", "").split(",")):
             return Response(status_code=304, headers={"etag": tag, "cache-control": "no-cache"})
         found = self.cache.get(key)
         if found is None:
-            found = await self._computed(key, request, slow, function, (*arguments, *unkept))
+            found = await self._computed(key, request, slow, function, (*arguments, *unkept), most)
         return await self._response(key, found, request)
 
     async def at_once(self, request: Request, function: Callable[..., Answer | Refusal], *arguments: Any) -> Response:
@@ -109,10 +113,16 @@ class Lab:
             return await self.answer(request, function, *arguments, slow=True, unkept=(folder,))
 
     async def _computed(
-        self, key: str, request: Request | None, slow: bool, function: Callable[..., Answer | Refusal], arguments: Any
+        self,
+        key: str,
+        request: Request | None,
+        slow: bool,
+        function: Callable[..., Answer | Refusal],
+        arguments: Any,
+        most: float | None = None,
     ) -> Answer:
         """Compute, and keep what came out."""
-        found = await self.lanes.run(request, slow, function, *arguments)
+        found = await self.lanes.run(request, slow, function, *arguments, most=most)
         self.ready = True
         if isinstance(found, Refusal):
             raise RefusedError(found)

@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 DEFAULT_PORT = 8765
+FILMS = "/api/film"
+UPLOADS = ("/api/open", "/api/track", FILMS)  # these take files
 _MIB = 2**20
 
 
@@ -59,6 +61,16 @@ class Settings:
         How many connections may be open: of all visitors together, and of one.
     head_time, reading_time : float
         The most that the head of a request may take to arrive, and its body, s.
+    film_bytes : int
+        The most that a film may have.
+    films, films_each : int
+        How many films are kept at once: of all visitors together, and of one. For a new one the longest unused goes.
+    film_reading_time : float
+        The most that a film may take to arrive, s.
+    film_life : float
+        How long a film is kept that nobody asks for, s.
+    film_time : float
+        The most that a ball is followed through a film, s.
     sending_time : float
         How long an answer may wait to be read on, s.
     idle_time : float
@@ -97,4 +109,22 @@ class Settings:
     cache_bytes: int = 64 * _MIB
     body_bytes: int = _MIB // 2
     upload_bytes: int = 32 * _MIB
+    film_bytes: int = 256 * _MIB
+    films: int = 8
+    films_each: int = 2
+    film_reading_time: float = 120.0
+    film_life: float = 1800.0
+    film_time: float = 240.0
     static: Path = Path(__file__).resolve().parent.parent / "views" / "viewer" / "static"
+
+    def body_bounds(self, path: str) -> tuple[int, float]:
+        """Return how long the body of a request to some address may be, bytes, and how long it may take, s.
+
+        Examples
+        --------
+        >>> Settings().body_bounds("/api/simulate")
+        (524288, 15.0)
+        """
+        if path == FILMS:
+            return self.film_bytes, self.film_reading_time
+        return self.upload_bytes if path in UPLOADS else self.body_bytes, self.reading_time

@@ -55,7 +55,7 @@ class Dual:
 
     def through(self, f: Scalar, first: Scalar) -> Dual:
         """Return f of this dual, from f and f′ at its value: the chain rule."""
-        return Dual(f, tuple(_times(slope, first) for slope in self.slopes))
+        return Dual(f, tuple([_times(slope, first) for slope in self.slopes]))
 
     def __add__(self, other: Any) -> Any:
         if isinstance(other, Dual):
@@ -79,7 +79,7 @@ class Dual:
         if isinstance(other, Dual):
             a, b = self.value, other.value
             pairs = zip(self.slopes, other.slopes, strict=True)
-            return Dual(a * b, tuple(_plus(_times(x, b), _times(y, a)) for x, y in pairs))
+            return Dual(a * b, tuple([_sum(x, b, y, a) for x, y in pairs]))
         return self.through(self.value * other, other) if _is_scalar(other) else NotImplemented
 
     __rmul__ = __mul__
@@ -377,6 +377,23 @@ def unstacked(scalars: Sequence[Any], size: int) -> list[Dual]:
     return [Dual(scalars[i], tuple(scalars[i + size :: size])) for i in range(size)]
 
 
+def gathered(thing: Any) -> Any:
+    """Return a structure whose duals have all their slopes as one, a column: each operation does all of them at once.
+
+    Examples
+    --------
+    >>> gathered((Dual(1.0, (2.0, 3.0)), 4.0))[0].slopes[0].tolist()
+    [[2.0], [3.0]]
+    """
+    if isinstance(thing, Dual):
+        import numpy as np
+
+        return Dual(thing.value, (np.array(thing.slopes, dtype=float)[:, None],))
+    if is_dataclass(thing) and not isinstance(thing, type):
+        return type(thing)(**{part.name: gathered(getattr(thing, part.name)) for part in fields(thing)})
+    return tuple(map(gathered, thing)) if type(thing) is tuple else thing
+
+
 def _of(x: Any, name: str, slope: Callable[[Any, Any, Any], Any]) -> Any:
     if not isinstance(x, Dual):
         return getattr(namespace(x), name)(x)
@@ -402,17 +419,33 @@ def _is_scalar(x: Any) -> bool:
     return type(x).__module__.partition(".")[0] == "mpmath"
 
 
+# All that is done with slopes comes by here. Of a float it is seen at once whether it is 0; is_zero asks any other.
+
+
+def _sum(x: Any, b: Any, y: Any, a: Any) -> Any:
+    """Return x b + y a of slopes x and y."""
+    if (x == 0.0) if type(x) is float else is_zero(x):
+        return _times(y, a)
+    if (y == 0.0) if type(y) is float else is_zero(y):
+        return x * b
+    return x * b + y * a
+
+
 def _times(slope: Any, factor: Any) -> Any:
-    return 0.0 if is_zero(slope) else slope * factor
+    return 0.0 if ((slope == 0.0) if type(slope) is float else is_zero(slope)) else slope * factor
 
 
 def _over(slope: Any, divisor: Any) -> Any:
-    return 0.0 if is_zero(slope) else slope / divisor
+    return 0.0 if ((slope == 0.0) if type(slope) is float else is_zero(slope)) else slope / divisor
 
 
 def _plus(a: Any, b: Any) -> Any:
-    return b if is_zero(a) else a if is_zero(b) else a + b
+    if (a == 0.0) if type(a) is float else is_zero(a):
+        return b
+    return a if ((b == 0.0) if type(b) is float else is_zero(b)) else a + b
 
 
 def _minus(a: Any, b: Any) -> Any:
-    return a if is_zero(b) else -b if is_zero(a) else a - b
+    if (b == 0.0) if type(b) is float else is_zero(b):
+        return a
+    return -b if ((a == 0.0) if type(a) is float else is_zero(a)) else a - b

@@ -226,6 +226,59 @@ export interface Track {
   units: Record<string, string>
   /** What was taken for what, and what was left out, a sentence each. */
   said: string[]
+  /** By how much a camera may shift all that it sees at one place, m. */
+  accuracy: number
+  /** Where a film shows the ball, of a track that was followed in one. */
+  film?: Followed
+  /** A scenario that may be like what was filmed. */
+  suggested?: Suggestion
+}
+
+export interface Followed {
+  /** How many times slower than the world the film runs. */
+  slow: number
+  /** Where the ball was seen, a place a row, px. */
+  pixels: [number, number][]
+  /** The camera, for the server to draw the fitted ball with. */
+  view: Json
+}
+
+/** What the lab says of films. */
+export interface FilmBounds {
+  /** The most that one may have. */
+  bytes: number
+  /** How long one is kept that nobody asks for, and followed, s. */
+  kept: number
+  followed: number
+}
+
+/** A film that the lab keeps for a while, under a name of its own. */
+export interface KeptFilm {
+  film: string
+  width: number
+  height: number
+  /** Pictures a second as it is played, and as they were taken where its file says so. */
+  rate: number
+  taken: number | null
+  /** s */
+  length: number
+  /** Where its first picture shows the rim of a table, px. */
+  rim: [number, number][] | null
+}
+
+/** Pictures of a film that the browser cannot play. */
+export interface Reel {
+  times: number[]
+  /** As addresses that hold them. */
+  pictures: string[]
+  /** From when on there are more, s. */
+  next: number | null
+}
+
+/** Where a film shows the fitted ball: its outline over the time of the track, px. */
+export interface Outlines {
+  time: number[]
+  outlines: [number, number][][]
 }
 
 /** What a file does not say of itself. */
@@ -237,14 +290,18 @@ export interface Question {
   choices: string[]
 }
 
-export interface ExampleTrack {
+/** A scenario that may be like what was measured, and what is to be found of it. */
+export interface Suggestion {
+  scenario: Scenario
+  free: string[]
+}
+
+export interface ExampleTrack extends Suggestion {
   name: string
   title: string
   about: string
   file: string
   content: string
-  scenario: Scenario
-  free: string[]
   noise: string
 }
 
@@ -262,6 +319,10 @@ export interface Fitted {
   /** The scenario as TOML, with the errors as comments. */
   commented: string
   way: Way
+  /** What the numbers are called that are not the scenario's. */
+  named: Named[]
+  /** In the film that was given. */
+  seen: Outlines | null
 }
 
 /** The way that a fit went, its last frame where it ended. */
@@ -277,6 +338,9 @@ export interface FitRequest {
   title: string
   free: string[]
   noise: string | null
+  accuracy?: number
+  /** The camera of a film. */
+  view?: Json
 }
 
 export interface Api {
@@ -289,6 +353,15 @@ export interface Api {
     options?: RequestOptions,
   ): Promise<Track | { asks: Question }>
   fit(request: FitRequest, options?: RequestOptions): Promise<Fitted>
+  filmBounds(options?: RequestOptions): Promise<FilmBounds>
+  keepFilm(file: Blob, name: string, options?: RequestOptions): Promise<KeptFilm>
+  dropFilm(film: string): void
+  /** The picture at a time of a film. */
+  filmPicture(film: string, at: number, options?: RequestOptions): Promise<Blob>
+  filmReel(film: string, length: number, begin: number, options?: RequestOptions): Promise<Reel>
+  followFilm(film: string, told: { [key: string]: Json }, options?: RequestOptions): Promise<Track>
+  /** How much of a film has been followed, from 0 to 1. */
+  filmProgress(film: string, options?: RequestOptions): Promise<{ done: number }>
   sweeps(options?: RequestOptions): Promise<Sweeps>
   mapNumbers(scenario: Scenario, options?: RequestOptions): Promise<ScenarioNumber[]>
   /** Go on with a map for about a second. */
@@ -421,6 +494,28 @@ export function createApi(base = '', ask: typeof fetch = (input, init) => fetch(
         json<Track | { asks: Question }>,
       ),
     fit: (asked, options = {}) => post('/api/fit', asked, options, 'fit', json<Fitted>),
+    filmBounds: (options) => get('/api/film', options),
+    keepFilm: (file, name, options = {}) =>
+      request(
+        `/api/film?${new URLSearchParams({ name })}`,
+        { method: 'POST', headers: { 'content-type': 'application/octet-stream' }, body: file },
+        laneOf(options, 'film'),
+        options.signal,
+        json<KeptFilm>,
+      ),
+    dropFilm: (film) => void ask(`${base}/api/film/${film}`, { method: 'DELETE', keepalive: true }).catch(() => {}),
+    filmPicture: (film, at, options = {}) =>
+      request(
+        `/api/film/${film}/picture?${new URLSearchParams({ at: String(at) })}`,
+        {},
+        laneOf(options, 'film-picture'),
+        options.signal,
+        (response) => response.blob(),
+      ),
+    filmReel: (film, length, begin, options) =>
+      get(`/api/film/${film}/pictures?length=${length}&begin=${begin}`, options),
+    followFilm: (film, told, options = {}) => post(`/api/film/${film}/track`, told, options, 'film', json<Track>),
+    filmProgress: (film, options) => get(`/api/film/${film}/progress`, options),
     sweeps: (options) => get('/api/sweeps', options),
     mapNumbers: (scenario, options = {}) =>
       post('/api/map/numbers', { scenario }, options, 'map-numbers', json<ScenarioNumber[]>),

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
 _PLAIN = 10.0  # by which Akaike's criterion must fall for another law to be plainly better (Burnham and Anderson 2002)
 _TRIALS = 12  # of the model, for each law
+_WOBBLE = ("support.motion.angle", "support.motion.phase")
+_SLIGHT = 1e-5  # rad, of a table that hardly wobbles
+_ALIKE = 1e-9  # of singular values, below which numbers are not told apart
 _LEAST = 1e-6  # where an added number begins, which may have no slope at 0
 HEADINGS = ("what is added", "χ²", "numbers", "AIC, against the fit", "value")
 
@@ -34,6 +37,7 @@ class _Idea:
 
     words: str
     change: Callable[[Tables], tuple[str, ...] | None]
+    guess: Callable[[Problem, Any], Array] = lambda problem, held: problem.start  # noqa: ARG005
 
 
 def _load(**keys: Any) -> Callable[[Tables], tuple[str, ...] | None]:
@@ -68,8 +72,30 @@ def _wobble(tables: Tables) -> tuple[str, ...] | None:
     motion = _motion(tables)
     if motion.get("kind") != "spin":
         return None
-    tables["support"] = {**tables["support"], "motion": {**motion, "kind": "wobble", "angle": 1e-4}}
-    return ("support.motion.angle",)
+    tables["support"] = {**tables["support"], "motion": {**motion, "kind": "wobble", "angle": _SLIGHT}}
+    return _WOBBLE
+
+
+def _first_wobble(problem: Problem, held: Any) -> Array:
+    """Return angle and phase of a wobble, and what else is free, by one step from a table that hardly wobbles.
+
+    Of a small wobble the effect is that of one at the phase 0 times ε cos φ and of one at π/2 times ε sin φ.
+    """
+    values, keys = problem.start, [one.key for one in problem.unknowns]
+    angle, phase = (keys.index(key) for key in _WOBBLE)
+    others = np.flatnonzero(~held & ~np.isin(np.arange(len(keys)), (angle, phase)))
+    columns = []
+    for values[phase] in (0.5 * np.pi, 0.0):
+        residual, jacobian = problem.both(values)
+        columns.append(jacobian[:, angle])
+    system = np.column_stack([*columns, jacobian[:, others]])
+    sizes = np.linalg.norm(system, axis=0)
+    sizes[sizes == 0] = 1.0
+    step = np.linalg.lstsq(system / sizes, -residual, rcond=_ALIKE)[0] / sizes
+    across, along = step[:2]
+    values[others] += step[2:]
+    values[angle], values[phase] = np.hypot(along + _SLIGHT, across), np.arctan2(across, along + _SLIGHT)
+    return values
 
 
 def _sliding(tables: Tables) -> tuple[str, ...] | None:
@@ -82,7 +108,7 @@ IDEAS = (
     _Idea("drag of air that turns with the support", _turning(_load(kind="drag", coefficient=0.0, air="turning"))),
     _Idea("resistance to rolling", _load(kind="rolling-resistance", offset=_LEAST)),
     _Idea("a lean of the support, as a push along it", _load(kind="force", value=[0.0, 0.0, 0.0])),
-    _Idea("a wobble of the support", _wobble),
+    _Idea("a wobble of the support", _wobble, _first_wobble),
     _Idea("sliding without friction, in place of rolling", _sliding),
 )
 
@@ -192,7 +218,7 @@ def tried(fit: Fit, idea: _Idea) -> Alternative | None:
     other = Problem(unknowns, models, problem.noises, dict(problem.priors))
     held = np.array([one.state in ("held", "limit") for one in fit.estimates] + [False] * len(fresh))
     try:
-        minimum = minimise(other, other.start, held, staged=False, most=_TRIALS)
+        minimum = minimise(other, idea.guess(other, held), held, staged=False, most=_TRIALS)
         chi = float((other.residual(minimum.values) ** 2).sum())
         if not np.array_equal(other.inside(minimum.values), minimum.values):  # of nothing the data would like less
             chi = fit.judgement.chi_square

@@ -25,6 +25,7 @@ from .model import RunModel
 from .observations import Observations, noise_for, observe
 from .problem import Prior, Problem, Watch, names_of
 from .result import Estimate, Fit
+from .spikes import without_spikes
 from .undetermined import preference, undetermined
 from .unknowns import OUTSIDE, Unknown, changed, limit, of_run, prepared, unknowns
 from .unrolled import aligned, mounted, unrolled
@@ -146,12 +147,16 @@ def fit_observed(
     """Fit what was read already; `watch` is told where the fit comes by."""
     loaded = scenario if isinstance(scenario, ScenarioFile) else Scenario.load(scenario)
     problem = pose(seen, loaded, free, priors, noise, camera, start=start)
-    guess = first_guess(problem)
-    slow = unrolled(problem, guess)
+    calm = without_spikes(problem)
+    guess = first_guess(calm or problem)
+    slow = unrolled(calm or problem, guess)
     if slow is not None:
-        guess = mounted(problem, _solved(slow, aligned(slow, guess), loss).values)
+        guess = mounted(calm or problem, _solved(slow, aligned(slow, guess), "linear").values)
+    if calm is not None:
+        calm.watch = watch
+        guess = _solved(calm, guess, "linear").values
     problem.watch = watch
-    solved = _solved(problem, guess, loss)
+    solved = _solved(problem, guess, loss, staged=calm is None)
     problem.watch = None
     return _told(problem, solved, loaded, loss, cures=cures)
 
@@ -220,19 +225,21 @@ class _Solved:
     evaluations: int
 
 
-def _solved(problem: Problem, guess: Array, loss: str) -> _Solved:
+def _solved(problem: Problem, guess: Array, loss: str, *, staged: bool = True) -> _Solved:
     """Return the minimum; along directions that are free, with the scenario's value of one number of each."""
     none = np.zeros(guess.size, dtype=bool)
     for place, prior in problem.priors.items():
         guess[place] = prior.value
-    found = minimise(problem, guess, none, loss)
+    found = minimise(problem, guess, none, loss, staged=staged)
     evaluations = found.evaluations
-    if _far(problem, found.values):  # perhaps a minimum that is not the least: once more, with all data at once
+    if staged and _far(
+        problem, found.values
+    ):  # perhaps a minimum that is not the least: once more, with all data at once
         again = minimise(problem, guess, none, loss, staged=False)
         evaluations += again.evaluations
         if _sum(problem, again.values) < _sum(problem, found.values):
             found = again
-    found, pivots = _with_pivots(problem, found, guess, none, loss)
+    found, pivots = _with_pivots(problem, found, guess, none, loss, staged=staged)
     limits: dict[int, tuple[float, float]] = {}
     for _ in range(_MOST_LIMITS):
         beyond = _beyond(problem, found.values, [*pivots, *limits])
@@ -264,7 +271,9 @@ def _far(problem: Problem, values: Array) -> bool:
     return _sum(problem, values) > _PLAINLY * problem.size
 
 
-def _with_pivots(problem: Problem, found: Minimum, guess: Array, held: Array, loss: str) -> tuple[Minimum, list[int]]:
+def _with_pivots(
+    problem: Problem, found: Minimum, guess: Array, held: Array, loss: str, *, staged: bool
+) -> tuple[Minimum, list[int]]:
     """Return the minimum again with one number of each direction that is free held where the fit began."""
     pivots: list[int] = []
     for null in (found.directions.free, found.directions.weak):
@@ -277,7 +286,7 @@ def _with_pivots(problem: Problem, found: Minimum, guess: Array, held: Array, lo
     values, held = found.values.copy(), held.copy()
     values[pivots] = guess[pivots]
     held[pivots] = True
-    return minimise(problem, values, held, loss), pivots
+    return minimise(problem, values, held, loss, staged=staged), pivots
 
 
 def alone(jacobian: Array) -> Array:

@@ -95,6 +95,11 @@ class Judgement:
         return not self.faults
 
     @property
+    def outliers_named(self) -> bool:
+        """Whether values far from the fit are few enough to be named."""
+        return 0 < len(self.outliers) <= _FEW * (self.freedom + 1)
+
+    @property
     def remarks(self) -> list[str]:
         """What else there is to say."""
         said = []
@@ -102,7 +107,7 @@ class Judgement:
             said.append("residuals are larger than the noise, but no larger than the camera is accurate")
         if self.excess < -ENOUGH:
             said.append(f"χ²/dof = {self.reduced:.3g}: the noise is less than was given, and the errors are too large")
-        if 0 < len(self.outliers) <= _FEW * (self.freedom + 1):
+        if self.outliers_named:
             some = ", ".join(f"row {one.row} ({one.column}, {one.off:+.1f}σ)" for one in self.outliers[:_MOST_ROWS])
             more = len(self.outliers) - _MOST_ROWS
             said.append(f"far from the fit: {some}" + (f" and {more} more" if more > 0 else "") + _REMEDY)

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields, is_dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from ...errors import SolverError
 from ...mechanics.algebra import Quaternion, Vector
-from ...mechanics.duals import Dual, slopes_of, value_of
+from ...mechanics.duals import Dual, gathered, slopes_of, value_of
 from ...mechanics.scalars import namespace
 from ...mechanics.system import RollingSystem, State
 from ...scenario import ScenarioFile
@@ -247,21 +247,6 @@ class RunModel:
         measured = self.seen.column("angle")[: np.size(value_of(motion.time))]
         turns = np.round((np.nan_to_num(measured) - value_of(angle)) / (2 * np.pi))
         return angle + turns * (2 * np.pi)
-
-
-def gathered(thing: Any) -> Any:
-    """Return a structure whose duals have all their slopes as one, a column: each operation does all of them at once.
-
-    Examples
-    --------
-    >>> gathered((Dual(1.0, (2.0, 3.0)), 4.0))[0].slopes[0].tolist()
-    [[2.0], [3.0]]
-    """
-    if isinstance(thing, Dual):
-        return Dual(thing.value, (np.array(thing.slopes, dtype=float)[:, None],))
-    if is_dataclass(thing) and not isinstance(thing, type):
-        return type(thing)(**{part.name: gathered(getattr(thing, part.name)) for part in fields(thing)})
-    return tuple(map(gathered, thing)) if type(thing) is tuple else thing
 
 
 def _held(samples: Samples, times: Array) -> Any:

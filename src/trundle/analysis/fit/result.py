@@ -16,7 +16,7 @@ from ...scenario import ScenarioFile
 from ...simulation.simulate import Scenario
 from ...simulation.trajectory import Trajectory
 from ...solve.samples import Array
-from . import report
+from . import report, spikes
 from .judging import Judgement
 from .problem import Problem
 from .undetermined import Undetermined, pm
@@ -207,7 +207,8 @@ class Fit(Plottable, Serializable):
         said = [str(one) for one in self.undetermined if one.names[0] not in silent]
         if silent:
             said.append(f"Held, as these data do not show it: {', '.join(silent)}.")
-        said += [f"{text[:1].upper()}{text[1:]}." for text in self.judgement.remarks]
+        aside = [] if self.answer == "good" or self.judgement.outliers_named else spikes.told(self.problem)
+        said += [f"{text[:1].upper()}{text[1:]}." for text in (*self.judgement.remarks, *aside)]
         for name, model in zip(report.labels(self), self.problem.models, strict=True):
             said.append(f"{name}: {model.seen.read}.")
         return said

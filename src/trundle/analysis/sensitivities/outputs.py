@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ...mechanics.algebra import Quaternion, Vector
-from ...mechanics.duals import slopes_of, unstacked
+from ...mechanics.duals import Dual, gathered, slopes_of
 from ...mechanics.system import RollingSystem
 from ...solve.laws import Law
 from ...solve.samples import FLIGHT, Array
@@ -41,8 +41,10 @@ def slopes_of_samples(
         (n, components, parameters), by the names of a trajectory's variables.
     """
     size = states.shape[1] // (1 + count)
-    state: Any = unstacked(list(states.T), size)
+    parts = states.T.reshape(1 + count, size, -1)
+    state: Any = [Dual(parts[0, i], (parts[1:, i],)) for i in range(size)]  # all slopes at once
     state[3:7] = Quaternion(*state[3:7]).unit
+    system = gathered(system)
     with np.errstate(all="ignore"):  # a slope that there is not is no number
         return stacked_slopes((_motion if of_motion else _quantities)(system, law, time, state), time.size, count)
 
@@ -108,6 +110,7 @@ def _array(parts: Vector | Quaternion | tuple[Any, ...], samples: int, count: in
     duals = list(parts)
     slopes = np.empty((samples, len(duals), count))
     for i, dual in enumerate(duals):
-        for j, slope in enumerate(slopes_of(dual, count)):
+        known = slopes_of(dual, count)
+        for j, slope in enumerate(np.broadcast_to(known[0], (count, samples)) if len(known) < count else known):
             slopes[:, i, j] = slope
     return slopes

@@ -71,8 +71,8 @@ class UnevenSpin(Motion):
 class Wobble(Motion):
     """A steady turn about the support's third axis of a support that sits askew on its axle.
 
-    The axle does not move; the support's own axis leans from it, at t = 0 away from the second axis, and goes round
-    with it.
+    The axle does not move; the support's own axis leans from it and goes round with it, at t = 0 away from the second
+    axis, or from where that is once it is turned by φ.
 
     Parameters
     ----------
@@ -80,6 +80,8 @@ class Wobble(Motion):
         ω about the axle, rad/s.
     angle : float or quantity
         ε between the axle and the support's own axis, rad.
+    phase : float or quantity
+        φ, of the lean about the axle, rad.
 
     Examples
     --------
@@ -89,6 +91,7 @@ class Wobble(Motion):
 
     rate: Annotated[Scalar, Number("angular velocity", said="About the axle.", example="33.3 rpm")]
     angle: Annotated[Scalar, Number("angle", said="Between the axle and the support's own axis.", example="1 deg")]
+    phase: Annotated[Scalar, Number("angle", said="φ, by which the lean is turned about the axle.")] = 0.0
     kind = "wobble"
     label = "Turns askew on its axle"
     way = "turning"
@@ -108,9 +111,15 @@ class Wobble(Motion):
         return self.rate
 
     def at(self, time: Scalar) -> SupportState:
-        """Return the support leaning by ε about its first axis, then turned by ωt about the axle."""
-        turning, leaning = namespace(self.rate, time), namespace(self.angle)
-        c, s = turning.cos(self.rate * time), turning.sin(self.rate * time)
+        """Return the support leaning by ε about its first axis turned by φ, then turned by ωt about the axle."""
+        leaning, round_ = namespace(self.angle), namespace(self.phase)
+        c, s = round_.cos(self.phase), round_.sin(self.phase)
         cl, sl = leaning.cos(self.angle), leaning.sin(self.angle)
-        rotation = Matrix(Vector(c, -(s * cl), s * sl), Vector(s, c * cl, -(c * sl)), Vector(0.0, sl, cl))
+        k = 1.0 - cl
+        lean = Matrix(
+            Vector(cl + c * c * k, c * s * k, s * sl),
+            Vector(c * s * k, cl + s * s * k, -(c * sl)),
+            Vector(-(s * sl), c * sl, cl),
+        )
+        rotation = about_third_axis(self.rate * time) @ lean
         return SupportState(rotation, ZERO, ZERO, ZERO, E_Z * self.rate, ZERO)

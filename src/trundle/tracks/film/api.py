@@ -23,6 +23,8 @@ from .rim import find_rim
 
 _ASTRAY = 0.02  # relative difference from the rate that the table has
 _ACCURACY = 0.1  # px: what lens, edges and compression leave, and more pictures do not mend
+# Codecs from before H.264 move what is coarse by blocks: their films were off by up to twice that.
+_COARSE, _COARSE_ACCURACY = ("fmp4", "mp4v", "xvid", "divx", "dx50", "mpg1", "mpg2", "mpeg", "h263"), 0.25
 _EVEN = 1.5  # px, of a mark on a table that turns evenly
 _WHOLE = 0.03  # how near to a whole number a ratio of rates is one
 _PASSES = 3  # how often a film is read
@@ -166,7 +168,7 @@ def track_film(
         found,
         radius,
         length["rim_radius"] or 0.0,
-        film_rate,
+        (film_rate, factor),
         [*said, f"the ball of colour {shown(own)}"],
     )
 
@@ -203,12 +205,8 @@ class _Work:
         self._pass += 1
         if self._progress is None:
             return self._film
-        import cv2
-
         if self._pass == 1:
-            capture = cv2.VideoCapture(str(self._film.path.resolve()))
-            self._count = max(int(capture.get(cv2.CAP_PROP_FRAME_COUNT)), 1)
-            capture.release()
+            self._count = max(self._film.properties()[2], 1)
         before, tell = self._pass - 1, self._progress
 
         def told(number: int) -> None:
@@ -266,13 +264,15 @@ def _track(
     found: Calibration,
     radius: float,
     rim: float,
-    rate: float,
+    rates: tuple[float, float],
     said: Sequence[str],
 ) -> FilmTrack:
     """Return the track of what was followed."""
     import xarray
 
     places = found.camera.ball_centres(ball.pixels, radius)
+    coarse = film.code() in _COARSE
+    off = _COARSE_ACCURACY if coarse else _ACCURACY
     columns = {"x": places[:, 0], "y": places[:, 1]}
     if mark is not None:
         number = dict(zip(mark.times, mark.numbers, strict=True))
@@ -283,7 +283,8 @@ def _track(
         {name: ("time", values, {"units": "m", "heading": name}) for name, values in columns.items()},
         coords={"time": ("time", np.array(ball.times), {"units": "s", "heading": "t"}),
                 "row": ("time", np.array(ball.numbers, dtype=int))},
-        attrs={"frame": "support", "axes": "space", "film_rate": rate, "accuracy": _ACCURACY * _pixel(found, places)},
+        attrs={"frame": "support", "axes": "space", "film_rate": rates[0],
+               "accuracy": off * _pixel(found, places), "accuracy_in_pixels": off},
     )  # fmt: skip
     count = len(ball.numbers)
     taken = ", ".join([f"{count} frames of {ball.frames}", *said])
@@ -304,5 +305,6 @@ def _track(
         pixels=ball.pixels,
         ball_radius=radius,
         rim_radius=rim,
+        slow=rates[1],
         film=film,
     )

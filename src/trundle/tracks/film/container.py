@@ -64,6 +64,57 @@ class Film:
         finally:
             capture.release()
 
+    def frames_from(self, time: float) -> Iterator[Frame]:
+        """Yield the pictures from a time on, s, and perhaps some before it; their numbers are not known."""
+        import cv2
+
+        for sought in (time, 0.0):
+            capture = _opened(self.path)
+            try:
+                if sought > 0:
+                    capture.set(cv2.CAP_PROP_POS_MSEC, 1e3 * sought)
+                good, picture = capture.read()
+                at = float(capture.get(cv2.CAP_PROP_POS_MSEC)) / 1e3
+                if sought > 0 and not (good and at <= time):
+                    continue  # sought too far: from the beginning, then
+                while good:
+                    yield Frame(-1, at, _colours(picture))
+                    good, picture = capture.read()
+                    at = float(capture.get(cv2.CAP_PROP_POS_MSEC)) / 1e3
+                return
+            finally:
+                capture.release()
+
+    def properties(self) -> tuple[tuple[int, int], float, int]:
+        """Return what the file says itself: width and height, px; pictures a second; how many there are."""
+        import cv2
+
+        capture = _opened(self.path)
+        try:
+            width, height, rate, count = (
+                float(capture.get(one))
+                for one in (
+                    cv2.CAP_PROP_FRAME_WIDTH,
+                    cv2.CAP_PROP_FRAME_HEIGHT,
+                    cv2.CAP_PROP_FPS,
+                    cv2.CAP_PROP_FRAME_COUNT,
+                )
+            )
+        finally:
+            capture.release()
+        return (int(width), int(height)), rate, max(int(count), 0)
+
+    def code(self) -> str:
+        """Return by which four letters the file names its codec, in small ones."""
+        import cv2
+
+        capture = _opened(self.path)
+        try:
+            number = int(capture.get(cv2.CAP_PROP_FOURCC))
+        finally:
+            capture.release()
+        return number.to_bytes(4, "little", signed=number < 0).decode("latin-1").lower()
+
     def rotation(self) -> int:
         """Return by how many degrees the file says that its pictures are to be turned; they come turned."""
         import cv2

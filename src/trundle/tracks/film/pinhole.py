@@ -85,6 +85,23 @@ class PinholeCamera:
             centre = flat * (1 - (radius / far) ** 2 * (1 + tangent**2))
         return self._meets(np.where(outward > 0, centre, flat), radius)[0]
 
+    def ball_outlines(self, places: Array, radius: float, count: int) -> Array:
+        """Return where the outlines of balls with centres over (n, 2) are seen, px (n, count, 2).
+
+        The rays that touch a ball do so on a circle: a² / d from its centre towards the lens, √(a² − a⁴/d²) wide.
+        """
+        centre = np.column_stack([places, np.full(len(places), radius)])
+        towards = self.place - centre
+        far = np.linalg.norm(towards, axis=1, keepdims=True)
+        towards /= far
+        across = np.cross(towards, self.rotation[1])
+        across /= np.linalg.norm(across, axis=1, keepdims=True)
+        other = np.cross(towards, across)
+        ring = 2 * np.pi * np.arange(count)[:, None, None] / count
+        wide = radius * np.sqrt(1 - (radius / far) ** 2)
+        points = centre + towards * radius**2 / far + wide * (np.cos(ring) * across + np.sin(ring) * other)
+        return self.project(points.reshape(-1, 3)).reshape(count, -1, 2).swapaxes(0, 1)
+
     def ball_area(self, places: Array, radius: float) -> Array:
         """Return how many pixels the pictures of balls with centres over (n, 2) fill."""
         seen = (np.column_stack([places, np.full(len(places), radius)]) - self.place) @ self.rotation.T

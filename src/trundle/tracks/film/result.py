@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from .calibration import Calibration
 
 _TOLD = 200  # frames that are named in a file
+_PARTS = {
+    0.1: "a tenth of a pixel",
+    0.25: "a quarter of a pixel, since its codec (MPEG-4 before H.264) is coarse: film in H.264, HEVC or VP9",
+}
 
 
 @dataclass(frozen=True, repr=False)
@@ -35,6 +39,8 @@ class FilmTrack(Track):
         m.
     rim_radius : float
         m; 0 where marks were given.
+    slow : float
+        How many times slower than the world the film runs.
     film : Film
         What it was measured from.
 
@@ -47,6 +53,7 @@ class FilmTrack(Track):
     pixels: Any = field(default=None, repr=False)
     ball_radius: float = 0.0
     rim_radius: float = 0.0
+    slow: float = 1.0
     film: Any = field(default=None, repr=False)
 
     @property
@@ -59,6 +66,11 @@ class FilmTrack(Track):
     def height(self) -> float:
         """Of the lens over the table, m."""
         return float(self.calibration.camera.place[2])
+
+    @property
+    def calibrated(self) -> tuple[str, ...]:
+        """What is known of camera and table, a line each."""
+        return tuple(f"{name}: {value}" for name, value in self._told())
 
     def save(self, path: str | Path) -> Path:
         """Write the track as a table that `trundle.read_track` and `trundle fit` read.
@@ -79,7 +91,7 @@ class FilmTrack(Track):
         """
         target = Path(path)
         heads = ["t (s)", *(f"{name} ({self.data[name].attrs['units']})" for name in self.columns)]
-        notes = [f"# {self.source}: {self.taken}", *(f"# {name}: {value}" for name, value in self._told())]
+        notes = [f"# {self.source}: {self.taken}", *(f"# {line}" for line in self.calibrated)]
         notes += [f"# frame {one.row} was left out: {one.reason}" for one in self.rejected[:_TOLD]]
         more = len(self.rejected) - _TOLD
         notes += [f"# and {more} more"] if more > 0 else []
@@ -118,7 +130,7 @@ class FilmTrack(Track):
             ("calibrated by", f"{calibration.basis}, to {calibration.misfit:.2f} px"),
             ("lens over the table", f"{camera.place[2]:.4g} m, aside by {np.hypot(*camera.place[:2]):.3g} m"),
             ("focal length", f"{camera.focal:.5g} px"),
-            ("accuracy", f"{self.data.attrs['accuracy']:.2g} m, a tenth of a pixel"),
+            ("accuracy", f"{self.data.attrs['accuracy']:.2g} m, {_PARTS[self.data.attrs['accuracy_in_pixels']]}"),
         ]
         if turning is not None:
             rpm = turning.rate * 30 / np.pi
@@ -131,4 +143,4 @@ class FilmTrack(Track):
         yield from super()._parts()
 
     def __str__(self) -> str:
-        return "\n".join([super().__str__(), *(f"{name}: {value}" for name, value in self._told())])
+        return "\n".join([super().__str__(), *self.calibrated])

@@ -8,6 +8,7 @@ import {
   isAbort,
   type ScenarioEntry,
   type ScenarioNumber,
+  type Suggestion,
   type Track,
 } from '../../api'
 import type { Page } from '../../app'
@@ -19,15 +20,32 @@ import { encode } from '../../share'
 import { nameOf } from '../maps/axes'
 import { button } from '../parts/controls'
 import { createStage, playUnlessCalm, told } from '../parts/stage'
+import { createFilm, isFilm } from './film'
 import { createPlot } from './plot'
 import { createReading, type How } from './reading'
 import { marked, report } from './report'
+import { createShowing } from './showing'
 import '../pages.css'
 import '../maps/maps.css'
 import './measure.css'
 
 const BENCH = '(bench)'
 const OF_EXAMPLE = '(example)'
+
+/** How the measured axes are turned, which a picture does not show. */
+const TURN: ScenarioNumber = {
+  key: 'camera.rotation',
+  group: 'Camera',
+  label: 'Direction of its axes',
+  value: 0,
+  unit: 'rad',
+}
+
+/** A scenario that comes with a track. */
+interface Guess extends Suggestion {
+  noise: string
+  called: string
+}
 
 interface Given {
   file: Blob
@@ -44,14 +62,16 @@ export const measure: Page = {
     undo.add(() => leaving.abort())
     const stage = createStage(app, { label: 'What was measured, on its support' })
     const plot = createPlot()
+    const showing = createShowing(app.api)
     undo.add(
       () => stage.dispose(),
       () => plot.dispose(),
+      () => showing.dispose(),
       app.watchSettings(() => requestAnimationFrame(() => plot.restyle())),
     )
     let given: Given | null = null
     let track: Track | null = null
-    let example: ExampleTrack | null = null
+    let example: Guess | null = null
     let scenario: Scenario = app.store.scenario
     let fitted: Fitted | null = null
     let numbers: readonly ScenarioNumber[] = []
@@ -61,7 +81,25 @@ export const measure: Page = {
     const said = h('div', { class: 'measure-said', role: 'status', 'data-testid': 'said' })
     const wrong = h('p', { class: 'map-wrong', role: 'alert', hidden: true, 'data-testid': 'wrong' })
     const reading = createReading((how) => given && take({ ...given, how }))
-    const dropped = (file: File) => take({ file: worthSending(file), name: file.name, how: {} }, null)
+    const film = createFilm({
+      api: app.api,
+      wrong: (error) => tell(error),
+      followed(answer, file, kept) {
+        took(answer)
+        if (answer.suggested) {
+          example = { ...answer.suggested, noise: '', called: 'The ball on the filmed table' }
+          void choose(OF_EXAMPLE)
+        }
+        if (answer.film) showing.show({ file, film: kept, followed: answer.film, columns: answer.columns })
+      },
+    })
+    undo.add(() => film.dispose())
+    function dropped(file: File): void {
+      if (isFilm(file)) {
+        start(null)
+        void film.take(file)
+      } else take({ file, name: file.name, how: {} }, null)
+    }
     const picker = createPicker(dropped)
     const offered = h('div', { class: 'buttons measure-examples', role: 'group', 'aria-label': 'Example tracks' })
 
@@ -88,6 +126,21 @@ export const measure: Page = {
       after.hidden = true
       fill(results)
       plot.way(null, true)
+      showing.fitted(null)
+    }
+
+    /** A track is there. */
+    function took(answer: Track): void {
+      forget()
+      track = answer
+      fill(
+        said,
+        h('p', {}, h('strong', {}, answer.title), ': ', ...marked(answer.said[0] ?? '')),
+        answer.said.slice(1).map((sentence) => h('p', { class: 'map-hint' }, ...marked(sentence))),
+      )
+      go.disabled = false
+      plot.measured(answer)
+      sketch()
     }
 
     const reader = createRunner<Given, Awaited<ReturnType<typeof app.api.track>>>({
@@ -99,37 +152,41 @@ export const measure: Page = {
           fill(said)
           return
         }
-        track = answer
         reading.ask(null)
-        fill(
-          said,
-          h('p', {}, h('strong', {}, answer.title), ': ', ...marked(answer.said[0] ?? '')),
-          answer.said.slice(1).map((sentence) => h('p', { class: 'map-hint' }, ...marked(sentence))),
-        )
-        go.disabled = false
-        plot.measured(answer)
-        sketch()
+        took(answer)
       },
       failed: (error) => tell(error),
       state: (busy) => host.firstElementChild?.toggleAttribute('data-busy', busy),
     })
 
     /** Read a file, or read it again in another way. */
-    function take(next: Given, of: ExampleTrack | null = example): void {
+    function take(next: Given, of: Guess | null = example): void {
+      void film.take(null)
+      start(next, of)
+      reading.set(next.how)
+      reader.ask(next)
+    }
+
+    /** Forget what was measured before: a file comes, or a film, which is none. */
+    function start(next: Given | null, of: Guess | null = null): void {
       given = next
       example = of
       track = null
       go.disabled = true
       tell(null)
       forget()
+      fill(said)
+      showing.show(null)
       reading.ask(null)
-      reading.set(next.how)
-      reader.ask(next)
+      reading.element.hidden = next === null
       if (!of && moved.value === OF_EXAMPLE) void choose(BENCH)
     }
 
     function takeExample(one: ExampleTrack): void {
-      take({ file: new Blob([one.content]), name: one.file, how: {} }, one)
+      take(
+        { file: new Blob([one.content]), name: one.file, how: {} },
+        { ...one, called: `${one.title}, as the example says` },
+      )
       void choose(OF_EXAMPLE)
       app.router.replace('measure', { example: one.name })
     }
@@ -142,7 +199,7 @@ export const measure: Page = {
         else if (name === BENCH) scenario = app.store.scenario
         else if (name !== OF_EXAMPLE) scenario = (await app.api.scenario(name, { signal: leaving.signal })).scenario
         moved.show(name, example)
-        numbers = await app.api.mapNumbers(scenario, { signal: leaving.signal })
+        numbers = [...(await app.api.mapNumbers(scenario, { signal: leaving.signal })), TURN]
         const asked = name === OF_EXAMPLE && example ? example : { free: [], noise: '' }
         free.show(
           numbers.filter(({ key }) => !key.startsWith('start.')),
@@ -181,7 +238,15 @@ export const measure: Page = {
         if (!track) throw new Error('There is no track yet.')
         const { keys, noise } = free.value
         return app.api.fit(
-          { scenario, columns: track.columns, title: track.title, free: keys, noise },
+          {
+            scenario,
+            columns: track.columns,
+            title: track.title,
+            free: keys,
+            noise,
+            accuracy: track.accuracy,
+            ...(track.film ? { view: track.film.view } : {}),
+          },
           { lane: null, signal },
         )
       },
@@ -190,6 +255,7 @@ export const measure: Page = {
         report(results, answer, numbers)
         after.hidden = false
         plot.way(answer.way, app.settings.reducedMotion)
+        showing.fitted(answer.seen)
         staging.ask(answer.scenario)
       },
       failed: (error) => tell(error),
@@ -228,6 +294,7 @@ export const measure: Page = {
             offered,
             said,
             wrong,
+            film.element,
             reading.element,
           ),
           h(
@@ -239,7 +306,7 @@ export const measure: Page = {
             go,
           ),
         ),
-        h('div', { class: 'measure-seen' }, stage.element, plot.element, results, after),
+        h('div', { class: 'measure-seen' }, stage.element, showing.element, plot.element, results, after),
       ),
     )
     undo.add(dropping(host, dropped))
@@ -299,14 +366,11 @@ function createPicker(chosen: (file: File) => void): Picker {
       h(
         'span',
         {},
-        'Tracker (.trk, .trz, a copied table), Logger Pro, Capstone, Vernier, Phyphox, DeepLabCut, CSV, Excel',
+        'A film, or a track: Tracker (.trk, .trz, a copied table), Logger Pro, Capstone, Vernier, Phyphox, DeepLabCut, CSV, Excel',
       ),
     ),
   }
 }
-
-/** A film is too large to send, and its name is enough for what there is to say of it. */
-const worthSending = (file: File): Blob => (file.type.startsWith('video/') ? file.slice(0, 0) : file)
 
 /** Files may be dropped anywhere on the page. */
 function dropping(host: HTMLElement, dropped: (file: File) => void): () => void {
@@ -337,7 +401,7 @@ interface Scenarios {
   readonly element: HTMLElement
   readonly value: string
   offer(shipped: readonly ScenarioEntry[]): void
-  show(name: string, example: ExampleTrack | null): void
+  show(name: string, example: Guess | null): void
 }
 
 function createScenarios(chosen: (name: string) => void): Scenarios {
@@ -359,7 +423,7 @@ function createScenarios(chosen: (name: string) => void): Scenarios {
     },
     show(name, example) {
       own.hidden = example === null
-      say(own, example ? `${example.title}, as the example says` : '')
+      say(own, example?.called ?? '')
       select.value = name
     },
   }

@@ -7,7 +7,7 @@ const SIGNS: Record<Fitted['answer'], string> = { good: '✓', bad: '✗', 'cann
 
 export function report(host: HTMLElement, found: Fitted, numbers: readonly Named[]): void {
   const named = (name: string) => {
-    const known = numbers.find(({ key }) => key === name)
+    const known = [...numbers, ...found.named].find(({ key }) => key === name)
     return known ? nameOf(known) : h('code', {}, name)
   }
   fill(
