@@ -440,17 +440,13 @@ def _from_angles(theta: Scalar, psi: Scalar, phi: Scalar) -> Quaternion:
 def _half_turn(system: RollingSystem, times: Any) -> Any:
     """Return half the angle by which a support has turned that turns steadily, rad, without whole turns.
 
-    From the first of some instants on it is a float; up to there a fraction, which a million turns leave exact.
+    From the last of some instants on it is a float; up to there a fraction, which a million turns leave exact.
     """
-    rate, times = float(system.support.motion.mean_rate), np.asarray(times, dtype=float)
-    angles = np.empty(times.shape)
+    rates, times = np.broadcast_arrays(np.asarray(system.support.motion.mean_rate, dtype=float), times)
     block = np.floor(times / _BLOCK)
-    for which in np.unique(block).tolist():
-        there = block == which
-        begin = float(times[there][0])
-        whole = float((Fraction(rate) * Fraction(begin) / 2) % TURN)
-        angles[there] = whole + 0.5 * rate * (times[there] - begin)
-    return angles
+    known, which = np.unique(np.stack([rates.ravel(), block.ravel()]), axis=1, return_inverse=True)
+    whole = [float((Fraction(rate) * Fraction(begin * _BLOCK) / 2) % TURN) for rate, begin in known.T.tolist()]
+    return np.array(whole)[which].reshape(times.shape) + 0.5 * rates * (times - block * _BLOCK)
 
 
 def _turned(columns: Sequence[Any], half: Any) -> list[Any]:

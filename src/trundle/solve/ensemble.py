@@ -27,6 +27,7 @@ from ..mechanics.parameters import numbers, with_numbers
 from ..mechanics.placing import SLIP_TOLERANCE
 from ..mechanics.system import RollingSystem, State
 from . import corners, integrators, phases, runge_kutta, taylor
+from .charts import CHART, LAWS_OWN, Chart, charts
 from .laws import Law, RollingLaw
 from .lowering import Lowered
 from .samples import AT_ONCE, Array, Event, Samples
@@ -35,7 +36,8 @@ from .transitions import PhaseStart, ZeroCrossing
 LANES = 8  # doubles in the widest registers; where they are half as wide, two at a time still gain
 _MOST_CHUNKS = 10
 _COMPLETED = 4000  # samples that are completed at once, at least: of few, each costs more
-_STEPS = 300  # steps, between which lanes that are free are taken again
+_STEPS = 300  # at most, between which lanes that are free are taken again
+_FEWEST = 20_000  # steps times `Lowered.cost`, at least: what else is done between two calls takes half of that
 _PRESSED = 1e-9  # share of the weight with which a member must press on to be taken along
 
 
@@ -51,7 +53,7 @@ class Block:
 
 @dataclass(frozen=True)
 class Piece:
-    """States (rows, size, members) of some members at some of the instants, to be completed."""
+    """States (rows, size, members), in a chart, of some members at some of the instants, to be completed."""
 
     members: Sequence[int]
     rows: slice
@@ -183,8 +185,7 @@ def integrate(
         What happened to each member that came through.
     """
     given = numbers_of(systems)
-    zeros = np.equal(np.array(given), 0).all(axis=0)
-    by_law = partial(_compiled, systems[0], frozenset(np.flatnonzero(zeros).tolist()), tolerance, threading.Lock())
+    compiled = _Compiled(given, tolerance)
     halt = threading.Event()  # somebody pressed Ctrl-C, or another thread failed
     members = list(starts)
 
@@ -192,7 +193,7 @@ def integrate(
         blocks = range(which * LANES, len(members), workers * LANES)
         mine = (i for first in blocks for i in members[first : first + LANES])
         legs = lru_cache(LANES)(partial(_legs, times))  # most members begin at one time
-        company = _Company((Member(i, systems[i], given[i], starts[i], times, legs) for i in mine), by_law, halt)
+        company = _Company((Member(i, systems[i], given[i], starts[i], times, legs, compiled) for i in mine), halt)
         try:
             for pieces in company.follow():
                 done(pieces.completed(systems, times))
@@ -222,13 +223,16 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def completed(law: Law, systems: Sequence[RollingSystem], times: Array, pieces: Sequence[Piece]) -> Block:
+def completed(
+    law: Law, systems: Sequence[RollingSystem], times: Array, pieces: Sequence[Piece], chart: Chart = LAWS_OWN
+) -> Block:
     """Complete the states of some members at some of the instants, all pieces at once."""
     members = np.concatenate([np.tile(np.asarray(piece.members), len(piece.path)) for piece in pieces])
     rows = np.concatenate([np.repeat(np.arange(times.size)[piece.rows], len(piece.members)) for piece in pieces])
     flat = np.concatenate([piece.path.transpose(0, 2, 1).reshape(-1, piece.path.shape[1]) for piece in pieces])
     system = _of_samples(systems, members)
-    return Block(members, rows, law.record(system, times[rows], flat), system)
+    states = taylor.to_law(chart, system, times[rows], flat)
+    return Block(members, rows, law.record(system, times[rows], states), system)
 
 
 def _of_samples(systems: Sequence[RollingSystem], members: NDArray[np.int64]) -> RollingSystem:
@@ -241,13 +245,28 @@ def _of_samples(systems: Sequence[RollingSystem], members: NDArray[np.int64]) ->
     return with_numbers(own[0], [float(row[0]) if (row == row[0]).all() else row[places] for row in values])
 
 
-def _compiled(
-    system: RollingSystem, zeros: frozenset[int], tolerance: float, one_at_a_time: Any, law: Law
-) -> tuple[Any, Lowered]:
-    """Return a fresh integrator of a law for eight members of a structure."""
-    with one_at_a_time:
-        lowered, key = integrators.ready(system, law, tolerance, zeros=zeros)
-        return copy.copy(integrators.kept(f"{LANES}-stopping-{key}", lambda: _compile(lowered, tolerance))), lowered
+class _Compiled:
+    """Laws of one structure, in the charts of its members, compiled for eight of them."""
+
+    def __init__(self, given: Sequence[Sequence[float]], tolerance: float) -> None:
+        zeros = np.equal(np.array(given), 0).all(axis=0)
+        self.zeros, self.tolerance = frozenset(np.flatnonzero(zeros).tolist()), tolerance
+        self.lock = threading.Lock()
+        self.known: dict[Any, list[tuple[Lowered, str]]] = {}
+
+    def chosen(self, system: RollingSystem, law: Law, state: Sequence[float]) -> tuple[Lowered, str]:
+        """Return a law in the chart of fewest operations around a state."""
+        among = charts(system, law)
+        one = (type(law), *vars(law).items(), among)
+        if one not in self.known:
+            with self.lock:
+                self.known[one] = integrators.ready_in(system, law, self.tolerance, self.zeros, among)
+        return next(each for each in self.known[one] if each[0].chart.contains(state))
+
+    def integrator(self, lowered: Lowered, key: str) -> Any:
+        """Return a fresh one."""
+        with self.lock:
+            return copy.copy(integrators.kept(f"{LANES}-stopping-{key}", lambda: _compile(lowered, self.tolerance)))
 
 
 class Member:
@@ -261,8 +280,10 @@ class Member:
         start: State | PhaseStart,
         times: Array,
         legs: Callable[[float, int], Sequence[_Leg]],
+        compiled: _Compiled,
     ) -> None:
         self.index, self.system, self.numbers, self.times, self.legs_from = index, system, numbers, times, legs
+        self.compiled = compiled
         self.samples: list[Samples] = []  # of instants that no stretch holds
         self.course = phases.course(system, start, times, self.samples.append)
         self.patience = taylor.Shared().patience(float(times[0]), float(times[-1]))
@@ -275,6 +296,9 @@ class Member:
 
     def goes_on(self, stop: ZeroCrossing | None) -> bool:
         """Go to the next stretch, from where this one was left; tell whether there is one."""
+        if stop is not None and stop.name == CHART:
+            self._begin(stop.time, stop.state_vector, self.reached)
+            return True
         return self._take(lambda: self.course.send((stop, self.reached)))
 
     def _take(self, stretch: Callable[[], tuple[PhaseStart, Array]]) -> bool:
@@ -287,11 +311,21 @@ class Member:
             return False
         event_parameters = (*self.now.event_parameters, *corners.directions(self.system, self.now))
         self.given = [*self.numbers, *event_parameters] if event_parameters else self.numbers
-        self.first, self.reached = self.times.size - self.left.size, 0  # rows; instants of the stretch
-        self.state, self.begun = np.array(self.now.state_vector, dtype=float), self.now.time
+        self.first, self.begun = self.times.size - self.left.size, self.now.time  # row; s
         self.lasted = taylor.lasted(self.system, self.now)
-        self.legs = iter(self.legs_from(self.now.time, self.first))
+        self._begin(self.now.time, self.now.state_vector, 0)
         return True
+
+    def _begin(self, time: float, state: Any, reached: int) -> None:
+        """Begin the stretch, or go on in it, from the law's numbers, with so many of its instants behind it."""
+        self.lowered, self.key = self.compiled.chosen(self.system, self.now.law, state)
+        self.state = np.array(self.lowered.chart.of_law(self.system, time, state), dtype=float)
+        self.reached = reached  # instants of the stretch
+        self.legs = iter(self.legs_from(time, self.first + reached))
+
+    def lanes(self) -> _Lanes:
+        """Return lanes for it, and for whoever follows the same law in the same chart."""
+        return _Lanes(self.compiled.integrator(self.lowered, self.key), self.lowered, self.now.law)
 
     def next_leg(self) -> bool:
         """Go to the next leg of the stretch; tell whether there is one."""
@@ -314,10 +348,10 @@ class Member:
 
 
 class _Pieces:
-    """Samples of one law that wait to be completed."""
+    """Samples of one law, in one chart, that wait to be completed."""
 
-    def __init__(self, law: Law) -> None:
-        self.law, self.waiting, self.size = law, list[Piece](), 0
+    def __init__(self, law: Law, chart: Chart) -> None:
+        self.law, self.chart, self.waiting, self.size = law, chart, list[Piece](), 0
 
     def add(self, piece: Piece) -> None:
         self.waiting.append(piece)
@@ -326,7 +360,7 @@ class _Pieces:
     def completed(self, systems: Sequence[RollingSystem], times: Array) -> Block:
         """Return them, and wait for others."""
         waiting, self.waiting, self.size = self.waiting, [], 0
-        return completed(self.law, systems, times, waiting)
+        return completed(self.law, systems, times, waiting, self.chart)
 
 
 class _Ready:
@@ -344,10 +378,10 @@ class _Ready:
 
 
 class _Company:
-    """Members on their way, sorted by the law that each has to follow next."""
+    """Members on their way, sorted by the law that each has to follow next, and by its chart."""
 
-    def __init__(self, members: Iterator[Member], compiled: Callable[[Law], tuple[Any, Lowered]], halt: Any) -> None:
-        self.members, self.compiled, self.halt = members, compiled, halt
+    def __init__(self, members: Iterator[Member], halt: Any) -> None:
+        self.members, self.halt = members, halt
         self.waiting: dict[Any, deque[Member]] = {}
         self.lanes: dict[Any, _Lanes] = {}
         self.ready: list[_Ready] = []
@@ -356,7 +390,7 @@ class _Company:
 
     def follow(self) -> Iterator[_Pieces | _Ready]:
         """Follow all of them to the end, and yield what is to be completed."""
-        while self._set_out(self.waiting.values(), 1) and not self.halt.is_set():
+        while self._set_out(self.waiting.values()) and not self.halt.is_set():
             key = max(self.waiting, key=lambda key: len(self.waiting[key]))
             lanes, waiting = self._lanes(key), self.waiting[key]
             for member, stop in lanes.follow(waiting):
@@ -367,22 +401,19 @@ class _Company:
                 yield from self._drained()
                 if self.halt.is_set():
                     return
-                self._set_out([waiting], LANES)
+                self._set_out([waiting])
         yield from (lanes.pieces for lanes in self.lanes.values() if lanes.pieces.size)
         yield from self._drained()
 
-    def _set_out(self, waiting: Collection[deque[Member]], enough: int) -> bool:
-        """Let members set out until enough wait, and not all at once, which is dear; tell whether enough do."""
-        while sum(map(len, waiting)) < enough:
-            member = next(self.members, None)
-            if member is None:
-                return False
+    def _set_out(self, waiting: Collection[deque[Member]]) -> bool:
+        """Let members set out until enough wait, and not all at once, which is dear; tell whether any do."""
+        while sum(map(len, waiting)) < LANES and (member := next(self.members, None)) is not None:
             self._lead(member, member.set_out)
-        return True
+        return any(waiting)
 
     def _lanes(self, key: Any) -> _Lanes:
         if key not in self.lanes:
-            self.lanes[key] = _Lanes(*self.compiled(self.waiting[key][0].now.law), self.waiting[key][0].now.law)
+            self.lanes[key] = self.waiting[key][0].lanes()
         return self.lanes[key]
 
     def _drained(self) -> Iterator[_Ready]:
@@ -401,7 +432,8 @@ class _Company:
             self.broken.append(member.index)
         elif goes_on:
             law = member.now.law
-            self.waiting.setdefault((type(law), *vars(law).items()), deque()).append(member)
+            by = type(law), *vars(law).items(), member.lowered.chart
+            self.waiting.setdefault(by, deque()).append(member)
         else:
             self.events[member.index] = member.events
             if member.samples:
@@ -424,9 +456,10 @@ class _Lanes:
     """
 
     def __init__(self, integrator: Any, lowered: Lowered, law: Law) -> None:
-        self.integrator, self.lowered, self.pieces = integrator, lowered, _Pieces(law)
+        self.integrator, self.lowered, self.pieces = integrator, lowered, _Pieces(law, lowered.chart)
         self.members: list[Member | None] = [None] * LANES
         self.times = np.zeros(LANES)  # since each leg began; given to the integrator before it steps
+        self.pace = math.nan  # about how far a step leads, s
         self.known: dict[int, tuple[float, list[float]]] = {}  # parameters, and from when: many may share one system
 
     def follow(self, waiting: deque[Member]) -> Iterator[tuple[Member | None, ZeroCrossing | Exception | None]]:
@@ -466,7 +499,7 @@ class _Lanes:
                 raise ArithmeticError("no numbers")
             if member.given is member.numbers:
                 self.known[id(member.given)] = member.begin, values
-        state = self.lowered.tidy([0.0, *member.state.tolist(), *values])
+        state = self.lowered.chart.reduced(self.lowered.tidy([0.0, *member.state.tolist(), *values]))
         if not all(map(math.isfinite, state)):
             raise ArithmeticError("no numbers")
         integrator = self.integrator
@@ -480,8 +513,11 @@ class _Lanes:
         integrator, before = self.integrator, self.times
         looks, longest = self._looks()
         given: dict[str, Any] = {"max_steps": 1, "max_delta_t": longest} if np.isfinite(longest).any() else {}
-        path = integrator.propagate_grid(_grid(looks), **{"max_steps": _STEPS, **given})[-1]
+        path = integrator.propagate_grid(_grid(looks), **{"max_steps": self._steps(), **given})[-1]
         self.times, results = integrator.time.copy(), integrator.propagate_res
+        steps = sum(int(results[lane][3]) for lane in looks)
+        if steps:
+            self.pace = sum(float(self.times[lane] - before[lane]) for lane in looks) / steps
         stops = {lane: self._stop(lane, results[lane][0]) for lane in looks}
         failed = {lane for lane in looks if _failed(results[lane][0])}
         if not failed:  # else nobody takes a step
@@ -499,6 +535,13 @@ class _Lanes:
                 yield from self._enter(lane, member)
             else:
                 yield from self._wait(lane, member, int(results[lane][3]))
+
+    def _steps(self) -> int:
+        """Return how many steps to take: until the first lane is about to be done, for another member to follow."""
+        left = min(member.end - member.begin - float(self.times[lane]) for lane, member in self._on_the_way())
+        if not left < _STEPS * self.pace:
+            return _STEPS
+        return min(max(math.ceil(left / self.pace), _FEWEST // self.lowered.cost), _STEPS)
 
     def _on_the_way(self) -> list[tuple[int, Member]]:
         return [(lane, member) for lane, member in enumerate(self.members) if member is not None]
@@ -534,7 +577,8 @@ class _Lanes:
         if member is None or event is None:
             return None
         time = member.begin + float(self.times[lane])
-        return ZeroCrossing(time, self.lowered.event_functions[event], self.integrator.state[:, lane].copy())
+        state = taylor.to_law(self.lowered.chart, member.system, np.array([time]), self.integrator.state[None, :, lane])
+        return ZeroCrossing(time, self.lowered.event_functions[event], state[0].copy())
 
     def _event(self, lane: int, outcome: Any) -> int | None:
         """Return which event a lane has come to; in the last of the steps that it may take only its cooldown tells."""
@@ -557,7 +601,7 @@ class _Lanes:
             elif self.times[lane] == member.end - member.begin:
                 upto = member.instants.size
             else:
-                upto = int(np.searchsorted(member.instants - member.begin, self.times[lane], "right"))
+                upto = int(member.leg.since.searchsorted(self.times[lane], "right"))
             if upto > done:
                 places = looks[lane].places[: upto - done]
                 alike.setdefault((member.first + member.reached, places.tobytes()), []).append(lane)
@@ -586,11 +630,11 @@ class _Looks:
     @staticmethod
     def of(leg: _Leg, passed: int, now: float) -> _Looks:
         """Return the time now, and the instants of a leg that are ahead."""
-        ahead = leg.instants[passed:] - leg.begin
+        ahead = leg.since[passed:]
         if not ahead.size:
             return _Looks(np.array([now, leg.end - leg.begin]), np.empty(0, dtype=np.int64))
         times = np.concatenate([[now], ahead])
-        if (times[1:] > times[:-1]).all():
+        if leg.apart and ahead[0] > now:
             return _Looks(times, np.arange(1, times.size))
         times, places = np.unique(times, return_inverse=True)  # since a reference, two may be one by rounding
         return _Looks(times, places[1:])
@@ -600,10 +644,11 @@ class _Looks:
         more = count - self.times.size
         if more == 0:
             return self
-        after = int(np.argmax(np.diff(self.times))) + 1
-        between = np.linspace(self.times[after - 1], self.times[after], more + 2)[1:-1]
+        gaps = self.times[1:] - self.times[:-1]
+        after = int(gaps.argmax()) + 1
+        between = self.times[after - 1] + gaps[after - 1] * (np.arange(1, more + 1) / (more + 1))
         times = np.concatenate([self.times[:after], between, self.times[after:]])
-        return _Looks(times, np.where(self.places < after, self.places, self.places + more))
+        return _Looks(times, self.places + more * (self.places >= after))
 
 
 @dataclass(frozen=True)
@@ -613,6 +658,16 @@ class _Leg:
     begin: float
     instants: Array  # none where it only leads on
     end: float
+
+    @cached_property
+    def since(self) -> Array:
+        """Its instants, since it began."""
+        return self.instants - self.begin
+
+    @cached_property
+    def apart(self) -> bool:
+        """Whether rounding has left no two of them one."""
+        return bool((self.since[1:] > self.since[:-1]).all())
 
     @cached_property
     def looks(self) -> _Looks:

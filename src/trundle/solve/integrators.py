@@ -15,7 +15,7 @@ from typing import Any
 from ..mechanics.parameters import numbers, structure_of
 from ..mechanics.system import RollingSystem
 from . import integrator_cache
-from .charts import LAWS_OWN, charts
+from .charts import LAWS_OWN, Chart, charts
 from .laws import Law
 from .lowering import Lowered, lower
 
@@ -73,6 +73,14 @@ def ready(
     if zeros is None:
         zeros = frozenset(i for i, value in enumerate(numbers(system)) if value == 0)
     among = (LAWS_OWN,) if state is None else charts(system, law)
+    known = ready_in(system, law, tolerance, zeros, among)
+    return next(each for each in known if state is None or each[0].chart.contains(state))
+
+
+def ready_in(
+    system: RollingSystem, law: Law, tolerance: float, zeros: frozenset[int], among: tuple[Chart, ...]
+) -> list[tuple[Lowered, str]]:
+    """Return a law in each of some charts, those of fewest operations first, with the name of what comes of it."""
     memory = _memory().ready
     structure: Any = (structure_of(system), type(law), tuple(vars(law).items()), tolerance, zeros, among)
     try:
@@ -84,7 +92,7 @@ def ready(
         known = [(each, _key(*each.heyoka(), tolerance, each.parameters)) for each in lowered]
         if structure is not None:
             memory[structure] = known
-    return next(each for each in known if state is None or each[0].chart.contains(state))
+    return known
 
 
 class _Memory:

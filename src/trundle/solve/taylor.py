@@ -273,7 +273,7 @@ class _Run:
         state: Sequence[float],
     ) -> None:
         self.borrow, self.lowered, self.given = borrow, lowered, given
-        self.to_law = partial(_to_law, lowered.chart, system)
+        self.to_law = partial(to_law, lowered.chart, system)
         self.hasty_steps = hasty_steps or _CARES  # left
         self.integrator = borrow(WITH_CARE if self.hasty_steps == _CARES else IN_HASTE)
         self.patience: Patience
@@ -364,7 +364,7 @@ class _Run:
         self.integrator.pars[:] = self.values[: self.lowered.parameters]
 
 
-def _to_law(chart: Chart, system: RollingSystem, times: Array, states: Array) -> Array:
+def to_law(chart: Chart, system: RollingSystem, times: Array, states: Array) -> Array:
     """Return a law's numbers at some times, given those of a chart."""
     if chart == LAWS_OWN:
         return states
