@@ -81,21 +81,58 @@ def test_a_second_process_does_not_compile(machine: Machine) -> None:
     assert np.array_equal(first.orientation, second.orientation)
 
 
-def test_a_long_run_is_compiled_with_care_and_has_its_digits_whatever_is_known(machine: Machine) -> None:
+@pytest.mark.parametrize(
+    ("patched", "levels"),
+    [
+        ({}, [integrators.IN_HASTE]),
+        ({"_WORTH_CARE": (100.0, 0.0)}, [integrators.IN_HASTE, integrators.WITH_CARE]),
+        ({"_WORTH_CARE": (1e4, 0.0), "_FIRST_LOOK": 20}, [integrators.IN_HASTE]),
+        ({"_WORTH_UNROLLING": 1.0}, [integrators.IN_HASTE, integrators.UNROLLED]),
+        ({"_WORTH_UNROLLING": 1.0, "_SHORT_LAW": 100}, [integrators.WITH_CARE, integrators.UNROLLED]),
+    ],
+)
+def test_a_run_has_the_digits_of_what_it_is_worth_compiling_whatever_is_known(
+    machine: Machine, patched: dict[str, Any], levels: list[int]
+) -> None:
     start, times = SYSTEM.place((0.1, 0.0), (0.0, 0.2)), np.linspace(0.0, 60.0, 121)
-    machine.patch.setattr(taylor, "_SHORT_LAW", 0)
+    for name, value in ({"_SHORT_LAW": 0} | patched).items():
+        machine.patch.setattr(taylor, name, value)
 
     def path() -> Any:
         return taylor.solve(SYSTEM, start, times).position
 
     first = path()
-    assert machine.compiled == 2  # in haste, and with care
+    kept = {file.stem.rpartition("-")[2]: file for file in machine.folder.glob("taylor-*.pickle")}
+    assert sorted(kept) == sorted(str(level) for level in levels)
     machine.restart()
     assert np.array_equal(path(), first)
     assert np.array_equal(path(), first)
-    assert machine.compiled == 2
+    assert machine.compiled == len(levels)
+    for file in kept.values():  # some of what it needs is known, and some is not
+        file.unlink()
+        machine.restart()
+        assert np.array_equal(path(), first)
     wanted = tr.simulate(SYSTEM, start, 60.0, 0.5, method="exact").samples.position
     assert np.abs(first - wanted).max() <= SOLVER(1000, taylor.TOLERANCE, np.abs(wanted).max())
+
+
+def test_unrolled_code_lies_beside_other_code_of_its_law_and_is_other_code(machine: Machine) -> None:
+    start, times = SYSTEM.place((0.1, 0.0), (0.0, 0.2)), np.linspace(0.0, 10.0, 21)
+    rolled = taylor.solve(SYSTEM, start, times)
+    machine.patch.setattr(taylor, "_WORTH_UNROLLING", 1.0)
+    unrolled = taylor.solve(SYSTEM, start, times)
+    assert not np.array_equal(rolled.orientation, unrolled.orientation)  # or the levels would be one and the same
+    assert np.abs(rolled.orientation - unrolled.orientation).max() < 1e-11
+    assert len(list(machine.folder.glob("taylor-*.pickle"))) == 2
+
+
+def test_slip_and_grip_by_turns_count_the_steps_of_both() -> None:
+    """Many short stretches of one law are worth what one long stretch is."""
+    effort = taylor._Effort(cost=400)
+    while effort.level == integrators.IN_HASTE and effort.steps < 20_000:
+        effort.after(70, 1e-3)
+        effort.look(0.01)  # a few hundred steps to come
+    assert 12_750 < effort.steps < 12_750 + 140  # three times what is worth care at once
 
 
 def test_a_short_law_is_compiled_with_care_at_once(machine: Machine) -> None:

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import partial
 from typing import Any
+
+import numpy as np
 
 from ..errors import InvalidValueError, ScenarioError
 from ..mechanics import line_contact
@@ -148,8 +151,7 @@ def check_state(system: RollingSystem, start: State) -> None:
     if not isinstance(start, State):
         raise InvalidValueError("start", "must be a State, as system.place(...) makes it", start)
     coordinates, remedy = system.support.motion.coordinates, "Let system.place(...) make the start."
-    wanted = {"position": 3, "velocity": 3, "angular_velocity": 3, "orientation": 4, "support": len(coordinates)}
-    for name, count in wanted.items():
+    for name, count in _sizes(system).items():
         given = getattr(start, name)
         if not _are_numbers(given, count):
             rule = f"{count} finite numbers" if name != "support" else f"{', '.join(coordinates) or 'nothing'}"
@@ -159,6 +161,36 @@ def check_state(system: RollingSystem, start: State) -> None:
     if abs(math.hypot(*start.orientation) - 1) > _OFF_UNIT:
         rule = "must be a unit quaternion (w, x, y, z)"
         raise InvalidValueError("start.orientation", rule, start.orientation, "Divide it by its length.")
+
+
+def are_states(system: RollingSystem, starts: Sequence[State]) -> bool:
+    """Tell whether all of many starts are plain states of a system, looked at together; if not, some still may be.
+
+    Examples
+    --------
+    >>> import trundle as tr
+    >>> system = tr.RollingSystem(tr.Body.solid_sphere(1.0, 1.0), tr.Support(tr.Plane()))
+    >>> are_states(system, [system.place(), system.place((1.0, 0.0))])
+    True
+    """
+    for name, count in {**_sizes(system), "time": 0}.items():
+        try:
+            values = np.array([getattr(start, name) for start in starts])
+        except (AttributeError, TypeError, ValueError):
+            return False
+        if values.shape[1:] != ((count,) if name != "time" else ()) or values.dtype.kind not in "fi":
+            return False
+        if not np.isfinite(values).all():
+            return False
+        if name == "orientation" and (abs(np.linalg.norm(values, axis=1) - 1) > _OFF_UNIT).any():
+            return False
+    return True
+
+
+def _sizes(system: RollingSystem) -> dict[str, int]:
+    """Return of how many numbers each part of a state is."""
+    coordinates = len(system.support.motion.coordinates)
+    return {"position": 3, "velocity": 3, "angular_velocity": 3, "orientation": 4, "support": coordinates}
 
 
 def _are_numbers(values: Any, count: int) -> bool:

@@ -20,7 +20,9 @@ from .laws import Law
 from .lowering import Lowered, lower
 
 TOLERANCE = 1e-15
-IN_HASTE, WITH_CARE = 0, 1  # levels of LLVM: at its highest it compiles for half as long again, and runs no faster
+# How much is done for the speed of a step. LLVM's highest levels compile for half as long again, and run no faster;
+# heyoka's loops unrolled take half the time for a step, and six to fifteen times as long to compile.
+IN_HASTE, WITH_CARE, UNROLLED = 0, 1, 2
 
 
 def compiled(system: RollingSystem, law: Law, tolerance: float = TOLERANCE) -> tuple[Any, Lowered]:
@@ -159,8 +161,8 @@ def _compile(equations: list[Any], stops: list[Any], tolerance: float, parameter
         [0.0] * len(equations),
         pars=[0.0] * parameters,
         tol=tolerance,
-        compact_mode=True,
-        opt_level=level,
+        compact_mode=level != UNROLLED,
+        opt_level=min(level, WITH_CARE),
         t_events=[heyoka.t_event(stop, direction=heyoka.event_direction.negative) for stop in stops],
     )
 

@@ -18,7 +18,7 @@ from ..mechanics.system import RollingSystem, State
 from . import corners, phases, runge_kutta
 from .charts import CHART, LAWS_OWN, Chart
 from .dense import Keep, Leg, TooMany
-from .integrators import IN_HASTE, TOLERANCE, WITH_CARE, borrowed, ready
+from .integrators import IN_HASTE, TOLERANCE, UNROLLED, WITH_CARE, borrowed, ready
 from .kept_series import KeptSeries
 from .lowering import Lowered
 from .patience import Patience
@@ -26,14 +26,18 @@ from .phases import Integrate, Segment, cut
 from .samples import AT_ONCE, Array, Progress, Samples
 from .transitions import PhaseStart, ZeroCrossing
 
-_CHUNKS = 100  # of a run at most, between which progress is told and Ctrl-C is heard
-_LEAST_CHUNK = 150  # instants
-_AT_ONCE = 10_000  # steps, between which Ctrl-C is heard too
-# A law's first steps in a run are made by code that is compiled in haste: it takes three times as long for a step, some
-# thirty microseconds more, and a fifth of a second to compile where what is made with care takes two. Most runs need
-# no other. The steps are counted anew in each run, so that it has the same digits whatever is compiled already. A
-# short law is compiled with care at once.
-_HASTY_STEPS, _CARES = 10_000, -1
+_CHUNKS = 100  # of a run at most
+_LEAST_CHUNK = 1000  # instants
+# Steps at most, and in units of `Lowered.cost`, between which progress is told and Ctrl-C is heard
+_AT_ONCE, _WORK_AT_ONCE = 10_000, 5_000_000
+# A law's first steps in a run are made by code that is compiled in haste: it takes four times as long for a step, and a
+# tenth of a second to compile where what is made with care takes one to three. How long they are tells how many are to
+# come, and whether better code is worth its compilation: to what is made with care where a kind of system is run three
+# times or more, to loops unrolled in this one run. The steps are counted anew in each run, so that it has the same
+# digits whatever is compiled already. A short law is compiled with care at once.
+_FIRST_LOOK = 100  # steps
+_WORTH_CARE = 500.0, 1.5e6  # steps to come: so many, and so many over `Lowered.cost`
+_WORTH_UNROLLING = 4000.0  # steps to come for each unit of it
 _SHORT_LAW = 100  # by `Lowered.cost`
 _PATIENCE: dict[str, Any] = {"steps": 3e6, "spare": 5e4, "name": "Taylor's method"}  # a minute, and some seconds
 _STRAIGHT, _YOUNG, GROWN = 1e-9, 8, 1e12  # sine of an angle; steps at a time, of slip until it has grown so much
@@ -87,10 +91,10 @@ def integrate(
     goes_on: PhaseStart | None = now
     while goes_on is not None:
         now, goes_on = goes_on, None
-        with _begun(system, now, tolerance, shared) as run:
-            run.patience = shared.patience(now.time, float(times[-1]) if times.size else now.time)
+        with _begun(system, now, float(times[-1]) if times.size else now.time, tolerance, shared) as run:
+            run.progress = progress
             try:
-                for chunk, states, reached in _propagate(run, times, progress):
+                for chunk, states, reached in _propagate(run, times):
                     if reached is None:
                         yield Segment(chunk, states, None)
                         times = times[chunk.size :]
@@ -115,28 +119,65 @@ def _in_another_chart(system: RollingSystem, now: PhaseStart, stop: ZeroCrossing
 
 
 @dataclass
+class _Effort:
+    """What is done for the speed of a law's steps in one run, by what they have shown so far."""
+
+    cost: int  # of the law
+    level: int = IN_HASTE
+    steps: int = 0
+    lasted: float = 0.0  # s
+
+    def __post_init__(self) -> None:
+        if self.cost <= _SHORT_LAW:
+            self.level = WITH_CARE
+
+    @property
+    def settled(self) -> bool:
+        """Whether it has all that it will ever have, as far as can be told."""
+        return self.level != IN_HASTE and self.steps >= _FIRST_LOOK
+
+    def after(self, steps: int, lasted: float) -> None:
+        """Take account of steps."""
+        self.steps, self.lasted = self.steps + steps, self.lasted + lasted
+
+    def look(self, left: float) -> None:
+        """Decide by how many more steps there seem to be in the time left to the run, s."""
+        coming = self.steps * left / self.lasted if self.lasted > 0 else 0.0
+        careful = _WORTH_CARE[0] + _WORTH_CARE[1] / self.cost
+        if coming > _WORTH_UNROLLING * self.cost:
+            self.level = UNROLLED
+        elif self.level == IN_HASTE and (coming > careful or self.steps > 3 * careful):
+            self.level = WITH_CARE
+
+
+@dataclass
 class Shared:
     """What the stretches of one run share."""
 
-    hasty: dict[str, int] = field(default_factory=dict)  # how many steps each law has made in haste so far
+    efforts: dict[str, _Effort] = field(default_factory=dict)  # for each law
+    end: float = math.inf  # of the run, s
     _patience: Patience | None = None
 
     def patience(self, begin: float, end: float) -> Patience:
         """Return what refuses to go on for too long, over all of the run."""
         if self._patience is None:
-            self._patience = Patience(begin, end, **_PATIENCE)
+            self._patience, self.end = Patience(begin, end, **_PATIENCE), end
         return self._patience
+
+    def effort(self, key: str, cost: int) -> _Effort:
+        """Return what is done for a law."""
+        return self.efforts.setdefault(key, _Effort(cost))
 
     def another(self) -> Shared:
         """Return the same for another run of this system: for it, too, is there what was made with care."""
-        return Shared({key: steps for key, steps in self.hasty.items() if steps >= _HASTY_STEPS})
+        return Shared({key: _Effort(one.cost, one.level) for key, one in self.efforts.items()})
 
 
 def first_steps(
     system: RollingSystem, now: PhaseStart, end: float, tolerance: float, count: int
 ) -> tuple[float, float, tuple[str, ...]]:
     """Return how long its first steps are, s, how many products one takes, and the names of the event functions."""
-    with _begun(system, now, tolerance, Shared()) as run:
+    with _begun(system, now, end, tolerance, Shared()) as run:
         _, _, _, taken, *_ = run.integrator.propagate_until(end - now.time, max_steps=count)
         gone = float(run.integrator.time)
         order = math.ceil(1 - math.log(tolerance) / 2)
@@ -190,9 +231,8 @@ def _dense_in_chart(
     system: RollingSystem, now: PhaseStart, end: float, tolerance: float, most: int, shared: Shared
 ) -> Leg | TooMany:
     """Follow one law to its first stop, or to where its chart ends, and keep the polynomial of each step."""
-    with _begun(system, now, tolerance, shared) as run:
+    with _begun(system, now, end, tolerance, shared) as run:
         run.kept, stop = KeptSeries(now.time, run.integrator.state.copy()), None
-        run.patience = shared.patience(now.time, end)
         kept, to_law = run.kept, run.to_law
 
         def states(times: Array) -> Array:
@@ -218,7 +258,7 @@ def _dense_in_chart(
 
 
 @contextlib.contextmanager
-def _begun(system: RollingSystem, now: PhaseStart, tolerance: float, shared: Shared) -> Iterator[_Run]:
+def _begun(system: RollingSystem, now: PhaseStart, end: float, tolerance: float, shared: Shared) -> Iterator[_Run]:
     """Lend what integrates a law, at its beginning."""
     lowered, key = ready(system, now.law, tolerance, now.state_vector)
     with contextlib.ExitStack() as lent:
@@ -226,13 +266,10 @@ def _begun(system: RollingSystem, now: PhaseStart, tolerance: float, shared: Sha
         def borrow(level: int) -> Any:
             return lent.enter_context(borrowed(lowered, key, tolerance, level))
 
-        most = _HASTY_STEPS if lowered.cost > _SHORT_LAW else 0
-        left = max(0, most - shared.hasty.get(key, 0))
         given = [*numbers(system), *now.event_parameters, *corners.directions(system, now)]
-        run = _Run(borrow, left, system, lowered, given, now.time, now.state_vector)
-        run.lasted = lasted(system, now)
+        run = _Run(borrow, shared.effort(key, lowered.cost), system, lowered, given, now.time, now.state_vector)
+        run.patience, run.end, run.lasted = shared.patience(now.time, end), shared.end, lasted(system, now)
         yield run
-        shared.hasty[key] = _HASTY_STEPS - max(0, run.hasty_steps)
 
 
 def lasted(system: RollingSystem, now: PhaseStart) -> float:
@@ -265,7 +302,7 @@ class _Run:
     def __init__(
         self,
         borrow: Callable[[int], Any],
-        hasty_steps: int,
+        effort: _Effort,
         system: RollingSystem,
         lowered: Lowered,
         given: Sequence[float],
@@ -274,11 +311,12 @@ class _Run:
     ) -> None:
         self.borrow, self.lowered, self.given = borrow, lowered, given
         self.to_law = partial(to_law, lowered.chart, system)
-        self.hasty_steps = hasty_steps or _CARES  # left
-        self.integrator = borrow(WITH_CARE if self.hasty_steps == _CARES else IN_HASTE)
+        self.effort, self.level = effort, effort.level
+        self.integrator = borrow(self.level)
         self.patience: Patience
+        self.progress: Progress | None = None
         self.kept: KeptSeries | None = None  # where the polynomials of its steps are kept
-        self.lasted, self.begun = math.inf, begin
+        self.lasted, self.begun, self.end = math.inf, begin, math.inf
         self.integrator.state[:] = lowered.chart.of_law(system, begin, state)
         self._refer_to(begin)
 
@@ -333,11 +371,12 @@ class _Run:
         After the first of them, take what is made for more. A stop has ended the stretch, so that nothing is known of
         one that the other would have to know.
         """
-        if self.hasty_steps == 0:
-            hasty, self.integrator, self.hasty_steps = self.integrator, self.borrow(WITH_CARE), _CARES
-            self.integrator.state[:], self.integrator.pars[:] = hasty.state, hasty.pars
-            self.integrator.dtime = hasty.dtime
-        most = self.hasty_steps if self.hasty_steps > 0 else _AT_ONCE
+        if self.effort.level != self.level:
+            last, self.integrator, self.level = self.integrator, self.borrow(self.effort.level), self.effort.level
+            self.integrator.state[:], self.integrator.pars[:] = last.state, last.pars
+            self.integrator.dtime = last.dtime
+        self.counted_from = self.time
+        most = min(_AT_ONCE, _WORK_AT_ONCE // self.effort.cost + 1) if self.effort.settled else _FIRST_LOOK
         longest = self.lasted + (self.time - self.begun)
         if longest > GROWN * self.lasted:
             self.lasted = longest = math.inf
@@ -347,13 +386,17 @@ class _Run:
         """Tell whether there is more to do, after so many steps that somebody may have lost patience meanwhile."""
         import heyoka
 
-        if self.hasty_steps > 0:
-            self.hasty_steps = max(0, self.hasty_steps - steps)
+        settled, now = self.effort.settled, self.time
+        self.effort.after(steps, now - self.counted_from)
+        if self.effort.steps >= _FIRST_LOOK and not settled:
+            self.effort.look(self.end - now)
         if outcome != heyoka.taylor_outcome.step_limit:
             return False
         if self.integrator.last_h == 0:  # the terms of the series are greater than any float
             steps = int(_PATIENCE["steps"])
-        self.patience.after(steps, self.time)
+        self.patience.after(steps, now)
+        if self.progress is not None:
+            self.progress(now)
         return True
 
     def _refer_to(self, time: float) -> None:
@@ -375,7 +418,7 @@ def to_law(chart: Chart, system: RollingSystem, times: Array, states: Array) -> 
     return found
 
 
-def _propagate(run: _Run, times: Array, progress: Progress | None) -> Iterator[tuple[Array, Array, int | None]]:
+def _propagate(run: _Run, times: Array) -> Iterator[tuple[Array, Array, int | None]]:
     """Yield the times and the states there, a chunk after the other, and last which terminal event came, if one did."""
     for chunk in chunks(times):
         while run.reference < chunk[0]:  # also where rounding does not tell the two instants apart: it must begin there
@@ -385,16 +428,17 @@ def _propagate(run: _Run, times: Array, progress: Progress | None) -> Iterator[t
                 yield chunk[:0], run.to_law(chunk[:0], np.empty((0, run.integrator.state.size))), ended
                 return
             run.tidy(until)
-        # Counted from the reference, two instants may be one: what is left of a difference is rounded.
-        since, which = np.unique(chunk - run.reference, return_inverse=True)
+        since, which = chunk - run.reference, np.arange(chunk.size)
+        if (since[1:] <= since[:-1]).any():  # two instants may be one: what is left of a difference is rounded
+            since, which = np.unique(since, return_inverse=True)
         states, ended = run.go_through(since)
         which = which[which < len(states)]
         chunk_reached = chunk[: which.size]
         yield chunk_reached, run.to_law(chunk_reached, states[which]), ended
         if ended is not None:
             return
-        if progress is not None:
-            progress(float(chunk[-1]))
+        if run.progress is not None:
+            run.progress(float(chunk[-1]))
 
 
 def chunks(times: Array, most: int = _CHUNKS, size: int = AT_ONCE) -> Iterator[Array]:

@@ -17,7 +17,7 @@ from ...mechanics.parameters import parameters, structure_of
 from ...mechanics.system import RollingSystem, State
 from ...simulation import labels
 from ...simulation.memory import check_room
-from ...simulation.simulate import check_start, check_state, described, simulate
+from ...simulation.simulate import are_states, check_start, check_state, described, simulate
 from ...solve import taylor
 from ...solve.ensemble import numbers_of
 from ...solve.laws import RollingLaw
@@ -315,8 +315,9 @@ def _sound(systems: Sequence[RollingSystem], starts: Sequence[State], times: Any
     for system in systems if varies(systems[0]) else ():
         if id(system) not in finite:
             finite[id(system)] = _passes(check_finite, system, float(times[0]), float(times[-1]))
-    pairs = enumerate(zip(systems, starts, strict=True))
-    return [i for i, (system, start) in pairs if finite.get(id(system), True) and _passes(check_state, system, start)]
+    plain = are_states(systems[0], starts)
+    pairs = [(i, system, starts[i]) for i, system in enumerate(systems) if finite.get(id(system), True)]
+    return [i for i, system, start in pairs if plain or _passes(check_state, system, start)]
 
 
 def _passes(check: Callable[..., None], *given: Any) -> bool:
