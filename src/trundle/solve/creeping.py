@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,7 @@ from .tracing import python_law
 SETTLES_FAST = 30.0
 _LEFT_OUT = 3e-13
 _TURNS = 20.0  # times as fast as the body turns: no slower does a direction settle whose steps would be too short
+_LASTS = 20.0  # times the step over which its turning is seen: about how long it holds
 GROWN = ("settled", "lags", "turns")  # ends at which slip is to be followed with its direction
 _NEAR = 0.98  # cosine of the angle by which the direction may turn until it is looked for near another
 
@@ -48,6 +50,7 @@ class CreepingLaw(SlippingLaw):
 
     variables = (*CONTACT, "speed")
     brief = True
+    ways: dict[Any, tuple[Vector, Scalar, Scalar]] | None = None  # worked out while it is traced
 
     def __init__(
         self,
@@ -60,6 +63,11 @@ class CreepingLaw(SlippingLaw):
         super().__init__(weightless, turning)
         self.step, self.since = step, since
         self.near_x, self.near_y, self.near_z = near
+
+    @property
+    def lasts(self) -> float:  # type: ignore[override]
+        """Mostly 100 to 2000 times the first moment of slip, until its direction lags."""
+        return _LASTS * self.step
 
     @property
     def ends(self) -> tuple[str, ...]:
@@ -85,8 +93,22 @@ class CreepingLaw(SlippingLaw):
         c, s, settling = rates.settled()
         return rates.direction(c, s), rates.direction(-s, c), settling
 
+    def traced(self) -> CreepingLaw:
+        """Return a copy that works its direction out once: rates, event functions and what is found share it."""
+        free = copy(self)
+        free.ways = {}
+        return free
+
     def _way(self, system: RollingSystem, time: Scalar, state: Numbers) -> tuple[Vector, Scalar, Scalar]:
         """Return ŝ, lagging behind the direction that slip keeps, how fast that settles, times |s|, and turns."""
+        if self.ways is None:
+            return self._found_way(system, time, state)
+        key = id(time), *map(id, state)
+        if key not in self.ways:
+            self.ways[key] = self._found_way(system, time, state)
+        return self.ways[key]
+
+    def _found_way(self, system: RollingSystem, time: Scalar, state: Numbers) -> tuple[Vector, Scalar, Scalar]:
         first, settling = self._lagging(system, time, state)
         now = self._now(system, time, state, first)
         across = now.contact.normal.cross(first)

@@ -17,6 +17,7 @@ from .transitions import PhaseStart, ZeroCrossing
 
 _MOST_STEPS = 100_000  # kept, of some two or three kilobytes each
 _MARKS = 10_000  # states on the way through a stretch of more
+_OF_AN_EVENT = 1e7  # products that take as long as an event
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,7 @@ class Leg:
     states: Callable[[Array], Array]  # takes instants of it, ascending, s; returns the states, (n, variables)
     stop: ZeroCrossing | None  # where it ended; None at the end of the run
     steps: int  # that it took
+    work: float  # that they took, products: counted, never timed
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,7 @@ class TooMany:
 
     states: Callable[[Array], Array]  # takes instants up to where the kept steps led, as `Leg` does
     steps: int  # so many
+    work: float  # as of `Leg`
     time: float  # how far they led, s
     state_vector: Array  # there
 
@@ -92,12 +95,17 @@ class Dense:
         """About how many steps it took."""
         return sum(leg.steps for leg in self.legs)
 
-    def around(self, time: float, steps: float) -> tuple[float, float]:
-        """Return the times between which it took so many steps, half of them before an instant and half after, s."""
+    @property
+    def work(self) -> float:
+        """About how much work it took, products."""
+        return sum(_OF_AN_EVENT + leg.work for leg in self.legs)
+
+    def around(self, time: float, work: float) -> tuple[float, float]:
+        """Return the times between which it took so much work, half of it before an instant and half after, s."""
         edges = np.array([self.start.time, *self.ends])
-        taken = np.cumsum([0, *(leg.steps for leg in self.legs)])
+        taken = np.cumsum([0, *(_OF_AN_EVENT + leg.work for leg in self.legs)])
         here = np.interp(time, edges, taken)
-        first, last = (np.interp(here + half, taken, edges) for half in (-0.5 * steps, 0.5 * steps))
+        first, last = (np.interp(here + half, taken, edges) for half in (-0.5 * work, 0.5 * work))
         return float(first), float(last)
 
     def _through(
@@ -111,7 +119,7 @@ class Dense:
         leg, self.passed = self.legs[self.passed], self.passed + 1
         stop = leg.stop if times.size and leg.stop is not None and leg.stop.time <= times[-1] else None
         here = times if stop is None else cut(times, stop.time)[0]
-        yield Segment(here, leg.states(here), stop)
+        yield Segment(here, leg.states(here) if here.size else np.empty((0, len(now.state_vector))), stop)
 
     def _leg(
         self, system: RollingSystem, now: PhaseStart, times: Array, tolerance: float, progress: Progress | None
@@ -127,14 +135,15 @@ class Dense:
         parts = list(self.beside()(system, first, instants, tolerance, progress))
         stop, marks = parts[-1].stop, _Marks(self.beside, system, first, tolerance, parts)
         if kept is None:
-            return Leg(marks.states, stop, 0)
+            return Leg(marks.states, stop, 0, 0.0)
         share = (kept.time - now.time) / ((end if stop is None else stop.time) - now.time)
 
         def states(at: Array) -> Array:
             before, behind = cut(at, kept.time)
             return np.vstack([kept.states(before), marks.states(behind)])
 
-        return Leg(states, stop, max(kept.steps, int(kept.steps / max(share, 1e-6))))
+        longer = 1 / max(share, 1e-6)
+        return Leg(states, stop, max(kept.steps, int(kept.steps * longer)), kept.work * max(1.0, longer))
 
     def _end_after(self, now: PhaseStart) -> float:
         """Return up to when a law may be followed: the next kink, or the end, s."""

@@ -38,6 +38,9 @@ _PATIENCE: dict[str, Any] = {"steps": 1e7, "spare": 5e3, "name": "The Runge-Kutt
 _CLOSE = 1e-9  # share of the time by which a step may begin before an instant at which the law is singular
 _BRIEF = 1e5  # steps of a law that mostly holds for an instant only: some seconds
 _FIRST_STEP = 1e-12  # s
+_RATES = 15  # evaluations of the law in a step of SciPy's
+OF_A_STEP = 12_500.0  # products that take as long as a step of the compiled loop, whatever the law
+_OF_SCIPY, _PRODUCTS = 5e5, 50.0  # products in the time of a step of SciPy's, and of an operation of Python's
 _BEGINNING = 20  # steps, after which one sees how many there will be
 WORTH_COMPILING = 2_000  # steps: for so many, in a run and its card, SciPy takes as long as laws take to be compiled
 
@@ -119,13 +122,19 @@ def keeping() -> tuple[Keep, Callable[[], Integrate]]:
 def dense(system: RollingSystem, now: PhaseStart, end: float, tolerance: float, most: int) -> Leg | TooMany:
     """Follow one law to its first stop, and keep the polynomial of each step."""
     paths = _Paths(np.asarray(now.state_vector, dtype=float), most)
+
+    def work() -> float:
+        each = _traced(system, now).operations * _PRODUCTS * (_RATES + LOOKS)
+        by_scipy = sum(isinstance(path, _OneStep) * path.count for path in paths.paths)
+        return by_scipy * (_OF_SCIPY + each) + (paths.count - by_scipy) * OF_A_STEP
+
     try:
         *_, last = _integrated(system, now, paths, end - now.time, tolerance, None)
     except _TooManyError:
         time = now.time + paths.reached
-        return TooMany(lambda times: paths.at(times - now.time), paths.count, time, paths.last)
+        return TooMany(lambda times: paths.at(times - now.time), paths.count, work(), time, paths.last)
     stop = None if last.stop is None else replace(last.stop, time=now.time + last.stop.time)
-    return Leg(lambda times: paths.at(times - now.time), stop, paths.count)
+    return Leg(lambda times: paths.at(times - now.time), stop, paths.count, work())
 
 
 def first_steps(system: RollingSystem, now: PhaseStart, end: float, tolerance: float, count: int) -> float:
@@ -137,6 +146,12 @@ def first_steps(system: RollingSystem, now: PhaseStart, end: float, tolerance: f
     return (paths.reached - paths.begins[count // 2]) / (len(paths.begins) - count // 2)
 
 
+def _traced(system: RollingSystem, now: PhaseStart) -> PythonLaw:
+    """Return a law as it begins to hold on plain numbers."""
+    given = (*now.event_parameters, *corners.directions(system, now))
+    return python_law(system, now.law, given, now.time, now.state_vector)
+
+
 def _integrated(
     system: RollingSystem,
     now: PhaseStart,
@@ -146,8 +161,7 @@ def _integrated(
     progress: Progress | None,
 ) -> Iterator[Segment]:
     """Follow one law to its first stop; all times count from its beginning."""
-    law, begin = now.law, now.time
-    traced = python_law(system, law, (*now.event_parameters, *corners.directions(system, now)), begin, now.state_vector)
+    law, begin, traced = now.law, now.time, _traced(system, now)
     y0 = np.asarray(now.state_vector, dtype=float)
     end = max(end, float(np.spacing(begin)))  # some way to go
 
@@ -167,7 +181,9 @@ def _integrated(
             paths = _paths(law, traced, begin, since, y, until, tolerance, least)
             return _watched(paths, patience, progress, begin)
 
-        yield from _follow(onward, y0, end, rows, stops, traced.names)
+        # What is briefly followed is handed on: no finer than the clock shows its end.
+        nearest = max(1e-300, 0.5 * math.ulp(begin)) if law.brief else 1e-300
+        yield from _follow(onward, y0, end, rows, stops, traced.names, nearest)
     except StuckError as stuck:
         raise SolverError(_broken(stuck, begin)) from None
     except (ZeroDivisionError, ValueError, OverflowError) as error:
@@ -203,6 +219,8 @@ def _paths(
         yield from _one_by_one(stiff, lambda: not law.stiff(stiff.y))
         t, y = float(stiff.t), stiff.y
     if t < end:
+        if law.lasts < end - t:
+            given["first_step"] = law.lasts
         stepper = DOP853(rates, t, y, end, **given)
         compiles = traced.compiled is not None and available()
         yield from _one_by_one(stepper, _many_to_come(stepper) if compiles else lambda: False)
@@ -258,13 +276,14 @@ def _follow(
     rows: _Rows | _Paths,
     stops: Any,
     names: tuple[str, ...],
+    nearest: float,
 ) -> Iterator[Segment]:
     """Go along steps to the end or the first stop; states are read off the steps' own polynomials."""
     yield from rows.take(_OneStep(0.0, 0.0, lambda t: np.tile(y0[:, None], t.size), count=0))
     first, paths = stops(0.0, y0), onward(0.0, y0, end)
     try:
         while (path := next(paths, None)) is not None:
-            found = None if path.plain else _first_stop(path, stops)
+            found = None if path.plain else _first_stop(path, stops, nearest)
             if found is not None and names[found[1]] in _SINGULAR and found[0] > path.t_old + _CLOSE * found[0]:
                 # A step across an instant at which the law is singular says little of the way there.
                 halfway, y = 0.5 * (path.t_old + found[0]), path(np.array([path.t_old]))[:, 0]
@@ -357,8 +376,7 @@ class _Paths:
 
 def nearly_singular(system: RollingSystem, now: PhaseStart, time: float, y: Array) -> bool:
     """Tell whether a law, followed to a state, has all but come to an end at which it is singular."""
-    given = (*now.event_parameters, *corners.directions(system, now))
-    traced = python_law(system, now.law, given, now.time, now.state_vector)
+    traced = _traced(system, now)
     first, there = (np.array(traced.event_functions(*at)) for at in ((now.time, now.state_vector), (time, y.tolist())))
     return _singular(traced.names, there, first) is not None
 
@@ -384,7 +402,7 @@ def _broken(stuck: StuckError, begin: float) -> str:
     )
 
 
-def _first_stop(path: Path, stops: Any) -> tuple[float, int] | None:
+def _first_stop(path: Path, stops: Any, nearest: float = 1e-300) -> tuple[float, int] | None:
     """Return the first instant in a step at which a stop falls through zero, also where it rises again at once."""
     looks = path.t_old + (path.t - path.t_old) * places()
     looks[-1] = path.t
@@ -403,7 +421,7 @@ def _first_stop(path: Path, stops: Any) -> tuple[float, int] | None:
                 value = float(stops(t + aside, path(t + aside))[which])
             return value
 
-        fall = _fall(at, looks, values[:, which], np.inf if found is None else found[0])
+        fall = _fall(at, looks, values[:, which], np.inf if found is None else found[0], nearest)
         if fall is not None:
             found = fall, which
     return found
@@ -416,7 +434,9 @@ def _about(looks: Array, values: Array) -> float:
     return float(np.interp(0.0, [fell, high], [looks[first + 1], looks[first]])) if high >= 0 > fell else np.inf
 
 
-def _fall(function: Callable[[float], float], looks: Array, values: Array, before: float) -> float | None:
+def _fall(
+    function: Callable[[float], float], looks: Array, values: Array, before: float, nearest: float
+) -> float | None:
     """Return where a function first falls through zero before an instant, given it at Chebyshev's points of a step."""
     falls = np.flatnonzero((values[:-1] >= 0) & (values[1:] < 0))
     inside = values[: falls[0] + 1] if falls.size else values
@@ -425,18 +445,20 @@ def _fall(function: Callable[[float], float], looks: Array, values: Array, befor
         upto = min(before, looks[falls[0]]) if falls.size else before
         for low in _minima(function, looks, values, upto):
             if function(low) < 0:
-                return _sooner(function, looks[np.searchsorted(looks, low) - 1], low, before)
+                return _sooner(function, looks[np.searchsorted(looks, low) - 1], low, before, nearest)
     if not falls.size:
         return None
     first = int(falls[0])
-    return _sooner(function, looks[first], looks[first + 1], before)
+    return _sooner(function, looks[first], looks[first + 1], before, nearest)
 
 
-def _sooner(function: Callable[[float], float], begin: float, end: float, before: float) -> float | None:
+def _sooner(
+    function: Callable[[float], float], begin: float, end: float, before: float, nearest: float
+) -> float | None:
     """Return where a function falls through zero between two instants, if it is before a third."""
     if begin >= before or (end > before and function(before) >= 0):
         return None
-    return root(function, begin, min(end, before))
+    return root(function, begin, min(end, before), nearest)
 
 
 def _minima(function: Callable[[float], float], looks: Array, values: Array, before: float) -> list[float]:

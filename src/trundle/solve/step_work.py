@@ -17,7 +17,6 @@ from .samples import ENDS
 
 _FINER = 100.0  # times: then DOP853 errs in all of a run about as much as Taylor's method, whose error adds up less
 _FIRST = 10  # steps that are looked at
-_OF_A_STEP = 12_500.0  # products that take as long as a step of the compiled loop, whatever the law
 _BEGINNING = 3000.0  # steps of that loop, while SciPy takes the first ones, here and in the run
 _SMOOTH = {"lift", CHART, *ENDS}  # event functions of a law that most likely holds to the end
 
@@ -59,7 +58,9 @@ def takes_less(system: RollingSystem, start: State, end: float, tolerance: float
     length, products, names = taylor.first_steps(system, now, end, tolerance, _FIRST)
     if not (length > 0 and set(names) <= _SMOOTH):
         return False
-    steps = (end - now.time) / length * products / _OF_A_STEP  # of the compiled loop, as long as Taylor's method takes
+    steps = (
+        (end - now.time) / length * products / runge_kutta.OF_A_STEP
+    )  # of the compiled loop, as long as Taylor's method takes
     if not 2 * _BEGINNING < steps < math.inf:
         return False
     try:

@@ -39,6 +39,7 @@ _FIRST_LOOK = 100  # steps
 _WORTH_CARE = 500.0, 1.5e6  # steps to come: so many, and so many over `Lowered.cost`
 _WORTH_UNROLLING = 4000.0  # steps to come for each unit of it
 _SHORT_LAW = 100  # by `Lowered.cost`
+_HASTE, _OF_ANY_STEP = 3.0, 3e4  # how many times slower that code is; products that take as long as what is not the law
 _PATIENCE: dict[str, Any] = {"steps": 3e6, "spare": 5e4, "name": "Taylor's method"}  # a minute, and some seconds
 _STRAIGHT, _YOUNG, GROWN = 1e-9, 8, 1e12  # sine of an angle; steps at a time, of slip until it has grown so much
 LONGEST = 100.0  # s without a new reference of time, at most
@@ -180,9 +181,7 @@ def first_steps(
     with _begun(system, now, end, tolerance, Shared()) as run:
         _, _, _, taken, *_ = run.integrator.propagate_until(end - now.time, max_steps=count)
         gone = float(run.integrator.time)
-        order = math.ceil(1 - math.log(tolerance) / 2)
-        # A coefficient of order n is a sum of n products for each operation.
-        return gone / max(taken, 1), run.lowered.cost * order * (order + 3) / 2, run.lowered.event_functions
+        return gone / max(taken, 1), run.products(tolerance), run.lowered.event_functions
 
 
 def keeping() -> tuple[Keep, Callable[[], Integrate]]:
@@ -214,7 +213,8 @@ def dense(
         if isinstance(leg, Leg) and leg.stop is not None:
             goes_on = _in_another_chart(system, now, leg.stop)
             ends += [leg.stop.time] if goes_on is not None else []
-    return leg if not ends else replace(leg, states=_joined(legs, ends), steps=sum(each.steps for each in legs))
+    steps, work = sum(each.steps for each in legs), sum(each.work for each in legs)
+    return leg if not ends else replace(leg, states=_joined(legs, ends), steps=steps, work=work)
 
 
 def _joined(legs: list[Leg | TooMany], ends: list[float]) -> Callable[[Array], Array]:
@@ -251,10 +251,10 @@ def _dense_in_chart(
                 stop = run.stop(reached)
             elif kept.steps > most and until < end:
                 (there,) = to_law(np.array([until]), run.integrator.state[None].copy())
-                return TooMany(states, kept.steps, until, there)
+                return TooMany(states, kept.steps, run.work(tolerance, kept.steps), until, there)
             else:
                 run.tidy(until)
-        return Leg(states, stop, kept.steps)
+        return Leg(states, stop, kept.steps, run.work(tolerance, kept.steps))
 
 
 @contextlib.contextmanager
@@ -329,6 +329,16 @@ class _Run:
         """Return the stop that it has come to."""
         (state,) = self.to_law(np.array([self.time]), self.integrator.state[None].copy())
         return ZeroCrossing(self.time, self.lowered.event_functions[reached], state)
+
+    def products(self, tolerance: float) -> float:
+        """Return how many products a step takes: a coefficient of order n is a sum of n for each operation."""
+        order = math.ceil(1 - math.log(tolerance) / 2)
+        return self.lowered.cost * order * (order + 3) / 2
+
+    def work(self, tolerance: float, steps: int) -> float:
+        """Return how much work so many steps are, in products of code that is made with care."""
+        slower = 1.0 if self.hasty_steps == _CARES else _HASTE
+        return steps * (_OF_ANY_STEP + slower * self.products(tolerance))
 
     def tidy(self, time: float) -> None:
         """Count from here on, and take rounding's share out of φ(p) = 0 and |q| = 1."""

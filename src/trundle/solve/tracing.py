@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
-from copy import copy
 from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import Any
@@ -18,6 +17,7 @@ from .laws import Law, RollingLaw
 from .tape import Tape
 
 _MOST_TRACED = 64  # kept
+_UNTRACED = 10_000  # operations that take as long as a law on vectors
 
 
 @dataclass(frozen=True)
@@ -48,6 +48,8 @@ class PythonLaw:
         (t, state) -> the components of what passes through zero at each corner of the loads.
     compiled : callable, optional
         () -> the same for numba's loop, which takes a second to compile; absent: it cannot be traced.
+    operations : int
+        About how many the rates are.
     """
 
     rates: Callable[[float, Sequence[float]], list[float]]
@@ -56,6 +58,7 @@ class PythonLaw:
     found: Callable[[float, Sequence[float]], list[float]]
     corners: Callable[[float, Sequence[float]], list[float]]
     compiled: Callable[[], CompiledLaw] | None = None
+    operations: int = _UNTRACED
 
 
 def state_rates(system: RollingSystem, time: Scalar, state: Sequence[Scalar]) -> list[Scalar]:
@@ -113,6 +116,7 @@ def python_law(
         lambda t, y: flat.found([t, *y, *values]),
         lambda t, y: flat.corners([t, *y, *values]),
         lambda: CompiledLaw(*flat.compiled, len(flat.names), tuple(map(float, values))),
+        flat.operations,
     )
 
 
@@ -129,6 +133,7 @@ class _Flat:
     found: _Function
     corners: _Function
     filling: Callable[[], tuple[Any, Any]]
+    operations: int
 
     @cached_property
     def compiled(self) -> tuple[Any, Any]:
@@ -163,7 +168,7 @@ def _traced(system: RollingSystem, law: Law, own: tuple[str, ...]) -> _Flat:
     tape = Tape()
     time, *rest = tape.inputs(1 + size + count + len(own) + law.event_parameters + corner_events.count(system))
     state, parameters = rest[:size], rest[size:]
-    symbolic, free = with_numbers(system, parameters[:count]), copy(law)
+    symbolic, free = with_numbers(system, parameters[:count]), law.traced()
     vars(free).update(zip(own, parameters[count:], strict=False))
     rates = free.rates(symbolic, time, state)
     stops = corner_events.all_event_functions(symbolic, free, time, state, parameters[count + len(own) :])
@@ -176,7 +181,7 @@ def _traced(system: RollingSystem, law: Law, own: tuple[str, ...]) -> _Flat:
 
         return compiled(tape, rates), compiled(tape, list(stops.values()))
 
-    return _Flat(rates_, stops_, tuple(stops), found_, vectors_, filling)
+    return _Flat(rates_, stops_, tuple(stops), found_, vectors_, filling, len(tape.needed(rates)))
 
 
 def _untraced(

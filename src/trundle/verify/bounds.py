@@ -5,16 +5,19 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..mechanics.algebra import Quaternion, Vector
+from ..mechanics.contact import contact_at
 from ..mechanics.loads import Load
 from ..mechanics.system import RollingSystem
 from ..solve.methods import Method
-from ..solve.samples import Samples
+from ..solve.samples import FLIGHT, Samples
 
 Array = NDArray[np.float64]
 
 # The two tolerances of a card, as shares: what rounding may do, and how many times the tolerance asked a method may
 # be off (more after a thousand radians of turning, for what adds up over a run).
 EXACT, SOLVER = 1e-12, 1e3
+A_ROUNDING = 2.0**-52
 A_STEP = 10.0  # times its tolerance that a method may err in a step
 SINGULAR = ("curved", "edge")  # ends of a run at which its law is singular
 
@@ -32,6 +35,19 @@ def turned_in(samples: Samples) -> float:
 def largest(array: Array) -> float:
     """Return the length of the longest of many vectors."""
     return float(np.linalg.norm(array, axis=-1).max())
+
+
+def blur_of(system: RollingSystem, at: Samples) -> float:
+    """Return by how much rounding of the orientation may move ρ, m: the body's largest radius of curvature takes part.
+
+    Where a body all but lies flat that is a million times its size.
+    """
+    touching = at.part(at.phase != FLIGHT)
+    if not touching.time.size:
+        return 0.0
+    place = Vector.of(touching.contact), Quaternion.of(touching.orientation)
+    contact = contact_at(system, touching.time, *place, touching.support_columns)
+    return A_ROUNDING * float(np.abs(contact.inverse_curvature.trace).max())
 
 
 def speed_of(system: RollingSystem, at: Samples) -> float:

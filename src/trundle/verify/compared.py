@@ -25,7 +25,7 @@ from .landings import landings_of
 _INSTANTS = 200
 _SLOW = 1e-3  # of a body's turning: what a support's own is held against at least
 _EVENTS_BEFORE, _EVENTS_AFTER = 3, 5  # the first by which two runs differ, over which a small change is followed
-_STEPS_FOLLOWED = {"exact": 60_000, "taylor": 60_000, "runge-kutta": 10_000}  # in all of a dozen runs
+_WORK_FOLLOWED = 2e9  # products, in all of a dozen runs: a second or two
 _FEW_STEPS, _COMPILED = 2_000, 20  # once more, and how many times faster a compiled law takes them
 _RUNS = 12  # about: the run itself, and one for each way in which its state can change
 _MOST_RADIANS = 50_000.0  # of turning that a cross-check follows
@@ -58,13 +58,18 @@ def finer(system: RollingSystem, start: State, at: Samples, method: Method, kept
     with_more = replace(method, tolerance=max(FINEST, method.tolerance / 10))
     some = at.part(slice(None, None, max(1, at.time.size // _INSTANTS)))
     ours, theirs = at_the_same_times(some, with_more.solve(system, start, some.time))
-    both = Compared(system, start, ours, theirs, method, with_more, sizes_of(system, ours), turned_in(at))
+    both = Compared(system, start, ours, theirs, method, method, sizes_of(system, ours), turned_in(at), kept)
     said = f"beside a run of tolerance {with_more.tolerance:g}, at {ours.time.size} instants"
     yield both.figure("accuracy reached", both.share, both.bound, said)
 
 
 def cross_check(
-    system: RollingSystem, start: State, at: Samples, method: Method, motion: ClosedForm | None
+    system: RollingSystem,
+    start: State,
+    at: Samples,
+    method: Method,
+    motion: ClosedForm | None,
+    kept: Dense | None = None,
 ) -> Iterator[CardFigure]:
     """Compare a closed form with a numerical method, whichever of the two made the run."""
     if motion is None:
@@ -90,7 +95,7 @@ def cross_check(
             return
     ours, theirs = at_the_same_times(ours, theirs)
     turned = speed * float(ours.time[-1] - start.time)
-    both = Compared(system, start, ours, theirs, finer, finer, sizes_of(system, ours), turned)
+    both = Compared(system, start, ours, theirs, finer, finer, sizes_of(system, ours), turned, kept)
     over = f"over {ours.time[-1] - start.time:g} s, {ours.time.size} instants"
     yield both.figure(name, both.share, both.bound, f"position, velocity, Ω, force, events; {over}")
     alone = "; exact from the place alone" if motion.fixed_axis_rotation(0.0) is not None else ""
@@ -111,7 +116,7 @@ class Compared:
     follower: Method  # follows changed starts
     sizes: dict[str, float]  # against what a difference of each quantity is small or not
     turned: float  # by about how many radians the body turned
-    kept: Dense | None = None  # one of them, where the other is the same method's
+    kept: Dense | None = None  # a run by the method that follows changed starts, gone through once
 
     @property
     def bound(self) -> float:
@@ -195,8 +200,8 @@ class Compared:
 
     def _affordable(self, time: float) -> tuple[float, float]:
         """Return between which times about an instant a small change can be followed in a dozen runs, s."""
-        most = _STEPS_FOLLOWED[self.follower.name] / _RUNS
-        if self.kept is None or self.kept.steps <= most:
+        most = _WORK_FOLLOWED / _RUNS
+        if self.kept is None or self.kept.work <= most:
             return -np.inf, np.inf
         return self.kept.around(time, most)
 

@@ -16,13 +16,12 @@ from ..mechanics.contact import contact_at
 from ..mechanics.system import RollingSystem
 from ..solve.samples import FLIGHT, RESTING, ROLLING, SLIPPING, Samples
 from .acting import acting, cross, exerted, rotated, unturning
-from .bounds import Array, largest
+from .bounds import A_ROUNDING, Array, blur_of, largest
 
 WINDOWS = 24
 _HALF_NODES = 6  # a polynomial of degree 12
 _SLOPE = 20.0  # over half a window: the sum of the weights by which a slope takes the errors of its 13 places
 _ROUNDING = 4e-14  # of a place, over half a window: so many times ten roundings or so
-_A_ROUNDING = 2.0**-52
 _PRODUCT = 4e-15  # of a moment: R and its arm are ten roundings off or so, each
 _NARROWEST = 1e-10  # of what the clock shows: in less, 13 instants have too few digits
 _PHASE_A_WINDOW = 0.3  # rad of the fastest rotation: what a polynomial leaves of a body that is no sphere is rounding
@@ -284,9 +283,13 @@ class _Windows:
 
     @cached_property
     def _blurred(self) -> float:
-        """By how much rounding of places may move ρ, their small difference, over the bound, m: it turns, and Ω×ρ̇."""
+        """By how much rounding may move ρ, over the bound, m: it turns, and Ω×ρ̇.
+
+        It is the small difference of two places, and the body's support map of its orientation.
+        """
         at = self.middle
-        return 0.5 * _A_ROUNDING * (largest(at.position) + largest(at.contact)) / self.bound
+        by_places = 0.5 * A_ROUNDING * (largest(at.position) + largest(at.contact))
+        return (by_places + blur_of(self.system, at)) / self.bound
 
     @property
     def _sharp_turn(self) -> float:

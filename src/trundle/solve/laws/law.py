@@ -6,7 +6,9 @@ A phase ends where one of its event functions falls through zero: that is a stop
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
+from copy import copy
 from dataclasses import replace
 from typing import Any
 
@@ -50,6 +52,8 @@ class Law:
         Whether its numbers are those of another law with their derivatives.
     unwatched : int
         How many of the last numbers have no say in how long a step is.
+    lasts : float
+        About how long a brief law holds, s: a step that is much longer is taken for nothing.
 
     Parameters
     ----------
@@ -65,9 +69,14 @@ class Law:
     unwatched: int = 0
     turning: str = "free"
     variational: bool = False
+    lasts: float = math.inf
 
     def __init__(self, weightless: bool = False) -> None:
         self.weightless = weightless
+
+    def traced(self) -> Law:
+        """Return a copy of which a tape may replace the numbers."""
+        return copy(self)
 
     @property
     def ends(self) -> tuple[str, ...]:
