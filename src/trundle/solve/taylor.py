@@ -337,7 +337,7 @@ class _Run:
 
     def work(self, tolerance: float, steps: int) -> float:
         """Return how much work so many steps are, in products of code that is made with care."""
-        slower = 1.0 if self.hasty_steps == _CARES else _HASTE
+        slower = _HASTE if self.level == IN_HASTE else 1.0
         return steps * (_OF_ANY_STEP + slower * self.products(tolerance))
 
     def tidy(self, time: float) -> None:
