@@ -1,6 +1,8 @@
 /** A saved page: its scenes lie in it, compressed, and so does this script. */
+import { type Curves, createCurves } from '../curves/curves'
 import { startLive } from '../live/page'
-import type { Theme } from './contract'
+import type { Theme, Viewer } from './contract'
+import { element, say } from './elements'
 import { type Scene, unpack } from './scene'
 import { createViewer } from './viewer'
 
@@ -29,12 +31,32 @@ function show(root: Document, stage: HTMLElement, scenes: Scene[]): void {
   viewer.setScenes(scenes)
   viewer.suit()
   viewer.loop = true
+  const [scene] = scenes as [Scene]
+  const { live, curves } = scene.header
+  const drawn = live ? startLive(root, stage, viewer, scene, live) : null
+  const own = scenes.length === 1 && curves?.length ? curvesOf(stage, viewer, scene) : null
   offerThemes(root, (theme) => {
     viewer.theme = theme
+    drawn?.restyle()
+    own?.restyle()
   })
-  const live = scenes[0]?.header.live
-  if (live) startLive(root, stage, viewer, scenes[0] as Scene, live)
   if (!matchMedia('(prefers-reduced-motion: reduce)').matches) viewer.play()
+}
+
+/** The curves of a film, beneath it. */
+function curvesOf(stage: HTMLElement, viewer: Viewer, scene: Scene): Curves {
+  const happens = element('p', 'page-said', { role: 'status' })
+  const curves = createCurves(
+    (text) => say(happens, text),
+    (time) => {
+      viewer.pause()
+      viewer.seek(time)
+    },
+  )
+  stage.after(element('section', 'page-curves', { 'aria-label': 'Curves' }, curves.element, happens))
+  curves.update(scene)
+  viewer.on('time', ({ time }) => curves.at(time))
+  return curves
 }
 
 async function unzipped(base64: string): Promise<Scene> {

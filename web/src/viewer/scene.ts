@@ -24,6 +24,9 @@ export interface Finding {
 
 /** What a run shows, in one sentence, and its number by theory or in another way. */
 export interface Headline {
+  /** With {} for the number; and its unit in SI, or °. */
+  said: string
+  unit: string
   text: string
   other: string | null
   predicted: boolean

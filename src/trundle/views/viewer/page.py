@@ -16,7 +16,7 @@ from string import Template
 from ...errors import InvalidValueError
 from ..scene import Scene, pack
 from .bundle import built
-from .words import card_of, findings_of, formula_of, names_of, scenario_of, summary_of
+from .words import card_of, findings_of, formula_of, headline_of, names_of, scenario_of, summary_of
 
 _ENDS_A_SCRIPT = re.compile(r"<(?=/script|script|!--)", re.IGNORECASE)
 MOST_SCENES = 5  # bodies that can be told apart on one stage
@@ -42,6 +42,7 @@ def page_of(scenes: Sequence[Scene], law: str = "") -> bytes:
         "version": escape(version("trundle")),
         "title": escape(title),
         "summary": summary_of(scenes),
+        "headline": headline_of(scenes),
         "formula": formula_of(scenes),
         "findings": findings_of(scenes),
         "cards": "".join(map(card_of, scenes, names)),

@@ -1,6 +1,7 @@
 /** Predicted beside measured: a table, and the formula with the numbers put in. */
 import { put, say } from '../../viewer/elements'
-import type { Finding, Headline, Scene } from '../../viewer/scene'
+import { beside, capital } from '../../viewer/headline'
+import type { Finding, Scene } from '../../viewer/scene'
 import { fill, h } from '../dom'
 import { changing, formula } from '../math'
 import { show } from '../quantity'
@@ -107,15 +108,6 @@ export function createFindings(derive: () => void): Findings {
     button.hidden = header.scenario !== undefined && !('support' in Object(header.scenario))
   }
   return { element, update }
-}
-
-/** A sentence's first letter, large. */
-export const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1)
-
-/** The other number beside the headline: "predicted 3.681 cm/s", "a second way gives 2.85 s". */
-export function beside({ other, predicted }: Headline): string {
-  if (other === null) return ''
-  return predicted ? `predicted ${other}` : `a second way gives ${other}`
 }
 
 /** What the run shows, for a screen reader. */

@@ -1,6 +1,6 @@
 /** A curve as SVG, on the page and in files: one quantity over another, events marked, and where the film is. */
-import { svg } from '../dom'
-import { show } from '../quantity'
+import { svg } from '../lab/dom'
+import { show } from '../lab/quantity'
 
 export interface Axis {
   label: string
