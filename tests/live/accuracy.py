@@ -10,7 +10,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -62,6 +62,7 @@ class Compared:
     run: Trajectory | None
     told: Any  # by the page
     headline: Any  # of the server
+    of_file: str = ""  # the sentence of the headline of the file's own numbers
     milliseconds: float = 0.0
     refused: str = ""  # by `simulate`
 
@@ -81,7 +82,7 @@ def compared(scenario: tr.Scenario, asked: Sequence[str] = ()) -> list[Compared]
     return [
         Compared(where, 0.0, True, None, told, None, refused=run)
         if isinstance(run, str)
-        else _compared(where, run, told, headline)
+        else replace(_compared(where, run, told, headline), of_file=said)
         for (where, _), run, told, headline in zip(values, runs, found, headlines, strict=True)
     ]
 

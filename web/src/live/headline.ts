@@ -420,7 +420,11 @@ const FINDS: Record<string, Finds> = {
   'lands after {}': (seen, said) => {
     const event = seen.course.events.find(({ kind }) => kind === 'land')
     if (!event) return null
-    return { said, unit: 's', measured: seen.since(event), other: null, how: OF_EVENTS }
+    const height = seen.vectors('position').map((p) => dot(p, seen.up))
+    const lands = height[seen.course.time.findIndex((t) => t >= event.time)]!
+    const over = height.map((one) => one - lands)
+    const measured = seen.since(event)
+    return { said, unit: 's', measured, other: drawnOn(seen, measured, over), how: OF_EVENTS }
   },
 }
 

@@ -65,6 +65,8 @@ class LivePage {
     const graph = element('section', 'live-graph', { 'aria-label': 'Curves' }, this.curves.element)
     stage.after(side, graph)
     viewer.on('time', ({ time }) => this.curves.at(time))
+    this.tell(scene.header.headline ?? null)
+    this.curves.update(scene)
     this.worker = started(law)
     if (!this.worker) {
       this.fail('This browser lets no page compute in the background. The motion is that of the file.')
@@ -87,7 +89,7 @@ class LivePage {
     this.busy = false
     if (course) this.show(course, headline, values, id)
     else {
-      for (const part of [this.shown, this.other]) say(part, '')
+      this.tell(null)
       this.say(`These numbers lead nowhere: ${failed}`)
     }
     if (this.waiting) this.ask()
@@ -102,11 +104,15 @@ class LivePage {
     })
     this.curves.update(scene)
     this.curves.at(this.viewer.time)
+    this.tell(headline)
+    this.say(told(course, this.live))
+    this.aside?.toggleAttribute('data-of-the-file', this.bench.moved)
+  }
+
+  private tell(headline: Headline | null): void {
     say(this.shown, headline ? capital(headline.text) : '')
     say(this.other, headline ? beside(headline) : '')
     put(this.shown, 'title', headline?.how ?? '')
-    this.say(told(course, this.live))
-    this.aside?.toggleAttribute('data-of-the-file', this.bench.moved)
   }
 
   private say(text: string): void {

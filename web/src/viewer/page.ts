@@ -34,7 +34,7 @@ function show(root: Document, stage: HTMLElement, scenes: Scene[]): void {
   const [scene] = scenes as [Scene]
   const { live, curves } = scene.header
   const drawn = live ? startLive(root, stage, viewer, scene, live) : null
-  const own = scenes.length === 1 && curves?.length ? curvesOf(stage, viewer, scene) : null
+  const own = !live && scenes.length === 1 && curves?.length ? curvesOf(stage, viewer, scene) : null
   offerThemes(root, (theme) => {
     viewer.theme = theme
     drawn?.restyle()
