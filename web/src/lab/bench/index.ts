@@ -178,7 +178,7 @@ function _mount(host: HTMLElement, app: App): () => void {
     const text = scenario.notes?.trim() ?? ''
     hide(notes, text === '')
     if (text !== noted) {
-      const paragraphs = text.split(/\n\s*\n/).map((part) => h('p', {}, part.replace(/`/g, '')))
+      const paragraphs = text.split(/\n\s*\n/).map((part) => h('p', {}, part.replace(/`/g, '').replace(/\s+/g, ' ')))
       fill(notes, h('summary', {}, 'What to look for'), h('div', {}, paragraphs))
       noted = text
     }
