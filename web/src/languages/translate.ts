@@ -48,7 +48,7 @@ export function language(): string {
 function template(key: string, said: string): Template {
   const parts = key.split(SLOT) // fixed, name, fixed, name, ..., fixed
   const pattern = parts.map((part, i) => (i % 2 ? '(.+?)' : part.replace(/[.*+?^${}()|[\]\\]/g, '\\$&'))).join('')
-  const either = pattern.replace(/^\p{Ll}/u, (first) => `[${first}${first.toUpperCase()}]`) // it may begin a line
+  const either = pattern.replace(/^\p{L}/u, (first) => `[${first.toLowerCase()}${first.toUpperCase()}]`) // a line or not
   return { pattern: new RegExp(`^${either}$`, 's'), names: parts.filter((_, i) => i % 2), said }
 }
 

@@ -1,4 +1,5 @@
 /** Predicted beside measured: a table, and the formula with the numbers put in. */
+import { t } from '../../languages/translate'
 import { put, say } from '../../viewer/elements'
 import { beside, capital } from '../../viewer/headline'
 import type { Finding, Scene } from '../../viewer/scene'
@@ -114,5 +115,5 @@ export function createFindings(derive: () => void): Findings {
 export function sentence({ header }: Scene): string {
   const { headline, title, duration } = header
   if (!headline) return `${title}: ${show(duration, 3)} s computed`
-  return [`${title}: ${headline.text}`, beside(headline)].filter(Boolean).join(', ')
+  return [`${t(title)}: ${t(headline.text)}`, t(beside(headline))].filter(Boolean).join(', ')
 }
