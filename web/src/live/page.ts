@@ -1,7 +1,7 @@
 /** A live page: sliders, the motion by the law that the page holds, its curves, and what happens in it in words. */
 import { type Curves, createCurves } from '../curves/curves'
 import type { Viewer } from '../viewer/contract'
-import { element, put, say } from '../viewer/elements'
+import { element, hide, put, say } from '../viewer/elements'
 import { beside, capital } from '../viewer/headline'
 import { shortNumber } from '../viewer/quantities'
 import type { Headline, Scene } from '../viewer/scene'
@@ -10,6 +10,8 @@ import type { Course } from './course'
 import type { LiveHeader } from './header'
 import { Pictures } from './picture'
 import type { Answer, Question } from './worker'
+
+const OF_THE_FILE = 'A slider has been moved: what follows is of the numbers as they are in the file.'
 
 /** Let a page compute its own motion; what is shown until then is the one that lies in it. */
 export function startLive(
@@ -32,7 +34,7 @@ class LivePage {
   private readonly happens = element('p', 'live-happens')
   private readonly headline = element('div', 'live-headline', { role: 'status' }, this.shown, this.other, this.happens)
   private readonly worker: Worker | null
-  private readonly aside: HTMLElement | null
+  private readonly ofTheFile = element('p', 'page-of-the-file', { hidden: '' }, OF_THE_FILE)
   private asked = 0
   private busy = false
   private waiting = false
@@ -54,7 +56,7 @@ class LivePage {
         viewer.seek(time)
       },
     )
-    this.aside = root.querySelector('.page-figures')
+    root.querySelector('.page-figures')?.prepend(this.ofTheFile)
     const side = element(
       'section',
       'live-side',
@@ -106,7 +108,7 @@ class LivePage {
     this.curves.at(this.viewer.time)
     this.tell(headline)
     this.say(told(course, this.live))
-    this.aside?.toggleAttribute('data-of-the-file', this.bench.moved)
+    hide(this.ofTheFile, !this.bench.moved)
   }
 
   private tell(headline: Headline | null): void {

@@ -1,5 +1,6 @@
 /** A saved page: its scenes lie in it, compressed, and so does this script. */
 import { type Curves, createCurves } from '../curves/curves'
+import { learnWithin, unzipped } from '../languages/within'
 import { startLive } from '../live/page'
 import type { Theme, Viewer } from './contract'
 import { element, say } from './elements'
@@ -12,13 +13,16 @@ export function startSavedPage(root: Document = document): void {
   const packed = [...root.querySelectorAll<HTMLElement>('script[data-trundle-scene]')]
   if (!stage || !packed.length) return
   const note = root.querySelector<HTMLElement>('[data-trundle-note]')
-  Promise.all(packed.map(({ textContent }) => unzipped(textContent ?? '')))
+  const scenes = Promise.all(packed.map(({ textContent }) => sceneOf(textContent ?? '')))
+  learnWithin(root)
+    .catch(() => undefined) // the page is worth more in English than not at all
+    .then(() => scenes)
     .then((scenes) => {
       note?.remove()
       show(root, stage, scenes)
     })
     .catch((error: unknown) => {
-      if (note) note.textContent = `The motion cannot be shown: ${error instanceof Error ? error.message : error}`
+      if (note) say(note, `The motion cannot be shown: ${error instanceof Error ? error.message : error}`)
       throw error
     })
 }
@@ -59,10 +63,8 @@ function curvesOf(stage: HTMLElement, viewer: Viewer, scene: Scene): Curves {
   return curves
 }
 
-async function unzipped(base64: string): Promise<Scene> {
-  const bytes = Uint8Array.from(atob(base64.trim()), (letter) => letter.charCodeAt(0))
-  const whole = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'))
-  return unpack(await new Response(whole).arrayBuffer())
+async function sceneOf(base64: string): Promise<Scene> {
+  return unpack(await new Response(unzipped(base64)).arrayBuffer())
 }
 
 function themeNow(root: Document): 'light' | 'dark' {
@@ -77,7 +79,7 @@ function offerThemes(root: Document, changed: (theme: Theme) => void): void {
   let chosen = false
   const put = (theme: 'light' | 'dark') => {
     root.documentElement.dataset.theme = theme
-    if (button) button.textContent = theme === 'dark' ? 'Light' : 'Dark'
+    if (button) say(button, theme === 'dark' ? 'Light' : 'Dark')
     changed(theme)
   }
   put(themeNow(root))

@@ -1,0 +1,98 @@
+"""The bench under a finger: the ball is moved, thrown and nudged, and a swipe beside it scrolls the page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from playwright.sync_api import CDPSession
+
+from .bench import Bench, Stage, eventually
+from .launching import SMALL
+from .test_lab_stage import from_above, start
+from .visiting import Visitor
+
+
+class Finger:
+    """One that the browser takes for a real one, with what follows of it: pointers, clicks, scrolling."""
+
+    def __init__(self, stage: Stage) -> None:
+        self.page = stage.page
+        self.session: CDPSession = stage.page.context.new_cdp_session(stage.page)
+
+    def swipe(self, begin: tuple[float, float], by: tuple[float, float], *, held: int = 0, pause: int = 30) -> None:
+        """Put it down, move it, hold it still for some ms, and lift it."""
+        x, y = begin
+        self._send("touchStart", (x, y))
+        for share in np.linspace(0.1, 1.0, 8):
+            self._send("touchMove", (x + share * by[0], y + share * by[1]))
+            self.page.wait_for_timeout(pause)
+        self.page.wait_for_timeout(held)
+        self._send("touchEnd")
+
+    def _send(self, kind: str, *at: tuple[float, float]) -> None:
+        points = [{"x": x, "y": y} for x, y in at]
+        self.session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+
+@pytest.fixture
+def bench(visitor: Visitor) -> Iterator[Bench]:
+    yield from_above(visitor, "level-turntable-nudged", has_touch=True, size=SMALL)
+
+
+def test_a_finger_puts_the_ball_down_elsewhere(bench: Bench) -> None:
+    x, y = bench.stage.ball()
+    Finger(bench.stage).swipe((x, y), (-60.0, -40.0), held=250)
+
+    def put_down() -> None:
+        place, velocity = start(bench)
+        assert place[0] < 0.19
+        assert place[1] > 0.01
+        assert velocity == pytest.approx([0.0, 0.1], abs=1e-9), "the velocity stays"
+        assert bench.stage.ball() == pytest.approx((x - 60, y - 40), abs=6)
+
+    eventually(bench.page, put_down)
+
+
+def test_a_finger_throws_the_ball(bench: Bench) -> None:
+    Finger(bench.stage).swipe(bench.stage.ball(), (-70.0, 0.0), pause=12)
+
+    def thrown() -> None:
+        place, velocity = start(bench)
+        assert place[0] < 0.19
+        assert velocity[0] < -0.02
+        assert abs(velocity[1]) < 0.2 * abs(velocity[0])
+
+    eventually(bench.page, thrown)
+
+
+def test_a_finger_nudges_it(bench: Bench) -> None:
+    bench.tool("Nudge it")
+    bench.stage.canvas.focus()
+    bench.page.keyboard.press("Home")
+    before = bench.scenario()
+    Finger(bench.stage).swipe(bench.stage.ball(), (0.0, -70.0), held=100)
+
+    def nudged() -> None:
+        assert bench.scenario() != before
+        assert start(bench)[1][1] > 0.12, "up on the screen is along the second axis"
+
+    eventually(bench.page, nudged)
+
+
+def test_a_swipe_beside_the_ball_scrolls_the_page(visitor: Visitor) -> None:
+    page = visitor.open("#/tour/4", size={"width": 390, "height": 700}, has_touch=True, cards=False)
+    stage = Stage(page, page)
+    stage.canvas.wait_for()
+    page.locator('[data-bodies]:not([data-bodies="0"])').first.wait_for(state="attached")
+    stage.canvas.evaluate("canvas => canvas.scrollIntoView({block: 'end'})")
+    box = stage.canvas.bounding_box()
+    assert box
+    before = page.evaluate("document.scrollingElement.scrollTop")
+    Finger(stage).swipe((box["x"] + 12, box["y"] + box["height"] - 12), (0.0, -150.0))
+    eventually(page, lambda: _scrolled(page.evaluate("document.scrollingElement.scrollTop"), before))
+
+
+def _scrolled(now: float, before: float) -> None:
+    assert now > before + 60
