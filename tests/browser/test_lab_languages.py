@@ -15,7 +15,8 @@ PLAIN = """() => {
     const units = /^(rad|deg|min|rpm|const|sin|arg)$/
     const unmarked = (word) => /^[A-Z]?[a-z]{2,}$/.test(word) && /[aeiou]/.test(word) && !units.test(word)
     const key = /^[\\w-]+([.:] ?[\\w\\[\\]-]+)+$/  // support.tilt, turned: turned-over
-    const plain = (text) => !key.test(text.trim()) && (text.match(/\\p{L}+/gu) ?? []).some((word) => word.length > 2 && unmarked(word))
+    const words = (text) => (key.test(text.trim()) ? [] : (text.match(/\\p{L}+/gu) ?? []))
+    const plain = (text) => words(text).some((word) => word.length > 2 && unmarked(word))
     const ours = 'noscript, script, style, pre, code, datalist, textarea, math, .katex, .formula, [hreflang], .wordmark, '
         + '.card-method, [translate=no], [data-trundle-cited]'
     const found = []
@@ -28,6 +29,7 @@ PLAIN = """() => {
                 found.push(element.getAttribute(name))
     return found
 }"""
+
 
 def test_the_browser_chooses_the_language_and_a_link_overrules_it(visitor: Visitor) -> None:
     page = visitor.open("#/", locale="de-AT")

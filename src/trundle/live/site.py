@@ -203,7 +203,9 @@ def _step(i: int) -> str:
 def _stop(toured: Sequence[Entry], i: int, links: Mapping[str, str]) -> bytes:
     """Return a step of the tour: what a lecturer says, and the page."""
     one = toured[i]
-    paragraphs = "".join(f"<p>{escape(' '.join(part.split()).replace('`', ''))}</p>" for part in one.notes.split("\n\n") if part.strip())
+    paragraphs = "".join(
+        f"<p>{escape(' '.join(part.split()).replace('`', ''))}</p>" for part in one.notes.split("\n\n") if part.strip()
+    )
     frame = f'<iframe src="{escape(one.file)}" title="{escape(one.title)}" allowfullscreen></iframe>'
     ways = "".join(
         f'<a href="{_step(j)}" rel="{way}">{said}: {escape(toured[j].title)}</a>'
@@ -225,7 +227,13 @@ def _page(title: str, body: str, links: Mapping[str, str]) -> bytes:
     # A page from a memory stick is no origin to a browser: frames of files beside it are said by their scheme.
     policy = "default-src 'none'; script-src {}; style-src {}; frame-src 'self' file:; base-uri 'none'".format(*allowed)
     shown = "".join(f'<a href="{address}">{name}</a>' for address, name in links.items())
-    parts = {"catalogues": catalogues(), "title": escape(title), "version": escape(version("trundle")), "links": shown, "body": body}
+    parts = {
+        "catalogues": catalogues(),
+        "title": escape(title),
+        "version": escape(version("trundle")),
+        "links": shown,
+        "body": body,
+    }
     return Template(template).substitute(parts, policy=policy, style=style, script=script).encode()
 
 

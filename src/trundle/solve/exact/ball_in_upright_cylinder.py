@@ -235,9 +235,7 @@ class BallInUprightCylinder(ClosedForm):
         ratio = None if found is None else found / abs(round_)
         note = "of bobbing to going round, whatever the radii"
         predicted = float(self.frequency_ratio)
-        yield Finding(
-            "Ratio of the two", r"\sqrt{k/(1+k)}", predicted, ratio, "", note=note, said=_BOBS
-        )
+        yield Finding("Ratio of the two", r"\sqrt{k/(1+k)}", predicted, ratio, "", note=note, said=_BOBS)
         if found is not None and found * seen.time[-1] >= 2 * math.pi:
             wave = found * seen.time
             design = np.column_stack([np.ones_like(wave), np.cos(wave), np.sin(wave)])

@@ -36,7 +36,8 @@ def scene_of(
 ) -> Scene:
     """Return what a viewer needs to draw a run.
 
-    `curves`: and what may be drawn of it over time, as on every page that has its card. `places`: where other runs touch the ground, if they share it.
+    `curves`: and what may be drawn of it over time, as on every page that has its card. `places`: where other runs
+    touch the ground, if they share it.
 
     Examples
     --------

@@ -55,7 +55,9 @@ def headline_of(scenes: Sequence[Scene]) -> str:
         return ""
     other = f"{'predicted' if told['predicted'] else 'a second way gives'} {told['other']}" if told["other"] else ""
     said = escape(told["text"][:1].upper() + told["text"][1:])
-    return f'<p class="page-shown" title="{escape(told["how"])}"><strong>{said}</strong><span>{escape(other)}</span></p>'
+    return (
+        f'<p class="page-shown" title="{escape(told["how"])}"><strong>{said}</strong><span>{escape(other)}</span></p>'
+    )
 
 
 def formula_of(scenes: Sequence[Scene]) -> str:
