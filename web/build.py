@@ -60,8 +60,9 @@ def bundle() -> None:
     # Beside its place, so that it gets there whole or not at all.
     with tempfile.TemporaryDirectory(prefix=".static-", dir=STATIC.parent) as folder:
         made = Path(folder) / "static"
-        for mode in ("viewer", "live", "lab"):
+        for mode in ("viewer", "live", "site", "lab"):
             run("node_modules/vite/bin/vite.js", "build", "--mode", mode, "--logLevel", "warn", static=made)
+        shutil.copytree(WEB / "src" / "languages", made / "languages", ignore=shutil.ignore_patterns("*.ts"))
         (made / "built-from").write_text(digest() + "\n")
         shutil.rmtree(STATIC, ignore_errors=True)
         made.rename(STATIC)

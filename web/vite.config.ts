@@ -42,6 +42,18 @@ const live: UserConfig = {
   },
 }
 
+/** The script of a static site's own pages. */
+const site: UserConfig = {
+  build: {
+    outDir: output,
+    emptyOutDir: false,
+    rollupOptions: {
+      input: here('src/site/site.ts'),
+      output: { entryFileNames: 'site.js', format: 'iife' },
+    },
+  },
+}
+
 /** The lab page. Fonts stay files, since its policy forbids data: addresses for them. */
 const lab: UserConfig = {
   base: './',
@@ -58,7 +70,7 @@ export default defineConfig(({ mode }) => ({
   root: here('.'),
   plugins: [onlyWoff2],
   define: { 'process.env.NODE_ENV': '"production"' },
-  ...{ viewer, live, lab }[mode as 'viewer' | 'live' | 'lab'],
+  ...{ viewer, live, site, lab }[mode as 'viewer' | 'live' | 'site' | 'lab'],
   test: {
     projects: [
       { extends: true, test: { name: 'viewer', include: ['src/viewer/**/*.test.ts'], environment: 'node' } },

@@ -16,6 +16,7 @@ class Unit:
 
     scale: float
     symbol: str
+    least: float = 1.0  # the least count of it for which it is taken
 
 
 # Size in SI, symbol, and the least count of it for which it is taken; from large to small.
@@ -78,6 +79,17 @@ def unit_for(size: float, kind: str) -> Unit:
                 return Unit(scale, symbol)
     power = math.floor(math.log10(size) + 1e-9)
     return Unit(10.0**power, f"10{str(power).translate(_SUPERSCRIPT)} {_SI[kind]}".strip())
+
+
+def units_of(kind: str) -> list[Unit]:
+    """Return the units that `unit_for` chooses from, each with what counts as one; from large to small.
+
+    Examples
+    --------
+    >>> [(unit.symbol, unit.least) for unit in units_of("angle")]
+    [('°', 0.01)]
+    """
+    return [Unit(scale, symbol, least) for scale, symbol, least in _UNITS[kind]]
 
 
 def with_unit(value: float, kind: str, digits: int = 3) -> str:

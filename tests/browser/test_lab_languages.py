@@ -2,22 +2,31 @@
 
 from __future__ import annotations
 
-from playwright.sync_api import expect
+from typing import Any
 
+import pytest
+from playwright.sync_api import Page, expect
+
+from .launching import PHONE
 from .visiting import Visitor
 
-# What of the page has vowels without marks: what is in no catalogue.
+# What of the page has vowels without marks: what is in no catalogue. Formulas, files, citations and units are no words.
 PLAIN = """() => {
-    const unmarked = (word) => /^[A-Za-z]{3,}$/.test(word) && /[aeiou]/i.test(word)
-    const plain = (text) => (text.match(/\\p{L}+/gu) ?? []).some(unmarked)
-    const ours = 'noscript, script, [hreflang], .wordmark'
+    const units = /^(rad|deg|min|rpm|const|sin|arg)$/
+    const unmarked = (word) => /^[A-Z]?[a-z]{2,}$/.test(word) && /[aeiou]/.test(word) && !units.test(word)
+    const key = /^[\\w-]+([.:] ?[\\w\\[\\]-]+)+$/  // support.tilt, turned: turned-over
+    const words = (text) => (key.test(text.trim()) ? [] : (text.match(/\\p{L}+/gu) ?? []))
+    const plain = (text) => words(text).some((word) => word.length > 2 && unmarked(word))
+    const ours = 'noscript, script, style, pre, code, datalist, textarea, math, .katex, .formula, [hreflang], .wordmark, '
+        + '.card-method, [translate=no], [data-trundle-cited]'
     const found = []
     const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT)
     for (let node = walk.nextNode(); node; node = walk.nextNode())
         if (!node.parentElement.closest(ours) && plain(node.data)) found.push(node.data)
-    for (const element of document.querySelectorAll('[title], [aria-label]'))
-        for (const name of ['title', 'aria-label'])
-            if (plain(element.getAttribute(name) ?? '')) found.push(element.getAttribute(name))
+    for (const element of document.querySelectorAll('[title], [aria-label], [aria-valuetext], [placeholder], [alt]'))
+        for (const name of ['title', 'aria-label', 'aria-valuetext', 'placeholder', 'alt'])
+            if (!element.closest(ours) && plain((element.getAttribute(name) ?? '').replace(/\\\\[a-z]+/g, '')))
+                found.push(element.getAttribute(name))
     return found
 }"""
 
@@ -31,11 +40,61 @@ def test_the_browser_chooses_the_language_and_a_link_overrules_it(visitor: Visit
     expect(page.locator("html")).to_have_attribute("lang", "en")
 
 
-def test_no_text_of_the_front_door_is_outside_the_catalogue_and_long_words_fit(visitor: Visitor) -> None:
-    page = visitor.open("?lang=pseudo#/", size={"width": 390, "height": 844})
-    expect(page.get_by_role("heading", level=1)).to_contain_text("⟦")
+def ready(visitor: Visitor, route: str, **options: Any) -> Page:
+    """Open a page in the pseudo-language, and wait until it has asked for all that it needs."""
+    page = visitor.open(f"?lang=pseudo{route}", drawn=False, **options)
+    expect(page.locator("main h1").first).to_contain_text("⟦")
+    page.wait_for_load_state("networkidle")
+    return page
+
+
+ROUTES = [
+    "#/",
+    *(f"#/tour/{step}" for step in range(1, 8)),
+    "#/challenges",
+    "#/challenges/one-round-in-five-seconds",
+    "#/report",
+    "#/notes",
+    "#/compare",
+    "#/fields",
+    "#/holonomy",
+    "#/holonomy/orders",
+    "#/holonomy/loop",
+    "#/maps",
+    "#/measure",
+]
+
+
+@pytest.mark.parametrize("route", ROUTES)
+def test_no_text_of_a_page_is_outside_the_catalogue_and_long_words_fit(visitor: Visitor, route: str) -> None:
+    page = ready(visitor, route, size=PHONE)
+    for summary in page.locator("main details:not([open]) > summary").all():
+        summary.evaluate("summary => summary.parentElement.open = true")
     assert page.evaluate(PLAIN) == []
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+
+
+def test_a_text_outside_the_catalogue_is_found(visitor: Visitor) -> None:
+    page = ready(visitor, "#/")
+    page.evaluate("document.querySelector('main').append(Object.assign(new Text('Nobody has said this before')))")
+    assert page.evaluate(PLAIN) == ["Nobody has said this before"]
+
+
+def test_no_text_of_the_bench_and_its_dialogs_is_outside_the_catalogue(visitor: Visitor) -> None:
+    page = ready(visitor, "#/bench")
+    expect(page.locator(".card-lines")).to_have_count(1)
+    for tab in page.get_by_role("tab").all():
+        tab.click()
+        assert page.evaluate(PLAIN) == []
+    for opener in (".bar-scenario", ".formula-card .link", ".head [title*='?']"):
+        if opener == ".formula-card .link":
+            page.get_by_role("tab").nth(0).click()
+        page.locator(opener).first.click()
+        dialog = page.locator("dialog[open]")
+        expect(dialog.locator(".working")).to_have_count(0)
+        assert page.evaluate(PLAIN) == [], opener
+        page.keyboard.press("Escape")
+        expect(dialog).to_have_count(0)
 
 
 def test_a_decimal_comma_is_shown_and_understood(visitor: Visitor) -> None:

@@ -10,7 +10,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +23,7 @@ from trundle.errors import TrundleError
 from trundle.live import law
 from trundle.live.sliders import Slider, sliders_of
 from trundle.simulation.trajectory import Trajectory
+from trundle.views.scene import scene_of
 from trundle.views.viewer.bundle import built
 
 _SAMPLES = 40
@@ -43,7 +44,8 @@ const found = asked.map(([values, times]) => {
   const begin = performance.now();
   motion(values);
   const took = performance.now() - begin;
-  return { ...motion(values, times), took };
+  const { headline } = answer;
+  return { ...motion(values, times), headline, took };
 });
 console.log(JSON.stringify(found));
 """
@@ -59,6 +61,8 @@ class Compared:
     alike: bool  # whether it ends in the same way and at the same time
     run: Trajectory | None
     told: Any  # by the page
+    headline: Any  # of the server
+    of_file: str = ""  # the sentence of the headline of the file's own numbers
     milliseconds: float = 0.0
     refused: str = ""  # by `simulate`
 
@@ -67,15 +71,19 @@ def compared(scenario: tr.Scenario, asked: Sequence[str] = ()) -> list[Compared]
     """Compare the motions of a scenario at its defaults and at both ends of each slider."""
     law.check(scenario)
     sliders, placed = sliders_of(scenario, asked)
-    text = law.script_of(scenario, [one.key for one in sliders], placed) + built("live-worker.js")
     values = [(where, _moved(sliders, where)) for where in ("", *_ends(sliders))]
     runs = [_run(scenario, moves) for _, moves in values]
+    headlines = [None if isinstance(run, str) else scene_of(run).header["headline"] for run in runs]
+    said = (headlines[0] or {"said": ""})["said"]
+    text = law.script_of(scenario, [one.key for one in sliders], placed, said) + built("live-worker.js")
     wanted = [[] if isinstance(run, str) else _instants(run).tolist() for run in runs]
     asked_for = [[list(moves.values()), times] for (_, moves), times in zip(values, wanted, strict=True)]
     found = _in_node(text, asked_for)
     return [
-        Compared(where, 0.0, True, None, told, refused=run) if isinstance(run, str) else _compared(where, run, told)
-        for (where, _), run, told in zip(values, runs, found, strict=True)
+        Compared(where, 0.0, True, None, told, None, refused=run)
+        if isinstance(run, str)
+        else replace(_compared(where, run, told, headline), of_file=said)
+        for (where, _), run, told, headline in zip(values, runs, found, headlines, strict=True)
     ]
 
 
@@ -113,7 +121,7 @@ def _in_node(text: str, asked: list[Any]) -> list[Any]:
         return found
 
 
-def _compared(where: str, run: Trajectory, told: Any) -> Compared:
+def _compared(where: str, run: Trajectory, told: Any, headline: Any) -> Compared:
     place = run.data.position.values
     path = float(np.sum(np.linalg.norm(np.diff(place, axis=0), axis=1)))
     arm = float(np.linalg.norm(place[0] - run.data.contact.values[0]))
@@ -121,7 +129,7 @@ def _compared(where: str, run: Trajectory, told: Any) -> Compared:
     both = np.intersect1d(times, run.data.time.values)
     mine, theirs = rows[np.isin(times, both), :3], place[np.isin(run.data.time.values, both)]
     apart = float(np.abs(mine - theirs).max()) / max(path, arm)
-    return Compared(where, apart, _ends_alike(run, told["ended"]), run, told, told["took"])
+    return Compared(where, apart, _ends_alike(run, told["ended"]), run, told, headline, told["took"])
 
 
 def _ends_alike(run: Trajectory, told: Any) -> bool:
@@ -131,6 +139,10 @@ def _ends_alike(run: Trajectory, told: Any) -> bool:
         return not final
     same = [event for event in run.events if event.kind == told["kind"]]
     return any(abs(event.time - told["time"]) <= 1e-8 * max(event.time, 1e-3) for event in same)
+
+
+def _line(headline: Any) -> str:
+    return f"{headline['text']} ({headline['other']})" if headline else "-"
 
 
 def main(names: Sequence[str]) -> None:
@@ -145,6 +157,8 @@ def main(names: Sequence[str]) -> None:
         where = worst.where or "defaults"
         print(f"{name:34s} {found[0].apart:8.1e}  worst {worst.apart:8.1e} {where:28s} {slowest:5.0f} ms", flush=True)
         for one in found:
+            if one.headline or one.told["headline"]:
+                print(f"    {one.where or 'defaults':28s} {_line(one.told['headline'])} | {_line(one.headline)}")
             if one.apart > BOUND or not one.alike or one.refused:
                 events = [event.text for event in one.run.events[:3]] if one.run else one.refused
                 print(f"    {one.where}: {one.apart:.1e}, {events}, page: {one.told['events'][:3]}")

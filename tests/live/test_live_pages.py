@@ -15,8 +15,9 @@ from trundle.errors import InvalidValueError, OutOfDomainError
 from trundle.live import law, live_page
 from trundle.live.sliders import sliders_of
 from trundle.live.start import Placed
+from trundle.views.scene.curves import curves_of
 
-from .accuracy import BOUND, compared
+from .accuracy import BOUND, Compared, compared
 
 # Of every kind: closed forms and numerical runs, rolling, slipping, flight, the rim, a support that turns by itself.
 SAMPLE = {
@@ -40,6 +41,45 @@ def test_the_motion_in_the_page_is_the_run(name: str) -> None:
         assert not one.refused
         assert one.apart <= BOUND, one.where
         assert one.alike, one.where
+        assert_headline_is_the_servers(one)
+        assert_curves_are_the_servers(one)
+
+
+def assert_headline_is_the_servers(one: Compared) -> None:
+    """The same sentence, and both its numbers: the page has samples of its own, at other instants."""
+    told, wanted = one.told["headline"], one.headline
+    if told["said"] != wanted["said"]:
+        # The page keeps the sentence of the file where the server has that of another formula, or none.
+        assert told["said"] == one.of_file, one.where
+        return
+    assert told["predicted"] <= wanted["predicted"]
+    for key in ("text", "other"):
+        assert _number(told[key]) == pytest.approx(_number(wanted[key]), rel=2e-3, abs=1e-9), (one.where, key)
+        assert re.sub(r"[\d.−]+", "#", told[key]) == re.sub(r"[\d.−]+", "#", wanted[key])
+
+
+def _number(text: str) -> float:
+    found = re.search(r"−?\d+(?:\.\d+)?", text)
+    assert found is not None
+    return float(found[0].replace("−", "-"))
+
+
+def assert_curves_are_the_servers(one: Compared) -> None:
+    """All that the server draws of this motion, from the same instants."""
+    assert one.run is not None
+    times, rows = np.array(one.told["time"]), np.array(one.told["rows"], dtype=float)
+    both = np.intersect1d(times, one.run.data.time.values)
+    at = one.run.samples.part(np.flatnonzero(np.isin(one.run.samples.time, both)))
+    told, columns = curves_of(one.run.system, at)
+    shown = {each["column"]: each for each in law.curves_of(one.run.system)}
+    # A speed of slip that never comes is not offered, neither here nor there.
+    assert {each["column"] for each in told} - {"curve_slip"} == set(shown) - {"curve_slip"}
+    mine = rows[np.isin(times, both)]
+    for column, values in columns.items():
+        known = np.isfinite(values)
+        size = float(np.max(np.abs(values[known]), initial=0.0))
+        apart = np.abs(mine[:, shown[column]["index"]] - values)[known]
+        assert apart.max(initial=0.0) <= 2e-6 * max(size, 1e-3), (one.where, column)
 
 
 def test_where_friction_gives_way_the_film_stops_and_says_so() -> None:

@@ -8,11 +8,14 @@ from typing import Any
 
 from ..errors import OutOfDomainError
 from ..mechanics.algebra import Vector
-from ..mechanics.contact import contact_at
+from ..mechanics.contact import Contact, contact_at
+from ..mechanics.invariants import Record
 from ..mechanics.invariants.powers import energies
+from ..mechanics.loads import BodyMotion
 from ..mechanics.parameters import parameters, with_numbers
 from ..mechanics.placing import SLIP_TOLERANCE
-from ..mechanics.scalars import Scalar, is_number, is_zero, namespace
+from ..mechanics.quantities import Quantity, quantities
+from ..mechanics.scalars import Scalar, is_number, is_zero
 from ..mechanics.system import RollingSystem, State
 from ..solve.contact_state import ContactState
 from ..solve.laws import FlightLaw, Law, RestingLaw, RollingLaw, RollingWithResistance, SlidingFreely, SlippingLaw
@@ -25,7 +28,7 @@ from .touching import HELD, Follows
 
 STROKES = ("land", "settle", "jolt")  # kinds of event at which the support strikes the body
 
-# What a picture of a motion is made from, and its curves.
+# What a picture of a motion is made from; its curves come behind that.
 FILM = (
     *((f"{name}_{axis}", unit) for name, unit in (("position", "m"), ("contact", "m")) for axis in "xyz"),
     *((f"orientation_{part}", "") for part in "wxyz"),
@@ -34,16 +37,7 @@ FILM = (
     *((f"contact_force_{axis}", "N") for axis in "xyz"),
     *((f"support_position_{axis}", "m") for axis in "xyz"),
     *((f"support_rotation_{row}{column}", "") for row in "xyz" for column in "xyz"),
-    ("speed", "m/s"),
-    ("spin about the normal", "rad/s"),
-    ("distance from the axis", "m"),
-    ("height", "m"),
-    ("kinetic energy", "J"),
-    ("energy", "J"),
-    ("normal force", "N"),
-    ("slip", "m/s"),
 )
-CURVES = range(len(FILM) - 8, len(FILM))  # which of it are numbers to be drawn over the time
 OUTPUTS = (
     *((f"{name}_{axis}", unit) for name, unit in (("position", "m"), ("velocity", "m/s")) for axis in "xyz"),
     *((f"contact_force_{axis}", "N") for axis in "xyz"),
@@ -202,28 +196,29 @@ class PhaseRoutines:
         return self._routine("outputs", said, [*motion.position, *motion.velocity, *R, energy])
 
     def film(self) -> Routine:
-        """Return what a picture of the motion is made from, and its curves, in the order of `FILM`."""
-        system, law, t, y = self.system, self.law, self._time, self._state
-        p, q, coordinates = self._place()
-        contact, motion = contact_at(system, t, p, q, coordinates), law.motion(system, t, y)
-        R, support, there = law.reaction(system, t, y), contact.support, contact.support.local(motion.position)
-        n, tilt, V, Omega = contact.normal, system.support.tilt, motion.velocity, motion.angular_velocity
-        xp = namespace(t, tilt)
-        up = Vector(-xp.sin(tilt), 0.0, xp.cos(tilt))
-        orbit, turning, *others = energies(system, motion)
-        curves = [
-            V.norm(),
-            Omega.dot(n),
-            xp.hypot(there.x, there.y),
-            motion.position.dot(up),
-            orbit + turning,
-            sum(others, orbit + turning),
-            R.dot(n),
-            contact.slip_velocity(V, Omega).norm() if self.law.code == SLIPPING else 0.0,
-        ]
+        """Return what a picture of the motion is made from, in the order of `FILM`, and then its curves."""
+        motion, contact, R = self._shown()
+        support = contact.support
+        p, q, _ = self._place()
         turn = [part for row in support.rotation.rows for part in row]
+        V, Omega, curves = motion.velocity, motion.angular_velocity, [one.value for one in self.curves()]
         found = [*motion.position, *p, *q.unit, *V, *Omega, *R, *support.origin, *turn, *curves]
         return self._routine("film", "What a picture of the motion is made from, and its curves.", found)
+
+    def curves(self) -> list[Quantity]:
+        """Return what may be drawn over the time, on the tape."""
+        motion, contact, R = self._shown()
+        record = Record(motion, contact.point, self._place()[2])
+        found = list(quantities(self.system, self._plain, record, contact.support, contact.normal, R))
+        if self._plain.support.friction is not None:
+            slips = self.law.code == SLIPPING
+            slip = contact.slip_velocity(motion.velocity, motion.angular_velocity).norm() if slips else 0.0
+            found.append(Quantity("slip", "Slip speed", "m/s", slip, touching=True))
+        return found
+
+    def _shown(self) -> tuple[BodyMotion, Contact, Vector]:
+        system, law, t, y = self.system, self.law, self._time, self._state
+        return law.motion(system, t, y), contact_at(system, t, *self._place()), law.reaction(system, t, y)
 
     def resets(self) -> list[str]:
         """Return the events after which another phase follows."""

@@ -202,8 +202,7 @@ def _entry(name: str) -> dict[str, Any]:
     from ..solve.exact import closed_form
 
     tables = files.tables_of(name)
-    notes = " ".join(str(tables.get("notes", "")).split())
-    summary = notes[: notes.index(". ") + 1] if ". " in notes else notes
+    summary = " ".join(str(tables.get("notes", "")).strip().partition("\n\n")[0].split())
     told = {"name": name, "title": tables["title"], "group": tables.get("group", ""), "summary": summary}
     if files.rolls_along_path(tables):
         return {**told, "support": "plane", "body": "sphere", "motion": "path", "exact": True, "level": 1}

@@ -34,7 +34,8 @@ class FormulaRoutines(PhaseRoutines):
         size = len(numbers(system))
         q, p, _ = self._begin(system, phase, _ORIENTATION, size + len(numbers(form)), 0)
         self.name, self.system = f"{phase}_by_formula", with_numbers(system, p[:size])
-        centre, _, Omega, _ = with_numbers(form, p[size:]).motion_at(self._time - begin)
+        self._form = with_numbers(form, p[size:])
+        centre, _, Omega, _ = self._form.motion_at(self._time - begin)
         contact = contact_at(self.system, self._time, centre, Quaternion(*q))
         self._state = [*(centre + contact.offset), *q, *Omega]
 
@@ -42,6 +43,11 @@ class FormulaRoutines(PhaseRoutines):
         """Return how the orientation changes."""
         _, q, Omega, _, _ = self.law.split(self._state)
         return self._routine("rates", "Rates of the orientation.", q.rate(Omega))
+
+    def promised(self, said: str) -> Routine | None:
+        """Return the number of a sentence of the closed form's findings; None where only numbers tell it."""
+        found = self._form.promised(said)
+        return None if found is None else self._routine("promised", "What theory says of what is seen.", [found])
 
 
 def formula_of(system: RollingSystem, start: State, phase: str) -> ClosedForm:

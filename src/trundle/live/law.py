@@ -13,10 +13,15 @@ from ..fields.printers import javascript
 from ..fields.routines import FILM, PhaseRoutines, Routine, check_analytic, phases_of
 from ..fields.touching import CODES, HELD, NOTHING
 from ..mechanics.kinks import kinks_and_jolts
+from ..mechanics.parameters import parameters
+from ..mechanics.quantities import is_ball
 from ..mechanics.system import RollingSystem
 from ..scenario import ScenarioFile
 from ..solve.contact_state import ContactState, moment
 from ..solve.phases import ENDS
+from ..views.scene.curves import PREFIX
+from ..views.scene.headline import KINDS
+from ..wording import units_of
 from .formula import FormulaRoutines
 from .start import Placed
 
@@ -69,8 +74,10 @@ def check(scenario: ScenarioFile) -> None:
         )
 
 
-def script_of(scenario: ScenarioFile, wanted: Sequence[Key], placed: Placed) -> str:
+def script_of(scenario: ScenarioFile, wanted: Sequence[Key], placed: Placed, said: str = "") -> str:
     """Return the law as text: functions, and `law`, which names them.
+
+    `said`: the sentence of the headline, whose number is printed where a closed form has it.
 
     Examples
     --------
@@ -84,15 +91,16 @@ def script_of(scenario: ScenarioFile, wanted: Sequence[Key], placed: Placed) -> 
     system = scenario.system()
     start = scenario.start_state()
     phases = {phase: PhaseRoutines(system, phase, ()) for phase in phases_of(system)}
-    begins = placed.phase
+    begins, promised = placed.phase, None
     if placed.form is not None:
         routines = FormulaRoutines(system, begins, placed.form, float(start.time))
-        begins = routines.name
+        begins, promised = routines.name, routines.promised(said)
         phases[begins] = routines
-    printed: list[Routine] = [placed.routine]
+    printed: list[Routine] = [placed.routine, *([promised] if promised else [])]
     told = {phase: _phase(routines, printed) for phase, routines in phases.items()}
     arm = float(ContactState.of(system, start).arm)
     law = {
+        "shows": _shows(system, said),
         "begin": float(start.time),
         "duration": float(scenario.timing.duration),
         "phase": begins,
@@ -112,7 +120,29 @@ def script_of(scenario: ScenarioFile, wanted: Sequence[Key], placed: Placed) -> 
     said = "The law of this motion, as trundle wrote it. All numbers are in SI."
     # A worker's script is no module.
     text = re.sub(r"^export ", "", javascript.module(printed, said), flags=re.MULTILINE)
-    return f"{text}\nconst law = {{...{json.dumps(law)}, placed, phases: {{\n{listed}\n}}}};\n"
+    theory = promised.name if promised else "null"
+    return f"{text}\nconst law = {{...{json.dumps(law)}, placed, promised: {theory}, phases: {{\n{listed}\n}}}};\n"
+
+
+def _shows(system: RollingSystem, said: str) -> dict[str, Any]:
+    """Return what the page tells its headline from."""
+    return {
+        "said": said,
+        "ball": is_ball(system),
+        "deep": system.support.surface.where.startswith("in"),
+        "row": [*(name for name, _ in FILM), *(one["column"].removeprefix(PREFIX) for one in curves_of(system))],
+        "parameters": [name for name, _ in parameters(system)],
+        "units": {unit: [[u.scale, u.symbol, u.least] for u in units_of(kind)] for unit, kind in KINDS.items()},
+    }
+
+
+def curves_of(system: RollingSystem) -> list[dict[str, Any]]:
+    """Return what a row of the film holds to be drawn over the time, as a scene's header has it, and where it stands."""
+    told = PhaseRoutines(system, next(iter(phases_of(system))), ()).curves()
+    return [
+        {"column": f"{PREFIX}{one.key}", "label": one.label, "unit": one.unit, "index": i, "touching": one.touching}
+        for i, one in enumerate(told, start=len(FILM))
+    ]
 
 
 def _phase(routines: PhaseRoutines, printed: list[Routine]) -> str:

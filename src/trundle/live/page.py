@@ -11,7 +11,7 @@ import numpy as np
 
 from ..analysis.sensitivities.keys import moved
 from ..errors import OutOfDomainError, TrundleError
-from ..fields.routines import CURVES, FILM
+from ..fields.routines import FILM
 from ..mechanics.parameters import parameters
 from ..mechanics.system import RollingSystem
 from ..scenario import ScenarioFile
@@ -76,7 +76,8 @@ def made(scenario: Scenario, asked: Sequence[str] = (), *, progress: Progress | 
     law.check(scenario)
     sliders, placed = sliders_of(scenario, asked)
     scene = _scene(scenario, sliders, progress or (lambda _: None))
-    text = law.script_of(scenario, [one.key for one in sliders], placed)
+    said = (scene.header["headline"] or {"said": ""})["said"]
+    text = law.script_of(scenario, [one.key for one in sliders], placed, said)
     page = page_of([scene], f"{text}\n{built('live-worker.js')}")
     if len(page) > _MOST_BYTES:
         raise OutOfDomainError(
@@ -113,7 +114,7 @@ def _scene(scenario: Scenario, sliders: Sequence[Slider], progress: Progress) ->
     live = {
         "sliders": [one.told for one in sliders],
         "variants": variants,
-        "curves": [{"name": FILM[i][0], "unit": FILM[i][1], "column": i} for i in CURVES],
+        "curves": law.curves_of(run.system),
         "film": [name for name, _ in FILM],
         "parameters": [name for name, _ in parameters(run.system)],
     }

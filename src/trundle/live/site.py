@@ -23,7 +23,8 @@ from ..simulation.simulate import Scenario
 from ..solve.samples import Progress
 from ..views.scene import Scene as Drawn
 from ..views.scene import scene_of
-from ..views.viewer.page import page_of
+from ..views.viewer.bundle import built
+from ..views.viewer.page import catalogues, page_of
 from .page import made
 
 # From a slope to a table that leans: each has one thing more than that before it.
@@ -202,7 +203,9 @@ def _step(i: int) -> str:
 def _stop(toured: Sequence[Entry], i: int, links: Mapping[str, str]) -> bytes:
     """Return a step of the tour: what a lecturer says, and the page."""
     one = toured[i]
-    paragraphs = "".join(f"<p>{escape(' '.join(part.split()))}</p>" for part in one.notes.split("\n\n") if part.strip())
+    paragraphs = "".join(
+        f"<p>{escape(' '.join(part.split()).replace('`', ''))}</p>" for part in one.notes.split("\n\n") if part.strip()
+    )
     frame = f'<iframe src="{escape(one.file)}" title="{escape(one.title)}" allowfullscreen></iframe>'
     ways = "".join(
         f'<a href="{_step(j)}" rel="{way}">{said}: {escape(toured[j].title)}</a>'
@@ -216,14 +219,21 @@ def _stop(toured: Sequence[Entry], i: int, links: Mapping[str, str]) -> bytes:
 def _page(title: str, body: str, links: Mapping[str, str]) -> bytes:
     """Return a page of the site that holds no motion itself."""
     own = files(__package__)
-    style, script, template = ((own / f"site.{kind}").read_text(encoding="utf-8") for kind in ("css", "js", "html"))
+    style, template = ((own / f"site.{kind}").read_text(encoding="utf-8") for kind in ("css", "html"))
+    script = built("site.js")
     allowed = [
         f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'" for text in (script, style)
     ]
     # A page from a memory stick is no origin to a browser: frames of files beside it are said by their scheme.
     policy = "default-src 'none'; script-src {}; style-src {}; frame-src 'self' file:; base-uri 'none'".format(*allowed)
     shown = "".join(f'<a href="{address}">{name}</a>' for address, name in links.items())
-    parts = {"title": escape(title), "version": escape(version("trundle")), "links": shown, "body": body}
+    parts = {
+        "catalogues": catalogues(),
+        "title": escape(title),
+        "version": escape(version("trundle")),
+        "links": shown,
+        "body": body,
+    }
     return Template(template).substitute(parts, policy=policy, style=style, script=script).encode()
 
 

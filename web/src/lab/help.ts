@@ -37,6 +37,7 @@ const KEYS: [string, [string, string][]][] = [
       ['C', 'Camera back to its place'],
       ['T', 'From above'],
       ['B', 'The camera goes with the body'],
+      ['U', 'Sound: rolling, slipping, landings'],
       ['1 to 8', 'Arrows, path, axes: shown or not'],
     ],
   ],

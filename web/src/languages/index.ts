@@ -1,6 +1,9 @@
 /** Which languages there are: English, and one for each catalogue beside this file. */
+import { chosenAmong, PSEUDO } from './chosen'
 import { pseudo } from './pseudo'
 import { type Catalogue, speak } from './translate'
+
+export { nameOf } from './chosen'
 
 const FILES = import.meta.glob<Catalogue>('./*.json', { import: 'default' })
 const of = (path: string) => path.replace(/^\.\/|\.json$/g, '')
@@ -8,16 +11,9 @@ const of = (path: string) => path.replace(/^\.\/|\.json$/g, '')
 /** "en", "de": what a reader may choose. */
 export const LANGUAGES: readonly string[] = ['en', ...Object.keys(FILES).map(of)]
 
-/** Each text of the first catalogue in letters that show what is in none. */
-const PSEUDO = 'pseudo'
-
 /** What the link says (`?lang=de`), else the first of the browser's languages that there is. */
 export function chosenLanguage(search: string, preferred: readonly string[]): string {
-  const asked = new URLSearchParams(search).get('lang')
-  const wanted = asked ? [asked, ...preferred] : preferred
-  const offered = asked === PSEUDO ? [...LANGUAGES, PSEUDO] : LANGUAGES
-  const base = (tag: string) => tag.toLowerCase().split('-')[0] ?? ''
-  return wanted.map(base).find((one) => offered.includes(one)) ?? 'en'
+  return chosenAmong(LANGUAGES, search, preferred)
 }
 
 /** Fetch a language's catalogue and speak it; English where it does not come. */
@@ -34,9 +30,4 @@ export async function learn(language: string): Promise<void> {
   } catch {
     // The page is worth more in English than not at all.
   }
-}
-
-/** What a language calls itself. */
-export function nameOf(language: string): string {
-  return new Intl.DisplayNames([language], { type: 'language' }).of(language) ?? language
 }

@@ -1,4 +1,5 @@
 import { afterEach, describe, expect, it } from 'vitest'
+import { saidOf } from '../lab/api'
 import { chosenLanguage } from '.'
 import german from './de.json'
 import { pseudo } from './pseudo'
@@ -43,14 +44,18 @@ describe('saying a text', () => {
     expect(t('It rolls. It slips.')).toBe('Sie rollt. Sie gleitet.')
   })
 
-  it('says the rule of a refusal, whatever was received and advised', () => {
+  it('says what is wrong from its parts: the rule, whatever was received, the remedy', () => {
     speak('de', german)
-    expect(t('„Radius“ must be positive; got -1.5.')).toBe('„Radius“ muss positiv sein; angegeben ist -1,5.')
-    expect(t('„Neigung“ must lie in (-90 deg, 90 deg); got 172 deg. Did you mean 1.72 deg?')).toBe(
-      '„Neigung“ muss in (-90 deg, 90 deg) liegen; angegeben ist 172°. Meinst du 1,72°?',
+    const told = (key: string, rule: string, received: string, remedy = '') =>
+      saidOf({ message: 'anything', key, parts: [{ key, rule, received, remedy }] })
+    expect(told('body.radius', 'must be positive', '-1.5')).toBe('`body.radius` muss positiv sein; angegeben ist -1,5.')
+    expect(told('support.tilt', 'must lie in (-90 deg, 90 deg)', '172 deg', 'Did you mean 1.72 deg?')).toBe(
+      '`support.tilt` muss in (-90°; 90°) liegen; angegeben ist 172°. Meinst du 1,72°?',
     )
-    expect(t("body.mass must be positive; got 'none of it'.")).toBe(
-      "body.mass muss positiv sein; angegeben ist 'none of it'.",
+    expect(
+      told('body.mass', 'must be a mass', "'none of it'", "Write for instance '65 g', or a bare number in kg."),
+    ).toBe(
+      "`body.mass` muss eine Masse sein; angegeben ist 'none of it'. Schreibe zum Beispiel '65 g', oder eine bloße Zahl in kg.",
     )
   })
 

@@ -48,7 +48,7 @@ export function language(): string {
 function template(key: string, said: string): Template {
   const parts = key.split(SLOT) // fixed, name, fixed, name, ..., fixed
   const pattern = parts.map((part, i) => (i % 2 ? '(.+?)' : part.replace(/[.*+?^${}()|[\]\\]/g, '\\$&'))).join('')
-  const either = pattern.replace(/^\p{Ll}/u, (first) => `[${first}${first.toUpperCase()}]`) // it may begin a line
+  const either = pattern.replace(/^\p{L}/u, (first) => `[${first.toLowerCase()}${first.toUpperCase()}]`) // a line or not
   return { pattern: new RegExp(`^${either}$`, 's'), names: parts.filter((_, i) => i % 2), said }
 }
 
@@ -67,14 +67,35 @@ function remembered(text: string): string {
   return found
 }
 
+/** Where a text may be taken apart, the larger parts first. */
+const BREAKS = [/(?<=[^\d\s][.!?…]) (?=\S)|\n/, /(?<=;) (?=\S)/, /(?<=[^\d\s]:) (?=\S)/]
+
 function translated(text: string): string {
   if (!/\p{L}{2}/u.test(text)) return entries.get(text) ?? withMarks(text)
-  const said = entry(text) ?? recognized(text)
+  const said = entry(text) ?? recognized(text) ?? aroundFormulas(text) ?? beforeItsStop(text)
   if (said !== undefined) return said
-  const sentences = text.split(/(?<=[^\d\s][.!?;:…]) (?=\S)|\n/)
-  if (sentences.length < 2) return withMarks(text)
-  const between = text.match(/(?<=[^\d\s][.!?;:…]) (?=\S)|\n/g) ?? []
-  return sentences.map((one, i) => t(one) + (between[i] ?? '')).join('')
+  const at = BREAKS.find((one) => one.test(text))
+  if (!at) return withMarks(text)
+  const between = text.match(new RegExp(at, 'g')) ?? []
+  return text
+    .split(at)
+    .map((one, i) => t(one) + (between[i] ?? ''))
+    .join('')
+}
+
+/** A text whose catalogue has `$1$`, `$2$` for its formulas: the words are the same, whatever these are. */
+function aroundFormulas(text: string): string | undefined {
+  const formulas: string[] = []
+  const key = text.replace(/\$[^$]+\$/g, (formula) => `$${formulas.push(formula)}$`)
+  const said = formulas.length > 0 ? (entry(key) ?? recognized(key)) : undefined
+  return said?.replace(/\$(\d+)\$/g, (_, number) => formulas[number - 1] ?? '')
+}
+
+/** A part of a text, which ends as the whole would not. */
+function beforeItsStop(text: string): string | undefined {
+  const bare = text.slice(0, -1)
+  const said = /[;:.]$/.test(text) ? (entry(bare) ?? recognized(bare)) : undefined
+  return said === undefined ? undefined : said + text.slice(-1)
 }
 
 /** The entry of a text, however its first letter is written: a label may stand within a sentence. */

@@ -1,4 +1,5 @@
 /** The sliders of a live page. */
+import { shownDigits } from '../languages/translate'
 import { element, put } from '../viewer/elements'
 import { shortNumber } from '../viewer/quantities'
 import type { SliderHeader } from './header'
@@ -74,7 +75,7 @@ export class Bench {
     const { range, field } = this.rows[i]!
     this.values[i] = value
     const text = shortNumber(value / factor)
-    field.value = text
+    field.value = shownDigits(text)
     if (slide) range.value = String(value / factor)
     put(range, 'aria-valuetext', `${text} ${unit}`.trim())
     this.back.disabled = !this.moved

@@ -16,6 +16,8 @@ export interface Course {
   ended: Happened | null
   /** All numbers of the system, as `law.parameters` names them. */
   parameters: number[]
+  /** The number of the headline by theory, if a formula has it. */
+  promised: number | null
 }
 
 const FRAMES = 600 // of a film, at least
@@ -65,11 +67,13 @@ class Follower {
     this.t = law.begin
     this.end = law.begin + law.duration
     this.phase = law.phases[law.phase] as Phase
-    this.found = { time: [], rows: [], phase: [], events: [], ended: null, parameters: this.p }
+    this.found = { time: [], rows: [], phase: [], events: [], ended: null, parameters: this.p, promised: null }
   }
 
   run(): Course {
+    const { law } = this
     this.begin()
+    this.found.promised = law.promised?.(this.t, this.y, this.p, this.u)[0] ?? null
     const first = this.events(this.t, this.y)
     const beyond = this.phase.names.find((name, i) => !FORCES.includes(name) && name in this.law.ends && first[i]! < 0)
     if (beyond) this.stop(beyond, BEYOND)

@@ -1,5 +1,7 @@
 /** What a live page's scene says besides: which sliders there are, and how its pictures change along them. */
 
+import type { CurveHeader } from '../viewer/scene'
+
 export interface SliderHeader {
   name: string
   value: number
@@ -19,16 +21,16 @@ export interface Variant {
   steps: Record<string, number>
 }
 
-export interface Curve {
-  name: string
-  unit: string
-  column: number
+/** Of the curves: where in a row of a course it stands, and whether there is none in flight. */
+export interface LiveCurve extends CurveHeader {
+  index: number
+  touching: boolean
 }
 
 export interface LiveHeader {
   sliders: SliderHeader[]
   variants: Variant[]
-  curves: Curve[]
+  curves: LiveCurve[]
   /** What a row of a course holds, and what its parameters are called. */
   film: string[]
   parameters: string[]

@@ -33,7 +33,22 @@ export interface Method {
   d: number[][]
 }
 
+/** What of a motion its headline is told from. */
+export interface Shows {
+  /** Of the headline that the motion in the file has, with {} for its number; empty where it has none. */
+  said: string
+  ball: boolean
+  /** Whether what rolls is within the support. */
+  deep: boolean
+  /** What the numbers of a row of the film are called, and those of the system. */
+  row: string[]
+  parameters: string[]
+  /** Of a unit of SI: size, symbol and least count of those that numbers are told in, the largest first. */
+  units: Record<string, [number, string, number][]>
+}
+
 export interface Law {
+  shows: Shows
   begin: number
   duration: number
   phase: string
@@ -51,5 +66,7 @@ export interface Law {
   ends: Record<string, string>
   method: Method
   placed: (w: Numbers) => number[]
+  /** What theory says of what is seen, of the start; null where only numbers tell it. */
+  promised: ((t: number, y: Numbers, p: Numbers, u: Numbers) => number[]) | null
   phases: Record<string, Phase>
 }

@@ -1,28 +1,40 @@
 /** A live page: sliders, the motion by the law that the page holds, its curves, and what happens in it in words. */
+import { type Curves, createCurves } from '../curves/curves'
 import type { Viewer } from '../viewer/contract'
-import { element, say } from '../viewer/elements'
+import { element, hide, put, say } from '../viewer/elements'
+import { beside, capital } from '../viewer/headline'
 import { shortNumber } from '../viewer/quantities'
-import type { Scene } from '../viewer/scene'
+import type { Headline, Scene } from '../viewer/scene'
 import { Bench } from './bench'
 import type { Course } from './course'
-import { Graph } from './graph'
 import type { LiveHeader } from './header'
 import { Pictures } from './picture'
 import type { Answer, Question } from './worker'
 
+const OF_THE_FILE = 'A slider has been moved: what follows is of the numbers as they are in the file.'
+
 /** Let a page compute its own motion; what is shown until then is the one that lies in it. */
-export function startLive(root: Document, stage: HTMLElement, viewer: Viewer, scene: Scene, live: LiveHeader): void {
+export function startLive(
+  root: Document,
+  stage: HTMLElement,
+  viewer: Viewer,
+  scene: Scene,
+  live: LiveHeader,
+): { restyle(): void } | null {
   const text = root.querySelector('script[data-trundle-law]')?.textContent
-  if (text) new LivePage(root, stage, viewer, scene, live, text)
+  return text ? new LivePage(root, stage, viewer, scene, live, text) : null
 }
 
 class LivePage {
   private readonly pictures: Pictures
   private readonly bench: Bench
-  private readonly graph: Graph
-  private readonly headline = element('p', 'live-headline', { role: 'status' })
+  private readonly curves: Curves
+  private readonly shown = element('strong', 'live-shown')
+  private readonly other = element('span', 'live-other')
+  private readonly happens = element('p', 'live-happens')
+  private readonly headline = element('div', 'live-headline', { role: 'status' }, this.shown, this.other, this.happens)
   private readonly worker: Worker | null
-  private readonly aside: HTMLElement | null
+  private readonly ofTheFile = element('p', 'page-of-the-file', { hidden: '' }, OF_THE_FILE)
   private asked = 0
   private busy = false
   private waiting = false
@@ -37,11 +49,14 @@ class LivePage {
   ) {
     this.pictures = new Pictures(scene, live)
     this.bench = new Bench(live.sliders, () => this.ask())
-    this.graph = new Graph(live.curves, (time) => {
-      viewer.pause()
-      viewer.seek(time)
-    })
-    this.aside = root.querySelector('.page-figures')
+    this.curves = createCurves(
+      (text) => this.say(text),
+      (time) => {
+        viewer.pause()
+        viewer.seek(time)
+      },
+    )
+    root.querySelector('.page-figures')?.prepend(this.ofTheFile)
     const side = element(
       'section',
       'live-side',
@@ -49,8 +64,11 @@ class LivePage {
       this.headline,
       this.bench.element,
     )
-    stage.after(side, this.graph.element)
-    viewer.on('time', ({ time }) => this.graph.at(time))
+    const graph = element('section', 'live-graph', { 'aria-label': 'Curves' }, this.curves.element)
+    stage.after(side, graph)
+    viewer.on('time', ({ time }) => this.curves.at(time))
+    this.tell(scene.header.headline ?? null)
+    this.curves.update(scene)
     this.worker = started(law)
     if (!this.worker) {
       this.fail('This browser lets no page compute in the background. The motion is that of the file.')
@@ -69,27 +87,43 @@ class LivePage {
     this.worker.postMessage(question)
   }
 
-  private hear({ id, course, failed, values }: Answer): void {
+  private hear({ id, course, headline, failed, values }: Answer): void {
     this.busy = false
-    if (course) this.show(course, values, id)
-    else this.say(`These numbers lead nowhere: ${failed}`)
+    if (course) this.show(course, headline, values, id)
+    else {
+      this.tell(null)
+      this.say(`These numbers lead nowhere: ${failed}`)
+    }
     if (this.waiting) this.ask()
   }
 
-  private show(course: Course, values: readonly number[], id: number): void {
-    this.viewer.setScenes([this.pictures.scene(course, values)], {
+  private show(course: Course, headline: Headline | null, values: readonly number[], id: number): void {
+    const scene = this.pictures.scene(course, values)
+    this.viewer.setScenes([scene], {
       keepTime: id > 1,
       keepCamera: id > 1,
       rests: !this.waiting,
     })
-    this.graph.show(course)
-    this.graph.at(this.viewer.time)
+    this.curves.update(scene)
+    this.curves.at(this.viewer.time)
+    this.tell(headline)
     this.say(told(course, this.live))
-    this.aside?.toggleAttribute('data-of-the-file', this.bench.moved)
+    hide(this.ofTheFile, !this.bench.moved)
+  }
+
+  private tell(headline: Headline | null): void {
+    say(this.shown, headline ? capital(headline.text) : '')
+    say(this.other, headline ? beside(headline) : '')
+    put(this.shown, 'title', headline?.how ?? '')
   }
 
   private say(text: string): void {
-    say(this.headline, text)
+    say(this.happens, text)
+  }
+
+  /** Light or dark: the curves are drawn anew. */
+  restyle(): void {
+    this.curves.restyle()
   }
 
   private fail(text: string): void {
@@ -111,10 +145,10 @@ function started(law: string): Worker | null {
 /** What happens in a course, in a line. */
 function told(course: Course, { film }: LiveHeader): string {
   const { time, rows, events, ended } = course
-  const [x, speed] = [film.indexOf('position_x'), film.indexOf('speed')]
+  const [x, v] = [film.indexOf('position_x'), film.indexOf('velocity_x')]
   let [path, fastest] = [0, 0]
   rows.forEach((row, i) => {
-    fastest = Math.max(fastest, row[speed]!)
+    fastest = Math.max(fastest, Math.hypot(row[v]!, row[v + 1]!, row[v + 2]!))
     const before = rows[i - 1]
     if (before) path += Math.hypot(row[x]! - before[x]!, row[x + 1]! - before[x + 1]!, row[x + 2]! - before[x + 2]!)
   })

@@ -1,7 +1,6 @@
 import { expect, test } from 'vitest'
 import type { Columns, Scene, SceneHeader } from '../viewer/scene'
 import type { Course } from './course'
-import { behind, enveloped } from './graph'
 import type { LiveHeader } from './header'
 import { Pictures, quaternion } from './picture'
 
@@ -29,6 +28,7 @@ const course: Course = {
   events: [],
   ended: null,
   parameters: [0.25],
+  promised: null,
 }
 
 test('a mesh is bent through its nodes, and the file keeps its own', () => {
@@ -58,13 +58,4 @@ test('a mesh is bent through its nodes, and the file keeps its own', () => {
   expect([...scene.columns.position!]).toEqual([0, 1, 2, -0, -1, -2])
   expect(scene.header.to_world[0]).toBeCloseTo(Math.cos(0.125), 15)
   expect(scene.header.body.radius).toBeCloseTo(Math.hypot(3, 3.5, 4), 6)
-})
-
-test('a curve loses no peak, and knows what lies behind an instant', () => {
-  const rows = Array.from({ length: 100 }, (_, i) => [i === 57 ? 9 : i % 2])
-  const drawn = enveloped(rows, 0, 10)
-  expect(drawn.length).toBeLessThanOrEqual(20)
-  expect(drawn).toContain(57)
-  expect(drawn).toEqual([...drawn].sort((a, b) => a - b))
-  expect([behind([0, 1, 2], 1.5), behind([0, 1, 2], 2), behind([0, 1, 2], -1)]).toEqual([1, 2, 0])
 })

@@ -1,10 +1,11 @@
 /** A course as a scene: its rows as columns, and the meshes as they are for the values of the sliders. */
-import type { ColumnArray, Columns, Scene, SceneHeader, Triple } from '../viewer/scene'
+import { type ColumnArray, type Columns, PHASE, type Scene, type SceneHeader, type Triple } from '../viewer/scene'
 import type { Course } from './course'
-import type { LiveHeader, Variant } from './header'
+import type { LiveCurve, LiveHeader, Variant } from './header'
 
 type Mutable = { -readonly [Name in keyof Columns]: Columns[Name] }
 
+const SLIP = 'curve_slip'
 const VECTORS = ['position', 'contact', 'velocity', 'angular_velocity', 'contact_force'] as const
 
 export class Pictures {
@@ -28,7 +29,9 @@ export class Pictures {
       columns.support_orientation = continuous(turns(this.taken(course, 'support_rotation_xx', 9)))
     }
     for (const variant of this.live.variants) this.bend(columns, variant, values[variant.slider]!)
-    return { header: this.header(course, columns), columns }
+    const drawn = this.drawn(course)
+    const header = { ...this.header(course, columns), curves: drawn.map(([curve]) => curve) }
+    return { header, columns: { ...columns, ...Object.fromEntries(drawn.map(([{ column }, row]) => [column, row])) } }
   }
 
   private taken(course: Course, first: string, width: number): Float32Array {
@@ -38,6 +41,15 @@ export class Pictures {
       for (let j = 0; j < width; j++) found[width * i + j] = row[begin + j]!
     })
     return found
+  }
+
+  /** What may be drawn over the time; a slip that never comes is none. */
+  private drawn({ rows, phase }: Course): [LiveCurve, Float32Array][] {
+    const found = this.live.curves.map((curve): [LiveCurve, Float32Array] => {
+      const none = (i: number) => curve.touching && phase[i] === PHASE.flight
+      return [curve, Float32Array.from(rows, (row, i) => (none(i) ? Number.NaN : row[curve.index]!))]
+    })
+    return found.filter(([{ column }, values]) => column !== SLIP || values.some((value) => value !== 0))
   }
 
   private header(course: Course, columns: Columns): SceneHeader {

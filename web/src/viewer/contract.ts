@@ -92,6 +92,8 @@ export interface Viewer {
   readonly duration: number
   readonly playing: boolean
   frame: Frame
+  /** Whether the run is heard while it plays: rolling, slipping, landings. */
+  sound: boolean
   /** Live: `viewer.show.velocity = true` and `viewer.show = { velocity: true }` do the same. */
   get show(): Show
   set show(part: Partial<Show>)

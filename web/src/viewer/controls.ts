@@ -37,6 +37,7 @@ export class Controls {
     title: 'Stroboscope: flashes in a second of the run, each of which leaves a faint picture',
   })
   private readonly following: HTMLButtonElement
+  private readonly sounding: HTMLButtonElement
   private readonly frames = new Map<Frame, HTMLButtonElement>()
   private readonly switches = new Map<keyof Show, HTMLButtonElement>()
   private places = 2
@@ -67,6 +68,7 @@ export class Controls {
       this.flashes.append(element('option', '', { value: String(rate) }, rate ? `✦${rate}` : '✦'))
     this.looping = this.toggle('loop', 'Repeat (L)', () => (viewer.loop = !viewer.loop))
     this.following = this.toggle('follow', 'Camera goes with the body (B)', () => (viewer.follow = !viewer.follow))
+    this.sounding = this.toggle('sound', 'Sound (U)', () => (viewer.sound = !viewer.sound))
     this.element = element(
       'div',
       'tr-controls',
@@ -128,6 +130,7 @@ export class Controls {
       iconButton('home', 'Camera back to its place (C)', () => viewer.resetCamera()),
       iconButton('top', 'From above (T)', () => viewer.topView()),
       this.following,
+      this.sounding,
     )
     return element('div', 'tr-row tr-view', {}, frames, arrows, camera)
   }
@@ -141,7 +144,7 @@ export class Controls {
     return select
   }
 
-  private toggle(name: 'loop' | 'follow', label: string, pressed: () => void): HTMLButtonElement {
+  private toggle(name: 'loop' | 'follow' | 'sound', label: string, pressed: () => void): HTMLButtonElement {
     const button = iconButton(name, label, pressed)
     button.setAttribute('aria-pressed', 'false')
     return button
@@ -196,6 +199,7 @@ export class Controls {
     }
     put(this.looping, 'aria-pressed', String(viewer.loop))
     put(this.following, 'aria-pressed', String(viewer.follow))
+    put(this.sounding, 'aria-pressed', String(viewer.sound))
     for (const [frame, button] of this.frames) put(button, 'aria-pressed', String(viewer.frame === frame))
     for (const [show, button] of this.switches) put(button, 'aria-pressed', String(viewer.show[show]))
     const known = SPEEDS.some((speed) => speed === viewer.speed)
@@ -227,6 +231,7 @@ export function pressed(
     c: () => viewer.resetCamera(),
     t: () => viewer.topView(),
     b: () => (viewer.follow = !viewer.follow),
+    u: () => (viewer.sound = !viewer.sound),
   }
   SWITCHES.forEach(({ show }, i) => {
     keys[String(i + 1)] = () => (viewer.show = { [show]: !viewer.show[show] })

@@ -43,6 +43,7 @@ const ICONS = {
   home: 'M3.5 10 10 4l6.5 6M5.5 8.6V16h9V8.6',
   top: 'M10 3v7M7 7.5l3 3 3-3M3 15c0-1.7 3.1-3 7-3s7 1.3 7 3-3.1 3-7 3-7-1.3-7-3z',
   follow: 'M10 6.2a3.8 3.8 0 1 0 0 7.6 3.8 3.8 0 0 0 0-7.6zM10 2v4M10 14v4M2 10h4M14 10h4',
+  sound: 'M3 8v4h3l4 3.5v-11L6 8zM13 7.5a3.6 3.6 0 0 1 0 5M15.3 5a7 7 0 0 1 0 10',
 } as const
 
 export type Icon = keyof typeof ICONS

@@ -1,6 +1,9 @@
 /** A saved page: its scenes lie in it, compressed, and so does this script. */
+import { type Curves, createCurves } from '../curves/curves'
+import { learnWithin, unzipped } from '../languages/within'
 import { startLive } from '../live/page'
-import type { Theme } from './contract'
+import type { Theme, Viewer } from './contract'
+import { element, say } from './elements'
 import { type Scene, unpack } from './scene'
 import { createViewer } from './viewer'
 
@@ -10,13 +13,16 @@ export function startSavedPage(root: Document = document): void {
   const packed = [...root.querySelectorAll<HTMLElement>('script[data-trundle-scene]')]
   if (!stage || !packed.length) return
   const note = root.querySelector<HTMLElement>('[data-trundle-note]')
-  Promise.all(packed.map(({ textContent }) => unzipped(textContent ?? '')))
+  const scenes = Promise.all(packed.map(({ textContent }) => sceneOf(textContent ?? '')))
+  learnWithin(root)
+    .catch(() => undefined) // the page is worth more in English than not at all
+    .then(() => scenes)
     .then((scenes) => {
       note?.remove()
       show(root, stage, scenes)
     })
     .catch((error: unknown) => {
-      if (note) note.textContent = `The motion cannot be shown: ${error instanceof Error ? error.message : error}`
+      if (note) say(note, `The motion cannot be shown: ${error instanceof Error ? error.message : error}`)
       throw error
     })
 }
@@ -29,18 +35,36 @@ function show(root: Document, stage: HTMLElement, scenes: Scene[]): void {
   viewer.setScenes(scenes)
   viewer.suit()
   viewer.loop = true
+  const [scene] = scenes as [Scene]
+  const { live, curves } = scene.header
+  const drawn = live ? startLive(root, stage, viewer, scene, live) : null
+  const own = !live && scenes.length === 1 && curves?.length ? curvesOf(stage, viewer, scene) : null
   offerThemes(root, (theme) => {
     viewer.theme = theme
+    drawn?.restyle()
+    own?.restyle()
   })
-  const live = scenes[0]?.header.live
-  if (live) startLive(root, stage, viewer, scenes[0] as Scene, live)
   if (!matchMedia('(prefers-reduced-motion: reduce)').matches) viewer.play()
 }
 
-async function unzipped(base64: string): Promise<Scene> {
-  const bytes = Uint8Array.from(atob(base64.trim()), (letter) => letter.charCodeAt(0))
-  const whole = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'))
-  return unpack(await new Response(whole).arrayBuffer())
+/** The curves of a film, beneath it. */
+function curvesOf(stage: HTMLElement, viewer: Viewer, scene: Scene): Curves {
+  const happens = element('p', 'page-said', { role: 'status' })
+  const curves = createCurves(
+    (text) => say(happens, text),
+    (time) => {
+      viewer.pause()
+      viewer.seek(time)
+    },
+  )
+  stage.after(element('section', 'page-curves', { 'aria-label': 'Curves' }, curves.element, happens))
+  curves.update(scene)
+  viewer.on('time', ({ time }) => curves.at(time))
+  return curves
+}
+
+async function sceneOf(base64: string): Promise<Scene> {
+  return unpack(await new Response(unzipped(base64)).arrayBuffer())
 }
 
 function themeNow(root: Document): 'light' | 'dark' {
@@ -55,7 +79,7 @@ function offerThemes(root: Document, changed: (theme: Theme) => void): void {
   let chosen = false
   const put = (theme: 'light' | 'dark') => {
     root.documentElement.dataset.theme = theme
-    if (button) button.textContent = theme === 'dark' ? 'Light' : 'Dark'
+    if (button) say(button, theme === 'dark' ? 'Light' : 'Dark')
     changed(theme)
   }
   put(themeNow(root))

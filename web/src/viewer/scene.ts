@@ -1,5 +1,6 @@
 /** A run as the package packs it: a header, and columns of numbers over its samples. */
 
+import { t } from '../languages/translate'
 import type { LiveHeader } from '../live/header'
 
 export type Triple = [number, number, number]
@@ -24,6 +25,9 @@ export interface Finding {
 
 /** What a run shows, in one sentence, and its number by theory or in another way. */
 export interface Headline {
+  /** With {} for the number; and its unit in SI, or °. */
+  said: string
+  unit: string
   text: string
   other: string | null
   predicted: boolean
@@ -123,6 +127,8 @@ export interface Columns {
   /** The coordinates of the support's own motion, side by side: of a free axle its angle, rad, and rate, rad/s. */
   support_coordinates?: Float64Array
   guiding_centre?: Float32Array
+  /** Speed of slip, m/s; not a number in flight. */
+  curve_slip?: Float32Array
   body_vertices?: Float32Array
   body_normals?: Float32Array
   body_triangles?: Uint32Array
@@ -192,6 +198,7 @@ export function sameNumbers(one: ColumnArray | undefined, other: ColumnArray | u
 
 /** What a picture of scenes shows, in words. */
 export function saidOf(scenes: readonly Scene[]): string {
-  const said = scenes.map(({ header }) => `${header.body.name} on ${header.support.name.toLowerCase()}`).join('; ')
-  return said ? `3-D picture: ${said}` : '3-D picture, empty'
+  const one = ({ header: { body, support } }: Scene) => t(`${body.name} on ${support.name.toLowerCase()}`)
+  const what = scenes.map(one).join('; ')
+  return what ? t('3-D picture: {title}', { title: what }) : t('3-D picture, empty')
 }

@@ -14,6 +14,7 @@ import { Player, watchable } from './player'
 import { type Scene, saidOf, type Triple } from './scene'
 import { Sharpness } from './sharpness'
 import { liveShow } from './shown'
+import { Sound } from './sound'
 import { Stage } from './stage'
 import { paletteOf, watchTheme, widthsOf } from './theme'
 import { Tools } from './tools'
@@ -29,6 +30,7 @@ export function createViewer(host: HTMLElement, options: ViewerOptions = {}): Vi
 class StageViewer implements Viewer {
   private readonly events = new Emitter<ViewerEvents>()
   private readonly player = new Player()
+  private readonly heard = new Sound()
   private readonly labels: LabelLayer
   private readonly legend = new Legend()
   private readonly note = element('p', 'tr-note')
@@ -137,6 +139,7 @@ class StageViewer implements Viewer {
 
   setScenes(scenes: readonly Scene[], options: SceneOptions = {}): void {
     this.scenes = scenes
+    this.heard.runs = scenes
     const begin = Math.min(...scenes.map(({ columns }) => columns.time[0] ?? 0))
     const end = Math.max(...scenes.map(({ columns }) => columns.time[columns.time.length - 1] ?? 0))
     this.player.load(scenes.length ? begin : 0, scenes.length ? end - begin : 0, options.keepTime ?? false)
@@ -172,12 +175,14 @@ class StageViewer implements Viewer {
   }
 
   private stopped(): void {
+    this.heard.rest()
     this.events.emit('pause', { time: this.time })
     this.controls?.refresh()
     this.invalidate()
   }
 
   seek(time: number): void {
+    this.heard.leap()
     this.player.seek(time)
     this.world?.hold(null)
     this.events.emit('time', { time: this.time })
@@ -224,6 +229,14 @@ class StageViewer implements Viewer {
   }
   set loop(loop: boolean) {
     this.player.loop = loop
+    this.controls?.refresh()
+  }
+
+  get sound(): boolean {
+    return this.heard.on
+  }
+  set sound(on: boolean) {
+    this.heard.on = on
     this.controls?.refresh()
   }
 
@@ -382,7 +395,10 @@ class StageViewer implements Viewer {
     if (ran) this.sharpness?.frame(now)
     else this.sharpness?.changed()
     const ended = this.player.tick(now)
-    if (ran) this.events.emit('time', { time: this.time })
+    if (ran) {
+      this.heard.at(this.time)
+      this.events.emit('time', { time: this.time })
+    }
     this.draw()
     if (ended) this.stopped()
     if (this.playing) this.invalidate()
@@ -411,6 +427,7 @@ class StageViewer implements Viewer {
     this.abort.abort()
     if (this.pending) cancelAnimationFrame(this.pending)
     this.sharpness?.dispose()
+    this.heard.dispose()
     this.narrator.dispose()
     this.unwatch()
     this.watcher?.disconnect()

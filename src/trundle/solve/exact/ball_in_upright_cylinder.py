@@ -20,6 +20,8 @@ from .formula import Lines, number, quantity
 from .phi import exponentials, phase, two_product
 from .round_cylinder import ON_CYLINDER, frequency_ratio, numbers_of, pull, vectors_of
 
+_BOBS = "bobs {} times a round"
+
 
 @dataclass(frozen=True)
 class BallInUprightCylinder(ClosedForm):
@@ -216,6 +218,10 @@ class BallInUprightCylinder(ClosedForm):
         shown = rf"\nu = {root}\cdot {quantity(self.angular_rate, 'rad/s')} = {quantity(self.bobbing_rate, 'rad/s')}"
         return [(r"\nu = \sqrt{\frac{k}{1+k}}\;\dot\theta", shown)]
 
+    def promised(self, said: str) -> Scalar | None:
+        """Return how often it bobs a round."""
+        return self.frequency_ratio if said == _BOBS else None
+
     def findings(self, seen: Seen) -> Iterator[Finding]:
         """Compare going round and bobbing."""
         x, y, z = seen.at.position.T
@@ -229,9 +235,7 @@ class BallInUprightCylinder(ClosedForm):
         ratio = None if found is None else found / abs(round_)
         note = "of bobbing to going round, whatever the radii"
         predicted = float(self.frequency_ratio)
-        yield Finding(
-            "Ratio of the two", r"\sqrt{k/(1+k)}", predicted, ratio, "", note=note, said="bobs {} times a round"
-        )
+        yield Finding("Ratio of the two", r"\sqrt{k/(1+k)}", predicted, ratio, "", note=note, said=_BOBS)
         if found is not None and found * seen.time[-1] >= 2 * math.pi:
             wave = found * seen.time
             design = np.column_stack([np.ones_like(wave), np.cos(wave), np.sin(wave)])

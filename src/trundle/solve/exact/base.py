@@ -286,6 +286,21 @@ class ClosedForm:
             told = str(error)
         return [(f"centre after {duration:g} s, if no event comes first", told)]
 
+    def promised(self, said: str) -> Any:  # noqa: ARG002
+        """Return the number of a sentence of its findings, for any scalars.
+
+        Parameters
+        ----------
+        said : str
+            The sentence, as `Finding.said` has it.
+
+        Returns
+        -------
+        scalar or None
+            SI; None where only numbers tell it.
+        """
+        return None
+
     def formulas(self, system: RollingSystem) -> Lines:
         """Return its formulas; the laws that it obeys, unless it has its own.
 

@@ -33,6 +33,11 @@ if TYPE_CHECKING:
 _STILL = 1e-12  # share of the table's speed below which a ball that was put down gently has not moved
 _SLOWEST = 1e-12  # rad/s; a slower circle is a straight line to anyone
 
+# What one sees, for the number that `promised` gives.
+_STAYS, _CIRCLES = "stays, to within {}", "circles at {} of the table's rate"
+_STRAIGHT, _ACCELERATES = "rolls straight at {}", "accelerates at {}"
+_DRIFTS = ("drifts {}", "drifts {} along the slope's level")
+
 
 @dataclass(frozen=True)
 class SphereOnPlane(ManySamples, ClosedForm):
@@ -395,6 +400,20 @@ class SphereOnPlane(ManySamples, ClosedForm):
             lines.append((rf"\varrho = \frac{{{above}}}{{|\kappa|}}", rf"\varrho = {share} = {quantity(radius, 'm')}"))
         return lines
 
+    def promised(self, said: str) -> Scalar | None:
+        """Return what its circle, its drift or its acceleration is said to be."""
+        xp = namespace(self.kappa, self.phi.re, self.velocity[0])
+        if said == _STAYS:
+            return 0.0
+        if said == _CIRCLES:
+            return self.inertia_ratio / (1 + self.inertia_ratio)
+        push = xp.hypot(self.phi.re, self.phi.im)
+        if said in _DRIFTS:
+            return push / xp.abs(self.kappa)
+        if said == _STRAIGHT:
+            return xp.hypot(*self.velocity)
+        return push if said == _ACCELERATES else None
+
     def findings(self, seen: Seen) -> Iterator[Finding]:
         """Compare its circle, its braked motion or its acceleration, and the friction that rolling takes (T5f)."""
         if self.has_guiding_centre:
@@ -423,7 +442,7 @@ class SphereOnPlane(ManySamples, ClosedForm):
                     "m",
                     note=note,
                     scale=scale,
-                    said="stays, to within {}",
+                    said=_STAYS,
                 )
                 return
             speed = abs(zeta[-1] - zeta[0]) / float(seen.time[-1])
@@ -439,7 +458,7 @@ class SphereOnPlane(ManySamples, ClosedForm):
         yield Finding("Angular rate of the circle", r"\kappa", kappa, rate, "rad/s", note=note)
         of_table = f"{as_ratio(share)} of the table's rate, whatever its size and mass"
         measured = rate and rate / float(self.rate)
-        said = "" if drift else "circles at {} of the table's rate"
+        said = "" if drift else _CIRCLES
         yield Finding("Share of the table's rate", r"\kappa/\omega", share, measured, "", note=of_table, said=said)
         yield Finding("Radius of the circle", r"\varrho", radius, abs(found.arm) if found else None, "m", note=note)
         if not drift:
@@ -458,10 +477,10 @@ class SphereOnPlane(ManySamples, ClosedForm):
             gone = float(np.abs(seen.zeta[-1] - seen.zeta[0]) / seen.time[-1])
             note = "nothing pushes it: it keeps its speed"
             speed = math.hypot(*map(float, self.velocity))
-            yield Finding("Speed", "v", speed, gone, "m/s", note=note, said="rolls straight at {}")
+            yield Finding("Speed", "v", speed, gone, "m/s", note=note, said=_STRAIGHT)
             return
         found = acceleration(seen)
-        yield Finding("Acceleration", r"|\varphi|", abs(push), abs(found), "m/s²", said="accelerates at {}")
+        yield Finding("Acceleration", r"|\varphi|", abs(push), abs(found), "m/s²", said=_ACCELERATES)
         slide = float(system.gravity) * math.sin(abs(float(system.support.tilt)))
         if slide and not system.loads:
             share = 1 / (1 + float(self.inertia_ratio))
@@ -524,7 +543,7 @@ def _degrees(angle: float) -> str:
 def _drifts(drift: complex, system: RollingSystem) -> str:
     """Say that it drifts, and where to if that is level on a slope."""
     level = float(system.support.tilt) != 0 and abs(drift.real) <= _STILL * abs(drift)
-    return "drifts {} along the slope's level" if level else "drifts {}"
+    return _DRIFTS[1] if level else _DRIFTS[0]
 
 
 def _direction(predicted: complex, measured: complex | None, system: RollingSystem) -> Finding:

@@ -36,7 +36,8 @@ def scene_of(
 ) -> Scene:
     """Return what a viewer needs to draw a run.
 
-    `curves`: and what may be drawn of it over time. `places`: where other runs touch the ground, if they share it.
+    `curves`: and what may be drawn of it over time, as on every page that has its card. `places`: where other runs
+    touch the ground, if they share it.
 
     Examples
     --------
@@ -59,7 +60,7 @@ def scene_of(
     places = _places(run, at, state) if places is None else places
     ground = ground_under(run.system, places, radius_about_centre(body.vertices))
     header = header_of(run, ground, radius_about_centre(body.vertices))
-    if curves:
+    if curves or with_card:
         header["curves"], more = curves_of(run.system, at)
         columns |= more
     columns |= body.columns("body", "body_pattern") | ground.mesh.columns("support", "support_marks")

@@ -13,16 +13,17 @@ from numpy.typing import NDArray
 from trundle.wording import unit_for
 
 from ...mechanics.algebra import Vector
+from ...mechanics.quantities import angle_between, is_ball
 from ...mechanics.system import RollingSystem
 from ...solve.exact.finding import Finding
 from ...solve.samples import Event, Samples
 from .columns import material
-from .curves import angle_between, is_ball, slip_of, third_axis, upwards
+from .curves import slip_of, third_axis, upwards
 
 Array = NDArray[np.float64]
 Quantity = Callable[[RollingSystem, Samples], Array]
 
-_KINDS = {"m": "length", "m/s": "speed", "s": "time", "N": "force", "rad": "angle"}  # that have units of several sizes
+KINDS = {"m": "length", "m/s": "speed", "s": "time", "N": "force", "rad": "angle"}  # that have units of several sizes
 _NOTHING = 1e-12  # SI: rounding
 _CLEAR = 0.5  # cosine or share from which a direction is plain
 _SEEN = 0.2  # of the first spin, from which it counts as spin the other way
@@ -53,8 +54,8 @@ class Headline:
     def as_dict(self) -> dict[str, Any]:
         """Return it as a scene's header holds it: in words, both numbers in the unit that suits them."""
         scale, symbol = 1.0, self.unit
-        if self.unit in _KINDS:
-            found = unit_for(abs(self.measured) if abs(self.measured) >= _NOTHING else 1.0, _KINDS[self.unit])
+        if self.unit in KINDS:
+            found = unit_for(abs(self.measured) if abs(self.measured) >= _NOTHING else 1.0, KINDS[self.unit])
             scale, symbol = found.scale, found.symbol
 
         def said(value: float) -> str:
@@ -63,6 +64,8 @@ class Headline:
             return f"{digits}{symbol}" if symbol in ("", "°") else f"{digits} {symbol}"
 
         return {
+            "said": self.text,
+            "unit": self.unit,
             "text": self.text.format(said(self.measured)),
             "other": None if self.other is None else said(self.other),
             "predicted": self.predicted,
@@ -142,7 +145,7 @@ def _reversal(system: RollingSystem, at: Samples) -> Iterator[Headline]:
 def _rounds(system: RollingSystem, at: Samples) -> Iterator[Headline]:
     """Tell how often, or how evenly, the axis of a leaning body goes round."""
     up, axis = upwards(system), third_axis(at)
-    leans = angle_between(axis, np.broadcast_to(up, axis.shape))
+    leans = _lean(axis, up)
     if not ((leans > _NODS) & (leans < 180.0 - _NODS)).all():
         return
     rounds = [(way - way[0]) / (2 * math.pi) for way in _headings(at, up, axis)]
@@ -171,6 +174,11 @@ def _most_level(at: Samples, up: Array) -> Array:
     first = np.column_stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)])
     third = third_axis(at)
     return min((first, third), key=lambda axis: float(np.max(np.abs(axis @ up))))
+
+
+def _lean(axis: Array, up: Array) -> Array:
+    """Return the angle of a direction from the vertical, degrees."""
+    return np.asarray(angle_between(Vector.of(axis), Vector(*up)), dtype=float)
 
 
 def _azimuth(axis: Array, up: Array) -> Array:
@@ -285,7 +293,7 @@ def _oscillation(system: RollingSystem, at: Samples) -> Iterator[Headline]:
     if not is_ball(system):
         signals.reverse()
         axis = third_axis(at)
-        signals.insert(0, ("nods every {}", angle_between(axis, np.broadcast_to(up, axis.shape)), _NODS))
+        signals.insert(0, ("nods every {}", _lean(axis, up), _NODS))
     how = "by how often it passes its middle; and by its peaks"
     for text, values, needed in signals:
         if float(np.ptp(values)) < needed:

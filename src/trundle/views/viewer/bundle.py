@@ -32,6 +32,17 @@ def built(name: str) -> str:
         ) from None
 
 
-@lru_cache(maxsize=4)
+def languages() -> dict[str, str]:
+    """Return the catalogues by the tag of their language, each as JSON.
+
+    Examples
+    --------
+    >>> list(languages())
+    ['de']
+    """
+    return {path.stem: built(f"languages/{path.name}") for path in sorted((STATIC / "languages").glob("*.json"))}
+
+
+@lru_cache(maxsize=8)
 def _read(path: Path, changed: int) -> str:  # noqa: ARG001  a file that is built anew is read anew
     return path.read_text(encoding="utf-8")

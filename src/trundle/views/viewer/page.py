@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import gzip
 import hashlib
+import json
 import re
 from collections.abc import Sequence
 from functools import lru_cache
@@ -15,10 +16,11 @@ from string import Template
 
 from ...errors import InvalidValueError
 from ..scene import Scene, pack
-from .bundle import built
-from .words import card_of, findings_of, formula_of, names_of, scenario_of, summary_of
+from .bundle import built, languages
+from .words import card_of, findings_of, formula_of, headline_of, names_of, scenario_of, summary_of
 
 _ENDS_A_SCRIPT = re.compile(r"<(?=/script|script|!--)", re.IGNORECASE)
+_LONGEST = 120  # letters of what a saved page may say: notes and lessons stand elsewhere
 MOST_SCENES = 5  # bodies that can be told apart on one stage
 
 
@@ -42,11 +44,12 @@ def page_of(scenes: Sequence[Scene], law: str = "") -> bytes:
         "version": escape(version("trundle")),
         "title": escape(title),
         "summary": summary_of(scenes),
+        "headline": headline_of(scenes),
         "formula": formula_of(scenes),
         "findings": findings_of(scenes),
         "cards": "".join(map(card_of, scenes, names)),
         "scenarios": "".join(map(scenario_of, scenes, names)),
-        "scenes": "\n".join([*map(_data, scenes), *([_held(law)] if law else [])]),
+        "scenes": "\n".join([catalogues(_LONGEST), *map(_data, scenes), *([_held(law)] if law else [])]),
         "kind": " trundle-live" if law else "",
         "style": style,
         "script": script,
@@ -73,9 +76,31 @@ def title_of(scenes: Sequence[Scene]) -> str:
     return titles[0] if len(titles) == 1 else f"{titles[0]}, and {len(scenes) - 1} more"
 
 
+def catalogues(longest: int = 100_000) -> str:
+    """Return what a page needs to be said in other languages, as elements; longer texts than some are left out.
+
+    Examples
+    --------
+    >>> catalogues()[:62]
+    '<script type="application/gzip" data-trundle-language="de">H4s'
+    """
+    return "".join(_catalogue(tag, text, longest) for tag, text in languages().items())
+
+
+@lru_cache(maxsize=8)
+def _catalogue(tag: str, text: str, longest: int) -> str:
+    entries = {said: other for said, other in json.loads(text).items() if len(said) <= longest}
+    told = json.dumps(entries, ensure_ascii=False, separators=(",", ":"))
+    return _packed(told.encode(), f'data-trundle-language="{tag}"')
+
+
 def _data(scene: Scene) -> str:
-    packed = gzip.compress(pack(scene), 6, mtime=0)
-    return f'<script type="application/gzip" data-trundle-scene>{base64.b64encode(packed).decode()}</script>'
+    return _packed(pack(scene), "data-trundle-scene")
+
+
+def _packed(content: bytes, attribute: str) -> str:
+    packed = base64.b64encode(gzip.compress(content, 6, mtime=0)).decode()
+    return f'<script type="application/gzip" {attribute}>{packed}</script>'
 
 
 def _held(law: str) -> str:

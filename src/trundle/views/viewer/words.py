@@ -48,6 +48,18 @@ def summary_of(scenes: Sequence[Scene]) -> str:
     return f'<p class="page-summary">{" <i>·</i> ".join(told)}</p>'
 
 
+def headline_of(scenes: Sequence[Scene]) -> str:
+    """Return what a run shows, in one sentence; of several, and of a page that computes it itself, nothing."""
+    told = scenes[0].header.get("headline")
+    if len(scenes) > 1 or not told or "live" in scenes[0].header:
+        return ""
+    other = f"{'predicted' if told['predicted'] else 'a second way gives'} {told['other']}" if told["other"] else ""
+    said = escape(told["text"][:1].upper() + told["text"][1:])
+    return (
+        f'<p class="page-shown" title="{escape(told["how"])}"><strong>{said}</strong><span>{escape(other)}</span></p>'
+    )
+
+
 def formula_of(scenes: Sequence[Scene]) -> str:
     """Return the formula that a motion follows, with its numbers put in; nothing where there is none."""
     formula = scenes[0].header.get("formula")

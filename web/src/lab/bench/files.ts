@@ -6,8 +6,11 @@ import type { App } from '../app'
 import { cleanup, h, listen } from '../dom'
 import { icon } from '../icons'
 import { formatRoute } from '../router'
+import { baseName, save } from '../saving'
 import type { Scenario } from '../scenario'
 import { encode } from '../share'
+
+export { save }
 
 type Choice = ExportFormat | 'stage'
 
@@ -34,26 +37,6 @@ export async function copyLink(app: App): Promise<void> {
     // Without a clipboard (plain http elsewhere) the address bar has it.
     app.toast('The link is in the address bar now: copy it from there.')
   }
-}
-
-export function save(blob: Blob, name: string): void {
-  const url = URL.createObjectURL(blob)
-  const link = h('a', { href: url, download: name })
-  document.body.append(link)
-  link.click()
-  link.remove()
-  setTimeout(() => URL.revokeObjectURL(url), 60_000)
-}
-
-/** A file's name from a title. */
-export function baseName(title = 'trundle'): string {
-  const words = title.toLowerCase().normalize('NFKD')
-  return (
-    words
-      .replace(/[^a-z0-9]+/g, '-')
-      .replace(/^-|-$/g, '')
-      .slice(0, 60) || 'trundle'
-  )
 }
 
 /** The button "Download" and its menu. */

@@ -1,6 +1,8 @@
 /** Predicted beside measured: a table, and the formula with the numbers put in. */
+import { t } from '../../languages/translate'
 import { put, say } from '../../viewer/elements'
-import type { Finding, Headline, Scene } from '../../viewer/scene'
+import { beside, capital } from '../../viewer/headline'
+import type { Finding, Scene } from '../../viewer/scene'
 import { fill, h } from '../dom'
 import { changing, formula } from '../math'
 import { show } from '../quantity'
@@ -109,18 +111,9 @@ export function createFindings(derive: () => void): Findings {
   return { element, update }
 }
 
-/** A sentence's first letter, large. */
-export const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1)
-
-/** The other number beside the headline: "predicted 3.681 cm/s", "a second way gives 2.85 s". */
-export function beside({ other, predicted }: Headline): string {
-  if (other === null) return ''
-  return predicted ? `predicted ${other}` : `a second way gives ${other}`
-}
-
 /** What the run shows, for a screen reader. */
 export function sentence({ header }: Scene): string {
   const { headline, title, duration } = header
   if (!headline) return `${title}: ${show(duration, 3)} s computed`
-  return [`${title}: ${headline.text}`, beside(headline)].filter(Boolean).join(', ')
+  return [`${t(title)}: ${t(headline.text)}`, t(beside(headline))].filter(Boolean).join(', ')
 }

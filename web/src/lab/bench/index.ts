@@ -5,6 +5,7 @@ import './results.css'
 import './dialogs.css'
 import './phone.css'
 import './low.css'
+import { createCurves } from '../../curves/curves'
 import { hide, say } from '../../viewer/elements'
 import { shortNumber } from '../../viewer/quantities'
 import { createAfterwards } from '../afterwards'
@@ -18,7 +19,6 @@ import { createTabs } from '../tabs'
 import { createCard } from './card'
 import { createComputing } from './computing'
 import { createControls } from './controls'
-import { createCurves } from './curves'
 import { openDerivation } from './derivation'
 import { createEvents } from './events'
 import { copyLink, createDownloads, createOpener } from './files'
@@ -35,7 +35,7 @@ function _mount(host: HTMLElement, app: App): () => void {
   const stage = createStage(app)
   const controls = createControls(app)
   const findings = createFindings(() => void openDerivation(api, store.scenario))
-  const curves = createCurves(app, (time) => stage.viewer.seek(time))
+  const curves = createCurves(app.toast, (time) => stage.viewer.seek(time))
   const card = createCard()
   const events = createEvents((time) => stage.viewer.seek(time))
   const linking = createLinking(app)
@@ -178,7 +178,7 @@ function _mount(host: HTMLElement, app: App): () => void {
     const text = scenario.notes?.trim() ?? ''
     hide(notes, text === '')
     if (text !== noted) {
-      const paragraphs = text.split(/\n\s*\n/).map((part) => h('p', {}, part.replace(/`/g, '')))
+      const paragraphs = text.split(/\n\s*\n/).map((part) => h('p', {}, part.replace(/`/g, '').replace(/\s+/g, ' ')))
       fill(notes, h('summary', {}, 'What to look for'), h('div', {}, paragraphs))
       noted = text
     }

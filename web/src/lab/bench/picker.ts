@@ -1,4 +1,5 @@
 /** The dialog to choose a scenario: the shipped ones, grouped by what they show, searched by every word. */
+import { t } from '../../languages/translate'
 import { say } from '../../viewer/elements'
 import type { Api, ScenarioEntry } from '../api'
 import { fill, h } from '../dom'
@@ -16,10 +17,15 @@ export function grouped(entries: ScenarioEntry[]): [string, ScenarioEntry[]][] {
   return [...groups].sort(([, some], [, others]) => others.length - some.length)
 }
 
+/** What begins with a capital is another; in the pseudo-language all of it is one. */
+function firstSentence(text: string): string {
+  return /^.*?[.!?](?= \p{Lu})/su.exec(text)?.[0] ?? text
+}
+
 /** Do all words of the query stand somewhere in what is said of the scenario? */
 export function matches(entry: ScenarioEntry, query: string): boolean {
   const said =
-    `${entry.name} ${entry.title} ${entry.summary} ${entry.support} ${entry.body} ${entry.motion}`.toLowerCase()
+    `${entry.name} ${entry.title} ${t(entry.title)} ${entry.summary} ${t(entry.summary)} ${entry.support} ${entry.body} ${entry.motion}`.toLowerCase()
   return query
     .toLowerCase()
     .split(/\s+/)
@@ -78,7 +84,7 @@ export async function pickScenario(api: Api, choose: (name: string) => void): Pr
         { class: 'picker-card', type: 'button', onclick: take, 'data-scenario': entry.name },
         pictureOf(entry.name),
         h('strong', {}, entry.title),
-        h('span', { class: 'picker-summary' }, entry.summary.replaceAll('`', '')),
+        h('span', { class: 'picker-summary' }, firstSentence(t(entry.summary.replaceAll('`', '')))),
         h(
           'span',
           { class: 'picker-tags' },

@@ -1,6 +1,7 @@
 /** The stage: the viewer, its tools, what is written over it, and what is done on it by hand. */
 import type { Place } from '../../viewer/contract'
 import { put as attribute, hide, say } from '../../viewer/elements'
+import { beside, capital } from '../../viewer/headline'
 import type { Scene, Triple } from '../../viewer/scene'
 import type { Tool, Viewer } from '../../viewer/viewer'
 import { createViewer } from '../../viewer/viewer'
@@ -12,7 +13,6 @@ import { changing } from '../math'
 import { show } from '../quantity'
 import { createRunner } from '../runner'
 import type { Change } from '../store'
-import { beside, capital } from './findings'
 import { instantAt, sampleAt } from './instant'
 import { goneOn, put, whyNotDragged, whyNotNudged } from './placing'
 

@@ -1,5 +1,5 @@
 /** What may be drawn of a run: what the package sends as curves, and what the samples say by themselves. */
-import type { Scene } from '../../viewer/scene'
+import type { Scene } from '../viewer/scene'
 
 export interface Quantity {
   id: string

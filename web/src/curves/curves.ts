@@ -1,11 +1,11 @@
 /** Curves: two of them, any quantity over time or against any other; a click goes to that instant. */
-import { put, say } from '../../viewer/elements'
-import type { Scene } from '../../viewer/scene'
-import type { App } from '../app'
-import { fill, h } from '../dom'
-import { show } from '../quantity'
+import './curves.css'
+import { fill, h } from '../lab/dom'
+import { show } from '../lab/quantity'
+import { baseName, save } from '../lab/saving'
+import { put, say } from '../viewer/elements'
+import type { Scene } from '../viewer/scene'
 import { type Chart, createChart, indexBefore, type Look, type Plot, title } from './chart'
-import { baseName, save } from './files'
 import { type Quantity, quantitiesOf } from './series'
 
 export interface Curves {
@@ -17,6 +17,9 @@ export interface Curves {
   restyle(): void
   dispose(): void
 }
+
+/** Say something in passing. */
+type Tell = (text: string) => void
 
 interface Figure {
   element: HTMLElement
@@ -76,7 +79,7 @@ async function pngOf(plot: Plot, look: Look): Promise<Blob> {
   }
 }
 
-function createFigure(app: App, first: string, seek: (time: number) => void): Figure {
+function createFigure(tell: Tell, first: string, seek: (time: number) => void): Figure {
   const chosen = { y: first, x: 'time' }
   let scene: Scene | undefined
   let chart: Chart | undefined
@@ -109,7 +112,7 @@ function createFigure(app: App, first: string, seek: (time: number) => void): Fi
   take.addEventListener('change', () => {
     const { value } = take
     take.value = ''
-    void taken(value).catch((error: unknown) => app.toast(error instanceof Error ? error.message : String(error)))
+    void taken(value).catch((error: unknown) => tell(error instanceof Error ? error.message : String(error)))
   })
   const element = h(
     'figure',
@@ -129,7 +132,7 @@ function createFigure(app: App, first: string, seek: (time: number) => void): Fi
     if (format !== 'embed') return
     const caption = h('figcaption', {}, `${scene.header.title}: ${title(plot.y)} over ${title(plot.x)}`).outerHTML
     await navigator.clipboard.writeText(`<figure>${svgOf(plot, look)}${caption}</figure>\n`)
-    app.toast('Copied: HTML that shows this curve in a page of yours.')
+    tell('Copied: HTML that shows this curve in a page of yours.')
   }
 
   function draw(next: Scene): void {
@@ -208,8 +211,8 @@ function createFigure(app: App, first: string, seek: (time: number) => void): Fi
   return { element, draw, at, dispose: () => watch.disconnect() }
 }
 
-export function createCurves(app: App, seek: (time: number) => void): Curves {
-  const figures = [createFigure(app, 'speed', seek), createFigure(app, 'spin_normal', seek)]
+export function createCurves(tell: Tell, seek: (time: number) => void): Curves {
+  const figures = [createFigure(tell, 'speed', seek), createFigure(tell, 'spin_normal', seek)]
   const element = h(
     'div',
     { class: 'curves' },

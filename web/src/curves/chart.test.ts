@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest'
-import type { Scene } from '../../viewer/scene'
+import type { Scene } from '../viewer/scene'
 import { createChart, indexBefore, pathOf, ticks } from './chart'
 import { csvOf, svgOf } from './curves'
 import { quantitiesOf } from './series'

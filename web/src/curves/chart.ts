@@ -1,6 +1,6 @@
 /** A curve as SVG, on the page and in files: one quantity over another, events marked, and where the film is. */
-import { svg } from '../dom'
-import { show } from '../quantity'
+import { svg } from '../lab/dom'
+import { show } from '../lab/quantity'
 
 export interface Axis {
   label: string
@@ -69,7 +69,8 @@ function extent(values: ArrayLike<number>): [number, number] {
 function scaled(axis: Axis, from: number, to: number, about: number, room: number): Scale {
   const [least, most] = extent(axis.values)
   const middle = (least + most) / 2
-  const spread = Math.max(most - least, Math.abs(middle) * 1e-3, 1e-9) * (0.5 + room)
+  const level = least === 0 && most === 0 ? 1 : 1e-9
+  const spread = Math.max(most - least, Math.abs(middle) * 1e-3, level) * (0.5 + room)
   const [low, high] = room ? [middle - spread, middle + spread] : [least, Math.max(most, least + 1e-9)]
   return {
     low,

@@ -1,0 +1,126 @@
+"""All that the server says can be said in another language: nothing of it is outside the catalogue."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import pytest
+
+import trundle as tr
+from trundle.analysis.geometry import PathScenario
+from trundle.analysis.geometry.scene import rolled_scene
+from trundle.errors import TrundleError
+from trundle.lab.challenges import on_site
+from trundle.lab.deriving import derivation_of
+from trundle.lab.errors import refusal_of
+from trundle.lab.parts import all_parts
+from trundle.scenario import files
+from trundle.views.scene import scene_of
+
+from .untold import untold, words_in
+
+
+def test_a_text_in_no_catalogue_is_found() -> None:
+    """Also where it is a part of what is known, or stands for what varies."""
+    plain = ["Nobody has said this before", "Spin about the normal. Nobody has said this.", "drift of the whatever"]
+    assert untold([*plain, "Spin about the normal", "drift of the energy"]) == plain
+
+
+def test_titles_groups_and_notes_of_what_ships() -> None:
+    told = []
+    for name in files.names():
+        tables = files.tables_of(name)
+        told += [str(tables.get("title", "")), str(tables.get("group", ""))]
+        told += [" ".join(part.split()).replace("`", "") for part in re.split(r"\n\s*\n", str(tables.get("notes", "")))]
+    assert untold(told) == []
+
+
+def test_challenges_with_their_hints_and_notes_for_teachers() -> None:
+    assert untold(text for text in words_in(on_site()) if " " in text) == []
+
+
+def test_labels_and_explanations_of_all_parts() -> None:
+    assert untold(text for text in words_in(all_parts()) if re.search(r"[a-z] [a-z]", text)) == []
+
+
+# Of every kind: closed forms, numerical runs, flight and landings, slip, a rim, a support that turns by itself, losses.
+RUNS = [
+    "tilted-turntable",
+    "rattleback-with-losses",
+    "turntable-drop",
+    "billiard-draw",
+    "real-demonstration",
+    "free-turntable-ellipse",
+    "loop-the-loop-too-slow",
+    "golfers-dilemma",
+    "cylinder-in-cylinder",
+    "tippe-top",
+    "chaplygin-ball",
+    "rocking-hemisphere-over-its-edge",
+]
+
+
+def _said(header: dict[str, Any]) -> list[str]:
+    card, headline = header["card"] or {}, header["headline"]
+    figures = [text for one in card.get("figures", []) for text in (one["name"], one["note"])]
+    # A source is cited as it is.
+    method = re.sub(r" \(.*\)", "", str(card.get("method", "")))
+    findings = [text for one in header["findings"] for text in (one["name"], one["note"])]
+    headlines = [headline["text"], headline["how"]] if headline else []
+    formula = [header["formula"]["name"]] if header["formula"] else []
+    others = [one["label"] for one in header["curves"]] + [one["text"] for one in header["events"]]
+    return [*figures, method, *findings, *headlines, *formula, *others, header["body"]["label"]]
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_what_is_said_of_a_run(name: str) -> None:
+    header = scene_of(tr.Scenario.load(name).run(), samples=50, with_card=True).header
+    assert untold([*_said(header), header["support"]["name"]]) == []
+
+
+@pytest.mark.parametrize("name", ["roll-small-loop", "roll-x-then-y"])
+def test_what_is_said_of_a_rolled_path(name: str) -> None:
+    header = rolled_scene(PathScenario.read(files.tables_of(name), name).run(), with_card=True).header
+    assert untold(_said({"curves": [], **header})) == []
+
+
+@pytest.mark.parametrize("name", ["tilted-turntable", "cylinder-in-cylinder", "rattleback", "ball-under-torque"])
+def test_what_is_said_in_a_derivation(name: str) -> None:
+    told = derivation_of(tr.Scenario.load(name))
+    steps = [text for step in told["steps"] for text in (step["title"], step["text"])]
+    numbers = [number["name"] for number in told["numbers"]]
+    assert untold([told["title"], told["introduction"], *steps, *numbers]) == []
+
+
+# What a reader may do wrong at a control: where it stands, and what is put there.
+WRONG: list[tuple[str, Any]] = [
+    ("body.radius", "-1 cm"),
+    ("body.radius", "much"),
+    ("body.radius", "1 s"),
+    ("body.radius", "5"),
+    ("body.radius", "5 parsnips"),
+    ("body.mass", 0),
+    ("support.tilt", "172 deg"),
+    ("support.friction", -1),
+    ("support.restitution", 2),
+    ("support.rim", "1 mm"),
+    ("start.position", ["1 cm"]),
+    ("start.velocity", [1, 2, 3, 4]),
+    ("run.duration", 0),
+    ("run.every", "1 h"),
+    ("run.every", "1 ns"),
+]
+
+
+@pytest.mark.parametrize(("path", "value"), WRONG)
+def test_what_is_said_of_a_wrong_value(path: str, value: Any) -> None:
+    tables = tr.Scenario.load("tilted-turntable").model_dump(exclude_unset=True, exclude_none=True, by_alias=True)
+    table, _, key = path.rpartition(".")
+    tables[table] = {**tables.get(table, {}), key: value}
+    with pytest.raises(TrundleError) as wrong:
+        tr.Scenario.read(tables).run()
+    refusal = refusal_of(wrong.value)
+    assert refusal is not None
+    assert refusal.parts, refusal.message
+    assert untold(part[which] for part in refusal.parts for which in ("rule", "remedy")) == []
