@@ -24,7 +24,7 @@ from .tracing import python_law
 SETTLES_FAST = 30.0
 _LEFT_OUT = 3e-13
 _TURNS = 20.0  # times as fast as the body turns: no slower does a direction settle whose steps would be too short
-_LASTS = 20.0  # times the step over which its turning is seen: about how long it holds
+_LASTS = 50.0  # times the step over which its turning is seen: about how long it holds
 GROWN = ("settled", "lags", "turns")  # ends at which slip is to be followed with its direction
 _NEAR = 0.98  # cosine of the angle by which the direction may turn until it is looked for near another
 
@@ -66,7 +66,7 @@ class CreepingLaw(SlippingLaw):
 
     @property
     def lasts(self) -> float:  # type: ignore[override]
-        """Mostly 100 to 2000 times the first moment of slip, until its direction lags."""
+        """Some thousand times the first moment of slip: where its direction lags it mostly ends sooner."""
         return _LASTS * self.step
 
     @property

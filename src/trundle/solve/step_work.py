@@ -58,9 +58,8 @@ def takes_less(system: RollingSystem, start: State, end: float, tolerance: float
     length, products, names = taylor.first_steps(system, now, end, tolerance, _FIRST)
     if not (length > 0 and set(names) <= _SMOOTH):
         return False
-    steps = (
-        (end - now.time) / length * products / runge_kutta.OF_A_STEP
-    )  # of the compiled loop, as long as Taylor's method takes
+    # Steps of the compiled loop that take as long as Taylor's method does.
+    steps = (end - now.time) / length * products / runge_kutta.OF_A_STEP
     if not 2 * _BEGINNING < steps < math.inf:
         return False
     try:
