@@ -190,6 +190,13 @@ class _Family:
         on_support = now.by_number_at_start * self.size * step[-1]
         return np.concatenate([now.basis.T @ (step[:m] - on_support), step[m:]])
 
+    def along(self, now: Returned, direction: Array) -> Array:
+        """Return how far each of `ambient`'s shares leads in a direction."""
+        state, rest = np.split(direction, [now.scale.size])
+        row = np.concatenate([now.basis.T @ state, rest])
+        row[-1] += state @ now.by_number_at_start * self.size
+        return row
+
     def begin(self, way: float) -> _Point:
         """Return the orbit to begin with, and how it goes on with more or less of the number."""
         value = self.value_of(self.first.system)
@@ -226,7 +233,7 @@ class _Family:
             if now.scale.size != m:
                 return None
             scaled = np.concatenate([now.numbers * now.scale / before.scale, here[m:]])
-            arc = self.on_basis(now, point.direction)
+            arc = self.along(now, point.direction)
             missing = np.append(now.residual, point.direction @ (scaled - guess))
             size = float(np.linalg.norm(missing))
             if size < FOUND or (size < CLOSED and size > 0.5 * last):
