@@ -36,7 +36,8 @@ def test_it_is_followed_along_the_radius_of_the_cylinder():
     inside, start = rounds()
     branch = tr.periodic_orbit(inside, start, period=1.6, relative=True).along("support.radius", 0.45, 0.55, step=0.4)
     assert branch.folds == branch.period_doublings == ()
-    assert branch.values[0] <= 0.45 and branch.values[-1] >= 0.55
+    assert branch.values[0] <= 0.45
+    assert branch.values[-1] >= 0.55
     for orbit, radius in zip(branch.orbits, branch.values, strict=True):
         x, y, _ = orbit.state.position
         assert math.isclose(math.hypot(x, y), radius - 0.1, rel_tol=1e-12)
