@@ -314,7 +314,7 @@ def refined(
         left = math.inf if best is None else best[0]
         raise SolverError(
             f"No motion that closes was found near the start: the best fails by {left:.1e} of its size. Begin nearer "
-            "to one, give a better `period`, or ask with `relative=True` for what comes back but for a shift and a turn."
+            "to one, give a better `period`, or ask with `relative=True` for one but for a shift and a turn."
         )
     if not driven and np.linalg.norm(best[1].flow) < _STILL * rate:
         raise SolverError("What was found stands still: any time is a period of it. Begin further away from rest.")
