@@ -15,7 +15,7 @@ from ...mechanics.parameters import parameters
 from ...mechanics.system import RollingSystem
 from ...solve.samples import Array
 from .orbit import CLOSED, FOUND, PeriodicOrbit, described, shortest
-from .returning import Period, Returned, go_round, number_of, put_down, with_number
+from .returning import Move, Period, Returned, go_round, number_of, put_down, with_number
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -153,7 +153,7 @@ class _Point:
     @property
     def doubling(self) -> float:
         """What passes zero where a multiplier passes −1."""
-        M = self.orbit.returned.monodromy
+        M = self.orbit.returned.essential
         return float(np.linalg.det(0.5 * (M + np.eye(len(M)))))
 
 
@@ -165,16 +165,17 @@ class _Family:
         self.driven, self.rate = orbit.driven, orbit.rate
         self.time = orbit.state.time
 
-    def at(self, state: Any, period: Period, value: float) -> tuple[RollingSystem, Returned]:
+    def at(self, state: Any, period: Period, value: float, move: Move) -> tuple[RollingSystem, Returned]:
         """Return a system with a value of the number, and a start gone through a period."""
         system = with_number(self.first.system, self.which, value)
-        return system, go_round(system, state, period, self.which, None, self.rate)
+        return system, go_round(system, state, period, self.which, None, self.rate, move)
 
     def columns(self, now: Returned) -> Array:
-        """Return the slopes of what must be nothing by start, period and number, in units."""
+        """Return the slopes of what must be nothing by start, period, symmetries and number, in units."""
         parts = [now.monodromy - np.eye(now.residual.size)]
         if not self.driven:
             parts.append(now.flow[:, None] / self.rate)
+        parts.append(now.symmetric)
         return np.hstack([*parts, now.by_number[:, None] * self.size])
 
     def ambient(self, now: Returned, move: Array) -> Array:
@@ -189,10 +190,17 @@ class _Family:
         on_support = now.by_number_at_start * self.size * step[-1]
         return np.concatenate([now.basis.T @ (step[:m] - on_support), step[m:]])
 
+    def along(self, now: Returned, direction: Array) -> Array:
+        """Return how far each of `ambient`'s shares leads in a direction."""
+        state, rest = np.split(direction, [now.scale.size])
+        row = np.concatenate([now.basis.T @ state, rest])
+        row[-1] += state @ now.by_number_at_start * self.size
+        return row
+
     def begin(self, way: float) -> _Point:
         """Return the orbit to begin with, and how it goes on with more or less of the number."""
         value = self.value_of(self.first.system)
-        system, now = self.at(self.first.state, self.first.asked_period, value)
+        system, now = self.at(self.first.state, self.first.asked_period, value, self.first.returned.move)
         columns = self.columns(now)
         move = np.append(np.linalg.lstsq(columns[:, :-1], -columns[:, -1], rcond=_RANK)[0], 1.0)
         direction = self.ambient(now, way * move / np.linalg.norm(move))
@@ -215,16 +223,17 @@ class _Family:
         for _ in range(_STEPS):
             period: Period = point.period if self.driven else float(here[m]) / self.rate
             value = float(here[-1]) * self.size
+            move = before.move.onward(here[here.size - 1 - len(before.move.rows) : -1])
             try:
                 system = with_number(self.first.system, self.which, value)
                 start = put_down(system, before.phase, before.scale * here[:m], self.time)
-                system, now = self.at(start, period, value)
+                system, now = self.at(start, period, value, move)
             except (SolverError, InvalidValueError, ArithmeticError):
                 return None
             if now.scale.size != m:
                 return None
             scaled = np.concatenate([now.numbers * now.scale / before.scale, here[m:]])
-            arc = self.on_basis(now, point.direction)
+            arc = self.along(now, point.direction)
             missing = np.append(now.residual, point.direction @ (scaled - guess))
             size = float(np.linalg.norm(missing))
             if size < FOUND or (size < CLOSED and size > 0.5 * last):
@@ -232,13 +241,14 @@ class _Family:
             if size > 2 * last:
                 return None
             last = size
-            move = shortest(np.vstack([self.columns(now), arc]), -missing)
-            here = scaled + self.ambient(now, move)
+            step = shortest(np.vstack([self.columns(now), arc]), -missing)
+            here = scaled + self.ambient(now, step)
         return None
 
     def _tail(self, point: _Point) -> Array:
         own = [] if self.driven else [float(point.period) * self.rate]  # type: ignore[arg-type]
-        return np.array([*own, point.value / self.size])
+        still = np.zeros(len(point.orbit.returned.move.rows))  # what there is of each symmetry beyond the point's own
+        return np.array([*own, *still, point.value / self.size])
 
     def _point(self, before: _Point, system: RollingSystem, now: Returned, period: Period, value: float) -> _Point:
         """Return an orbit that was found; the direction is the old one, as far as it stays on the branch."""

@@ -4,17 +4,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...display import Headline, Markup, Serializable, pairs
-from ...errors import SolverError
+from ...errors import InvalidValueError, SolverError
 from ...mechanics.system import RollingSystem, State
+from ...solve.laws import RollingLaw
 from ...solve.samples import Array
+from ...solve.transitions import PhaseStart
+from ..steady.finding import scale_of
+from ..steady.flow import Flow, bears_complex_numbers
+from ..steady.periodic import bringing_back
+from ..steady.symmetry import COUNT, common, symmetries
 from .asked import Asked
-from .returning import Period, Returned, checked_period, go_round, knows_the_time, put_down
+from .returning import Move, Period, Returned, checked_period, go_round, knows_the_time, put_down
+from .tangents import beginning
 
 if TYPE_CHECKING:
     from .branch import OrbitBranch
@@ -27,6 +34,7 @@ RANK = 1e-8
 _CHEAP = 1e3  # how much rather the period is changed than the state: a swing that does not close need not be smaller
 _PART, _FAR = 0.2, 4.0  # of a period: the longest step in it, and how far from the guess it may end
 _STILL = 1e-9  # of the rate: what moves less stands still
+_ASKED = (0.0, 0.29, 0.61)  # shares of a period at which a law that knows the time is asked for its symmetries
 _ONE = 1e-4  # from 1: a multiplier that differs less is 1, for several of them that are 1 part by the root of rounding
 
 
@@ -52,6 +60,9 @@ class PeriodicOrbit(Serializable):
         How far it fails to close, in units of the scale.
     events : int
         In each period.
+    turned : float
+        By how much all has turned about the support's axis in a period, rad, to within whole turns, where it comes back
+        but for a shift and a turn; else 0.
 
     Examples
     --------
@@ -74,6 +85,7 @@ class PeriodicOrbit(Serializable):
     multipliers: tuple[complex, ...]
     residual: float
     events: int
+    turned: float
     returned: Returned = field(repr=False, compare=False)
     asked_period: Period = field(repr=False, compare=False)
     rate: float = field(repr=False, compare=False)
@@ -137,6 +149,8 @@ class PeriodicOrbit(Serializable):
         own = "of what drives it" if self.driven else "its own"
         others = [one for one in self.multipliers if abs(one - 1) >= _ONE]
         facts = [("period", f"{self.period:.10g} s, {own}"), ("closes to", f"{self.residual:.1e}")]
+        if len(self.returned.move.rows):
+            facts.append(("but for a shift, and a turn by", f"{math.degrees(self.turned):.10g}°"))
         facts.append(("multipliers", ", ".join(complex_in_words(one) for one in others) or "none but 1"))
         if self.free:
             facts.append(("and 1", f"{self.free} times"))
@@ -173,6 +187,7 @@ class PeriodicOrbit(Serializable):
             "verdict": self.verdict,
             "residual": self.residual,
             "events": self.events,
+            "turned": self.turned,
             "state": {
                 "position": self.state.position,
                 "velocity": self.state.velocity,
@@ -197,12 +212,17 @@ def complex_in_words(value: complex) -> str:
 
 
 def periodic_orbit(
-    system: Any, start: State | None = None, period: Any = None, *, tolerance: float | None = None
+    system: Any,
+    start: State | None = None,
+    period: Any = None,
+    *,
+    relative: bool = False,
+    tolerance: float | None = None,
 ) -> PeriodicOrbit:
     """Find the periodic orbit next to a start, through all events, and its Floquet multipliers.
 
-    It comes back exactly. A motion that comes back but for a shift or a turn, as a coin's that nods and drifts, is one
-    for `periodic_motion`.
+    It comes back exactly, or, where you say so, but for a shift and a turn, as a coin's does that nods and drifts. How
+    long such a motion takes `periodic_motion` finds by itself.
 
     Parameters
     ----------
@@ -214,6 +234,9 @@ def periodic_orbit(
         Where the law depends on the time, the period that is meant, s: that of the support, or a multiple; a function
         of the system where a number changes it. Elsewhere about how long the motion takes to come back: what it is
         exactly is found.
+    relative : bool
+        Whether it may come back shifted and turned, by a move that changes nothing that matters: a symmetry of the
+        law. Multipliers along symmetries are left out. The motion has to begin and end with rolling.
     tolerance : float, optional
         Of the method; absent: its own.
 
@@ -241,46 +264,57 @@ def periodic_orbit(
     meant = checked_period(period, asked.system)
     length = float(meant(asked.system)) if callable(meant) else meant
     rate = 1 / asked.moment
-    driven = callable(meant) or knows_the_time(asked.system, _phase(asked), length)
-    return refined(asked, asked.start, meant if driven else length, driven, tolerance, rate)
+    now = beginning(asked.system, asked.start)
+    driven = callable(meant) or knows_the_time(asked.system, now, length)
+    move = _first_move(asked, now, length, driven, tolerance) if relative else Move.none()
+    return refined(asked, asked.start, meant if driven else length, driven, tolerance, rate, move)
 
 
-def _phase(asked: Asked) -> Any:
-    from .tangents import beginning
-
-    return beginning(asked.system, asked.start)
+def _first_move(asked: Asked, now: PhaseStart, length: float, driven: bool, tolerance: float | None) -> Move:
+    """Return the shift and turn that bring a motion as near to its start as may be after about a period."""
+    if not isinstance(now.law, RollingLaw) or len(now.state_vector) != COUNT + 1:
+        rule = "may be true only where the body rolls at the start, on a support that is not free to turn"
+        raise InvalidValueError("relative", rule, True)
+    y, times = np.array(now.state_vector, dtype=float), now.time + length * np.array(_ASKED)
+    system = replace(asked.system, support=replace(asked.system.support, friction=None))
+    flow = Flow(system, now.time, 0.0, scale_of(system, y, now.time))
+    flow = replace(flow, by_complex_step=bears_complex_numbers(flow, y))
+    kept = common([symmetries(replace(flow, time=time), y) for time in times.tolist()[: len(times) if driven else 1]])
+    end = go_round(asked.system, asked.start, length, None, tolerance, flow.rate, Move.none()).end
+    return Move(kept, bringing_back(flow, y, kept, end)[0])
 
 
 def refined(
-    asked: Asked, start: State, period: Period, driven: bool, tolerance: float | None, rate: float
+    asked: Asked, start: State, period: Period, driven: bool, tolerance: float | None, rate: float, move: Move
 ) -> PeriodicOrbit:
     """Return the orbit next to a guess: Newton's method, of all steps that close it the shortest."""
     system, best, last = asked.system, None, math.inf
     guess = 0.0 if callable(period) else float(period)
     for _ in range(STEPS):
-        now = go_round(system, start, period, None, tolerance, rate)
+        now = go_round(system, start, period, None, tolerance, rate, move)
         size = float(np.linalg.norm(now.residual))
         if best is None or size < best[0]:
             best = (size, now, period)
         if size < FOUND or (best[0] < CLOSED and size > 0.5 * last):
             break
         last = size
-        columns = now.monodromy - np.eye(now.residual.size)
+        columns = np.hstack([now.monodromy - np.eye(now.residual.size), _CHEAP * now.symmetric])
         if not driven:
             columns = np.hstack([columns, now.flow[:, None] * (_CHEAP / rate)])
-        move = shortest(columns, -now.residual)
+        step = shortest(columns, -now.residual)
         if not driven:
-            longer, known = float(move[-1]) * _CHEAP / rate, float(period)  # type: ignore[arg-type]
+            longer, known = float(step[-1]) * _CHEAP / rate, float(period)  # type: ignore[arg-type]
             part = min(1.0, _PART * known / max(abs(longer), 1e-300))
-            period, move = known + part * longer, part * move[:-1]
+            period, step = known + part * longer, part * step[:-1]
             if not guess / _FAR <= period <= guess * _FAR:
                 break
-        start = moved(system, now, move)
+        start = moved(system, now, step[: now.residual.size])
+        move = move.onward(_CHEAP * step[now.residual.size :])
     if best is None or best[0] > CLOSED:
         left = math.inf if best is None else best[0]
         raise SolverError(
             f"No motion that closes was found near the start: the best fails by {left:.1e} of its size. Begin nearer "
-            "to one, give a better `period`, or ask `periodic_motion` for what comes back but for a shift and a turn."
+            "to one, give a better `period`, or ask with `relative=True` for one but for a shift and a turn."
         )
     if not driven and np.linalg.norm(best[1].flow) < _STILL * rate:
         raise SolverError("What was found stands still: any time is a period of it. Begin further away from rest.")
@@ -291,10 +325,11 @@ def described(
     title: str, system: RollingSystem, now: Returned, period: Period, driven: bool, rate: float
 ) -> PeriodicOrbit:
     """Return what a start that closes is as an orbit."""
-    values = sorted((complex(one) for one in np.linalg.eigvals(now.monodromy)), key=lambda one: (-abs(one), one.imag))
+    values = sorted((complex(one) for one in np.linalg.eigvals(now.essential)), key=lambda one: (-abs(one), one.imag))
     length = float(period(system)) if callable(period) else period
     size = float(np.linalg.norm(now.residual))
-    return PeriodicOrbit(title, system, now.start, length, driven, tuple(values), size, now.events, now, period, rate)
+    own = tuple(values), size, now.events, now.move.turned
+    return PeriodicOrbit(title, system, now.start, length, driven, *own, now, period, rate)
 
 
 def shortest(columns: Array, right: Array) -> Array:

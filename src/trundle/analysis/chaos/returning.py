@@ -17,13 +17,36 @@ from ...solve.samples import FLIGHT, Array
 from ...solve.transitions import PhaseStart
 from ...units import UNITS
 from ..sensitivities.following import VariationalRun
+from ..steady.symmetry import COUNT, group_matrix, moved_by
 from .asked import integrator, scale_of
 from .tangents import beginning, tangents
 from .volume import slopes_at
 
 Period = float | Callable[[RollingSystem], Any]
 _ASKS = (0.0, 0.371, 0.713)  # shares of a period at which the law is asked whether it knows the time
-_KNOWS = 1e-11
+_KNOWS, _RANK = 1e-11, 1e-7
+
+
+@dataclass(frozen=True)
+class Move:
+    """A shift and a turn that change nothing that matters, by which a motion is brought back after a period."""
+
+    rows: Array  # (k, 9): the symmetries, of which it is made, as shares
+    matrix: Array  # (11, 11), on (p, q, Ω, 1)
+
+    @classmethod
+    def none(cls) -> Move:
+        """Return what leaves everything where it is."""
+        return cls(np.zeros((0, COUNT)), np.eye(11))
+
+    def onward(self, shares: Array) -> Move:
+        """Return it with a little more of each symmetry."""
+        return Move(self.rows, group_matrix(shares @ self.rows) @ self.matrix) if len(self.rows) else self
+
+    @property
+    def turned(self) -> float:
+        """By how much all has turned about the support's axis in a period, rad, to within whole turns."""
+        return float(np.arctan2(-self.matrix[1, 0], self.matrix[0, 0])) + 0.0
 
 
 @dataclass(frozen=True)
@@ -34,12 +57,24 @@ class Returned:
     phase: PhaseStart  # how it starts
     scale: Array  # (size,): what is large of each number of the state
     basis: Array  # (size, d): of what may be different at the start
+    end: Array  # (size,): the state there, brought back
     residual: Array  # (d,): how far it is from the start, along the basis
     monodromy: Array  # (d, d): how differences at the start are there
     flow: Array  # (d,): how fast it moves there, for a period one unit of time longer
     by_number: Array  # (d,): how it changes with the number of the system that is varied
     by_number_at_start: Array  # (size,): how the state at the start changes with it, to stay on the support
     events: int  # on the way
+    move: Move  # by which the end has been brought back
+    symmetric: Array  # (d, k): how the end goes with a little more of each symmetry
+
+    @property
+    def essential(self) -> Array:
+        """The monodromy without the directions along symmetries, which only say where the motion is."""
+        if not self.symmetric.size:
+            return self.monodromy
+        U, sizes, _ = np.linalg.svd(self.symmetric, full_matrices=True)
+        across = U[:, int((sizes > _RANK * max(float(sizes.max()), 1e-300)).sum()) :]
+        return np.asarray(across.T @ self.monodromy @ across)
 
     @property
     def numbers(self) -> Array:
@@ -91,7 +126,13 @@ def knows_the_time(system: RollingSystem, now: PhaseStart, period: float) -> boo
 
 
 def go_round(
-    system: RollingSystem, start: State, period: Period, which: int | None, tolerance: float | None, rate: float
+    system: RollingSystem,
+    start: State,
+    period: Period,
+    which: int | None,
+    tolerance: float | None,
+    rate: float,
+    move: Move,
 ) -> Returned:
     """Follow a start through a period with its slopes.
 
@@ -107,6 +148,8 @@ def go_round(
         Of the method.
     rate : float
         A rate at which the motion changes, 1/s.
+    move : Move
+        What is done with the end before it is compared with the start.
     """
     now = beginning(system, start)
     at = ContactState.of(system, start)
@@ -131,9 +174,15 @@ def go_round(
         raise SolverError("The period ends in another phase than it began: begin at another instant of the motion.")
     values = np.array([float(value_of(one)) for one in state])
     slopes = np.array([slopes_of(one, count) for one in state], dtype=float)
+    if len(move.rows):
+        values = (move.matrix @ np.append(values, 1.0))[:-1]
+        slopes = move.matrix[:-1, :-1] @ slopes
     if values[3:7] @ np.array(now.state_vector[3:7]) < 0:  # the same orientation
         values[3:7], slopes[3:7] = -values[3:7], -slopes[3:7]
     flow = np.array([float(part) for part in law.rates(system, end, values.tolist())])
+    symmetric = np.zeros((basis.shape[1], len(move.rows)))
+    for i, row in enumerate(move.rows):
+        symmetric[:, i] = basis.T @ (moved_by(row, values) / scale)
     by_number = np.zeros(basis.shape[1])
     if which is not None:
         longer = float(slopes_of(length, count)[-1])
@@ -143,12 +192,15 @@ def go_round(
         now,
         scale,
         basis,
+        values,
         basis.T @ ((values - np.array(now.state_vector, dtype=float)) / scale),
         basis.T @ (slopes[:, : basis.shape[1]] / scale[:, None]),
         basis.T @ (flow / scale),
         by_number,
         own / scale,
         len(samples.events),
+        move,
+        symmetric,
     )
 
 

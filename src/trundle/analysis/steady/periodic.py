@@ -187,9 +187,9 @@ def _first_return(flow: Flow, y: Array, moves: Array, most: float) -> tuple[floa
         apart = np.linalg.norm(marks - marks[:, :1], axis=0)
         if apart.max() < 1e-10:
             raise SolverError("The start is a steady motion: it has no period. Nudge it, or ask for steady motions.")
-        far = _bringing_back(flow, y, moves, states[:, int(apart.argmax())])[1]
+        far = bringing_back(flow, y, moves, states[:, int(apart.argmax())])[1]
         for i in _dips(times, marks, apart):
-            move, off = _bringing_back(flow, y, moves, states[:, i])
+            move, off = bringing_back(flow, y, moves, states[:, i])
             if off < _BACK * far:
                 return float(times[i]), move, far
         if span >= most:
@@ -262,7 +262,7 @@ def _newton(flow: Flow, y: Array, moves: Array, slope: Array | None, error: Arra
     return np.asarray(step * min(1.0, 0.2 / max(float(np.linalg.norm(step[:count])), 1e-300)))
 
 
-def _bringing_back(flow: Flow, y: Array, moves: Array, end: Array) -> tuple[Array, float]:
+def bringing_back(flow: Flow, y: Array, moves: Array, end: Array) -> tuple[Array, float]:
     """Return the move that takes a state closest to the start, and what is left: Gauss and Newton's method."""
     from scipy.linalg import expm
 

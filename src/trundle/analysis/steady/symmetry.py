@@ -98,6 +98,22 @@ def symmetries(flow: Flow, y: Array) -> Array:
     return np.asarray(basis[singular <= _COMMUTES * max(singular[0], 1.0)] * sizes)
 
 
+def common(parts: list[Array]) -> Array:
+    """Return the moves that some sets of moves, as `symmetries` returns them, have in common.
+
+    Examples
+    --------
+    >>> shifts, turns = np.eye(COUNT)[:2], np.eye(COUNT)[1:6]
+    >>> abs(common([shifts, turns])).round(12).tolist() == np.eye(COUNT)[1:2].tolist()
+    True
+    """
+    if len(parts) == 1:
+        return parts[0]
+    left = [np.eye(COUNT) - np.linalg.pinv(rows) @ rows if len(rows) else np.eye(COUNT) for rows in parts]
+    _, singular, basis = np.linalg.svd(np.vstack(left))
+    return np.asarray(basis[singular <= _COMMUTES])
+
+
 def samples(flow: Flow, y: Array) -> list[Array]:
     """Return states around a given one, on the support: the same ones each time."""
     random = np.random.default_rng(20031)

@@ -60,8 +60,8 @@ class Store:
         need("sweep", "a store of a sweep")
         store = Store(path)
         if not (path / "zarr.json").is_file():
-            what = "a folder that is none" if path.is_dir() else "nothing there" if not path.exists() else "a file"
-            raise InvalidValueError("store", "must be a store that a sweep wrote", str(path), f"It is {what}.")
+            what = "It is a folder." if path.is_dir() else "It is a file." if path.exists() else "It is not there."
+            raise InvalidValueError("store", "must be a store that a sweep wrote", str(path), what)
         if store.attributes.get("trundle_sweep") != FORMAT:
             remedy = "It is a Zarr store of something else, or of another version of trundle."
             raise InvalidValueError("store", "must be a store that a sweep wrote", str(path), remedy)
