@@ -200,7 +200,7 @@ def fitted(
         way.append((values.copy(), float(residual @ residual) / residual.size, until))
 
     found = fit_observed(
-        [seen], scenario, free, None, noise, Camera(accuracy=accuracy), "linear", start=True, watch=watch
+        [seen], scenario, free, None, noise, Camera(accuracy=accuracy or None), "linear", start=True, watch=watch
     )
     summary = found.as_dict()
     return as_json(

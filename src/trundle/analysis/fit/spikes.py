@@ -19,7 +19,7 @@ _FEW = 0.05  # of the rows: more are no spikes
 
 
 def spikes(seen: Observations, sigma: Array) -> Any:
-    """Return which values are far from the median of their neighbours, (n, c): none where they are not few.
+    """Return which values are far from all that their neighbours tell, (n, c): none where they are not few.
 
     Examples
     --------
@@ -30,16 +30,28 @@ def spikes(seen: Observations, sigma: Array) -> Any:
     [[40, 0]]
     """
     found = np.zeros(seen.values.shape, dtype=bool)
-    half = _WIDTH // 2
     for c, column in enumerate(seen.values.T):
         good = np.flatnonzero(np.isfinite(column))
         if good.size < 2 * _WIDTH:
             continue
-        x = np.pad(column[good], half, mode="reflect")
-        off = np.abs(column[good] - np.median(np.lib.stride_tricks.sliding_window_view(x, _WIDTH), axis=1))
+        off = _off(seen.time[good], column[good])
         far = off > np.maximum(_FARTHER * np.percentile(off, _MOST_ARE), _NOISES * sigma[good, c])
         found[good[far], c] = far.sum() <= _FEW * good.size
     return found
+
+
+def _off(t: Array, x: Array) -> Array:
+    """Return how far values are from the median of five, or from straight lines through the two before or after.
+
+    The nearest counts: at a bounce a value is far from the median, and goes on from one side.
+    """
+    around = np.pad(x, _WIDTH // 2, mode="reflect")
+    off = np.abs(x - np.median(np.lib.stride_tricks.sliding_window_view(around, _WIDTH), axis=1))
+    before = x[1:-1] + (x[1:-1] - x[:-2]) * (t[2:] - t[1:-1]) / (t[1:-1] - t[:-2])
+    after = x[1:-1] + (x[1:-1] - x[2:]) * (t[:-2] - t[1:-1]) / (t[1:-1] - t[2:])
+    off[2:] = np.minimum(off[2:], np.abs(x[2:] - before))
+    off[:-2] = np.minimum(off[:-2], np.abs(x[:-2] - after))
+    return off
 
 
 def without_spikes(problem: Problem) -> Problem | None:
