@@ -17,8 +17,8 @@ PLAIN = """() => {
     const key = /^[\\w-]+([.:] ?[\\w\\[\\]-]+)+$/  // support.tilt, turned: turned-over
     const words = (text) => (key.test(text.trim()) ? [] : (text.match(/\\p{L}+/gu) ?? []))
     const plain = (text) => words(text).some((word) => word.length > 2 && unmarked(word))
-    const ours = 'noscript, script, style, pre, code, datalist, textarea, math, .katex, .formula, [hreflang], .wordmark, '
-        + '.card-method, [translate=no], [data-trundle-cited]'
+    const ours = 'noscript, script, style, pre, code, datalist, textarea, math, .katex, .formula, [hreflang], '
+        + '.wordmark, .card-method, [translate=no], [data-trundle-cited]'
     const found = []
     const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT)
     for (let node = walk.nextNode(); node; node = walk.nextNode())

@@ -70,15 +70,15 @@ def test_a_finger_throws_the_ball(bench: Bench) -> None:
 
 
 def test_a_finger_nudges_it(bench: Bench) -> None:
+    run, shown = bench.run(), bench.play_past(0.3)
     bench.tool("Nudge it")
-    bench.stage.canvas.focus()
-    shown = bench.play_past(0.3)
-    Finger(bench.stage).swipe(bench.stage.ball(), (0.0, -70.0), held=0.1)
+    Finger(bench.stage).swipe(bench.stage.ball(), (60.0, 0.0))
 
     def nudged() -> None:
+        then = run.data.sel(time=shown.time, method="nearest")
         place, velocity = start(bench)
-        assert place == pytest.approx(shown.place[:2], abs=1e-3), "from where it was"
-        assert velocity[1] > 0.12, "up on the screen is along the second axis"
+        assert place == pytest.approx(then.position.values[:2], abs=1e-6), "from where it was"
+        assert velocity[0] - float(then.velocity[0]) > 0.01, "right on the screen is along the first axis"
 
     eventually(bench.page, nudged)
 
