@@ -20,9 +20,8 @@ from trundle.display import mathml, number
 from trundle.errors import InvalidValueError, TrundleError
 from trundle.scenario import files
 from trundle.views.scene import Scene, scene_of, unpack
-from trundle.views.viewer.bundle import languages
 from trundle.views.viewer import bundle
-from trundle.views.viewer.bundle import NotBuiltError
+from trundle.views.viewer.bundle import NotBuiltError, languages
 from trundle.views.viewer.page import page_of
 
 NAME = "tilted-turntable"
