@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, expect
 
-from .launching import PHONE
+from .launching import PATIENCE, PHONE
 from .visiting import Visitor
 
 # What of the page has vowels without marks: what is in no catalogue. Formulas, files, citations and units are no words.
@@ -17,8 +17,8 @@ PLAIN = """() => {
     const key = /^[\\w-]+([.:] ?[\\w\\[\\]-]+)+$/  // support.tilt, turned: turned-over
     const words = (text) => (key.test(text.trim()) ? [] : (text.match(/\\p{L}+/gu) ?? []))
     const plain = (text) => words(text).some((word) => word.length > 2 && unmarked(word))
-    const ours = 'noscript, script, style, pre, code, datalist, textarea, math, .katex, .formula, [hreflang], .wordmark, '
-        + '.card-method, [translate=no], [data-trundle-cited]'
+    const ours = 'noscript, script, style, pre, code, datalist, textarea, math, .katex, .formula, [hreflang], '
+        + '.wordmark, .card-method, [translate=no], [data-trundle-cited]'
     const found = []
     const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT)
     for (let node = walk.nextNode(); node; node = walk.nextNode())
@@ -40,11 +40,14 @@ def test_the_browser_chooses_the_language_and_a_link_overrules_it(visitor: Visit
     expect(page.locator("html")).to_have_attribute("lang", "en")
 
 
+SLOW = 3 * PATIENCE  # ms, for all that a page asks for: pictures of runs, sweeps
+
+
 def ready(visitor: Visitor, route: str, **options: Any) -> Page:
     """Open a page in the pseudo-language, and wait until it has asked for all that it needs."""
     page = visitor.open(f"?lang=pseudo{route}", drawn=False, **options)
-    expect(page.locator("main h1").first).to_contain_text("⟦")
-    page.wait_for_load_state("networkidle")
+    expect(page.locator("main h1").first).to_contain_text("⟦", timeout=SLOW)
+    page.wait_for_load_state("networkidle", timeout=SLOW)
     return page
 
 

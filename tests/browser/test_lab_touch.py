@@ -1,4 +1,4 @@
-"""The bench under a finger: the ball is moved, thrown and nudged, and a swipe beside it scrolls the page."""
+"""The bench under a finger: the ball is moved and thrown, and a swipe beside it scrolls the page."""
 
 from __future__ import annotations
 
@@ -67,20 +67,6 @@ def test_a_finger_throws_the_ball(bench: Bench) -> None:
         assert abs(velocity[1]) < 0.2 * abs(velocity[0])
 
     eventually(bench.page, thrown)
-
-
-def test_a_finger_nudges_it(bench: Bench) -> None:
-    bench.tool("Nudge it")
-    bench.stage.canvas.focus()
-    shown = bench.play_past(0.3)
-    Finger(bench.stage).swipe(bench.stage.ball(), (0.0, -70.0), held=0.1)
-
-    def nudged() -> None:
-        place, velocity = start(bench)
-        assert place == pytest.approx(shown.place[:2], abs=1e-3), "from where it was"
-        assert velocity[1] > 0.12, "up on the screen is along the second axis"
-
-    eventually(bench.page, nudged)
 
 
 def test_a_swipe_beside_the_ball_scrolls_the_page(visitor: Visitor) -> None:

@@ -137,7 +137,7 @@ def _shows(system: RollingSystem, said: str) -> dict[str, Any]:
 
 
 def curves_of(system: RollingSystem) -> list[dict[str, Any]]:
-    """Return what a row of the film holds to be drawn over the time, as a scene's header has it, and where it stands."""
+    """Return what a row of the film holds to be drawn over the time, as a scene's header has it, and where."""
     told = PhaseRoutines(system, next(iter(phases_of(system))), ()).curves()
     return [
         {"column": f"{PREFIX}{one.key}", "label": one.label, "unit": one.unit, "index": i, "touching": one.touching}

@@ -21,6 +21,7 @@ from ..solve.samples import Progress
 from ..views.scene import Scene as Drawn
 from ..views.scene import ground_under, places_of, scene_of
 from ..views.scene.body_mesh import body_mesh
+from ..views.scene.curves import PREFIX
 from ..views.scene.header import radius_about_centre
 from ..views.viewer.bundle import built
 from ..views.viewer.page import page_of
@@ -100,7 +101,9 @@ def _scene(scenario: Scenario, sliders: Sequence[Slider], progress: Progress) ->
     radius = radius_about_centre(body_mesh(run.system.body).vertices)
     ground = np.concatenate([places[0], *(_near(places[0], other, radius) for other in places[1:])])
     scene = scene_of(run, samples=_FIRST, with_card=True, places=ground)
-    columns, variants = dict(scene.columns), []
+    # The curves are the page's own: it has them as soon as it has computed the motion.
+    columns = {name: column for name, column in scene.columns.items() if not name.startswith(PREFIX)}
+    variants = []
     for i, one in enumerate(sliders):
         for kind, picture in (("body", _body), ("support", _support(ground, radius))):
             found = _variants(scenario, one, kind, picture)
@@ -118,7 +121,7 @@ def _scene(scenario: Scenario, sliders: Sequence[Slider], progress: Progress) ->
         "film": [name for name, _ in FILM],
         "parameters": [name for name, _ in parameters(run.system)],
     }
-    return Drawn({**scene.header, "method": "page", "live": live}, columns, scene.units)
+    return Drawn({**scene.header, "curves": [], "method": "page", "live": live}, columns, scene.units)
 
 
 def _near(here: Any, others: Any, radius: float) -> Any:
