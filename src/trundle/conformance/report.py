@@ -58,6 +58,10 @@ svg { max-width: 100%; height: auto } figure { margin: 1rem 0 } p { max-width: 4
 .beside :focus-visible { outline: 3px solid #0072b2; outline-offset: 2px }
 .beside div { display: flex; flex-wrap: wrap; gap: .5rem 1rem; align-items: center }
 .beside output { font-variant-numeric: tabular-nums }
+@media (prefers-color-scheme: dark) {
+  :root { color-scheme: dark } body { color: #e8e8e8; background: #161616 } th { background: #2a2a2a }
+  th, td { border-color: #4a4a4a } td[style] { color: #1a1a1a } svg, canvas { background: #fff }
+}
 """
 
 

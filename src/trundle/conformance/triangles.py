@@ -63,7 +63,7 @@ class Triangles:
         --------
         >>> mesh = Triangles.bowl(500, 0.5, np.array([0.6, 0.0, -0.8]))
         >>> mesh.corners.shape, round(float(mesh.distances[np.argmin(mesh.normals @ [0.6, 0.0, -0.8])]), 12)
-        ((406, 3), 0.5)
+        ((400, 3), 0.5)
         """
         from scipy.spatial import ConvexHull
 
