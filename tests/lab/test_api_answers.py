@@ -107,6 +107,16 @@ def test_words_are_compressed_for_who_can_read_that(lab: TestClient) -> None:
     assert int(small.headers["content-length"]) < len(plain.content) / 2
 
 
+def test_a_scene_is_compressed_for_who_can_read_that(lab: TestClient) -> None:
+    asked = {"scenario": shipped("tilted-turntable"), "samples": 500}
+    small = lab.post("/api/simulate", json=asked, headers={"accept-encoding": "gzip"})
+    plain = lab.post("/api/simulate", json=asked, headers={"accept-encoding": "identity"})
+    assert small.headers["content-encoding"] == "gzip"
+    assert "content-encoding" not in plain.headers
+    assert small.content == plain.content
+    assert int(small.headers["content-length"]) < 0.7 * len(plain.content)
+
+
 def test_the_card_is_the_packages_own(lab: TestClient) -> None:
     told = ask(lab, "card", scenario=shipped("level-turntable-nudged")).json()
     card = tr.Scenario.load("level-turntable-nudged").run().card()

@@ -51,7 +51,7 @@ class Bundle(StaticFiles):
 @lru_cache(maxsize=64)
 def _packed(path: str, changed: int) -> bytes:  # noqa: ARG001  of another file the same name may be
     """Pack a file once: while it packs, nobody is answered."""
-    return gzip.compress(Path(path).read_bytes(), 5)
+    return gzip.compress(Path(path).read_bytes())
 
 
 def add_routes(app: FastAPI, settings: Settings) -> None:

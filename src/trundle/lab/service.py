@@ -17,9 +17,12 @@ from .cache import Answer, Cache, key_of
 from .errors import Refusal, RefusedError
 from .films import Films
 from .lanes import Lanes
+from .requests import SCENE
 from .settings import Settings
 
-_WORDY = ("application/json", "application/toml", "image/svg+xml", "text/csv", "text/html")  # worth compressing
+_WORDY = ("application/json", "application/toml", "image/svg+xml", "text/csv", "text/html")
+# What is worth compressing, and how hard gzip tries: of numbers, as in a scene, more than the least hardly saves more.
+_PACKED = {SCENE: 1} | dict.fromkeys(_WORDY, 5)
 
 
 class Lab:
@@ -143,17 +146,18 @@ class Lab:
         body = found.body
         if found.filename:
             headers["content-disposition"] = f'attachment; filename="{found.filename}"'
-        if found.media_type.partition(";")[0] in _WORDY and len(body) > 1000:
+        level = _PACKED.get(found.media_type.partition(";")[0])
+        if level is not None and len(body) > 1000:
             headers["vary"] = "accept-encoding"
             if "gzip" in request.headers.get("accept-encoding", ""):
-                body = await self._packed(f"{key} packed", body)
+                body = await self._packed(f"{key} packed", body, level)
                 headers["content-encoding"] = "gzip"
         return Response(body, headers=headers, media_type=found.media_type)
 
-    async def _packed(self, key: str, body: bytes) -> bytes:
+    async def _packed(self, key: str, body: bytes, level: int) -> bytes:
         found = self.cache.get(key)
         if found is None:
-            found = Answer(await asyncio.to_thread(gzip.compress, body, 5), "application/gzip")
+            found = Answer(await asyncio.to_thread(gzip.compress, body, level), "application/gzip")
             self.cache.put(key, found)
         return found.body
 
