@@ -22,6 +22,7 @@ REFUSED = {
     ("bounce-with-spin", ".xml"): "support.restitution",
     ("rattleback", ".urdf"): "body.kind",
     **{("driven-turntable", ending): "support.motion.kind" for ending in FORMATS},
+    **{(name, ending): "support.kind" for name in CASES if name.startswith("bowl-mesh") for ending in FORMATS},
 }
 BOTH = [(name, ending) for name in CASES for ending in FORMATS]
 

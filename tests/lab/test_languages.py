@@ -65,7 +65,7 @@ def _said(header: dict[str, Any]) -> list[str]:
     card, headline = header["card"] or {}, header["headline"]
     figures = [text for one in card.get("figures", []) for text in (one["name"], one["note"])]
     # A source is cited as it is.
-    method = re.sub(r" \(.*\)", "", str(card.get("method", "")))
+    method = re.sub(r"^(closed form [^(]*)\(.*\)", r"\1(1)", str(card.get("method", "")))
     findings = [text for one in header["findings"] for text in (one["name"], one["note"])]
     headlines = [headline["text"], headline["how"]] if headline else []
     formula = [header["formula"]["name"]] if header["formula"] else []

@@ -130,8 +130,10 @@ class FilmTrack(Track):
             ("calibrated by", f"{calibration.basis}, to {calibration.misfit:.2f} px"),
             ("lens over the table", f"{camera.place[2]:.4g} m, aside by {np.hypot(*camera.place[:2]):.3g} m"),
             ("focal length", f"{camera.focal:.5g} px"),
-            ("accuracy", f"{self.data.attrs['accuracy']:.2g} m, {_PARTS[self.data.attrs['accuracy_in_pixels']]}"),
         ]
+        if "accuracy" in self.data.attrs:
+            pixels = _PARTS[self.data.attrs["accuracy_in_pixels"]]
+            told.append(("accuracy", f"{self.data.attrs['accuracy']:.2g} m, {pixels}"))
         if turning is not None:
             rpm = turning.rate * 30 / np.pi
             turns = f"{turning.rate:.6g} ± {turning.rate_sigma:.2g} rad/s ({rpm:.5g} rpm)"
