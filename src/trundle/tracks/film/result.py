@@ -131,7 +131,7 @@ class FilmTrack(Track):
             ("lens over the table", f"{camera.place[2]:.4g} m, aside by {np.hypot(*camera.place[:2]):.3g} m"),
             ("focal length", f"{camera.focal:.5g} px"),
         ]
-        if "accuracy" in self.data.attrs:
+        if "accuracy_in_pixels" in self.data.attrs:
             pixels = _PARTS[self.data.attrs["accuracy_in_pixels"]]
             told.append(("accuracy", f"{self.data.attrs['accuracy']:.2g} m, {pixels}"))
         if turning is not None:
