@@ -123,11 +123,12 @@ def growth(
     told = np.all([alike(*pair) for pair in pairs], axis=0)
     if times[-1] < end <= until:  # where some of them have ended already
         lasts = _lasts(solve, end, [(start, first), *zip(starts, others, strict=True)])
-        pairs = [
-            (Samples.joined([one, its_last]), Samples.joined([other, other_last]))
-            for (one, other), (its_last, other_last) in zip(pairs, lasts, strict=True)
-        ]
-        times, told = np.append(times, end), np.append(told, True)
+        if all(len(other.time) for _, other in lasts):  # asked for other instants, one may end sooner
+            pairs = [
+                (Samples.joined([one, its_last]), Samples.joined([other, other_last]))
+                for (one, other), (its_last, other_last) in zip(pairs, lasts, strict=True)
+            ]
+            times, told = np.append(times, end), np.append(told, True)
     state, shown = _responses(system, pairs, sizes)
     with np.errstate(over="ignore"):  # beside a motion of 1e-30 m
         large = np.linalg.norm(shown, axis=2).max(axis=(1, 2)) > MOST
@@ -152,10 +153,10 @@ def _lasts(
     ends = [min([end, *(event.time for event in run.events if event.final)]) for _, run in runs]
     times = np.minimum(ends[0], ends[1:])
     firsts = solve(runs[0][0], np.unique(times))
-    # Asked for other instants, it may end a rounding sooner.
+    # Asked for other instants, a run may end a rounding sooner, or at an event behind them.
     rows = np.minimum(np.searchsorted(firsts.time, times), firsts.time.size - 1)
     return [
-        (firsts.part([row]), solve(start, np.array([time])))
+        (firsts.part([row]), solve(start, np.array([time])).part(slice(1)))
         for row, time, (start, _) in zip(rows, times, runs[1:], strict=True)
     ]
 
