@@ -274,7 +274,9 @@ def test_a_phase_between_two_samples_is_passed(name: str) -> None:
     many, few = (exactly(system, start, until=1.0, every=every) for every in (0.01, 1.0))
     assert [event.kind for event in few.events] == [event.kind for event in many.events]
     for field in ("position", "velocity", "angular_velocity", "contact_force", "orientation"):
-        assert (few.data[field].values[-1] == many.data[field].values[-1]).all(), field
+        end, same = few.data[field].values[-1], many.data[field].values[-1]
+        # NumPy's loops for many numbers at once may round otherwise than those for one, by the processor.
+        assert np.abs(end - same).max() <= 4 * np.spacing(np.abs(same).max()), field
 
 
 @pytest.mark.parametrize("name", CHAINS)
