@@ -47,7 +47,10 @@ def ready(visitor: Visitor, route: str, **options: Any) -> Page:
     """Open a page in the pseudo-language, and wait until it has asked for all that it needs."""
     page = visitor.open(f"?lang=pseudo{route}", drawn=False, **options)
     expect(page.locator("main h1").first).to_contain_text("⟦", timeout=SLOW)
-    page.wait_for_load_state("networkidle", timeout=SLOW)
+    if route.startswith("#/maps"):  # a map is computed for as long as it is looked at
+        expect(page.locator(".map-notes")).to_contain_text("⟦", timeout=SLOW)
+    else:
+        page.wait_for_load_state("networkidle", timeout=SLOW)
     return page
 
 
