@@ -25,6 +25,7 @@ _NEAREST = 1e-4  # that the centre may come to the axis, as a share of its large
 _ON_AXIS = 1e-100  # of the radius: nearer, the squares of what is worked out vanish
 _TOLERANCE = 1e-13
 _STEPS = 48  # of the meridian's stretch at least: its dense output is then as good as its steps
+_BEGIN = (0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0)  # way from the start, solutions by rows, the one that starts at zero
 _WIDER = 8  # times that the stretch is widened, each time to twice what it was
 
 
@@ -38,23 +39,31 @@ def _has_pair(system: RollingSystem) -> tuple[str, ...]:
 
 
 class _Meridian:
-    """The linear equation along the meridian, from the latitude of a record's first contact."""
+    """The linear equation along the meridian, from the latitude of the contact whose centre is nearest to the axis.
 
-    def __init__(self, system: RollingSystem, distance: Any, height: Any, nearest: float) -> None:
+    There 1/R is largest and tells each rounding; lengths are counted from there, so that theirs are small.
+    """
+
+    def __init__(self, system: RollingSystem, distance: Any, height: Any, centre: Any) -> None:
         import numpy as np
 
         self.surface, self.a = system.support.surface, float(system.body.radius)
         k = float(system.body.inertia_ratio)
         self.share, self.rate = k / (1 + k), float(system.support.motion.steady_rate or 0.0)
-        self.least = 0.5 * nearest  # of the centre from the axis, where the equation is singular
-        self.start = (float(distance[0]), float(height[0]))
-        away = np.hypot(distance - self.start[0], height - self.start[1])
-        self.size = float(np.max(away))
+        first = int(np.argmax(centre <= (1 + 1e-6) * centre.min()))  # of those as near, the first
+        self.least = 0.5 * float(centre[first])  # of the centre from the axis, where the equation is singular
+        self.start = (float(distance[first]), float(height[first]))
+        self.out, self.up = distance - self.start[0], height - self.start[1]
+        self.size = float(np.hypot(self.out, self.up).max())
+
+    def contact(self, y: Any) -> Vector:
+        """Return the contact so far away from the start."""
+        return Vector(self.start[0] + y[0], 0.0 * y[0], self.start[1] + y[1])
 
     def slopes(self, _: float, y: Any) -> list[float]:
         """Return the slopes of R_p, z, the matrix of solutions (by rows) and the solution that starts at zero."""
-        R_p, z = y[0], y[1]
-        p = Vector(R_p, 0.0, z)
+        p = self.contact(y)
+        R_p = p.x
         n, S = self.surface.normal(p), self.surface.shape_operator(p)
         along = Vector(n.z, 0.0, -n.x)
         kappa, R = along.dot(S @ along), R_p + self.a * n.x
@@ -76,14 +85,14 @@ class _Meridian:
         from scipy.integrate import solve_ivp
 
         def near_axis(_: float, y: Any) -> float:
-            return float(y[0] + self.a * self.surface.normal(Vector(y[0], 0.0, y[1])).x - self.least)
+            p = self.contact(y)
+            return float(p.x + self.a * self.surface.normal(p).x - self.least)
 
         near_axis.terminal = True  # type: ignore[attr-defined]
-        y = [*self.start, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0]
         return solve_ivp(
             self.slopes,
             (0.0, end),
-            y,
+            _BEGIN,
             method="DOP853",
             rtol=_TOLERANCE,
             atol=1e-3 * _TOLERANCE,
@@ -92,23 +101,22 @@ class _Meridian:
             events=near_axis,
         )
 
-    def at(self, distance: Any, height: Any) -> Any:
+    def at_each(self) -> Any:
         """Return the solutions at each contact: an array of 8 rows."""
         import numpy as np
 
         if self.size <= 1e-12 * max(1e-300, float(np.abs(self.start).max())):
-            return np.broadcast_to(np.array([[*self.start, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0]]).T, (8, distance.size))
+            return np.broadcast_to(np.array([_BEGIN]).T, (8, self.out.size))
         reach = 1.1 * self.size
         for _ in range(_WIDER):
             solutions = self.solve(-reach).sol, self.solve(reach).sol
-            sigma = self._placed(solutions, distance, height)
-            rows = _both(solutions, sigma)
-            if np.hypot(rows[0] - distance, rows[1] - height).max() <= 1e-6 * self.size:
+            rows = _both(solutions, self._placed(solutions))
+            if np.hypot(rows[0] - self.out, rows[1] - self.up).max() <= 1e-6 * self.size:
                 break
             reach *= 2
         return rows
 
-    def _placed(self, solutions: tuple[Any, Any], distance: Any, height: Any) -> Any:
+    def _placed(self, solutions: tuple[Any, Any]) -> Any:
         """Return the σ of each contact: the nearest of many, then Newton's method along the meridian."""
         import numpy as np
         from scipy.spatial import cKDTree
@@ -116,11 +124,11 @@ class _Meridian:
         low, high = (float(solution.t_max if solution.t_max > 0 else solution.t_min) for solution in solutions)
         grid = np.linspace(low, high, 2001)
         rows = _both(solutions, grid)
-        sigma = grid[cKDTree(rows[:2].T).query(np.column_stack([distance, height]))[1]]
+        sigma = grid[cKDTree(rows[:2].T).query(np.column_stack([self.out, self.up]))[1]]
         for _ in range(4):
             rows = _both(solutions, sigma)
-            n = self.surface.normal(Vector(rows[0], np.zeros_like(rows[0]), rows[1]))
-            step = (distance - rows[0]) * n.z - (height - rows[1]) * n.x
+            n = self.surface.normal(self.contact(rows))
+            step = (self.out - rows[0]) * n.z - (self.up - rows[1]) * n.x
             sigma = np.clip(sigma + step, low, high)
         return sigma
 
@@ -132,7 +140,7 @@ def _both(solutions: tuple[Any, Any], sigma: Any) -> Any:
 
 
 def _pair(system: RollingSystem, at: Record) -> list[Any]:
-    """Return the terms of ℓ and w carried back along the meridian to the latitude of the record's first contact.
+    """Return the terms of ℓ and w carried along the meridian to the latitude where the centre is nearest to the axis.
 
     None where the centre comes to the axis, at which the equation along the meridian is singular.
     """
@@ -148,11 +156,10 @@ def _pair(system: RollingSystem, at: Record) -> list[Any]:
     centre = np.hypot(*(np.broadcast_to(np.asarray(x, dtype=float), shape).reshape(-1) for x in (r.x, r.y)))
     if centre.min() <= max(_NEAREST * centre.max(), _ON_AXIS * a):
         return []
-    rows = _Meridian(system, distance, contact[2], float(centre.min())).at(distance, contact[2])
-    A, B, C, D = rows[2:6]
+    A, B, C, D, *turned = _Meridian(system, distance, contact[2], centre).at_each()[2:]
     inverse = np.array([[D, -B], [-C, A]]) / (A * D - B * C)
     columns = [inverse[:, 0] * part for part in flat[:2]] + [inverse[:, 1] * part for part in flat[2:]]
-    columns += [-inverse[:, 0] * rows[6], -inverse[:, 1] * rows[7]]
+    columns += [-inverse[:, 0] * turned[0], -inverse[:, 1] * turned[1]]
     reach = float(distance[0])  # makes both angular momenta, per mass
     return [(column * np.array([[1.0], [reach]])).T.reshape(*shape, 2) for column in columns]
 
