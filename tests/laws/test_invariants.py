@@ -303,22 +303,31 @@ def test_the_pair_over_the_axis_itself_is_finite() -> None:
     assert drift(PAIR, system, at) <= SOLVER(20 * turned(at), 1e-12)
 
 
-@pytest.mark.parametrize("half_angle", [math.radians(2.7), 0.02])
-@pytest.mark.parametrize("swing", [1.0, -1.0])
-def test_the_pair_in_a_cone_hardly_wider_than_the_ball_is_what_is_known(half_angle: float, swing: float) -> None:
+@pytest.mark.parametrize(
+    ("half_angle", "speed", "spin"),
+    [
+        (math.radians(2.7), 2e-3, 0.0),
+        (math.radians(2.7), 6e-4, 30.0),
+        (math.radians(2.7), -6e-4, 3.0),
+        (0.02, -2e-3, 3.0),
+    ],
+)
+def test_the_pair_in_a_cone_hardly_wider_than_the_ball_is_what_is_known(
+    half_angle: float, speed: float, spin: float
+) -> None:
     # In a cone at rest R V_φ is constant, and aΩ·n + (n_R/n_z) V_φ: near the axis both are told by the smallest R.
     pytest.importorskip("heyoka")
     system = tr.RollingSystem(tr.Body.solid_sphere(0.01, 0.008), tr.Support(tr.Cone(half_angle)))
-    start = system.place((0.0106, 0.0), (0.0, 0.006 * swing), spin=30.0)
-    run = tr.simulate(system, start, 2.0, 0.01, method="taylor")
+    start = system.place((0.0106, 0.0), (0.0, speed), spin=spin)
+    run = tr.simulate(system, start, 2.0, 0.02, method="taylor")
     at = run.samples
     n, R, (x, y) = at.normals(system), np.hypot(*at.position[:, :2].T), at.position[:, :2].T
     across = (x * at.velocity[:, 1] - y * at.velocity[:, 0]) / R
-    spin = 0.01 * (n * at.angular_velocity).sum(axis=1)
+    spins = 0.01 * (n * at.angular_velocity).sum(axis=1)
     slope = math.hypot(*n[0, :2]) / n[0, 2]
-    assert R.min() < 0.3 * R.max()
+    assert R.min() < 0.1 * R.max()
     assert np.ptp(R * across) <= 1e-11 * np.abs(R * across).max()
-    assert np.ptp(spin - slope * across) <= 1e-11 * slope * np.abs(across).max()
+    assert np.ptp(spins - slope * across) <= 1e-11 * slope * np.abs(across).max()
     assert run.card()[f"drift of the {PAIR}"].value <= 1e-12
     late = replace(at, angular_velocity=at.angular_velocity * (1 + 1e-11 * at.time)[:, None])
     assert drift(PAIR, system, late) > 1e-12
