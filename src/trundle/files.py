@@ -17,6 +17,7 @@ from .errors import InvalidValueError, RunFileError, TrundleError
 if TYPE_CHECKING:
     import xarray
 
+FILM_ENDINGS = (".mp4", ".mov", ".m4v", ".avi", ".webm", ".mkv", ".mpg", ".mpeg", ".mts", ".3gp", ".wmv", ".ogv")
 _STAGE, _UNHELD = ".trundle-", ".trundle+"  # folders of a process that holds them, and for an instant before that
 _HEAP = b"GCOL\x01\0\0\0"  # where a file of HDF5 keeps its words
 _OLD = 86_400.0  # s: older than this is what nobody writes to any more, where no lock can tell

@@ -109,7 +109,7 @@ class Imagined:
         self.began: dict[Any, float] = {}  # each work, when it was first begun
         self.begun: Counter[Any] = Counter()  # and how often
 
-    def computation(self, seconds: Any, arguments: tuple[Any, ...], within: float) -> Any:  # noqa: ARG002
+    def computation(self, seconds: Any, arguments: tuple[Any, ...], *_: float | None) -> Any:
         told = SimpleNamespace(running=False)
 
         async def result() -> Any:

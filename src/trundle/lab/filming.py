@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import base64
+import math
 import re
 import time
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from ..errors import InvalidValueError
-from ..tracks.film.container import ENDINGS
+from ..files import FILM_ENDINGS
 from .answers import answering, as_json
 from .cache import Answer
 from .errors import refused
@@ -49,8 +48,8 @@ def ending_of(name: str) -> str:
     '.mov'
     """
     ending = Path(name.replace("\\", "/")).suffix.lower()
-    if ending not in ENDINGS:
-        raise refused(422, f"A film ends in {', '.join(ENDINGS)}; this is {name!r}.", "file")
+    if ending not in FILM_ENDINGS:
+        raise refused(422, f"A film ends in {', '.join(FILM_ENDINGS)}; this is {name!r}.", "file")
     return ending
 
 
@@ -113,7 +112,7 @@ def _picture(path: Path, at: float) -> Picture:
     last = None
     for frame in Film(path).frames_from(at):
         last = frame.picture
-        if frame.time >= at or not np.isfinite(frame.time):
+        if frame.time >= at or not math.isfinite(frame.time):
             break
     if last is None:
         raise InvalidValueError("file", "must be a film with pictures", "none that can be read", "Export it anew.")
@@ -230,6 +229,8 @@ def _named(sentence: str, path: Path, name: str) -> str:
 
 def outlines(view: Mapping[str, Any], places: Array) -> list[list[list[float]]]:
     """Return where the outline of a ball is seen in a film whose camera is known, at each of its places (n, 2), px."""
+    import numpy as np
+
     from ..tracks.film.pinhole import PinholeCamera
 
     camera: PinholeCamera = PinholeCamera(

@@ -8,9 +8,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from ..errors import InvalidValueError, TrundleError, UnknownNameError
+from ..files import FILM_ENDINGS
 from ..scenario import files
 from ..units import UNITS
 from . import limits
@@ -98,13 +97,12 @@ def read(content: bytes, how: Mapping[str, Any], folder: str) -> Answer:
     ('units', ['m', 'cm'])
     """
     from ..tracks import read_track
-    from ..tracks.film.container import ENDINGS
     from ..tracks.formats import endings
     from ..tracks.reading import track_names
 
     name = Path(how["name"].replace("\\", "/")).name
     ending = Path(name).suffix.lower()
-    if ending in ENDINGS:
+    if ending in FILM_ENDINGS:
         remedy = "The page Measure finds the ball in it, and so does `trundle track`."
         raise refused(422, f"{name!r} is a film, and no track. {remedy}", "file")
     if ending not in endings():
@@ -185,6 +183,8 @@ def fitted(
     >>> found["answer"], found["rows"][0][1]
     ('good', '0.6502 ± 0.0014')
     """
+    import numpy as np
+
     from ..analysis.fit.api import fit_observed
     from ..analysis.fit.camera import Camera
     from ..analysis.fit.observations import observe
@@ -225,6 +225,8 @@ def fitted(
 
 def _way(found: Fit, way: Sequence[tuple[Array, float, float]]) -> dict[str, Any]:
     """Return the path of some of the values that the fit came by, the last the fitted one."""
+    import numpy as np
+
     model = found.problem.models[0]
     chosen = np.unique(np.linspace(0, len(way) - 1, min(len(way), _FRAMES)).astype(int))
     rows = np.unique(np.linspace(0, model.seen.time.size - 1, _POINTS).astype(int))
@@ -254,6 +256,8 @@ def _called(name: str) -> dict[str, str]:
 
 def _seen(found: Fit, view: Mapping[str, Any]) -> dict[str, Any]:
     """Return where a film shows the ball as it was fitted: the outline at some of the times of the track."""
+    import numpy as np
+
     from .filming import outlines
 
     model, places = found.problem.models[0], found.predicted()[0]

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from ...errors import InvalidValueError
 from ...extras import need
+from ...files import FILM_ENDINGS
 
 Picture = NDArray[np.uint8]
-ENDINGS = (".mp4", ".mov", ".m4v", ".avi", ".webm", ".mkv", ".mpg", ".mpeg", ".mts", ".3gp", ".wmv", ".ogv")
 _CAPTURED = b"com.android.capture.fps"
 _MOST_HEADER = 2**24  # bytes of a film's index that are looked at
 _SAME_RATE = 1.05  # rates nearer than this are one
@@ -162,7 +162,7 @@ def _opened(path: Path) -> Any:
             cv2.setLogLevel(before)
     if not capture.isOpened() or capture.get(cv2.CAP_PROP_FRAME_WIDTH) < 1:
         capture.release()
-        remedy = f"Films end in {', '.join(ENDINGS[:5])} and so on; one cut off while it was copied has no index."
+        remedy = f"Films end in {', '.join(FILM_ENDINGS[:5])} and so on; one cut off while it was copied has no index."
         raise InvalidValueError("film", "must be a film that can be read", path.name, remedy)
     return capture
 
