@@ -15,13 +15,17 @@ from trundle.cli.writing import write_together
 
 
 def test_an_interrupt_that_was_lost_is_raised_at_the_next_step() -> None:
-    with pytest.raises(KeyboardInterrupt), ending() as handler:
-        with contextlib.suppress(KeyboardInterrupt):
-            signal.raise_signal(signal.SIGINT)
-        assert handler.number == signal.SIGINT
-        with ProgressBar(wanted=False) as bar:
-            bar(0.5)
-        raise AssertionError
+    def lose_it() -> None:
+        with ending() as handler:
+            with contextlib.suppress(KeyboardInterrupt):
+                signal.raise_signal(signal.SIGINT)
+            assert handler.number == signal.SIGINT
+            with ProgressBar(wanted=False) as bar:
+                bar(0.5)
+            raise AssertionError
+
+    with pytest.raises(KeyboardInterrupt):
+        lose_it()
 
 
 @pytest.mark.parametrize(("number", "raised"), [(signal.SIGINT, KeyboardInterrupt), (signal.SIGTERM, SystemExit)])
@@ -93,17 +97,21 @@ def test_whether_files_are_there_is_known_at_the_end(tmp_path: Path) -> None:
 def test_an_interrupt_that_is_swallowed_comes_again() -> None:
     """A library may clear the exception, once or many times, and go on."""
     swallowed = 0
-    with pytest.raises(KeyboardInterrupt), ending():
-        signal_sent = False
+
+    def swallow() -> None:
+        nonlocal swallowed
         until = time.monotonic() + 20
-        while time.monotonic() < until and swallowed < 3:
-            with contextlib.suppress(KeyboardInterrupt):
-                if not signal_sent:
-                    signal_sent = True
-                    signal.raise_signal(signal.SIGINT)
-                while time.monotonic() < until:
-                    time.sleep(0.01)
-            swallowed += 1
+        with ending():
+            while time.monotonic() < until and swallowed < 3:
+                with contextlib.suppress(KeyboardInterrupt):
+                    if not swallowed:
+                        signal.raise_signal(signal.SIGINT)
+                    while time.monotonic() < until:
+                        time.sleep(0.01)
+                swallowed += 1
+
+    with pytest.raises(KeyboardInterrupt):
+        swallow()
     assert swallowed == 3
 
 
@@ -120,12 +128,16 @@ def test_what_is_cleared_up_on_the_way_out_is_left_alone(number: int) -> None:
         time.sleep(0.7)
         cleared.append("all")
 
-    with pytest.raises((KeyboardInterrupt, SystemExit)), ending(), contextlib.ExitStack() as stack:
-        stack.callback(clear)
-        try:
-            signal.raise_signal(number)
-        finally:
-            clear()
+    def leave() -> None:
+        with ending(), contextlib.ExitStack() as stack:
+            stack.callback(clear)
+            try:
+                signal.raise_signal(number)
+            finally:
+                clear()
+
+    with pytest.raises((KeyboardInterrupt, SystemExit)):
+        leave()
     assert cleared == ["all", "all"]
 
 

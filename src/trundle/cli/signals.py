@@ -18,9 +18,9 @@ class Ending:
     """A signal handler that ends the command, and remembers that it was called, and whether files are there by then.
 
     Python loses an exception that a handler raises inside a callback, of the garbage collector, of a lock of imports or
-    of compiled code, and prints "Exception ignored"; a compiled library may drop it, or put another in its place. So the
-    signal comes again and again, but for the time that its exception is on its way up, until the command is `over` or
-    says that it has `heard`. `lost` keeps Python from printing, and `check` raises what is due.
+    of compiled code, and prints "Exception ignored"; a compiled library may drop it, or put another in its place. So
+    the signal comes again and again, but while its exception is on its way up, until the command is over or says that
+    it has `heard`. `lost` keeps Python from printing, and `check` raises what is due.
 
     Examples
     --------
