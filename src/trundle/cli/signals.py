@@ -12,6 +12,7 @@ from typing import Any
 
 INTERRUPTED = 130
 _AGAIN = 0.25  # s until a signal that was lost is sent once more
+_PATIENCE = 80  # times that it is held back while its exception seems to be on its way up
 
 
 class Ending:
@@ -39,13 +40,15 @@ class Ending:
         self.written = False
         self.before = sys.unraisablehook
         self._lock, self._over, self._sent, self._watched = _thread.allocate_lock(), False, False, False
+        self._patience = _PATIENCE
 
     def __call__(self, number: int, frame: Any) -> None:  # noqa: ARG002
         """Take a signal."""
         if self._over:
             return
         sent, self._sent = self._sent, False
-        if sent and _on_its_way():
+        if sent and self._patience and _on_its_way():
+            self._patience -= 1
             return
         self.number = number
         if not self._watched:
@@ -60,7 +63,7 @@ class Ending:
                 if self._over:
                     return
                 self._sent = True
-                _thread.interrupt_main(self.number)
+                _thread.interrupt_main(signal.Signals(self.number))
 
     def stop(self) -> None:
         """Hear no more."""
